@@ -1,0 +1,153 @@
+//! The one clock: ticks of a fixed length, in the same order of phases everywhere.
+
+use bevy::{
+    app::FixedMain,
+    ecs::{
+        message::message_update_system,
+        schedule::{ScheduleLabel as _, SingleThreadedExecutor},
+    },
+    prelude::*,
+};
+
+/// Ticks per second of simulated time.
+pub const TICKS_PER_SECOND: u32 = 60;
+
+/// Length of a tick in seconds.
+pub const TICK_SECONDS: f32 = 1.0 / TICKS_PER_SECOND as f32;
+
+/// The phases of a tick, in their order, all in the [`FixedUpdate`] schedule.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SimSystems {
+    /// Commands that name files become commands that hold their content.
+    Load,
+    /// Commands, scenarios and scripts are carried out: things appear, disappear and get targets. Runs while paused, too.
+    Ingest,
+    /// Hands, joints and grippers turn targets into kinematic poses and motor commands.
+    Actuate,
+    /// The physics engine makes one step.
+    Physics,
+    /// Global transforms are brought up to this tick. Runs while paused, too.
+    Propagate,
+    /// Contacts, grips, forward kinematics and camera pictures are read from the new state.
+    Sense,
+    /// Recorders and scripts get what this tick brought.
+    Record,
+    /// [`SimTick`] moves on.
+    Advance,
+}
+
+/// How many ticks have been simulated.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SimTick(pub u64);
+
+/// Whether the simulation stands still. Commands are still carried out, so files can be loaded.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Paused(pub bool);
+
+impl Paused {
+    /// Run condition: the simulation is running.
+    pub fn is_running(paused: Res<Self>) -> bool {
+        !paused.0
+    }
+}
+
+pub(crate) fn configure(app: &mut App) {
+    app.init_resource::<SimTick>()
+        .init_resource::<Paused>()
+        .insert_resource(Time::<Fixed>::from_hz(f64::from(TICKS_PER_SECOND)))
+        .configure_sets(
+            FixedUpdate,
+            (
+                SimSystems::Load,
+                SimSystems::Ingest,
+                SimSystems::Actuate.run_if(Paused::is_running),
+                SimSystems::Physics.run_if(Paused::is_running),
+                SimSystems::Propagate,
+                SimSystems::Sense.run_if(Paused::is_running),
+                SimSystems::Record.run_if(Paused::is_running),
+                SimSystems::Advance.run_if(Paused::is_running),
+            )
+                .chain(),
+        )
+        .add_systems(FixedUpdate, advance_tick.in_set(SimSystems::Advance));
+}
+
+fn advance_tick(mut tick: ResMut<SimTick>) {
+    tick.0 += 1;
+}
+
+/// Runs the schedules of a tick on one thread: they are many short systems, and handing them to a pool of threads
+/// costs more than ten times what they do.
+pub(crate) fn run_ticks_on_one_thread(app: &mut App) {
+    fn on_one_thread(schedule: &mut Schedule) {
+        schedule.set_executor(SingleThreadedExecutor::new());
+    }
+    app.edit_schedule(FixedFirst, on_one_thread)
+        .edit_schedule(FixedPreUpdate, on_one_thread)
+        .edit_schedule(FixedUpdate, on_one_thread)
+        .edit_schedule(FixedPostUpdate, on_one_thread)
+        .edit_schedule(FixedLast, on_one_thread);
+}
+
+/// Stepping an app without a window as fast as it can.
+pub trait StepApp {
+    /// Finishes the plugins and runs the start-up schedules, once; afterwards the app can be [stepped](Self::step).
+    fn start(&mut self) -> &mut Self;
+
+    /// Simulates so many ticks, with nothing of the frame around them: no wall clock, no [`Update`].
+    fn step(&mut self, ticks: u64) -> &mut Self;
+}
+
+impl StepApp for App {
+    fn start(&mut self) -> &mut Self {
+        self.finish();
+        self.cleanup();
+        for schedule in [PreStartup.intern(), Startup.intern(), PostStartup.intern()] {
+            let _absent_in_a_bare_app = self.world_mut().try_run_schedule(schedule);
+        }
+        self
+    }
+
+    fn step(&mut self, ticks: u64) -> &mut Self {
+        let world = self.world_mut();
+        for _ in 0..ticks {
+            world.run_schedule(FixedMain);
+            if let Err(error) = world.run_system_cached(message_update_system) {
+                error!("cannot clear old messages: {error}");
+            }
+            world.clear_trackers();
+        }
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CorePlugin, SimCommand};
+
+    #[test]
+    fn a_pause_stops_the_clock_and_not_the_commands() {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default())).start();
+        app.step(3);
+        app.world_mut().write_message(SimCommand::SetPaused(true));
+        app.step(5);
+        assert_eq!(app.world().resource::<SimTick>().0, 3);
+        app.world_mut().write_message(SimCommand::SetPaused(false));
+        app.step(2);
+        assert_eq!(app.world().resource::<SimTick>().0, 5);
+    }
+
+    #[test]
+    fn stepping_drops_old_messages() {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default())).start();
+        for _ in 0..10 {
+            app.world_mut().write_message(SimCommand::ClearTable);
+            app.step(1);
+        }
+        let kept = app.world().resource::<Messages<SimCommand>>().len();
+        assert!(kept <= 2, "{kept} messages are kept");
+    }
+}

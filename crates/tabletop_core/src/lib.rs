@@ -1,0 +1,82 @@
+//! The vocabulary that the parts of the tabletop simulator share.
+//!
+//! Here stands what two parts that must not know each other both need: what an object is ([`ObjectSpec`], [`Shape`]),
+//! what a task file says ([`SceneSpec`]), what the simulation is told and tells ([`SimCommand`], [`SimFact`]) and when
+//! things happen in a tick ([`SimSystems`]).
+//!
+//! The world is right-handed with its origin at the centre of the table's top: X to the right, Y away from the robot,
+//! **Z up**. A unit of length is 10 cm; masses are in kg, times in s. Angles are in radians in code, in degrees in files.
+//!
+//! ```
+//! use bevy::prelude::*;
+//! use tabletop_core::prelude::*;
+//!
+//! let mut app = App::new();
+//! app.add_plugins((MinimalPlugins, CorePlugin::default()))
+//!     .start()
+//!     .step(60);
+//! assert_eq!(app.world().resource::<SimTick>().0, 60);
+//! ```
+
+mod clock;
+mod color;
+mod message;
+mod number;
+mod object;
+mod pose;
+mod scene;
+mod shape;
+
+pub use clock::{Paused, SimSystems, SimTick, StepApp, TICK_SECONDS, TICKS_PER_SECOND};
+pub use color::{ColorError, NAMED_COLORS, Rgb};
+pub use message::{SimCommand, SimFact};
+pub use number::Decimal;
+pub use object::{ObjectIndex, ObjectSpec};
+pub use pose::{Pose, degrees_from_quat, quat_from_degrees};
+pub use scene::{ChainSpec, Joint, JointKind, JointSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
+pub use shape::{Leaf, Part, Primitive, Shape, Solid};
+
+use bevy::prelude::*;
+
+/// The types that most users of the simulator need.
+pub mod prelude {
+    #[doc(hidden)]
+    pub use crate::{
+        CorePlugin, ObjectIndex, ObjectSpec, Paused, Pose, Rgb, SceneItem, SceneSpec, Shape,
+        SimCommand, SimFact, SimSystems, SimTick, StepApp, Table,
+    };
+}
+
+/// Adds clock, commands and facts. Every other plugin of the simulator needs it.
+#[derive(Clone, Copy, Debug)]
+pub struct CorePlugin {
+    /// Run the fixed schedules on one thread, which is much faster for them; `false` leaves the app's executors alone.
+    pub one_thread: bool,
+}
+
+impl Default for CorePlugin {
+    fn default() -> Self {
+        Self { one_thread: true }
+    }
+}
+
+impl Plugin for CorePlugin {
+    fn build(&self, app: &mut App) {
+        app.add_message::<SimCommand>()
+            .add_message::<SimFact>()
+            .init_resource::<ObjectIndex>()
+            .add_systems(FixedUpdate, set_paused.in_set(SimSystems::Ingest));
+        clock::configure(app);
+        if self.one_thread {
+            clock::run_ticks_on_one_thread(app);
+        }
+    }
+}
+
+fn set_paused(mut commands: MessageReader<SimCommand>, mut paused: ResMut<Paused>) {
+    for command in commands.read() {
+        if let SimCommand::SetPaused(pause) = command {
+            paused.0 = *pause;
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! What a task file says: the table and what stands on it.
+
+use bevy::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::{ObjectSpec, Pose, Rgb};
+
+/// The content of a task file, in the file's order, before ids are made unique.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SceneSpec {
+    /// The table.
+    pub table: Table,
+    /// What stands on it.
+    pub items: Vec<SceneItem>,
+}
+
+/// The table: a white slab whose top lies in the XY plane, centred at the origin. As a component it marks the table's entity.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[component(immutable)]
+#[require(Transform)]
+pub struct Table {
+    /// Extent along X in units.
+    pub xspan: f32,
+    /// Extent along Y in units.
+    pub yspan: f32,
+}
+
+impl Table {
+    /// Thickness of the slab below Z = 0, in units.
+    pub const THICKNESS: f32 = 4.0;
+}
+
+impl Default for Table {
+    fn default() -> Self {
+        Self {
+            xspan: 20.0,
+            yspan: 12.0,
+        }
+    }
+}
+
+/// One element of a task file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum SceneItem {
+    /// A block, cylinder, sphere, box or composite.
+    Object(ObjectSpec),
+    /// A chain.
+    Chain(ChainSpec),
+    /// A box with a sliding lid.
+    LidBox(LidBoxSpec),
+}
+
+/// A string of links between two fixed ends (report section 6.2, `<chain>`). Lengths in units.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ChainSpec {
+    /// Prefix of the ids of links and ends; empty for any.
+    pub id: String,
+    /// Where it begins.
+    pub start: Vec3,
+    /// Where it ends.
+    pub end: Vec3,
+    /// Extents of a link; Y is along the chain.
+    pub link_span: Vec3,
+    /// How many links; 0 for as many as the distance needs.
+    pub link_count: u32,
+    /// Length added to each drawn link at both ends.
+    pub link_padding: f32,
+    /// Mass of a link in kg.
+    pub link_mass: f32,
+    /// Colour of the links.
+    pub color: Rgb,
+}
+
+impl ChainSpec {
+    /// How many links it has.
+    pub fn links(&self) -> u32 {
+        match self.link_count {
+            0 => (self.start.distance(self.end) / self.link_span.y).ceil() as u32,
+            count => count,
+        }
+    }
+
+    /// The least number of links that reaches from start to end: all of them together may be half a link short.
+    pub fn least_links(&self) -> u32 {
+        (self.start.distance(self.end) / self.link_span.y - 0.5).ceil() as u32
+    }
+}
+
+/// A box whose lid slides open towards its -X (report section 6.2, `<lidbox>`). Lengths in units.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LidBoxSpec {
+    /// Prefix of the ids of box and lid; empty for any.
+    pub id: String,
+    /// Pose of the centre of the box; the lid lies on top of it.
+    pub pose: Pose,
+    /// Outer extents of the box without lid.
+    pub span: Vec3,
+    /// Thickness of floor, walls and lid.
+    pub thickness: f32,
+    /// Mass of the box in kg.
+    pub box_mass: f32,
+    /// Mass of the lid in kg.
+    pub lid_mass: f32,
+    /// Colour of box and lid.
+    pub color: Rgb,
+    /// Outer extents of the handle.
+    pub handle_span: Vec3,
+    /// Thickness of the handle's walls.
+    pub handle_thickness: f32,
+    /// Colour of the handle.
+    pub handle_color: Rgb,
+    /// Symbolic properties for recordings.
+    pub descriptions: Vec<(String, String)>,
+}
+
+/// How two objects are connected.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum JointKind {
+    /// The origins of both joint frames coincide; all rotations are free.
+    Ball,
+    /// The second frame slides along -X of the first, by 0 to `travel` units; nothing turns.
+    Slider {
+        /// Greatest distance along -X of the first frame.
+        travel: f32,
+        /// Coefficient of the dry friction, as a fraction of the second object's weight.
+        friction: f32,
+    },
+}
+
+/// A connection between two objects, which do not collide with each other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct JointSpec {
+    /// Ids of the two objects.
+    pub objects: [String; 2],
+    /// The joint's frame in the frame of each object.
+    pub frames: [Pose; 2],
+    /// What the joint leaves free.
+    pub kind: JointKind,
+}
+
+/// A joint on the table. Its entity is a child of the second object's, and is gone with either of the two.
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
+#[component(immutable)]
+#[require(Transform)]
+pub struct Joint {
+    /// The two objects.
+    pub objects: [Entity; 2],
+    /// The joint's frame in the frame of each object.
+    pub frames: [Pose; 2],
+    /// What the joint leaves free.
+    pub kind: JointKind,
+}

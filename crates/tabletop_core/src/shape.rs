@@ -1,0 +1,309 @@
+//! What an object looks like and collides as: the one description of geometry.
+
+use bevy::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::{Pose, Rgb};
+
+/// The shape of an object or of a part of one (report section 6.2). Sizes are full extents in units of 10 cm;
+/// the shape's origin is its centre, for a composite its reference point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Shape {
+    /// A solid cuboid.
+    Block {
+        /// Extents along X, Y, Z.
+        span: Vec3,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// A solid circular cylinder along Y.
+    Cylinder {
+        /// Radius.
+        radius: f32,
+        /// Length.
+        yspan: f32,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// A solid ball.
+    Sphere {
+        /// Radius.
+        radius: f32,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// A cuboid container, open towards +Z.
+    Box {
+        /// Outer extents along X, Y, Z.
+        span: Vec3,
+        /// Thickness of floor and walls.
+        thickness: f32,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// Several shapes as one rigid body.
+    Composite {
+        /// The shapes, which may overlap.
+        parts: Vec<Part>,
+    },
+    /// A link of a chain: a block that is drawn longer than it collides, to cover the gaps at its joints.
+    Link {
+        /// Extents of the colliding block; Y is along the chain.
+        span: Vec3,
+        /// Length added to the drawn block at both ends along Y.
+        padding: f32,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// The lid of a lid box: a plate with a box as its handle on top.
+    Lid {
+        /// Extents of the plate, whose centre is the lid's origin.
+        span: Vec3,
+        /// Colour of the plate.
+        color: Rgb,
+        /// Outer extents of the handle.
+        handle_span: Vec3,
+        /// Thickness of the handle's walls.
+        handle_thickness: f32,
+        /// Colour of the handle.
+        handle_color: Rgb,
+    },
+}
+
+/// A shape as a part of a composite.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Part {
+    /// The part's id as the task file has it; empty if it has none. Need not be unique.
+    pub id: String,
+    /// Its pose in the frame of the composite that it is a direct part of.
+    pub pose: Pose,
+    /// Its shape.
+    pub shape: Shape,
+}
+
+/// A convex solid: what every shape is made of in the end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Solid {
+    /// A cuboid of these full extents.
+    Cuboid(Vec3),
+    /// A cylinder along Y.
+    Cylinder {
+        /// Radius.
+        radius: f32,
+        /// Length.
+        yspan: f32,
+    },
+    /// A ball of this radius.
+    Ball(f32),
+}
+
+/// One convex solid of a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Primitive {
+    /// Pose of its centre in the frame of the shape.
+    pub pose: Pose,
+    /// The solid.
+    pub solid: Solid,
+    /// Its colour.
+    pub color: Rgb,
+}
+
+/// A part that is not a composite, with its pose in the frame of the whole shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leaf<'a> {
+    /// The part's id as the task file has it; empty if it has none.
+    pub id: &'a str,
+    /// Its pose in the frame of the outermost shape.
+    pub pose: Pose,
+    /// Its shape, never [`Shape::Composite`].
+    pub shape: &'a Shape,
+}
+
+impl Shape {
+    /// The element name of this shape in a task file, or the name that recordings give it.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Block { .. } | Self::Link { .. } => "block",
+            Self::Cylinder { .. } => "cylinder",
+            Self::Sphere { .. } => "sphere",
+            Self::Box { .. } => "box",
+            Self::Composite { .. } => "composite",
+            Self::Lid { .. } => "lid",
+        }
+    }
+
+    /// The parts that are not composites, in the order of the task file.
+    pub fn leaves(&self) -> Vec<Leaf<'_>> {
+        fn collect<'a>(id: &'a str, pose: Pose, shape: &'a Shape, leaves: &mut Vec<Leaf<'a>>) {
+            match shape {
+                Shape::Composite { parts } => {
+                    for part in parts {
+                        collect(&part.id, pose * part.pose, &part.shape, leaves);
+                    }
+                }
+                shape => leaves.push(Leaf { id, pose, shape }),
+            }
+        }
+        let mut leaves = Vec::new();
+        collect("", Pose::IDENTITY, self, &mut leaves);
+        leaves
+    }
+
+    /// The solids to be drawn.
+    pub fn drawn(&self) -> Vec<Primitive> {
+        self.primitives(|padding| padding)
+    }
+
+    /// The solids that other bodies touch.
+    pub fn colliding(&self) -> Vec<Primitive> {
+        self.primitives(|_| 0.0)
+    }
+
+    fn primitives(&self, padding_of_link: impl Fn(f32) -> f32) -> Vec<Primitive> {
+        let mut primitives = Vec::new();
+        for leaf in self.leaves() {
+            let mut add = |pose: Pose, solid, color| {
+                primitives.push(Primitive {
+                    pose: leaf.pose * pose,
+                    solid,
+                    color,
+                });
+            };
+            match *leaf.shape {
+                Self::Block { span, color } => add(Pose::IDENTITY, Solid::Cuboid(span), color),
+                Self::Cylinder {
+                    radius,
+                    yspan,
+                    color,
+                } => add(Pose::IDENTITY, Solid::Cylinder { radius, yspan }, color),
+                Self::Sphere { radius, color } => add(Pose::IDENTITY, Solid::Ball(radius), color),
+                Self::Box {
+                    span,
+                    thickness,
+                    color,
+                } => {
+                    for (center, span) in box_plates(span, thickness) {
+                        add(Pose::at(center), Solid::Cuboid(span), color);
+                    }
+                }
+                Self::Link {
+                    span,
+                    padding,
+                    color,
+                } => {
+                    let ends = Vec3::Y * 2.0 * padding_of_link(padding);
+                    add(Pose::IDENTITY, Solid::Cuboid(span + ends), color);
+                }
+                Self::Lid {
+                    span,
+                    color,
+                    handle_span,
+                    handle_thickness,
+                    handle_color,
+                } => {
+                    add(Pose::IDENTITY, Solid::Cuboid(span), color);
+                    let handle = Vec3::Z * (span.z + handle_span.z) / 2.0;
+                    for (center, span) in box_plates(handle_span, handle_thickness) {
+                        add(Pose::at(handle + center), Solid::Cuboid(span), handle_color);
+                    }
+                }
+                Self::Composite { .. } => {}
+            }
+        }
+        primitives
+    }
+}
+
+impl Solid {
+    /// Volume in cubic units.
+    pub fn volume(self) -> f32 {
+        use std::f32::consts::PI;
+        match self {
+            Self::Cuboid(span) => span.element_product(),
+            Self::Cylinder { radius, yspan } => PI * radius * radius * yspan,
+            Self::Ball(radius) => 4.0 / 3.0 * PI * radius * radius * radius,
+        }
+    }
+}
+
+/// Floor and four walls of an open box, as centre and extents.
+fn box_plates(span: Vec3, thickness: f32) -> [(Vec3, Vec3); 5] {
+    let t = thickness;
+    let wall_height = span.z - t;
+    let wall_z = t / 2.0;
+    let side = Vec3::new(t, span.y - 2.0 * t, wall_height);
+    let side_x = (span.x - t) / 2.0;
+    let end = Vec3::new(span.x, t, wall_height);
+    let end_y = (span.y - t) / 2.0;
+    [
+        (
+            Vec3::new(0.0, 0.0, (t - span.z) / 2.0),
+            Vec3::new(span.x, span.y, t),
+        ),
+        (Vec3::new(-side_x, 0.0, wall_z), side),
+        (Vec3::new(side_x, 0.0, wall_z), side),
+        (Vec3::new(0.0, -end_y, wall_z), end),
+        (Vec3::new(0.0, end_y, wall_z), end),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_plates_of_a_box_fill_its_walls_exactly() {
+        let (span, thickness) = (Vec3::new(5.0, 4.0, 3.0), 0.2);
+        let volume: f32 = Shape::Box {
+            span,
+            thickness,
+            color: Rgb::GRAY,
+        }
+        .colliding()
+        .iter()
+        .map(|plate| plate.solid.volume())
+        .sum();
+        let hollow = (span.x - 0.4) * (span.y - 0.4) * (span.z - 0.2);
+        assert!((volume - (span.element_product() - hollow)).abs() < 1e-4);
+    }
+
+    #[test]
+    fn poses_of_nested_parts_compose() {
+        let block = Shape::Block {
+            span: Vec3::ONE,
+            color: Rgb::GRAY,
+        };
+        let inner = Shape::Composite {
+            parts: vec![Part {
+                id: "inner".into(),
+                pose: Pose::at(Vec3::X),
+                shape: block,
+            }],
+        };
+        let shape = Shape::Composite {
+            parts: vec![Part {
+                id: String::new(),
+                pose: Pose::from_degrees(Vec3::Z, Vec3::new(0.0, 0.0, 90.0)),
+                shape: inner,
+            }],
+        };
+        let leaves = shape.leaves();
+        assert_eq!(leaves.len(), 1);
+        assert_eq!(leaves[0].id, "inner");
+        assert!((leaves[0].pose.location - Vec3::new(0.0, 1.0, 1.0)).length() < 1e-6);
+    }
+
+    #[test]
+    fn a_link_is_drawn_longer_than_it_collides() {
+        let link = Shape::Link {
+            span: Vec3::new(0.1, 1.0, 0.1),
+            padding: 0.05,
+            color: Rgb::GRAY,
+        };
+        assert_eq!(link.drawn()[0].solid, Solid::Cuboid(Vec3::new(0.1, 1.1, 0.1)));
+        assert_eq!(
+            link.colliding()[0].solid,
+            Solid::Cuboid(Vec3::new(0.1, 1.0, 0.1))
+        );
+    }
+}

@@ -1,0 +1,120 @@
+//! Physics of the tabletop simulator: the one place that adds and configures Rapier.
+//!
+//! Every entity with an [`ObjectSpec`](tabletop_core::ObjectSpec) or a [`Table`](tabletop_core::Table) gets a rigid body,
+//! every [`Joint`](tabletop_core::Joint) a constraint, at the moment it appears. One step is made a tick, in
+//! [`SimSystems::Physics`]; the poses are in the entities' `Transform` afterwards.
+//!
+//! ```
+//! use bevy::prelude::*;
+//! use tabletop_core::prelude::*;
+//! use tabletop_physics::PhysicsPlugin;
+//!
+//! let mut app = App::new();
+//! app.add_plugins((MinimalPlugins, CorePlugin::default(), PhysicsPlugin::default()))
+//!     .start();
+//! let ball = app
+//!     .world_mut()
+//!     .spawn(ObjectSpec {
+//!         id: "ball".into(),
+//!         pose: Pose::IDENTITY,
+//!         mass: 1.0,
+//!         shape: Shape::Sphere { radius: 1.0, color: Rgb::GRAY },
+//!         descriptions: vec![],
+//!     })
+//!     .id();
+//! app.step(60);
+//! let height = app.world().get::<Transform>(ball).unwrap().translation.z;
+//! assert!((height + 98.1 / 2.0).abs() < 1.0, "it fell to {height}");
+//! ```
+
+mod body;
+mod joint;
+mod mass;
+mod settings;
+
+pub use body::collider;
+pub use mass::mass_properties;
+pub use settings::PhysicsSettings;
+
+use bevy::{
+    prelude::*,
+    transform::systems::{mark_dirty_trees, propagate_parent_transforms, sync_simple_transforms},
+};
+use bevy_rapier3d::{prelude::*, rapier::dynamics::IntegrationParameters};
+use tabletop_core::{SimSystems, TICK_SECONDS};
+
+/// Units in a metre, to which Rapier scales its tolerances.
+const UNITS_PER_METER: f32 = 10.0;
+
+/// Adds Rapier and gives objects, table and joints their bodies. Needs [`CorePlugin`](tabletop_core::CorePlugin).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PhysicsPlugin {
+    /// The constants to start with; they stay as a resource.
+    pub settings: PhysicsSettings,
+}
+
+impl Plugin for PhysicsPlugin {
+    fn build(&self, app: &mut App) {
+        if !app.is_plugin_added::<TransformPlugin>() {
+            app.add_plugins(TransformPlugin);
+        }
+        // Before Rapier, which would insert these without making Bevy clear them.
+        app.add_message::<CollisionEvent>()
+            .add_message::<ContactForceEvent>()
+            .add_message::<MassModifiedEvent>();
+        app.insert_resource(self.settings)
+            .insert_resource(TimestepMode::Fixed {
+                dt: TICK_SECONDS,
+                substeps: 1,
+            })
+            .add_plugins(
+                RapierPhysicsPlugin::<NoUserData>::default()
+                    .with_custom_initialization(
+                        RapierContextInitialization::InitializeDefaultRapierContext {
+                            integration_parameters: integration_parameters(),
+                            rapier_configuration: RapierConfiguration {
+                                gravity: Vec3::NEG_Z * self.settings.gravity,
+                                ..RapierConfiguration::new(UNITS_PER_METER)
+                            },
+                        },
+                    )
+                    .in_fixed_schedule(),
+            )
+            .configure_sets(
+                FixedUpdate,
+                (
+                    PhysicsSet::SyncBackend,
+                    PhysicsSet::StepSimulation,
+                    PhysicsSet::Writeback,
+                )
+                    .in_set(SimSystems::Physics),
+            )
+            .add_systems(
+                FixedUpdate,
+                (
+                    // Rapier propagates transforms before each step, but does not mark what has moved.
+                    mark_dirty_trees
+                        .in_set(SimSystems::Physics)
+                        .before(PhysicsSet::SyncBackend),
+                    (
+                        mark_dirty_trees,
+                        propagate_parent_transforms,
+                        sync_simple_transforms,
+                    )
+                        .chain()
+                        .in_set(SimSystems::Propagate),
+                ),
+            )
+            .add_observer(body::add_body)
+            .add_observer(body::add_table)
+            .add_observer(joint::add_joint);
+    }
+}
+
+fn integration_parameters() -> IntegrationParameters {
+    IntegrationParameters {
+        dt: TICK_SECONDS,
+        length_unit: UNITS_PER_METER,
+        ..default()
+    }
+}

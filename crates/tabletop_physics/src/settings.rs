@@ -1,0 +1,35 @@
+//! What can be chosen about the physics.
+
+use bevy::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// Constants of the simulated world. They are read when the plugin is built and when an object appears.
+#[derive(Resource, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PhysicsSettings {
+    /// Downward acceleration in units/s². True gravity at this scale is 98.1.
+    pub gravity: f32,
+    /// Coulomb friction of every surface. Two surfaces in contact have the product of theirs.
+    pub friction: f32,
+    /// Bounciness of every surface, 0..=1. Two surfaces in contact have the average of theirs.
+    pub restitution: f32,
+    /// Rate in 1/s at which rotations die away, which stands in for rolling resistance. Falling is not damped.
+    pub angular_damping: f32,
+    /// Rate in 1/s at which the rotations of chain links die away, which makes a chain come to rest.
+    pub link_damping: f32,
+    /// Whether objects at rest are left out of the computation until something touches them.
+    pub sleep: bool,
+}
+
+impl Default for PhysicsSettings {
+    fn default() -> Self {
+        Self {
+            gravity: 98.1,
+            friction: 0.5,
+            restitution: 0.0,
+            angular_damping: 0.5,
+            link_damping: 5.0,
+            sleep: true,
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! From what a task file says to the bodies and joints it stands for.
+
+use serde::Serialize;
+use tabletop_core::{JointSpec, ObjectSpec, SceneItem, SceneSpec, Table};
+
+use crate::{IdAllocator, chain, lidbox};
+
+/// Everything that a scene puts on the table: single objects with unique ids, and the joints between them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Assembly {
+    /// The table.
+    pub table: Table,
+    /// The objects, in the order of the file; chains and lid boxes as the objects that they consist of.
+    pub objects: Vec<ObjectSpec>,
+    /// The joints, in the order of the file.
+    pub joints: Vec<JointSpec>,
+}
+
+/// Takes a scene apart into objects and joints, and makes the ids unique.
+pub fn assemble(scene: &SceneSpec, ids: &mut IdAllocator) -> Assembly {
+    let mut assembly = Assembly {
+        table: scene.table,
+        objects: Vec::new(),
+        joints: Vec::new(),
+    };
+    for item in &scene.items {
+        match item {
+            SceneItem::Object(spec) => assembly.objects.push(ObjectSpec {
+                id: ids.unique(&spec.id),
+                ..spec.clone()
+            }),
+            SceneItem::Chain(spec) => chain::build(spec, ids, &mut assembly),
+            SceneItem::LidBox(spec) => lidbox::build(spec, ids, &mut assembly),
+        }
+    }
+    assembly
+}

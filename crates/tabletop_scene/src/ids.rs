@@ -1,0 +1,41 @@
+//! Unique ids.
+
+use std::collections::BTreeSet;
+
+/// Hands out ids that are unique, in the way of the original program: the id that was asked for (`obj` if none) if it is
+/// free, else that id with `#` and a count that goes up with every try.
+///
+/// ```
+/// use tabletop_scene::IdAllocator;
+///
+/// let mut ids = IdAllocator::default();
+/// let given = ["a", "a", "", "", "a"].map(|wanted| ids.unique(wanted));
+/// assert_eq!(given, ["a", "a#0", "obj", "obj#1", "a#2"]);
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct IdAllocator {
+    taken: BTreeSet<String>,
+    tries: u64,
+}
+
+impl IdAllocator {
+    /// An allocator for which these ids are taken.
+    pub fn with_taken(taken: impl IntoIterator<Item = String>) -> Self {
+        Self {
+            taken: taken.into_iter().collect(),
+            tries: 0,
+        }
+    }
+
+    /// An id that nobody has, and takes it.
+    pub fn unique(&mut self, wanted: &str) -> String {
+        let base = if wanted.is_empty() { "obj" } else { wanted };
+        let mut id = base.to_owned();
+        while self.taken.contains(&id) {
+            id = format!("{base}#{}", self.tries);
+            self.tries += 1;
+        }
+        self.taken.insert(id.clone());
+        id
+    }
+}

@@ -1,0 +1,58 @@
+//! The table and the objects on it: how a scene becomes bodies and joints, and how they come and go.
+//!
+//! [`assemble`] takes what a task file says apart into single objects with unique ids and the joints between them;
+//! [`ScenePlugin`] carries out the commands that put them on the table.
+//!
+//! ```
+//! use bevy::prelude::*;
+//! use tabletop_core::prelude::*;
+//! use tabletop_physics::PhysicsPlugin;
+//! use tabletop_scene::ScenePlugin;
+//!
+//! let mut app = App::new();
+//! app.add_plugins((MinimalPlugins, CorePlugin::default(), PhysicsPlugin::default(), ScenePlugin))
+//!     .start();
+//! let block = ObjectSpec {
+//!     id: "block".into(),
+//!     pose: Pose::at(Vec3::new(0.0, 0.0, 5.0)),
+//!     mass: 1.0,
+//!     shape: Shape::Block { span: Vec3::ONE, color: Rgb::GRAY },
+//!     descriptions: vec![],
+//! };
+//! let scene = SceneSpec { items: vec![SceneItem::Object(block)], ..default() };
+//! app.world_mut().write_message(SimCommand::SetScene(Box::new(scene)));
+//! app.step(120);
+//!
+//! let block = app.world().resource::<ObjectIndex>().get("block").unwrap();
+//! let height = app.world().get::<Transform>(block).unwrap().translation.z;
+//! assert!((height - 0.5).abs() < 0.01, "it lies at {height}");
+//! ```
+
+mod assembly;
+mod chain;
+mod ids;
+mod lidbox;
+mod life;
+
+pub use assembly::{Assembly, assemble};
+pub use ids::IdAllocator;
+
+use bevy::prelude::*;
+use tabletop_core::SimSystems;
+
+/// Puts tables and objects into the world and takes them out. Needs [`CorePlugin`](tabletop_core::CorePlugin) and
+/// [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ScenePlugin;
+
+impl Plugin for ScenePlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(
+            FixedUpdate,
+            (
+                life::carry_out_commands.in_set(SimSystems::Ingest),
+                life::remove_fallen.in_set(SimSystems::Sense),
+            ),
+        );
+    }
+}

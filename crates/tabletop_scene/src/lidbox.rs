@@ -1,0 +1,92 @@
+//! Lid boxes: a box and a lid that slides on top of it.
+
+use bevy::prelude::*;
+use tabletop_core::{JointKind, JointSpec, LidBoxSpec, ObjectSpec, Pose, Shape};
+
+use crate::{IdAllocator, assembly::Assembly};
+
+/// Friction between lid and box: that of two ordinary surfaces.
+const LID_FRICTION: f32 = 0.25;
+
+pub(crate) fn build(spec: &LidBoxSpec, ids: &mut IdAllocator, assembly: &mut Assembly) {
+    let id = ids.unique(&spec.id);
+    let top = Pose::at(Vec3::Z * spec.span.z / 2.0);
+    let lid_bottom = Pose::at(Vec3::NEG_Z * spec.thickness / 2.0);
+    let body = ObjectSpec {
+        id: ids.unique(&format!("{id}-box")),
+        pose: spec.pose,
+        mass: spec.box_mass,
+        shape: Shape::Box {
+            span: spec.span,
+            thickness: spec.thickness,
+            color: spec.color,
+        },
+        descriptions: spec.descriptions.clone(),
+    };
+    let lid = ObjectSpec {
+        id: ids.unique(&format!("{id}-lid")),
+        pose: spec.pose * top * lid_bottom.inverse(),
+        mass: spec.lid_mass,
+        shape: Shape::Lid {
+            span: spec.span.with_z(spec.thickness),
+            color: spec.color,
+            handle_span: spec.handle_span,
+            handle_thickness: spec.handle_thickness,
+            handle_color: spec.handle_color,
+        },
+        descriptions: Vec::new(),
+    };
+    assembly.joints.push(JointSpec {
+        objects: [body.id.clone(), lid.id.clone()],
+        frames: [top, lid_bottom],
+        kind: JointKind::Slider {
+            travel: spec.span.x,
+            friction: LID_FRICTION,
+        },
+    });
+    assembly.objects.extend([body, lid]);
+}
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::{Rgb, SceneItem, SceneSpec};
+
+    use super::*;
+    use crate::assemble;
+
+    #[test]
+    fn the_lid_lies_on_the_box_whichever_way_it_is_turned() {
+        for (location, rotation, lid_location) in [
+            (Vec3::Z * 2.5, Vec3::ZERO, Vec3::new(0.0, 0.0, 5.3)),
+            (
+                Vec3::Z * 3.0,
+                Vec3::new(0.0, 90.0, -90.0),
+                Vec3::new(0.0, -2.8, 3.0),
+            ),
+        ] {
+            let spec = LidBoxSpec {
+                id: String::new(),
+                pose: Pose::from_degrees(location, rotation),
+                span: Vec3::new(6.0, 5.0, 5.0),
+                thickness: 0.6,
+                box_mass: 9.0,
+                lid_mass: 1.0,
+                color: Rgb::GRAY,
+                handle_span: Vec3::splat(0.5),
+                handle_thickness: 0.1,
+                handle_color: Rgb::GRAY,
+                descriptions: Vec::new(),
+            };
+            let scene = SceneSpec {
+                items: vec![SceneItem::LidBox(spec)],
+                ..default()
+            };
+            let assembly = assemble(&scene, &mut IdAllocator::default());
+            let [body, lid] = &assembly.objects[..] else {
+                panic!("{} objects", assembly.objects.len());
+            };
+            assert_eq!([&*body.id, &*lid.id], ["obj-box", "obj-lid"]);
+            assert!((lid.pose.location - lid_location).length() < 1e-5);
+        }
+    }
+}

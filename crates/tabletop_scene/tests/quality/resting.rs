@@ -1,0 +1,138 @@
+//! What must stand still.
+
+use bevy::prelude::*;
+use tabletop_core::{Part, Pose, SceneItem, Shape};
+
+use crate::world::*;
+
+fn tower(blocks: usize) -> Vec<SceneItem> {
+    (0..blocks)
+        .map(|i| {
+            let location = Vec3::new(0.0, 0.0, i as f32 + 0.5);
+            object(&format!("block{i}"), location, 1.0, block(Vec3::ONE))
+        })
+        .collect()
+}
+
+#[test]
+fn a_tower_of_ten_stands_still_for_a_minute() {
+    let mut world = TestWorld::new(tower(10));
+    let put = world.poses();
+    let (far, turn) = world.motion_in(60.0);
+    let from_put = put
+        .iter()
+        .zip(tower(10))
+        .map(|((_, pose), item)| match item {
+            SceneItem::Object(spec) => pose.location.distance(spec.pose.location),
+            _ => unreachable!(),
+        })
+        .fold(0.0, f32::max);
+    assert!(
+        far < 0.001 && turn < 0.01 && from_put < 0.001,
+        "moved {far}, turned {turn}°, from where it was put {from_put}"
+    );
+}
+
+#[test]
+fn the_two_blocks_of_the_report_stay_where_they_are_put() {
+    let two = Vec3::splat(2.0);
+    let mut world = TestWorld::new([
+        turned("Red", (2.0, 0.0, 1.0), Vec3::Z * -15.0, 1.0, block(two)),
+        turned("Green", (-2.0, 0.0, 1.0), Vec3::Z * 45.0, 1.0, block(two)),
+    ]);
+    world.seconds(10.0);
+    for (id, x, yaw) in [("Red", 2.0, -15.0), ("Green", -2.0, 45.0)] {
+        let pose = world.pose(id);
+        assert!(pose.location.distance(Vec3::new(x, 0.0, 1.0)) < 0.005);
+        assert!((pose.degrees() - Vec3::Z * yaw).length() < 0.05);
+    }
+}
+
+#[test]
+fn a_pile_of_logs_comes_to_rest() {
+    let mut items = vec![
+        object("left", (-2.1, 0.0, 1.5), 0.0, block((0.2, 4.0, 3.0))),
+        object("right", (2.1, 0.0, 1.5), 0.0, block((0.2, 4.0, 3.0))),
+    ];
+    for layer in 0..3 {
+        for i in 0..(4 - layer) {
+            let x = i as f32 * 1.0 - 1.5 + layer as f32 * 0.5;
+            let z = 0.5 + layer as f32 * 0.9;
+            items.push(object(
+                &format!("log{layer}_{i}"),
+                (x, 0.0, z),
+                1.0,
+                cylinder(0.49, 3.0),
+            ));
+        }
+    }
+    let mut world = TestWorld::new(items);
+    world.seconds(3.0);
+    let (far, turn) = world.motion_in(1.0);
+    assert!(far < 0.005 && turn < 0.5, "moved {far}, turned {turn}°");
+}
+
+#[test]
+fn a_box_of_cylinders_comes_to_rest() {
+    let mut items = vec![object(
+        "box",
+        (0.0, 0.0, 1.5),
+        3.0,
+        open_box((5.0, 5.0, 3.0), 0.3),
+    )];
+    for i in 0..12 {
+        let (x, y, z) = ((i % 3) as f32, (i / 3 % 2) as f32, (i / 6) as f32);
+        items.push(turned(
+            &format!("cylinder{i}"),
+            (x * 1.3 - 1.3, y * 1.8 - 0.9, 1.0 + z * 1.2),
+            Vec3::new(0.0, 0.0, 20.0 * i as f32),
+            0.2,
+            cylinder(0.4, 1.0),
+        ));
+    }
+    let mut world = TestWorld::new(items);
+    world.seconds(3.0);
+    let (far, turn) = world.motion_in(1.0);
+    assert!(far < 0.005 && turn < 0.5, "moved {far}, turned {turn}°");
+    for (id, pose) in world.poses() {
+        assert!(pose.location.abs().x < 2.5 && pose.location.z > 0.3, "{id} at {}", pose.location);
+    }
+}
+
+#[test]
+fn the_hammer_of_the_report_rests_as_in_the_original() {
+    let part = |pose, shape| Part {
+        id: String::new(),
+        pose,
+        shape,
+    };
+    let head = Shape::Composite {
+        parts: vec![
+            part(Pose::IDENTITY, block(Vec3::ONE)),
+            part(Pose::at(Vec3::Y * 0.9), cylinder(0.75, 0.8)),
+            part(Pose::at(Vec3::Y * -0.9), cylinder(0.75, 0.8)),
+        ],
+    };
+    let hammer = Shape::Composite {
+        parts: vec![
+            part(Pose::at(Vec3::X * -0.2), head),
+            part(
+                Pose::from_degrees(Vec3::X * 2.8, Vec3::Z * 90.0),
+                cylinder(0.35, 5.0),
+            ),
+        ],
+    };
+    let mut world = TestWorld::new([turned(
+        "hammer",
+        (0.0, 0.0, 1.0),
+        Vec3::Z * -30.0,
+        10.0,
+        hammer,
+    )]);
+    world.seconds(5.0);
+    let pose = world.pose("hammer");
+    let degrees = pose.degrees();
+    assert!((pose.location.z - 0.733).abs() < 0.02, "{}", pose.location);
+    assert!((degrees.y - 4.16).abs() < 0.5, "{degrees}");
+    assert!((degrees.z + 30.0).abs() < 1.0, "{degrees}");
+}

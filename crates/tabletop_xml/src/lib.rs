@@ -1,0 +1,46 @@
+//! Task files: what stands on the table, as XML (report section 6.2).
+//!
+//! [`parse`] reads a file, [`write()`] writes one, and [`XmlPlugin`] loads files into the simulation. Reading never fails:
+//! every [`Fault`] is reported with its place, only the element that has it is skipped, and there is always a table.
+//! `docs/task-files.md` describes the language, `tablesetup/tabletop.xsd` is its schema.
+//!
+//! ```
+//! use std::path::Path;
+//! use tabletop_core::prelude::*;
+//!
+//! let text = br#"<?xml version="1.0" encoding="UTF-8"?>
+//! <tabletop xmlns="http://synapse.cs.umd.edu/tabletop-xml" xspan="20" yspan="12">
+//!   <block id="GreenBlock" xspan="2" yspan="2" zspan="2" location="(-2,0,1)" rotation="(0,0,45)" color="green"/>
+//!   <chain color="magenta" start="(6,-2,4)" end="(-6,-2,4)" linkCount="12"/>
+//! </tabletop>"#;
+//! let task = tabletop_xml::parse(Path::new("task.xml"), text);
+//! assert!(task.faults.is_empty());
+//! let [SceneItem::Object(block), SceneItem::Chain(chain)] = task.scene.items.as_slice() else {
+//!     panic!("a block and a chain were written");
+//! };
+//! assert_eq!(block.id, "GreenBlock");
+//! assert_eq!(chain.links(), 12);
+//! ```
+
+mod attributes;
+mod decode;
+mod element;
+mod fault;
+mod parse;
+mod plugin;
+mod position;
+mod suggestion;
+mod tree;
+mod value;
+mod write;
+
+#[cfg(test)]
+mod test_support;
+
+pub use fault::{Fault, MAX_FAULTS};
+pub use parse::{MAX_FILE_BYTES, ParsedTask, ReadError, parse, read_task};
+pub use plugin::XmlPlugin;
+pub use write::write;
+
+/// The XML namespace of task files.
+pub const NAMESPACE: &str = "http://synapse.cs.umd.edu/tabletop-xml";

@@ -1,0 +1,137 @@
+//! Task files in the simulation.
+
+use std::path::Path;
+
+use bevy::prelude::*;
+use tabletop_core::{SceneSpec, SimCommand, SimFact, SimSystems};
+
+use crate::read_task;
+
+/// Carries out [`SimCommand::LoadTask`]: in [`SimSystems::Load`] the command becomes a [`SimCommand::SetScene`] with
+/// what the file says, in the same place of the order, and a [`SimFact::TaskLoaded`] tells its faults, which are
+/// logged, too. A file that cannot be read gives an empty table.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct XmlPlugin;
+
+impl Plugin for XmlPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(FixedUpdate, load_tasks.in_set(SimSystems::Load));
+    }
+}
+
+fn load_tasks(mut commands: MessageMutator<SimCommand>, mut facts: MessageWriter<SimFact>) {
+    for command in commands.read() {
+        if let SimCommand::LoadTask(path) = command {
+            let path = std::mem::take(path);
+            let (scene, faults) = load(&path);
+            *command = SimCommand::SetScene(Box::new(scene));
+            facts.write(SimFact::TaskLoaded { path, faults });
+        }
+    }
+}
+
+fn load(path: &Path) -> (SceneSpec, Vec<String>) {
+    match read_task(path) {
+        Ok(task) => {
+            let faults: Vec<String> = task.faults.iter().map(ToString::to_string).collect();
+            for fault in &faults {
+                warn!("{fault}");
+            }
+            (task.scene, faults)
+        }
+        Err(error) => {
+            error!("{error}");
+            (SceneSpec::default(), vec![error.to_string()])
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{fs, path::PathBuf};
+
+    use tabletop_core::{CorePlugin, Paused, StepApp as _};
+
+    use super::*;
+
+    #[derive(Resource, Default)]
+    struct Seen {
+        commands: Vec<SimCommand>,
+        facts: Vec<SimFact>,
+    }
+
+    fn see(
+        mut seen: ResMut<Seen>,
+        mut commands: MessageReader<SimCommand>,
+        mut facts: MessageReader<SimFact>,
+    ) {
+        seen.commands.extend(commands.read().cloned());
+        seen.facts.extend(facts.read().cloned());
+    }
+
+    fn app() -> App {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), XmlPlugin))
+            .init_resource::<Seen>()
+            .add_systems(FixedUpdate, see.in_set(SimSystems::Ingest))
+            .start();
+        app
+    }
+
+    fn temporary_file(name: &str, text: &str) -> PathBuf {
+        let path = std::env::temp_dir().join(format!("{}_{name}", std::process::id()));
+        fs::write(&path, text).unwrap();
+        path
+    }
+
+    #[test]
+    fn a_file_becomes_a_scene_in_the_same_tick_also_while_paused() {
+        let path = temporary_file(
+            "plugin.xml",
+            "<tabletop xmlns='http://synapse.cs.umd.edu/tabletop-xml' xspan='8'>\n<cube/>\
+             <sphere location='(0,0,1)'/></tabletop>",
+        );
+        let mut app = app();
+        app.insert_resource(Paused(true));
+        app.world_mut().write_message(SimCommand::ClearTable);
+        app.world_mut().write_message(SimCommand::LoadTask(path.clone()));
+        app.world_mut().write_message(SimCommand::SetPaused(true));
+        app.step(1);
+        let seen = app.world().resource::<Seen>();
+        let [SimCommand::ClearTable, SimCommand::SetScene(scene), SimCommand::SetPaused(true)] =
+            seen.commands.as_slice()
+        else {
+            panic!("{:?}", seen.commands);
+        };
+        assert_eq!((scene.table.xspan, scene.items.len()), (8.0, 1));
+        let [SimFact::TaskLoaded { path: loaded, faults }] = seen.facts.as_slice() else {
+            panic!("{:?}", seen.facts);
+        };
+        assert_eq!(*loaded, path);
+        assert_eq!(faults.len(), 1);
+        assert!(faults[0].starts_with(&format!("{}:2:1: cube: ", path.display())), "{faults:?}");
+        fs::remove_file(path).unwrap();
+    }
+
+    #[test]
+    fn a_file_is_loaded_once() {
+        let mut app = app();
+        app.world_mut().write_message(SimCommand::LoadTask("missing.xml".into()));
+        app.step(5);
+        let seen = app.world().resource::<Seen>();
+        assert_eq!((seen.commands.len(), seen.facts.len()), (1, 1));
+    }
+
+    #[test]
+    fn without_a_file_there_is_still_a_table() {
+        let mut app = app();
+        app.world_mut().write_message(SimCommand::LoadTask("missing.xml".into()));
+        app.step(1);
+        let seen = app.world().resource::<Seen>();
+        assert_eq!(seen.commands, [SimCommand::SetScene(Box::default())]);
+        let [SimFact::TaskLoaded { faults, .. }] = seen.facts.as_slice() else {
+            panic!("{:?}", seen.facts);
+        };
+        assert!(faults[0].starts_with("missing.xml: it cannot be read: "), "{faults:?}");
+    }
+}

@@ -1,0 +1,315 @@
+//! Scenes as task files.
+
+use std::fmt::Write as _;
+
+use bevy::math::Vec3;
+use quick_xml::escape::escape;
+use tabletop_core::{
+    ChainSpec, LidBoxSpec, NAMED_COLORS, ObjectSpec, Part, Pose, Rgb, SceneItem, SceneSpec, Shape,
+};
+
+use crate::{NAMESPACE, decode::is_xml_character, element::lid_as_composite, value::is_id_character};
+
+/// Writes a scene as a task file, which [reads](crate::parse) back as the same scene: numbers exactly, rotations to
+/// within a thousandth of a degree, colours to within their 8 bits a part.
+///
+/// What a file cannot say is written as the nearest that it can: characters that ids cannot have become underscores, a
+/// link that is no longer in a chain becomes a block, a lid without its box a composite of plate and handle.
+/// Numbers that are not finite or out of the language's ranges are written as they are, and do not read back.
+///
+/// ```
+/// use std::path::Path;
+/// use tabletop_core::SceneSpec;
+///
+/// let text = tabletop_xml::write(&SceneSpec::default());
+/// let task = tabletop_xml::parse(Path::new("empty.xml"), text.as_bytes());
+/// assert_eq!((task.scene, task.faults.len()), (SceneSpec::default(), 0));
+/// ```
+pub fn write(scene: &SceneSpec) -> String {
+    let mut writer = Writer::default();
+    writer.text.push_str("<?xml version=\"1.0\" encoding=\"UTF-8\"?>");
+    writer.open("tabletop");
+    writer.attribute("xmlns", NAMESPACE);
+    writer.attribute("xmlns:xsi", "http://www.w3.org/2001/XMLSchema-instance");
+    writer.attribute("xsi:schemaLocation", &format!("{NAMESPACE} tabletop.xsd"));
+    writer.number("xspan", scene.table.xspan);
+    writer.number("yspan", scene.table.yspan);
+    for item in &scene.items {
+        match item {
+            SceneItem::Object(object) => writer.object(object),
+            SceneItem::Chain(chain) => writer.chain(chain),
+            SceneItem::LidBox(lidbox) => writer.lidbox(lidbox),
+        }
+    }
+    writer.close();
+    writer.text.push('\n');
+    writer.text
+}
+
+#[derive(Default)]
+struct Writer {
+    text: String,
+    open: Vec<&'static str>,
+    /// The innermost element has nothing in it so far.
+    is_empty: bool,
+}
+
+impl Writer {
+    fn object(&mut self, object: &ObjectSpec) {
+        self.open(element_name(&object.shape));
+        self.id(&object.id);
+        self.pose(object.pose);
+        self.number("mass", object.mass);
+        self.attributes_of(&object.shape);
+        self.descriptions(&object.descriptions);
+        self.parts_of(&object.shape);
+        self.close();
+    }
+
+    fn part(&mut self, part: &Part) {
+        self.open(element_name(&part.shape));
+        self.id(&part.id);
+        self.pose(part.pose);
+        self.attributes_of(&part.shape);
+        self.parts_of(&part.shape);
+        self.close();
+    }
+
+    fn parts_of(&mut self, shape: &Shape) {
+        match shape {
+            Shape::Composite { parts } => parts.iter().for_each(|part| self.part(part)),
+            lid => lid_as_composite(lid)
+                .iter()
+                .flatten()
+                .for_each(|part| self.part(part)),
+        }
+    }
+
+    fn attributes_of(&mut self, shape: &Shape) {
+        match *shape {
+            Shape::Block { span, color } | Shape::Link { span, color, .. } => {
+                self.spans(["xspan", "yspan", "zspan"], span);
+                self.color("color", color);
+            }
+            Shape::Cylinder {
+                radius,
+                yspan,
+                color,
+            } => {
+                self.number("radius", radius);
+                self.number("yspan", yspan);
+                self.color("color", color);
+            }
+            Shape::Sphere { radius, color } => {
+                self.number("radius", radius);
+                self.color("color", color);
+            }
+            Shape::Box {
+                span,
+                thickness,
+                color,
+            } => {
+                self.spans(["xspan", "yspan", "zspan"], span);
+                self.number("thickness", thickness);
+                self.color("color", color);
+            }
+            Shape::Composite { .. } | Shape::Lid { .. } => {}
+        }
+    }
+
+    fn chain(&mut self, chain: &ChainSpec) {
+        self.open("chain");
+        self.id(&chain.id);
+        self.vector("start", chain.start);
+        self.vector("end", chain.end);
+        self.spans(["linkXspan", "linkYspan", "linkZspan"], chain.link_span);
+        self.attribute("linkCount", &chain.link_count.to_string());
+        self.number("linkPadding", chain.link_padding);
+        self.number("linkMass", chain.link_mass);
+        self.color("color", chain.color);
+        self.close();
+    }
+
+    fn lidbox(&mut self, lidbox: &LidBoxSpec) {
+        self.open("lidbox");
+        self.id(&lidbox.id);
+        self.pose(lidbox.pose);
+        self.number("mass", lidbox.box_mass);
+        self.number("lidMass", lidbox.lid_mass);
+        self.spans(["xspan", "yspan", "zspan"], lidbox.span);
+        self.number("thickness", lidbox.thickness);
+        self.color("color", lidbox.color);
+        self.spans(
+            ["handleXspan", "handleYspan", "handleZspan"],
+            lidbox.handle_span,
+        );
+        self.number("handleThickness", lidbox.handle_thickness);
+        self.color("handleColor", lidbox.handle_color);
+        self.descriptions(&lidbox.descriptions);
+        self.close();
+    }
+
+    fn descriptions(&mut self, descriptions: &[(String, String)]) {
+        for (name, value) in descriptions {
+            self.open("description");
+            self.attribute("name", &as_id(name));
+            self.attribute("value", &as_attribute(value));
+            self.close();
+        }
+    }
+
+    fn id(&mut self, id: &str) {
+        if !id.is_empty() {
+            self.attribute("id", &as_id(id));
+        }
+    }
+
+    fn pose(&mut self, pose: Pose) {
+        self.vector("location", pose.location);
+        if pose.rotation != Pose::IDENTITY.rotation {
+            self.vector("rotation", pose.degrees());
+        }
+    }
+
+    fn vector(&mut self, name: &str, vector: Vec3) {
+        let Vec3 { x, y, z } = vector;
+        self.attribute(name, &format!("({x},{y},{z})"));
+    }
+
+    fn spans(&mut self, names: [&str; 3], spans: Vec3) {
+        for (name, span) in names.into_iter().zip(spans.to_array()) {
+            self.number(name, span);
+        }
+    }
+
+    fn number(&mut self, name: &str, number: f32) {
+        self.attribute(name, &number.to_string());
+    }
+
+    fn color(&mut self, name: &str, color: Rgb) {
+        match NAMED_COLORS.iter().find(|(_, named)| *named == color) {
+            Some((known, _)) => self.attribute(name, known),
+            None => self.attribute(name, &color.to_string()),
+        }
+    }
+
+    fn attribute(&mut self, name: &str, value: &str) {
+        // Writing to a `String` does not fail.
+        let _written = write!(self.text, " {name}=\"{value}\"");
+    }
+
+    fn open(&mut self, name: &'static str) {
+        if self.is_empty {
+            self.text.push('>');
+        }
+        self.begin_line();
+        self.text.push('<');
+        self.text.push_str(name);
+        self.open.push(name);
+        self.is_empty = true;
+    }
+
+    fn close(&mut self) {
+        let Some(name) = self.open.pop() else {
+            return;
+        };
+        if self.is_empty {
+            self.text.push_str("/>");
+        } else {
+            self.begin_line();
+            let _written = write!(self.text, "</{name}>");
+        }
+        self.is_empty = false;
+    }
+
+    fn begin_line(&mut self) {
+        self.text.push('\n');
+        self.text.push_str(&"  ".repeat(self.open.len()));
+    }
+}
+
+fn element_name(shape: &Shape) -> &'static str {
+    match shape {
+        Shape::Lid { .. } => "composite",
+        other => other.name(),
+    }
+}
+
+fn as_id(text: &str) -> String {
+    text.replace(|character| !is_id_character(character), "_")
+}
+
+/// A text as the value of an attribute; what XML does not allow becomes U+FFFD.
+fn as_attribute(text: &str) -> String {
+    let allowed = text.replace(|character| !is_xml_character(character), "\u{fffd}");
+    // What a reader of XML takes for a blank if it is written as it is.
+    escape(allowed)
+        .replace('\t', "&#9;")
+        .replace('\n', "&#10;")
+        .replace('\r', "&#13;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_support::scene_of;
+
+    fn read_back(scene: &SceneSpec) -> SceneSpec {
+        let task = crate::parse("f".as_ref(), write(scene).as_bytes());
+        assert_eq!(task.faults, []);
+        task.scene
+    }
+
+    #[test]
+    fn every_element_reads_back() {
+        let scene = scene_of(
+            "xspan='7'",
+            "<block id='b' location='(1,2,3)' mass='0' color='pink'><description name='a' \
+             value='&#9;&lt;&quot;&amp;é&#10;&#13;'/></block>\
+             <composite location='(0,0,9)'><description name='a' value=''/><cylinder location='(0,0,0)'/>\
+             <composite id='c' location='(0,1,0)'><sphere location='(0,0,0)' color='#010203'/>\
+             <box location='(0,1,0)'/></composite></composite>\
+             <chain start='(0,0,1)' end='(5,0,1)'/>\
+             <lidbox location='(0,0,1)' mass='3'><description name='d' value='e'/></lidbox>",
+        );
+        assert_eq!(scene.items.len(), 4);
+        assert_eq!(read_back(&scene), scene);
+    }
+
+    #[test]
+    fn what_a_file_cannot_say_is_written_as_the_nearest() {
+        let object = |id: &str, shape| {
+            SceneItem::Object(ObjectSpec {
+                id: id.into(),
+                pose: Pose::IDENTITY,
+                mass: 1.0,
+                shape,
+                descriptions: vec![("a b".into(), "\0".into())],
+            })
+        };
+        let link = Shape::Link {
+            span: Vec3::ONE,
+            padding: 0.5,
+            color: Rgb::GRAY,
+        };
+        let lid = Shape::Lid {
+            span: Vec3::ONE,
+            color: Rgb::BLACK,
+            handle_span: Vec3::ONE,
+            handle_thickness: 0.1,
+            handle_color: Rgb::WHITE,
+        };
+        let scene = SceneSpec {
+            items: vec![object("c-link#0", link), object("l", lid.clone())],
+            ..Default::default()
+        };
+        let items = read_back(&scene).items;
+        let [SceneItem::Object(link), SceneItem::Object(read_lid)] = items.as_slice() else {
+            panic!("{items:?}");
+        };
+        assert_eq!(link.id, "c_link_0");
+        assert_eq!(link.descriptions, [("a_b".to_owned(), "\u{fffd}".to_owned())]);
+        assert_eq!(link.shape.name(), "block");
+        assert_eq!(read_lid.shape.colliding(), lid.colliding());
+    }
+}

@@ -1,0 +1,2 @@
+//! A virtual demonstrator environment for robot imitation learning.
+pub use tabletop_core as core;
