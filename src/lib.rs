@@ -1,2 +1,67 @@
-//! A virtual demonstrator environment for robot imitation learning.
+//! A virtual demonstrator environment for robot imitation learning: a table with objects on it, simulated with or without
+//! a window.
+//!
+//! | crate | what it holds |
+//! |---|---|
+//! | [`core`] | what the others share: objects, scenes, commands, facts, the clock |
+//! | [`xml`] | task files |
+//! | [`physics`] | Rapier, configured |
+//! | [`scene`] | the table and what comes and goes on it |
+//!
+//! [`TabletopSimPlugins`] is the simulator without a window. It runs on Bevy's `MinimalPlugins`:
+//!
+//! ```
+//! use bevy::prelude::*;
+//! use tabletop::prelude::*;
+//!
+//! let mut app = App::new();
+//! app.add_plugins((MinimalPlugins, TabletopSimPlugins)).start();
+//! app.world_mut()
+//!     .write_message(SimCommand::LoadTask("tablesetup/default.xml".into()));
+//! app.step(60);
+//!
+//! let index = app.world().resource::<ObjectIndex>();
+//! let red_block = index.get("RedBlock").unwrap();
+//! let pose = Pose::from(app.world().get::<Transform>(red_block).unwrap());
+//! assert!((pose.location - Vec3::new(2.0, 0.0, 1.0)).length() < 0.005);
+//! ```
+
 pub use tabletop_core as core;
+pub use tabletop_physics as physics;
+pub use tabletop_scene as scene;
+pub use tabletop_xml as xml;
+
+mod headless;
+pub mod report;
+#[cfg(feature = "window")]
+pub mod window;
+
+pub use headless::headless_app;
+
+use bevy::{app::PluginGroupBuilder, prelude::*};
+
+/// The types that most users of the simulator need.
+pub mod prelude {
+    #[doc(hidden)]
+    pub use crate::{
+        TabletopSimPlugins, headless_app, physics::PhysicsPlugin, scene::ScenePlugin,
+        xml::XmlPlugin,
+    };
+    #[doc(hidden)]
+    pub use tabletop_core::prelude::*;
+}
+
+/// Everything that simulates, nothing that shows: [`CorePlugin`](core::CorePlugin), [`XmlPlugin`](xml::XmlPlugin),
+/// [`PhysicsPlugin`](physics::PhysicsPlugin) and [`ScenePlugin`](scene::ScenePlugin).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TabletopSimPlugins;
+
+impl PluginGroup for TabletopSimPlugins {
+    fn build(self) -> PluginGroupBuilder {
+        PluginGroupBuilder::start::<Self>()
+            .add(core::CorePlugin::default())
+            .add(xml::XmlPlugin)
+            .add(physics::PhysicsPlugin::default())
+            .add(scene::ScenePlugin)
+    }
+}

@@ -26,6 +26,7 @@ mod object;
 mod pose;
 mod scene;
 mod shape;
+mod user;
 
 pub use clock::{Paused, SimSystems, SimTick, StepApp, TICK_SECONDS, TICKS_PER_SECOND};
 pub use color::{ColorError, NAMED_COLORS, Rgb};
@@ -34,7 +35,8 @@ pub use number::Decimal;
 pub use object::{ObjectIndex, ObjectSpec};
 pub use pose::{Pose, degrees_from_quat, quat_from_degrees};
 pub use scene::{ChainSpec, Joint, JointKind, JointSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
-pub use shape::{Leaf, Part, Primitive, Shape, Solid};
+pub use shape::{Part, Primitive, Shape, Solid};
+pub use user::{KeySystems, UserCamera};
 
 use bevy::prelude::*;
 
@@ -65,7 +67,11 @@ impl Plugin for CorePlugin {
         app.add_message::<SimCommand>()
             .add_message::<SimFact>()
             .init_resource::<ObjectIndex>()
-            .add_systems(FixedUpdate, set_paused.in_set(SimSystems::Ingest));
+            .add_systems(FixedUpdate, set_paused.in_set(SimSystems::Ingest))
+            .configure_sets(
+                RunFixedMainLoop,
+                KeySystems.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+            );
         clock::configure(app);
         if self.one_thread {
             clock::run_ticks_on_one_thread(app);

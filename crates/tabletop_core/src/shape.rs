@@ -108,16 +108,6 @@ pub struct Primitive {
     pub color: Rgb,
 }
 
-/// A part that is not a composite, with its pose in the frame of the whole shape.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Leaf<'a> {
-    /// The part's id as the task file has it; empty if it has none.
-    pub id: &'a str,
-    /// Its pose in the frame of the outermost shape.
-    pub pose: Pose,
-    /// Its shape, never [`Shape::Composite`].
-    pub shape: &'a Shape,
-}
 
 impl Shape {
     /// The element name of this shape in a task file, or the name that recordings give it.
@@ -132,21 +122,45 @@ impl Shape {
         }
     }
 
-    /// The parts that are not composites, in the order of the task file.
-    pub fn leaves(&self) -> Vec<Leaf<'_>> {
-        fn collect<'a>(id: &'a str, pose: Pose, shape: &'a Shape, leaves: &mut Vec<Leaf<'a>>) {
-            match shape {
-                Shape::Composite { parts } => {
+    /// The simple shapes that it consists of, in the order of the task file, each with its pose in the frame of this shape:
+    /// blocks, cylinders, spheres, boxes and links.
+    pub fn simple_parts(&self) -> Vec<Part> {
+        fn collect(id: &str, pose: Pose, shape: &Shape, simple: &mut Vec<Part>) {
+            let mut add = |pose, shape| {
+                simple.push(Part {
+                    id: id.to_owned(),
+                    pose,
+                    shape,
+                });
+            };
+            match *shape {
+                Shape::Composite { ref parts } => {
                     for part in parts {
-                        collect(&part.id, pose * part.pose, &part.shape, leaves);
+                        collect(&part.id, pose * part.pose, &part.shape, simple);
                     }
                 }
-                shape => leaves.push(Leaf { id, pose, shape }),
+                Shape::Lid {
+                    span,
+                    color,
+                    handle_span,
+                    handle_thickness,
+                    handle_color,
+                } => {
+                    let on_top = Pose::at(Vec3::Z * (span.z + handle_span.z) / 2.0);
+                    let handle = Shape::Box {
+                        span: handle_span,
+                        thickness: handle_thickness,
+                        color: handle_color,
+                    };
+                    add(pose, Shape::Block { span, color });
+                    add(pose * on_top, handle);
+                }
+                _ => add(pose, shape.clone()),
             }
         }
-        let mut leaves = Vec::new();
-        collect("", Pose::IDENTITY, self, &mut leaves);
-        leaves
+        let mut simple = Vec::new();
+        collect("", Pose::IDENTITY, self, &mut simple);
+        simple
     }
 
     /// The solids to be drawn.
@@ -161,29 +175,29 @@ impl Shape {
 
     fn primitives(&self, padding_of_link: impl Fn(f32) -> f32) -> Vec<Primitive> {
         let mut primitives = Vec::new();
-        for leaf in self.leaves() {
-            let mut add = |pose: Pose, solid, color| {
+        for part in self.simple_parts() {
+            let mut add = |center: Vec3, solid, color| {
                 primitives.push(Primitive {
-                    pose: leaf.pose * pose,
+                    pose: part.pose * Pose::at(center),
                     solid,
                     color,
                 });
             };
-            match *leaf.shape {
-                Self::Block { span, color } => add(Pose::IDENTITY, Solid::Cuboid(span), color),
+            match part.shape {
+                Self::Block { span, color } => add(Vec3::ZERO, Solid::Cuboid(span), color),
                 Self::Cylinder {
                     radius,
                     yspan,
                     color,
-                } => add(Pose::IDENTITY, Solid::Cylinder { radius, yspan }, color),
-                Self::Sphere { radius, color } => add(Pose::IDENTITY, Solid::Ball(radius), color),
+                } => add(Vec3::ZERO, Solid::Cylinder { radius, yspan }, color),
+                Self::Sphere { radius, color } => add(Vec3::ZERO, Solid::Ball(radius), color),
                 Self::Box {
                     span,
                     thickness,
                     color,
                 } => {
                     for (center, span) in box_plates(span, thickness) {
-                        add(Pose::at(center), Solid::Cuboid(span), color);
+                        add(center, Solid::Cuboid(span), color);
                     }
                 }
                 Self::Link {
@@ -192,22 +206,9 @@ impl Shape {
                     color,
                 } => {
                     let ends = Vec3::Y * 2.0 * padding_of_link(padding);
-                    add(Pose::IDENTITY, Solid::Cuboid(span + ends), color);
+                    add(Vec3::ZERO, Solid::Cuboid(span + ends), color);
                 }
-                Self::Lid {
-                    span,
-                    color,
-                    handle_span,
-                    handle_thickness,
-                    handle_color,
-                } => {
-                    add(Pose::IDENTITY, Solid::Cuboid(span), color);
-                    let handle = Vec3::Z * (span.z + handle_span.z) / 2.0;
-                    for (center, span) in box_plates(handle_span, handle_thickness) {
-                        add(Pose::at(handle + center), Solid::Cuboid(span), handle_color);
-                    }
-                }
-                Self::Composite { .. } => {}
+                Self::Composite { .. } | Self::Lid { .. } => {}
             }
         }
         primitives
@@ -287,10 +288,11 @@ mod tests {
                 shape: inner,
             }],
         };
-        let leaves = shape.leaves();
-        assert_eq!(leaves.len(), 1);
-        assert_eq!(leaves[0].id, "inner");
-        assert!((leaves[0].pose.location - Vec3::new(0.0, 1.0, 1.0)).length() < 1e-6);
+        let [part] = &shape.simple_parts()[..] else {
+            panic!("{:?}", shape.simple_parts());
+        };
+        assert_eq!(part.id, "inner");
+        assert!((part.pose.location - Vec3::new(0.0, 1.0, 1.0)).length() < 1e-6);
     }
 
     #[test]

@@ -13,8 +13,10 @@ pub struct PhysicsSettings {
     pub friction: f32,
     /// Bounciness of every surface, 0..=1. Two surfaces in contact have the average of theirs.
     pub restitution: f32,
-    /// Rate in 1/s at which rotations die away, which stands in for rolling resistance. Falling is not damped.
+    /// Rate in 1/s at which rotations die away. Falling is not damped.
     pub angular_damping: f32,
+    /// Rate in 1/s at which the rotations of cylinders and spheres die away: their rolling resistance.
+    pub rolling_damping: f32,
     /// Rate in 1/s at which the rotations of chain links die away, which makes a chain come to rest.
     pub link_damping: f32,
     /// Whether objects at rest are left out of the computation until something touches them.
@@ -28,6 +30,7 @@ impl Default for PhysicsSettings {
             friction: 0.5,
             restitution: 0.0,
             angular_damping: 0.5,
+            rolling_damping: 2.0,
             link_damping: 5.0,
             sleep: true,
         }

@@ -1,1 +1,41 @@
+//! What the window shows: the table and the objects on it in the light of the original program, through the user's
+//! camera.
+//!
+//! The view only reads. For each object it makes a picture of its own, a [`Visual`], which follows the object smoothly
+//! at any frame rate; no entity of the simulation is touched.
+//!
+//! ```no_run
+//! use bevy::prelude::*;
+//! use tabletop_core::prelude::*;
+//! use tabletop_view::ViewPlugin;
+//!
+//! App::new()
+//!     .add_plugins((DefaultPlugins, CorePlugin::default(), ViewPlugin))
+//!     .add_systems(Startup, |mut commands: Commands| {
+//!         commands.spawn(Table::default());
+//!     })
+//!     .run();
+//! ```
 
+mod camera;
+mod mesh;
+mod motion;
+mod surface;
+mod viewpoint;
+mod visual;
+
+pub use surface::Surface;
+pub use viewpoint::{Steering, Viewpoint};
+pub use visual::Visual;
+
+use bevy::prelude::*;
+
+/// Draws the simulation and moves the user's camera. Needs Bevy's renderer and [`CorePlugin`](tabletop_core::CorePlugin).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ViewPlugin;
+
+impl Plugin for ViewPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_plugins((surface::plugin, visual::plugin, camera::plugin));
+    }
+}

@@ -69,12 +69,7 @@ impl<'e, 'a, 'f> AttributeReader<'e, 'a, 'f> {
         self.read("id", String::new(), value::id)
     }
 
-    pub fn number(
-        &mut self,
-        name: &'static str,
-        default: f32,
-        range: &RangeInclusive<f32>,
-    ) -> f32 {
+    pub fn number(&mut self, name: &'static str, default: f32, range: &RangeInclusive<f32>) -> f32 {
         self.read(name, default, |text| value::number(text, range))
     }
 
@@ -141,12 +136,7 @@ impl<'e, 'a, 'f> AttributeReader<'e, 'a, 'f> {
     }
 
     /// Notes a fault of an attribute, at the attribute or, where it is absent, at the element.
-    pub fn fault(
-        &mut self,
-        name: &str,
-        problem: impl fmt::Display,
-        expected: impl fmt::Display,
-    ) {
+    pub fn fault(&mut self, name: &str, problem: impl fmt::Display, expected: impl fmt::Display) {
         self.is_faulty = true;
         let place = Place {
             offset: self
@@ -200,7 +190,10 @@ mod tests {
     use super::*;
     use crate::{decode::decode, tree};
 
-    fn read<T>(text: &str, read: impl FnOnce(&mut AttributeReader) -> T) -> (Option<T>, Vec<String>) {
+    fn read<T>(
+        text: &str,
+        read: impl FnOnce(&mut AttributeReader) -> T,
+    ) -> (Option<T>, Vec<String>) {
         let decoded = decode(text.as_bytes());
         let mut faults = Faults::default();
         let element = tree::read(&decoded, &mut faults).unwrap();
@@ -221,7 +214,7 @@ mod tests {
 
     #[test]
     fn a_missing_attribute_is_a_fault_of_the_element() {
-        let (pose, faults) = read("<a/>", AttributeReader::pose);
+        let (pose, faults) = read("<a/>", |reader| reader.pose());
         assert_eq!(pose, None);
         assert_eq!(
             faults,
@@ -232,7 +225,11 @@ mod tests {
     #[test]
     fn every_faulty_attribute_is_reported() {
         let (value, faults) = read("<a x='-1'\n y='b' colour='red' q='1'/>", |reader| {
-            (reader.span("x", 1.0), reader.span("y", 1.0), reader.color("color"))
+            (
+                reader.span("x", 1.0),
+                reader.span("y", 1.0),
+                reader.color("color"),
+            )
         });
         assert_eq!(value, None);
         assert_eq!(
@@ -249,7 +246,7 @@ mod tests {
     #[test]
     fn an_unreadable_attribute_has_one_fault() {
         for text in ["<a location='(0,0,&x;)'/>", "<a location=(0,0,0)/>"] {
-            let (pose, faults) = read(text, AttributeReader::pose);
+            let (pose, faults) = read(text, |reader| reader.pose());
             assert_eq!((pose, faults.len()), (None, 1), "{faults:?}");
         }
     }

@@ -91,7 +91,10 @@ mod tests {
         assert_eq!(decode(b"<a>\xe9</a>").text, "<a>");
         assert_eq!(problem(b"<a>\xe9</a>"), "byte 0xe9 is not UTF-8");
         assert_eq!(decode(b"<a>\x01</a>\xe9").text, "<a>");
-        assert_eq!(problem(b"<a>\x01</a>\xe9"), "character U+0001 is not allowed");
+        assert_eq!(
+            problem(b"<a>\x01</a>\xe9"),
+            "character U+0001 is not allowed"
+        );
     }
 
     #[test]

@@ -1,9 +1,7 @@
 //! Elements of the task file language as what they stand for (report section 6.2).
 
 use bevy::math::Vec3;
-use tabletop_core::{
-    ChainSpec, LidBoxSpec, ObjectSpec, Part, Pose, SceneItem, SceneSpec, Shape, Table,
-};
+use tabletop_core::{ChainSpec, LidBoxSpec, ObjectSpec, Part, SceneItem, SceneSpec, Shape, Table};
 
 use crate::{
     NAMESPACE,
@@ -18,7 +16,13 @@ const ROOT: &str = "tabletop";
 const DESCRIPTION: &str = "description";
 const SHAPES: [&str; 5] = ["block", "cylinder", "sphere", "box", "composite"];
 const ITEMS: [&str; 7] = [
-    "block", "cylinder", "sphere", "box", "composite", "chain", "lidbox",
+    "block",
+    "cylinder",
+    "sphere",
+    "box",
+    "composite",
+    "chain",
+    "lidbox",
 ];
 const SPANS: [&str; 3] = ["xspan", "yspan", "zspan"];
 
@@ -48,11 +52,9 @@ pub(crate) fn scene(root: &Element, faults: &mut Faults) -> SceneSpec {
             return SceneSpec::default();
         }
     }
-    match root.namespace {
-        Namespace::Task => {}
-        Namespace::Undeclared => report_namespace(root, "its prefix is not declared", faults),
-        Namespace::Absent => report_namespace(root, "it has no namespace", faults),
-        Namespace::Other => report_namespace(root, "it is of another namespace", faults),
+    if root.namespace != Namespace::Task {
+        let expected = format_args!("xmlns=\"{NAMESPACE}\" on <{ROOT}>");
+        faults.report(root.place(), namespace_problem(root.namespace), expected);
     }
     let mut reader = ElementReader {
         namespace: root.namespace,
@@ -64,9 +66,13 @@ pub(crate) fn scene(root: &Element, faults: &mut Faults) -> SceneSpec {
     }
 }
 
-fn report_namespace(element: &Element, problem: &str, faults: &mut Faults) {
-    let expected = format_args!("xmlns=\"{NAMESPACE}\" on <{ROOT}>");
-    faults.report(element.place(), problem, expected);
+/// What is wrong with a namespace that is not that of task files.
+const fn namespace_problem(namespace: Namespace) -> &'static str {
+    match namespace {
+        Namespace::Undeclared => "its prefix is not declared",
+        Namespace::Absent => "it has no namespace",
+        Namespace::Task | Namespace::Other => "it is of another namespace",
+    }
 }
 
 /// Where a shape stands.
@@ -174,9 +180,7 @@ impl ElementReader<'_> {
                 let mut attributes = AttributeReader::of(child, self.faults);
                 let description = (
                     attributes.require("name", String::new(), "name", value::name),
-                    attributes.require("value", String::new(), "text", |text| {
-                        Ok(text.to_owned())
-                    }),
+                    attributes.require("value", String::new(), "text", |text| Ok(text.to_owned())),
                 );
                 descriptions.extend(attributes.finish(Some(description)));
             }
@@ -233,7 +237,7 @@ impl ElementReader<'_> {
             color: attributes.color("color"),
             handle_span,
             handle_thickness: attributes
-                .span("handleThickness", handle_span.x.min(handle_span.z) / 3.0),
+                .span("handleThickness", usual_handle_thickness(handle_span)),
             handle_color: attributes.color("handleColor"),
             descriptions,
         };
@@ -257,6 +261,9 @@ impl ElementReader<'_> {
     /// Whether an element may stand in its parent; a fault says why not.
     fn is_allowed(&mut self, element: &Element, parent: &str, allowed: &[&str]) -> bool {
         if !self.is_of_the_language(element) {
+            let expected = format_args!("the namespace {NAMESPACE}");
+            let problem = namespace_problem(element.namespace);
+            self.faults.report(element.place(), problem, expected);
             return false;
         }
         let name = element.name;
@@ -282,26 +289,17 @@ impl ElementReader<'_> {
         false
     }
 
-    fn is_of_the_language(&mut self, element: &Element) -> bool {
-        let problem = match element.namespace {
-            Namespace::Undeclared => "its prefix is not declared",
-            Namespace::Task => return true,
-            namespace if namespace == self.namespace => return true,
-            Namespace::Absent => "it has no namespace",
-            Namespace::Other => "it is of another namespace",
-        };
-        let expected = format_args!("the namespace {NAMESPACE}");
-        self.faults.report(element.place(), problem, expected);
-        false
+    fn is_of_the_language(&self, element: &Element) -> bool {
+        match element.namespace {
+            Namespace::Task => true,
+            Namespace::Undeclared => false,
+            namespace => namespace == self.namespace,
+        }
     }
 }
 
 /// The shape of an element that is one of [`SHAPES`]; absent for a composite of no parts.
-fn shape(
-    element: &Element,
-    parts: Vec<Part>,
-    attributes: &mut AttributeReader,
-) -> Option<Shape> {
+fn shape(element: &Element, parts: Vec<Part>, attributes: &mut AttributeReader) -> Option<Shape> {
     attributes.ignore("pointable", false, value::boolean);
     Some(match element.name {
         "block" => Shape::Block {
@@ -335,6 +333,15 @@ fn shape(
     })
 }
 
+/// A third of the smaller of X and Z, or of Y where those walls would leave no hollow.
+fn usual_handle_thickness(span: Vec3) -> f32 {
+    let usual = span.x.min(span.z) / 3.0;
+    match 2.0 * usual < span.y {
+        true => usual,
+        false => span.y / 3.0,
+    }
+}
+
 /// Notes a fault where the walls of a container leave no hollow.
 fn check_hollow(name: &'static str, span: Vec3, thickness: f32, attributes: &mut AttributeReader) {
     let most = (span.x / 2.0).min(span.y / 2.0).min(span.z);
@@ -347,54 +354,22 @@ fn check_hollow(name: &'static str, span: Vec3, thickness: f32, attributes: &mut
 /// Notes a fault where the links of a chain cannot reach from its start to its end.
 fn check_links(chain: &ChainSpec, attributes: &mut AttributeReader) {
     let (least, most) = (chain.least_links(), *LINK_COUNTS.end());
-    if chain.start == chain.end {
-        attributes.fault("end", "it is where the chain starts", "another location");
+    let least_distance = *value::SPANS.start();
+    if chain.start.distance(chain.end) < least_distance {
+        let expected = format_args!("a location at least {least_distance} away");
+        attributes.fault("end", "it is where the chain starts", expected);
     } else if least.max(chain.links()) > most {
         let problem = format_args!("the distance needs {} links", chain.links().max(least));
         attributes.fault("linkYspan", problem, format_args!("at most {most} links"));
     } else if chain.link_count > 0 && chain.link_count < least {
-        let problem = format_args!(
-            "{} links do not reach from start to end",
-            chain.link_count
-        );
+        let problem = format_args!("{} links do not reach from start to end", chain.link_count);
         attributes.fault("linkCount", problem, format_args!("at least {least}"));
     }
 }
 
-/// The pose of the lid's plate in the frame of a lone lid, which a file can only say as a composite.
-pub(crate) fn lid_as_composite(lid: &Shape) -> Option<Vec<Part>> {
-    let Shape::Lid {
-        span,
-        color,
-        handle_span,
-        handle_thickness,
-        handle_color,
-    } = *lid
-    else {
-        return None;
-    };
-    let handle = Pose::at(Vec3::Z * (span.z + handle_span.z) / 2.0);
-    Some(vec![
-        Part {
-            id: String::new(),
-            pose: Pose::IDENTITY,
-            shape: Shape::Block { span, color },
-        },
-        Part {
-            id: String::new(),
-            pose: handle,
-            shape: Shape::Box {
-                span: handle_span,
-                thickness: handle_thickness,
-                color: handle_color,
-            },
-        },
-    ])
-}
-
 #[cfg(test)]
 mod tests {
-    use tabletop_core::Rgb;
+    use tabletop_core::{Pose, Rgb};
 
     use super::*;
     use crate::test_support::{faults_of, items_of, lines_of, scene_of};
@@ -408,20 +383,58 @@ mod tests {
 
     #[test]
     fn the_root_gives_the_table() {
-        assert_eq!(scene_of("xspan='30' yspan='7.5'", "").table, Table { xspan: 30.0, yspan: 7.5 });
+        assert_eq!(
+            scene_of("xspan='30' yspan='7.5'", "").table,
+            Table {
+                xspan: 30.0,
+                yspan: 7.5
+            }
+        );
         assert_eq!(scene_of("", "").table, Table::default());
         let scene = scene_of("xspan='-1' yspan='7'", "<sphere location='(0,0,1)'/>");
-        assert_eq!(scene.table, Table { xspan: 20.0, yspan: 7.0 });
+        assert_eq!(
+            scene.table,
+            Table {
+                xspan: 20.0,
+                yspan: 7.0
+            }
+        );
         assert_eq!(scene.items.len(), 1);
     }
 
     #[test]
     fn simple_shapes_have_the_defaults_of_the_report() {
         for (name, shape) in [
-            ("block", Shape::Block { span: Vec3::ONE, color: Rgb::GRAY }),
-            ("cylinder", Shape::Cylinder { radius: 0.5, yspan: 1.0, color: Rgb::GRAY }),
-            ("sphere", Shape::Sphere { radius: 0.5, color: Rgb::GRAY }),
-            ("box", Shape::Box { span: Vec3::ONE, thickness: 0.05, color: Rgb::GRAY }),
+            (
+                "block",
+                Shape::Block {
+                    span: Vec3::ONE,
+                    color: Rgb::GRAY,
+                },
+            ),
+            (
+                "cylinder",
+                Shape::Cylinder {
+                    radius: 0.5,
+                    yspan: 1.0,
+                    color: Rgb::GRAY,
+                },
+            ),
+            (
+                "sphere",
+                Shape::Sphere {
+                    radius: 0.5,
+                    color: Rgb::GRAY,
+                },
+            ),
+            (
+                "box",
+                Shape::Box {
+                    span: Vec3::ONE,
+                    thickness: 0.05,
+                    color: Rgb::GRAY,
+                },
+            ),
         ] {
             let expected = ObjectSpec {
                 id: String::new(),
@@ -430,7 +443,10 @@ mod tests {
                 shape,
                 descriptions: vec![],
             };
-            assert_eq!(only_object(&format!("<{name} location='(1,2,3)'/>")), expected);
+            assert_eq!(
+                only_object(&format!("<{name} location='(1,2,3)'/>")),
+                expected
+            );
         }
     }
 
@@ -446,13 +462,34 @@ mod tests {
         assert_eq!(object.pose, pose);
         assert!(object.is_fixed());
         let color = "#00a57f".parse().unwrap();
-        assert_eq!(object.shape, Shape::Block { span: Vec3::new(2.0, 3.0, 4.0), color });
+        assert_eq!(
+            object.shape,
+            Shape::Block {
+                span: Vec3::new(2.0, 3.0, 4.0),
+                color
+            }
+        );
         let descriptions = [("use", "a & b"), ("shape", "")].map(|(n, v)| (n.into(), v.into()));
         assert_eq!(object.descriptions, descriptions);
-        let shape = only_object("<cylinder location='(0,0,2)' yspan='7' radius='2' sides='6'/>").shape;
-        assert_eq!(shape, Shape::Cylinder { radius: 2.0, yspan: 7.0, color: Rgb::GRAY });
+        let shape =
+            only_object("<cylinder location='(0,0,2)' yspan='7' radius='2' sides='6'/>").shape;
+        assert_eq!(
+            shape,
+            Shape::Cylinder {
+                radius: 2.0,
+                yspan: 7.0,
+                color: Rgb::GRAY
+            }
+        );
         let shape = only_object("<box location='(0,0,2)' thickness='.2'/>").shape;
-        assert_eq!(shape, Shape::Box { span: Vec3::ONE, thickness: 0.2, color: Rgb::GRAY });
+        assert_eq!(
+            shape,
+            Shape::Box {
+                span: Vec3::ONE,
+                thickness: 0.2,
+                color: Rgb::GRAY
+            }
+        );
     }
 
     #[test]
@@ -464,7 +501,10 @@ mod tests {
         );
         assert_eq!(object.mass, 10.0);
         let leaves = object.shape.leaves();
-        let places: Vec<_> = leaves.iter().map(|leaf| (leaf.id, leaf.pose.location.x)).collect();
+        let places: Vec<_> = leaves
+            .iter()
+            .map(|leaf| (leaf.id, leaf.pose.location.x))
+            .collect();
         assert_eq!(places, [("x", -1.0), ("x", -1.0), ("", 2.8)]);
     }
 
@@ -476,7 +516,9 @@ mod tests {
         assert_eq!(leaves, 1);
         assert_eq!(
             lines_of(content),
-            ["block, mass: a part has no mass of its own, expected a mass of the outermost composite only"]
+            [
+                "block, mass: a part has no mass of its own, expected a mass of the outermost composite only"
+            ]
         );
     }
 
@@ -495,7 +537,9 @@ mod tests {
         ] {
             assert_eq!(
                 lines_of(content),
-                ["composite: it has no parts, expected at least one of block, cylinder, sphere, box, composite"]
+                [
+                    "composite: it has no parts, expected at least one of block, cylinder, sphere, box, composite"
+                ]
             );
             assert!(scene_of("", content).items.is_empty());
         }
@@ -521,21 +565,44 @@ mod tests {
         let content = "<chain id='c' start='(0,0,1)' end='(0,5,1)' linkXspan='.2' linkYspan='.5' \
                        linkZspan='.3' linkPadding='0' linkMass='.1'/>";
         let items = items_of(content);
-        let [SceneItem::Chain(chain)] = items.as_slice() else { panic!() };
+        let [SceneItem::Chain(chain)] = items.as_slice() else {
+            panic!()
+        };
         assert_eq!(chain.link_span, Vec3::new(0.2, 0.5, 0.3));
-        assert_eq!((chain.links(), chain.link_padding, chain.link_mass), (10, 0.0, 0.1));
+        assert_eq!(
+            (chain.links(), chain.link_padding, chain.link_mass),
+            (10, 0.0, 0.1)
+        );
     }
 
     #[test]
     fn a_chain_must_reach() {
         for (attributes, fault) in [
-            ("start='(0,0,1)' end='(0,0,1)'", "end: it is where the chain starts, expected another location"),
-            ("start='(0,0,1)' end='(9,0,1)' linkCount='8'", "linkCount: 8 links do not reach from start to end, expected at least 9"),
-            ("start='(0,0,1)' end='(9,0,1)' linkYspan='.001'", "linkYspan: the distance needs 9000 links, expected at most 1000 links"),
-            ("end='(9,0,1)'", "start: it is missing, expected start=\"(x,y,z)\""),
-            ("start='(0,0,1)' end='(9,0,1)' linkPadding='-1'", "linkPadding: `-1` is out of range, expected a number from 0 to 1000"),
+            (
+                "start='(0,0,1)' end='(0,0,1)'",
+                "end: it is where the chain starts, expected a location at least 0.001 away",
+            ),
+            (
+                "start='(0,0,1)' end='(9,0,1)' linkCount='8'",
+                "linkCount: 8 links do not reach from start to end, expected at least 9",
+            ),
+            (
+                "start='(0,0,1)' end='(9,0,1)' linkYspan='.001'",
+                "linkYspan: the distance needs 9000 links, expected at most 1000 links",
+            ),
+            (
+                "end='(9,0,1)'",
+                "start: it is missing, expected start=\"(x,y,z)\"",
+            ),
+            (
+                "start='(0,0,1)' end='(9,0,1)' linkPadding='-1'",
+                "linkPadding: `-1` is out of range, expected a number from 0 to 1000",
+            ),
         ] {
-            assert_eq!(lines_of(&format!("<chain {attributes}/>")), [format!("chain, {fault}")]);
+            assert_eq!(
+                lines_of(&format!("<chain {attributes}/>")),
+                [format!("chain, {fault}")]
+            );
         }
     }
 
@@ -558,10 +625,35 @@ mod tests {
             descriptions: vec![],
         };
         assert_eq!(items_of(content), [SceneItem::LidBox(lidbox)]);
-        let items = items_of("<lidbox location='(0,0,1)' mass='3' lidMass='.5' handleThickness='.1'/>");
-        let [SceneItem::LidBox(lidbox)] = items.as_slice() else { panic!() };
+        let items =
+            items_of("<lidbox location='(0,0,1)' mass='3' lidMass='.5' handleThickness='.1'/>");
+        let [SceneItem::LidBox(lidbox)] = items.as_slice() else {
+            panic!()
+        };
         assert_eq!((lidbox.box_mass, lidbox.lid_mass), (3.0, 0.5));
-        assert_eq!((lidbox.handle_span, lidbox.handle_thickness), (Vec3::splat(0.5), 0.1));
+        assert_eq!(
+            (lidbox.handle_span, lidbox.handle_thickness),
+            (Vec3::splat(0.5), 0.1)
+        );
+    }
+
+    #[test]
+    fn a_narrow_handle_is_hollow_too() {
+        assert_eq!(usual_handle_thickness(Vec3::new(0.5, 0.4, 0.6)), 0.5 / 3.0);
+        assert_eq!(usual_handle_thickness(Vec3::new(2.0, 0.3, 2.0)), 0.3 / 3.0);
+        items_of("<lidbox location='(0,0,1)' handleXspan='2' handleYspan='.3' handleZspan='2'/>");
+    }
+
+    #[test]
+    fn an_element_of_another_namespace_has_one_fault() {
+        let content =
+            "<block location='(0,0,1)'><description xmlns='x' name='a' value='b'/></block>";
+        assert_eq!(
+            lines_of(content),
+            [format!(
+                "description: it is of another namespace, expected the namespace {NAMESPACE}"
+            )]
+        );
     }
 
     #[test]
@@ -610,9 +702,17 @@ mod tests {
 
     #[test]
     fn other_roots_are_faults() {
-        let fault = |text: &str| faults_of(text).iter().map(|f| f.problem.clone()).collect::<Vec<_>>();
+        let fault = |text: &str| {
+            faults_of(text)
+                .iter()
+                .map(|f| f.problem.clone())
+                .collect::<Vec<_>>()
+        };
         assert_eq!(fault("<tabletop/>"), ["it has no namespace"]);
-        assert_eq!(fault("<tabletop xmlns='x'><block location='(0,0,1)'/></tabletop>"), ["it is of another namespace"]);
+        assert_eq!(
+            fault("<tabletop xmlns='x'><block location='(0,0,1)'/></tabletop>"),
+            ["it is of another namespace"]
+        );
         assert_eq!(
             fault(&format!("<html xmlns='{NAMESPACE}'><a/><b/></html>")),
             ["it is not the root of a task file"]

@@ -114,7 +114,12 @@ impl Faults {
     }
 
     /// Notes a fault.
-    pub fn report(&mut self, place: Place, problem: impl fmt::Display, expected: impl fmt::Display) {
+    pub fn report(
+        &mut self,
+        place: Place,
+        problem: impl fmt::Display,
+        expected: impl fmt::Display,
+    ) {
         if self.is_full() {
             self.first_left_out.get_or_insert(place.offset);
             return;

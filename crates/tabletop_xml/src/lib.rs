@@ -30,6 +30,7 @@ mod parse;
 mod plugin;
 mod position;
 mod suggestion;
+mod syntax;
 mod tree;
 mod value;
 mod write;

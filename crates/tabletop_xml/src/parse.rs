@@ -132,7 +132,9 @@ mod tests {
         let message = |path: &Path| read_task(path).unwrap_err().to_string();
 
         let missing = folder.join("missing.xml");
-        assert!(message(&missing).starts_with(&format!("{}: it cannot be read: ", missing.display())));
+        assert!(
+            message(&missing).starts_with(&format!("{}: it cannot be read: ", missing.display()))
+        );
         assert!(message(&folder).contains("it is not a file"));
         let large = folder.join("large.xml");
         File::create(&large).unwrap().set_len(20 << 20).unwrap();

@@ -94,29 +94,43 @@ mod tests {
         let mut app = app();
         app.insert_resource(Paused(true));
         app.world_mut().write_message(SimCommand::ClearTable);
-        app.world_mut().write_message(SimCommand::LoadTask(path.clone()));
+        app.world_mut()
+            .write_message(SimCommand::LoadTask(path.clone()));
         app.world_mut().write_message(SimCommand::SetPaused(true));
         app.step(1);
         let seen = app.world().resource::<Seen>();
-        let [SimCommand::ClearTable, SimCommand::SetScene(scene), SimCommand::SetPaused(true)] =
-            seen.commands.as_slice()
+        let [
+            SimCommand::ClearTable,
+            SimCommand::SetScene(scene),
+            SimCommand::SetPaused(true),
+        ] = seen.commands.as_slice()
         else {
             panic!("{:?}", seen.commands);
         };
         assert_eq!((scene.table.xspan, scene.items.len()), (8.0, 1));
-        let [SimFact::TaskLoaded { path: loaded, faults }] = seen.facts.as_slice() else {
+        let [
+            SimFact::TaskLoaded {
+                path: loaded,
+                faults,
+            },
+        ] = seen.facts.as_slice()
+        else {
             panic!("{:?}", seen.facts);
         };
         assert_eq!(*loaded, path);
         assert_eq!(faults.len(), 1);
-        assert!(faults[0].starts_with(&format!("{}:2:1: cube: ", path.display())), "{faults:?}");
+        assert!(
+            faults[0].starts_with(&format!("{}:2:1: cube: ", path.display())),
+            "{faults:?}"
+        );
         fs::remove_file(path).unwrap();
     }
 
     #[test]
     fn a_file_is_loaded_once() {
         let mut app = app();
-        app.world_mut().write_message(SimCommand::LoadTask("missing.xml".into()));
+        app.world_mut()
+            .write_message(SimCommand::LoadTask("missing.xml".into()));
         app.step(5);
         let seen = app.world().resource::<Seen>();
         assert_eq!((seen.commands.len(), seen.facts.len()), (1, 1));
@@ -125,13 +139,17 @@ mod tests {
     #[test]
     fn without_a_file_there_is_still_a_table() {
         let mut app = app();
-        app.world_mut().write_message(SimCommand::LoadTask("missing.xml".into()));
+        app.world_mut()
+            .write_message(SimCommand::LoadTask("missing.xml".into()));
         app.step(1);
         let seen = app.world().resource::<Seen>();
         assert_eq!(seen.commands, [SimCommand::SetScene(Box::default())]);
         let [SimFact::TaskLoaded { faults, .. }] = seen.facts.as_slice() else {
             panic!("{:?}", seen.facts);
         };
-        assert!(faults[0].starts_with("missing.xml: it cannot be read: "), "{faults:?}");
+        assert!(
+            faults[0].starts_with("missing.xml: it cannot be read: "),
+            "{faults:?}"
+        );
     }
 }

@@ -5,7 +5,7 @@ pub(crate) fn nearest<'n>(misspelt: &str, names: &[&'n str]) -> Option<&'n str> 
     names
         .iter()
         .map(|&name| (distance(misspelt, name), name))
-        .filter(|&(distance, name)| distance <= 2 && distance < name.len() / 2)
+        .filter(|&(distance, name)| distance <= 2 && distance <= name.len() / 2)
         .min_by_key(|&(distance, _)| distance)
         .map(|(_, name)| name)
 }

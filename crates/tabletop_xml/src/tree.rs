@@ -4,9 +4,7 @@ use std::borrow::Cow;
 
 use quick_xml::{
     Error, Reader, XmlVersion,
-    errors::{IllFormedError, SyntaxError},
-    escape::EscapeError,
-    events::{BytesDecl, BytesStart, Event, attributes::AttrError, attributes::Attributes},
+    events::{BytesDecl, BytesStart, Event, attributes::Attributes},
     name::{Namespace as Uri, NamespaceResolver, ResolveResult},
 };
 
@@ -14,6 +12,7 @@ use crate::{
     NAMESPACE,
     decode::{Decoded, is_xml_character},
     fault::{Excerpt, Faults, Place},
+    syntax::{explain, explain_attribute, explain_reference, is_blank, is_declaration, is_name},
 };
 
 /// How deep elements can be nested.
@@ -144,7 +143,8 @@ impl<'a> Builder<'a, '_> {
                 Ok(Event::CData(_) | Event::GeneralRef(_)) => self.reject_text(offset),
                 Ok(Event::Decl(declaration)) => self.check_declaration(offset, &declaration),
                 Ok(Event::DocType(doctype)) => self.check_doctype(offset, &doctype),
-                Ok(Event::Comment(_) | Event::PI(_)) => {}
+                Ok(Event::PI(instruction)) => self.check_instruction(offset, instruction.target()),
+                Ok(Event::Comment(_)) => {}
                 Ok(Event::Eof) if is_cut => return End::Fault,
                 Ok(Event::Eof) => return self.check_end(),
                 Err(Error::Syntax(_)) if is_cut => return End::Fault,
@@ -195,18 +195,26 @@ impl<'a> Builder<'a, '_> {
         let content = &self.text[content_offset..content_offset + tag.len()];
         let name_length = tag.name().as_ref().len();
         let full_name = &content[..name_length];
+        let local_name = match is_name(full_name) {
+            true => full_name.rsplit(':').next(),
+            false => None,
+        };
         let mut element = Element {
             offset,
-            name: full_name.rsplit(':').next().unwrap_or(full_name),
+            name: local_name.unwrap_or(full_name),
             namespace: Namespace::Absent,
             attributes: Vec::new(),
             children: Vec::new(),
             is_broken: false,
         };
-        if let Err(error) = self.namespaces.push(tag) {
+        if self.namespaces.push(tag).is_err() {
             element.is_broken = true;
-            self.faults
-                .report(element.place(), error, "namespaces as XML has them");
+            let problem = "it declares namespaces that XML does not allow";
+            self.faults.report(
+                element.place(),
+                problem,
+                "few namespaces, and none for xml and xmlns",
+            );
         }
         element.namespace = match self.namespaces.resolve_element(tag.name()).0 {
             ResolveResult::Bound(Uri(NAMESPACE)) => Namespace::Task,
@@ -225,6 +233,7 @@ impl<'a> Builder<'a, '_> {
         mut attributes: Attributes<'a>,
         content_offset: usize,
     ) {
+        let mut names = Vec::new();
         for (index, attribute) in attributes.with_checks(false).enumerate() {
             if index == MAX_ATTRIBUTES {
                 element.is_broken = true;
@@ -234,7 +243,10 @@ impl<'a> Builder<'a, '_> {
                 break;
             }
             match attribute {
-                Ok(attribute) => self.read_attribute(element, &attribute),
+                Ok(attribute) => {
+                    self.read_attribute(element, &attribute, &names);
+                    names.push(attribute.key.0);
+                }
                 Err(error) => {
                     element.is_broken = true;
                     let (offset, problem, expected) = explain_attribute(&error);
@@ -253,14 +265,18 @@ impl<'a> Builder<'a, '_> {
         &mut self,
         element: &mut Element<'a>,
         attribute: &quick_xml::events::attributes::Attribute<'a>,
+        names_before: &[&str],
     ) {
         let name: &'a str = attribute.key.0;
         let offset = name.as_ptr().addr() - self.text.as_ptr().addr();
         let mut faults_of_syntax = Vec::new();
-        if !self.text[..offset].ends_with([' ', '\t', '\r', '\n']) {
+        if !is_name(name) {
+            faults_of_syntax.push(("it is not a name".into(), "the name of an attribute"));
+        }
+        if !self.text[..offset].ends_with(is_blank) {
             faults_of_syntax.push(("it follows without a blank".into(), "a blank before it"));
         }
-        if element.attributes.iter().any(|other| other.name == name) {
+        if names_before.contains(&name) {
             faults_of_syntax.push(("it is there twice".into(), "each attribute once"));
         }
         if attribute.value.contains('<') {
@@ -287,7 +303,7 @@ impl<'a> Builder<'a, '_> {
             self.faults.report(place, problem, expected);
         }
         element.is_broken |= !faults_of_syntax.is_empty();
-        if !self.is_for_xml_itself(attribute) {
+        if is_name(name) && !self.is_for_xml_itself(attribute) {
             element.attributes.push(Attribute {
                 offset,
                 name,
@@ -297,10 +313,7 @@ impl<'a> Builder<'a, '_> {
     }
 
     /// Whether an attribute declares a namespace or tells a validator where the schema is.
-    fn is_for_xml_itself(
-        &self,
-        attribute: &quick_xml::events::attributes::Attribute<'a>,
-    ) -> bool {
+    fn is_for_xml_itself(&self, attribute: &quick_xml::events::attributes::Attribute<'a>) -> bool {
         let name = attribute.key;
         let namespace = self.namespaces.resolve_attribute(name).0;
         name.as_namespace_binding().is_some()
@@ -343,10 +356,8 @@ impl<'a> Builder<'a, '_> {
     }
 
     fn check_text(&mut self, offset: usize, text: &str) {
-        let blanks = text.len() - crate::value::trim(text).len();
-        if blanks < text.len() {
-            let leading = text.find(|c: char| !c.is_ascii_whitespace()).unwrap_or(0);
-            self.reject_text(offset + leading);
+        if let Some(blanks) = text.find(|character| !is_blank(character)) {
+            self.reject_text(offset + blanks);
         }
     }
 
@@ -364,7 +375,11 @@ impl<'a> Builder<'a, '_> {
             let problem = "the XML declaration is not at the beginning";
             self.faults.report(place, problem, "nothing before it");
         }
-        if !matches!(declaration.version().as_deref(), Ok("1.0" | "1.1")) {
+        if !is_declaration(declaration) {
+            let problem = "the XML declaration is not complete";
+            let expected = "version=\"1.0\" encoding=\"UTF-8\"";
+            self.faults.report(place, problem, expected);
+        } else if !matches!(declaration.version().as_deref(), Ok("1.0" | "1.1")) {
             let problem = "the XML declaration has no known version";
             self.faults.report(place, problem, "version=\"1.0\"");
         }
@@ -380,11 +395,24 @@ impl<'a> Builder<'a, '_> {
         }
     }
 
+    fn check_instruction(&mut self, offset: usize, target: &str) {
+        if !is_name(target) || target.eq_ignore_ascii_case("xml") {
+            let place = self.place(offset);
+            let problem = "the processing instruction has no name";
+            self.faults.report(place, problem, "<?name ...?>");
+        }
+    }
+
     fn check_doctype(&mut self, offset: usize, doctype: &str) {
+        let place = self.place(offset);
+        if !self.open.is_empty() || self.root.is_some() {
+            let problem = "the DOCTYPE is not before the root element";
+            self.faults.report(place, problem, "elements and comments");
+        }
         if doctype.contains("<!ENTITY") {
             let problem = "entities are declared, which are not read";
             self.faults
-                .report(Place::outside(offset), problem, "a file without entities");
+                .report(place, problem, "a file without entities");
         }
     }
 
@@ -395,70 +423,6 @@ impl<'a> Builder<'a, '_> {
             element: self.open.last().map(|element| element.name),
             attribute: None,
         }
-    }
-}
-
-/// What is wrong where a file is not well formed, and what should be there.
-fn explain(error: &Error) -> (String, String) {
-    let (problem, expected) = match error {
-        Error::IllFormed(IllFormedError::MismatchedEndTag { expected, found }) => {
-            return (
-                format!("`</{}>` closes another element", Excerpt(found)),
-                format!("</{}>", Excerpt(expected)),
-            );
-        }
-        Error::IllFormed(IllFormedError::UnmatchedEndTag(name)) => {
-            return (
-                format!("`</{}>` closes no element", Excerpt(name)),
-                "only tags that close an element".into(),
-            );
-        }
-        Error::IllFormed(IllFormedError::DoubleHyphenInComment) => {
-            ("there is a `--` in the comment", "-->")
-        }
-        Error::IllFormed(IllFormedError::UnclosedReference) => ("there is a lone `&`", "&amp;"),
-        Error::Syntax(SyntaxError::UnclosedComment) => ("the comment does not end", "-->"),
-        Error::Syntax(SyntaxError::UnclosedCData) => ("the CDATA section does not end", "]]>"),
-        Error::Syntax(SyntaxError::UnclosedTag) => ("the tag does not end", ">"),
-        Error::Syntax(SyntaxError::UnclosedSingleQuotedAttributeValue) => {
-            ("the value of an attribute in this tag does not end", "'")
-        }
-        Error::Syntax(SyntaxError::UnclosedDoubleQuotedAttributeValue) => {
-            ("the value of an attribute in this tag does not end", "\"")
-        }
-        Error::Syntax(SyntaxError::UnclosedDoctype) => ("the DOCTYPE does not end", ">"),
-        Error::Syntax(SyntaxError::UnclosedPI | SyntaxError::UnclosedXmlDecl) => {
-            ("the processing instruction does not end", "?>")
-        }
-        other => return (other.to_string(), "well-formed XML".into()),
-    };
-    (problem.into(), expected.into())
-}
-
-/// Where in the tag its attributes are not well formed, what is wrong, and what should be there.
-fn explain_attribute(error: &AttrError) -> (usize, &'static str, &'static str) {
-    match *error {
-        AttrError::UnquotedValue(offset) => {
-            (offset, "the value has no quotes", "name=\"value\"")
-        }
-        AttrError::ExpectedEq(offset)
-        | AttrError::ExpectedValue(offset)
-        | AttrError::ExpectedQuote(offset, _)
-        | AttrError::Duplicated(offset, _) => {
-            (offset, "an attribute is not complete", "name=\"value\"")
-        }
-    }
-}
-
-/// What is wrong with a reference in an attribute, and what should be there.
-fn explain_reference(error: &EscapeError) -> (String, &'static str) {
-    match error {
-        EscapeError::UnrecognizedEntity(_, name) => (
-            format!("`&{};` is not a known entity", Excerpt(name)),
-            "&amp;, &lt;, &gt;, &quot;, &apos; or &#number;",
-        ),
-        EscapeError::UnterminatedEntity(_) => ("there is a lone `&`".into(), "&amp;"),
-        other => (other.to_string(), "&#number; of a character of XML 1.0"),
     }
 }
 
@@ -518,28 +482,117 @@ mod tests {
         for (text, fault) in [
             ("", "f:1:1: there is no element, expected <tabletop>"),
             ("<r>\n<a>", "f:2:1: a: it is not closed, expected </a>"),
-            ("<r>\n</a>", "f:2:1: r: `</a>` closes another element, expected </r>"),
-            ("<r/>\n </a>", "f:2:2: `</a>` closes no element, expected only tags that close an element"),
-            ("<r/><r/>", "f:1:5: there is a second element beside the root element, expected one root element"),
-            ("<r>\n é</r>", "f:2:2: r: there is text between the elements, expected elements and comments"),
-            ("x<r/>", "f:1:1: there is text between the elements, expected elements and comments"),
-            ("<r><![CDATA[x]]></r>", "f:1:4: r: there is text between the elements, expected elements and comments"),
-            ("<r><!-- a -- b --></r>", "f:1:11: r: there is a `--` in the comment, expected -->"),
-            ("<r a='1' a='2'/>", "f:1:10: r, a: it is there twice, expected each attribute once"),
-            ("<r a='1'b='2'/>", "f:1:9: r, b: it follows without a blank, expected a blank before it"),
-            ("<r a=1/>", "f:1:6: r: the value has no quotes, expected name=\"value\""),
-            ("<r a/>", "f:1:5: r: an attribute is not complete, expected name=\"value\""),
-            ("<r a='<'/>", "f:1:4: r, a: there is a `<` in it, expected &lt;"),
-            ("<r a='&'/>", "f:1:4: r, a: there is a lone `&`, expected &amp;"),
-            ("<r a='&#1;'/>", "f:1:4: r, a: character U+0001 is not allowed, expected characters of XML 1.0"),
-            ("<r a='", "f:1:1: the value of an attribute in this tag does not end, expected '"),
+            (
+                "<r>\n</a>",
+                "f:2:1: r: `</a>` closes another element, expected </r>",
+            ),
+            (
+                "<r/>\n </a>",
+                "f:2:2: `</a>` closes no element, expected only tags that close an element",
+            ),
+            (
+                "<r/><r/>",
+                "f:1:5: there is a second element beside the root element, expected one root element",
+            ),
+            (
+                "<r>\n é</r>",
+                "f:2:2: r: there is text between the elements, expected elements and comments",
+            ),
+            (
+                "x<r/>",
+                "f:1:1: there is text between the elements, expected elements and comments",
+            ),
+            (
+                "<r><![CDATA[x]]></r>",
+                "f:1:4: r: there is text between the elements, expected elements and comments",
+            ),
+            (
+                "<r><!-- a -- b --></r>",
+                "f:1:11: r: there is a `--` in the comment, expected -->",
+            ),
+            (
+                "<r a='1' a='2'/>",
+                "f:1:10: r, a: it is there twice, expected each attribute once",
+            ),
+            (
+                "<r a='1'b='2'/>",
+                "f:1:9: r, b: it follows without a blank, expected a blank before it",
+            ),
+            (
+                "<r a=1/>",
+                "f:1:6: r: the value has no quotes, expected name=\"value\"",
+            ),
+            (
+                "<r a/>",
+                "f:1:5: r: an attribute is not complete, expected name=\"value\"",
+            ),
+            (
+                "<r xmlns:x='a' xmlns:x='b'/>",
+                "f:1:16: r, xmlns:x: it is there twice, expected each attribute once",
+            ),
+            (
+                "<r xsi:a&='b'/>",
+                "f:1:4: r, xsi:a&: it is not a name, expected the name of an attribute",
+            ),
+            (
+                "<r xmlns:xml='b'/>",
+                "f:1:1: r: it declares namespaces that XML does not allow, expected few namespaces, and none for xml and xmlns",
+            ),
+            (
+                "<r><?XML a?></r>",
+                "f:1:4: r: the processing instruction has no name, expected <?name ...?>",
+            ),
+            (
+                "<r><!DOCTYPE r></r>",
+                "f:1:4: r: the DOCTYPE is not before the root element, expected elements and comments",
+            ),
+            (
+                "<?xml version='1.0' encoding?><r/>",
+                "f:1:1: the XML declaration is not complete, expected version=\"1.0\" encoding=\"UTF-8\"",
+            ),
+            (
+                "<r a='<'/>",
+                "f:1:4: r, a: there is a `<` in it, expected &lt;",
+            ),
+            (
+                "<r a='&'/>",
+                "f:1:4: r, a: there is a lone `&`, expected &amp;",
+            ),
+            (
+                "<r a='&#1;'/>",
+                "f:1:4: r, a: character U+0001 is not allowed, expected characters of XML 1.0",
+            ),
+            (
+                "<r a='",
+                "f:1:1: the value of an attribute in this tag does not end, expected '",
+            ),
             ("<r", "f:1:1: the tag does not end, expected >"),
-            ("<r><!--", "f:1:4: r: the comment does not end, expected -->"),
-            ("<?xml version='1.0' encoding='latin1'?><r a='é'/>", "f:1:1: the encoding is `latin1`, expected UTF-8"),
-            ("<?xml version='2.0'?><r/>", "f:1:1: the XML declaration has no known version, expected version=\"1.0\""),
-            (" <?xml version='1.0'?><r/>", "f:1:2: the XML declaration is not at the beginning, expected nothing before it"),
+            (
+                "<r><!--",
+                "f:1:4: r: the comment does not end, expected -->",
+            ),
+            (
+                "<?xml version='1.0' encoding='latin1'?><r a='é'/>",
+                "f:1:1: the encoding is `latin1`, expected UTF-8",
+            ),
+            (
+                "<?xml version='2.0'?><r/>",
+                "f:1:1: the XML declaration has no known version, expected version=\"1.0\"",
+            ),
+            (
+                " <?xml version='1.0'?><r/>",
+                "f:1:2: the XML declaration is not at the beginning, expected nothing before it",
+            ),
         ] {
             assert_eq!(faults(text), [fault], "{text}");
+        }
+    }
+
+    #[test]
+    fn a_name_that_is_none_is_kept_whole() {
+        for name in [":block", "a:b:block", "block:"] {
+            let text = format!("<{name}/>");
+            assert_eq!(read_all(&text).0.unwrap().name, name);
         }
     }
 
@@ -558,7 +611,11 @@ mod tests {
 
     #[test]
     fn a_cut_text_has_one_fault_at_its_end() {
-        for text in [&b"<r><a/>\n\xff</r>"[..], b"<r><a/><b x='\n\xff", b"<r><a/>\n\0</r>"] {
+        for text in [
+            &b"<r><a/>\n\xff</r>"[..],
+            b"<r><a/><b x='\n\xff",
+            b"<r><a/>\n\0</r>",
+        ] {
             let decoded = decode(text);
             let mut faults = Faults::default();
             let root = read(&decoded, &mut faults).unwrap();

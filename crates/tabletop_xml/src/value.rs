@@ -5,7 +5,7 @@ use std::{fmt, ops::RangeInclusive};
 use bevy::math::Vec3;
 use tabletop_core::{NAMED_COLORS, Rgb};
 
-use crate::fault::Excerpt;
+use crate::{fault::Excerpt, syntax::is_blank};
 
 /// Extents, radii and thicknesses, in units.
 pub(crate) const SPANS: RangeInclusive<f32> = 0.001..=1000.0;
@@ -85,7 +85,11 @@ pub(crate) fn count(text: &str, range: &RangeInclusive<u32>) -> Result<u32, Valu
 pub(crate) fn color(text: &str) -> Result<Rgb, ValueError> {
     text.parse().map_err(|_| {
         let names = NAMED_COLORS.map(|(name, _)| name).join(", ");
-        ValueError::new(text, "is not a colour", format!("#rrggbb or one of {names}"))
+        ValueError::new(
+            text,
+            "is not a colour",
+            format!("#rrggbb or one of {names}"),
+        )
     })
 }
 
@@ -131,7 +135,7 @@ pub(crate) fn boolean(text: &str) -> Result<bool, ValueError> {
 
 /// Removes what XML takes for blanks from both ends.
 pub(crate) fn trim(text: &str) -> &str {
-    text.trim_matches([' ', '\t', '\r', '\n'])
+    text.trim_matches(is_blank)
 }
 
 fn bare_vector(text: &str) -> Option<Vec3> {
@@ -194,16 +198,22 @@ mod tests {
         for text in ["(1,-2,.5)", " ( 1 , -2 , .5 ) ", "(1.0,\n-2e0,+0.5)"] {
             assert_eq!(vector(text, &LOCATIONS), Ok(Vec3::new(1.0, -2.0, 0.5)));
         }
-        for text in ["1,2,3", "(1,2)", "(1,2,3,4)", "(1,2,x)", "()", "(", "(1,2,NaN)", "(1;2;3)"] {
+        for text in [
+            "1,2,3",
+            "(1,2)",
+            "(1,2,3,4)",
+            "(1,2,x)",
+            "()",
+            "(",
+            "(1,2,NaN)",
+            "(1;2;3)",
+        ] {
             let error = vector(text, &LOCATIONS).unwrap_err();
             assert_eq!(error.problem, format!("`{text}` is not a vector"));
         }
         let error = vector("(0,0,1e5)", &LOCATIONS).unwrap_err();
         assert_eq!(error.problem, "`(0,0,1e5)` is out of range");
-        assert_eq!(
-            error.expected,
-            "(x,y,z) with numbers from -10000 to 10000"
-        );
+        assert_eq!(error.expected, "(x,y,z) with numbers from -10000 to 10000");
     }
 
     #[test]
@@ -215,7 +225,12 @@ mod tests {
             assert_eq!(error.problem, format!("`{text}` is not a whole number"));
         }
         for text in ["-1", "1001", "99999999999999999999999"] {
-            assert!(count(text, &LINK_COUNTS).unwrap_err().problem.ends_with("is out of range"));
+            assert!(
+                count(text, &LINK_COUNTS)
+                    .unwrap_err()
+                    .problem
+                    .ends_with("is out of range")
+            );
         }
     }
 

@@ -8,7 +8,7 @@ use tabletop_core::{
     ChainSpec, LidBoxSpec, NAMED_COLORS, ObjectSpec, Part, Pose, Rgb, SceneItem, SceneSpec, Shape,
 };
 
-use crate::{NAMESPACE, decode::is_xml_character, element::lid_as_composite, value::is_id_character};
+use crate::{NAMESPACE, decode::is_xml_character, value::is_id_character};
 
 /// Writes a scene as a task file, which [reads](crate::parse) back as the same scene: numbers exactly, rotations to
 /// within a thousandth of a degree, colours to within their 8 bits a part.
@@ -27,7 +27,9 @@ use crate::{NAMESPACE, decode::is_xml_character, element::lid_as_composite, valu
 /// ```
 pub fn write(scene: &SceneSpec) -> String {
     let mut writer = Writer::default();
-    writer.text.push_str("<?xml version=\"1.0\" encoding=\"UTF-8\"?>");
+    writer
+        .text
+        .push_str("<?xml version=\"1.0\" encoding=\"UTF-8\"?>");
     writer.open("tabletop");
     writer.attribute("xmlns", NAMESPACE);
     writer.attribute("xmlns:xsi", "http://www.w3.org/2001/XMLSchema-instance");
@@ -78,7 +80,7 @@ impl Writer {
     fn parts_of(&mut self, shape: &Shape) {
         match shape {
             Shape::Composite { parts } => parts.iter().for_each(|part| self.part(part)),
-            lid => lid_as_composite(lid)
+            lid => parts_of_lid(lid)
                 .iter()
                 .flatten()
                 .for_each(|part| self.part(part)),
@@ -235,6 +237,37 @@ fn element_name(shape: &Shape) -> &'static str {
     }
 }
 
+/// Plate and handle of a lid without its box, as the parts of a composite.
+fn parts_of_lid(lid: &Shape) -> Option<Vec<Part>> {
+    let Shape::Lid {
+        span,
+        color,
+        handle_span,
+        handle_thickness,
+        handle_color,
+    } = *lid
+    else {
+        return None;
+    };
+    let handle = Pose::at(Vec3::Z * (span.z + handle_span.z) / 2.0);
+    Some(vec![
+        Part {
+            id: String::new(),
+            pose: Pose::IDENTITY,
+            shape: Shape::Block { span, color },
+        },
+        Part {
+            id: String::new(),
+            pose: handle,
+            shape: Shape::Box {
+                span: handle_span,
+                thickness: handle_thickness,
+                color: handle_color,
+            },
+        },
+    ])
+}
+
 fn as_id(text: &str) -> String {
     text.replace(|character| !is_id_character(character), "_")
 }
@@ -308,7 +341,10 @@ mod tests {
             panic!("{items:?}");
         };
         assert_eq!(link.id, "c_link_0");
-        assert_eq!(link.descriptions, [("a_b".to_owned(), "\u{fffd}".to_owned())]);
+        assert_eq!(
+            link.descriptions,
+            [("a_b".to_owned(), "\u{fffd}".to_owned())]
+        );
         assert_eq!(link.shape.name(), "block");
         assert_eq!(read_lid.shape.colliding(), lid.colliding());
     }

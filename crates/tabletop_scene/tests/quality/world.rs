@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use tabletop_core::{prelude::*, quat_from_degrees, ChainSpec, LidBoxSpec};
-use tabletop_physics::PhysicsPlugin;
+use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
 use tabletop_scene::ScenePlugin;
 
 pub const WHITE: Rgb = Rgb::WHITE;
@@ -11,11 +11,18 @@ pub struct TestWorld(pub App);
 
 impl TestWorld {
     pub fn new(items: impl IntoIterator<Item = SceneItem>) -> Self {
+        Self::with_settings(PhysicsSettings::default(), items)
+    }
+
+    pub fn with_settings(
+        settings: PhysicsSettings,
+        items: impl IntoIterator<Item = SceneItem>,
+    ) -> Self {
         let mut app = App::new();
         app.add_plugins((
             MinimalPlugins,
             CorePlugin::default(),
-            PhysicsPlugin::default(),
+            PhysicsPlugin { settings },
             ScenePlugin,
         ))
         .start();

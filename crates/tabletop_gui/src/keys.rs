@@ -1,0 +1,97 @@
+//! Keys that are not the camera's: Space pauses, Esc quits.
+
+use bevy::prelude::*;
+use bevy_egui::input::{EguiWantsInput, egui_wants_any_keyboard_input};
+use tabletop_core::{KeySystems, Paused, SimCommand};
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<EguiWantsInput>()
+        .configure_sets(
+            RunFixedMainLoop,
+            KeySystems.run_if(not(egui_wants_any_keyboard_input)),
+        )
+        .add_systems(
+            RunFixedMainLoop,
+            (
+                toggle_pause.run_if(was_pressed(KeyCode::Space)),
+                quit.run_if(was_pressed(KeyCode::Escape)),
+            )
+                .in_set(KeySystems),
+        );
+}
+
+fn was_pressed(key: KeyCode) -> impl FnMut(Res<ButtonInput<KeyCode>>) -> bool + Clone {
+    move |keys| keys.just_pressed(key)
+}
+
+fn toggle_pause(paused: Res<Paused>, mut commands: MessageWriter<SimCommand>) {
+    commands.write(SimCommand::SetPaused(!paused.0));
+}
+
+fn quit(mut exit: MessageWriter<AppExit>) {
+    exit.write(AppExit::Success);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::time::TimeUpdateStrategy;
+    use tabletop_core::CorePlugin;
+
+    fn app() -> App {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
+            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
+            .init_resource::<ButtonInput<KeyCode>>();
+        app.finish();
+        app.cleanup();
+        app.update();
+        app
+    }
+
+    fn strike(app: &mut App, key: KeyCode) {
+        let mut keys = app.world_mut().resource_mut::<ButtonInput<KeyCode>>();
+        keys.press(key);
+        app.update();
+        let mut keys = app.world_mut().resource_mut::<ButtonInput<KeyCode>>();
+        keys.release(key);
+        keys.clear();
+    }
+
+    fn is_paused(app: &App) -> bool {
+        app.world().resource::<Paused>().0
+    }
+
+    #[test]
+    fn space_pauses_and_resumes() {
+        let mut app = app();
+        strike(&mut app, KeyCode::Space);
+        assert!(is_paused(&app));
+        app.update();
+        assert!(is_paused(&app));
+        strike(&mut app, KeyCode::Space);
+        assert!(!is_paused(&app));
+    }
+
+    #[test]
+    fn space_held_down_pauses_once() {
+        let mut app = app();
+        let mut keys = app.world_mut().resource_mut::<ButtonInput<KeyCode>>();
+        keys.press(KeyCode::Space);
+        for _ in 0..4 {
+            app.update();
+            let mut keys = app.world_mut().resource_mut::<ButtonInput<KeyCode>>();
+            keys.clear();
+            assert!(is_paused(&app));
+        }
+    }
+
+    #[test]
+    fn only_escape_quits() {
+        let mut app = app();
+        strike(&mut app, KeyCode::KeyX);
+        assert_eq!(app.should_exit(), None);
+        strike(&mut app, KeyCode::Escape);
+        assert_eq!(app.should_exit(), Some(AppExit::Success));
+    }
+}

@@ -1,0 +1,129 @@
+//! What the user must know: the faults of task files, and what could not be done.
+
+use bevy::prelude::*;
+use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
+use tabletop_core::SimFact;
+
+/// Older notices are forgotten, so that a script that is refused a million times does not fill the memory.
+const MAX_NOTICES: usize = 200;
+
+/// The notices in the order in which they came, each once, until the user closes their window.
+#[derive(Resource, Clone, Debug, Default, PartialEq)]
+pub struct Notices(Vec<String>);
+
+impl Notices {
+    /// Adds a notice unless it is there already.
+    pub fn add(&mut self, notice: &str) {
+        if self.0.iter().any(|there| there == notice) {
+            return;
+        }
+        if self.0.len() == MAX_NOTICES {
+            self.0.remove(0);
+        }
+        self.0.push(notice.to_owned());
+    }
+
+    /// The notices, oldest first.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.0.iter().map(String::as_str)
+    }
+
+    /// Whether there is nothing to be said.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Forgets them all.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Notices>()
+        .add_systems(Update, note_facts)
+        .add_systems(EguiPrimaryContextPass, show_notices);
+}
+
+fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
+    for fact in facts.read() {
+        match fact {
+            SimFact::TaskLoaded { faults, .. } => {
+                faults.iter().for_each(|fault| notices.add(fault));
+            }
+            SimFact::Refused { reason } => notices.add(reason),
+            SimFact::ObjectCreated { .. } | SimFact::ObjectDeleted { .. } => {}
+        }
+    }
+}
+
+fn show_notices(mut contexts: EguiContexts, mut notices: ResMut<Notices>) {
+    if notices.is_empty() {
+        return;
+    }
+    let Ok(context) = contexts.ctx_mut() else {
+        return;
+    };
+    let mut is_open = true;
+    egui::Window::new("Messages")
+        .open(&mut is_open)
+        .default_pos(egui::pos2(10.0, 10.0))
+        .default_width(640.0)
+        .default_height(200.0)
+        .vscroll(true)
+        .show(context, |ui| {
+            for notice in notices.iter() {
+                ui.add(egui::Label::new(egui::RichText::new(notice).monospace()).selectable(true));
+            }
+            ui.take_available_space();
+        });
+    if !is_open {
+        notices.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::time::TimeUpdateStrategy;
+    use tabletop_core::CorePlugin;
+
+    #[test]
+    fn facts_become_notices_each_once() {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
+            .init_resource::<Notices>()
+            .add_systems(Update, note_facts);
+        let refused = |reason: &str| SimFact::Refused {
+            reason: reason.into(),
+        };
+        for fact in [
+            refused("no such object"),
+            SimFact::TaskLoaded {
+                path: "a.xml".into(),
+                faults: vec!["a.xml:1:2: one".into(), "a.xml:3:4: two".into()],
+            },
+            refused("no such object"),
+            SimFact::ObjectDeleted { id: "x".into() },
+        ] {
+            app.world_mut().write_message(fact);
+            app.update();
+        }
+        let notices = app.world().resource::<Notices>();
+        assert_eq!(
+            notices.iter().collect::<Vec<_>>(),
+            ["no such object", "a.xml:1:2: one", "a.xml:3:4: two"]
+        );
+    }
+
+    #[test]
+    fn the_oldest_notices_are_forgotten() {
+        let mut notices = Notices::default();
+        for number in 0..=MAX_NOTICES {
+            notices.add(&number.to_string());
+        }
+        assert_eq!(notices.iter().len(), MAX_NOTICES);
+        assert_eq!(notices.iter().next(), Some("1"));
+    }
+}

@@ -1,0 +1,47 @@
+//! The pause overlay, which covers view and panels.
+
+use bevy::prelude::*;
+use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
+use tabletop_core::Paused;
+
+const TEXT: &str = "Simulation Paused\n\nPress SPACE to resume\nPress ESC to quit";
+
+/// Size of the text in points.
+const TEXT_SIZE: f32 = 36.0;
+
+/// How much the overlay dims what is below it.
+const DIMMING: egui::Color32 = egui::Color32::from_black_alpha(170);
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(
+        EguiPrimaryContextPass,
+        show_overlay.run_if(not(Paused::is_running)),
+    );
+}
+
+fn show_overlay(mut contexts: EguiContexts) {
+    let Ok(context) = contexts.ctx_mut() else {
+        return;
+    };
+    let screen = context.viewport_rect();
+    egui::Area::new(egui::Id::new("pause"))
+        .order(egui::Order::Foreground)
+        .fixed_pos(screen.min)
+        .fade_in(false)
+        .show(context, |ui| {
+            ui.allocate_rect(screen, egui::Sense::click());
+            let painter = ui.painter();
+            painter.rect_filled(screen, 0.0, DIMMING);
+            let text = painter.layout_job(centered_text(screen.width()));
+            let top_center = screen.center() - egui::vec2(0.0, text.size().y / 2.0);
+            painter.galley(top_center, text, egui::Color32::WHITE);
+        });
+}
+
+fn centered_text(width: f32) -> egui::text::LayoutJob {
+    let font = egui::FontId::proportional(TEXT_SIZE);
+    egui::text::LayoutJob {
+        halign: egui::Align::Center,
+        ..egui::text::LayoutJob::simple(TEXT.to_owned(), font, egui::Color32::WHITE, width)
+    }
+}

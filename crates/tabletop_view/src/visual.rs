@@ -1,0 +1,270 @@
+//! The pictures of the table and the objects on it. They are entities of their own that follow the bodies, which the
+//! view never touches.
+
+use bevy::{
+    ecs::entity::EntityHashMap, platform::collections::HashMap, prelude::*, time::Fixed,
+};
+use tabletop_core::{ObjectSpec, Pose, Primitive, Rgb, Solid, Table};
+
+use crate::{mesh, motion::Motion, surface::Surface};
+
+/// The picture of an object or of the table; its children are the drawn solids.
+#[derive(Component, Clone, Copy, Debug)]
+#[require(Transform, Visibility)]
+pub struct Visual {
+    /// The entity that has the [`ObjectSpec`] or the [`Table`].
+    pub of: Entity,
+}
+
+/// What has a picture: the table and the objects.
+type Drawable = Or<(With<ObjectSpec>, With<Table>)>;
+
+/// The picture of each body.
+#[derive(Resource, Default)]
+struct Visuals(EntityHashMap<Entity>);
+
+/// Meshes and materials that pictures share.
+#[derive(Resource)]
+struct Looks {
+    cuboid: Handle<Mesh>,
+    cylinder: Handle<Mesh>,
+    ball: Handle<Mesh>,
+    surfaces: HashMap<[u32; 3], Handle<Surface>>,
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Visuals>()
+        .init_resource::<Looks>()
+        .add_systems(FixedPostUpdate, note_moves)
+        .add_systems(
+            RunFixedMainLoop,
+            (drop_pictures, make_pictures, follow_bodies)
+                .chain()
+                .in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
+        );
+}
+
+/// Once a tick: where each body has come to.
+fn note_moves(mut visuals: Query<(&Visual, &mut Motion)>, bodies: Query<&Transform, Drawable>) {
+    for (visual, mut motion) in &mut visuals {
+        if let Ok(body) = bodies.get(visual.of) {
+            let moved = motion.moved_to(body.into());
+            motion.set_if_neq(moved);
+        }
+    }
+}
+
+/// Removes the pictures of bodies that have gone or have become something else.
+fn drop_pictures(
+    mut commands: Commands,
+    mut visuals: ResMut<Visuals>,
+    bodies: Query<(Option<Ref<ObjectSpec>>, Option<Ref<Table>>), Drawable>,
+) {
+    visuals.0.retain(|body, visual| {
+        let is_drawn = bodies.get(*body).is_ok_and(|(object, table)| {
+            !object.is_some_and(|object| object.is_changed())
+                && !table.is_some_and(|table| table.is_changed())
+        });
+        if !is_drawn {
+            commands.entity(*visual).despawn();
+        }
+        is_drawn
+    });
+}
+
+/// Makes the pictures that are missing.
+fn make_pictures(
+    mut commands: Commands,
+    mut visuals: ResMut<Visuals>,
+    mut looks: ResMut<Looks>,
+    mut surfaces: ResMut<Assets<Surface>>,
+    bodies: Query<(Entity, &Transform, Option<&ObjectSpec>, Option<&Table>), Drawable>,
+) {
+    for (body, place, object, table) in &bodies {
+        if visuals.0.contains_key(&body) {
+            continue;
+        }
+        let drawn = object
+            .map(|object| object.shape.drawn())
+            .into_iter()
+            .flatten()
+            .chain(table.map(slab));
+        let visual = commands
+            .spawn((
+                Visual { of: body },
+                Motion::standing_at(place.into()),
+                *place,
+            ))
+            .with_children(|parts| {
+                for primitive in drawn {
+                    parts.spawn(looks.of(&primitive, &mut surfaces));
+                }
+            })
+            .id();
+        visuals.0.insert(body, visual);
+    }
+}
+
+/// Once a frame: pictures move to where their bodies are at this moment.
+fn follow_bodies(time: Res<Time<Fixed>>, mut visuals: Query<(&Motion, &mut Transform)>) {
+    for (motion, mut transform) in &mut visuals {
+        transform.set_if_neq(motion.at(time.overstep_fraction()).into());
+    }
+}
+
+/// The table as it is drawn: white, its top at Z = 0.
+fn slab(table: &Table) -> Primitive {
+    Primitive {
+        pose: Pose::at(Vec3::NEG_Z * Table::THICKNESS / 2.0),
+        solid: Solid::Cuboid(Vec3::new(table.xspan, table.yspan, Table::THICKNESS)),
+        color: Rgb::WHITE,
+    }
+}
+
+impl FromWorld for Looks {
+    fn from_world(world: &mut World) -> Self {
+        let mut meshes = world.resource_mut::<Assets<Mesh>>();
+        Self {
+            cuboid: meshes.add(mesh::unit_cuboid()),
+            cylinder: meshes.add(mesh::unit_cylinder()),
+            ball: meshes.add(mesh::unit_ball()),
+            surfaces: HashMap::default(),
+        }
+    }
+}
+
+impl Looks {
+    fn of(&mut self, primitive: &Primitive, surfaces: &mut Assets<Surface>) -> impl Bundle + use<> {
+        (
+            Mesh3d(self.mesh(primitive.solid)),
+            MeshMaterial3d(self.surface(primitive.color, surfaces)),
+            Transform::from(primitive.pose).with_scale(mesh::scale_of(primitive.solid)),
+        )
+    }
+
+    fn mesh(&self, solid: Solid) -> Handle<Mesh> {
+        match solid {
+            Solid::Cuboid(_) => self.cuboid.clone(),
+            Solid::Cylinder { .. } => self.cylinder.clone(),
+            Solid::Ball(_) => self.ball.clone(),
+        }
+    }
+
+    fn surface(&mut self, color: Rgb, surfaces: &mut Assets<Surface>) -> Handle<Surface> {
+        let key = [color.red, color.green, color.blue].map(f32::to_bits);
+        self.surfaces
+            .entry(key)
+            .or_insert_with(|| surfaces.add(Surface::from(color)))
+            .clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::time::TimeUpdateStrategy;
+    use tabletop_core::{CorePlugin, Shape};
+
+    fn app() -> App {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
+            .init_resource::<Assets<Mesh>>()
+            .init_resource::<Assets<Surface>>()
+            .add_plugins(plugin);
+        app.finish();
+        app.cleanup();
+        app.update();
+        app
+    }
+
+    fn ball(radius: f32) -> ObjectSpec {
+        ObjectSpec {
+            id: "ball".into(),
+            pose: Pose::IDENTITY,
+            mass: 1.0,
+            shape: Shape::Sphere {
+                radius,
+                color: Rgb::GRAY,
+            },
+            descriptions: Vec::new(),
+        }
+    }
+
+    /// What is drawn: the body, where, and the scales of its parts.
+    fn drawn(app: &mut App) -> Vec<(Entity, Vec3, Vec<Vec3>)> {
+        let world = app.world_mut();
+        let mut visuals = world.query::<(&Visual, &Transform, &Children)>();
+        let mut parts = world.query_filtered::<&Transform, With<Mesh3d>>();
+        visuals
+            .iter(world)
+            .map(|(visual, transform, children)| {
+                let scales = parts.iter_many(world, children).map(|part| part.scale);
+                (visual.of, transform.translation, scales.collect())
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_picture_comes_and_goes_with_its_object() {
+        let mut app = app();
+        let object = app.world_mut().spawn(ball(2.0)).id();
+        app.update();
+        assert_eq!(drawn(&mut app), [(object, Vec3::ZERO, vec![Vec3::splat(2.0)])]);
+        app.world_mut().entity_mut(object).despawn();
+        app.update();
+        assert_eq!(drawn(&mut app), []);
+        let mut meshes = app.world_mut().query::<&Mesh3d>();
+        assert_eq!(meshes.iter(app.world()).count(), 0);
+    }
+
+    #[test]
+    fn an_object_that_becomes_another_is_drawn_anew() {
+        let mut app = app();
+        let object = app.world_mut().spawn(ball(2.0)).id();
+        app.update();
+        app.world_mut().entity_mut(object).insert(ball(3.0));
+        app.update();
+        assert_eq!(drawn(&mut app), [(object, Vec3::ZERO, vec![Vec3::splat(3.0)])]);
+    }
+
+    #[test]
+    fn the_table_is_drawn_with_its_top_at_zero() {
+        let mut app = app();
+        app.world_mut().spawn(Table::default());
+        app.update();
+        let mut tops = app
+            .world_mut()
+            .query_filtered::<&Transform, With<Mesh3d>>();
+        let slab = tops.single(app.world()).unwrap();
+        assert_eq!(slab.scale, Vec3::new(20.0, 12.0, 4.0));
+        assert_eq!(slab.translation.z + slab.scale.z / 2.0, 0.0);
+    }
+
+    #[test]
+    fn a_picture_follows_its_object_one_tick_behind() {
+        let mut app = app();
+        let object = app.world_mut().spawn(ball(1.0)).id();
+        app.update();
+        let mut seen = Vec::new();
+        for x in [1.0, 2.0, 2.0] {
+            let mut body = app.world_mut().entity_mut(object);
+            body.get_mut::<Transform>().unwrap().translation.x = x;
+            app.update();
+            seen.push(drawn(&mut app)[0].1.x);
+        }
+        assert_eq!(seen, [0.0, 1.0, 2.0]);
+    }
+
+    #[test]
+    fn equal_colours_share_a_material() {
+        let mut app = app();
+        for radius in [1.0, 2.0, 3.0] {
+            app.world_mut().spawn(ball(radius));
+        }
+        app.world_mut().spawn(Table::default());
+        app.update();
+        assert_eq!(drawn(&mut app).len(), 4);
+        assert_eq!(app.world().resource::<Assets<Surface>>().len(), 2);
+    }
+}

@@ -1,0 +1,186 @@
+//! The schema of task files, checked by a validator that others wrote: `xmllint` (Debian: `libxml2-utils`).
+
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on panics")]
+
+use std::{
+    env, fs,
+    io::Write as _,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+};
+
+use tabletop_xml::{Fault, NAMESPACE, parse, read_task};
+
+fn tablesetup() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tablesetup")
+}
+
+/// The files in `tablesetup/`, in the order of their names.
+fn shipped_files() -> Vec<PathBuf> {
+    let mut files: Vec<_> = fs::read_dir(tablesetup())
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "xml"))
+        .collect();
+    files.sort();
+    assert!(files.len() >= 13, "only {files:?}");
+    files
+}
+
+#[expect(
+    clippy::print_stdout,
+    reason = "a test that checks nothing must say so"
+)]
+fn has_validator() -> bool {
+    let is_there = Command::new("xmllint")
+        .arg("--version")
+        .stderr(Stdio::null())
+        .status()
+        .is_ok();
+    if !is_there {
+        assert!(env::var_os("CI").is_none(), "xmllint is missing");
+        println!("SKIPPED: xmllint is missing (Debian: apt-get install libxml2-utils)");
+    }
+    is_there
+}
+
+/// What the validator says against a text; nothing if it is valid.
+fn validate(text: &str) -> Result<(), String> {
+    let mut validator = Command::new("xmllint")
+        .args(["--noout", "--nonet", "--schema"])
+        .arg(tablesetup().join("tabletop.xsd"))
+        .arg("-")
+        .stdin(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut input = validator.stdin.take().unwrap();
+    input.write_all(text.as_bytes()).unwrap();
+    drop(input);
+    let output = validator.wait_with_output().unwrap();
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    match output.status.code() {
+        Some(0) => Ok(()),
+        // Not well formed, not valid.
+        Some(1 | 3 | 4) => Err(message),
+        other => panic!("xmllint failed with {other:?}: {message}"),
+    }
+}
+
+fn file(content: &str) -> String {
+    format!("<tabletop xmlns=\"{NAMESPACE}\">{content}</tabletop>")
+}
+
+fn faults(text: &str) -> Vec<Fault> {
+    parse(Path::new("snippet.xml"), text.as_bytes()).faults
+}
+
+#[test]
+fn shipped_files_have_no_faults() {
+    for path in shipped_files() {
+        assert_eq!(read_task(&path).unwrap().faults, []);
+    }
+}
+
+#[test]
+fn shipped_files_are_valid() {
+    if has_validator() {
+        for path in shipped_files() {
+            let text = fs::read_to_string(&path).unwrap();
+            assert_eq!(validate(&text), Ok(()), "{}", path.display());
+        }
+    }
+}
+
+#[test]
+fn written_files_are_valid() {
+    if has_validator() {
+        for path in shipped_files() {
+            let written = tabletop_xml::write(&read_task(&path).unwrap().scene);
+            assert_eq!(validate(&written), Ok(()), "{written}");
+        }
+    }
+}
+
+#[test]
+fn schema_and_parser_accept_the_same() {
+    let mut texts = [
+        "<block location=\" ( -1.5 , .5 , +2e0 ) \" color=\" #00A57F \" mass=\" 1. \"/>",
+        "<sphere id=\"\" location=\"(0,0,1)\" color=\"LightGray\" radius=\"0.001\" pointable=\"1\"/>",
+        "<cylinder location=\"(0,0,1)\" sides=\"3\" yspan=\"1000\"/>",
+        "<box location=\"(0,0,1)\"><description name=\"a\" value=\"&lt;é\"/></box>",
+        "<composite location=\"(0,0,1)\" mass=\"0\"><description name=\"a\" value=\"\"/>\
+         <composite location=\"(0,0,1)\"><box location=\"(0,0,1)\"/></composite></composite>",
+        "<chain start=\"(0,0,1)\" end=\"(5,0,1)\" linkCount=\"+5\" linkPadding=\"0\"/>",
+        "<lidbox location=\"(0,0,1)\" lidMass=\"0\" handleThickness=\"0.1\"/>",
+        "<!-- nothing --><?nothing at all?>",
+    ]
+    .map(file)
+    .to_vec();
+    texts.push(format!(
+        "<!DOCTYPE tabletop><t:tabletop xmlns:t=\"{NAMESPACE}\" xspan=\"1\" yspan=\"2\">\
+         <t:block location=\"(0,0,1)\"/></t:tabletop>"
+    ));
+    let has_validator = has_validator();
+    for text in &texts {
+        assert_eq!(faults(text), [], "{text}");
+        if has_validator {
+            assert_eq!(validate(text), Ok(()), "{text}");
+        }
+    }
+}
+
+#[test]
+fn schema_and_parser_reject_the_same() {
+    let texts = [
+        "<block/>",
+        "<block location=\"0,0,1\"/>",
+        "<block location=\"(0,0)\"/>",
+        "<block location=\"(0,0,NaN)\"/>",
+        "<block location=\"(0,0,1)\" xspan=\"0\"/>",
+        "<block location=\"(0,0,1)\" xspan=\"1e999\"/>",
+        "<block location=\"(0,0,1)\" xspan=\"NaN\"/>",
+        "<block location=\"(0,0,1)\" xspan=\"1001\"/>",
+        "<block location=\"(0,0,1)\" mass=\"-1\"/>",
+        "<block location=\"(0,0,1)\" mass=\"INF\"/>",
+        "<block location=\"(0,0,1)\" color=\"reed\"/>",
+        "<block location=\"(0,0,1)\" color=\"#fff\"/>",
+        "<block location=\"(0,0,1)\" id=\"a b\"/>",
+        "<block location=\"(0,0,1)\" id=\"a-b\"/>",
+        "<block location=\"(0,0,1)\" colour=\"red\"/>",
+        "<block location=\"(0,0,1)\" radius=\"1\"/>",
+        "<block location=\"(0,0,1)\" pointable=\"yes\"/>",
+        "<block location=\"(0,0,1)\">text</block>",
+        "<block location=\"(0,0,1)\"><block location=\"(0,0,1)\"/></block>",
+        "<block location=\"(0,0,1)\"><description value=\"a\"/></block>",
+        "<block location=\"(0,0,1)\"><description name=\"\" value=\"a\"/></block>",
+        "<cylinder location=\"(0,0,1)\" sides=\"2\"/>",
+        "<composite location=\"(0,0,1)\"/>",
+        "<composite location=\"(0,0,1)\"><block location=\"(0,0,1)\" mass=\"1\"/></composite>",
+        "<composite location=\"(0,0,1)\"><chain start=\"(0,0,1)\" end=\"(1,0,1)\"/></composite>",
+        "<chain start=\"(0,0,1)\"/>",
+        "<chain start=\"(0,0,1)\" end=\"(5,0,1)\" linkCount=\"1.5\"/>",
+        "<chain start=\"(0,0,1)\" end=\"(5,0,1)\" linkCount=\"-1\"/>",
+        "<chain start=\"(0,0,1)\" end=\"(5,0,1)\" linkPadding=\"-1\"/>",
+        "<lidbox location=\"(0,0,1)\" handleXspan=\"0\"/>",
+        "<ring location=\"(0,0,1)\"/>",
+        "<cube location=\"(0,0,1)\"/>",
+        "<tabletop/>",
+        "text",
+        "<block location=\"(0,0,1)\" location=\"(0,0,1)\"/>",
+        "<block location=\"(0,0,1)\"",
+        "<block location=\"(0,0,1)\" id=\"&x;\"/>",
+        "<block location=\"(0,0,1)\" id=\"a\"mass=\"1\"/>",
+        "</tabletop><tabletop>",
+        "<!-- -- -->",
+        "\u{1}",
+    ]
+    .map(file);
+    let has_validator = has_validator();
+    for text in &texts {
+        assert_ne!(faults(text), [], "{text}");
+        if has_validator {
+            assert!(validate(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! `tabletop check`: task files without a simulation.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use clap::Args;
+use tabletop::{report, xml::read_task};
+
+use super::{Failure, Output, WRONG_INPUT};
+
+#[derive(Args)]
+pub(super) struct CheckArgs {
+    /// The task files
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// Print what each file puts on the table, as JSON
+    #[arg(long)]
+    dump: bool,
+}
+
+pub(super) fn check(args: &CheckArgs) -> Result<ExitCode, Failure> {
+    let mut sound = true;
+    for file in &args.files {
+        let task = match read_task(file) {
+            Ok(task) => task,
+            Err(error) => {
+                eprintln!("{error}");
+                sound = false;
+                continue;
+            }
+        };
+        for fault in &task.faults {
+            eprintln!("{fault}");
+        }
+        sound &= task.faults.is_empty();
+        if args.dump {
+            let mut json = Vec::new();
+            report::write_dump(&task.scene, &mut json).map_err(Failure::run)?;
+            Output::Stdout.write(&json)?;
+        } else if task.faults.is_empty() {
+            Output::Stdout.write(format!("{}: ok\n", file.display()).as_bytes())?;
+        }
+    }
+    Ok(match sound {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::from(WRONG_INPUT),
+    })
+}

@@ -1,0 +1,112 @@
+//! What the program is told on the command line, and its exit codes: 0 done, 1 the run failed, 2 wrong usage or input.
+#![expect(
+    clippy::print_stderr,
+    reason = "the command line is where a person looks for what is wrong"
+)]
+
+mod check;
+mod run;
+mod window;
+
+use std::{fmt, path::PathBuf, process::ExitCode};
+
+use clap::{Parser, Subcommand};
+
+/// A virtual demonstrator environment for robot imitation learning.
+///
+/// Without a command, opens the window.
+#[derive(Parser)]
+#[command(version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    window: window::WindowArgs,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Simulate a task file without a window, as fast as possible
+    Run(run::RunArgs),
+    /// Check task files: every fault with its place; exit code 2 if there is one
+    Check(check::CheckArgs),
+}
+
+/// The task file that is loaded when none is named.
+const DEFAULT_SETUP: &str = "tablesetup/default.xml";
+
+/// Wrong usage or input.
+const WRONG_INPUT: u8 = 2;
+
+/// Why the program ends before it is done.
+#[derive(Debug)]
+struct Failure {
+    message: String,
+    code: u8,
+}
+
+impl Failure {
+    /// The user's input is at fault.
+    fn input(error: impl fmt::Display) -> Self {
+        Self {
+            message: error.to_string(),
+            code: WRONG_INPUT,
+        }
+    }
+
+    /// The run failed.
+    fn run(error: impl fmt::Display) -> Self {
+        Self {
+            message: error.to_string(),
+            code: 1,
+        }
+    }
+}
+
+/// Reads the command line and does what it says.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let result = match cli.command {
+        Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Check(args)) => check::check(&args),
+        None => window::open(cli.window),
+    };
+    result.unwrap_or_else(|failure| {
+        eprintln!("tabletop: {}", failure.message);
+        ExitCode::from(failure.code)
+    })
+}
+
+/// A path, or `-` for standard output.
+#[derive(Clone, Debug)]
+enum Output {
+    Stdout,
+    File(PathBuf),
+}
+
+impl From<std::ffi::OsString> for Output {
+    fn from(name: std::ffi::OsString) -> Self {
+        match name.to_str() {
+            Some("-") => Self::Stdout,
+            _ => Self::File(name.into()),
+        }
+    }
+}
+
+impl Output {
+    /// Writes all of it, or says where it could not be written.
+    fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
+        match self {
+            Self::Stdout => {
+                use std::io::Write as _;
+                let mut stdout = std::io::stdout().lock();
+                stdout
+                    .write_all(bytes)
+                    .and_then(|()| stdout.flush())
+                    .map_err(|error| Failure::run(format!("standard output: {error}")))
+            }
+            Self::File(path) => std::fs::write(path, bytes)
+                .map_err(|error| Failure::run(format!("{}: {error}", path.display()))),
+        }
+    }
+}

@@ -1,0 +1,235 @@
+//! What the command line writes about scenes and worlds.
+
+use std::io::Write;
+
+use bevy::prelude::*;
+use serde::Serialize;
+use tabletop_core::{Decimal, JointKind, ObjectIndex, ObjectSpec, Part, Pose, SceneSpec, Shape};
+use tabletop_scene::{Assembly, IdAllocator, assemble};
+
+/// Writes where every object is as CSV, in the order of creation: `id,x,y,z,rx,ry,rz` in units and degrees, the numbers as
+/// recordings write them.
+///
+/// # Errors
+///
+/// What the writer reports.
+pub fn write_state(world: &World, out: impl Write) -> csv::Result<()> {
+    let mut csv = csv::Writer::from_writer(out);
+    for object in world.resource::<ObjectIndex>().iter() {
+        let (Some(spec), Some(transform)) = (
+            world.get::<ObjectSpec>(object),
+            world.get::<Transform>(object),
+        ) else {
+            continue;
+        };
+        let pose = Pose::from(transform);
+        let numbers = [pose.location, pose.degrees()]
+            .into_iter()
+            .flat_map(|vector| vector.to_array())
+            .map(|number| Decimal(number).to_string());
+        csv.write_record(std::iter::once(spec.id.clone()).chain(numbers))?;
+    }
+    csv.flush()?;
+    Ok(())
+}
+
+/// Writes a scene as JSON: the table, every object with its parts, and the joints, with ids as they will be on the table.
+/// Lengths in units, angles in degrees, colours as `#rrggbb`.
+///
+/// # Errors
+///
+/// What the writer reports.
+pub fn write_dump(scene: &SceneSpec, mut out: impl Write) -> std::io::Result<()> {
+    let assembly = assemble(scene, &mut IdAllocator::default());
+    serde_json::to_writer_pretty(&mut out, &SceneDump::from(&assembly))?;
+    writeln!(out)
+}
+
+#[derive(Serialize)]
+struct SceneDump<'a> {
+    table: TableDump,
+    objects: Vec<ObjectDump<'a>>,
+    joints: Vec<JointDump<'a>>,
+}
+
+#[derive(Serialize)]
+struct TableDump {
+    xspan: f32,
+    yspan: f32,
+}
+
+#[derive(Serialize)]
+struct ObjectDump<'a> {
+    id: &'a str,
+    #[serde(flatten)]
+    pose: PoseDump,
+    mass: f32,
+    descriptions: Vec<DescriptionDump<'a>>,
+    parts: Vec<PartDump>,
+}
+
+#[derive(Serialize)]
+struct DescriptionDump<'a> {
+    name: &'a str,
+    value: &'a str,
+}
+
+#[derive(Serialize)]
+struct PoseDump {
+    location: [f32; 3],
+    rotation: [f32; 3],
+}
+
+#[derive(Serialize)]
+struct PartDump {
+    id: String,
+    #[serde(flatten)]
+    shape: ShapeDump,
+    color: String,
+    #[serde(flatten)]
+    pose: PoseDump,
+}
+
+#[derive(Serialize)]
+#[serde(tag = "shape", rename_all = "lowercase")]
+enum ShapeDump {
+    Block {
+        #[serde(flatten)]
+        span: SpanDump,
+    },
+    Cylinder {
+        radius: f32,
+        yspan: f32,
+    },
+    Sphere {
+        radius: f32,
+    },
+    Box {
+        #[serde(flatten)]
+        span: SpanDump,
+        thickness: f32,
+    },
+}
+
+#[derive(Serialize)]
+struct SpanDump {
+    xspan: f32,
+    yspan: f32,
+    zspan: f32,
+}
+
+#[derive(Serialize)]
+struct JointDump<'a> {
+    kind: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    travel: Option<f32>,
+    objects: &'a [String; 2],
+    frames: [PoseDump; 2],
+}
+
+impl<'a> From<&'a Assembly> for SceneDump<'a> {
+    fn from(assembly: &'a Assembly) -> Self {
+        Self {
+            table: TableDump {
+                xspan: assembly.table.xspan,
+                yspan: assembly.table.yspan,
+            },
+            objects: assembly.objects.iter().map(ObjectDump::from).collect(),
+            joints: assembly
+                .joints
+                .iter()
+                .map(|joint| {
+                    let (kind, travel) = match joint.kind {
+                        JointKind::Ball => ("ball", None),
+                        JointKind::Slider { travel, .. } => ("slider", Some(travel)),
+                    };
+                    JointDump {
+                        kind,
+                        travel,
+                        objects: &joint.objects,
+                        frames: joint.frames.map(PoseDump::from),
+                    }
+                })
+                .collect(),
+        }
+    }
+}
+
+impl<'a> From<&'a ObjectSpec> for ObjectDump<'a> {
+    fn from(spec: &'a ObjectSpec) -> Self {
+        Self {
+            id: &spec.id,
+            pose: spec.pose.into(),
+            mass: spec.mass,
+            descriptions: spec
+                .all_descriptions()
+                .into_iter()
+                .map(|(name, value)| DescriptionDump { name, value })
+                .collect(),
+            parts: spec
+                .shape
+                .simple_parts()
+                .into_iter()
+                .filter_map(dump_part)
+                .collect(),
+        }
+    }
+}
+
+fn dump_part(part: Part) -> Option<PartDump> {
+    let (shape, color) = match part.shape {
+        Shape::Block { span, color } => (ShapeDump::Block { span: span.into() }, color),
+        // As it is drawn.
+        Shape::Link {
+            span,
+            padding,
+            color,
+        } => {
+            let drawn = span + Vec3::Y * 2.0 * padding;
+            (ShapeDump::Block { span: drawn.into() }, color)
+        }
+        Shape::Cylinder {
+            radius,
+            yspan,
+            color,
+        } => (ShapeDump::Cylinder { radius, yspan }, color),
+        Shape::Sphere { radius, color } => (ShapeDump::Sphere { radius }, color),
+        Shape::Box {
+            span,
+            thickness,
+            color,
+        } => (
+            ShapeDump::Box {
+                span: span.into(),
+                thickness,
+            },
+            color,
+        ),
+        Shape::Composite { .. } | Shape::Lid { .. } => return None,
+    };
+    Some(PartDump {
+        id: part.id,
+        shape,
+        color: color.to_string(),
+        pose: part.pose.into(),
+    })
+}
+
+impl From<Pose> for PoseDump {
+    fn from(pose: Pose) -> Self {
+        Self {
+            location: pose.location.to_array(),
+            rotation: pose.degrees().to_array(),
+        }
+    }
+}
+
+impl From<Vec3> for SpanDump {
+    fn from(span: Vec3) -> Self {
+        Self {
+            xspan: span.x,
+            yspan: span.y,
+            zspan: span.z,
+        }
+    }
+}
