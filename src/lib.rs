@@ -36,7 +36,7 @@ pub mod report;
 #[cfg(feature = "window")]
 pub mod window;
 
-pub use headless::headless_app;
+pub use headless::{headless_app, headless_app_with};
 
 use bevy::{app::PluginGroupBuilder, prelude::*};
 
@@ -44,8 +44,8 @@ use bevy::{app::PluginGroupBuilder, prelude::*};
 pub mod prelude {
     #[doc(hidden)]
     pub use crate::{
-        TabletopSimPlugins, headless_app, physics::PhysicsPlugin, scene::ScenePlugin,
-        xml::XmlPlugin,
+        TabletopSimPlugins, headless_app, headless_app_with, physics::PhysicsPlugin,
+        scene::ScenePlugin, xml::XmlPlugin,
     };
     #[doc(hidden)]
     pub use tabletop_core::prelude::*;

@@ -19,7 +19,7 @@ pub enum NoWindow {
     /// A library that windows need is not installed.
     #[error(
         "no window: a library of the X window system is missing ({0}); install it (Debian, Ubuntu: apt install \
-         libx11-xcb1 libxcursor1 libxi6 libxrandr2 libxkbcommon-x11-0)"
+         libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0)"
     )]
     Library(String),
     /// No graphics driver is installed, neither for a graphics card nor one that draws on the processor.
@@ -64,6 +64,44 @@ fn message_of(payload: &(dyn Any + Send)) -> &str {
 
 /// The first shared library that a text names.
 fn library_in(text: &str) -> Option<&str> {
-    text.split(|c: char| c.is_whitespace() || "\"'(),:".contains(c))
+    text.split(|c: char| c.is_whitespace() || "/\"'(),:".contains(c))
         .find(|word| word.starts_with("lib") && word.contains(".so"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What Bevy says with winit 0.30 and wgpu 29.
+    const NO_DISPLAY: &str = r#"Failed to build event loop: Os(OsError { line: 765, file: "/src/platform_impl/linux/mod.rs", error: Misc("neither WAYLAND_DISPLAY nor WAYLAND_SOCKET nor DISPLAY is set.") })"#;
+    const DEAD_DISPLAY: &str = r#"Failed to build event loop: Os(OsError { line: 788, file: "/src/platform_impl/linux/mod.rs", error: XNotSupported(XOpenDisplayFailed) })"#;
+    const NO_LIBRARY: &str = r#"Failed to build event loop: Os(OsError { line: 788, file: "/src/platform_impl/linux/mod.rs", error: XNotSupported(LibraryOpenError(OpenError { kind: Library, detail: "opening library failed (/lib/x86_64-linux-gnu/libXi.so.6: file too short)" })) })"#;
+    const NO_KEYBOARD_LIBRARY: &str = "Library libxkbcommon-x11.so could not be loaded.";
+    const NO_DRIVER: &str = "Unable to find a GPU! Make sure you have installed required drivers! For extra information, see: https://github.com/bevyengine/bevy";
+
+    #[test]
+    fn a_panic_tells_what_is_missing() {
+        let library = |name: &str| NoWindow::Library(name.into());
+        for (message, expected) in [
+            (NO_DISPLAY, NoWindow::Display),
+            (DEAD_DISPLAY, NoWindow::Display),
+            (NO_LIBRARY, library("libXi.so.6")),
+            (NO_KEYBOARD_LIBRARY, library("libxkbcommon-x11.so")),
+            (NO_DRIVER, NoWindow::Graphics),
+            ("odd\nthing", NoWindow::Other("odd".into())),
+        ] {
+            let reason = NoWindow::from_panic(message);
+            assert_eq!(reason, expected);
+            assert!(!reason.to_string().contains('\n'), "{reason}");
+        }
+    }
+
+    #[test]
+    fn work_that_panics_is_a_reason_and_other_work_is_done() {
+        assert_eq!(catch(|| 3), Ok(3));
+        assert_eq!(
+            catch(|| panic!("{NO_DRIVER}")),
+            Err::<(), _>(NoWindow::Graphics)
+        );
+    }
 }

@@ -105,7 +105,7 @@ pub fn quat_from_degrees(degrees: Vec3) -> Quat {
 pub fn degrees_from_quat(rotation: Quat) -> Vec3 {
     let m = DMat3::from_quat(rotation.as_dquat().normalize());
     // The third row and first column of Rz·Ry·Rx.
-    let sin_y = (-m.x_axis.z).clamp(-1.0, 1.0);
+    let sin_y = (-m.x_axis.z).clamp(-1.0, 1.0) + 0.0;
     let (x, z) = if sin_y.abs() < 1.0 - 1e-9 {
         (m.y_axis.z.atan2(m.z_axis.z), m.x_axis.y.atan2(m.x_axis.x))
     } else {

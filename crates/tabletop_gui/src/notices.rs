@@ -69,7 +69,7 @@ fn show_notices(mut contexts: EguiContexts, mut notices: ResMut<Notices>) {
         .open(&mut is_open)
         .default_pos(egui::pos2(10.0, 10.0))
         .default_width(640.0)
-        .default_height(200.0)
+        .default_height(120.0)
         .vscroll(true)
         .show(context, |ui| {
             for notice in notices.iter() {

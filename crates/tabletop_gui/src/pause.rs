@@ -9,8 +9,9 @@ const TEXT: &str = "Simulation Paused\n\nPress SPACE to resume\nPress ESC to qui
 /// Size of the text in points.
 const TEXT_SIZE: f32 = 36.0;
 
-/// How much the overlay dims what is below it.
-const DIMMING: egui::Color32 = egui::Color32::from_black_alpha(170);
+/// What is below the overlay keeps a third of its display values. The graphics card blends linear values, of which that
+/// is about a third to the power of 2.2.
+const DIMMING: egui::Color32 = egui::Color32::from_black_alpha(232);
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(

@@ -31,16 +31,15 @@ mod body;
 mod joint;
 mod mass;
 mod settings;
+mod transforms;
 
 pub use body::collider;
 pub use mass::mass_properties;
 pub use settings::PhysicsSettings;
 
-use bevy::{
-    prelude::*,
-    transform::systems::{mark_dirty_trees, propagate_parent_transforms, sync_simple_transforms},
-};
+use bevy::{ecs::schedule::ScheduleConfigs, ecs::system::ScheduleSystem, prelude::*};
 use bevy_rapier3d::{
+    plugin::systems,
     prelude::*,
     rapier::dynamics::{IntegrationParameters, SpringCoefficients},
 };
@@ -81,7 +80,8 @@ impl Plugin for PhysicsPlugin {
                             },
                         },
                     )
-                    .in_fixed_schedule(),
+                    .in_fixed_schedule()
+                    .with_default_system_setup(false),
             )
             .configure_sets(
                 FixedUpdate,
@@ -90,22 +90,16 @@ impl Plugin for PhysicsPlugin {
                     PhysicsSet::StepSimulation,
                     PhysicsSet::Writeback,
                 )
+                    .chain()
                     .in_set(SimSystems::Physics),
             )
             .add_systems(
                 FixedUpdate,
                 (
-                    // Rapier propagates transforms before each step, but does not mark what has moved.
-                    mark_dirty_trees
-                        .in_set(SimSystems::Physics)
-                        .before(PhysicsSet::SyncBackend),
-                    (
-                        mark_dirty_trees,
-                        propagate_parent_transforms,
-                        sync_simple_transforms,
-                    )
-                        .chain()
-                        .in_set(SimSystems::Propagate),
+                    sync_backend().in_set(PhysicsSet::SyncBackend),
+                    RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::StepSimulation),
+                    RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::Writeback),
+                    transforms::propagate().in_set(SimSystems::Propagate),
                 ),
             )
             .add_observer(body::add_body)
@@ -114,10 +108,35 @@ impl Plugin for PhysicsPlugin {
     }
 }
 
-/// Rapier's solver, tuned until towers of ten unit blocks stand still: at this scale, gravity is ten times what Rapier's
+/// What Rapier does before a step, with our propagation of transforms in place of its own.
+fn sync_backend() -> ScheduleConfigs<ScheduleSystem> {
+    (
+        transforms::propagate(),
+        (
+            systems::on_add_entity_with_parent,
+            systems::on_change_context,
+            systems::sync_removals,
+            systems::init_rigid_bodies,
+            systems::init_colliders,
+            systems::init_joints,
+        )
+            .chain(),
+        (
+            systems::apply_scale,
+            systems::apply_collider_user_changes,
+            systems::apply_joint_user_changes,
+            systems::apply_initial_rigid_body_impulses,
+            systems::apply_rigid_body_user_changes,
+        )
+            .chain(),
+    )
+        .chain()
+}
+
+/// The parameters of Rapier's solver, tuned until towers of ten unit blocks stand still: at this scale, gravity is ten times what Rapier's
 /// defaults are made for, and its soft contacts let tall stacks sway and buckle. How stiff a contact may be is limited by
 /// the number of iterations, which are the sub-steps of a tick (`tests/quality` of tabletop_scene holds the bar).
-fn integration_parameters() -> IntegrationParameters {
+pub fn integration_parameters() -> IntegrationParameters {
     let stiff_contacts = SpringCoefficients {
         natural_frequency: 540.0,
         damping_ratio: 5.0,

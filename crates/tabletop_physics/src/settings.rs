@@ -23,16 +23,21 @@ pub struct PhysicsSettings {
     pub sleep: bool,
 }
 
+impl PhysicsSettings {
+    /// The default settings.
+    pub const DEFAULT: Self = Self {
+        gravity: 98.1,
+        friction: 0.5,
+        restitution: 0.0,
+        angular_damping: 0.5,
+        rolling_damping: 2.0,
+        link_damping: 5.0,
+        sleep: true,
+    };
+}
+
 impl Default for PhysicsSettings {
     fn default() -> Self {
-        Self {
-            gravity: 98.1,
-            friction: 0.5,
-            restitution: 0.0,
-            angular_damping: 0.5,
-            rolling_damping: 2.0,
-            link_damping: 5.0,
-            sleep: true,
-        }
+        Self::DEFAULT
     }
 }

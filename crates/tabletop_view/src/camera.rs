@@ -5,6 +5,7 @@ use bevy::{
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
     light::cluster::ClusterConfig,
     prelude::*,
+    render::view::NoIndirectDrawing,
 };
 use tabletop_core::{KeySystems, Paused, Table, UserCamera};
 
@@ -47,8 +48,9 @@ fn spawn_camera(mut commands: Commands) {
         Msaa::Sample4,
         // Surfaces are lit in display values; nothing may change them afterwards.
         (Tonemapping::None, DebandDither::Disabled),
-        // Bevy has no lights to sort here.
-        ClusterConfig::Single,
+        // There are no lights to sort, and too few things to be worth sorting on the graphics card: without both, a
+        // picture is drawn faster where the processor draws it.
+        (ClusterConfig::Single, NoIndirectDrawing),
     ));
 }
 

@@ -38,7 +38,9 @@ impl Motion {
     pub fn at(self, fraction: f32) -> Pose {
         Pose::new(
             self.previous.location.lerp(self.present.location, fraction),
-            self.previous.rotation.slerp(self.present.rotation, fraction),
+            self.previous
+                .rotation
+                .slerp(self.present.rotation, fraction),
         )
     }
 }

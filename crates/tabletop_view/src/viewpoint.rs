@@ -96,7 +96,10 @@ mod tests {
     }
 
     fn assert_near(actual: Vec3, expected: Vec3) {
-        assert!((actual - expected).length() < 1e-4, "{actual} is not {expected}");
+        assert!(
+            (actual - expected).length() < 1e-4,
+            "{actual} is not {expected}"
+        );
     }
 
     #[test]
@@ -113,11 +116,23 @@ mod tests {
         let start = start();
         let moved = |steering| start.steered(steering, 0.5).location - start.location;
         let still = Steering::default();
-        let forward = Steering { forward: 1.0, ..still };
+        let forward = Steering {
+            forward: 1.0,
+            ..still
+        };
         assert_near(moved(forward), 5.0 * start.direction());
-        assert_near(moved(Steering { right: -1.0, ..still }), -5.0 * Vec3::X);
+        assert_near(
+            moved(Steering {
+                right: -1.0,
+                ..still
+            }),
+            -5.0 * Vec3::X,
+        );
         assert_near(moved(Steering { up: 1.0, ..still }), 5.0 * Vec3::Z);
-        let both = Steering { right: 1.0, ..forward };
+        let both = Steering {
+            right: 1.0,
+            ..forward
+        };
         assert_near(moved(both), 5.0 * (start.direction() + Vec3::X));
     }
 
@@ -143,7 +158,10 @@ mod tests {
             };
             let turned = start().steered(steering, 100.0);
             assert!(turned.direction().z * turn_up > 0.999);
-            assert!((turned.rotation() * Vec3::Y).z > 0.0, "it stands on its head");
+            assert!(
+                (turned.rotation() * Vec3::Y).z > 0.0,
+                "it stands on its head"
+            );
         }
     }
 

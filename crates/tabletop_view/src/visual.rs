@@ -1,9 +1,7 @@
 //! The pictures of the table and the objects on it. They are entities of their own that follow the bodies, which the
 //! view never touches.
 
-use bevy::{
-    ecs::entity::EntityHashMap, platform::collections::HashMap, prelude::*, time::Fixed,
-};
+use bevy::{ecs::entity::EntityHashMap, platform::collections::HashMap, prelude::*, time::Fixed};
 use tabletop_core::{ObjectSpec, Pose, Primitive, Rgb, Solid, Table};
 
 use crate::{mesh, motion::Motion, surface::Surface};
@@ -210,7 +208,10 @@ mod tests {
         let mut app = app();
         let object = app.world_mut().spawn(ball(2.0)).id();
         app.update();
-        assert_eq!(drawn(&mut app), [(object, Vec3::ZERO, vec![Vec3::splat(2.0)])]);
+        assert_eq!(
+            drawn(&mut app),
+            [(object, Vec3::ZERO, vec![Vec3::splat(2.0)])]
+        );
         app.world_mut().entity_mut(object).despawn();
         app.update();
         assert_eq!(drawn(&mut app), []);
@@ -225,7 +226,10 @@ mod tests {
         app.update();
         app.world_mut().entity_mut(object).insert(ball(3.0));
         app.update();
-        assert_eq!(drawn(&mut app), [(object, Vec3::ZERO, vec![Vec3::splat(3.0)])]);
+        assert_eq!(
+            drawn(&mut app),
+            [(object, Vec3::ZERO, vec![Vec3::splat(3.0)])]
+        );
     }
 
     #[test]
@@ -233,9 +237,7 @@ mod tests {
         let mut app = app();
         app.world_mut().spawn(Table::default());
         app.update();
-        let mut tops = app
-            .world_mut()
-            .query_filtered::<&Transform, With<Mesh3d>>();
+        let mut tops = app.world_mut().query_filtered::<&Transform, With<Mesh3d>>();
         let slab = tops.single(app.world()).unwrap();
         assert_eq!(slab.scale, Vec3::new(20.0, 12.0, 4.0));
         assert_eq!(slab.translation.z + slab.scale.z / 2.0, 0.0);

@@ -500,10 +500,10 @@ mod tests {
              <sphere location='(2.8,0,0)'/></composite>",
         );
         assert_eq!(object.mass, 10.0);
-        let leaves = object.shape.leaves();
-        let places: Vec<_> = leaves
+        let parts = object.shape.simple_parts();
+        let places: Vec<_> = parts
             .iter()
-            .map(|leaf| (leaf.id, leaf.pose.location.x))
+            .map(|part| (part.id.as_str(), part.pose.location.x))
             .collect();
         assert_eq!(places, [("x", -1.0), ("x", -1.0), ("", 2.8)]);
     }
@@ -512,8 +512,8 @@ mod tests {
     fn only_the_faulty_part_is_skipped() {
         let content = "<composite location='(0,0,1)'><block location='(0,0,0)' mass='1'/>\
                        <sphere location='(0,0,0)'/></composite>";
-        let leaves = only_object_in_spite_of_faults(content).shape.leaves().len();
-        assert_eq!(leaves, 1);
+        let shape = only_object_in_spite_of_faults(content).shape;
+        assert_eq!(shape.simple_parts().len(), 1);
         assert_eq!(
             lines_of(content),
             [

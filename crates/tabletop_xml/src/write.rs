@@ -10,7 +10,7 @@ use tabletop_core::{
 
 use crate::{NAMESPACE, decode::is_xml_character, value::is_id_character};
 
-/// Writes a scene as a task file, which [reads](crate::parse) back as the same scene: numbers exactly, rotations to
+/// Writes a scene as a task file, which [reads](crate::parse()) back as the same scene: numbers exactly, rotations to
 /// within a thousandth of a degree, colours to within their 8 bits a part.
 ///
 /// What a file cannot say is written as the nearest that it can: characters that ids cannot have become underscores, a
@@ -80,10 +80,12 @@ impl Writer {
     fn parts_of(&mut self, shape: &Shape) {
         match shape {
             Shape::Composite { parts } => parts.iter().for_each(|part| self.part(part)),
-            lid => parts_of_lid(lid)
-                .iter()
-                .flatten()
-                .for_each(|part| self.part(part)),
+            Shape::Lid { .. } => {
+                for part in shape.simple_parts() {
+                    self.part(&part);
+                }
+            }
+            _ => {}
         }
     }
 
@@ -235,37 +237,6 @@ fn element_name(shape: &Shape) -> &'static str {
         Shape::Lid { .. } => "composite",
         other => other.name(),
     }
-}
-
-/// Plate and handle of a lid without its box, as the parts of a composite.
-fn parts_of_lid(lid: &Shape) -> Option<Vec<Part>> {
-    let Shape::Lid {
-        span,
-        color,
-        handle_span,
-        handle_thickness,
-        handle_color,
-    } = *lid
-    else {
-        return None;
-    };
-    let handle = Pose::at(Vec3::Z * (span.z + handle_span.z) / 2.0);
-    Some(vec![
-        Part {
-            id: String::new(),
-            pose: Pose::IDENTITY,
-            shape: Shape::Block { span, color },
-        },
-        Part {
-            id: String::new(),
-            pose: handle,
-            shape: Shape::Box {
-                span: handle_span,
-                thickness: handle_thickness,
-                color: handle_color,
-            },
-        },
-    ])
 }
 
 fn as_id(text: &str) -> String {

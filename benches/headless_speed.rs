@@ -1,0 +1,165 @@
+//! How much a headless tick costs beside one step of bare Rapier for the same scene, on one core.
+//!
+//! `cargo bench --bench headless_speed` prints, for unit blocks in towers of five that may not sleep, the median time of a
+//! tick of the whole simulator, of a step of Rapier alone with the same bodies and settings, and their ratio. Both run in
+//! turns in one process, so that what else the machine does touches both.
+#![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
+
+use std::time::{Duration, Instant};
+
+use bevy::prelude::*;
+use bevy_rapier3d::rapier::prelude as rapier;
+use tabletop::{
+    core::TICK_SECONDS,
+    physics::{PhysicsPlugin, PhysicsSettings, integration_parameters},
+    prelude::*,
+};
+
+const TICKS_PER_TURN: u32 = 60;
+const TURNS: usize = 40;
+
+const SETTINGS: PhysicsSettings = PhysicsSettings {
+    sleep: false,
+    ..PhysicsSettings::DEFAULT
+};
+
+fn main() {
+    println!("blocks  simulator  bare Rapier  ratio");
+    for blocks in [10, 50, 200] {
+        let mut simulator = simulator(blocks);
+        let mut bare = BareRapier::new(blocks);
+        simulator.step(60);
+        (0..60).for_each(|_| bare.step());
+
+        let (mut of_simulator, mut of_bare) = (Vec::new(), Vec::new());
+        for _ in 0..TURNS {
+            of_simulator.push(time(|| {
+                simulator.step(u64::from(TICKS_PER_TURN));
+            }));
+            of_bare.push(time(|| (0..TICKS_PER_TURN).for_each(|_| bare.step())));
+        }
+        let (tick, step) = (median(of_simulator), median(of_bare));
+        println!(
+            "{blocks:6}  {:6.1} µs    {:6.1} µs   {:.2}",
+            tick.as_secs_f64() * 1e6,
+            step.as_secs_f64() * 1e6,
+            tick.as_secs_f64() / step.as_secs_f64()
+        );
+    }
+}
+
+fn time(turn: impl FnOnce()) -> Duration {
+    let start = Instant::now();
+    turn();
+    start.elapsed() / TICKS_PER_TURN
+}
+
+fn median(mut times: Vec<Duration>) -> Duration {
+    times.sort();
+    times[times.len() / 2]
+}
+
+/// Where the blocks stand: towers of five on a grid.
+fn locations(blocks: usize) -> impl Iterator<Item = Vec3> {
+    (0..blocks).map(|block| {
+        let (tower, storey) = (block / 5, block % 5);
+        let (column, row) = (tower % 8, tower / 8);
+        Vec3::new(
+            column as f32 * 2.0 - 7.0,
+            row as f32 * 2.0 - 4.0,
+            storey as f32 + 0.5,
+        )
+    })
+}
+
+fn simulator(blocks: usize) -> App {
+    let physics = PhysicsPlugin { settings: SETTINGS };
+    let mut app = headless_app_with(TabletopSimPlugins.build().set(physics));
+    let items = locations(blocks)
+        .enumerate()
+        .map(|(block, location)| {
+            SceneItem::Object(ObjectSpec {
+                id: format!("block{block}"),
+                pose: Pose::at(location),
+                mass: 1.0,
+                shape: Shape::Block {
+                    span: Vec3::ONE,
+                    color: Rgb::GRAY,
+                },
+                descriptions: Vec::new(),
+            })
+        })
+        .collect();
+    let scene = SceneSpec { items, ..default() };
+    app.world_mut()
+        .write_message(SimCommand::SetScene(Box::new(scene)));
+    app
+}
+
+#[derive(Default)]
+struct BareRapier {
+    pipeline: rapier::PhysicsPipeline,
+    parameters: rapier::IntegrationParameters,
+    islands: rapier::IslandManager,
+    broad_phase: rapier::DefaultBroadPhase,
+    narrow_phase: rapier::NarrowPhase,
+    bodies: rapier::RigidBodySet,
+    colliders: rapier::ColliderSet,
+    impulse_joints: rapier::ImpulseJointSet,
+    multibody_joints: rapier::MultibodyJointSet,
+    ccd_solver: rapier::CCDSolver,
+}
+
+impl BareRapier {
+    fn new(blocks: usize) -> Self {
+        let mut bare = Self {
+            parameters: rapier::IntegrationParameters {
+                dt: TICK_SECONDS,
+                ..integration_parameters()
+            },
+            ..default()
+        };
+        let surface = |collider: rapier::ColliderBuilder| {
+            collider
+                .friction(SETTINGS.friction)
+                .friction_combine_rule(rapier::CoefficientCombineRule::Multiply)
+        };
+        let table = Table::default();
+        let half = Vec3::new(table.xspan, table.yspan, Table::THICKNESS) / 2.0;
+        let slab = rapier::ColliderBuilder::cuboid(half.x, half.y, half.z)
+            .translation(Vec3::NEG_Z * half.z);
+        bare.colliders.insert(surface(slab));
+        for location in locations(blocks) {
+            let mut body = rapier::RigidBodyBuilder::dynamic()
+                .translation(location)
+                .ccd_enabled(true)
+                .soft_ccd_prediction(3.0)
+                .angular_damping(SETTINGS.angular_damping)
+                .build();
+            body.activation_mut().normalized_linear_threshold = -1.0;
+            body.activation_mut().angular_threshold = -1.0;
+            let body = bare.bodies.insert(body);
+            let cube = rapier::ColliderBuilder::cuboid(0.5, 0.5, 0.5).mass(1.0);
+            bare.colliders
+                .insert_with_parent(surface(cube), body, &mut bare.bodies);
+        }
+        bare
+    }
+
+    fn step(&mut self) {
+        self.pipeline.step(
+            Vec3::NEG_Z * SETTINGS.gravity,
+            &self.parameters,
+            &mut self.islands,
+            &mut self.broad_phase,
+            &mut self.narrow_phase,
+            &mut self.bodies,
+            &mut self.colliders,
+            &mut self.impulse_joints,
+            &mut self.multibody_joints,
+            &mut self.ccd_solver,
+            &(),
+            &(),
+        );
+    }
+}

@@ -1,0 +1,149 @@
+//! The arrows between the crates are those of ARCHITECTURE.md.
+
+use std::{collections::BTreeSet, process::Command};
+
+use serde_json::Value;
+
+/// What each of our crates may depend on of ours, and whether it may name Rapier and enable what draws or opens windows.
+const RULES: [Rule; 7] = [
+    Rule::new("tabletop_core", &[]),
+    Rule::new("tabletop_xml", &["tabletop_core"]),
+    Rule::new("tabletop_physics", &["tabletop_core"]).with_rapier(),
+    Rule::new("tabletop_scene", &["tabletop_core", "tabletop_physics"]).with_rapier(),
+    Rule::new("tabletop_view", &["tabletop_core"]).with_window(),
+    Rule::new("tabletop_gui", &["tabletop_core"]).with_window(),
+    Rule::new(
+        "tabletop",
+        &[
+            "tabletop_core",
+            "tabletop_xml",
+            "tabletop_physics",
+            "tabletop_scene",
+            "tabletop_view",
+            "tabletop_gui",
+        ],
+    )
+    .with_window(),
+];
+
+struct Rule {
+    name: &'static str,
+    ours: &'static [&'static str],
+    rapier: bool,
+    window: bool,
+}
+
+impl Rule {
+    const fn new(name: &'static str, ours: &'static [&'static str]) -> Self {
+        Self {
+            name,
+            ours,
+            rapier: false,
+            window: false,
+        }
+    }
+
+    const fn with_rapier(mut self) -> Self {
+        self.rapier = true;
+        self
+    }
+
+    const fn with_window(mut self) -> Self {
+        self.window = true;
+        self
+    }
+}
+
+/// Features of Bevy that draw or open windows.
+const WINDOW_FEATURES: [&str; 12] = [
+    "2d",
+    "3d",
+    "3d_api",
+    "bevy_asset",
+    "bevy_camera",
+    "bevy_core_pipeline",
+    "bevy_gizmos_render",
+    "bevy_pbr",
+    "bevy_render",
+    "bevy_window",
+    "bevy_winit",
+    "default",
+];
+
+fn metadata(arguments: &[&str]) -> Value {
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--locked", "--offline"])
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn strings<'a>(list: &'a Value) -> impl Iterator<Item = &'a str> {
+    list.as_array().unwrap().iter().map(|item| item.as_str().unwrap())
+}
+
+#[test]
+fn crates_depend_only_on_what_the_table_allows() {
+    let metadata = metadata(&["--no-deps"]);
+    let packages = metadata["packages"].as_array().unwrap();
+    let names: BTreeSet<_> = packages
+        .iter()
+        .map(|package| package["name"].as_str().unwrap())
+        .collect();
+    assert_eq!(names, RULES.iter().map(|rule| rule.name).collect());
+
+    for rule in &RULES {
+        let package = packages
+            .iter()
+            .find(|package| package["name"] == rule.name)
+            .unwrap();
+        for dependency in package["dependencies"].as_array().unwrap() {
+            let name = dependency["name"].as_str().unwrap();
+            let for_tests = dependency["kind"] == "dev";
+            let arrow = format!("{} -> {name}", rule.name);
+            if name.starts_with("tabletop") {
+                assert!(rule.ours.contains(&name), "{arrow} is not in the table");
+            }
+            if name.starts_with("bevy_rapier") && !for_tests {
+                assert!(rule.rapier, "{arrow}: only physics and its users name Rapier");
+            }
+            assert!(
+                name != "rapier3d" && name != "parry3d",
+                "{arrow}: only through bevy_rapier3d, or two of them are linked"
+            );
+            if name == "bevy_egui" {
+                assert!(rule.window, "{arrow}: only what shows may have panels");
+            }
+            for feature in strings(&dependency["features"]) {
+                assert!(
+                    rule.window || !WINDOW_FEATURES.contains(&feature),
+                    "{arrow} with {feature}: only view, gui and the root draw"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_headless_program_has_no_renderer_and_no_window_library() {
+    let output = Command::new(env!("CARGO"))
+        .args(["tree", "--package", "tabletop", "--no-default-features"])
+        .args(["--edges", "normal,build", "--prefix", "none"])
+        .args(["--locked", "--offline"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap();
+    let tree = String::from_utf8(output.stdout).unwrap();
+    assert!(tree.contains("bevy_rapier3d"), "{tree}");
+    for banned in ["wgpu", "winit", "bevy_render", "bevy_window", "egui", "naga", "x11"] {
+        let found = tree.lines().find(|line| line.starts_with(banned));
+        assert_eq!(found, None);
+    }
+}
