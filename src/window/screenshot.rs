@@ -82,10 +82,10 @@ mod tests {
 
     #[test]
     fn a_picture_is_written_as_png() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("picture.png");
+        let path = std::env::temp_dir().join(format!("tabletop-{}.png", std::process::id()));
         save(&picture(), &path).unwrap();
         assert!(std::fs::read(&path).unwrap().starts_with(b"\x89PNG"));
+        std::fs::remove_file(path).unwrap();
     }
 
     #[test]

@@ -1,0 +1,63 @@
+//! Kinematic bodies keep all their moves, however many ticks a frame has (Rapier alone loses some).
+
+use std::time::Duration;
+
+use bevy::{prelude::*, time::TimeUpdateStrategy};
+use bevy_rapier3d::prelude::*;
+use tabletop_core::prelude::*;
+use tabletop_physics::PhysicsPlugin;
+
+#[derive(Component)]
+struct Mover;
+
+fn move_on(mut movers: Query<&mut Transform, With<Mover>>) {
+    for mut transform in &mut movers {
+        transform.translation.x += 0.1;
+    }
+}
+
+fn moved_after_twelve_ticks(ticks_a_frame: u32, with_child: bool) -> f32 {
+    let mut app = App::new();
+    app.add_plugins((
+        MinimalPlugins,
+        CorePlugin::default(),
+        PhysicsPlugin::default(),
+    ))
+    .add_systems(FixedUpdate, move_on.in_set(SimSystems::Actuate));
+    app.finish();
+    app.cleanup();
+    app.insert_resource(TimeUpdateStrategy::FixedTimesteps(ticks_a_frame));
+    app.world_mut()
+        .resource_mut::<Time<Virtual>>()
+        .set_max_delta(Duration::from_secs(1));
+    app.update();
+    let mover = app
+        .world_mut()
+        .spawn((
+            Mover,
+            RigidBody::KinematicPositionBased,
+            Collider::ball(0.5),
+            Transform::default(),
+        ))
+        .id();
+    if with_child {
+        app.world_mut().spawn((Transform::default(), ChildOf(mover)));
+    }
+    for _ in 0..12 / ticks_a_frame {
+        app.update();
+    }
+    app.world().get::<Transform>(mover).unwrap().translation.x
+}
+
+#[test]
+fn a_kinematic_body_keeps_its_moves() {
+    for ticks_a_frame in [1, 3] {
+        for with_child in [false, true] {
+            let moved = moved_after_twelve_ticks(ticks_a_frame, with_child);
+            assert!(
+                (moved - 1.2).abs() < 1e-5,
+                "moved {moved} with {ticks_a_frame} ticks a frame, child: {with_child}"
+            );
+        }
+    }
+}

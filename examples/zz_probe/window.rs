@@ -1,0 +1,100 @@
+//! The program in a window.
+
+mod no_window;
+mod screenshot;
+
+pub use no_window::NoWindow;
+pub use screenshot::ScreenshotAt;
+
+use std::{path::PathBuf, time::Duration};
+
+use bevy::{
+    app::{PanicHandlerPlugin, TerminalCtrlCHandlerPlugin},
+    log::{Level, LogPlugin},
+    prelude::*,
+    render::RenderPlugin,
+    window::PresentMode,
+    winit::{UpdateMode, WinitSettings},
+};
+use tabletop_core::{Paused, SimCommand};
+use tabletop_gui::GuiPlugin;
+use tabletop_view::ViewPlugin;
+
+/// What to show in a window.
+#[derive(Clone, Debug)]
+pub struct WindowOptions {
+    /// The task file to begin with.
+    pub setup: PathBuf,
+    /// A picture to take, after which the program ends.
+    pub screenshot: Option<ScreenshotAt>,
+}
+
+/// Runs the simulation in a window until the user or a screenshot ends it.
+///
+/// # Errors
+///
+/// There is no display, or no graphics driver, or a library is missing. Then nothing has been started, and no logger
+/// has been set up: the simulation can be run without a window instead.
+pub fn run(options: WindowOptions) -> Result<AppExit, NoWindow> {
+    let mut app = no_window::catch(|| build(options))?;
+    app.add_plugins((PanicHandlerPlugin, log(), TerminalCtrlCHandlerPlugin));
+    Ok(app.run())
+}
+
+/// The app without what belongs to the whole process, so that giving up leaves no trace.
+fn build(options: WindowOptions) -> App {
+    let mut app = App::new();
+    app.add_plugins((
+        DefaultPlugins
+            .set(WindowPlugin {
+                primary_window: Some(window()),
+                ..default()
+            })
+            // The first frames wait for their shaders instead of being black.
+            .set(RenderPlugin {
+                synchronous_pipeline_compilation: true,
+                ..default()
+            })
+            .disable::<PanicHandlerPlugin>()
+            .disable::<LogPlugin>()
+            .disable::<TerminalCtrlCHandlerPlugin>(),
+        crate::TabletopSimPlugins,
+        ViewPlugin,
+        GuiPlugin,
+    ))
+    .insert_resource(WinitSettings::game())
+    .add_systems(Update, save_power.run_if(resource_changed::<Paused>));
+    app.world_mut()
+        .write_message(SimCommand::LoadTask(options.setup));
+    if let Some(screenshot) = options.screenshot {
+        screenshot.plan(&mut app);
+    }
+    app
+}
+
+fn window() -> Window {
+    Window {
+        title: "tabletop".into(),
+        resolution: (1024, 768).into(),
+        present_mode: PresentMode::AutoVsync,
+        ..default()
+    }
+}
+
+fn log() -> LogPlugin {
+    LogPlugin {
+        level: Level::WARN,
+        filter: "tabletop=info".into(),
+        ..default()
+    }
+}
+
+/// While the simulation stands still, a few pictures a second are enough; keys and mouse still act at once.
+fn save_power(paused: Res<Paused>, mut settings: ResMut<WinitSettings>) {
+    *settings = WinitSettings::game();
+    if paused.0 {
+        let rarely = UpdateMode::reactive_low_power(Duration::from_secs_f32(1.0 / 30.0));
+        settings.focused_mode = rarely;
+        settings.unfocused_mode = rarely;
+    }
+}
