@@ -1,4 +1,5 @@
 //! The arrows between the crates are those of ARCHITECTURE.md.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::{collections::BTreeSet, process::Command};
 
@@ -85,8 +86,11 @@ fn metadata(arguments: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-fn strings<'a>(list: &'a Value) -> impl Iterator<Item = &'a str> {
-    list.as_array().unwrap().iter().map(|item| item.as_str().unwrap())
+fn strings(list: &Value) -> impl Iterator<Item = &str> {
+    list.as_array()
+        .unwrap()
+        .iter()
+        .map(|item| item.as_str().unwrap())
 }
 
 #[test]
@@ -112,7 +116,10 @@ fn crates_depend_only_on_what_the_table_allows() {
                 assert!(rule.ours.contains(&name), "{arrow} is not in the table");
             }
             if name.starts_with("bevy_rapier") && !for_tests {
-                assert!(rule.rapier, "{arrow}: only physics and its users name Rapier");
+                assert!(
+                    rule.rapier,
+                    "{arrow}: only physics and its users name Rapier"
+                );
             }
             assert!(
                 name != "rapier3d" && name != "parry3d",
@@ -142,7 +149,15 @@ fn the_headless_program_has_no_renderer_and_no_window_library() {
         .unwrap();
     let tree = String::from_utf8(output.stdout).unwrap();
     assert!(tree.contains("bevy_rapier3d"), "{tree}");
-    for banned in ["wgpu", "winit", "bevy_render", "bevy_window", "egui", "naga", "x11"] {
+    for banned in [
+        "wgpu",
+        "winit",
+        "bevy_render",
+        "bevy_window",
+        "egui",
+        "naga",
+        "x11",
+    ] {
         let found = tree.lines().find(|line| line.starts_with(banned));
         assert_eq!(found, None);
     }

@@ -1,4 +1,5 @@
 //! The command line, as a user types it.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::{
     fs,
@@ -67,7 +68,13 @@ fn the_default_blocks_stay_where_they_are_put() {
 #[test]
 fn the_final_state_goes_to_a_file() {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("final.csv");
-    let output = tabletop(&["run", "--seconds", "1", "--final-state", path.to_str().unwrap()]);
+    let output = tabletop(&[
+        "run",
+        "--seconds",
+        "1",
+        "--final-state",
+        path.to_str().unwrap(),
+    ]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_eq!(stdout(&output), "");
     is_default_state(&fs::read_to_string(path).unwrap());
@@ -120,7 +127,15 @@ fn five_faults_give_five_located_messages() {
         assert!(message.contains("expected"), "{message}");
     }
 
-    let run = tabletop(&["run", "--setup", path, "--seconds", "0.5", "--final-state", "-"]);
+    let run = tabletop(&[
+        "run",
+        "--setup",
+        path,
+        "--seconds",
+        "0.5",
+        "--final-state",
+        "-",
+    ]);
     assert_eq!(run.status.code(), Some(2));
     assert_eq!(stderr(&run), messages);
     assert!(stdout(&run).starts_with("good,5.0,"), "{}", stdout(&run));
@@ -164,7 +179,10 @@ fn the_dump_holds_what_the_file_says() {
 
 #[test]
 fn what_cannot_be_read_is_one_line_and_exit_code_2() {
-    for arguments in [&["check", "no such file.xml"][..], &["run", "--setup", "no such file.xml"]] {
+    for arguments in [
+        &["check", "no such file.xml"][..],
+        &["run", "--setup", "no such file.xml"],
+    ] {
         let output = tabletop(arguments);
         assert_eq!(output.status.code(), Some(2));
         assert_eq!(stderr(&output).lines().count(), 1, "{}", stderr(&output));
@@ -176,7 +194,13 @@ fn what_cannot_be_read_is_one_line_and_exit_code_2() {
 
 #[test]
 fn what_cannot_be_written_is_one_line_and_exit_code_1() {
-    let output = tabletop(&["run", "--seconds", "0", "--final-state", "/no/such/folder/state.csv"]);
+    let output = tabletop(&[
+        "run",
+        "--seconds",
+        "0",
+        "--final-state",
+        "/no/such/folder/state.csv",
+    ]);
     assert_eq!(output.status.code(), Some(1));
     assert_eq!(stderr(&output).lines().count(), 1, "{}", stderr(&output));
 }

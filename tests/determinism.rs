@@ -1,4 +1,5 @@
 //! The same commands end in the same bits: run again, and with other numbers of ticks a frame.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::{path::Path, time::Duration};
 
@@ -23,10 +24,7 @@ fn bits(world: &World) -> Vec<(String, Vec<u32>)> {
         .iter()
         .map(|object| {
             let pose = world.get::<Transform>(object).unwrap();
-            let velocity = world
-                .get::<Velocity>(object)
-                .copied()
-                .unwrap_or_default();
+            let velocity = world.get::<Velocity>(object).copied().unwrap_or_default();
             let numbers = [pose.translation, velocity.linear, velocity.angular]
                 .into_iter()
                 .flat_map(|vector| vector.to_array())

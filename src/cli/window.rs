@@ -48,6 +48,9 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
 
 /// What the window would have shown after ten seconds, as a table.
 fn run_instead(setup: PathBuf) -> Result<ExitCode, Failure> {
-    eprintln!("tabletop: running {} for 10 s without a window", setup.display());
+    eprintln!(
+        "tabletop: running {} for 10 s without a window",
+        setup.display()
+    );
     run::simulate(&setup, 10.0, Some(&Output::Stdout))
 }

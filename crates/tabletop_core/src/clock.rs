@@ -129,7 +129,8 @@ mod tests {
     #[test]
     fn a_pause_stops_the_clock_and_not_the_commands() {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default())).start();
+        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .start();
         app.step(3);
         app.world_mut().write_message(SimCommand::SetPaused(true));
         app.step(5);
@@ -142,7 +143,8 @@ mod tests {
     #[test]
     fn stepping_drops_old_messages() {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default())).start();
+        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .start();
         for _ in 0..10 {
             app.world_mut().write_message(SimCommand::ClearTable);
             app.step(1);

@@ -112,6 +112,9 @@ mod tests {
         for text in ["#fff", "#12345g", "#+12345", "#1234567", "", "#", "#é1234"] {
             assert!(text.parse::<Rgb>().is_err(), "{text} was read");
         }
-        assert_eq!(" #FF8000 ".parse::<Rgb>().map(Rgb::to_bytes), Ok([255, 128, 0]));
+        assert_eq!(
+            " #FF8000 ".parse::<Rgb>().map(Rgb::to_bytes),
+            Ok([255, 128, 0])
+        );
     }
 }

@@ -113,7 +113,10 @@ mod tests {
             [("shape", "sphere"), ("use", "toy")]
         );
         spec.descriptions.push(("shape".into(), "globe".into()));
-        assert_eq!(spec.all_descriptions(), [("shape", "globe"), ("use", "toy")]);
+        assert_eq!(
+            spec.all_descriptions(),
+            [("shape", "globe"), ("use", "toy")]
+        );
     }
 
     #[test]

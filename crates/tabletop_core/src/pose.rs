@@ -115,11 +115,7 @@ pub fn degrees_from_quat(rotation: Quat) -> Vec3 {
         let degrees = radians.to_degrees() as f32;
         if degrees <= -180.0 { 180.0 } else { degrees }
     };
-    Vec3::new(
-        half_open(x),
-        sin_y.asin().to_degrees() as f32,
-        half_open(z),
-    )
+    Vec3::new(half_open(x), sin_y.asin().to_degrees() as f32, half_open(z))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{ObjectSpec, Pose, Rgb};
+use crate::{ObjectSpec, Pose, Primitive, Rgb, Solid};
 
 /// The content of a task file, in the file's order, before ids are made unique.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -28,6 +28,15 @@ pub struct Table {
 impl Table {
     /// Thickness of the slab below Z = 0, in units.
     pub const THICKNESS: f32 = 4.0;
+
+    /// The slab, in the frame of the world.
+    pub fn slab(&self) -> Primitive {
+        Primitive {
+            pose: Pose::at(Vec3::NEG_Z * Self::THICKNESS / 2.0),
+            solid: Solid::Cuboid(Vec3::new(self.xspan, self.yspan, Self::THICKNESS)),
+            color: Rgb::WHITE,
+        }
+    }
 }
 
 impl Default for Table {

@@ -108,7 +108,6 @@ pub struct Primitive {
     pub color: Rgb,
 }
 
-
 impl Shape {
     /// The element name of this shape in a task file, or the name that recordings give it.
     pub const fn name(&self) -> &'static str {
@@ -302,7 +301,10 @@ mod tests {
             padding: 0.05,
             color: Rgb::GRAY,
         };
-        assert_eq!(link.drawn()[0].solid, Solid::Cuboid(Vec3::new(0.1, 1.1, 0.1)));
+        assert_eq!(
+            link.drawn()[0].solid,
+            Solid::Cuboid(Vec3::new(0.1, 1.1, 0.1))
+        );
         assert_eq!(
             link.colliding()[0].solid,
             Solid::Cuboid(Vec3::new(0.1, 1.0, 0.1))

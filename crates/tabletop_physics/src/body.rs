@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{ObjectSpec, Shape, Solid, Table};
+use tabletop_core::{ObjectSpec, Pose, Primitive, Shape, Solid, Table};
 
 use crate::{PhysicsSettings, mass::mass_properties};
 
@@ -62,14 +62,10 @@ pub(crate) fn add_table(
     settings: Res<PhysicsSettings>,
     mut commands: Commands,
 ) -> Result {
-    let table = tables.get(add.entity)?;
-    let slab = Solid::Cuboid(Vec3::new(table.xspan, table.yspan, Table::THICKNESS));
-    let below = Vec3::NEG_Z * Table::THICKNESS / 2.0;
-    commands.entity(add.entity).insert((
-        RigidBody::Fixed,
-        Collider::compound(vec![(below, Quat::IDENTITY, solid_collider(slab))]),
-        surface(&settings),
-    ));
+    let slab = tables.get(add.entity)?.slab();
+    commands
+        .entity(add.entity)
+        .insert((RigidBody::Fixed, compound(&[slab]), surface(&settings)));
     Ok(())
 }
 
@@ -88,16 +84,18 @@ fn surface(settings: &PhysicsSettings) -> impl Bundle {
 
 /// The collider of a whole shape, in the shape's frame.
 pub fn collider(shape: &Shape) -> Collider {
-    let primitives = shape.colliding();
-    match primitives.as_slice() {
-        [only] if only.pose == tabletop_core::Pose::IDENTITY => solid_collider(only.solid),
-        several => Collider::compound(
-            several
-                .iter()
-                .map(|part| (part.pose.location, part.pose.rotation, solid_collider(part.solid)))
-                .collect(),
-        ),
+    match shape.colliding().as_slice() {
+        [only] if only.pose == Pose::IDENTITY => solid_collider(only.solid),
+        parts => compound(parts),
     }
+}
+
+fn compound(parts: &[Primitive]) -> Collider {
+    let parts = parts.iter().map(|part| {
+        let Pose { location, rotation } = part.pose;
+        (location, rotation, solid_collider(part.solid))
+    });
+    Collider::compound(parts.collect())
 }
 
 fn solid_collider(solid: Solid) -> Collider {
@@ -130,12 +128,8 @@ fn prism(radius: f32, yspan: f32) -> Option<Collider> {
         let [low, low_next, high, high_next] = [side, next, SIDES + side, SIDES + next];
         [[low, high, low_next], [low_next, high, high_next]]
     });
-    let ends = (1..SIDES - 1).flat_map(|side| {
-        [
-            [0, side, side + 1],
-            [SIDES, SIDES + side + 1, SIDES + side],
-        ]
-    });
+    let ends = (1..SIDES - 1)
+        .flat_map(|side| [[0, side, side + 1], [SIDES, SIDES + side + 1, SIDES + side]]);
     Collider::convex_mesh(corners, &sides.chain(ends).collect::<Vec<_>>())
 }
 
@@ -150,7 +144,10 @@ mod tests {
             let collider = prism.unwrap_or_else(|| panic!("no prism for {radius} x {yspan}"));
             let bounds = collider.raw.compute_local_aabb();
             assert!((bounds.maxs.z / radius - 1.0).abs() < 1e-3, "{bounds:?}");
-            assert!((bounds.maxs.y * 2.0 / yspan - 1.0).abs() < 1e-3, "{bounds:?}");
+            assert!(
+                (bounds.maxs.y * 2.0 / yspan - 1.0).abs() < 1e-3,
+                "{bounds:?}"
+            );
         }
     }
 }

@@ -1,4 +1,5 @@
 //! Kinematic bodies keep all their moves, however many ticks a frame has (Rapier alone loses some).
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::time::Duration;
 
@@ -41,7 +42,8 @@ fn moved_after_twelve_ticks(ticks_a_frame: u32, with_child: bool) -> f32 {
         ))
         .id();
     if with_child {
-        app.world_mut().spawn((Transform::default(), ChildOf(mover)));
+        app.world_mut()
+            .spawn((Transform::default(), ChildOf(mover)));
     }
     for _ in 0..12 / ticks_a_frame {
         app.update();

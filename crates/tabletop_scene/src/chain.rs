@@ -101,7 +101,10 @@ mod tests {
         let chain = chain(0);
         assert_eq!(chain.joints.len(), 13);
         for pair in chain.joints.windows(2) {
-            let shared = pair[0].objects.iter().filter(|id| pair[1].objects.contains(id));
+            let shared = pair[0]
+                .objects
+                .iter()
+                .filter(|id| pair[1].objects.contains(id));
             assert_eq!(shared.count(), 1);
         }
     }

@@ -1,9 +1,7 @@
 //! How objects appear on the table and go from it.
 
 use bevy::{ecs::system::SystemParam, prelude::*};
-use tabletop_core::{
-    Joint, ObjectIndex, ObjectSpec, SceneSpec, SimCommand, SimFact, Table,
-};
+use tabletop_core::{Joint, ObjectIndex, ObjectSpec, SceneSpec, SimCommand, SimFact, Table};
 
 use crate::{Assembly, IdAllocator, assemble};
 
@@ -78,10 +76,7 @@ impl Tabletop<'_, '_> {
     }
 }
 
-pub(crate) fn carry_out_commands(
-    mut commands: MessageReader<SimCommand>,
-    mut tabletop: Tabletop,
-) {
+pub(crate) fn carry_out_commands(mut commands: MessageReader<SimCommand>, mut tabletop: Tabletop) {
     for command in commands.read() {
         match command {
             SimCommand::SetScene(scene) => tabletop.set(scene),

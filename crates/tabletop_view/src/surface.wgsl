@@ -13,7 +13,7 @@ const LAMP_RANGE: f32 = 50.0;
 fn fragment(in: VertexOutput) -> @location(0) vec4<f32> {
     let light = AMBIENT + light_of_lamp(in.world_position.xyz, normalize(in.world_normal));
     let shown = clamp(color.rgb * light, vec3<f32>(0.0), vec3<f32>(1.0));
-    return vec4<f32>(shown*shown, 1.0);
+    return vec4<f32>(linear_from_display(shown), 1.0);
 }
 
 fn light_of_lamp(location: vec3<f32>, normal: vec3<f32>) -> f32 {

@@ -9,7 +9,10 @@ fn the_chain_of_the_report_sags_and_rests() {
     let middle = world.pose("chain-link5").location.z;
     assert!((middle - 2.947).abs() < 0.15, "middle at {middle}");
     let first = world.pose("chain-link0").location;
-    assert!((first.x - 5.425).abs() < 0.05 && (first.z - 3.841).abs() < 0.05, "{first}");
+    assert!(
+        (first.x - 5.425).abs() < 0.05 && (first.z - 3.841).abs() < 0.05,
+        "{first}"
+    );
     let (far, turn) = world.motion_in(2.0);
     assert!(far < 0.01 && turn < 0.5, "moved {far}, turned {turn}°");
 }
@@ -21,7 +24,10 @@ fn a_longer_chain_rests_on_the_table() {
     let middle = world.pose("chain-link7").location.z;
     assert!((middle - 0.05).abs() < 0.02, "middle at {middle}");
     for (id, pose) in world.poses() {
-        assert!(pose.location.is_finite() && pose.location.z > 0.0, "{id}: {pose:?}");
+        assert!(
+            pose.location.is_finite() && pose.location.z > 0.0,
+            "{id}: {pose:?}"
+        );
     }
 }
 

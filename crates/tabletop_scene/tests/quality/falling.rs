@@ -17,7 +17,10 @@ fn a_ball_falls_as_fast_as_the_formula_says() {
     }
     let landed = ticks as f32 / 60.0;
     // One tick is 1.5 % of this fall, so look at the height one tick before as well.
-    assert!((landed - expected).abs() < 1.0 / 60.0 + 0.01 * expected, "landed after {landed} s, not {expected} s");
+    assert!(
+        (landed - expected).abs() < 1.0 / 60.0 + 0.01 * expected,
+        "landed after {landed} s, not {expected} s"
+    );
     world.seconds(2.0);
     assert!((world.pose("ball").location.z - 0.5).abs() < 0.01);
 }
@@ -27,7 +30,10 @@ fn a_falling_ball_is_where_the_formula_says() {
     let mut world = TestWorld::new([object("ball", (0.0, 0.0, 60.0), 1.0, sphere(0.5))]);
     world.seconds(59.0 / 60.0);
     let fallen = 60.0 - world.pose("ball").location.z;
-    assert!((fallen / (98.1 / 2.0) - 1.0).abs() < 0.01, "{fallen} units in 1 s");
+    assert!(
+        (fallen / (98.1 / 2.0) - 1.0).abs() < 0.01,
+        "{fallen} units in 1 s"
+    );
 }
 
 /// Things that are easily lost, dropped from a height of 100 units along the line of this `y`.
@@ -46,7 +52,13 @@ fn dropped(y: f32, z: f32, turn: usize) -> Vec<SceneItem> {
     .enumerate()
     .map(|(i, shape)| {
         let location = Vec3::new(i as f32 * 3.0 - 7.5, y, z);
-        turned(&format!("{}{i}", shape.name()), location, degrees, 1.0, shape)
+        turned(
+            &format!("{}{i}", shape.name()),
+            location,
+            degrees,
+            1.0,
+            shape,
+        )
     })
     .collect()
 }
@@ -111,9 +123,17 @@ fn what_leaves_the_world_is_deleted() {
 fn a_block_slides_as_far_as_friction_lets_it() {
     let mut world = TestWorld::new([object("block", (-5.0, 0.0, 0.5), 1.0, block(Vec3::ONE))]);
     let entity = world.entity("block");
-    world.0.world_mut().get_mut::<Velocity>(entity).unwrap().linear = Vec3::X * 10.0;
+    world
+        .0
+        .world_mut()
+        .get_mut::<Velocity>(entity)
+        .unwrap()
+        .linear = Vec3::X * 10.0;
     world.seconds(3.0);
     let slid = world.pose("block").location.x + 5.0;
     let expected = 10.0f32.powi(2) / (2.0 * 0.25 * 98.1);
-    assert!((slid / expected - 1.0).abs() < 0.1, "slid {slid}, not {expected}");
+    assert!(
+        (slid / expected - 1.0).abs() < 0.1,
+        "slid {slid}, not {expected}"
+    );
 }

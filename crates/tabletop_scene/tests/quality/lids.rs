@@ -22,8 +22,20 @@ fn a_shut_lid_holds_still() {
     world.seconds(1.0);
     let (far, turn) = world.motion_in(20.0);
     assert!(far < 0.001 && turn < 0.01, "moved {far}, turned {turn}°");
-    assert!(world.pose("lidbox-lid").location.distance(Vec3::new(0.0, 0.0, 5.3)) < 0.01);
-    assert!(world.pose("lidbox-box").location.distance(Vec3::new(0.0, 0.0, 2.5)) < 0.01);
+    assert!(
+        world
+            .pose("lidbox-lid")
+            .location
+            .distance(Vec3::new(0.0, 0.0, 5.3))
+            < 0.01
+    );
+    assert!(
+        world
+            .pose("lidbox-box")
+            .location
+            .distance(Vec3::new(0.0, 0.0, 2.5))
+            < 0.01
+    );
 }
 
 #[test]
@@ -34,7 +46,11 @@ fn a_lid_opens_and_closes_over_its_whole_travel() {
     };
     push(&mut world, Vec3::X * -40.0);
     world.seconds(3.0);
-    assert!((opening(&world) - 6.0).abs() < 0.05, "open by {}", opening(&world));
+    assert!(
+        (opening(&world) - 6.0).abs() < 0.05,
+        "open by {}",
+        opening(&world)
+    );
     push(&mut world, Vec3::ZERO);
     let (far, _) = world.motion_in(3.0);
     assert!(far < 0.01, "the open lid moved {far}");
@@ -77,5 +93,9 @@ fn a_trapdoor_stays_shut_and_falls_shut() {
     world.seconds(3.0);
     assert!(opening(&world) < 0.01, "open by {}", opening(&world));
     let body = world.pose("lidbox-box");
-    assert!(body.location.distance(TRAPDOOR.0) < 0.05, "{}", body.location);
+    assert!(
+        body.location.distance(TRAPDOOR.0) < 0.05,
+        "{}",
+        body.location
+    );
 }

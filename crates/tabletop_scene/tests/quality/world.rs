@@ -1,7 +1,7 @@
 //! A headless world to put objects into and to look at.
 
 use bevy::prelude::*;
-use tabletop_core::{prelude::*, quat_from_degrees, ChainSpec, LidBoxSpec};
+use tabletop_core::{ChainSpec, LidBoxSpec, prelude::*, quat_from_degrees};
 use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
 use tabletop_scene::ScenePlugin;
 
