@@ -6,11 +6,13 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// What each of our crates may depend on of ours, and whether it may name Rapier and enable what draws or opens windows.
-const RULES: [Rule; 7] = [
+const RULES: [Rule; 9] = [
     Rule::new("tabletop_core", &[]),
     Rule::new("tabletop_xml", &["tabletop_core"]),
     Rule::new("tabletop_physics", &["tabletop_core"]).with_rapier(),
     Rule::new("tabletop_scene", &["tabletop_core", "tabletop_physics"]).with_rapier(),
+    Rule::new("tabletop_camera", &["tabletop_core"]),
+    Rule::new("tabletop_recorder", &["tabletop_core"]),
     Rule::new("tabletop_view", &["tabletop_core"]).with_window(),
     Rule::new("tabletop_gui", &["tabletop_core"]).with_window(),
     Rule::new(
@@ -20,6 +22,8 @@ const RULES: [Rule; 7] = [
             "tabletop_xml",
             "tabletop_physics",
             "tabletop_scene",
+            "tabletop_camera",
+            "tabletop_recorder",
             "tabletop_view",
             "tabletop_gui",
         ],

@@ -1,6 +1,9 @@
 //! A picture of the window, for tests and documents.
 
-use std::path::{Path, PathBuf};
+use std::{
+    error::Error,
+    path::{Path, PathBuf},
+};
 
 use bevy::{
     diagnostic::FrameCount,
@@ -54,7 +57,7 @@ fn save_and_exit(path: PathBuf) -> impl FnMut(On<ScreenshotCaptured>, MessageWri
     }
 }
 
-fn save(picture: &Image, path: &Path) -> Result {
+fn save(picture: &Image, path: &Path) -> Result<(), Box<dyn Error>> {
     // The window has no transparency that would mean anything.
     picture.clone().try_into_dynamic()?.to_rgb8().save(path)?;
     Ok(())

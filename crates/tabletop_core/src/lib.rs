@@ -20,21 +20,27 @@
 
 mod clock;
 mod color;
+mod hand;
 mod message;
 mod number;
 mod object;
 mod pose;
+mod recording;
 mod scene;
+mod sensor;
 mod shape;
 mod user;
 
 pub use clock::{Paused, SimSystems, SimTick, StepApp, TICK_SECONDS, TICKS_PER_SECOND};
 pub use color::{ColorError, NAMED_COLORS, Rgb};
+pub use hand::{Hand, Hands, Held};
 pub use message::{SimCommand, SimFact};
 pub use number::Decimal;
 pub use object::{ObjectIndex, ObjectSpec};
 pub use pose::{Pose, degrees_from_quat, quat_from_degrees};
+pub use recording::{History, Recording};
 pub use scene::{ChainSpec, Joint, JointKind, JointSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
+pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage};
 pub use shape::{Part, Primitive, Shape, Solid};
 pub use user::{KeySystems, UserCamera};
 
@@ -44,8 +50,8 @@ use bevy::prelude::*;
 pub mod prelude {
     #[doc(hidden)]
     pub use crate::{
-        CorePlugin, ObjectIndex, ObjectSpec, Paused, Pose, Rgb, SceneItem, SceneSpec, Shape,
-        SimCommand, SimFact, SimSystems, SimTick, StepApp, Table,
+        CorePlugin, Hand, Hands, ObjectIndex, ObjectSpec, Paused, Pose, Rgb, SceneItem, SceneSpec,
+        Shape, SimCommand, SimFact, SimSystems, SimTick, StepApp, Table,
     };
 }
 
@@ -66,8 +72,16 @@ impl Plugin for CorePlugin {
     fn build(&self, app: &mut App) {
         app.add_message::<SimCommand>()
             .add_message::<SimFact>()
+            .init_resource::<Hands>()
+            .init_resource::<History>()
+            .init_resource::<Recording>()
             .init_resource::<ObjectIndex>()
-            .add_systems(FixedUpdate, set_paused.in_set(SimSystems::Ingest))
+            .add_systems(
+                FixedUpdate,
+                set_paused
+                    .after(SimSystems::Load)
+                    .before(SimSystems::Ingest),
+            )
             .configure_sets(
                 RunFixedMainLoop,
                 KeySystems.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),

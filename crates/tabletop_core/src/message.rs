@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::SceneSpec;
+use crate::{Hand, SceneSpec};
 
 /// Something the simulation is to do in its next tick.
 #[derive(Message, Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,8 +17,52 @@ pub enum SimCommand {
     LoadTask(PathBuf),
     /// Clear the table and put this on it.
     SetScene(Box<SceneSpec>),
-    /// Remove every object from the table.
+    /// Remove every object from the table that no hand holds.
     ClearTable,
+    /// Let mouse and panels act with this hand.
+    SelectHand(Hand),
+    /// Take an object into a hand.
+    Grasp {
+        /// The hand.
+        hand: Hand,
+        /// Id of the object.
+        object: String,
+    },
+    /// Move what a hand holds to this location, as far as nothing is in its way.
+    MoveTo {
+        /// The hand.
+        hand: Hand,
+        /// Where the object's origin is to be, in units.
+        location: Vec3,
+    },
+    /// Move what a hand holds on from where it is to be.
+    MoveBy {
+        /// The hand.
+        hand: Hand,
+        /// How far, in units.
+        offset: Vec3,
+    },
+    /// Turn what a hand holds about an axis of the world through the object's origin.
+    Turn {
+        /// The hand.
+        hand: Hand,
+        /// The axis; its length does not matter.
+        axis: Vec3,
+        /// The angle in degrees.
+        degrees: f32,
+    },
+    /// Let go of what a hand holds.
+    Release(Hand),
+    /// Remove what a hand holds from the world.
+    Destroy(Hand),
+    /// Begin to record.
+    StartRecording,
+    /// End the recording.
+    FinishRecording,
+    /// Go back to where the present segment of the recording began, and discard it.
+    Undo,
+    /// Bring back the segment that was undone last.
+    Redo,
     /// Stop the clock, or let it run on.
     SetPaused(bool),
 }
@@ -45,6 +89,43 @@ pub enum SimFact {
         /// Its id.
         id: String,
     },
+    /// A hand is about to act: what follows belongs to a new segment of a recording.
+    SegmentBegun,
+    /// A hand has taken an object.
+    Grasped {
+        /// The hand.
+        hand: Hand,
+        /// Id of the object.
+        id: String,
+    },
+    /// A hand has let go of an object.
+    Released {
+        /// The hand that held it.
+        hand: Hand,
+        /// Id of the object.
+        id: String,
+    },
+    /// A hand has removed an object; its [`ObjectDeleted`](Self::ObjectDeleted) has come before.
+    Destroyed {
+        /// The hand that held it.
+        hand: Hand,
+        /// Id of the object.
+        id: String,
+    },
+    /// A recording has begun.
+    RecordingStarted {
+        /// Its folder.
+        folder: PathBuf,
+    },
+    /// A recording has ended.
+    RecordingFinished {
+        /// Its folder.
+        folder: PathBuf,
+    },
+    /// The world is again as it was before the last segment of the recording began; the tick has gone back with it.
+    Undone,
+    /// The world is again as it was when the undone segment was undone; the tick has gone forward with it.
+    Redone,
     /// Something could not be done as it was told.
     Refused {
         /// What and why.

@@ -65,6 +65,11 @@ impl ObjectIndex {
         self.in_order.iter().copied()
     }
 
+    /// The ids, in alphabetical order.
+    pub fn ids(&self) -> impl Iterator<Item = &str> {
+        self.by_id.keys().map(String::as_str)
+    }
+
     /// How many objects there are.
     pub fn len(&self) -> usize {
         self.in_order.len()

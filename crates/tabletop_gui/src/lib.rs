@@ -6,7 +6,7 @@
 //! | Space | pause, resume |
 //! | Esc | quit |
 //!
-//! Panels are drawn over the picture of the [`UserCamera`](tabletop_core::UserCamera).
+//! Panels are drawn over the picture of the [`UserCamera`].
 //!
 //! ```no_run
 //! use bevy::prelude::*;

@@ -52,7 +52,7 @@ fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
                 faults.iter().for_each(|fault| notices.add(fault));
             }
             SimFact::Refused { reason } => notices.add(reason),
-            SimFact::ObjectCreated { .. } | SimFact::ObjectDeleted { .. } => {}
+            _ => {}
         }
     }
 }
@@ -69,7 +69,7 @@ fn show_notices(mut contexts: EguiContexts, mut notices: ResMut<Notices>) {
         .open(&mut is_open)
         .default_pos(egui::pos2(10.0, 10.0))
         .default_width(640.0)
-        .default_height(120.0)
+        .default_height(160.0)
         .vscroll(true)
         .show(context, |ui| {
             for notice in notices.iter() {

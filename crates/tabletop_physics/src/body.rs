@@ -111,7 +111,7 @@ fn solid_collider(solid: Solid) -> Collider {
 /// A prism that stands in for a cylinder, its facets on the cylinder's surface. Rapier's own cylinder never comes to rest
 /// on its side: inexact contact normals drive it on at some 0.2 units/s.
 fn prism(radius: f32, yspan: f32) -> Option<Collider> {
-    const SIDES: u32 = 48;
+    const SIDES: u32 = 32;
     let half_angle = std::f32::consts::PI / SIDES as f32;
     let corner_radius = radius / half_angle.cos();
     let corners = [-yspan / 2.0, yspan / 2.0]

@@ -53,6 +53,8 @@ impl Plugin for ScenePlugin {
                 life::carry_out_commands.in_set(SimSystems::Ingest),
                 life::remove_fallen.in_set(SimSystems::Sense),
             ),
-        );
+        )
+        .add_observer(life::note_created)
+        .add_observer(life::note_deleted);
     }
 }

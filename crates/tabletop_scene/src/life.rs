@@ -1,105 +1,204 @@
 //! How objects appear on the table and go from it.
 
-use bevy::{ecs::system::SystemParam, prelude::*};
-use tabletop_core::{Joint, ObjectIndex, ObjectSpec, SceneSpec, SimCommand, SimFact, Table};
+use bevy::{ecs::system::SystemState, prelude::*};
+use tabletop_core::{Held, Joint, ObjectIndex, ObjectSpec, SceneSpec, SimCommand, SimFact, Table};
 
-use crate::{Assembly, IdAllocator, assemble};
+use crate::{IdAllocator, assemble};
 
 /// Objects below this height, in units, have left the world.
 const LOWEST_Z: f32 = -1000.0;
 
-/// The table and what is on it, to be changed.
-#[derive(SystemParam)]
-pub(crate) struct Tabletop<'w, 's> {
-    commands: Commands<'w, 's>,
-    index: ResMut<'w, ObjectIndex>,
-    tables: Query<'w, 's, Entity, With<Table>>,
-    objects: Query<'w, 's, &'static ObjectSpec>,
-    joints: Query<'w, 's, (Entity, &'static Joint)>,
-    facts: MessageWriter<'w, SimFact>,
+pub(crate) fn note_created(
+    add: On<Add, ObjectSpec>,
+    objects: Query<&ObjectSpec>,
+    mut index: ResMut<ObjectIndex>,
+    mut facts: MessageWriter<SimFact>,
+) -> Result {
+    let id = &objects.get(add.entity)?.id;
+    index.insert(id, add.entity);
+    facts.write(SimFact::ObjectCreated {
+        id: id.clone(),
+        object: add.entity,
+    });
+    Ok(())
 }
 
-impl Tabletop<'_, '_> {
-    fn clear(&mut self) {
-        let objects: Vec<_> = self.index.iter().collect();
-        for object in objects {
-            self.remove(object);
+pub(crate) fn note_deleted(
+    remove: On<Remove, ObjectSpec>,
+    objects: Query<&ObjectSpec>,
+    joints: Query<(Entity, &Joint)>,
+    mut index: ResMut<ObjectIndex>,
+    mut facts: MessageWriter<SimFact>,
+    mut commands: Commands,
+) -> Result {
+    let id = &objects.get(remove.entity)?.id;
+    index.remove(id);
+    for (joint, connection) in &joints {
+        if connection.objects.contains(&remove.entity) {
+            commands.entity(joint).try_despawn();
         }
     }
-
-    fn set(&mut self, scene: &SceneSpec) {
-        self.clear();
-        for table in &self.tables {
-            self.commands.entity(table).despawn();
-        }
-        let mut ids = IdAllocator::default();
-        self.put(assemble(scene, &mut ids));
-    }
-
-    fn put(&mut self, assembly: Assembly) {
-        self.commands.spawn(assembly.table);
-        for spec in assembly.objects {
-            let id = spec.id.clone();
-            let object = self.commands.spawn((Transform::from(spec.pose), spec)).id();
-            self.index.insert(id.clone(), object);
-            self.facts.write(SimFact::ObjectCreated { id, object });
-        }
-        for joint in assembly.joints {
-            let [first, second] = joint.objects.each_ref().map(|id| self.index.get(id));
-            if let (Some(first), Some(second)) = (first, second) {
-                self.commands.spawn((
-                    Joint {
-                        objects: [first, second],
-                        frames: joint.frames,
-                        kind: joint.kind,
-                    },
-                    ChildOf(second),
-                ));
-            }
-        }
-    }
-
-    fn remove(&mut self, object: Entity) {
-        let Ok(spec) = self.objects.get(object) else {
-            return;
-        };
-        for (joint, connection) in &self.joints {
-            if connection.objects.contains(&object) {
-                self.commands.entity(joint).try_despawn();
-            }
-        }
-        self.index.remove(&spec.id);
-        self.commands.entity(object).try_despawn();
-        self.facts.write(SimFact::ObjectDeleted {
-            id: spec.id.clone(),
-        });
-    }
+    facts.write(SimFact::ObjectDeleted { id: id.clone() });
+    Ok(())
 }
 
-pub(crate) fn carry_out_commands(mut commands: MessageReader<SimCommand>, mut tabletop: Tabletop) {
-    for command in commands.read() {
+/// Carries out the commands one after the other, each on what the one before has left.
+pub(crate) fn carry_out_commands(
+    world: &mut World,
+    reader: &mut SystemState<MessageReader<SimCommand>>,
+) -> Result {
+    let commands: Vec<SimCommand> = reader
+        .get_mut(world)?
+        .read()
+        .filter(|command| matches!(command, SimCommand::SetScene(_) | SimCommand::ClearTable))
+        .cloned()
+        .collect();
+    for command in commands {
         match command {
-            SimCommand::SetScene(scene) => tabletop.set(scene),
-            SimCommand::ClearTable => tabletop.clear(),
-            SimCommand::LoadTask(_) | SimCommand::SetPaused(_) => {}
+            SimCommand::SetScene(scene) => set_scene(world, &scene),
+            SimCommand::ClearTable => clear(world),
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+fn set_scene(world: &mut World, scene: &SceneSpec) {
+    clear(world);
+    let mut tables = world.query_filtered::<Entity, With<Table>>();
+    for table in tables.iter(world).collect::<Vec<_>>() {
+        world.despawn(table);
+    }
+
+    let held = world.resource::<ObjectIndex>().ids().map(str::to_owned);
+    let assembly = assemble(scene, &mut IdAllocator::with_taken(held));
+    world.spawn(assembly.table);
+    for spec in assembly.objects {
+        world.spawn((Transform::from(spec.pose), spec));
+    }
+    for joint in assembly.joints {
+        let index = world.resource::<ObjectIndex>();
+        let [first, second] = joint.objects.each_ref().map(|id| index.get(id));
+        if let (Some(first), Some(second)) = (first, second) {
+            let joint = Joint {
+                objects: [first, second],
+                frames: joint.frames,
+                kind: joint.kind,
+            };
+            world.spawn((joint, ChildOf(second)));
+        }
+    }
+}
+
+/// Removes every object that no hand holds.
+fn clear(world: &mut World) {
+    let objects: Vec<_> = world.resource::<ObjectIndex>().iter().collect();
+    for object in objects {
+        if world.get::<Held>(object).is_none() {
+            world.despawn(object);
         }
     }
 }
 
 pub(crate) fn remove_fallen(
-    transforms: Query<(Entity, &Transform), With<ObjectSpec>>,
-    mut tabletop: Tabletop,
+    objects: Query<&Transform, With<ObjectSpec>>,
+    index: Res<ObjectIndex>,
+    mut commands: Commands,
 ) {
-    let fallen: Vec<_> = tabletop
-        .index
-        .iter()
-        .filter(|&object| {
-            transforms
-                .get(object)
-                .is_ok_and(|(_, transform)| transform.translation.z < LOWEST_Z)
-        })
-        .collect();
-    for object in fallen {
-        tabletop.remove(object);
+    for object in index.iter() {
+        let Ok(transform) = objects.get(object) else {
+            continue;
+        };
+        if transform.translation.z < LOWEST_Z {
+            commands.entity(object).despawn();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::prelude::*;
+    use tabletop_physics::PhysicsPlugin;
+
+    use super::*;
+    use crate::ScenePlugin;
+
+    fn app() -> App {
+        let mut app = App::new();
+        app.add_plugins((
+            MinimalPlugins,
+            CorePlugin::default(),
+            PhysicsPlugin::default(),
+            ScenePlugin,
+        ))
+        .start();
+        app
+    }
+
+    fn ball(id: &str) -> ObjectSpec {
+        ObjectSpec {
+            id: id.into(),
+            pose: Pose::at(Vec3::Z),
+            mass: 1.0,
+            shape: Shape::Sphere {
+                radius: 0.5,
+                color: Rgb::GRAY,
+            },
+            descriptions: Vec::new(),
+        }
+    }
+
+    fn scene(ids: &[&str]) -> SimCommand {
+        SimCommand::SetScene(Box::new(SceneSpec {
+            items: ids.iter().map(|id| SceneItem::Object(ball(id))).collect(),
+            ..default()
+        }))
+    }
+
+    fn ids(app: &App) -> Vec<&str> {
+        app.world().resource::<ObjectIndex>().ids().collect()
+    }
+
+    #[test]
+    fn the_last_of_two_scenes_in_a_tick_is_on_the_table() {
+        let mut app = app();
+        app.world_mut().write_message(scene(&["a", "b"]));
+        app.world_mut().write_message(scene(&["b", "c"]));
+        app.step(1);
+        assert_eq!(ids(&app), ["b", "c"]);
+        let world = app.world_mut();
+        assert_eq!(world.query::<&ObjectSpec>().iter(world).count(), 2);
+        assert_eq!(world.query::<&Table>().iter(world).count(), 1);
+    }
+
+    #[test]
+    fn what_a_hand_holds_stays_and_keeps_its_id() {
+        let mut app = app();
+        app.world_mut().write_message(scene(&["a", "b"]));
+        app.step(1);
+        let held = app.world().resource::<ObjectIndex>().get("a");
+        let held = held.unwrap();
+        app.world_mut()
+            .entity_mut(held)
+            .insert(Held { by: Hand::Left });
+        app.world_mut().write_message(scene(&["a"]));
+        app.step(1);
+        assert_eq!(ids(&app), ["a", "a#0"]);
+        assert_eq!(app.world().resource::<ObjectIndex>().get("a"), Some(held));
+    }
+
+    #[test]
+    fn an_object_that_anyone_spawns_or_despawns_is_noted() {
+        let mut app = app();
+        let object = app.world_mut().spawn(ball("mine")).id();
+        assert_eq!(ids(&app), ["mine"]);
+        app.world_mut().despawn(object);
+        assert!(ids(&app).is_empty());
+        let facts = app.world().resource::<Messages<SimFact>>();
+        let facts: Vec<_> = facts.iter_current_update_messages().collect();
+        assert!(matches!(
+            facts[..],
+            [SimFact::ObjectCreated { .. }, SimFact::ObjectDeleted { .. }]
+        ));
     }
 }

@@ -85,7 +85,6 @@ impl TestWorld {
     pub fn remove(&mut self, id: &str) {
         let entity = self.entity(id);
         self.0.world_mut().despawn(entity);
-        self.0.world_mut().resource_mut::<ObjectIndex>().remove(id);
     }
 }
 

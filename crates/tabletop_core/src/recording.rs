@@ -1,0 +1,16 @@
+//! What is known of the present recording outside the recorder.
+
+use bevy::prelude::*;
+
+/// Whether a recording is running. The recorder sets it.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Recording(pub bool);
+
+/// How far the demonstration can be undone and redone. Whoever keeps the snapshots of the world sets it.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct History {
+    /// How many segments can be undone.
+    pub undoable: usize,
+    /// How many segments can be redone.
+    pub redoable: usize,
+}

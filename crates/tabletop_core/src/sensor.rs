@@ -1,0 +1,171 @@
+//! What the robot's eye is asked for, and what it has seen.
+
+use std::{
+    f32::consts::FRAC_PI_3,
+    sync::atomic::{AtomicBool, Ordering},
+};
+
+use bevy::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::SimTick;
+
+/// How the robot's head camera looks at the table (report section 4, "head camera").
+///
+/// Where it is mounted follows from the table, in front of which the robot stands.
+#[derive(Resource, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HeadCamera {
+    /// Angle of the neck joint H0 in radians; positive turns the view to the robot's left.
+    pub pan: f32,
+    /// Angle between the lower and the upper edge of the picture in radians, above 0 and below π.
+    pub vertical_fov: f32,
+    /// Make the angle between the left and the right edge equal to [`vertical_fov`](Self::vertical_fov), whatever the size
+    /// of the picture: its pixels are not square then, as in the pictures of the original program.
+    pub square_fov: bool,
+    /// Columns of the picture.
+    pub width: u32,
+    /// Rows of the picture.
+    pub height: u32,
+    /// Smooth edges, from four samples a pixel.
+    pub antialiasing: bool,
+}
+
+impl Default for HeadCamera {
+    fn default() -> Self {
+        Self {
+            pan: 0.0,
+            vertical_fov: FRAC_PI_3,
+            square_fov: false,
+            width: 200,
+            height: 150,
+            antialiasing: true,
+        }
+    }
+}
+
+/// What a camera has seen: one value a pixel in each list, row by row from the top, each row from the left.
+/// The pixel in column x of row y has index `y * width + x`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Picture {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Red, green and blue of each pixel as displayed, 0..=255; black where nothing is.
+    pub rgb: Vec<u8>,
+    /// How far ahead of the camera what is seen through the pixel's centre lies, in units along the axis of view;
+    /// infinity where nothing is.
+    pub depth: Vec<f32>,
+    /// Number of the object that is seen through the pixel's centre; 0 where nothing is.
+    pub objects: Vec<u32>,
+}
+
+impl Picture {
+    /// Makes it so many pixels large, without saying what they show.
+    pub fn resize(&mut self, width: u32, height: u32) {
+        let pixels = width as usize * height as usize;
+        self.width = width;
+        self.height = height;
+        self.rgb.resize(pixels * 3, 0);
+        self.depth.resize(pixels, f32::INFINITY);
+        self.objects.resize(pixels, 0);
+    }
+
+    /// Index of a pixel in [`depth`](Self::depth) and [`objects`](Self::objects), if there is such a pixel.
+    pub fn index(&self, column: u32, row: u32) -> Option<usize> {
+        (column < self.width && row < self.height)
+            .then_some(row as usize * self.width as usize + column as usize)
+    }
+
+    /// Red, green and blue of a pixel, if there is such a pixel.
+    pub fn color(&self, column: u32, row: u32) -> Option<[u8; 3]> {
+        let first = self.index(column, row)? * 3;
+        self.rgb.get(first..first + 3)?.try_into().ok()
+    }
+}
+
+/// The last picture of the head camera. Before the first one it has no pixels.
+#[derive(Resource, Clone, Debug, Default, PartialEq)]
+pub struct SensorImage {
+    /// The tick at whose end it was taken.
+    pub tick: SimTick,
+    /// The picture.
+    pub picture: Picture,
+    /// What the numbers in [`Picture::objects`] stand for: number 1 is the first entity, and so on. The table comes first,
+    /// if there is one, then the objects in the order of their creation.
+    pub shown: Vec<Entity>,
+}
+
+impl SensorImage {
+    /// The table or object that is seen through the centre of a pixel.
+    pub fn shown_at(&self, column: u32, row: u32) -> Option<Entity> {
+        let number = *self.picture.objects.get(self.picture.index(column, row)?)?;
+        self.shown.get((number as usize).checked_sub(1)?).copied()
+    }
+}
+
+/// Asks the head camera for a picture of the end of a tick. Without that it takes none.
+///
+/// It is asked before [`SimSystems::Sense`](crate::SimSystems::Sense) of that tick, and the [`SensorImage`] is there in
+/// [`SimSystems::Record`](crate::SimSystems::Record) of the same tick. Whoever asks needs only shared access, and asking
+/// twice is asking once, so it does not matter in which order several systems ask. While the simulation stands still, a
+/// demand waits.
+#[derive(Resource, Debug, Default)]
+pub struct PictureDemand(AtomicBool);
+
+impl PictureDemand {
+    /// Asks for a picture of this tick.
+    pub fn ask(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether a picture was asked for; afterwards none is.
+    pub fn take(&mut self) -> bool {
+        std::mem::take(self.0.get_mut())
+    }
+}
+
+/// Taking the picture, in [`SimSystems::Sense`](crate::SimSystems::Sense). What changes in that phase which objects there
+/// are comes before it.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PictureSystems;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn asking_twice_is_asking_once() {
+        let mut demand = PictureDemand::default();
+        assert!(!demand.take());
+        demand.ask();
+        demand.ask();
+        assert!(demand.take());
+        assert!(!demand.take());
+    }
+
+    #[test]
+    fn pixels_are_counted_from_the_top_left_row_by_row() {
+        let mut picture = Picture::default();
+        picture.resize(3, 2);
+        picture.rgb[3 * 4..3 * 5].copy_from_slice(&[7, 8, 9]);
+        assert_eq!(picture.index(1, 1), Some(4));
+        assert_eq!(picture.color(1, 1), Some([7, 8, 9]));
+        assert_eq!(picture.color(3, 0), None);
+        assert_eq!(picture.color(0, 2), None);
+    }
+
+    #[test]
+    fn a_number_stands_for_an_entity() {
+        let mut world = World::new();
+        let [table, block] = std::array::from_fn(|_| world.spawn_empty().id());
+        let mut image = SensorImage {
+            shown: vec![table, block],
+            ..default()
+        };
+        image.picture.resize(4, 1);
+        image.picture.objects.copy_from_slice(&[0, 1, 2, 3]);
+        let shown = [0, 1, 2, 3, 4].map(|column| image.shown_at(column, 0));
+        assert_eq!(shown, [None, Some(table), Some(block), None, None]);
+    }
+}
