@@ -7,6 +7,7 @@
 //! | [`xml`] | task files |
 //! | [`physics`] | Rapier, configured |
 //! | [`scene`] | the table and what comes and goes on it |
+//! | [`demonstrator`] | the invisible hands |
 //!
 //! [`TabletopSimPlugins`] is the simulator without a window. It runs on Bevy's `MinimalPlugins`:
 //!
@@ -27,6 +28,7 @@
 //! ```
 
 pub use tabletop_core as core;
+pub use tabletop_demonstrator as demonstrator;
 pub use tabletop_physics as physics;
 pub use tabletop_scene as scene;
 pub use tabletop_xml as xml;
@@ -52,7 +54,8 @@ pub mod prelude {
 }
 
 /// Everything that simulates, nothing that shows: [`CorePlugin`](core::CorePlugin), [`XmlPlugin`](xml::XmlPlugin),
-/// [`PhysicsPlugin`](physics::PhysicsPlugin) and [`ScenePlugin`](scene::ScenePlugin).
+/// [`PhysicsPlugin`](physics::PhysicsPlugin), [`ScenePlugin`](scene::ScenePlugin) and
+/// [`DemonstratorPlugin`](demonstrator::DemonstratorPlugin).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TabletopSimPlugins;
 
@@ -63,5 +66,6 @@ impl PluginGroup for TabletopSimPlugins {
             .add(xml::XmlPlugin)
             .add(physics::PhysicsPlugin::default())
             .add(scene::ScenePlugin)
+            .add(demonstrator::DemonstratorPlugin)
     }
 }

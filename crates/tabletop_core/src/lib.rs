@@ -25,6 +25,7 @@ mod message;
 mod number;
 mod object;
 mod pose;
+mod ray;
 mod recording;
 mod scene;
 mod sensor;
@@ -42,7 +43,7 @@ pub use recording::{History, Recording};
 pub use scene::{ChainSpec, Joint, JointKind, JointSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
 pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage};
 pub use shape::{Part, Primitive, Shape, Solid};
-pub use user::{KeySystems, UserCamera};
+pub use user::{DragPlane, KeySystems, Orbit, UserCamera};
 
 use bevy::prelude::*;
 
@@ -72,6 +73,8 @@ impl Plugin for CorePlugin {
     fn build(&self, app: &mut App) {
         app.add_message::<SimCommand>()
             .add_message::<SimFact>()
+            .add_message::<Orbit>()
+            .init_resource::<DragPlane>()
             .init_resource::<Hands>()
             .init_resource::<History>()
             .init_resource::<Recording>()

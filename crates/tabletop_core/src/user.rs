@@ -1,6 +1,10 @@
 //! What the window's view and its panels must agree on.
 
+use std::f32::consts::FRAC_PI_2;
+
 use bevy::prelude::*;
+
+use crate::Table;
 
 /// Marks the camera through which the user looks. The view makes it; the panels are drawn over its picture.
 #[derive(Component, Clone, Copy, Debug, Default)]
@@ -10,3 +14,81 @@ pub struct UserCamera;
 /// keyboard.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct KeySystems;
+
+/// The upright plane through what the selected hand holds, in which the mouse drags it (report section 4, figure 8g).
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
+pub struct DragPlane {
+    /// How far the plane is turned about Z, in radians. At 0 it lies along X and faces somebody who looks along Y.
+    pub heading: f32,
+    /// Whether the plane at right angles stands in for it at the moment.
+    pub is_perpendicular: bool,
+}
+
+impl DragPlane {
+    /// The plane that is seen from the front by somebody who looks in this direction.
+    pub fn facing(direction_of_view: Vec3) -> Self {
+        Self {
+            heading: (-direction_of_view.x).atan2(direction_of_view.y),
+            is_perpendicular: false,
+        }
+    }
+
+    /// The rotation about Z that brings the plane along X and Z to where it is shown.
+    pub fn rotation(self) -> Quat {
+        let quarter = if self.is_perpendicular {
+            FRAC_PI_2
+        } else {
+            0.0
+        };
+        Quat::from_rotation_z(self.heading + quarter)
+    }
+
+    /// The level direction at right angles to it, away from whom it faces.
+    pub fn normal(self) -> Vec3 {
+        self.rotation() * Vec3::Y
+    }
+
+    /// Length of the sides of the square of it that is used, in units.
+    pub fn side(table: &Table) -> f32 {
+        4.0 * table.xspan
+    }
+}
+
+/// The user's camera is to go round the vertical line through a point, and keep looking at it from the same side.
+#[derive(Message, Clone, Copy, Debug, PartialEq)]
+pub struct Orbit {
+    /// A point of the line, in units.
+    pub center: Vec3,
+    /// How far, in radians, counter-clockwise as seen from above.
+    pub angle: f32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_plane_faces_the_viewer_whether_or_not_he_looks_down() {
+        for (view, normal) in [
+            (Vec3::new(0.0, 1.0, -1.0), Vec3::Y),
+            (Vec3::new(-2.0, 0.0, 0.3), Vec3::NEG_X),
+            (Vec3::new(1.0, 1.0, 0.0), Vec3::new(1.0, 1.0, 0.0)),
+        ] {
+            let plane = DragPlane::facing(view);
+            assert!((plane.normal() - normal.normalize()).length() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn the_perpendicular_plane_is_a_quarter_turn_away() {
+        let plane = DragPlane {
+            heading: 0.3,
+            is_perpendicular: true,
+        };
+        let shown = DragPlane {
+            heading: 0.3 + FRAC_PI_2,
+            is_perpendicular: false,
+        };
+        assert!((plane.normal() - shown.normal()).length() < 1e-6);
+    }
+}

@@ -148,6 +148,8 @@ pub fn integration_parameters() -> IntegrationParameters {
         contact_softness: stiff_contacts,
         static_contact_softness: stiff_contacts,
         warmstart_joints: true,
+        // What was squeezed comes apart gently.
+        normalized_max_corrective_velocity: 0.3,
         // Old contacts would be reused after moves of up to half a unit.
         contact_recycling: false,
         ..default()

@@ -1,0 +1,161 @@
+//! Moving what hands hold.
+
+use bevy::prelude::*;
+use bevy_rapier3d::{prelude::*, rapier::prelude as rapier};
+use tabletop_core::{Hand, Hands, Pose, TICK_SECONDS};
+
+use crate::{
+    grasp::{Carry, CarryTarget},
+    obstacles::{Convex, convex_parts, nearest, slide},
+};
+
+/// Fastest a hand moves, in units/s, and turns, in rad/s.
+const FASTEST: (f32, f32) = (40.0, 10.0);
+
+/// Fastest a hand pushes free objects, in units/s.
+const FASTEST_PUSH: f32 = 6.0;
+
+/// Depth, in units, to which a free object may be squeezed against something before the hand yields.
+const MOST_SQUEEZE: f32 = 0.002;
+
+/// Part of the way to its target that a jointed object is drawn in a tick.
+const DRAWN_PER_TICK: f32 = 0.25;
+
+/// Moves every held object towards its target for one tick, and keeps awake what is near it: Rapier lets things fall into
+/// sleeping ones for a tick.
+pub(crate) fn carry(
+    hands: Res<Hands>,
+    rapier: ReadRapierContext,
+    mut held: Query<(&Carry, &CarryTarget, &mut Transform, Option<&mut Velocity>)>,
+    mut sleeping: Query<&mut Sleeping>,
+) -> Result {
+    let rapier = rapier.single()?;
+    for object in Hand::ALL.into_iter().filter_map(|hand| hands.held_by(hand)) {
+        let Ok((carry, target, mut transform, velocity)) = held.get_mut(object) else {
+            continue;
+        };
+        let here = Pose::from(&*transform);
+        if let (Carry::AgainstJoints, Some(mut velocity)) = (carry, velocity) {
+            *velocity = drawn(here, target.0);
+            continue;
+        }
+        let Some(collider) = collider_of(&rapier, object) else {
+            continue;
+        };
+        let next = advanced(here, target.0);
+        let near = Near::new(&rapier, collider, here, next);
+        let next = carried(collider, here, next, &near);
+        transform.set_if_neq(next.into());
+        for neighbour in near.sleeping {
+            if let Ok(mut sleeping) = sleeping.get_mut(neighbour) {
+                sleeping.sleeping = false;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn collider_of<'a>(rapier: &'a RapierContext, object: Entity) -> Option<&'a rapier::Collider> {
+    let handle = rapier.colliders.entity2collider().get(&object)?;
+    rapier.colliders.colliders.get(*handle)
+}
+
+/// Where an object comes to that is carried freely from one pose to another.
+fn carried(collider: &rapier::Collider, here: Pose, mut next: Pose, near: &Near) -> Pose {
+    let held = convex_parts(Pose::IDENTITY, collider.shared_shape());
+    next.location = here.location + pushing(next.location - here.location, &held, here, &near.free);
+    slide(&held, here, next, &near.immovable)
+}
+
+/// The part of a step that is left when free objects are reached in one tick and pushed from the next one on, no faster
+/// than a hand pushes, and not squeezed.
+fn pushing(mut step: Vec3, held: &[Convex], here: Pose, free: &[Convex]) -> Vec3 {
+    let reach = step.length() + MOST_SQUEEZE;
+    for nearest in nearest(held, here, free, reach) {
+        let squeeze = (-nearest.distance / MOST_SQUEEZE).max(0.0);
+        let push = match squeeze < 1.0 {
+            true => FASTEST_PUSH * TICK_SECONDS * (1.0 - squeeze),
+            false => MOST_SQUEEZE * (1.0 - squeeze) / 2.0,
+        };
+        let approach = -step.dot(nearest.away);
+        step += nearest.away * (approach - push.max(nearest.distance)).max(0.0);
+    }
+    step
+}
+
+/// A tick's part of the way to the target.
+fn advanced(here: Pose, target: Pose) -> Pose {
+    let way = target.location - here.location;
+    let way = way.clamp_length_max(FASTEST.0 * TICK_SECONDS);
+    let location = if way == target.location - here.location {
+        target.location
+    } else {
+        here.location + way
+    };
+    let angle = here.rotation.angle_between(target.rotation);
+    let most = FASTEST.1 * TICK_SECONDS;
+    let rotation = if angle <= most {
+        target.rotation
+    } else {
+        here.rotation
+            .slerp(target.rotation, most / angle)
+            .normalize()
+    };
+    Pose::new(location, rotation)
+}
+
+/// The velocity that draws a jointed object to its target.
+fn drawn(here: Pose, target: Pose) -> Velocity {
+    let per_second = DRAWN_PER_TICK / TICK_SECONDS;
+    let turn = (target.rotation * here.rotation.inverse()).to_scaled_axis();
+    Velocity {
+        linear: ((target.location - here.location) * per_second).clamp_length_max(FASTEST.0),
+        angular: (turn * per_second).clamp_length_max(FASTEST.1),
+    }
+}
+
+/// What is near the way of a carried object, as convex parts in the frame of the world.
+struct Near {
+    /// What it cannot pass: everything that does not move by itself.
+    immovable: Vec<Convex>,
+    /// What it pushes.
+    free: Vec<Convex>,
+    /// The free objects that sleep.
+    sleeping: Vec<Entity>,
+}
+
+impl Near {
+    fn new(rapier: &RapierContext, carried: &rapier::Collider, here: Pose, next: Pose) -> Self {
+        let bounds = carried.shape().compute_local_bounding_sphere();
+        let reach = bounds.center().length() + bounds.radius() + 0.1;
+        let low = here.location.min(next.location) - reach;
+        let high = here.location.max(next.location) + reach;
+        let mut near = Self {
+            immovable: Vec::new(),
+            free: Vec::new(),
+            sleeping: Vec::new(),
+        };
+        for (_, other) in rapier.colliders.colliders.iter() {
+            let bounds = other.compute_aabb();
+            let is_near = bounds.mins.cmple(high).all() && bounds.maxs.cmpge(low).all();
+            if !is_near || other.is_sensor() || other.parent() == carried.parent() {
+                continue;
+            }
+            let at = Pose::new(other.position().translation, other.position().rotation);
+            let parts = convex_parts(at, other.shared_shape());
+            let parent = other.parent();
+            match parent.and_then(|parent| rapier.rigidbody_set.bodies.get(parent)) {
+                Some(body) if body.is_dynamic() => {
+                    near.free.extend(parts);
+                    if body.is_sleeping() {
+                        let entity = parent
+                            .and_then(|parent| rapier.rigidbody_set.rigid_body_entity(parent));
+                        near.sleeping.extend(entity);
+                    }
+                }
+                _ => near.immovable.extend(parts),
+            }
+        }
+        near
+    }
+}

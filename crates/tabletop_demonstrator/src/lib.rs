@@ -1,0 +1,65 @@
+//! The demonstrator's invisible hands (report section 4): they grasp objects, move and turn them, let go of them and
+//! destroy them.
+//!
+//! Hands are told what to do by [`SimCommand`](tabletop_core::SimCommand)s and what came of it is told by
+//! [`SimFact`](tabletop_core::SimFact)s. A held object does not fall; it slides along what it cannot pass (the table,
+//! fixed objects, what another hand holds) and pushes what is free. An object that joints hold as well, a chain's link or
+//! a lid, follows them.
+//!
+//! ```
+//! use bevy::prelude::*;
+//! use tabletop_core::prelude::*;
+//! use tabletop_demonstrator::DemonstratorPlugin;
+//! use tabletop_physics::PhysicsPlugin;
+//! use tabletop_scene::ScenePlugin;
+//!
+//! let mut app = App::new();
+//! app.add_plugins((MinimalPlugins, CorePlugin::default(), PhysicsPlugin::default()))
+//!     .add_plugins((ScenePlugin, DemonstratorPlugin))
+//!     .start();
+//! let block = ObjectSpec {
+//!     id: "block".into(),
+//!     pose: Pose::at(Vec3::new(0.0, 0.0, 0.5)),
+//!     mass: 1.0,
+//!     shape: Shape::Block { span: Vec3::ONE, color: Rgb::GRAY },
+//!     descriptions: vec![],
+//! };
+//! let scene = SceneSpec { items: vec![SceneItem::Object(block)], ..default() };
+//! app.world_mut().write_message(SimCommand::SetScene(Box::new(scene)));
+//! app.step(1);
+//!
+//! let hand = Hand::Right;
+//! let location = Vec3::new(3.0, 1.0, 4.0);
+//! app.world_mut().write_message(SimCommand::Grasp { hand, object: "block".into() });
+//! app.world_mut().write_message(SimCommand::MoveTo { hand, location });
+//! app.step(60);
+//!
+//! let block = app.world().resource::<Hands>().held_by(hand).unwrap();
+//! assert_eq!(app.world().get::<Transform>(block).unwrap().translation, location);
+//! ```
+
+mod carry;
+mod grasp;
+mod obstacles;
+mod rules;
+
+pub use grasp::{Carry, CarryTarget};
+
+use bevy::prelude::*;
+use tabletop_core::SimSystems;
+
+/// Adds the hands. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct DemonstratorPlugin;
+
+impl Plugin for DemonstratorPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(
+            FixedUpdate,
+            (grasp::let_fall, grasp::obey, carry::carry)
+                .chain()
+                .in_set(SimSystems::Actuate),
+        )
+        .add_observer(grasp::note_lost);
+    }
+}

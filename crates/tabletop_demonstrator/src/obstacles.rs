@@ -1,0 +1,247 @@
+//! What a held object cannot pass, and how it slides along it.
+
+use bevy::prelude::*;
+use bevy_rapier3d::{parry, rapier::prelude as rapier};
+use tabletop_core::Pose;
+
+/// A convex solid with its pose in the frame of what it is a part of.
+#[derive(Clone)]
+pub(crate) struct Convex {
+    pub pose: Pose,
+    pub shape: rapier::SharedShape,
+}
+
+/// The convex parts of a collider's shape.
+pub(crate) fn convex_parts(pose: Pose, shape: &rapier::SharedShape) -> Vec<Convex> {
+    match shape.as_compound() {
+        Some(compound) => compound
+            .shapes()
+            .iter()
+            .map(|(place, shape)| Convex {
+                pose: pose * Pose::new(place.translation, place.rotation),
+                shape: shape.clone(),
+            })
+            .collect(),
+        None => vec![Convex {
+            pose,
+            shape: shape.clone(),
+        }],
+    }
+}
+
+/// Depths, in units, that count as touching and not as inside.
+const TOUCHING: f32 = 1e-4;
+
+/// Least step towards the target when something is near, in units: thin against the thinnest wall.
+const STEP: f32 = 0.02;
+
+/// Steps a move may take; a move that needs more goes on in the next tick.
+const MOST_STEPS: usize = 96;
+
+/// Rounds in which an object is pushed out of what it has entered.
+const MOST_PUSHES: usize = 12;
+
+/// The nearest points of a part of the held object and an obstacle.
+pub(crate) struct Nearest {
+    /// How far they are apart; negative inside.
+    pub distance: f32,
+    /// From the obstacle towards the held object.
+    pub away: Vec3,
+}
+
+/// Where each part of the held object is near each obstacle.
+pub(crate) fn nearest<'a>(
+    held: &'a [Convex],
+    at: Pose,
+    obstacles: &'a [Convex],
+    within: f32,
+) -> impl Iterator<Item = Nearest> + 'a {
+    held.iter().flat_map(move |part| {
+        let part_at = to_rapier(at * part.pose);
+        obstacles.iter().filter_map(move |obstacle| {
+            let obstacle_at = to_rapier(obstacle.pose);
+            parry::query::contact(
+                &part_at,
+                &*part.shape,
+                &obstacle_at,
+                &*obstacle.shape,
+                within,
+            )
+            .ok()
+            .flatten()
+            .map(|contact| Nearest {
+                distance: contact.dist,
+                away: contact.normal2,
+            })
+        })
+    })
+}
+
+fn to_rapier(pose: Pose) -> rapier::Pose {
+    rapier::Pose::from_parts(pose.location, pose.rotation)
+}
+
+/// The pose without depth: pushed out of what the object has entered, along the shortest ways. `None` if there is no way
+/// out. Every direction of a push is added to `pushed`.
+fn pushed_out(
+    held: &[Convex],
+    mut at: Pose,
+    obstacles: &[Convex],
+    pushed: &mut Vec<Vec3>,
+) -> Option<Pose> {
+    for _ in 0..MOST_PUSHES {
+        let deepest = nearest(held, at, obstacles, 0.0)
+            .min_by(|a, b| a.distance.total_cmp(&b.distance))
+            .filter(|nearest| nearest.distance < -TOUCHING);
+        let Some(deepest) = deepest else {
+            return Some(at);
+        };
+        at.location -= deepest.away * deepest.distance;
+        pushed.push(deepest.away);
+    }
+    None
+}
+
+/// Where an object comes to that moves from `from` to `to` and slides along what it cannot pass. It turns first, if there
+/// is room for it. The result touches obstacles at most; if `from` is inside one, it is a way out or `from` itself.
+pub(crate) fn slide(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex]) -> Pose {
+    let mut at = from;
+    if from.rotation != to.rotation {
+        let turned = Pose::new(from.location, to.rotation);
+        if let Some(room) = pushed_out(held, turned, obstacles, &mut Vec::new()) {
+            at = room;
+        }
+    }
+    let mut sliding_along: Vec<Vec3> = Vec::new();
+    for _ in 0..MOST_STEPS {
+        let way = clipped(to.location - at.location, &sliding_along);
+        let length = way.length();
+        if length < 1e-6 {
+            if way == to.location - at.location {
+                at.location = to.location;
+            }
+            break;
+        }
+        let step = free_way(held, at, way / length, length, obstacles);
+        let ahead = Pose::new(at.location + way / length * step, at.rotation);
+        let mut pushed = Vec::new();
+        let Some(next) = pushed_out(held, ahead, obstacles, &mut pushed) else {
+            break;
+        };
+        let is_stuck = next.location.distance(at.location) < 1e-5;
+        if is_stuck && pushed.iter().all(|away| sliding_along.contains(away)) {
+            break;
+        }
+        sliding_along.extend(pushed);
+        at = next;
+    }
+    at
+}
+
+/// How far the object may go in a direction: convex solids that are some distance apart stay apart while they come
+/// nearer by less than that; but at least a step, from which it is pushed out again.
+fn free_way(held: &[Convex], at: Pose, direction: Vec3, length: f32, obstacles: &[Convex]) -> f32 {
+    nearest(held, at, obstacles, length)
+        .map(|nearest| {
+            let approach = -direction.dot(nearest.away);
+            match approach > 1e-4 {
+                true => (nearest.distance / approach).max(STEP),
+                false => length,
+            }
+        })
+        .fold(length, f32::min)
+}
+
+/// What is left of a way when it may not go against any of these normals.
+fn clipped(way: Vec3, normals: &[Vec3]) -> Vec3 {
+    let mut clipped = way;
+    for &normal in normals {
+        clipped -= normal * clipped.dot(normal).min(0.0);
+    }
+    // In a corner, clipping against one plane may turn the way into another.
+    if normals.iter().any(|normal| clipped.dot(*normal) < -1e-5) {
+        return Vec3::ZERO;
+    }
+    clipped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cuboid(span: Vec3, location: Vec3) -> Convex {
+        Convex {
+            pose: Pose::at(location),
+            shape: rapier::SharedShape::cuboid(span.x / 2.0, span.y / 2.0, span.z / 2.0),
+        }
+    }
+
+    fn table() -> Convex {
+        cuboid(Vec3::new(20.0, 12.0, 4.0), Vec3::NEG_Z * 2.0)
+    }
+
+    fn unit_block() -> [Convex; 1] {
+        [cuboid(Vec3::ONE, Vec3::ZERO)]
+    }
+
+    fn moved(from: Vec3, to: Vec3, obstacles: &[Convex]) -> Vec3 {
+        slide(&unit_block(), Pose::at(from), Pose::at(to), obstacles).location
+    }
+
+    #[test]
+    fn nothing_in_the_way_means_exactly_there() {
+        let to = Vec3::new(3.0, -2.0, 5.0);
+        assert_eq!(moved(Vec3::Z * 3.0, to, &[table()]), to);
+        assert_eq!(moved(Vec3::Z * 3.0, to, &[]), to);
+    }
+
+    #[test]
+    fn a_block_slides_along_the_table_to_the_point_above_the_target() {
+        let at = moved(
+            Vec3::new(-4.0, 0.0, 2.0),
+            Vec3::new(4.0, 1.0, -3.0),
+            &[table()],
+        );
+        assert!((at - Vec3::new(4.0, 1.0, 0.5)).length() < 0.01, "{at}");
+    }
+
+    #[test]
+    fn a_block_stops_at_a_thin_wall_and_never_enters_it() {
+        let wall = cuboid(Vec3::new(0.05, 20.0, 20.0), Vec3::ZERO);
+        let at = moved(
+            Vec3::new(-5.0, 0.0, 3.0),
+            Vec3::new(50.0, 0.0, 3.0),
+            &[table(), wall],
+        );
+        assert!((at.x + 0.525).abs() < 0.01, "{at}");
+    }
+
+    #[test]
+    fn a_block_goes_into_a_corner_and_stays_there() {
+        let wall = cuboid(Vec3::new(1.0, 20.0, 20.0), Vec3::X * 3.0);
+        let at = moved(
+            Vec3::new(0.0, 0.0, 3.0),
+            Vec3::new(9.0, 0.0, -9.0),
+            &[table(), wall],
+        );
+        assert!((at - Vec3::new(2.0, 0.0, 0.5)).length() < 0.01, "{at}");
+    }
+
+    #[test]
+    fn a_block_on_the_table_rises_when_it_is_turned() {
+        let from = Pose::at(Vec3::Z * 0.5);
+        let to = Pose::from_degrees(from.location, Vec3::X * 45.0);
+        let at = slide(&unit_block(), from, to, &[table()]);
+        assert!(at.rotation.angle_between(to.rotation) < 1e-3);
+        assert!((at.location.z - 0.5f32.sqrt()).abs() < 0.01, "{at:?}");
+    }
+
+    #[test]
+    fn a_block_between_two_walls_is_not_turned() {
+        let walls = [-1.05, 1.05].map(|x| cuboid(Vec3::new(1.0, 20.0, 20.0), Vec3::X * x));
+        let from = Pose::at(Vec3::Z * 3.0);
+        let to = Pose::from_degrees(from.location, Vec3::Z * 45.0);
+        let at = slide(&unit_block(), from, to, &walls);
+        assert_eq!(at.rotation, from.rotation);
+    }
+}
