@@ -3,8 +3,9 @@
 use bevy::{ecs::system::SystemState, prelude::*};
 use bevy_rapier3d::prelude::*;
 use tabletop_core::{Hand, Hands, Held, Joint, ObjectIndex, ObjectSpec, Pose, SimCommand, SimFact};
+use tabletop_physics::remove_object;
 
-use crate::rules;
+use crate::{history, rules};
 
 /// Where a held object is to be.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
@@ -40,7 +41,7 @@ pub(crate) fn let_fall(
     }
 }
 
-/// Carries out the commands to hands one after the other.
+/// Carries out the commands to hands, one after the other.
 pub(crate) fn obey(
     world: &mut World,
     reader: &mut SystemState<MessageReader<SimCommand>>,
@@ -98,7 +99,7 @@ fn grasp(world: &mut World, hand: Hand, id: &str) {
         release(world, other);
     }
 
-    world.write_message(SimFact::SegmentBegun);
+    history::begin_segment(world);
     let is_jointed = world
         .query::<&Joint>()
         .iter(world)
@@ -128,7 +129,7 @@ fn release(world: &mut World, hand: Hand) {
     let Some((object, id)) = held_by(world, hand) else {
         return;
     };
-    world.write_message(SimFact::SegmentBegun);
+    history::begin_segment(world);
     world.resource_mut::<Hands>().set_held(hand, None);
     let is_fixed = world
         .get::<ObjectSpec>(object)
@@ -153,9 +154,12 @@ fn destroy(world: &mut World, hand: Hand) {
         refuse(world, format!("{hand} holds nothing that it could destroy"));
         return;
     };
-    world.write_message(SimFact::SegmentBegun);
+    history::begin_segment(world);
     world.resource_mut::<Hands>().set_held(hand, None);
-    world.despawn(object);
+    world
+        .entity_mut(object)
+        .remove::<(Held, CarryTarget, Carry)>();
+    remove_object(world, object);
     world.write_message(SimFact::Destroyed { hand, id });
 }
 

@@ -40,6 +40,7 @@
 
 mod carry;
 mod grasp;
+mod history;
 mod obstacles;
 mod rules;
 
@@ -54,12 +55,19 @@ pub struct DemonstratorPlugin;
 
 impl Plugin for DemonstratorPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(
-            FixedUpdate,
-            (grasp::let_fall, grasp::obey, carry::carry)
-                .chain()
-                .in_set(SimSystems::Actuate),
-        )
-        .add_observer(grasp::note_lost);
+        app.init_resource::<history::Snapshots>()
+            .add_systems(
+                FixedUpdate,
+                history::undo_and_redo
+                    .after(SimSystems::Ingest)
+                    .before(SimSystems::Actuate),
+            )
+            .add_systems(
+                FixedUpdate,
+                (grasp::let_fall, grasp::obey, carry::carry)
+                    .chain()
+                    .in_set(SimSystems::Actuate),
+            )
+            .add_observer(grasp::note_lost);
     }
 }

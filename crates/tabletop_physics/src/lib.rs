@@ -30,12 +30,16 @@
 mod body;
 mod joint;
 mod mass;
+mod parking;
 mod settings;
+mod snapshot;
 mod transforms;
 
 pub use body::collider;
 pub use mass::mass_properties;
+pub use parking::{KeepRemoved, Parked, remove_object};
 pub use settings::PhysicsSettings;
+pub use snapshot::PhysicsSnapshot;
 
 use bevy::{ecs::schedule::ScheduleConfigs, ecs::system::ScheduleSystem, prelude::*};
 use bevy_rapier3d::{
@@ -64,7 +68,8 @@ impl Plugin for PhysicsPlugin {
         app.add_message::<CollisionEvent>()
             .add_message::<ContactForceEvent>()
             .add_message::<MassModifiedEvent>();
-        app.insert_resource(self.settings)
+        app.init_resource::<KeepRemoved>()
+            .insert_resource(self.settings)
             .insert_resource(TimestepMode::Fixed {
                 dt: TICK_SECONDS,
                 substeps: 1,

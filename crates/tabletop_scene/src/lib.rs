@@ -55,6 +55,7 @@ impl Plugin for ScenePlugin {
             ),
         )
         .add_observer(life::note_created)
-        .add_observer(life::note_deleted);
+        .add_observer(life::note_despawned)
+        .add_observer(life::note_parked);
     }
 }

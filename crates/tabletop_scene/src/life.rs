@@ -1,7 +1,15 @@
 //! How objects appear on the table and go from it.
 
-use bevy::{ecs::system::SystemState, prelude::*};
+use bevy::{
+    ecs::{
+        entity_disabling::Disabled,
+        system::{SystemParam, SystemState},
+    },
+    prelude::*,
+};
 use tabletop_core::{Held, Joint, ObjectIndex, ObjectSpec, SceneSpec, SimCommand, SimFact, Table};
+
+use tabletop_physics::{Parked, remove_object};
 
 use crate::{IdAllocator, assemble};
 
@@ -23,23 +31,54 @@ pub(crate) fn note_created(
     Ok(())
 }
 
-pub(crate) fn note_deleted(
+pub(crate) fn note_despawned(
     remove: On<Remove, ObjectSpec>,
     objects: Query<&ObjectSpec>,
     joints: Query<(Entity, &Joint)>,
-    mut index: ResMut<ObjectIndex>,
-    mut facts: MessageWriter<SimFact>,
+    mut forget: Forget,
     mut commands: Commands,
-) -> Result {
-    let id = &objects.get(remove.entity)?.id;
-    index.remove(id);
+) {
+    let Ok(spec) = objects.get(remove.entity) else {
+        return; // It was parked before.
+    };
     for (joint, connection) in &joints {
         if connection.objects.contains(&remove.entity) {
             commands.entity(joint).try_despawn();
         }
     }
-    facts.write(SimFact::ObjectDeleted { id: id.clone() });
+    forget.object(spec);
+}
+
+pub(crate) fn note_parked(
+    park: On<Add, Parked>,
+    objects: Query<&ObjectSpec>,
+    joints: Query<(Entity, &Joint)>,
+    mut forget: Forget,
+    mut commands: Commands,
+) -> Result {
+    for (joint, connection) in &joints {
+        if connection.objects.contains(&park.entity) {
+            commands.entity(joint).insert(Disabled);
+        }
+    }
+    forget.object(objects.get(park.entity)?);
     Ok(())
+}
+
+/// What knows of an object that has gone.
+#[derive(SystemParam)]
+pub(crate) struct Forget<'w> {
+    index: ResMut<'w, ObjectIndex>,
+    facts: MessageWriter<'w, SimFact>,
+}
+
+impl Forget<'_> {
+    fn object(&mut self, spec: &ObjectSpec) {
+        self.index.remove(&spec.id);
+        self.facts.write(SimFact::ObjectDeleted {
+            id: spec.id.clone(),
+        });
+    }
 }
 
 /// Carries out the commands one after the other, each on what the one before has left.
@@ -67,7 +106,7 @@ fn set_scene(world: &mut World, scene: &SceneSpec) {
     clear(world);
     let mut tables = world.query_filtered::<Entity, With<Table>>();
     for table in tables.iter(world).collect::<Vec<_>>() {
-        world.despawn(table);
+        remove_object(world, table);
     }
 
     let held = world.resource::<ObjectIndex>().ids().map(str::to_owned);
@@ -95,7 +134,7 @@ fn clear(world: &mut World) {
     let objects: Vec<_> = world.resource::<ObjectIndex>().iter().collect();
     for object in objects {
         if world.get::<Held>(object).is_none() {
-            world.despawn(object);
+            remove_object(world, object);
         }
     }
 }
@@ -110,7 +149,7 @@ pub(crate) fn remove_fallen(
             continue;
         };
         if transform.translation.z < LOWEST_Z {
-            commands.entity(object).despawn();
+            commands.queue(move |world: &mut World| remove_object(world, object));
         }
     }
 }

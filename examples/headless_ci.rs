@@ -1,0 +1,73 @@
+//! A demonstration without a window, checked as a test would check it: `cargo run --release --example headless_ci`.
+//!
+//! The simulator runs on Bevy's `MinimalPlugins`. What the demonstrator does is written as commands, what came of it is
+//! read from facts.
+#![expect(clippy::print_stdout, reason = "an example shows what it does")]
+
+use bevy::prelude::*;
+use tabletop::prelude::*;
+
+/// Everything that was told so far.
+#[derive(Resource, Default)]
+struct Told(Vec<SimFact>);
+
+fn listen(mut told: ResMut<Told>, mut facts: MessageReader<SimFact>) {
+    told.0.extend(facts.read().cloned());
+}
+
+fn main() -> Result {
+    let mut app = headless_app();
+    app.init_resource::<Told>()
+        .add_systems(FixedUpdate, listen.in_set(SimSystems::Record));
+
+    let hand = Hand::Right;
+    let object = "RedBlock".to_owned();
+    let on_top = Vec3::new(-2.0, 0.0, 3.0);
+    for (command, ticks) in [
+        (SimCommand::LoadTask("tablesetup/default.xml".into()), 60),
+        (SimCommand::Grasp { hand, object }, 1),
+        (
+            SimCommand::MoveBy {
+                hand,
+                offset: Vec3::Z * 4.0,
+            },
+            30,
+        ),
+        (
+            SimCommand::MoveTo {
+                hand,
+                location: on_top + Vec3::Z * 2.0,
+            },
+            30,
+        ),
+        (
+            SimCommand::MoveTo {
+                hand,
+                location: on_top,
+            },
+            30,
+        ),
+        (SimCommand::Release(hand), 120),
+    ] {
+        app.world_mut().write_message(command);
+        app.step(ticks);
+    }
+
+    let world = app.world();
+    for fact in &world.resource::<Told>().0 {
+        println!("{fact:?}");
+    }
+    let red_block = world
+        .resource::<ObjectIndex>()
+        .get("RedBlock")
+        .ok_or("there is no RedBlock")?;
+    let location = world
+        .get::<Transform>(red_block)
+        .ok_or("RedBlock is nowhere")?
+        .translation;
+    println!("RedBlock is at {location}");
+    if location.distance(on_top) > 0.01 {
+        return Err(format!("RedBlock should be on GreenBlock, at {on_top}").into());
+    }
+    Ok(())
+}
