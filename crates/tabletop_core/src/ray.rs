@@ -155,12 +155,7 @@ mod tests {
     fn a_small_thing_far_away_is_still_met() {
         let ball = Solid::Ball(0.01);
         assert_distance(
-            distance(
-                ball,
-                Pose::IDENTITY,
-                [0.005, 0.0, 1000.0],
-                [0.0, 0.0, -1.0],
-            ),
+            distance(ball, Pose::IDENTITY, [0.005, 0.0, 1000.0], [0.0, 0.0, -1.0]),
             999.9913,
         );
     }

@@ -1,10 +1,15 @@
-//! Keys and panels of the window. Every key and button becomes a [`SimCommand`](tabletop_core::SimCommand); what came
+//! Keys, mouse and panels of the window. Everything that the user does becomes a [`SimCommand`](tabletop_core::SimCommand); what came
 //! of it is read from [`SimFact`](tabletop_core::SimFact)s.
 //!
-//! | key | what it does |
+//! | key, mouse | what it does |
 //! |---|---|
 //! | Space | pause, resume |
 //! | Esc | quit |
+//! | click on an object | the selected hand takes it |
+//! | drag what is held | moves it in the drag plane |
+//! | press anywhere else | lets it go |
+//! | `/`, Shift + `/` | turns the drag plane counter-clockwise, clockwise |
+//! | left Ctrl | shows the plane at right angles while held |
 //!
 //! Panels are drawn over the picture of the [`UserCamera`].
 //!
@@ -18,10 +23,23 @@
 //!     .run();
 //! ```
 
+mod bar;
+mod demo_tools;
+mod drag;
 mod keys;
+mod mouse;
 mod notices;
 mod pause;
+mod pick;
+mod plane;
+mod pointer;
+mod slider;
+mod style;
+#[cfg(test)]
+mod test_world;
+mod turns;
 
+pub use bar::{Panel, Panels};
 pub use notices::Notices;
 
 use bevy::prelude::*;
@@ -43,7 +61,18 @@ impl Plugin for GuiPlugin {
             bindless_mode_array_size: None,
         })
         .add_observer(draw_panels_over)
-        .add_plugins((keys::plugin, notices::plugin, pause::plugin));
+        .add_plugins((
+            style::plugin,
+            keys::plugin,
+            pointer::plugin,
+            mouse::plugin,
+            plane::plugin,
+            turns::plugin,
+            demo_tools::plugin,
+            bar::plugin,
+            notices::plugin,
+            pause::plugin,
+        ));
     }
 }
 

@@ -67,7 +67,7 @@ fn show_notices(mut contexts: EguiContexts, mut notices: ResMut<Notices>) {
     let mut is_open = true;
     egui::Window::new("Messages")
         .open(&mut is_open)
-        .default_pos(egui::pos2(10.0, 10.0))
+        .default_pos(egui::pos2(340.0, 8.0))
         .default_width(640.0)
         .default_height(160.0)
         .vscroll(true)

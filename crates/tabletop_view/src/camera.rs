@@ -7,7 +7,7 @@ use bevy::{
     prelude::*,
     render::view::NoIndirectDrawing,
 };
-use tabletop_core::{KeySystems, Paused, Table, UserCamera};
+use tabletop_core::{KeySystems, Orbit, Paused, Table, UserCamera};
 
 use crate::viewpoint::{Steering, Viewpoint};
 
@@ -25,7 +25,7 @@ pub(crate) fn plugin(app: &mut App) {
         )
         .add_systems(
             RunFixedMainLoop,
-            (look_at_first_table, place_camera)
+            (look_at_first_table, orbit, place_camera)
                 .chain()
                 .in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
         );
@@ -80,6 +80,14 @@ fn steer(
     for mut viewpoint in &mut cameras {
         let steered = viewpoint.steered(steering, time.delta_secs());
         viewpoint.set_if_neq(steered);
+    }
+}
+
+fn orbit(mut orbits: MessageReader<Orbit>, mut cameras: Query<&mut Viewpoint, With<UserCamera>>) {
+    for orbit in orbits.read() {
+        for mut viewpoint in &mut cameras {
+            *viewpoint = viewpoint.orbited(orbit.center, orbit.angle);
+        }
     }
 }
 
@@ -160,6 +168,18 @@ mod tests {
         app.insert_resource(Paused(false));
         app.update();
         assert!(location(&mut app).z > 14.0);
+    }
+
+    #[test]
+    fn the_camera_goes_round_a_point_when_asked() {
+        let mut app = app(10);
+        app.world_mut().write_message(Orbit {
+            center: Vec3::X,
+            angle: std::f32::consts::PI,
+        });
+        app.update();
+        let location = location(&mut app);
+        assert!((location - Vec3::new(2.0, 12.0, 14.0)).length() < 1e-4);
     }
 
     #[test]

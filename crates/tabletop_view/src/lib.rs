@@ -1,6 +1,8 @@
 //! What the window shows: the table and the objects on it in the light of the original program, through the user's
 //! camera.
 //!
+//! What the selected hand holds is outlined, with the plane in which the mouse drags it, its axes and its shadow line.
+//!
 //! The view only reads. For each object it makes a picture of its own, a [`Visual`], which follows the object smoothly
 //! at any frame rate; no entity of the simulation is touched.
 //!
@@ -17,9 +19,15 @@
 //!     .run();
 //! ```
 
+mod aids;
 mod camera;
+mod held;
 mod mesh;
 mod motion;
+mod polyhedron;
+mod section;
+mod sheet;
+mod silhouette;
 mod surface;
 mod viewpoint;
 mod visual;
@@ -36,6 +44,12 @@ pub struct ViewPlugin;
 
 impl Plugin for ViewPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins((surface::plugin, visual::plugin, camera::plugin));
+        app.add_plugins((
+            surface::plugin,
+            visual::plugin,
+            camera::plugin,
+            sheet::plugin,
+            aids::plugin,
+        ));
     }
 }

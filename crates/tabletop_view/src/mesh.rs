@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use tabletop_core::Solid;
 
 /// Sides of a cylinder, and of a ball around its axis.
-const SIDES: u32 = 64;
+pub(crate) const SIDES: u32 = 64;
 
 /// Rings of a ball from pole to pole.
 const RINGS: u32 = 32;

@@ -67,6 +67,16 @@ impl Viewpoint {
         Quat::from_rotation_z(self.heading) * Quat::from_rotation_x(FRAC_PI_2 + self.elevation)
     }
 
+    /// After going round the vertical line through a point by so many radians, counter-clockwise as seen from above.
+    pub fn orbited(self, center: Vec3, angle: f32) -> Self {
+        let around = Quat::from_rotation_z(angle);
+        Self {
+            location: center + around * (self.location - center),
+            heading: self.heading + angle,
+            ..self
+        }
+    }
+
     /// After so many seconds of being steered.
     pub fn steered(self, steering: Steering, seconds: f32) -> Self {
         let direction = steering.forward * self.direction()
@@ -147,6 +157,17 @@ mod tests {
         assert_near(level, Vec3::NEG_X);
         assert_near(turned.right(), Vec3::Y);
         assert_eq!(turned.location, start().location);
+    }
+
+    #[test]
+    fn it_goes_round_a_point_and_sees_it_in_the_same_place() {
+        let center = Vec3::new(3.0, 1.0, 5.0);
+        let seen_from =
+            |viewpoint: Viewpoint| viewpoint.rotation().inverse() * (center - viewpoint.location);
+        let orbited = start().orbited(center, FRAC_PI_2);
+        assert_near(seen_from(orbited), seen_from(start()));
+        assert_near(orbited.location, Vec3::new(16.0, -2.0, 14.0));
+        assert_near(orbited.right(), Vec3::Y);
     }
 
     #[test]

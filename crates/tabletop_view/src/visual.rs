@@ -2,7 +2,7 @@
 //! view never touches.
 
 use bevy::{ecs::entity::EntityHashMap, platform::collections::HashMap, prelude::*, time::Fixed};
-use tabletop_core::{ObjectSpec, Pose, Primitive, Rgb, Solid, Table};
+use tabletop_core::{ObjectSpec, Primitive, Rgb, Solid, Table};
 
 use crate::{mesh, motion::Motion, surface::Surface};
 
@@ -14,12 +14,23 @@ pub struct Visual {
     pub of: Entity,
 }
 
+/// The solids of a picture, in the frame of its body.
+#[derive(Component, Clone, Debug)]
+pub(crate) struct Drawn(pub Vec<Primitive>);
+
 /// What has a picture: the table and the objects.
 type Drawable = Or<(With<ObjectSpec>, With<Table>)>;
 
 /// The picture of each body.
 #[derive(Resource, Default)]
-struct Visuals(EntityHashMap<Entity>);
+pub(crate) struct Visuals(EntityHashMap<Entity>);
+
+impl Visuals {
+    /// The picture of a body.
+    pub fn of(&self, body: Entity) -> Option<Entity> {
+        self.0.get(&body).copied()
+    }
+}
 
 /// Meshes and materials that pictures share.
 #[derive(Resource)]
@@ -82,11 +93,8 @@ fn make_pictures(
         if visuals.0.contains_key(&body) {
             continue;
         }
-        let drawn = object
-            .map(|object| object.shape.drawn())
-            .into_iter()
-            .flatten()
-            .chain(table.map(slab));
+        let mut drawn = object.map_or_else(Vec::new, |object| object.shape.drawn());
+        drawn.extend(table.map(Table::slab));
         let visual = commands
             .spawn((
                 Visual { of: body },
@@ -94,10 +102,11 @@ fn make_pictures(
                 *place,
             ))
             .with_children(|parts| {
-                for primitive in drawn {
-                    parts.spawn(looks.of(&primitive, &mut surfaces));
+                for primitive in &drawn {
+                    parts.spawn(looks.of(primitive, &mut surfaces));
                 }
             })
+            .insert(Drawn(drawn))
             .id();
         visuals.0.insert(body, visual);
     }
@@ -107,15 +116,6 @@ fn make_pictures(
 fn follow_bodies(time: Res<Time<Fixed>>, mut visuals: Query<(&Motion, &mut Transform)>) {
     for (motion, mut transform) in &mut visuals {
         transform.set_if_neq(motion.at(time.overstep_fraction()).into());
-    }
-}
-
-/// The table as it is drawn: white, its top at Z = 0.
-fn slab(table: &Table) -> Primitive {
-    Primitive {
-        pose: Pose::at(Vec3::NEG_Z * Table::THICKNESS / 2.0),
-        solid: Solid::Cuboid(Vec3::new(table.xspan, table.yspan, Table::THICKNESS)),
-        color: Rgb::WHITE,
     }
 }
 
@@ -161,7 +161,7 @@ impl Looks {
 mod tests {
     use super::*;
     use bevy::time::TimeUpdateStrategy;
-    use tabletop_core::{CorePlugin, Shape};
+    use tabletop_core::{CorePlugin, Pose, Shape};
 
     fn app() -> App {
         let mut app = App::new();

@@ -1,0 +1,107 @@
+//! What lies under the mouse cursor: the nearest visible surface counts. The table hides what is behind it, but is no
+//! object.
+
+use bevy::{ecs::system::SystemParam, prelude::*};
+use tabletop_core::{ObjectIndex, ObjectSpec, Pose, Primitive, Table};
+
+/// What can be seen and what can hide it.
+#[derive(SystemParam)]
+pub(crate) struct Pickable<'w, 's> {
+    index: Res<'w, ObjectIndex>,
+    objects: Query<'w, 's, (Entity, &'static ObjectSpec, &'static Transform)>,
+    tables: Query<'w, 's, &'static Table>,
+}
+
+impl Pickable<'_, '_> {
+    /// The object that is seen along this line of sight.
+    pub fn object_along(&self, ray: Ray3d) -> Option<Entity> {
+        let objects =
+            self.objects
+                .iter_many(self.index.iter())
+                .filter_map(|(object, spec, place)| {
+                    let distance = distance_along(ray, &spec.shape.drawn(), place.into())?;
+                    Some((distance, object))
+                });
+        let (nearest, object) = objects.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let is_hidden = self.tables.iter().any(|table| {
+            distance_along(ray, &[table.slab()], Pose::IDENTITY)
+                .is_some_and(|table| table < nearest)
+        });
+        (!is_hidden).then_some(object)
+    }
+}
+
+/// How far along the line of sight a body of these solids is first met.
+fn distance_along(ray: Ray3d, solids: &[Primitive], body: Pose) -> Option<f32> {
+    solids
+        .iter()
+        .filter_map(|solid| solid.distance_along(ray, body))
+        .min_by(f32::total_cmp)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::ecs::system::RunSystemOnce;
+    use tabletop_core::{Rgb, Shape};
+
+    fn block(world: &mut World, id: &str, location: Vec3) -> Entity {
+        let spec = ObjectSpec {
+            id: id.into(),
+            pose: Pose::at(location),
+            mass: 1.0,
+            shape: Shape::Block {
+                span: Vec3::splat(2.0),
+                color: Rgb::GRAY,
+            },
+            descriptions: Vec::new(),
+        };
+        let object = world
+            .spawn((spec, Transform::from_translation(location)))
+            .id();
+        world.resource_mut::<ObjectIndex>().insert(id, object);
+        object
+    }
+
+    fn picked(world: &mut World, origin: Vec3, direction: Vec3) -> Option<Entity> {
+        let ray = Ray3d::new(origin, Dir3::new(direction).unwrap());
+        world
+            .run_system_once(move |pickable: Pickable| pickable.object_along(ray))
+            .unwrap()
+    }
+
+    fn world() -> World {
+        let mut world = World::new();
+        world.init_resource::<ObjectIndex>();
+        world.spawn(Table::default());
+        world
+    }
+
+    #[test]
+    fn the_nearest_object_is_picked() {
+        let mut world = world();
+        let high = block(&mut world, "high", Vec3::Z * 5.0);
+        let low = block(&mut world, "low", Vec3::Z);
+        let above = Vec3::Z * 20.0;
+        assert_eq!(picked(&mut world, above, Vec3::NEG_Z), Some(high));
+        let beside = Vec3::new(10.0, 0.0, 1.0);
+        assert_eq!(picked(&mut world, beside, Vec3::NEG_X), Some(low));
+        assert_eq!(picked(&mut world, beside, Vec3::X), None);
+    }
+
+    #[test]
+    fn the_table_hides_what_is_below_it() {
+        let mut world = world();
+        let below = block(&mut world, "below", Vec3::Z * -10.0);
+        assert_eq!(picked(&mut world, Vec3::Z * 20.0, Vec3::NEG_Z), None);
+        assert_eq!(picked(&mut world, Vec3::Z * -20.0, Vec3::Z), Some(below));
+    }
+
+    #[test]
+    fn what_is_not_on_the_table_any_more_is_not_picked() {
+        let mut world = world();
+        block(&mut world, "gone", Vec3::Z);
+        world.resource_mut::<ObjectIndex>().remove("gone");
+        assert_eq!(picked(&mut world, Vec3::Z * 20.0, Vec3::NEG_Z), None);
+    }
+}

@@ -1,0 +1,127 @@
+//! A table without a window, for tests: the cursor is a line of sight, commands are read back.
+
+use bevy::{prelude::*, time::TimeUpdateStrategy};
+use tabletop_core::{
+    CorePlugin, Hands, ObjectIndex, ObjectSpec, Pose, Rgb, Shape, SimCommand, Table, UserCamera,
+};
+
+use crate::pointer::Pointer;
+
+/// Where the user's camera stands; it looks along Y.
+pub(crate) const EYE: Vec3 = Vec3::new(0.0, -12.0, 8.0);
+
+/// The line of sight to a point.
+pub(crate) fn towards(point: Vec3) -> Ray3d {
+    Ray3d::new(EYE, Dir3::new(point - EYE).expect("it is not at the eye"))
+}
+
+pub(crate) struct TestWorld {
+    pub app: App,
+}
+
+impl TestWorld {
+    pub fn new(plugin: impl Plugin) -> Self {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
+            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
+            .init_resource::<ButtonInput<KeyCode>>()
+            .init_resource::<ButtonInput<MouseButton>>();
+        app.world_mut().spawn(Table::default());
+        app.world_mut().spawn((
+            UserCamera,
+            Transform::from_translation(EYE).looking_to(Vec3::Y, Vec3::Z),
+        ));
+        app.finish();
+        app.cleanup();
+        app.update();
+        Self { app }
+    }
+
+    /// Puts a block of edge 2 somewhere.
+    pub fn block(&mut self, id: &str, location: Vec3) -> Entity {
+        let spec = ObjectSpec {
+            id: id.into(),
+            pose: Pose::at(location),
+            mass: 1.0,
+            shape: Shape::Block {
+                span: Vec3::splat(2.0),
+                color: Rgb::GRAY,
+            },
+            descriptions: Vec::new(),
+        };
+        let place = Transform::from_translation(location);
+        let world = self.app.world_mut();
+        let object = world.spawn((spec, place)).id();
+        world.resource_mut::<ObjectIndex>().insert(id, object);
+        object
+    }
+
+    /// Puts a block into the selected hand.
+    pub fn hold(&mut self, id: &str, location: Vec3) -> Entity {
+        let object = self.block(id, location);
+        let mut hands = self.app.world_mut().resource_mut::<Hands>();
+        let hand = hands.selected;
+        hands.set_held(hand, Some(object));
+        object
+    }
+
+    pub fn let_go(&mut self) {
+        let mut hands = self.app.world_mut().resource_mut::<Hands>();
+        let hand = hands.selected;
+        hands.set_held(hand, None);
+    }
+
+    pub fn held(&self) -> Option<Entity> {
+        let hands = self.app.world().resource::<Hands>();
+        hands.held_by(hands.selected)
+    }
+
+    pub fn look_along(&mut self, ray: Ray3d) {
+        self.app.insert_resource(Pointer(Some(ray)));
+    }
+
+    pub fn point_at(&mut self, point: Vec3) {
+        self.look_along(towards(point));
+    }
+
+    pub fn point_nowhere(&mut self) {
+        self.app.insert_resource(Pointer(None));
+    }
+
+    /// A frame in which the button goes down, and what is asked for in it.
+    pub fn press(&mut self) -> Vec<SimCommand> {
+        self.buttons().press(MouseButton::Left);
+        self.frame()
+    }
+
+    /// A frame in which the button comes up.
+    pub fn come_up(&mut self) -> Vec<SimCommand> {
+        self.buttons().release(MouseButton::Left);
+        self.frame()
+    }
+
+    /// A frame in which no button changes.
+    pub fn hold_still(&mut self) -> Vec<SimCommand> {
+        self.frame()
+    }
+
+    pub fn keys(&mut self) -> Mut<'_, ButtonInput<KeyCode>> {
+        self.app.world_mut().resource_mut()
+    }
+
+    fn buttons(&mut self) -> Mut<'_, ButtonInput<MouseButton>> {
+        self.app.world_mut().resource_mut()
+    }
+
+    fn frame(&mut self) -> Vec<SimCommand> {
+        self.app
+            .world_mut()
+            .resource_mut::<Messages<SimCommand>>()
+            .clear();
+        self.app.update();
+        self.buttons().clear();
+        self.keys().clear();
+        let messages = self.app.world().resource::<Messages<SimCommand>>();
+        messages.iter_current_update_messages().cloned().collect()
+    }
+}

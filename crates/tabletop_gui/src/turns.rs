@@ -1,0 +1,108 @@
+//! How far each hand has turned what it holds, about each axis of the world: what the rotation sliders show.
+
+use bevy::prelude::*;
+use tabletop_core::{Hand, SimCommand, SimFact};
+
+/// Greatest angle that a slider shows, in degrees, to either side.
+pub(crate) const MAX_DEGREES: i32 = 180;
+
+/// The axes, in the order of their sliders.
+pub(crate) const AXES: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
+
+/// Sums of the turns since a hand took what it holds, in whole degrees. They are no orientation: every turn is about an
+/// axis of the world, on top of those before.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Turns([[i32; 3]; 4]);
+
+impl Turns {
+    /// The sums of a hand about each of the [`AXES`].
+    pub fn of(&self, hand: Hand) -> [i32; 3] {
+        self.0[hand as usize]
+    }
+
+    /// Brings one sum as near to these degrees as it goes, and tells what turn that is.
+    pub fn turn_to(&mut self, hand: Hand, axis: usize, degrees: i32) -> Option<SimCommand> {
+        let sum = &mut self.0[hand as usize][axis];
+        let before = *sum;
+        *sum = degrees.clamp(-MAX_DEGREES, MAX_DEGREES);
+        (*sum != before).then(|| SimCommand::Turn {
+            hand,
+            axis: AXES[axis],
+            degrees: (*sum - before) as f32,
+        })
+    }
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Turns>().add_systems(Update, begin_anew);
+}
+
+/// Every grasp begins at 0, an empty hand stands there, and what an undo brings back begins there, too.
+fn begin_anew(mut facts: MessageReader<SimFact>, mut turns: ResMut<Turns>) {
+    for fact in facts.read() {
+        match fact {
+            SimFact::Grasped { hand, .. }
+            | SimFact::Released { hand, .. }
+            | SimFact::Destroyed { hand, .. } => turns.0[*hand as usize] = [0; 3],
+            SimFact::Undone | SimFact::Redone => *turns = Turns::default(),
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::time::TimeUpdateStrategy;
+    use tabletop_core::CorePlugin;
+
+    fn degrees_of(command: Option<SimCommand>) -> Option<f32> {
+        match command {
+            Some(SimCommand::Turn { degrees, .. }) => Some(degrees),
+            None => None,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn what_a_slider_moves_is_what_is_turned() {
+        let mut turns = Turns::default();
+        for (to, by) in [(45, 45.0), (30, -15.0), (-30, -60.0)] {
+            assert_eq!(degrees_of(turns.turn_to(Hand::Left, 1, to)), Some(by));
+        }
+        assert_eq!(turns.turn_to(Hand::Left, 1, -30), None);
+        assert_eq!(turns.of(Hand::Left), [0, -30, 0]);
+        assert_eq!(turns.of(Hand::Right), [0; 3]);
+    }
+
+    #[test]
+    fn no_slider_goes_beyond_half_a_turn() {
+        let mut turns = Turns::default();
+        let turned = turns.turn_to(Hand::Any, 2, 1000);
+        assert_eq!(degrees_of(turned), Some(180.0));
+        assert_eq!(turns.turn_to(Hand::Any, 2, 181), None);
+        let back = turns.turn_to(Hand::Any, 2, -225);
+        assert_eq!(degrees_of(back), Some(-360.0));
+    }
+
+    #[test]
+    fn a_grasp_begins_at_zero_for_its_hand_and_an_undo_for_all() {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
+            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+        let mut turns = app.world_mut().resource_mut::<Turns>();
+        turns.turn_to(Hand::Left, 0, 10);
+        turns.turn_to(Hand::Right, 2, 20);
+        app.world_mut().write_message(SimFact::Grasped {
+            hand: Hand::Left,
+            id: "red".into(),
+        });
+        app.update();
+        let turns = *app.world().resource::<Turns>();
+        assert_eq!(turns.of(Hand::Left), [0; 3]);
+        assert_eq!(turns.of(Hand::Right), [0, 0, 20]);
+        app.world_mut().write_message(SimFact::Undone);
+        app.update();
+        assert_eq!(*app.world().resource::<Turns>(), Turns::default());
+    }
+}

@@ -1,0 +1,39 @@
+//! What the selected hand holds, as it is drawn.
+
+use bevy::{ecs::system::SystemParam, prelude::*};
+use tabletop_core::{Hands, Pose, Primitive};
+
+use crate::visual::{Drawn, Visuals};
+
+/// The picture of the object that the selected hand holds.
+#[derive(SystemParam)]
+pub(crate) struct HeldVisual<'w, 's> {
+    hands: Res<'w, Hands>,
+    visuals: Res<'w, Visuals>,
+    drawn: Query<'w, 's, (&'static Transform, &'static Drawn)>,
+}
+
+/// A held object as it is drawn.
+#[derive(Clone, Copy)]
+pub(crate) struct Held<'a> {
+    /// Its picture.
+    pub visual: Entity,
+    /// Where it is drawn.
+    pub pose: Pose,
+    /// What is drawn, in the frame of the object.
+    pub solids: &'a [Primitive],
+}
+
+impl HeldVisual<'_, '_> {
+    /// The object as it is drawn, if the selected hand holds one.
+    pub fn get(&self) -> Option<Held<'_>> {
+        let object = self.hands.held_by(self.hands.selected)?;
+        let visual = self.visuals.of(object)?;
+        let (transform, drawn) = self.drawn.get(visual).ok()?;
+        Some(Held {
+            visual,
+            pose: transform.into(),
+            solids: &drawn.0,
+        })
+    }
+}

@@ -1,0 +1,181 @@
+//! The plane in which the mouse drags: a translucent sheet, seen from both sides (`sheet.wgsl`).
+
+use bevy::{
+    asset::embedded_asset,
+    mesh::MeshVertexBufferLayoutRef,
+    pbr::{MaterialPipeline, MaterialPipelineKey},
+    prelude::*,
+    render::render_resource::{
+        AsBindGroup, BlendState, RenderPipelineDescriptor, SpecializedMeshPipelineError,
+    },
+    shader::ShaderRef,
+};
+use tabletop_core::{DragPlane, Table};
+
+use crate::{held::HeldVisual, visual::Drawn};
+
+/// Chosen to look on the white table as the original's sheet does, which is blended in display values, and not to
+/// outshine the black around the table: the graphics card blends linear values.
+const COLOR: LinearRgba = LinearRgba::new(0.12, 0.12, 0.8, 0.25);
+
+#[derive(Asset, AsBindGroup, TypePath, Clone, Debug)]
+struct Translucent {
+    #[uniform(0)]
+    color: LinearRgba,
+}
+
+/// Marks the entity that is the sheet.
+#[derive(Component)]
+struct Sheet;
+
+pub(crate) fn plugin(app: &mut App) {
+    embedded_asset!(app, "sheet.wgsl");
+    app.add_plugins(MaterialPlugin::<Translucent>::default())
+        .add_systems(Startup, spawn_sheet)
+        .add_systems(Update, show_sheet);
+}
+
+fn spawn_sheet(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<Translucent>>,
+) {
+    let upright = Plane3d::new(Vec3::Y, Vec2::splat(0.5));
+    commands.spawn((
+        Sheet,
+        Mesh3d(meshes.add(upright)),
+        MeshMaterial3d(materials.add(Translucent { color: COLOR })),
+        Visibility::Hidden,
+    ));
+}
+
+/// The sheet is there while the selected hand holds something, and goes through it.
+fn show_sheet(
+    held: HeldVisual,
+    plane: Res<DragPlane>,
+    tables: Query<&Table>,
+    sheet: Single<(&mut Transform, &mut Visibility), (With<Sheet>, Without<Drawn>)>,
+) {
+    let (mut transform, mut visibility) = sheet.into_inner();
+    let Some(held) = held.get() else {
+        visibility.set_if_neq(Visibility::Hidden);
+        return;
+    };
+    visibility.set_if_neq(Visibility::Visible);
+    let table = tables.iter().next().copied().unwrap_or_default();
+    transform.set_if_neq(Transform {
+        translation: held.pose.location,
+        rotation: plane.rotation(),
+        scale: Vec3::splat(DragPlane::side(&table)),
+    });
+}
+
+impl Material for Translucent {
+    fn fragment_shader() -> ShaderRef {
+        "embedded://tabletop_view/sheet.wgsl".into()
+    }
+
+    /// Masked surfaces are drawn after the opaque ones and before all lines, so that lines behind the sheet stay as clear
+    /// as those before it.
+    fn alpha_mode(&self) -> AlphaMode {
+        AlphaMode::Mask(0.0)
+    }
+
+    fn enable_prepass() -> bool {
+        false
+    }
+
+    fn enable_shadows() -> bool {
+        false
+    }
+
+    fn specialize(
+        _: &MaterialPipeline,
+        descriptor: &mut RenderPipelineDescriptor,
+        _: &MeshVertexBufferLayoutRef,
+        _: MaterialPipelineKey<Self>,
+    ) -> Result<(), SpecializedMeshPipelineError> {
+        descriptor.primitive.cull_mode = None;
+        if let Some(depth) = &mut descriptor.depth_stencil {
+            depth.depth_write_enabled = Some(false);
+        }
+        if let Some(fragment) = &mut descriptor.fragment {
+            for target in fragment.targets.iter_mut().flatten() {
+                target.blend = Some(BlendState::ALPHA_BLENDING);
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{surface::Surface, visual};
+    use bevy::time::TimeUpdateStrategy;
+    use std::f32::consts::FRAC_PI_2;
+    use tabletop_core::{CorePlugin, Hands, ObjectSpec, Pose, Rgb, Shape};
+
+    fn app() -> App {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
+            .init_resource::<Assets<Mesh>>()
+            .init_resource::<Assets<Surface>>()
+            .init_resource::<Assets<Translucent>>()
+            .add_plugins(visual::plugin)
+            .add_systems(Startup, spawn_sheet)
+            .add_systems(Update, show_sheet);
+        app.finish();
+        app.cleanup();
+        app.update();
+        app
+    }
+
+    fn sheet(app: &mut App) -> (Transform, Visibility) {
+        let world = app.world_mut();
+        let mut sheets = world.query_filtered::<(&Transform, &Visibility), With<Sheet>>();
+        let (transform, visibility) = sheets.single(world).unwrap();
+        (*transform, *visibility)
+    }
+
+    #[test]
+    fn the_sheet_goes_through_what_the_selected_hand_holds() {
+        let mut app = app();
+        app.world_mut().spawn(Table {
+            xspan: 30.0,
+            yspan: 10.0,
+        });
+        let location = Vec3::new(1.0, 2.0, 3.0);
+        let ball = ObjectSpec {
+            id: "ball".into(),
+            pose: Pose::at(location),
+            mass: 1.0,
+            shape: Shape::Sphere {
+                radius: 1.0,
+                color: Rgb::GRAY,
+            },
+            descriptions: Vec::new(),
+        };
+        let place = Transform::from_translation(location);
+        let object = app.world_mut().spawn((ball, place)).id();
+        app.update();
+        assert_eq!(sheet(&mut app).1, Visibility::Hidden);
+
+        let mut hands = app.world_mut().resource_mut::<Hands>();
+        let hand = hands.selected;
+        hands.set_held(hand, Some(object));
+        app.world_mut().resource_mut::<DragPlane>().heading = FRAC_PI_2;
+        app.update();
+        let (transform, visibility) = sheet(&mut app);
+        assert_eq!(visibility, Visibility::Visible);
+        assert_eq!(transform.translation, location);
+        assert_eq!(transform.scale.x, 120.0);
+        assert!((transform.rotation * Vec3::X).distance(Vec3::Y) < 1e-6);
+
+        let mut hands = app.world_mut().resource_mut::<Hands>();
+        hands.set_held(hand, None);
+        app.update();
+        assert_eq!(sheet(&mut app).1, Visibility::Hidden);
+    }
+}
