@@ -7,7 +7,10 @@
 //! | [`xml`] | task files |
 //! | [`physics`] | Rapier, configured |
 //! | [`scene`] | the table and what comes and goes on it |
-//! | [`demonstrator`] | the invisible hands |
+//! | [`demonstrator`] | the invisible hands, undo and redo |
+//! | [`camera`] | what the robot's head camera sees |
+//! | [`recorder`] | recordings on disk |
+//! | [`scenario`] | scripted demonstrations, for tests and datasets |
 //!
 //! [`TabletopSimPlugins`] is the simulator without a window. It runs on Bevy's `MinimalPlugins`:
 //!
@@ -27,9 +30,12 @@
 //! assert!((pose.location - Vec3::new(2.0, 0.0, 1.0)).length() < 0.005);
 //! ```
 
+pub use tabletop_camera as camera;
 pub use tabletop_core as core;
 pub use tabletop_demonstrator as demonstrator;
 pub use tabletop_physics as physics;
+pub use tabletop_recorder as recorder;
+pub use tabletop_scenario as scenario;
 pub use tabletop_scene as scene;
 pub use tabletop_xml as xml;
 
@@ -54,8 +60,9 @@ pub mod prelude {
 }
 
 /// Everything that simulates, nothing that shows: [`CorePlugin`](core::CorePlugin), [`XmlPlugin`](xml::XmlPlugin),
-/// [`PhysicsPlugin`](physics::PhysicsPlugin), [`ScenePlugin`](scene::ScenePlugin) and
-/// [`DemonstratorPlugin`](demonstrator::DemonstratorPlugin).
+/// [`PhysicsPlugin`](physics::PhysicsPlugin), [`ScenePlugin`](scene::ScenePlugin),
+/// [`DemonstratorPlugin`](demonstrator::DemonstratorPlugin), [`CameraPlugin`](camera::CameraPlugin) and
+/// [`RecorderPlugin`](recorder::RecorderPlugin).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TabletopSimPlugins;
 
@@ -67,5 +74,7 @@ impl PluginGroup for TabletopSimPlugins {
             .add(physics::PhysicsPlugin::default())
             .add(scene::ScenePlugin)
             .add(demonstrator::DemonstratorPlugin)
+            .add(camera::CameraPlugin)
+            .add(recorder::RecorderPlugin::default())
     }
 }

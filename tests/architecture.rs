@@ -6,7 +6,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// What each of our crates may depend on of ours, and whether it may name Rapier and enable what draws or opens windows.
-const RULES: [Rule; 10] = [
+const RULES: [Rule; 11] = [
     Rule::new("tabletop_core", &[]),
     Rule::new("tabletop_xml", &["tabletop_core"]),
     Rule::new("tabletop_physics", &["tabletop_core"]).with_rapier(),
@@ -18,6 +18,7 @@ const RULES: [Rule; 10] = [
     .with_rapier(),
     Rule::new("tabletop_camera", &["tabletop_core"]),
     Rule::new("tabletop_recorder", &["tabletop_core"]),
+    Rule::new("tabletop_scenario", &["tabletop_core"]),
     Rule::new("tabletop_view", &["tabletop_core"]).with_window(),
     Rule::new("tabletop_gui", &["tabletop_core"]).with_window(),
     Rule::new(
@@ -30,6 +31,7 @@ const RULES: [Rule; 10] = [
             "tabletop_demonstrator",
             "tabletop_camera",
             "tabletop_recorder",
+            "tabletop_scenario",
             "tabletop_view",
             "tabletop_gui",
         ],

@@ -2,7 +2,9 @@
 
 use bevy::{ecs::system::SystemState, prelude::*};
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Hand, Hands, Held, Joint, ObjectIndex, ObjectSpec, Pose, SimCommand, SimFact};
+use tabletop_core::{
+    Hand, Hands, Held, Joint, ObjectIndex, ObjectSpec, Paused, Pose, SimCommand, SimFact,
+};
 use tabletop_physics::remove_object;
 
 use crate::{history, rules};
@@ -52,7 +54,15 @@ pub(crate) fn obey(
         .filter(|command| !matches!(command, SimCommand::SetScene(_)))
         .cloned()
         .collect();
+    let is_paused = world.resource::<Paused>().0;
     for command in commands {
+        if is_paused && is_for_hands(&command) {
+            refuse(
+                world,
+                "hands cannot act while the simulation is paused".into(),
+            );
+            continue;
+        }
         match command {
             SimCommand::SelectHand(hand) => world.resource_mut::<Hands>().selected = hand,
             SimCommand::Grasp { hand, object } => grasp(world, hand, &object),
@@ -73,6 +83,19 @@ pub(crate) fn obey(
         }
     }
     Ok(())
+}
+
+/// Whether a command makes a hand act.
+fn is_for_hands(command: &SimCommand) -> bool {
+    matches!(
+        command,
+        SimCommand::Grasp { .. }
+            | SimCommand::MoveTo { .. }
+            | SimCommand::MoveBy { .. }
+            | SimCommand::Turn { .. }
+            | SimCommand::Release(_)
+            | SimCommand::Destroy(_)
+    )
 }
 
 fn grasp(world: &mut World, hand: Hand, id: &str) {

@@ -47,7 +47,7 @@ mod rules;
 pub use grasp::{Carry, CarryTarget};
 
 use bevy::prelude::*;
-use tabletop_core::SimSystems;
+use tabletop_core::{Paused, SimSystems};
 
 /// Adds the hands. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin).
 #[derive(Clone, Copy, Debug, Default)]
@@ -58,15 +58,17 @@ impl Plugin for DemonstratorPlugin {
         app.init_resource::<history::Snapshots>()
             .add_systems(
                 FixedUpdate,
-                history::undo_and_redo
-                    .after(SimSystems::Ingest)
-                    .before(SimSystems::Actuate),
-            )
-            .add_systems(
-                FixedUpdate,
-                (grasp::let_fall, grasp::obey, carry::carry)
-                    .chain()
-                    .in_set(SimSystems::Actuate),
+                (
+                    (
+                        history::undo_and_redo,
+                        grasp::let_fall.run_if(Paused::is_running),
+                        grasp::obey,
+                    )
+                        .chain()
+                        .after(SimSystems::Ingest)
+                        .before(SimSystems::Actuate),
+                    carry::carry.in_set(SimSystems::Actuate),
+                ),
             )
             .add_observer(grasp::note_lost);
     }

@@ -123,7 +123,9 @@ fn a_block_is_stacked_on_another() {
         desk.step(12);
     }
     assert!((desk.pose("red").location - Vec3::new(-2.0, 0.0, 1.5)).length() < 1e-3);
-    desk.tell(SimCommand::Release(hand));
+    desk.tell(SimCommand::Release(hand)).step(1);
+    let sunk = 1.5 - desk.pose("red").location.z;
+    assert!(sunk < 0.001, "it fell by {sunk} into the block below");
     desk.step(120);
     let stacked = desk.pose("red").location;
     assert!(
@@ -327,6 +329,19 @@ fn what_cannot_be_done_is_refused_and_changes_nothing() {
     });
     desk.step(30);
     assert!(desk.pose("red").location.distance(Vec3::new(2.0, 0.0, 0.5)) < 0.001);
+}
+
+#[test]
+fn hands_do_not_act_while_the_simulation_is_paused() {
+    let mut desk = Desk::new(two_blocks());
+    desk.tell(SimCommand::SetPaused(true));
+    desk.grasp(Hand::Left, "red").step(1);
+    desk.tell(SimCommand::SetPaused(false)).step(3);
+    assert_eq!(desk.0.world().resource::<Hands>().held_by(Hand::Left), None);
+    assert_eq!(
+        desk.heard(),
+        ["refused: hands cannot act while the simulation is paused"]
+    );
 }
 
 #[test]

@@ -1,0 +1,296 @@
+//! Where a camera stands, what it takes in, and which ray goes through which point of its picture.
+
+use std::ops::{Add, Mul, Range};
+
+use bevy::{
+    math::{Vec2, Vec3},
+    prelude::Quat,
+};
+use tabletop_core::{HeadCamera, Pose, Table};
+
+use crate::{mount::head_pose, row::Offset};
+
+/// Nearest visible distance in units, along the axis of view (report section 4, "head camera").
+pub(crate) const NEAR: f32 = 0.01;
+
+/// The narrowest and the widest field of view, in radians.
+const FIELDS_OF_VIEW: Range<f32> = 1e-3..3.1;
+
+/// A camera: everything but the scene that a picture depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Where it stands. It looks along its own -Z; its X is to the right in the picture and its Y is up, as for a camera
+    /// of Bevy.
+    pub pose: Pose,
+    /// Angle between the lower and the upper edge of the picture in radians; taken as the nearest of 0.001 to 3.1.
+    pub vertical_fov: f32,
+    /// Make the angle between the left and the right edge the same, so that pixels are square only in a square picture.
+    pub square_fov: bool,
+    /// Columns of the picture.
+    pub width: u32,
+    /// Rows of the picture.
+    pub height: u32,
+    /// Smooth edges, from four samples a pixel. Changes colours only, and only of pixels in which more than one surface is
+    /// seen.
+    pub antialiasing: bool,
+}
+
+impl Camera {
+    /// The robot's head camera at this table.
+    pub fn of_head(head: &HeadCamera, table: &Table) -> Self {
+        Self {
+            pose: head_pose(head.pan, table),
+            vertical_fov: head.vertical_fov,
+            square_fov: head.square_fov,
+            width: head.width,
+            height: head.height,
+            antialiasing: head.antialiasing,
+        }
+    }
+
+    /// The pixel in which a point is seen, as column and row; the centre of the upper left pixel is (0, 0). Points that are
+    /// not in front of the camera are not seen, others may lie outside the picture.
+    pub fn pixel_of(&self, point: Vec3) -> Option<Vec2> {
+        let view = View::of(self);
+        view.pixel_of(point - view.eye)
+    }
+}
+
+/// The rays of a camera. The ray through the point (x, y) of the picture, in pixels from the centre of the upper left one,
+/// has the direction `first + x * right + y * down`, whose component along the axis of view is 1. So what it meets after
+/// that direction times z lies at depth z.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    pub eye: Vec3,
+    pub width: u32,
+    pub height: u32,
+    pub rays: Rays,
+    axes: Quat,
+    pixel: Vec2,
+    center: Vec2,
+}
+
+/// A rectangle in the picture.
+#[derive(Clone, Debug)]
+pub(crate) struct Window {
+    pub columns: Range<u32>,
+    pub rows: Range<u32>,
+}
+
+/// Directions that depend linearly on the point of the picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rays {
+    pub first: Vec3,
+    pub right: Vec3,
+    pub down: Vec3,
+}
+
+impl View {
+    pub fn of(camera: &Camera) -> Self {
+        let (width, height) = (camera.width as f32, camera.height as f32);
+        let fov = camera.vertical_fov;
+        let fov = f64::from(fov.clamp(FIELDS_OF_VIEW.start, FIELDS_OF_VIEW.end));
+        // Rounded from a number of twice the length, whose last bits are not the same on every system.
+        let spread = (2.0 * (fov / 2.0).tan()) as f32;
+        let across = if camera.square_fov { width } else { height };
+        let pixel = Vec2::new(spread / across, spread / height);
+        let center = Vec2::new(width - 1.0, height - 1.0) / 2.0;
+        let axes = camera.pose.rotation;
+        let right = axes * Vec3::X * pixel.x;
+        let down = axes * Vec3::NEG_Y * pixel.y;
+        Self {
+            eye: camera.pose.location,
+            width: camera.width,
+            height: camera.height,
+            rays: Rays {
+                first: axes * Vec3::NEG_Z - right * center.x - down * center.y,
+                right,
+                down,
+            },
+            axes,
+            pixel,
+            center,
+        }
+    }
+
+    /// Where a point, given relative to the eye, is seen.
+    fn pixel_of(&self, point: Vec3) -> Option<Vec2> {
+        let local = self.axes.inverse() * point;
+        let depth = -local.z;
+        (depth >= NEAR).then(|| self.center + Vec2::new(local.x, -local.y) / (depth * self.pixel))
+    }
+
+    /// Where the convex hull of these points, given relative to the eye, may be seen.
+    pub fn window_of(&self, corners: &[Vec3; 8]) -> Option<Window> {
+        let is_drawable = |corner: &Vec3| corner.abs().cmplt(Vec3::splat(FARTHEST)).all();
+        if !corners.iter().all(is_drawable) {
+            return None;
+        }
+        let seen = corners.map(|corner| self.pixel_of(corner));
+        if seen.iter().all(Option::is_none) {
+            return None;
+        }
+        let (mut least, mut most) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+        for corner in seen {
+            let Some(corner) = corner else {
+                return Some(Window {
+                    columns: 0..self.width,
+                    rows: 0..self.height,
+                });
+            };
+            least = least.min(corner);
+            most = most.max(corner);
+        }
+        let window = Window {
+            columns: pixels_between(least.x, most.x, self.width),
+            rows: pixels_between(least.y, most.y, self.height),
+        };
+        (!window.columns.is_empty() && !window.rows.is_empty()).then_some(window)
+    }
+}
+
+/// Corners that are farther away than this along any axis, in units, are not drawn: numbers are too coarse there.
+const FARTHEST: f32 = 1e9;
+
+/// The pixels that have a sample between these two points, and perhaps their neighbours.
+fn pixels_between(least: f32, most: f32, count: u32) -> Range<u32> {
+    let first = (least - 0.5).floor().max(0.0) as u32;
+    let last = (most + 0.5).ceil().max(-1.0);
+    first..((last + 1.0) as u32).min(count)
+}
+
+impl Rays {
+    /// The direction of the ray through a point of the picture.
+    pub fn through(&self, x: f32, y: f32) -> Vec3 {
+        self.first + self.right * x + self.down * y
+    }
+
+    /// The directions along a row of samples.
+    pub fn on_row(&self, row: u32, offset: Offset) -> OnRow<Vec3> {
+        OnRow {
+            first: self.through(offset.x, row as f32 + offset.y),
+            step: self.right,
+        }
+    }
+
+    /// The same rays, each mapped by something linear.
+    pub fn map(&self, linear: impl Fn(Vec3) -> Vec3) -> Self {
+        Self {
+            first: linear(self.first),
+            right: linear(self.right),
+            down: linear(self.down),
+        }
+    }
+
+    /// The scalar product of each ray with a vector.
+    pub fn dot(&self, vector: Vec3) -> Linear {
+        Linear {
+            first: self.first.dot(vector),
+            right: self.right.dot(vector),
+            down: self.down.dot(vector),
+        }
+    }
+}
+
+/// A number that depends linearly on the point of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Linear {
+    pub first: f32,
+    pub right: f32,
+    pub down: f32,
+}
+
+impl Linear {
+    pub const fn constant(value: f32) -> Self {
+        Self {
+            first: value,
+            right: 0.0,
+            down: 0.0,
+        }
+    }
+
+    /// Its values along a row of samples.
+    pub fn on_row(&self, row: u32, offset: Offset) -> OnRow<f32> {
+        OnRow {
+            first: self.first + self.down * (row as f32 + offset.y) + self.right * offset.x,
+            step: self.right,
+        }
+    }
+}
+
+/// What depends linearly on the column of a sample in its row.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OnRow<T> {
+    first: T,
+    step: T,
+}
+
+impl<T: Copy + Add<Output = T> + Mul<f32, Output = T>> OnRow<T> {
+    /// Its value at a column.
+    #[inline]
+    pub fn at(&self, column: f32) -> T {
+        self.first + self.step * column
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn head(camera: HeadCamera) -> Camera {
+        Camera::of_head(&camera, &Table::default())
+    }
+
+    #[test]
+    fn points_are_seen_where_the_original_program_shows_them() {
+        let camera = head(HeadCamera {
+            width: 1024,
+            height: 600,
+            square_fov: true,
+            ..HeadCamera::default()
+        });
+        // Measured from the picture's corner, and with the original's axis of view turned by 0.0008.
+        for (point, pixel) in [
+            (Vec3::ZERO, Vec2::new(511.6, 321.8)),
+            (Vec3::new(10.0, 6.0, 0.0), Vec2::new(1034.8, 164.6)),
+            (Vec3::new(-10.0, 6.0, 0.0), Vec2::new(-12.2, 165.0)),
+            (Vec3::new(10.0, -6.0, 0.0), Vec2::new(1377.6, 581.0)),
+        ] {
+            let seen = camera.pixel_of(point).unwrap() + 0.5;
+            assert!((seen - pixel).length() < 1.2, "{point} is seen at {seen}");
+        }
+    }
+
+    #[test]
+    fn true_pixels_are_square() {
+        let camera = head(HeadCamera::default());
+        let center = camera.pose * (Vec3::NEG_Z * 10.0);
+        let seen = |offset: Vec3| camera.pixel_of(center + camera.pose.rotation * offset);
+        let middle = Vec2::new(99.5, 74.5);
+        assert!((seen(Vec3::ZERO).unwrap() - middle).length() < 1e-3);
+        // The upper edge is seen under 30° from the axis: 10 tan 30° = 5.7735 units.
+        assert!((seen(Vec3::Y * 5.7735).unwrap() - Vec2::new(99.5, -0.5)).length() < 1e-2);
+        assert!((seen(Vec3::X * 5.7735).unwrap() - Vec2::new(174.5, 74.5)).length() < 1e-2);
+        let square = HeadCamera {
+            square_fov: true,
+            ..HeadCamera::default()
+        };
+        let edge = head(square).pixel_of(center + camera.pose.rotation * (Vec3::X * 5.7735));
+        assert!((edge.unwrap() - Vec2::new(199.5, 74.5)).length() < 1e-2);
+    }
+
+    #[test]
+    fn the_ray_through_a_pixel_leads_to_what_is_seen_there() {
+        let camera = head(HeadCamera::default());
+        let view = View::of(&camera);
+        for pixel in [Vec2::ZERO, Vec2::new(17.25, 140.5), Vec2::new(199.0, 3.0)] {
+            let point = view.eye + view.rays.through(pixel.x, pixel.y) * 13.0;
+            assert!((camera.pixel_of(point).unwrap() - pixel).length() < 1e-3);
+            assert!(((camera.pose.inverse() * point).z + 13.0).abs() < 1e-4);
+        }
+        assert_eq!(
+            camera.pixel_of(view.eye - view.rays.through(0.0, 0.0)),
+            None
+        );
+    }
+}

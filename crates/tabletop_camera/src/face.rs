@@ -1,0 +1,273 @@
+//! Flat faces with straight edges.
+//!
+//! A face is a cone of rays from the eye, bounded by the planes through the eye and its edges, and it is cut off at the near
+//! plane by one more. On each plane a linear function of the picture's coordinates changes its sign, so no corner is ever
+//! projected and nothing has to be clipped, wherever the corners are. One over the depth is a linear function, too.
+
+use std::ops::Range;
+
+use bevy::math::Vec3;
+
+use crate::{
+    camera::{Linear, NEAR, View},
+    row::{Offset, SampleRow},
+};
+
+/// Faces whose plane passes the eye nearer than this, in units, are seen edge-on: they are thinner than a pixel.
+const EDGE_ON: f32 = 1e-4;
+
+/// The corners of each face of a cuboid, counter-clockwise as seen from outside. The corner's number has a bit for each
+/// axis, X the lowest, which says whether it is on the positive side. Faces come in pairs: negative and positive side of X,
+/// Y and Z.
+pub(crate) const CUBOID: [[usize; 4]; 6] = [
+    [0, 4, 6, 2],
+    [1, 3, 7, 5],
+    [0, 1, 5, 4],
+    [3, 2, 6, 7],
+    [0, 2, 3, 1],
+    [4, 5, 7, 6],
+];
+
+/// The outward normal of each face of a cuboid.
+pub(crate) const CUBOID_NORMALS: [Vec3; 6] = [
+    Vec3::NEG_X,
+    Vec3::X,
+    Vec3::NEG_Y,
+    Vec3::Y,
+    Vec3::NEG_Z,
+    Vec3::Z,
+];
+
+/// A face as it is seen.
+#[derive(Clone, Debug)]
+pub(crate) struct Face {
+    /// The rows in which it may be seen.
+    pub rows: Range<u32>,
+    surface: u32,
+    nearness: Linear,
+    edges: [Edge; 5],
+}
+
+/// Where the samples of a row have to be to lie on the inner side of an edge. For the two faces that share an edge these
+/// are complementary to the last bit, so every sample lies in exactly one of them.
+#[derive(Clone, Copy, Debug)]
+enum Edge {
+    /// Not left of `slope * y + offset`.
+    From { slope: f32, offset: f32 },
+    /// Left of `slope * y + offset`.
+    Before { slope: f32, offset: f32 },
+    /// In rows of which this is true as a whole.
+    Level { first: f32, down: f32 },
+}
+
+impl Face {
+    /// The face with these corners, given relative to the eye and counter-clockwise as seen from outside, and with this
+    /// normal of unit length; none if it is not seen from outside.
+    pub fn seen(
+        view: &View,
+        corners: [Vec3; 4],
+        normal: Vec3,
+        rows: Range<u32>,
+        surface: u32,
+    ) -> Option<Self> {
+        let distance = -normal.dot(corners[0]);
+        if distance < EDGE_ON {
+            return None;
+        }
+        let nearness = view.rays.dot(normal / -distance);
+        let behind_near_plane = Linear {
+            first: 1.0 / NEAR - nearness.first,
+            right: -nearness.right,
+            down: -nearness.down,
+        };
+        let [a, b, c, d] = corners;
+        let edge = |from: Vec3, to: Vec3| Edge::from(view.rays.dot(to.cross(from)));
+        Some(Self {
+            rows,
+            surface,
+            nearness,
+            edges: [
+                edge(a, b),
+                edge(b, c),
+                edge(c, d),
+                edge(d, a),
+                Edge::from(behind_near_plane),
+            ],
+        })
+    }
+
+    /// Puts it into the samples that see it and nothing nearer.
+    pub fn draw(&self, row: u32, offset: Offset, samples: &mut SampleRow) {
+        let y = row as f32 + offset.y;
+        let columns = self.columns(y, offset.x, samples.surface.len());
+        let (nearness, surface) = (self.nearness.on_row(row, offset), self.surface);
+        samples.put(columns, |x| (nearness.at(x), surface));
+    }
+
+    /// The samples of a row that lie inside all edges.
+    fn columns(&self, y: f32, x_offset: f32, width: usize) -> Range<usize> {
+        let (mut start, mut end) = (0, width);
+        for edge in &self.edges {
+            match *edge {
+                Edge::From { slope, offset } => {
+                    start = start.max(first_column(slope * y + offset - x_offset, width));
+                }
+                Edge::Before { slope, offset } => {
+                    end = end.min(first_column(slope * y + offset - x_offset, width));
+                }
+                Edge::Level { first, down } => {
+                    let value = first + down * y;
+                    if value < 0.0 || (value == 0.0 && down < 0.0) {
+                        end = 0;
+                    }
+                }
+            }
+        }
+        start.min(end)..end
+    }
+}
+
+/// The first column that is not left of x.
+fn first_column(x: f32, width: usize) -> usize {
+    let x = x.clamp(0.0, width as f32);
+    let column = x as u32;
+    (column + u32::from(x > column as f32)) as usize
+}
+
+impl From<Linear> for Edge {
+    /// Where this is positive.
+    fn from(Linear { first, right, down }: Linear) -> Self {
+        if right == 0.0 {
+            return Self::Level { first, down };
+        }
+        let (slope, offset) = (-down / right, -first / right);
+        if right > 0.0 {
+            Self::From { slope, offset }
+        } else {
+            Self::Before { slope, offset }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::math::Quat;
+    use proptest::prelude::*;
+    use tabletop_core::Pose;
+
+    use super::*;
+    use crate::Camera;
+
+    const WIDTH: u32 = 33;
+    const HEIGHT: u32 = 25;
+
+    fn view() -> View {
+        View::of(&Camera {
+            pose: Pose::IDENTITY,
+            vertical_fov: 1.0,
+            square_fov: false,
+            width: WIDTH,
+            height: HEIGHT,
+            antialiasing: false,
+        })
+    }
+
+    fn corners(pose: Pose, span: Vec3) -> [Vec3; 8] {
+        std::array::from_fn(|corner| {
+            let side = |axis: usize| (corner >> axis & 1) as f32 - 0.5;
+            pose * (span * Vec3::new(side(0), side(1), side(2)))
+        })
+    }
+
+    /// In how many faces of a cuboid each sample lies.
+    fn coverage(pose: Pose, span: Vec3, offset: Offset) -> Vec<u32> {
+        let corners = corners(pose, span);
+        let mut coverage = vec![0; (WIDTH * HEIGHT) as usize];
+        for (face, normal) in CUBOID.into_iter().zip(CUBOID_NORMALS) {
+            let corners = face.map(|corner| corners[corner]);
+            let normal = pose.rotation * normal;
+            let Some(face) = Face::seen(&view(), corners, normal, 0..HEIGHT, 1) else {
+                continue;
+            };
+            for (row, covered) in (0..HEIGHT).zip(coverage.chunks_mut(WIDTH as usize)) {
+                let mut samples = SampleRow::default();
+                samples.clear(WIDTH);
+                face.draw(row, offset, &mut samples);
+                for (covered, surface) in covered.iter_mut().zip(samples.surface) {
+                    *covered += surface;
+                }
+            }
+        }
+        coverage
+    }
+
+    fn is_hit(pose: Pose, span: Vec3, offset: Offset, sample: usize) -> bool {
+        let (column, row) = (sample as u32 % WIDTH, sample as u32 / WIDTH);
+        let ray = view()
+            .rays
+            .through(column as f32 + offset.x, row as f32 + offset.y);
+        let (origin, ray) = (pose.inverse() * Vec3::ZERO, pose.rotation.inverse() * ray);
+        let [one, other] = [-0.5, 0.5].map(|side| (span * side - origin) / ray);
+        let (enter, leave) = (one.min(other).max_element(), one.max(other).min_element());
+        enter < leave && enter > 0.0
+    }
+
+    fn assert_covered_once(pose: Pose, span: Vec3, offset: Offset) {
+        for (sample, faces) in coverage(pose, span, offset).into_iter().enumerate() {
+            assert!(faces <= 1, "sample {sample} lies in {faces} faces");
+            if is_hit(pose, span * 0.999, offset, sample) {
+                assert_eq!(faces, 1, "sample {sample} lies in no face");
+            }
+            if !is_hit(pose, span * 1.001, offset, sample) {
+                assert_eq!(faces, 0, "sample {sample} lies outside");
+            }
+        }
+    }
+
+    /// The samples of a face, each 1 if it lies in it.
+    fn samples_in(corners: [Vec3; 4]) -> Vec<u32> {
+        let normal = (corners[1] - corners[0]).cross(corners[3] - corners[0]);
+        let normal = normal.normalize();
+        let face = Face::seen(&view(), corners, normal, 0..HEIGHT, 1).expect("it faces the eye");
+        let row = |row| {
+            let mut samples = SampleRow::default();
+            samples.clear(WIDTH);
+            face.draw(row, Offset::CENTER, &mut samples);
+            samples.surface
+        };
+        (0..HEIGHT).flat_map(row).collect()
+    }
+
+    #[test]
+    fn samples_on_an_edge_lie_in_one_of_its_faces() {
+        // Two slopes of a roof, whose ridge is seen exactly through the middle row or column of samples.
+        for turn in [
+            |point: Vec3| point,
+            |point: Vec3| Vec3::new(-point.y, point.x, point.z),
+        ] {
+            let [left, right] = [-1.0, 1.0].map(|x| turn(Vec3::new(x, 0.0, -4.0)));
+            let [low, high] = [-1.0, 1.0].map(|y| [-1.0, 1.0].map(|x| turn(Vec3::new(x, y, -5.0))));
+            let upper = samples_in([left, right, high[1], high[0]]);
+            let lower = samples_in([right, left, low[0], low[1]]);
+            let both: Vec<_> = upper.iter().zip(&lower).map(|(a, b)| a + b).collect();
+            assert!(both.iter().all(|&faces| faces <= 1));
+            let middle = (HEIGHT / 2 * WIDTH + WIDTH / 2) as usize;
+            assert_eq!(both[middle], 1);
+            assert!([&upper, &lower].map(|face| face.iter().sum::<u32>() > 30) == [true; 2]);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn every_sample_lies_in_one_face_of_what_its_ray_meets(
+            location in [-3.0..3.0_f32, -3.0..3.0, -12.0..-4.0],
+            axis in [-3.0..3.0_f32, -3.0..3.0, -3.0..3.0],
+            span in [0.3..3.0_f32, 0.3..3.0, 0.3..3.0],
+            which in 0..4_usize,
+        ) {
+            let pose = Pose::new(location.into(), Quat::from_scaled_axis(axis.into()));
+            assert_covered_once(pose, span.into(), Offset::CENTER);
+            assert_covered_once(pose, span.into(), Offset::SMOOTH[which]);
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! Where the head camera is mounted.
+
+use std::f64::consts::FRAC_PI_2;
+
+use bevy::math::{DQuat, Vec3};
+use tabletop_core::{Pose, Table};
+
+/// From the table's near edge back to the origin of the robot, in units.
+const ROBOT_BEHIND_EDGE: f32 = 3.0;
+
+/// The robot's origin above the table's top, in units.
+const ROBOT_HEIGHT: f32 = 2.0;
+
+/// The axis of the neck in front of the robot's origin, and how far above it the neck joint is, in units.
+const NECK: Vec3 = Vec3::new(0.0, 0.5993, 6.9553);
+
+/// The camera in the frame of the neck joint, in units.
+const CAMERA: Vec3 = Vec3::new(0.0, 1.2839, 2.6368);
+
+/// How far below the horizon the camera looks, in radians: 56°.
+const TILT: f64 = 0.97832;
+
+/// The pose of the head camera when the neck is turned by `pan` radians, positive to the robot's left. The robot stands
+/// before the middle of the table's near edge and looks along Y; the camera looks along its own -Z with its Y up.
+///
+/// At a table of `yspan` 12 it is (0, -7.1168, 11.5921), looking along (0, 0.5584, -0.8296), as in the original program.
+pub fn head_pose(pan: f32, table: &Table) -> Pose {
+    let robot = Vec3::new(0.0, -(table.yspan / 2.0 + ROBOT_BEHIND_EDGE), ROBOT_HEIGHT);
+    // Rounded from numbers of twice the length: the last bits of sine and cosine are not the same on every system.
+    let turned = DQuat::from_rotation_z(f64::from(pan)).as_quat();
+    let tilted = DQuat::from_rotation_x(FRAC_PI_2 - TILT).as_quat();
+    Pose::new(robot + NECK, turned) * Pose::new(CAMERA, tilted)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_where_the_original_program_has_it() {
+        for (pan, location, direction) in [
+            (
+                0.0,
+                Vec3::new(0.0, -7.1168, 11.5921),
+                Vec3::new(0.0, 0.5584, -0.8296),
+            ),
+            (
+                0.5,
+                Vec3::new(-0.61553, -7.27397, 11.5921),
+                Vec3::new(-0.26733, 0.49027, -0.82956),
+            ),
+        ] {
+            let pose = head_pose(pan, &Table::default());
+            assert!(
+                (pose.location - location).length() < 1e-4,
+                "{}",
+                pose.location
+            );
+            let looks_along = pose.rotation * Vec3::NEG_Z;
+            assert!((looks_along - direction).length() < 6e-4, "{looks_along}");
+            assert!((pose.rotation * Vec3::X).z.abs() < 1e-6, "it is not level");
+        }
+    }
+
+    #[test]
+    fn it_keeps_its_distance_from_a_table_of_another_size() {
+        let wide = Table {
+            xspan: 8.0,
+            yspan: 20.0,
+        };
+        let moved = head_pose(0.0, &wide).location - head_pose(0.0, &Table::default()).location;
+        assert!((moved - Vec3::new(0.0, -4.0, 0.0)).length() < 1e-5);
+    }
+}

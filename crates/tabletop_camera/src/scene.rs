@@ -1,0 +1,39 @@
+//! What a camera looks at.
+
+use bevy::math::Vec3;
+use tabletop_core::{Pose, Primitive, Rgb, Solid, Table};
+
+/// A solid in the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DrawnSolid {
+    /// Pose of its centre in the world.
+    pub pose: Pose,
+    /// The solid.
+    pub solid: Solid,
+    /// Its colour.
+    pub color: Rgb,
+    /// The number that its pixels have in [`Picture::objects`](tabletop_core::Picture::objects); above 0.
+    pub object: u32,
+}
+
+impl DrawnSolid {
+    /// A solid of a body that stands at `pose`.
+    pub fn of(body: Pose, primitive: &Primitive, object: u32) -> Self {
+        Self {
+            pose: body * primitive.pose,
+            solid: primitive.solid,
+            color: primitive.color,
+            object,
+        }
+    }
+
+    /// The slab of a table: white, its top at Z = 0.
+    pub fn of_table(table: &Table, object: u32) -> Self {
+        Self {
+            pose: Pose::at(Vec3::NEG_Z * Table::THICKNESS / 2.0),
+            solid: Solid::Cuboid(Vec3::new(table.xspan, table.yspan, Table::THICKNESS)),
+            color: Rgb::WHITE,
+            object,
+        }
+    }
+}

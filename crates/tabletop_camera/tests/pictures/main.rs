@@ -1,0 +1,7 @@
+//! What pictures show, against the formulas they are made by and against rays that are met with solids one by one.
+
+mod colors;
+mod edges;
+mod geometry;
+mod hostile;
+mod scenes;

@@ -1,0 +1,108 @@
+//! What can go wrong with a recording.
+
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
+
+/// Why a recording could not be made or read.
+#[derive(Debug, thiserror::Error)]
+pub enum RecorderError {
+    /// The folder of an earlier recording is in the way.
+    #[error(
+        "cannot move the earlier recording {folder} aside to {aside}: {source}; move it away by hand, or record into another folder"
+    )]
+    MoveAside {
+        /// The folder.
+        folder: PathBuf,
+        /// What it should have become.
+        aside: PathBuf,
+        /// The reason.
+        source: io::Error,
+    },
+    /// A file or folder cannot be made.
+    #[error(
+        "cannot create {path}: {source}; record into a folder that you may write to, on a disk with space left"
+    )]
+    Create {
+        /// The file or folder.
+        path: PathBuf,
+        /// The reason.
+        source: io::Error,
+    },
+    /// A file or folder cannot be changed.
+    #[error(
+        "cannot write {path}: {source}; free some space on its disk, or record into another folder"
+    )]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// The reason.
+        source: io::Error,
+    },
+    /// A picture cannot be encoded.
+    #[error(
+        "cannot encode the picture {path}: {source}; check the size of the head camera's pictures"
+    )]
+    Picture {
+        /// The picture's file.
+        path: PathBuf,
+        /// The reason.
+        source: png::EncodingError,
+    },
+    /// A file cannot be read.
+    #[error("cannot read {path}: {source}; check that the recording is complete and readable")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        source: io::Error,
+    },
+    /// A line of a session log is not what it should be.
+    #[error(
+        "{path}:{line}: {source}; expected a session log of format {format}, as this program writes it",
+        format = crate::session::FORMAT
+    )]
+    Session {
+        /// The session log.
+        path: PathBuf,
+        /// Number of the line, from 1.
+        line: usize,
+        /// The reason.
+        source: serde_json::Error,
+    },
+    /// A session log has another format.
+    #[error(
+        "{path}: a session log of format {found}, this program reads format {format}; read it with the program of the version that its first line names",
+        format = crate::session::FORMAT
+    )]
+    Format {
+        /// The session log.
+        path: PathBuf,
+        /// Its format.
+        found: u32,
+    },
+}
+
+impl RecorderError {
+    pub(crate) fn create(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        |source| Self::Create {
+            path: path.to_owned(),
+            source,
+        }
+    }
+
+    pub(crate) fn write(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        |source| Self::Write {
+            path: path.to_owned(),
+            source,
+        }
+    }
+
+    pub(crate) fn read(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        |source| Self::Read {
+            path: path.to_owned(),
+            source,
+        }
+    }
+}

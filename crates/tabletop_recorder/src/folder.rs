@@ -1,0 +1,143 @@
+//! Where the files of a recording are.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use crate::RecorderError;
+
+/// The folder of a recording.
+#[derive(Clone, Debug)]
+pub(crate) struct Folder(PathBuf);
+
+impl Folder {
+    /// Makes the folder. One that is there already is moved aside to the same name with the first free number appended.
+    pub(crate) fn create(path: &Path) -> Result<Self, RecorderError> {
+        if is_taken(path) {
+            let aside = first_free_name(path);
+            fs::rename(path, &aside).map_err(|source| RecorderError::MoveAside {
+                folder: path.to_owned(),
+                aside,
+                source,
+            })?;
+        }
+        create_folder(path)?;
+        Ok(Self(path.to_owned()))
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        &self.0
+    }
+
+    pub(crate) fn session(&self) -> PathBuf {
+        self.0.join("session.jsonl")
+    }
+
+    pub(crate) fn states(&self) -> PathBuf {
+        self.0.join("states.csv")
+    }
+
+    pub(crate) fn text(&self, segment: u32) -> PathBuf {
+        self.0.join(format!("{segment}.txt"))
+    }
+
+    pub(crate) fn pictures(&self, segment: u32) -> PathBuf {
+        self.0.join(segment.to_string())
+    }
+
+    pub(crate) fn picture(&self, segment: u32, frame: u64) -> PathBuf {
+        self.pictures(segment).join(format!("{frame}.png"))
+    }
+
+    /// What was undone and can be redone.
+    pub(crate) fn undone(&self) -> Self {
+        Self(self.0.join(".undone"))
+    }
+
+    /// What was undone with a segment.
+    pub(crate) fn undone_segment(&self, segment: u32) -> Self {
+        Self(self.undone().pictures(segment))
+    }
+
+    /// Moves text and pictures of a segment to another folder.
+    pub(crate) fn move_segment(&self, segment: u32, to: &Self) -> Result<(), RecorderError> {
+        for (from, to) in [
+            (self.text(segment), to.text(segment)),
+            (self.pictures(segment), to.pictures(segment)),
+        ] {
+            fs::rename(&from, &to).map_err(RecorderError::write(&from))?;
+        }
+        Ok(())
+    }
+
+    /// Removes the pictures of a segment from this frame on.
+    pub(crate) fn remove_pictures(&self, segment: u32, first: u64) -> Result<(), RecorderError> {
+        let folder = self.pictures(segment);
+        for entry in fs::read_dir(&folder).map_err(RecorderError::read(&folder))? {
+            let path = entry.map_err(RecorderError::read(&folder))?.path();
+            let frame = path.file_stem().and_then(|frame| frame.to_str());
+            if frame.is_some_and(|frame| frame.parse().is_ok_and(|frame: u64| frame >= first)) {
+                fs::remove_file(&path).map_err(RecorderError::write(&path))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes the folder, if there is one.
+    pub(crate) fn remove(&self) -> Result<(), RecorderError> {
+        match fs::remove_dir_all(&self.0) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                Err(RecorderError::write(&self.0)(error))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+pub(crate) fn create_folder(path: &Path) -> Result<(), RecorderError> {
+    fs::create_dir_all(path).map_err(RecorderError::create(path))
+}
+
+fn first_free_name(path: &Path) -> PathBuf {
+    let numbered = |number: u32| {
+        let mut name = path.components().as_path().as_os_str().to_owned();
+        name.push(format!("-{number}"));
+        PathBuf::from(name)
+    };
+    let mut number = 1;
+    while is_taken(&numbered(number)) {
+        number += 1;
+    }
+    numbered(number)
+}
+
+fn is_taken(path: &Path) -> bool {
+    path.symlink_metadata().is_ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn earlier_recordings_are_moved_aside_to_the_first_free_number() {
+        let parent = std::env::temp_dir().join(format!("tabletop_folder_{}", std::process::id()));
+        let demo = parent.join("demo/");
+        for content in ["first", "second", "third"] {
+            let folder = Folder::create(&demo).unwrap();
+            fs::write(folder.path().join("content"), content).unwrap();
+        }
+        for (folder, content) in [("demo", "third"), ("demo-1", "first"), ("demo-2", "second")] {
+            let path = parent.join(folder).join("content");
+            assert_eq!(fs::read_to_string(path).unwrap(), content);
+        }
+        fs::remove_dir_all(parent).unwrap();
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_made_is_named() {
+        let error = Folder::create(Path::new("/dev/null/demo")).unwrap_err();
+        assert!(error.to_string().contains("/dev/null/demo"), "{error}");
+    }
+}

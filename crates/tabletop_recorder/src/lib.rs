@@ -1,0 +1,99 @@
+//! Recordings of demonstrations on disk, in the files of the original program and with what replays need besides.
+//!
+//! A recording is one episode in a folder: per segment `n` the events `n.txt` and the pictures `n/<frame>.png`, and for the
+//! whole of it the commands `session.jsonl` and the states `states.csv`. `docs/recordings.md` describes the files.
+//!
+//! ```
+//! use bevy::prelude::*;
+//! use tabletop_core::prelude::*;
+//! use tabletop_recorder::{RecorderPlugin, Session};
+//!
+//! let folder = std::env::temp_dir().join(format!("tabletop_example_{}", std::process::id()));
+//! let recorder = RecorderPlugin { folder: folder.clone(), ..default() };
+//! let mut app = App::new();
+//! app.add_plugins((MinimalPlugins, CorePlugin::default(), recorder)).start();
+//!
+//! app.world_mut().write_message(SimCommand::StartRecording);
+//! app.step(60);
+//! app.world_mut().write_message(SimCommand::FinishRecording);
+//! app.step(1);
+//!
+//! let session = Session::read(folder.join("session.jsonl"))?;
+//! assert_eq!(session.commands[0].tick, 60);
+//! assert_eq!(session.commands[0].command, SimCommand::FinishRecording);
+//! # std::fs::remove_dir_all(folder)?;
+//! # Ok::<_, Box<dyn std::error::Error>>(())
+//! ```
+
+mod cause;
+mod change;
+mod episode;
+mod error;
+mod event;
+mod folder;
+mod frame;
+mod log_file;
+mod picture;
+mod properties;
+mod recorder;
+mod session;
+mod states;
+
+pub use error::RecorderError;
+pub use event::Event;
+pub use frame::{FRAMES_PER_SECOND, TICKS_PER_FRAME};
+pub use session::{
+    Session, SessionCommand, SessionHeader, SessionObject, SessionScene, SessionTask,
+};
+
+use std::path::PathBuf;
+
+use bevy::prelude::*;
+use serde_json::{Map, Value};
+use tabletop_core::{Paused, SimSystems};
+
+use crate::recorder::{Recorder, ask_for_picture, record, take_commands};
+
+/// Records the simulation into a folder from [`StartRecording`] to [`FinishRecording`], both ticks included.
+/// Needs [`CorePlugin`](tabletop_core::CorePlugin).
+///
+/// It keeps between the phases of a tick: before [`SimSystems::Ingest`] it logs the commands, after [`SimSystems::Sense`]
+/// it writes what came of them. Both also happen while paused, so that nothing is missed that is done meanwhile.
+///
+/// [`StartRecording`]: tabletop_core::SimCommand::StartRecording
+/// [`FinishRecording`]: tabletop_core::SimCommand::FinishRecording
+#[derive(Clone, Debug)]
+pub struct RecorderPlugin {
+    /// The folder. What is there when a recording starts is moved aside.
+    pub folder: PathBuf,
+    /// What the [header](SessionHeader::settings) of a session log says besides.
+    pub header: Map<String, Value>,
+}
+
+impl Default for RecorderPlugin {
+    fn default() -> Self {
+        Self {
+            folder: "demo".into(),
+            header: Map::new(),
+        }
+    }
+}
+
+impl Plugin for RecorderPlugin {
+    fn build(&self, app: &mut App) {
+        app.insert_resource(Recorder::new(self.folder.clone(), self.header.clone()))
+            .add_systems(
+                FixedUpdate,
+                (
+                    take_commands
+                        .after(SimSystems::Load)
+                        .before(SimSystems::Ingest),
+                    ask_for_picture
+                        .run_if(Paused::is_running)
+                        .after(SimSystems::Propagate)
+                        .before(SimSystems::Sense),
+                    record.after(SimSystems::Sense).before(SimSystems::Record),
+                ),
+            );
+    }
+}

@@ -1,0 +1,142 @@
+//! Files that only ever end with a whole line.
+
+use std::{
+    fs::{File, OpenOptions},
+    io::{self, Seek as _, SeekFrom, Write as _},
+    path::{Path, PathBuf},
+};
+
+use crate::RecorderError;
+
+/// A file that grows by whole lines. What is appended is with the operating system when the call returns, so it outlives
+/// the program; what cannot be appended whole is not in the file.
+#[derive(Debug)]
+pub(crate) struct LogFile {
+    path: PathBuf,
+    file: File,
+    len: u64,
+}
+
+impl LogFile {
+    pub(crate) fn create(path: PathBuf) -> Result<Self, RecorderError> {
+        let file = OpenOptions::new()
+            .write(true)
+            .create_new(true)
+            .open(&path)
+            .map_err(RecorderError::create(&path))?;
+        Ok(Self { path, file, len: 0 })
+    }
+
+    /// Opens a file of which the first `len` bytes are kept.
+    pub(crate) fn reopen(path: PathBuf, len: u64) -> Result<Self, RecorderError> {
+        let file = OpenOptions::new()
+            .write(true)
+            .open(&path)
+            .map_err(RecorderError::write(&path))?;
+        let mut log = Self { path, file, len };
+        log.cut(len)?;
+        Ok(log)
+    }
+
+    pub(crate) fn len(&self) -> u64 {
+        self.len
+    }
+
+    /// Appends lines, each with its line end.
+    pub(crate) fn append(&mut self, lines: &[u8]) -> Result<(), RecorderError> {
+        if let Err(error) = self.file.write_all(lines) {
+            // Should that fail, too, the first error says why.
+            let _cut = self.set_len(self.len);
+            return Err(RecorderError::write(&self.path)(error));
+        }
+        self.len += lines.len() as u64;
+        Ok(())
+    }
+
+    /// Appends records as comma-separated values, quoted where they need it.
+    pub(crate) fn append_records(&mut self, records: &[Vec<String>]) -> Result<(), RecorderError> {
+        if records.is_empty() {
+            return Ok(());
+        }
+        let lines = csv_lines(records).map_err(RecorderError::write(&self.path))?;
+        self.append(&lines)
+    }
+
+    /// Appends what another file holds.
+    pub(crate) fn append_file(&mut self, path: &Path) -> Result<(), RecorderError> {
+        let lines = std::fs::read(path).map_err(RecorderError::read(path))?;
+        self.append(&lines)
+    }
+
+    /// Keeps the first `len` bytes.
+    pub(crate) fn cut(&mut self, len: u64) -> Result<(), RecorderError> {
+        self.set_len(len).map_err(RecorderError::write(&self.path))
+    }
+
+    /// Keeps the first `len` bytes, and moves the others to a new file.
+    pub(crate) fn cut_to_file(&mut self, len: u64, path: PathBuf) -> Result<(), RecorderError> {
+        let mut tail = Self::create(path)?;
+        let whole = std::fs::read(&self.path).map_err(RecorderError::read(&self.path))?;
+        let kept = whole.len().min(len as usize);
+        tail.append(&whole[kept..])?;
+        self.cut(len)
+    }
+
+    fn set_len(&mut self, len: u64) -> io::Result<()> {
+        self.file.set_len(len)?;
+        self.file.seek(SeekFrom::Start(len))?;
+        self.len = len;
+        Ok(())
+    }
+}
+
+fn csv_lines(records: &[Vec<String>]) -> io::Result<Vec<u8>> {
+    let mut lines = csv::WriterBuilder::new()
+        .flexible(true)
+        .from_writer(Vec::new());
+    for record in records {
+        lines.write_record(record)?;
+    }
+    lines.into_inner().map_err(csv::IntoInnerError::into_error)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn only_values_that_need_it_are_quoted() {
+        let record = [
+            "0",
+            "create",
+            "a b#1",
+            "1,5",
+            "say \"hi\"",
+            "two\nlines",
+            "",
+        ];
+        let lines = csv_lines(&[record.map(str::to_owned).to_vec()]).unwrap();
+        assert_eq!(
+            String::from_utf8(lines).unwrap(),
+            "0,create,a b#1,\"1,5\",\"say \"\"hi\"\"\",\"two\nlines\",\n"
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn any_values_come_back(records in prop::collection::vec(prop::collection::vec(any::<String>(), 2..6), 1..5)) {
+            let lines = csv_lines(&records).unwrap();
+            let mut reader = csv::ReaderBuilder::new()
+                .has_headers(false)
+                .flexible(true)
+                .from_reader(&lines[..]);
+            let read: Vec<Vec<String>> = reader
+                .records()
+                .map(|record| record.unwrap().iter().map(str::to_owned).collect())
+                .collect();
+            prop_assert_eq!(read, records);
+        }
+    }
+}

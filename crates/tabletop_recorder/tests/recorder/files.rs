@@ -1,0 +1,385 @@
+//! What the files of a recording say.
+
+use std::{collections::BTreeMap, fs};
+
+use tabletop_core::{Hand, Recording, SimCommand, SimFact, SimTick, StepApp as _};
+use tabletop_recorder::Session;
+
+use crate::stage::{Place, app, app_into, block, grasp, heard, location, run, scene};
+
+const CREATED: &str = "shape,block,xspan,1.0,zspan,1.0,yspan,1.0,color,#ff0000,mass,1.0";
+
+#[test]
+fn a_demonstration_is_written_as_the_original_program_does() {
+    let place = Place::new();
+    let mut app = app(&place);
+    run(
+        &mut app,
+        &[
+            (0, scene(&["zz", "a", "still"])),
+            (100, SimCommand::StartRecording),
+            (20, grasp(Hand::Left, "a")),
+            (20, SimCommand::Release(Hand::Left)),
+            (20, grasp(Hand::Right, "zz")),
+            (5, SimCommand::Destroy(Hand::Right)),
+            (20, SimCommand::FinishRecording),
+        ],
+    );
+    assert_eq!(
+        place.read("0.txt"),
+        format!(
+            "0,create,zz,{CREATED}\n\
+             0,create,a,{CREATED}\n\
+             0,create,still,{CREATED}\n\
+             0,move,zz,1.0,2.0,0.5,0.0,0.0,0.0\n\
+             0,move,a,1.0,1.0,0.5,0.0,0.0,0.0\n\
+             0,move,still,0.0,5.0,0.5,0.0,0.0,0.0\n\
+             1,move,zz,1.15,2.0,0.5,0.0,0.0,0.0\n\
+             1,move,a,1.15,1.0,0.5,0.0,0.0,0.0\n"
+        )
+    );
+    assert_eq!(
+        place.read("1.txt"),
+        "2,grasp,LeftHand,a\n\
+         2,move,zz,1.3,2.0,0.5,0.0,0.0,0.0\n\
+         2,move,a,1.3,1.0,0.5,0.0,0.0,0.0\n"
+    );
+    assert_eq!(
+        place.read("2.txt"),
+        "3,release,LeftHand\n\
+         3,move,zz,1.4499999,2.0,0.5,0.0,0.0,0.0\n\
+         3,move,a,1.4499999,1.0,0.5,0.0,0.0,0.0\n"
+    );
+    assert_eq!(
+        place.read("3.txt"),
+        "4,grasp,RightHand,zz\n\
+         4,move,zz,1.5999999,2.0,0.5,0.0,0.0,0.0\n\
+         4,move,a,1.5999999,1.0,0.5,0.0,0.0,0.0\n"
+    );
+    assert_eq!(
+        place.read("4.txt"),
+        "5,delete,zz\n5,destroy,RightHand\n5,move,a,1.75,1.0,0.5,0.0,0.0,0.0\n"
+    );
+    let frames: Vec<_> = (0..5).map(|segment| place.frames(segment)).collect();
+    assert_eq!(frames, [vec![0, 1], vec![2], vec![3], vec![4], vec![5]]);
+    assert!(!place.demo().join("5.txt").exists());
+}
+
+#[test]
+fn a_picture_shows_its_frame() {
+    let place = Place::new();
+    let mut app = app(&place);
+    run(
+        &mut app,
+        &[
+            (0, scene(&["a"])),
+            (7, SimCommand::StartRecording),
+            (40, SimCommand::FinishRecording),
+        ],
+    );
+    assert_eq!(place.frames(0), [0, 1, 2]);
+    for frame in 0..3_u8 {
+        let file = fs::File::open(place.demo().join(format!("0/{frame}.png"))).unwrap();
+        let mut reader = png::Decoder::new(std::io::BufReader::new(file))
+            .read_info()
+            .unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut pixels).unwrap();
+        assert_eq!((info.width, info.height), (4, 3));
+        let grey = 7 + 15 * frame;
+        assert_eq!(pixels[..4], [grey, grey, grey, 255]);
+    }
+}
+
+#[test]
+fn frames_are_counted_without_drift_for_ten_minutes() {
+    let place = Place::new();
+    let mut app = app(&place);
+    run(
+        &mut app,
+        &[
+            (0, scene(&["a"])),
+            (11, SimCommand::StartRecording),
+            (10 * 60 * 60, SimCommand::FinishRecording),
+        ],
+    );
+    let expected: Vec<u64> = (0..=10 * 60 * 4).collect();
+    assert_eq!(place.frames(0), expected);
+    let text = place.read("0.txt");
+    let moves: Vec<(u64, f32)> = text
+        .lines()
+        .skip(1)
+        .map(|line| {
+            let fields: Vec<_> = line.split(',').collect();
+            (fields[0].parse().unwrap(), fields[3].parse().unwrap())
+        })
+        .collect();
+    let expected: Vec<_> = expected
+        .into_iter()
+        .map(|frame| (frame, location("a", SimTick(11 + 15 * frame)).x))
+        .collect();
+    assert_eq!(moves, expected);
+}
+
+#[test]
+fn while_nothing_changes_frames_are_counted_and_nothing_is_written() {
+    let place = Place::new();
+    let mut app = app(&place);
+    run(
+        &mut app,
+        &[
+            (0, scene(&["still"])),
+            (1, SimCommand::StartRecording),
+            (100, scene(&["still", "still more"])),
+            (30, SimCommand::FinishRecording),
+        ],
+    );
+    assert_eq!(place.frames(0), [0, 7]);
+    let text = place.read("0.txt");
+    let lines: Vec<_> = text.lines().collect();
+    assert_eq!(
+        lines,
+        [
+            &format!("0,create,still,{CREATED}"),
+            "0,move,still,0.0,5.0,0.5,0.0,0.0,0.0",
+            "7,delete,still",
+            &format!("7,create,still,{CREATED}"),
+            &format!("7,create,still more,{CREATED}"),
+            "7,move,still,0.0,5.0,0.5,0.0,0.0,0.0",
+            "7,move,still more,0.0,10.0,0.5,0.0,0.0,0.0",
+        ]
+    );
+}
+
+/// Reads a recording as scripts for the original program do: every line split at its commas.
+fn read_as_the_original(text: &str) -> BTreeMap<String, Vec<f32>> {
+    let mut poses = BTreeMap::new();
+    let mut previous = 0;
+    for line in text.lines() {
+        let fields: Vec<_> = line.split(',').collect();
+        let frame: u64 = fields[0].parse().unwrap();
+        assert!(frame >= previous, "{line} comes late");
+        previous = frame;
+        match fields[1..] {
+            ["create", id, "shape", _, ref pairs @ ..] => {
+                assert!(pairs.len().is_multiple_of(2), "{line}");
+                poses.insert(id.to_owned(), Vec::new());
+            }
+            ["delete", id] => assert!(poses.remove(id).is_some(), "{line}"),
+            ["move", id, ref numbers @ ..] => {
+                assert_eq!(numbers.len(), 6, "{line}");
+                let numbers = numbers.iter().map(|number| number.parse().unwrap());
+                *poses.get_mut(id).unwrap() = numbers.collect();
+            }
+            [
+                "grasp",
+                "LeftHand" | "RightHand" | "BothHands" | "AnyHand",
+                id,
+            ] => {
+                assert!(poses.contains_key(id), "{line}");
+            }
+            [
+                "release" | "destroy",
+                "LeftHand" | "RightHand" | "BothHands" | "AnyHand",
+            ] => {}
+            _ => panic!("{line}"),
+        }
+    }
+    poses
+}
+
+#[test]
+fn a_reader_for_the_original_program_reads_a_recording() {
+    let place = Place::new();
+    let mut app = app(&place);
+    run(
+        &mut app,
+        &[
+            (0, scene(&["a", "bb", "still"])),
+            (1, SimCommand::StartRecording),
+            (20, grasp(Hand::Any, "a")),
+            (40, SimCommand::Destroy(Hand::Any)),
+            (30, grasp(Hand::Both, "bb")),
+            (15, SimCommand::Release(Hand::Both)),
+            (14, SimCommand::FinishRecording),
+        ],
+    );
+    let text: String = (0..=4).map(|n| place.read(&format!("{n}.txt"))).collect();
+    let poses = read_as_the_original(&text);
+    assert_eq!(poses.keys().collect::<Vec<_>>(), ["bb", "still"]);
+    let last_frame = location("bb", SimTick(1 + 15 * 7));
+    assert_eq!(poses["bb"], [last_frame.x, 2.0, 0.5, 0.0, 0.0, 0.0]);
+    assert_eq!(poses["still"], [0.0, 5.0, 0.5, 0.0, 0.0, 0.0]);
+}
+
+#[test]
+fn states_hold_every_tick_of_what_moves() {
+    let place = Place::new();
+    let mut app = app(&place);
+    run(
+        &mut app,
+        &[
+            (0, scene(&["a,b", "still"])),
+            (5, SimCommand::StartRecording),
+            (50, SimCommand::FinishRecording),
+        ],
+    );
+    let states = place.read("states.csv");
+    let mut reader = csv::Reader::from_reader(states.as_bytes());
+    assert_eq!(
+        reader.headers().unwrap(),
+        vec!["tick", "id", "x", "y", "z", "qx", "qy", "qz", "qw"]
+    );
+    let rows: Vec<_> = reader.records().map(|row| row.unwrap()).collect();
+    let of = |id: &str| -> Vec<(u64, f32)> {
+        rows.iter()
+            .filter(|row| &row[1] == id)
+            .map(|row| (row[0].parse().unwrap(), row[2].parse().unwrap()))
+            .collect()
+    };
+    let expected: Vec<_> = (5..=55)
+        .map(|tick| (tick, location("a,b", SimTick(tick)).x))
+        .collect();
+    assert_eq!(of("a,b"), expected);
+    assert_eq!(of("still"), [(5, 0.0)]);
+}
+
+#[test]
+fn the_session_log_holds_the_scene_and_every_command() {
+    let place = Place::new();
+    let mut app = app(&place);
+    run(
+        &mut app,
+        &[
+            (0, scene(&["a"])),
+            (3, SimCommand::SetPaused(true)),
+            (2, SimCommand::StartRecording),
+            (0, grasp(Hand::Left, "a")),
+            (4, SimCommand::SetPaused(false)),
+            (10, SimCommand::FinishRecording),
+        ],
+    );
+    let session = Session::read(place.demo().join("session.jsonl")).unwrap();
+    assert_eq!(session.header.start_tick, 3);
+    assert_eq!(session.header.ticks_per_second, 60);
+    let [object] = &session.scene.objects[..] else {
+        panic!("{:?}", session.scene.objects);
+    };
+    assert_eq!(object.spec, block("a"));
+    assert_eq!(object.pose.location, location("a", SimTick(2)));
+    let task = session.scene.task.unwrap();
+    assert_eq!(task.tick, 0);
+    assert_eq!(SimCommand::SetScene(Box::new(task.scene)), scene(&["a"]));
+    let commands: Vec<_> = session
+        .commands
+        .into_iter()
+        .map(|command| (command.tick, command.command))
+        .collect();
+    assert_eq!(
+        commands,
+        [
+            (3, grasp(Hand::Left, "a")),
+            (3, SimCommand::SetPaused(false)),
+            (13, SimCommand::FinishRecording),
+        ]
+    );
+    assert_eq!(
+        place.read("1.txt").lines().next(),
+        Some("0,grasp,LeftHand,a")
+    );
+}
+
+#[test]
+fn a_scene_that_is_set_in_the_first_tick_is_the_one_recorded() {
+    let place = Place::new();
+    let mut app = app(&place);
+    run(
+        &mut app,
+        &[
+            (0, scene(&["old"])),
+            (3, scene(&["new"])),
+            (0, SimCommand::StartRecording),
+            (0, SimCommand::FinishRecording),
+        ],
+    );
+    assert_eq!(
+        place.read("0.txt"),
+        format!("0,create,new,{CREATED}\n0,move,new,0.03,3.0,0.5,0.0,0.0,0.0\n")
+    );
+    let session = Session::read(place.demo().join("session.jsonl")).unwrap();
+    assert_eq!(session.scene.objects[0].spec.id, "old");
+    assert_eq!(session.commands[0].command, scene(&["new"]));
+}
+
+#[test]
+fn what_happens_while_paused_is_recorded() {
+    let place = Place::new();
+    let mut app = app(&place);
+    run(
+        &mut app,
+        &[
+            (0, SimCommand::StartRecording),
+            (1, SimCommand::SetPaused(true)),
+            (5, scene(&["a"])),
+            (5, SimCommand::FinishRecording),
+        ],
+    );
+    assert_eq!(place.read("0.txt"), format!("1,create,a,{CREATED}\n"));
+    assert!(!app.world().resource::<Recording>().0);
+}
+
+#[test]
+fn start_and_finish_tell_what_they_do() {
+    let place = Place::new();
+    let mut app = app(&place);
+    let folder = place.demo();
+    run(&mut app, &[(0, SimCommand::StartRecording)]);
+    let started = SimFact::RecordingStarted { folder };
+    assert_eq!(heard(&mut app), [started]);
+    assert!(app.world().resource::<Recording>().0);
+
+    run(&mut app, &[(0, SimCommand::StartRecording)]);
+    let [SimFact::Refused { reason }] = &heard(&mut app)[..] else {
+        panic!("a second recording was started");
+    };
+    assert!(reason.contains("finish it first"), "{reason}");
+
+    run(&mut app, &[(0, SimCommand::FinishRecording)]);
+    let folder = place.demo();
+    assert_eq!(heard(&mut app), [SimFact::RecordingFinished { folder }]);
+    assert!(!app.world().resource::<Recording>().0);
+
+    run(&mut app, &[(0, SimCommand::FinishRecording)]);
+    assert!(matches!(&heard(&mut app)[..], [SimFact::Refused { .. }]));
+}
+
+#[test]
+fn the_next_recording_leaves_the_last_one_alone() {
+    let place = Place::new();
+    let mut app = app(&place);
+    for id in ["first", "second"] {
+        run(
+            &mut app,
+            &[
+                (0, scene(&[id])),
+                (1, SimCommand::StartRecording),
+                (1, SimCommand::FinishRecording),
+            ],
+        );
+    }
+    assert!(place.read("0.txt").starts_with("0,create,second,"));
+    let aside = fs::read_to_string(place.path().join("demo-1/0.txt")).unwrap();
+    assert!(aside.starts_with("0,create,first,"), "{aside}");
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_refused() {
+    let mut app = app_into("/dev/null/demo".into());
+    run(&mut app, &[(0, SimCommand::StartRecording)]);
+    let [SimFact::Refused { reason }] = &heard(&mut app)[..] else {
+        panic!("it was not refused");
+    };
+    assert!(reason.contains("/dev/null/demo"), "{reason}");
+    assert!(!app.world().resource::<Recording>().0);
+    app.step(20);
+}

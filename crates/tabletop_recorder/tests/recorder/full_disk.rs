@@ -1,0 +1,164 @@
+//! A disk that is full ends a recording, and costs nothing of what was there.
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    io::Write as _,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use tabletop_core::{Hand, Recording, SimCommand, SimFact, StepApp as _};
+use tabletop_recorder::Session;
+
+use crate::stage::{Place, app_into, grasp, heard, run, scene};
+
+/// A disk of 256 KiB in memory.
+struct SmallDisk(PathBuf);
+
+impl SmallDisk {
+    fn mount(path: PathBuf) -> Option<Self> {
+        fs::create_dir(&path).unwrap();
+        let mounted = Command::new("mount")
+            .args(["-t", "tmpfs", "-o", "size=256k", "tmpfs"])
+            .arg(&path)
+            .output();
+        match mounted {
+            Ok(output) if output.status.success() => Some(Self(path)),
+            failed => {
+                let reason = format!("SKIPPED: cannot mount a small disk: {failed:?}");
+                assert!(std::env::var_os("CI").is_none(), "{reason}");
+                #[expect(
+                    clippy::explicit_write,
+                    reason = "the test harness hides what a passing test says with eprintln"
+                )]
+                writeln!(std::io::stderr(), "{reason}").unwrap();
+                None
+            }
+        }
+    }
+}
+
+impl Drop for SmallDisk {
+    fn drop(&mut self) {
+        let _still_mounted = Command::new("umount").arg("-l").arg(&self.0).status();
+    }
+}
+
+fn fill(disk: &Path, bytes: usize) {
+    let _full = fs::write(disk.join("filler"), vec![0; bytes]);
+}
+
+fn refusals(facts: &[SimFact]) -> Vec<&str> {
+    facts
+        .iter()
+        .filter_map(|fact| match fact {
+            SimFact::Refused { reason } => Some(reason.as_str()),
+            _ => None,
+        })
+        .collect()
+}
+
+const IDS: [&str; 6] = ["a", "bb", "ccc", "dddd", "eeeee", "ffffff"];
+
+#[test]
+fn what_was_recorded_before_the_disk_was_full_is_complete() {
+    let place = Place::new();
+    for round in 0..12 {
+        let path = place.path().join(round.to_string());
+        let Some(disk) = SmallDisk::mount(path) else {
+            return;
+        };
+        fill(&disk.0, round * 7_000);
+        let demo = disk.0.join("demo");
+        let mut app = app_into(demo.clone());
+        run(
+            &mut app,
+            &[(0, scene(&IDS)), (0, SimCommand::StartRecording)],
+        );
+        let mut ticks = 1;
+        while app.world().resource::<Recording>().0 {
+            let command = match ticks % 40 {
+                0 => grasp(Hand::Left, "a"),
+                20 => SimCommand::Release(Hand::Left),
+                _ => SimCommand::SelectHand(Hand::Left),
+            };
+            run(&mut app, &[(0, command)]);
+            ticks += 1;
+            assert!(ticks < 10_000, "the disk does not get full");
+        }
+        app.step(20);
+
+        let facts = heard(&mut app);
+        let [reason] = refusals(&facts)[..] else {
+            panic!("{facts:?}");
+        };
+        assert!(reason.contains("No space left"), "{reason}");
+        assert!(reason.contains("free some space"), "{reason}");
+        let folder = demo.clone();
+        assert!(facts.contains(&SimFact::RecordingFinished { folder }));
+        check_recording(&demo, ticks - 1);
+    }
+}
+
+/// The last tick may be there or not, all before it must be.
+fn check_recording(demo: &Path, ticks: u64) {
+    let states = fs::read_to_string(demo.join("states.csv")).unwrap();
+    assert!(states.ends_with('\n'));
+    let mut seen: BTreeMap<u64, Vec<String>> = BTreeMap::new();
+    for row in csv::Reader::from_reader(states.as_bytes()).records() {
+        let row = row.unwrap();
+        assert_eq!(row.len(), 9);
+        let tick = row[0].parse().unwrap();
+        seen.entry(tick).or_default().push(row[1].to_owned());
+    }
+    assert!(seen.len() as u64 >= ticks - 1, "{} of {ticks}", seen.len());
+    for (expected, (tick, ids)) in seen.into_iter().enumerate() {
+        assert_eq!(tick, expected as u64);
+        assert_eq!(ids, IDS);
+    }
+
+    let session = Session::read(demo.join("session.jsonl")).unwrap();
+    assert!(session.commands.len() as u64 >= ticks - 1);
+
+    for segment in 0.. {
+        let Ok(text) = fs::read_to_string(demo.join(format!("{segment}.txt"))) else {
+            assert!(segment > 2, "only {segment} segments");
+            break;
+        };
+        assert!(text.is_empty() || text.ends_with('\n'));
+        for line in text.lines().filter(|line| line.contains(",move,")) {
+            let (frame, _) = line.split_once(',').unwrap();
+            let picture = demo.join(format!("{segment}/{frame}.png"));
+            let file = std::io::BufReader::new(fs::File::open(picture).unwrap());
+            let mut reader = png::Decoder::new(file).read_info().unwrap();
+            let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+            reader.next_frame(&mut pixels).unwrap();
+        }
+        for entry in fs::read_dir(demo.join(segment.to_string())).unwrap() {
+            let name = entry.unwrap().file_name();
+            assert!(name.to_string_lossy().ends_with(".png"), "{name:?}");
+        }
+    }
+}
+
+#[test]
+fn no_recording_starts_on_a_full_disk() {
+    let place = Place::new();
+    let Some(disk) = SmallDisk::mount(place.path().join("full")) else {
+        return;
+    };
+    fill(&disk.0, 1 << 20);
+    let mut app = app_into(disk.0.join("demo"));
+    run(
+        &mut app,
+        &[(0, scene(&IDS)), (0, SimCommand::StartRecording)],
+    );
+    let facts = heard(&mut app);
+    assert_eq!(refusals(&facts).len(), 1, "{facts:?}");
+    assert!(!app.world().resource::<Recording>().0);
+
+    fs::remove_file(disk.0.join("filler")).unwrap();
+    run(&mut app, &[(0, SimCommand::StartRecording)]);
+    assert!(app.world().resource::<Recording>().0, "there is space now");
+}

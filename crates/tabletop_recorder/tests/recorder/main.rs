@@ -1,0 +1,8 @@
+//! Recordings as they are on disk.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+mod files;
+mod full_disk;
+mod kill;
+mod stage;
+mod undo;

@@ -1,0 +1,357 @@
+//! A world without physics that acts on commands as the demonstrator does: where an object is follows from the tick alone.
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicU32, Ordering},
+};
+
+use bevy::{ecs::system::SystemState, prelude::*};
+use tabletop_core::{
+    CorePlugin, Hand, Hands, ObjectIndex, ObjectSpec, PictureDemand, PictureSystems, Pose,
+    Recording, Rgb, SceneItem, SceneSpec, SensorImage, Shape, SimCommand, SimFact, SimSystems,
+    SimTick, StepApp as _,
+};
+use tabletop_recorder::RecorderPlugin;
+
+/// A folder for the recordings of a test, removed in the end.
+pub struct Place(PathBuf);
+
+impl Place {
+    pub fn new() -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("tabletop_recorder_{}_{number}", std::process::id());
+        let path = std::env::temp_dir().join(name);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    pub fn demo(&self) -> PathBuf {
+        self.0.join("demo")
+    }
+
+    pub fn read(&self, file: &str) -> String {
+        let path = self.demo().join(file);
+        fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    }
+
+    /// The files of the recording with their content; folders end with a slash.
+    pub fn tree(&self) -> BTreeMap<String, Vec<u8>> {
+        fn collect(folder: &Path, name: &str, tree: &mut BTreeMap<String, Vec<u8>>) {
+            for entry in fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                let name = format!("{name}{}", path.file_name().unwrap().to_string_lossy());
+                if path.is_dir() {
+                    let name = format!("{name}/");
+                    collect(&path, &name, tree);
+                    tree.insert(name, Vec::new());
+                } else {
+                    tree.insert(name, fs::read(&path).unwrap());
+                }
+            }
+        }
+        let mut tree = BTreeMap::new();
+        collect(&self.demo(), "", &mut tree);
+        tree
+    }
+
+    /// The names of the pictures of a segment, in the order of their frames.
+    pub fn frames(&self, segment: u32) -> Vec<u64> {
+        let folder = self.demo().join(segment.to_string());
+        let mut frames: Vec<_> = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| {
+                let name = entry.unwrap().file_name().into_string().unwrap();
+                name.strip_suffix(".png").unwrap().parse().unwrap()
+            })
+            .collect();
+        frames.sort_unstable();
+        frames
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        let _already_gone = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Whether the facts of what an undo brings back and takes away come before, after, or not at all.
+#[derive(Resource, Clone, Copy, Debug, PartialEq)]
+pub enum TurnTells {
+    Before,
+    After,
+    Nothing,
+}
+
+/// The facts of the tests' last steps.
+#[derive(Resource, Default)]
+pub struct Heard(pub Vec<SimFact>);
+
+#[derive(Clone)]
+struct Moment {
+    tick: SimTick,
+    objects: Vec<ObjectSpec>,
+    hands: Vec<Option<String>>,
+}
+
+#[derive(Resource, Default)]
+struct Moments {
+    undoable: Vec<Moment>,
+    redoable: Vec<(Moment, Moment)>,
+}
+
+/// An app that records into `demo` of this place.
+pub fn app(place: &Place) -> App {
+    app_into(place.demo())
+}
+
+pub fn app_into(folder: PathBuf) -> App {
+    let mut app = App::new();
+    app.add_plugins((
+        MinimalPlugins,
+        CorePlugin::default(),
+        RecorderPlugin {
+            folder,
+            ..default()
+        },
+    ))
+    .insert_resource(TurnTells::After)
+    .init_resource::<Heard>()
+    .init_resource::<Moments>()
+    .init_resource::<PictureDemand>()
+    .init_resource::<SensorImage>()
+    .add_systems(
+        FixedUpdate,
+        (
+            act.in_set(SimSystems::Ingest),
+            move_objects.in_set(SimSystems::Physics),
+            take_picture
+                .in_set(SimSystems::Sense)
+                .in_set(PictureSystems),
+            hear.in_set(SimSystems::Record),
+        ),
+    )
+    .start();
+    app
+}
+
+pub fn block(id: &str) -> ObjectSpec {
+    ObjectSpec {
+        id: id.into(),
+        pose: Pose::IDENTITY,
+        mass: 1.0,
+        shape: Shape::Block {
+            span: Vec3::ONE,
+            color: Rgb::new(1.0, 0.0, 0.0),
+        },
+        descriptions: Vec::new(),
+    }
+}
+
+pub fn scene(ids: &[&str]) -> SimCommand {
+    SimCommand::SetScene(Box::new(SceneSpec {
+        items: ids.iter().map(|id| SceneItem::Object(block(id))).collect(),
+        ..default()
+    }))
+}
+
+pub fn grasp(hand: Hand, object: &str) -> SimCommand {
+    let object = object.into();
+    SimCommand::Grasp { hand, object }
+}
+
+/// Carries out commands, each after so many ticks.
+pub fn run(app: &mut App, script: &[(u64, SimCommand)]) {
+    for (ticks, command) in script {
+        app.step(*ticks);
+        app.world_mut().write_message(command.clone());
+    }
+    app.step(1);
+}
+
+pub fn heard(app: &mut App) -> Vec<SimFact> {
+    std::mem::take(&mut app.world_mut().resource_mut::<Heard>().0)
+}
+
+/// Objects whose id begins with `still` stand, the others move by a hundredth of a unit a tick.
+pub fn location(id: &str, tick: SimTick) -> Vec3 {
+    let way = if id.starts_with("still") { 0 } else { tick.0 };
+    Vec3::new(way as f32 * 0.01, id.len() as f32, 0.5)
+}
+
+fn move_objects(tick: Res<SimTick>, mut objects: Query<(&ObjectSpec, &mut Transform)>) {
+    for (spec, mut transform) in &mut objects {
+        transform.translation = location(&spec.id, *tick);
+    }
+}
+
+fn take_picture(
+    mut demand: ResMut<PictureDemand>,
+    mut image: ResMut<SensorImage>,
+    tick: Res<SimTick>,
+) {
+    if demand.take() {
+        image.tick = *tick;
+        image.picture.resize(4, 3);
+        image.picture.rgb.fill(tick.0 as u8);
+    }
+}
+
+fn hear(mut facts: MessageReader<SimFact>, mut heard: ResMut<Heard>) {
+    heard.0.extend(facts.read().cloned());
+}
+
+fn act(world: &mut World, reader: &mut SystemState<MessageReader<SimCommand>>) -> Result {
+    let mut commands: Vec<_> = reader.get_mut(world)?.read().cloned().collect();
+    commands.sort_by_key(|command| match command {
+        SimCommand::SetScene(_) | SimCommand::ClearTable => 0,
+        SimCommand::Undo | SimCommand::Redo => 1,
+        _ => 2,
+    });
+    for command in commands {
+        match command {
+            SimCommand::SetScene(scene) => {
+                clear(world);
+                for item in scene.items {
+                    if let SceneItem::Object(spec) = item {
+                        let fact = create(world, spec);
+                        world.write_message(fact);
+                    }
+                }
+            }
+            SimCommand::ClearTable => clear(world),
+            SimCommand::Grasp { hand, object } => {
+                let Some(entity) = world.resource::<ObjectIndex>().get(&object) else {
+                    continue;
+                };
+                if let Some(other) = world.resource::<Hands>().holder_of(entity) {
+                    release(world, other);
+                }
+                begin_segment(world);
+                world.resource_mut::<Hands>().set_held(hand, Some(entity));
+                world.write_message(SimFact::Grasped { hand, id: object });
+            }
+            SimCommand::Release(hand) => release(world, hand),
+            SimCommand::Destroy(hand) => {
+                let Some(id) = held(world, hand) else {
+                    continue;
+                };
+                begin_segment(world);
+                let fact = delete(world, &id);
+                world.write_message(fact);
+                world.resource_mut::<Hands>().set_held(hand, None);
+                world.write_message(SimFact::Destroyed { hand, id });
+            }
+            SimCommand::Undo => {
+                let now = moment(world);
+                let mut moments = world.resource_mut::<Moments>();
+                if let Some(before) = moments.undoable.pop() {
+                    moments.redoable.push((before.clone(), now));
+                    turn(world, &before, SimFact::Undone);
+                }
+            }
+            SimCommand::Redo => {
+                let mut moments = world.resource_mut::<Moments>();
+                if let Some((before, after)) = moments.redoable.pop() {
+                    moments.undoable.push(before);
+                    turn(world, &after, SimFact::Redone);
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+fn begin_segment(world: &mut World) {
+    if world.resource::<Recording>().0 {
+        let now = moment(world);
+        let mut moments = world.resource_mut::<Moments>();
+        moments.undoable.push(now);
+        moments.redoable.clear();
+    }
+    world.write_message(SimFact::SegmentBegun);
+}
+
+fn release(world: &mut World, hand: Hand) {
+    if let Some(id) = held(world, hand) {
+        begin_segment(world);
+        world.resource_mut::<Hands>().set_held(hand, None);
+        world.write_message(SimFact::Released { hand, id });
+    }
+}
+
+fn held(world: &World, hand: Hand) -> Option<String> {
+    let object = world.resource::<Hands>().held_by(hand)?;
+    Some(world.get::<ObjectSpec>(object)?.id.clone())
+}
+
+fn objects(world: &World) -> Vec<ObjectSpec> {
+    let index = world.resource::<ObjectIndex>().iter();
+    index
+        .map(|object| world.get::<ObjectSpec>(object).unwrap().clone())
+        .collect()
+}
+
+fn clear(world: &mut World) {
+    for object in objects(world) {
+        let fact = delete(world, &object.id);
+        world.write_message(fact);
+    }
+}
+
+fn create(world: &mut World, spec: ObjectSpec) -> SimFact {
+    let id = spec.id.clone();
+    let object = world.spawn(spec).id();
+    world.resource_mut::<ObjectIndex>().insert(&id, object);
+    SimFact::ObjectCreated { id, object }
+}
+
+fn delete(world: &mut World, id: &str) -> SimFact {
+    let object = world.resource_mut::<ObjectIndex>().remove(id);
+    world.despawn(object.unwrap());
+    SimFact::ObjectDeleted { id: id.into() }
+}
+
+fn moment(world: &World) -> Moment {
+    Moment {
+        tick: *world.resource::<SimTick>(),
+        objects: objects(world),
+        hands: Hand::ALL.map(|hand| held(world, hand)).to_vec(),
+    }
+}
+
+fn turn(world: &mut World, to: &Moment, fact: SimFact) {
+    let mut told = Vec::new();
+    let now = objects(world);
+    for spec in now.iter().filter(|spec| !to.objects.contains(spec)) {
+        told.push(delete(world, &spec.id));
+    }
+    for spec in to.objects.iter().filter(|spec| !now.contains(spec)) {
+        told.push(create(world, spec.clone()));
+    }
+    for (hand, held) in Hand::ALL.into_iter().zip(&to.hands) {
+        let index = world.resource::<ObjectIndex>();
+        let held = held.as_ref().and_then(|id| index.get(id));
+        world.resource_mut::<Hands>().set_held(hand, held);
+    }
+    *world.resource_mut::<SimTick>() = to.tick;
+
+    let tells = *world.resource::<TurnTells>();
+    let after = [fact].into_iter();
+    let facts: Vec<_> = match tells {
+        TurnTells::Before => told.into_iter().chain(after).collect(),
+        TurnTells::After => after.chain(told).collect(),
+        TurnTells::Nothing => after.collect(),
+    };
+    for fact in facts {
+        world.write_message(fact);
+    }
+}

@@ -1,0 +1,242 @@
+//! What a scenario can expect of the world.
+
+use bevy::prelude::*;
+use serde::Deserialize;
+use tabletop_core::{Hand, quat_from_degrees};
+
+use crate::{
+    bounds::Bounds,
+    rest::Stillness,
+    seen::{Seen, SeenObject},
+    step::fault_of_vector,
+};
+
+/// Something that is to be true. Lengths are in units of 10 cm, angles in degrees.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Check {
+    /// An object's origin is at a location.
+    Location {
+        /// Its id.
+        object: String,
+        /// The location.
+        at: Vec3,
+        /// How far away from it is near enough.
+        #[serde(default = "close")]
+        within: f32,
+    },
+    /// An object is turned as a task file's `rotation` says.
+    Rotation {
+        /// Its id.
+        object: String,
+        /// The rotation about the fixed X, then Y, then Z axis.
+        degrees: Vec3,
+        /// The angle that is near enough.
+        #[serde(default = "nearly_parallel")]
+        within: f32,
+    },
+    /// An object's lowest point is level with the highest point of another, and its origin is above it.
+    OnTopOf {
+        /// The upper object's id.
+        object: String,
+        /// The lower object's id.
+        of: String,
+        /// The difference in height that is near enough.
+        #[serde(default = "close")]
+        within: f32,
+    },
+    /// An object's lowest point is level with the table's top, and its origin is above it.
+    OnTable {
+        /// Its id.
+        object: String,
+        /// The difference in height that is near enough.
+        #[serde(default = "close")]
+        within: f32,
+    },
+    /// An object is nowhere outside the upright cuboid around another.
+    Inside {
+        /// The inner object's id.
+        object: String,
+        /// The outer object's id.
+        of: String,
+        /// How far it may stand out.
+        #[serde(default = "close")]
+        within: f32,
+    },
+    /// The object of this id has not moved for half a second.
+    AtRest(String),
+    /// No object has moved for half a second.
+    AllAtRest,
+    /// There is an object of this id.
+    Exists(String),
+    /// There is no object of this id.
+    Gone(String),
+    /// A hand holds an object.
+    HeldBy {
+        /// The object's id.
+        object: String,
+        /// The hand.
+        hand: Hand,
+    },
+    /// No hand holds the object of this id.
+    Free(String),
+}
+
+const fn close() -> f32 {
+    0.05
+}
+
+const fn nearly_parallel() -> f32 {
+    2.0
+}
+
+impl Check {
+    /// What makes no sense in it.
+    pub(crate) fn fault(&self) -> Option<String> {
+        match self {
+            Self::Location {
+                at: vector, within, ..
+            }
+            | Self::Rotation {
+                degrees: vector,
+                within,
+                ..
+            } => fault_of_vector(*vector).or_else(|| fault_of_tolerance(*within)),
+            Self::OnTopOf { within, .. }
+            | Self::OnTable { within, .. }
+            | Self::Inside { within, .. } => fault_of_tolerance(*within),
+            _ => None,
+        }
+    }
+
+    /// Compares with what is seen; an error says what was expected and what was found.
+    pub(crate) fn judge(&self, seen: &Seen, stillness: &Stillness) -> Result<(), String> {
+        match self {
+            Self::Location { object, at, within } => is_at(seen.object(object)?, *at, *within),
+            Self::Rotation {
+                object,
+                degrees,
+                within,
+            } => is_turned(seen.object(object)?, *degrees, *within),
+            Self::OnTopOf { object, of, within } => {
+                is_on_top(seen.object(object)?, seen.object(of)?, *within)
+            }
+            Self::OnTable { object, within } => is_on_table(seen.object(object)?, seen, *within),
+            Self::Inside { object, of, within } => {
+                is_inside(seen.object(object)?, seen.object(of)?, *within)
+            }
+            Self::AtRest(object) => {
+                let object = seen.object(object)?;
+                stillness.is_at_rest(object).then_some(()).ok_or_else(|| {
+                    format!("expected `{}` at rest, found it moving", object.spec.id)
+                })
+            }
+            Self::AllAtRest => match stillness.moving(seen) {
+                None => Ok(()),
+                Some(moving) => Err(format!("expected all at rest, found `{moving}` moving")),
+            },
+            Self::Exists(object) => seen.object(object).map(|_| ()),
+            Self::Gone(object) => match seen.object(object) {
+                Err(_) => Ok(()),
+                Ok(_) => Err(format!("expected no `{object}`, found it")),
+            },
+            Self::HeldBy { object, hand } => is_held_by(seen.object(object)?, Some(*hand)),
+            Self::Free(object) => is_held_by(seen.object(object)?, None),
+        }
+    }
+}
+
+fn fault_of_tolerance(within: f32) -> Option<String> {
+    let makes_sense = within.is_finite() && within >= 0.0;
+    (!makes_sense).then(|| format!("expected a tolerance from 0, found {within}"))
+}
+
+fn is_at(object: &SeenObject, at: Vec3, within: f32) -> Result<(), String> {
+    let found = object.pose.location;
+    let distance = found.distance(at);
+    (distance <= within).then_some(()).ok_or_else(|| {
+        format!(
+            "expected `{}` within {within} of {}, found it at {}, {distance:.3} away",
+            object.spec.id,
+            in_words(at),
+            in_words(found)
+        )
+    })
+}
+
+fn is_turned(object: &SeenObject, degrees: Vec3, within: f32) -> Result<(), String> {
+    let expected = quat_from_degrees(degrees);
+    let angle = object.pose.rotation.angle_between(expected).to_degrees();
+    (angle <= within).then_some(()).ok_or_else(|| {
+        format!(
+            "expected `{}` within {within} degrees of {}, found it at {}, {angle:.1} degrees away",
+            object.spec.id,
+            in_words(degrees),
+            in_words(object.pose.degrees())
+        )
+    })
+}
+
+fn is_on_top(upper: &SeenObject, lower: &SeenObject, within: f32) -> Result<(), String> {
+    let support = Bounds::of(lower);
+    let gap = Bounds::of(upper).low.z - support.high.z;
+    let is_over = support.is_below(upper.pose.location);
+    lies_on(gap, within, is_over).map_err(|found| {
+        format!(
+            "expected `{}` on top of `{}`, found it {found}",
+            upper.spec.id, lower.spec.id
+        )
+    })
+}
+
+fn is_on_table(object: &SeenObject, seen: &Seen, within: f32) -> Result<(), String> {
+    let table = seen.table.ok_or("expected a table, found none")?;
+    let gap = Bounds::of(object).low.z;
+    let found = object.pose.location;
+    let is_over = found.x.abs() <= table.xspan / 2.0 && found.y.abs() <= table.yspan / 2.0;
+    lies_on(gap, within, is_over).map_err(|found| {
+        format!(
+            "expected `{}` on the table, found it {found}",
+            object.spec.id
+        )
+    })
+}
+
+/// Where something is instead of on its support, from which its lowest point is this far.
+fn lies_on(gap: f32, within: f32, is_over: bool) -> Result<(), String> {
+    match (gap.abs() <= within, is_over) {
+        (true, true) => Ok(()),
+        (true, false) => Err("beside it".to_owned()),
+        (false, _) if gap > 0.0 => Err(format!("{gap:.3} above")),
+        (false, _) => Err(format!("{:.3} too low", -gap)),
+    }
+}
+
+fn is_inside(inner: &SeenObject, outer: &SeenObject, within: f32) -> Result<(), String> {
+    let outside = Bounds::of(outer).distance_out(Bounds::of(inner));
+    (outside <= within).then_some(()).ok_or_else(|| {
+        format!(
+            "expected `{}` inside `{}`, found it {outside:.3} outside, at {}",
+            inner.spec.id,
+            outer.spec.id,
+            in_words(inner.pose.location)
+        )
+    })
+}
+
+fn is_held_by(object: &SeenObject, hand: Option<Hand>) -> Result<(), String> {
+    let name = |hand: Option<Hand>| hand.map_or("no hand", Hand::name);
+    (object.holder == hand).then_some(()).ok_or_else(|| {
+        format!(
+            "expected `{}` in {}, found it in {}",
+            object.spec.id,
+            name(hand),
+            name(object.holder)
+        )
+    })
+}
+
+fn in_words(vector: Vec3) -> String {
+    let [x, y, z] = vector.to_array();
+    format!("({x:.3}, {y:.3}, {z:.3})")
+}

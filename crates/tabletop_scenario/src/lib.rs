@@ -1,0 +1,103 @@
+//! Scripted demonstrations: files of steps and checks.
+//!
+//! A [`Scenario`] is a file that does with the hands what a person does with the mouse, waits, and says what it expects
+//! to have come of it; `docs/scenarios.md` is its reference. A [`Program`] is a scenario with everything in it that the file names, and
+//! [`ScenarioPlugin`] runs it: it writes the [commands](tabletop_core::SimCommand) of the steps as they are due.
+//!
+//! ```
+//! use bevy::prelude::*;
+//! use tabletop_core::prelude::*;
+//! use tabletop_scenario::{Outcome, Program, Scenario, ScenarioPlugin, ScenarioRun};
+//!
+//! let scenario = Scenario::parse("half_a_second.ron", "(steps: [Select(Left), Wait(0.5)])")?;
+//! let program = Program::new(&scenario, |_| Ok(SceneSpec::default()), 0)?;
+//!
+//! let mut app = App::new();
+//! app.add_plugins((MinimalPlugins, CorePlugin::default(), ScenarioPlugin))
+//!     .insert_resource(ScenarioRun::new(program))
+//!     .start()
+//!     .step(32);
+//! assert_eq!(*app.world().resource::<ScenarioRun>().outcome(), Outcome::Done);
+//! # Ok::<_, tabletop_scenario::ScenarioError>(())
+//! ```
+
+mod bounds;
+mod check;
+mod error;
+mod place;
+mod program;
+mod random;
+mod rest;
+mod run;
+mod scenario;
+mod seen;
+mod source;
+mod step;
+
+pub use check::Check;
+pub use error::ScenarioError;
+pub use place::Place;
+pub use program::Program;
+pub use run::{Outcome, ScenarioRun};
+pub use scenario::{LocatedStep, Scenario};
+pub use source::SourceLocation;
+pub use step::{Axis, Step};
+
+use bevy::prelude::*;
+use tabletop_core::{
+    Hands, ObjectIndex, ObjectSpec, Paused, Pose, SimCommand, SimFact, SimSystems, Table,
+};
+
+use crate::seen::{Seen, SeenObject};
+
+/// Runs the [`ScenarioRun`] that is in the world, if there is one. Needs [`CorePlugin`](tabletop_core::CorePlugin).
+///
+/// A tick's command is written before [`SimSystems::Load`], from the state in which the tick before has left the world.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ScenarioPlugin;
+
+impl Plugin for ScenarioPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(
+            FixedUpdate,
+            take_due_steps
+                .before(SimSystems::Load)
+                .run_if(resource_exists::<ScenarioRun>),
+        );
+    }
+}
+
+fn take_due_steps(
+    mut run: ResMut<ScenarioRun>,
+    mut facts: MessageReader<SimFact>,
+    mut commands: MessageWriter<SimCommand>,
+    index: Res<ObjectIndex>,
+    objects: Query<(&ObjectSpec, &Transform)>,
+    tables: Query<&Table>,
+    hands: Res<Hands>,
+    paused: Res<Paused>,
+) {
+    let refusals: Vec<&str> = facts
+        .read()
+        .filter_map(|fact| match fact {
+            SimFact::Refused { reason } => Some(reason.as_str()),
+            _ => None,
+        })
+        .collect();
+    let objects = index.iter().filter_map(|entity| {
+        let (spec, transform) = objects.get(entity).ok()?;
+        Some(SeenObject {
+            entity,
+            spec,
+            pose: Pose::from(transform),
+            holder: hands.holder_of(entity),
+        })
+    });
+    let seen = Seen {
+        objects: objects.collect(),
+        table: tables.iter().next().copied(),
+        selected: hands.selected,
+        paused: paused.0,
+    };
+    commands.write_batch(run.tick(&seen, refusals.first().copied()));
+}

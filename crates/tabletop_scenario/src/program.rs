@@ -1,0 +1,77 @@
+//! Scenarios with everything in them that their files name.
+
+use std::path::Path;
+
+use tabletop_core::{SceneSpec, TICKS_PER_SECOND};
+
+use crate::{
+    LocatedStep, Scenario, ScenarioError, SourceLocation, Step, place::place_all, random::Random,
+};
+
+/// Longest time that a scenario takes if nothing else is said, in seconds.
+const DEFAULT_LIMIT_SECONDS: u64 = 600;
+
+/// A scenario that is ready to run: its task files are read, and what is placed at random has its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Program {
+    /// After how many ticks it fails if it is not done.
+    pub limit: u64,
+    pub(crate) steps: Vec<ProgramStep>,
+}
+
+/// A step that needs no files.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ProgramStep {
+    pub at: SourceLocation,
+    pub text: String,
+    pub action: Action,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Action {
+    /// Put this on the table.
+    SetScene(Box<SceneSpec>),
+    /// Do what any other step says.
+    Do(Step),
+}
+
+impl Program {
+    /// Prepares a scenario: `load` reads a task file, and the seed decides where objects are placed.
+    ///
+    /// # Errors
+    ///
+    /// What `load` reports, or an object that cannot be placed, with the place of the step.
+    pub fn new(
+        scenario: &Scenario,
+        mut load: impl FnMut(&Path) -> Result<SceneSpec, String>,
+        seed: u64,
+    ) -> Result<Self, ScenarioError> {
+        let folder = scenario.path.parent().unwrap_or(Path::new(""));
+        let mut random = Random::new(seed);
+        let steps = scenario.setup.iter().chain(&scenario.steps);
+        let steps = steps.map(|LocatedStep { at, text, step }| {
+            let action = match step {
+                Step::Load { file, place } => load(&folder.join(file))
+                    .and_then(|mut scene| {
+                        place_all(&mut scene, place, &mut random)?;
+                        Ok(Action::SetScene(Box::new(scene)))
+                    })
+                    .map_err(|what| ScenarioError::Setup {
+                        at: at.clone(),
+                        step: text.clone(),
+                        what,
+                    })?,
+                other => Action::Do(other.clone()),
+            };
+            Ok(ProgramStep {
+                at: at.clone(),
+                text: text.clone(),
+                action,
+            })
+        });
+        Ok(Self {
+            limit: DEFAULT_LIMIT_SECONDS * u64::from(TICKS_PER_SECOND),
+            steps: steps.collect::<Result<_, _>>()?,
+        })
+    }
+}

@@ -1,0 +1,78 @@
+//! What is at rest: what has stayed where it is for a while.
+
+use std::collections::BTreeMap;
+
+use bevy::prelude::*;
+use tabletop_core::{Pose, TICKS_PER_SECOND};
+
+use crate::seen::{Seen, SeenObject};
+
+/// How far an object at rest may move, in units, and turn, in radians.
+const TREMBLE: (f32, f32) = (0.005, 0.005);
+
+/// How many ticks an object stays where it is before it is at rest.
+const TICKS_TO_REST: u32 = TICKS_PER_SECOND / 2;
+
+/// How many ticks what a hand holds stays where it is before it has arrived.
+const TICKS_TO_ARRIVE: u32 = TICKS_PER_SECOND / 5;
+
+/// How long every object has stayed where it is.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Stillness(BTreeMap<Entity, Stay>);
+
+#[derive(Clone, Copy, Debug)]
+struct Stay {
+    at: Pose,
+    ticks: u32,
+}
+
+impl Stillness {
+    /// Takes in what a tick has brought.
+    pub fn observe(&mut self, seen: &Seen) {
+        if seen.paused {
+            return;
+        }
+        let before = std::mem::take(&mut self.0);
+        self.0 = seen
+            .objects
+            .iter()
+            .map(|object| {
+                let stay = match before.get(&object.entity) {
+                    Some(stay) if is_near(stay.at, object.pose) => Stay {
+                        ticks: stay.ticks + 1,
+                        ..*stay
+                    },
+                    _ => Stay {
+                        at: object.pose,
+                        ticks: 0,
+                    },
+                };
+                (object.entity, stay)
+            })
+            .collect();
+    }
+
+    pub fn is_at_rest(&self, object: &SeenObject) -> bool {
+        self.ticks(object) >= TICKS_TO_REST
+    }
+
+    pub fn has_arrived(&self, object: &SeenObject) -> bool {
+        self.ticks(object) >= TICKS_TO_ARRIVE
+    }
+
+    /// The id of the first object that is not at rest.
+    pub fn moving<'a>(&self, seen: &Seen<'a>) -> Option<&'a str> {
+        let mut objects = seen.objects.iter();
+        let moving = objects.find(|object| !self.is_at_rest(object))?;
+        Some(&moving.spec.id)
+    }
+
+    fn ticks(&self, object: &SeenObject) -> u32 {
+        self.0.get(&object.entity).map_or(0, |stay| stay.ticks)
+    }
+}
+
+fn is_near(a: Pose, b: Pose) -> bool {
+    a.location.distance(b.location) <= TREMBLE.0
+        && a.rotation.angle_between(b.rotation) <= TREMBLE.1
+}

@@ -1,0 +1,236 @@
+//! Scenario files.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use ron::{Options, error::SpannedError, extensions::Extensions, value::RawValue};
+use serde::Deserialize;
+
+use crate::{ScenarioError, SourceLocation, Step};
+
+/// What a scenario file says.
+///
+/// ```
+/// use tabletop_scenario::{Scenario, Step};
+///
+/// let text = r#"(steps: [Grasp("RedBlock"), MoveBy((0, 0, 2)), Release])"#;
+/// let scenario = Scenario::parse("lift.ron", text)?;
+/// assert_eq!(scenario.steps[2].step, Step::Release);
+///
+/// let error = Scenario::parse("lift.ron", "(steps: [\n  Drop,\n])").unwrap_err();
+/// assert!(error.to_string().starts_with("lift.ron:2:3: "), "{error}");
+/// # Ok::<_, tabletop_scenario::ScenarioError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// Its file.
+    pub path: PathBuf,
+    /// Loads the task file that it begins with.
+    pub setup: Option<LocatedStep>,
+    /// The steps after that.
+    pub steps: Vec<LocatedStep>,
+}
+
+/// A step and where it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LocatedStep {
+    /// Where it begins.
+    pub at: SourceLocation,
+    /// Its text, on one line.
+    pub text: String,
+    /// The step.
+    pub step: Step,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename = "Scenario")]
+struct ScenarioFile<'a> {
+    #[serde(default, borrow)]
+    setup: Option<&'a RawValue>,
+    #[serde(borrow)]
+    steps: Vec<&'a RawValue>,
+}
+
+impl Scenario {
+    /// Reads a file.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be read, or its [text](Self::parse) is wrong.
+    pub fn read(path: impl Into<PathBuf>) -> Result<Self, ScenarioError> {
+        let path = path.into();
+        match fs::read_to_string(&path) {
+            Ok(text) => Self::parse(path, &text),
+            Err(error) => Err(ScenarioError::Unreadable {
+                path,
+                reason: error.to_string(),
+            }),
+        }
+    }
+
+    /// Reads the text of a file of this name.
+    ///
+    /// # Errors
+    ///
+    /// The first thing that is wrong, with its place.
+    pub fn parse(path: impl Into<PathBuf>, text: &str) -> Result<Self, ScenarioError> {
+        let path = path.into();
+        let file: ScenarioFile = from_ron(text, &SourceLocation::start_of(&path))?;
+        let setup = file.setup.map(|raw| {
+            let (at, text) = located(&path, text, raw);
+            let task: PathBuf = from_ron(text, &at)?;
+            Ok(LocatedStep::setup(at, task))
+        });
+        let steps = file.steps.into_iter().map(|raw| {
+            let (at, text) = located(&path, text, raw);
+            LocatedStep::parse(at, text)
+        });
+        Ok(Self {
+            setup: setup.transpose()?,
+            steps: steps.collect::<Result<_, _>>()?,
+            path,
+        })
+    }
+
+    /// Lets it begin with this task file, which is relative to the working directory, in place of its own.
+    pub fn begin_with(&mut self, task: &Path) {
+        let at = SourceLocation::start_of(&self.path);
+        let task = std::path::absolute(task).unwrap_or(task.to_owned());
+        self.setup = Some(LocatedStep::setup(at, task));
+    }
+}
+
+impl LocatedStep {
+    fn setup(at: SourceLocation, task: PathBuf) -> Self {
+        Self {
+            at,
+            text: "setup".to_owned(),
+            step: Step::Load {
+                file: task,
+                place: Vec::new(),
+            },
+        }
+    }
+
+    fn parse(at: SourceLocation, text: &str) -> Result<Self, ScenarioError> {
+        let step: Step = from_ron(text, &at)?;
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        match step.fault() {
+            None => Ok(Self { at, text, step }),
+            Some(what) => Err(ScenarioError::Step {
+                at,
+                step: text,
+                what,
+            }),
+        }
+    }
+}
+
+/// Where a part of the text begins, and the part without blanks and comments around it.
+fn located<'a>(path: &Path, text: &str, part: &'a RawValue) -> (SourceLocation, &'a str) {
+    let part = part.trim().get_ron();
+    let offset = part.as_ptr() as usize - text.as_ptr() as usize;
+    (SourceLocation::of_offset(path, text, offset), part)
+}
+
+fn from_ron<'a, T: Deserialize<'a>>(
+    text: &'a str,
+    at: &SourceLocation,
+) -> Result<T, ScenarioError> {
+    Options::default()
+        .with_default_extension(Extensions::IMPLICIT_SOME)
+        .from_str(text)
+        .map_err(|SpannedError { code, span }| ScenarioError::Syntax {
+            at: at.followed_by(span.start),
+            what: code.to_string(),
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(text: &str) -> String {
+        match Scenario::parse("s.ron", text) {
+            Ok(scenario) => format!("{scenario:?}"),
+            Err(error) => error.to_string(),
+        }
+    }
+
+    #[test]
+    fn every_step_can_be_written() -> Result<(), ScenarioError> {
+        let text = r#"
+            // A comment.
+            (
+                setup: "a.xml", // another
+                steps: [
+                    Load(file: "b.xml"),
+                    Load(file: "b.xml", place: [(object: "x", x: (0, 1), y: (-1, 1), turn: (0, 360))]),
+                    Clear, Select(Left), With(Right, Grasp("x")), Grasp("y"),
+                    MoveTo((1, 2.5, -3)), MoveBy((0, 0, 1e-1)), Glide(to: (1, 2, 3), seconds: 2),
+                    Turn(axis: Z, degrees: -45), Release, Destroy,
+                    Wait(0.5), WaitUntilRest(5), WaitUntilThere(5),
+                    Start, Finish, Undo, Redo, Pause(true),
+                    Expect(Location(object: "x", at: (1, 2, 3), within: 0.1)),
+                    Expect(Rotation(object: "x", degrees: (0, 0, 45))),
+                    Expect(OnTopOf(object: "x", of: "y")), Expect(OnTable(object: "x")),
+                    Expect(Inside(object: "x", of: "y")),
+                    Expect(AtRest("x")), Expect(AllAtRest), Expect(Exists("x")), Expect(Gone("x")),
+                    Expect(HeldBy(object: "x", hand: Any)), Expect(Free("x")),
+                ],
+            )"#;
+        let scenario = Scenario::parse("s.ron", text)?;
+        assert_eq!(scenario.steps.len(), 31);
+        let setup = scenario.setup.map(|setup| setup.at.to_string());
+        assert_eq!(setup.as_deref(), Some("s.ron:4:24"));
+        assert_eq!(scenario.steps[3].at.to_string(), "s.ron:8:28");
+        assert_eq!(scenario.steps[3].text, "Select(Left)");
+        Ok(())
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_with_its_place() {
+        for (text, at, words) in [
+            ("(steps: [\n  Grasp(\"x\"),\n  Drop,\n])", "3:3: ", "Drop"),
+            (
+                "(steps: [\n  Turn(axis: Z, angle: 3),\n])",
+                "2:17: ",
+                "angle",
+            ),
+            (
+                "(steps: [\n  Turn(\n    axis: W, degrees: 3),\n])",
+                "3:11: ",
+                "`W`",
+            ),
+            ("(steps: [\n  Wait(2]\n])", "2:9: ", "Expected"),
+            ("(steps: [Wait(1)], stop: 3)", "1:20: ", "stop"),
+            ("(setup: 3, steps: [])", "1:9: ", "string"),
+            ("()", "1:2: ", "steps"),
+            ("", "1:1: ", ""),
+            ("(steps: [\n  Wait(-1),\n])", "2:3: Wait(-1): ", "seconds"),
+            ("(steps: [MoveTo((0, NaN, 0))])", "1:10: MoveTo", "finite"),
+            (
+                "(steps: [With(Left, Wait(1))])",
+                "1:10: With",
+                "a hand does",
+            ),
+            (
+                "(steps: [Load(file: \"a.xml\", place: [(object: \"x\", x: (1, 0), y: (0, 1))])])",
+                "1:10: Load",
+                "`x` as (least, greatest)",
+            ),
+        ] {
+            let error = error(text);
+            assert!(error.starts_with(&format!("s.ron:{at}")), "{error}");
+            assert!(error.contains(words), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_missing_file_is_named() {
+        let error = Scenario::read("no such.ron").map_err(|error| error.to_string());
+        assert!(error.is_err_and(|error| error.starts_with("no such.ron: it cannot be read: ")));
+    }
+}

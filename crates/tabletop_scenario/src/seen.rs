@@ -1,0 +1,48 @@
+//! What a scenario sees of the world: its state at the end of the last tick.
+
+use bevy::prelude::*;
+use tabletop_core::{Hand, ObjectSpec, Pose, Table};
+
+/// The world as a scenario sees it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Seen<'a> {
+    /// The objects in the order of their creation.
+    pub objects: Vec<SeenObject<'a>>,
+    /// The table.
+    pub table: Option<Table>,
+    /// The selected hand.
+    pub selected: Hand,
+    /// Whether the simulation stands still.
+    pub paused: bool,
+}
+
+/// An object as a scenario sees it.
+#[derive(Clone, Debug)]
+pub(crate) struct SeenObject<'a> {
+    /// Its entity.
+    pub entity: Entity,
+    /// What it is.
+    pub spec: &'a ObjectSpec,
+    /// Where it is.
+    pub pose: Pose,
+    /// Who holds it.
+    pub holder: Option<Hand>,
+}
+
+impl<'a> Seen<'a> {
+    /// The object of this id, or why there is none.
+    pub fn object(&self, id: &str) -> Result<&SeenObject<'a>, String> {
+        self.objects
+            .iter()
+            .find(|object| object.spec.id == id)
+            .ok_or_else(|| format!("expected an object `{id}`, found none of that id"))
+    }
+
+    /// What a hand holds, or why nothing.
+    pub fn held_by(&self, hand: Hand) -> Result<&SeenObject<'a>, String> {
+        self.objects
+            .iter()
+            .find(|object| object.holder == Some(hand))
+            .ok_or_else(|| format!("expected something in {hand}, found nothing"))
+    }
+}

@@ -1,0 +1,146 @@
+//! The steps of a scenario, as its file has them.
+
+use std::path::PathBuf;
+
+use bevy::prelude::*;
+use serde::Deserialize;
+use tabletop_core::Hand;
+
+use crate::{Check, Place};
+
+/// Longest time that a step may ask for, in seconds.
+const LONGEST: f32 = 24.0 * 3600.0;
+
+/// One thing that the demonstrator of a scenario does, waits for or checks.
+///
+/// Lengths are in units of 10 cm, angles in degrees, times in seconds of simulated time. Where nothing else is said, the
+/// selected hand acts.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Step {
+    /// Clear the table and put on it what a task file says.
+    Load {
+        /// The task file, relative to the scenario's folder.
+        file: PathBuf,
+        /// What is put elsewhere, at random.
+        #[serde(default)]
+        place: Vec<Place>,
+    },
+    /// Remove every object that no hand holds.
+    Clear,
+    /// Let the following steps act with this hand.
+    Select(Hand),
+    /// Let one step act with another hand than the selected one.
+    With(Hand, Box<Step>),
+    /// Take the object of this id.
+    Grasp(String),
+    /// Move what is held to this location at a hand's full speed.
+    MoveTo(Vec3),
+    /// Move what is held by this much at a hand's full speed.
+    MoveBy(Vec3),
+    /// Move what is held to a location evenly in a given time, and wait until it is over.
+    Glide {
+        /// The location.
+        to: Vec3,
+        /// The time.
+        seconds: f32,
+    },
+    /// Turn what is held about an axis of the world through its origin.
+    Turn {
+        /// The axis.
+        axis: Axis,
+        /// How far.
+        degrees: f32,
+    },
+    /// Let go of what is held.
+    Release,
+    /// Remove what is held from the world.
+    Destroy,
+    /// Wait so many seconds.
+    Wait(f32),
+    /// Wait until everything is at rest, at most so many seconds.
+    WaitUntilRest(f32),
+    /// Wait until what is held has arrived or is held up, at most so many seconds.
+    WaitUntilThere(f32),
+    /// Start a recording.
+    Start,
+    /// Finish the recording.
+    Finish,
+    /// Undo the last segment of the recording.
+    Undo,
+    /// Bring back the segment that was undone last.
+    Redo,
+    /// Stop the simulation, or let it run on. Waiting goes on while it stands still, but hands cannot act.
+    Pause(bool),
+    /// Fail if the world is not as this says.
+    Expect(Check),
+}
+
+/// An axis of the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum Axis {
+    /// To the right.
+    X,
+    /// Away from the robot.
+    Y,
+    /// Up.
+    Z,
+}
+
+impl Axis {
+    /// The unit vector along it.
+    pub const fn direction(self) -> Vec3 {
+        match self {
+            Self::X => Vec3::X,
+            Self::Y => Vec3::Y,
+            Self::Z => Vec3::Z,
+        }
+    }
+}
+
+impl Step {
+    /// What makes no sense in it.
+    pub(crate) fn fault(&self) -> Option<String> {
+        match self {
+            Self::Load { place, .. } => place.iter().find_map(Place::fault),
+            Self::With(_, step) if !step.is_done_by_a_hand() => {
+                Some("`With` must be followed by a step that a hand does".to_owned())
+            }
+            Self::With(_, step) => step.fault(),
+            Self::MoveTo(vector) | Self::MoveBy(vector) => fault_of_vector(*vector),
+            Self::Glide { to, seconds } => fault_of_vector(*to).or_else(|| fault_of_time(*seconds)),
+            Self::Turn { degrees, .. } => {
+                (!degrees.is_finite()).then(|| format!("{degrees} is not an angle"))
+            }
+            Self::Wait(seconds) | Self::WaitUntilRest(seconds) | Self::WaitUntilThere(seconds) => {
+                fault_of_time(*seconds)
+            }
+            Self::Expect(check) => check.fault(),
+            _ => None,
+        }
+    }
+
+    /// Whether a hand does it.
+    pub(crate) const fn is_done_by_a_hand(&self) -> bool {
+        matches!(
+            self,
+            Self::Grasp(_)
+                | Self::MoveTo(_)
+                | Self::MoveBy(_)
+                | Self::Glide { .. }
+                | Self::Turn { .. }
+                | Self::Release
+                | Self::Destroy
+                | Self::WaitUntilThere(_)
+        )
+    }
+}
+
+pub(crate) fn fault_of_vector(vector: Vec3) -> Option<String> {
+    (!vector.is_finite()).then(|| "expected three finite numbers".to_owned())
+}
+
+fn fault_of_time(seconds: f32) -> Option<String> {
+    (!(0.0..=LONGEST).contains(&seconds))
+        .then(|| format!("expected a time of 0 to {LONGEST} seconds, found {seconds}"))
+}
