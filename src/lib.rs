@@ -40,6 +40,7 @@ pub use tabletop_scene as scene;
 pub use tabletop_xml as xml;
 
 mod headless;
+pub mod replay;
 pub mod report;
 #[cfg(feature = "window")]
 pub mod window;

@@ -8,7 +8,13 @@ use bevy_rapier3d::prelude::Velocity;
 use tabletop::{prelude::*, xml::read_task};
 
 const TICKS: u64 = 240;
-const FILES: [&str; 4] = ["chains.xml", "cylinders.xml", "lidbox.xml", "walls.xml"];
+const FILES: [&str; 5] = [
+    "chains.xml",
+    "cylinders.xml",
+    "lidbox-and-block.xml",
+    "lidbox.xml",
+    "walls.xml",
+];
 
 fn command(file: &str) -> SimCommand {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -95,5 +101,23 @@ fn a_scene_after_another_ends_in_the_same_bits() {
         app_again.world_mut().write_message(command(file));
         app_again.step(TICKS);
         assert_eq!(bits(app.world()), bits(app_again.world()), "{file}");
+    }
+}
+
+/// Anything else in the app: it takes entity ids, as resources do.
+#[derive(Resource)]
+struct Other<const N: usize>;
+
+#[test]
+fn what_else_is_in_the_app_does_not_matter() {
+    for file in FILES {
+        let expected = stepped(file);
+        let mut app = headless_app();
+        app.insert_resource(Other::<0>).insert_resource(Other::<1>);
+        app.insert_resource(Other::<2>);
+        app.world_mut().spawn(Transform::default());
+        app.world_mut().write_message(command(file));
+        app.step(TICKS);
+        assert_eq!(bits(app.world()), expected, "{file}");
     }
 }

@@ -5,6 +5,7 @@
 )]
 
 mod check;
+mod replay;
 mod run;
 mod window;
 
@@ -28,6 +29,8 @@ struct Cli {
 enum Command {
     /// Simulate a task file without a window, as fast as possible
     Run(run::RunArgs),
+    /// Run a recording again, to verify it or to make its pictures anew
+    Replay(replay::ReplayArgs),
     /// Check task files: every fault with its place; exit code 2 if there is one
     Check(check::CheckArgs),
 }
@@ -68,6 +71,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match cli.command {
         Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::Check(args)) => check::check(&args),
         None => window::open(cli.window),
     };

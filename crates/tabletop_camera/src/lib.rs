@@ -3,7 +3,7 @@
 //! Everything is worked out on one thread of the processor from IEEE arithmetic, so the same scene gives the same bytes on
 //! every run. There are no meshes: faces are found row by row from the planes through the eye and their edges, cylinders and
 //! balls by meeting each ray with the exact surface, and only what is seen in the end is lit. (The rasteriser crate `euc`
-//! 0.5 draws the same blocks at a ninth of the speed.) [`Painter`] draws any scene for any [`Camera`]; it knows no ECS:
+//! 0.5 draws the same blocks at a seventh of the speed.) [`Painter`] draws any scene for any [`Camera`]; it knows no ECS:
 //!
 //! ```
 //! use tabletop_camera::{Camera, DrawnSolid, Painter};

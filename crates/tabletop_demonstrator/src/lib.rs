@@ -48,6 +48,7 @@ pub use grasp::{Carry, CarryTarget};
 
 use bevy::prelude::*;
 use tabletop_core::{Paused, SimSystems};
+use tabletop_physics::BodySystems;
 
 /// Adds the hands. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin).
 #[derive(Clone, Copy, Debug, Default)]
@@ -65,7 +66,7 @@ impl Plugin for DemonstratorPlugin {
                         grasp::obey,
                     )
                         .chain()
-                        .after(SimSystems::Ingest)
+                        .after(BodySystems)
                         .before(SimSystems::Actuate),
                     carry::carry.in_set(SimSystems::Actuate),
                 ),

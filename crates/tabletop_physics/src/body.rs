@@ -16,21 +16,16 @@ const SLEEP_THRESHOLDS: Sleeping = Sleeping {
 /// How far ahead of a fast body its contacts are looked for, in units: more than it moves in a tick after a fall of 100 units.
 const SOFT_CCD_PREDICTION: f32 = 3.0;
 
-/// Gives every object its body as soon as it appears.
-pub(crate) fn add_body(
-    add: On<Add, ObjectSpec>,
-    objects: Query<&ObjectSpec>,
-    settings: Res<PhysicsSettings>,
-    mut commands: Commands,
-) -> Result {
-    let spec = objects.get(add.entity)?;
-    let mut body = commands.entity(add.entity);
-    body.insert((collider(&spec.shape), surface(&settings)));
+/// The components of an object's body.
+pub(crate) fn add_object(world: &mut World, object: Entity, spec: &ObjectSpec) {
+    let settings = *world.resource::<PhysicsSettings>();
+    let mut body = world.entity_mut(object);
+    body.insert_if_new((collider(&spec.shape), surface(&settings)));
     if spec.is_fixed() {
-        body.insert(RigidBody::Fixed);
-        return Ok(());
+        body.insert_if_new(RigidBody::Fixed);
+        return;
     }
-    body.insert((
+    body.insert_if_new((
         RigidBody::Dynamic,
         ColliderMassProperties::MassProperties(mass_properties(&spec.shape, spec.mass)),
         Velocity::default(),
@@ -52,24 +47,17 @@ pub(crate) fn add_body(
             Sleeping::disabled()
         },
     ));
-    Ok(())
 }
 
-/// Gives the table its body as soon as it appears.
-pub(crate) fn add_table(
-    add: On<Add, Table>,
-    tables: Query<&Table>,
-    settings: Res<PhysicsSettings>,
-    mut commands: Commands,
-) -> Result {
-    let slab = tables.get(add.entity)?.slab();
-    commands
-        .entity(add.entity)
-        .insert((RigidBody::Fixed, compound(&[slab]), surface(&settings)));
-    Ok(())
+/// The components of the table's body.
+pub(crate) fn add_table(world: &mut World, table: Entity, size: Table) {
+    let surface = surface(world.resource::<PhysicsSettings>());
+    world
+        .entity_mut(table)
+        .insert_if_new((RigidBody::Fixed, compound(&[size.slab()]), surface));
 }
 
-fn surface(settings: &PhysicsSettings) -> impl Bundle {
+fn surface(settings: &PhysicsSettings) -> impl Bundle + use<> {
     (
         Friction {
             coefficient: settings.friction,

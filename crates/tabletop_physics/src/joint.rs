@@ -9,21 +9,17 @@ use crate::PhysicsSettings;
 /// How fast dry friction takes up speed, in 1/s: within a tick.
 const FRICTION_RATE: f32 = 60.0;
 
-/// Gives every joint between two objects its constraint as soon as it appears.
-pub(crate) fn add_joint(
-    add: On<Add, Joint>,
-    joints: Query<&Joint>,
-    objects: Query<&ObjectSpec>,
-    settings: Res<PhysicsSettings>,
-    mut commands: Commands,
-) -> Result {
-    let joint = joints.get(add.entity)?;
+/// The component of a joint's constraint.
+pub(crate) fn add_joint(world: &mut World, entity: Entity, joint: &Joint) {
     let [first, second] = joint.objects;
-    let weight = objects.get(second)?.mass * settings.gravity;
-    commands
-        .entity(add.entity)
-        .insert(ImpulseJoint::new(first, constraint(joint, weight)));
-    Ok(())
+    let gravity = world.resource::<PhysicsSettings>().gravity;
+    let mass = world
+        .get::<ObjectSpec>(second)
+        .map_or(0.0, |spec| spec.mass);
+    let constraint = constraint(joint, mass * gravity);
+    world
+        .entity_mut(entity)
+        .insert_if_new(ImpulseJoint::new(first, constraint));
 }
 
 fn constraint(joint: &Joint, weight_of_second: f32) -> TypedJoint {

@@ -1,7 +1,7 @@
 //! Physics of the tabletop simulator: the one place that adds and configures Rapier.
 //!
 //! Every entity with an [`ObjectSpec`](tabletop_core::ObjectSpec) or a [`Table`](tabletop_core::Table) gets a rigid body,
-//! every [`Joint`](tabletop_core::Joint) a constraint, at the moment it appears. One step is made a tick, in
+//! every [`Joint`](tabletop_core::Joint) a constraint, in the tick in which it appears. One step is made a tick, in
 //! [`SimSystems::Physics`]; the poses are in the entities' `Transform` afterwards.
 //!
 //! ```
@@ -30,6 +30,7 @@
 mod body;
 mod joint;
 mod mass;
+mod newcomers;
 mod parking;
 mod settings;
 mod snapshot;
@@ -37,6 +38,7 @@ mod transforms;
 
 pub use body::collider;
 pub use mass::mass_properties;
+pub use newcomers::BodySystems;
 pub use parking::{KeepRemoved, Parked, remove_object};
 pub use settings::PhysicsSettings;
 pub use snapshot::PhysicsSnapshot;
@@ -107,9 +109,22 @@ impl Plugin for PhysicsPlugin {
                     transforms::propagate().in_set(SimSystems::Propagate),
                 ),
             )
-            .add_observer(body::add_body)
-            .add_observer(body::add_table)
-            .add_observer(joint::add_joint);
+            .init_resource::<newcomers::Newcomers>()
+            .configure_sets(
+                FixedUpdate,
+                BodySystems
+                    .after(SimSystems::Ingest)
+                    .before(SimSystems::Actuate),
+            )
+            .add_systems(
+                FixedUpdate,
+                newcomers::take_in
+                    .run_if(newcomers::any)
+                    .in_set(BodySystems),
+            )
+            .add_observer(newcomers::note_object)
+            .add_observer(newcomers::note_table)
+            .add_observer(newcomers::note_joint);
     }
 }
 

@@ -38,7 +38,7 @@ pub use assembly::{Assembly, assemble};
 pub use ids::IdAllocator;
 
 use bevy::prelude::*;
-use tabletop_core::SimSystems;
+use tabletop_core::{PictureSystems, SimSystems};
 
 /// Puts tables and objects into the world and takes them out. Needs [`CorePlugin`](tabletop_core::CorePlugin) and
 /// [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin).
@@ -51,7 +51,9 @@ impl Plugin for ScenePlugin {
             FixedUpdate,
             (
                 life::carry_out_commands.in_set(SimSystems::Ingest),
-                life::remove_fallen.in_set(SimSystems::Sense),
+                life::remove_fallen
+                    .in_set(SimSystems::Sense)
+                    .before(PictureSystems),
             ),
         )
         .add_observer(life::note_created)

@@ -1,0 +1,66 @@
+//! New objects, tables and joints get their bodies in the order in which they appeared.
+//!
+//! Rapier's plugin would take them in the order of Bevy's tables, which depends on everything else in the app, and the
+//! order of bodies decides the last bits of their motion.
+
+use bevy::prelude::*;
+use bevy_rapier3d::plugin::systems::{init_colliders, init_joints, init_rigid_bodies};
+use tabletop_core::{Joint, ObjectSpec, Table};
+
+use crate::{body, joint};
+
+/// Gives new objects, tables and joints their bodies, in [`FixedUpdate`] after
+/// [`SimSystems::Ingest`](tabletop_core::SimSystems::Ingest). Runs while paused, too.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct BodySystems;
+
+/// What has appeared and has no body yet.
+#[derive(Resource, Default)]
+pub(crate) struct Newcomers {
+    bodies: Vec<Entity>,
+    joints: Vec<Entity>,
+}
+
+pub(crate) fn note_object(add: On<Add, ObjectSpec>, mut newcomers: ResMut<Newcomers>) {
+    newcomers.bodies.push(add.entity);
+}
+
+pub(crate) fn note_table(add: On<Add, Table>, mut newcomers: ResMut<Newcomers>) {
+    newcomers.bodies.push(add.entity);
+}
+
+pub(crate) fn note_joint(add: On<Add, Joint>, mut newcomers: ResMut<Newcomers>) {
+    newcomers.joints.push(add.entity);
+}
+
+pub(crate) fn any(newcomers: Res<Newcomers>) -> bool {
+    !newcomers.bodies.is_empty() || !newcomers.joints.is_empty()
+}
+
+pub(crate) fn take_in(world: &mut World) -> Result {
+    let Newcomers { bodies, joints } = std::mem::take(&mut *world.resource_mut::<Newcomers>());
+    for entity in bodies {
+        let Ok(newcomer) = world.get_entity(entity) else {
+            continue; // It has gone in the tick in which it came.
+        };
+        if let Some(place) = newcomer.get::<Transform>().copied() {
+            world
+                .entity_mut(entity)
+                .insert(GlobalTransform::from(place));
+        }
+        if let Some(spec) = world.get::<ObjectSpec>(entity).cloned() {
+            body::add_object(world, entity, &spec);
+        } else if let Some(table) = world.get::<Table>(entity).copied() {
+            body::add_table(world, entity, table);
+        }
+        world.run_system_cached(init_rigid_bodies)?;
+        world.run_system_cached(init_colliders)?;
+    }
+    for entity in joints {
+        if let Some(connection) = world.get::<Joint>(entity).copied() {
+            joint::add_joint(world, entity, &connection);
+            world.run_system_cached(init_joints)?;
+        }
+    }
+    Ok(())
+}
