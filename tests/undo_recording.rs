@@ -1,5 +1,4 @@
 //! A recording in which something was undone is, byte for byte, the recording in which it was never done.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::{
     fs,
