@@ -5,7 +5,7 @@
 
 use std::path::PathBuf;
 
-use bevy::prelude::*;
+use bevy::{ecs::system::SystemState, prelude::*};
 use serde::{Deserialize, Serialize};
 
 use crate::{Hand, SceneSpec};
@@ -65,6 +65,24 @@ pub enum SimCommand {
     Redo,
     /// Stop the clock, or let it run on.
     SetPaused(bool),
+}
+
+impl SimCommand {
+    /// The commands that a system has not read yet and that it wants, in their order: for systems that carry them out
+    /// one after the other, each on the world that the one before has left.
+    ///
+    /// # Errors
+    ///
+    /// The world has no such messages.
+    pub fn unread(
+        world: &mut World,
+        reader: &mut SystemState<MessageReader<Self>>,
+        is_wanted: impl Fn(&Self) -> bool,
+    ) -> Result<Vec<Self>> {
+        let mut commands = reader.get_mut(world)?;
+        let wanted = commands.read().filter(|command| is_wanted(command));
+        Ok(wanted.cloned().collect())
+    }
 }
 
 /// Something that has happened in this tick.

@@ -48,12 +48,9 @@ pub(crate) fn obey(
     world: &mut World,
     reader: &mut SystemState<MessageReader<SimCommand>>,
 ) -> Result {
-    let commands: Vec<SimCommand> = reader
-        .get_mut(world)?
-        .read()
-        .filter(|command| !matches!(command, SimCommand::SetScene(_)))
-        .cloned()
-        .collect();
+    let commands = SimCommand::unread(world, reader, |command| {
+        is_for_hands(command) || matches!(command, SimCommand::SelectHand(_))
+    })?;
     let is_paused = world.resource::<Paused>().0;
     for command in commands {
         if is_paused && is_for_hands(&command) {

@@ -72,12 +72,9 @@ pub(crate) fn undo_and_redo(
     world: &mut World,
     reader: &mut SystemState<MessageReader<SimCommand>>,
 ) -> Result {
-    let commands: Vec<SimCommand> = reader
-        .get_mut(world)?
-        .read()
-        .filter(|command| matches!(command, SimCommand::Undo | SimCommand::Redo))
-        .cloned()
-        .collect();
+    let commands = SimCommand::unread(world, reader, |command| {
+        matches!(command, SimCommand::Undo | SimCommand::Redo)
+    })?;
     if !world.resource::<Recording>().0 {
         forget(world);
     }

@@ -109,22 +109,7 @@ impl Plugin for PhysicsPlugin {
                     transforms::propagate().in_set(SimSystems::Propagate),
                 ),
             )
-            .init_resource::<newcomers::Newcomers>()
-            .configure_sets(
-                FixedUpdate,
-                BodySystems
-                    .after(SimSystems::Ingest)
-                    .before(SimSystems::Actuate),
-            )
-            .add_systems(
-                FixedUpdate,
-                newcomers::take_in
-                    .run_if(newcomers::any)
-                    .in_set(BodySystems),
-            )
-            .add_observer(newcomers::note_object)
-            .add_observer(newcomers::note_table)
-            .add_observer(newcomers::note_joint);
+            .add_plugins(newcomers::plugin);
     }
 }
 

@@ -5,39 +5,53 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::plugin::systems::{init_colliders, init_joints, init_rigid_bodies};
-use tabletop_core::{Joint, ObjectSpec, Table};
+use tabletop_core::{Joint, ObjectSpec, SimSystems, Table};
 
 use crate::{body, joint};
 
 /// Gives new objects, tables and joints their bodies, in [`FixedUpdate`] after
-/// [`SimSystems::Ingest`](tabletop_core::SimSystems::Ingest). Runs while paused, too.
+/// [`SimSystems::Ingest`]. Runs while paused, too.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BodySystems;
 
 /// What has appeared and has no body yet.
 #[derive(Resource, Default)]
-pub(crate) struct Newcomers {
+struct Newcomers {
     bodies: Vec<Entity>,
     joints: Vec<Entity>,
 }
 
-pub(crate) fn note_object(add: On<Add, ObjectSpec>, mut newcomers: ResMut<Newcomers>) {
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Newcomers>()
+        .configure_sets(
+            FixedUpdate,
+            BodySystems
+                .after(SimSystems::Ingest)
+                .before(SimSystems::Actuate),
+        )
+        .add_systems(FixedUpdate, take_in.run_if(any).in_set(BodySystems))
+        .add_observer(note_object)
+        .add_observer(note_table)
+        .add_observer(note_joint);
+}
+
+fn note_object(add: On<Add, ObjectSpec>, mut newcomers: ResMut<Newcomers>) {
     newcomers.bodies.push(add.entity);
 }
 
-pub(crate) fn note_table(add: On<Add, Table>, mut newcomers: ResMut<Newcomers>) {
+fn note_table(add: On<Add, Table>, mut newcomers: ResMut<Newcomers>) {
     newcomers.bodies.push(add.entity);
 }
 
-pub(crate) fn note_joint(add: On<Add, Joint>, mut newcomers: ResMut<Newcomers>) {
+fn note_joint(add: On<Add, Joint>, mut newcomers: ResMut<Newcomers>) {
     newcomers.joints.push(add.entity);
 }
 
-pub(crate) fn any(newcomers: Res<Newcomers>) -> bool {
+fn any(newcomers: Res<Newcomers>) -> bool {
     !newcomers.bodies.is_empty() || !newcomers.joints.is_empty()
 }
 
-pub(crate) fn take_in(world: &mut World) -> Result {
+fn take_in(world: &mut World) -> Result {
     let Newcomers { bodies, joints } = std::mem::take(&mut *world.resource_mut::<Newcomers>());
     for entity in bodies {
         let Ok(newcomer) = world.get_entity(entity) else {

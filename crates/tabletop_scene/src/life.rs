@@ -8,7 +8,6 @@ use bevy::{
     prelude::*,
 };
 use tabletop_core::{Held, Joint, ObjectIndex, ObjectSpec, SceneSpec, SimCommand, SimFact, Table};
-
 use tabletop_physics::{Parked, remove_object};
 
 use crate::{IdAllocator, assemble};
@@ -86,12 +85,9 @@ pub(crate) fn carry_out_commands(
     world: &mut World,
     reader: &mut SystemState<MessageReader<SimCommand>>,
 ) -> Result {
-    let commands: Vec<SimCommand> = reader
-        .get_mut(world)?
-        .read()
-        .filter(|command| matches!(command, SimCommand::SetScene(_) | SimCommand::ClearTable))
-        .cloned()
-        .collect();
+    let commands = SimCommand::unread(world, reader, |command| {
+        matches!(command, SimCommand::SetScene(_) | SimCommand::ClearTable)
+    })?;
     for command in commands {
         match command {
             SimCommand::SetScene(scene) => set_scene(world, &scene),
