@@ -8,6 +8,8 @@
 //! | [`physics`] | Rapier, configured |
 //! | [`scene`] | the table and what comes and goes on it |
 //! | [`demonstrator`] | the invisible hands, undo and redo |
+//! | [`baxter`] | the robot: how it looks, moves and grips |
+//! | [`kinematics`] | robots as URDF describes them |
 //! | [`camera`] | what the robot's head camera sees |
 //! | [`recorder`] | recordings on disk |
 //! | [`scenario`] | scripted demonstrations, for tests and datasets |
@@ -30,9 +32,11 @@
 //! assert!((pose.location - Vec3::new(2.0, 0.0, 1.0)).length() < 0.005);
 //! ```
 
+pub use tabletop_baxter as baxter;
 pub use tabletop_camera as camera;
 pub use tabletop_core as core;
 pub use tabletop_demonstrator as demonstrator;
+pub use tabletop_kinematics as kinematics;
 pub use tabletop_physics as physics;
 pub use tabletop_recorder as recorder;
 pub use tabletop_scenario as scenario;
@@ -42,10 +46,12 @@ pub use tabletop_xml as xml;
 mod headless;
 pub mod replay;
 pub mod report;
+mod settings;
 #[cfg(feature = "window")]
 pub mod window;
 
 pub use headless::{headless_app, headless_app_with};
+pub use settings::RecordedSettingsPlugin;
 
 use bevy::{app::PluginGroupBuilder, prelude::*};
 
@@ -62,8 +68,8 @@ pub mod prelude {
 
 /// Everything that simulates, nothing that shows: [`CorePlugin`](core::CorePlugin), [`XmlPlugin`](xml::XmlPlugin),
 /// [`PhysicsPlugin`](physics::PhysicsPlugin), [`ScenePlugin`](scene::ScenePlugin),
-/// [`DemonstratorPlugin`](demonstrator::DemonstratorPlugin), [`CameraPlugin`](camera::CameraPlugin) and
-/// [`RecorderPlugin`](recorder::RecorderPlugin).
+/// [`DemonstratorPlugin`](demonstrator::DemonstratorPlugin), [`BaxterPlugin`](baxter::BaxterPlugin), [`CameraPlugin`](camera::CameraPlugin),
+/// [`RecorderPlugin`](recorder::RecorderPlugin) and [`RecordedSettingsPlugin`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TabletopSimPlugins;
 
@@ -75,7 +81,9 @@ impl PluginGroup for TabletopSimPlugins {
             .add(physics::PhysicsPlugin::default())
             .add(scene::ScenePlugin)
             .add(demonstrator::DemonstratorPlugin)
+            .add(baxter::BaxterPlugin::default())
             .add(camera::CameraPlugin)
             .add(recorder::RecorderPlugin::default())
+            .add(RecordedSettingsPlugin)
     }
 }

@@ -1,16 +1,23 @@
 //! Running a recording again.
 
+mod difference;
+mod player;
+
+pub use difference::first_difference;
+pub use player::Player;
+
 use std::{
-    collections::BTreeSet,
-    fs, io,
+    io,
     path::{Path, PathBuf},
 };
 
-use bevy::prelude::*;
-use tabletop_core::{HeadCamera, SimCommand, SimTick, StepApp as _};
-use tabletop_recorder::{RecorderError, RecorderPlugin, Session};
+use bevy::{app::PluginGroupBuilder, prelude::*};
+use serde::Deserialize as _;
+use tabletop_core::{HeadCamera, SimTick, StepApp as _, TICKS_PER_SECOND};
+use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
+use tabletop_recorder::{Channels, RecorderError, RecorderPlugin, Session, TICKS_PER_FRAME};
 
-use crate::{TabletopSimPlugins, headless_app_with};
+use crate::{TabletopSimPlugins, headless_app_with, settings::PHYSICS};
 
 /// Why a recording cannot be run again.
 #[derive(Debug, thiserror::Error)]
@@ -18,15 +25,27 @@ pub enum ReplayError {
     /// Its session log cannot be read.
     #[error(transparent)]
     Session(#[from] RecorderError),
-    /// It does not say what was on the table.
+    /// Its session log does not go back far enough.
     #[error(
-        "{}: the recording began without a scene on the table, so it cannot be run again; \
+        "{}:1: begin_tick: the commands before the recording are not known, so it cannot be run again; \
          load a task file before the recording starts",
-        folder.display()
+        path.display()
     )]
-    NoScene {
-        /// The recording's folder.
-        folder: PathBuf,
+    NoBeginning {
+        /// The session log.
+        path: PathBuf,
+    },
+    /// It was made with settings that this program does not have.
+    #[error("{}:1: {name}: {problem}; it was recorded with version {program}, this is {}", path.display(), env!("CARGO_PKG_VERSION"))]
+    Settings {
+        /// The session log.
+        path: PathBuf,
+        /// The setting.
+        name: &'static str,
+        /// What is wrong with it.
+        problem: String,
+        /// The version of the program that made the recording.
+        program: String,
     },
     /// A file of one of the recordings cannot be read.
     #[error("{}: {source}", path.display())]
@@ -38,124 +57,105 @@ pub enum ReplayError {
     },
 }
 
-/// Simulates the recording in a folder again, from its scene on, and records that into another folder, with pictures of
-/// the same size or, if a camera is given, as this camera sees it.
-///
-/// The world goes through the same states if it was at its scene's beginning, or had not been touched since, when the
-/// recording started.
-///
-/// # Errors
-///
-/// The session log cannot be read, or does not say what was on the table.
-pub fn replay(folder: &Path, into: &Path, camera: Option<HeadCamera>) -> Result<(), ReplayError> {
-    let session = Session::read(folder.join("session.jsonl"))?;
-    let Some(task) = session.scene.task else {
-        return Err(ReplayError::NoScene {
-            folder: folder.to_owned(),
-        });
-    };
-    let mut app = headless_app_with(TabletopSimPlugins.build().set(RecorderPlugin {
-        folder: into.to_owned(),
-        header: session.header.settings,
-    }));
-    if let Some(camera) = camera.or(session.header.camera) {
-        app.insert_resource(camera);
-    }
-    app.insert_resource(SimTick(task.tick));
-    let mut begin = vec![SimCommand::SetScene(Box::new(task.scene))];
-    let start = session.header.start_tick;
-    let last = session
-        .commands
-        .iter()
-        .map(|command| command.tick)
-        .fold(start, u64::max);
-    let mut commands = session.commands.into_iter().peekable();
-    for tick in task.tick..=last {
-        for command in begin.drain(..) {
-            app.world_mut().write_message(command);
-        }
-        if tick == start {
-            app.world_mut().write_message(SimCommand::StartRecording);
-        }
-        while let Some(next) = commands.next_if(|next| next.tick <= tick) {
-            app.world_mut().write_message(next.command);
-        }
-        app.step(1);
-    }
-    Ok(())
+/// A recording that can be run again: it goes through the same states, to the bit.
+#[derive(Clone, Debug)]
+pub struct Replay {
+    folder: PathBuf,
+    session: Session,
+    begin: SimTick,
+    physics: PhysicsSettings,
 }
 
-/// The first file in which two recordings differ, and how.
-///
-/// # Errors
-///
-/// A folder or file cannot be read.
-pub fn first_difference(recorded: &Path, replayed: &Path) -> Result<Option<String>, ReplayError> {
-    let mut files = files_in(recorded)?;
-    files.extend(files_in(replayed)?);
-    for file in files {
-        let name = file.display();
-        let (before, after) = (recorded.join(&file), replayed.join(&file));
-        let difference = match (before.exists(), after.exists()) {
-            (true, false) => format!("{name}: was recorded, and is not there in the replay"),
-            (false, true) => format!("{name}: was not recorded, and is there in the replay"),
-            _ => {
-                let (before, after) = (read(&before)?, read(&after)?);
-                if before == after {
-                    continue;
-                }
-                format!("{name}: {}", first_difference_of(&before, &after))
-            }
-        };
-        return Ok(Some(difference));
-    }
-    Ok(None)
-}
-
-/// Where two files differ: line and texts, or for pictures that they do.
-fn first_difference_of(before: &[u8], after: &[u8]) -> String {
-    let (Ok(before), Ok(after)) = (std::str::from_utf8(before), std::str::from_utf8(after)) else {
-        return "the pictures differ".into();
-    };
-    let (mut before, mut after) = (before.lines(), after.lines());
-    let end = "the end of the file";
-    for line in 1.. {
-        let (was, is) = (before.next(), after.next());
-        if was != is || was.is_none() {
-            let (was, is) = (was.unwrap_or(end), is.unwrap_or(end));
-            return format!("line {line}: recorded `{was}`, replayed `{is}`");
-        }
-    }
-    String::new()
-}
-
-/// The files of a recording, relative to its folder, in alphabetical order.
-fn files_in(folder: &Path) -> Result<BTreeSet<PathBuf>, ReplayError> {
-    let mut files = BTreeSet::new();
-    let mut folders = vec![PathBuf::new()];
-    while let Some(inner) = folders.pop() {
-        let path = folder.join(&inner);
-        let failed = |source| ReplayError::Io {
+impl Replay {
+    /// Reads what a replay needs of the recording in a folder.
+    ///
+    /// # Errors
+    ///
+    /// The session log cannot be read, does not go back far enough, or has settings that this program does not have.
+    pub fn read(folder: impl Into<PathBuf>) -> Result<Self, ReplayError> {
+        let folder = folder.into();
+        let path = folder.join("session.jsonl");
+        let session = Session::read(&path)?;
+        let header = &session.header;
+        let fault = |name, problem| ReplayError::Settings {
             path: path.clone(),
-            source,
+            name,
+            problem,
+            program: header.program.clone(),
         };
-        for entry in fs::read_dir(&path).map_err(failed)? {
-            let entry = entry.map_err(failed)?;
-            let name = inner.join(entry.file_name());
-            match entry.file_type().map_err(failed)?.is_dir() {
-                true => folders.push(name),
-                false => {
-                    files.insert(name);
-                }
+        for (name, recorded, here) in [
+            (
+                "ticks_per_second",
+                u64::from(header.ticks_per_second),
+                u64::from(TICKS_PER_SECOND),
+            ),
+            ("ticks_per_frame", header.ticks_per_frame, TICKS_PER_FRAME),
+        ] {
+            if recorded != here {
+                return Err(fault(name, format!("expected {here}, found {recorded}")));
             }
         }
+        let physics = match header.settings.get(PHYSICS) {
+            Some(physics) => PhysicsSettings::deserialize(physics)
+                .map_err(|error| fault("settings.physics", error.to_string()))?,
+            None => PhysicsSettings::default(),
+        };
+        let Some(begin) = header.begin_tick.map(SimTick) else {
+            return Err(ReplayError::NoBeginning { path });
+        };
+        Ok(Self {
+            folder,
+            session,
+            begin,
+            physics,
+        })
     }
-    Ok(files)
-}
 
-fn read(path: &Path) -> Result<Vec<u8>, ReplayError> {
-    fs::read(path).map_err(|source| ReplayError::Io {
-        path: path.to_owned(),
-        source,
-    })
+    /// The recording's folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Version of the program that made the recording.
+    pub fn program(&self) -> &str {
+        &self.session.header.program
+    }
+
+    /// The head camera with which it was recorded.
+    pub fn camera(&self) -> HeadCamera {
+        self.session.header.camera.unwrap_or_default()
+    }
+
+    /// The simulator with the settings with which it was recorded.
+    pub fn plugins(&self) -> PluginGroupBuilder {
+        TabletopSimPlugins.build().set(PhysicsPlugin {
+            settings: self.physics,
+        })
+    }
+
+    /// Lets an app that has these [plugins](Self::plugins) replay it from its beginning.
+    pub fn play_in(&self, app: &mut App) {
+        self.play(Player::new(&self.session), app);
+    }
+
+    fn play(&self, player: Player, app: &mut App) {
+        app.insert_resource(self.begin)
+            .insert_resource(self.camera());
+        player.play_in(app);
+    }
+
+    /// Replays it without a window and records that into another folder, with pictures as this camera sees it.
+    pub fn record(&self, into: PathBuf, camera: HeadCamera, channels: Channels) {
+        let recorder = RecorderPlugin {
+            folder: into,
+            header: self.session.header.settings.clone(),
+            channels,
+        };
+        let mut app = headless_app_with(self.plugins().set(recorder));
+        self.play(Player::recording(&self.session), &mut app);
+        app.insert_resource(camera);
+        while !app.world().resource::<Player>().is_over() {
+            app.step(1);
+        }
+    }
 }

@@ -1,6 +1,7 @@
 //! The program in a window.
 
 mod no_window;
+mod replay;
 mod screenshot;
 
 pub use no_window::NoWindow;
@@ -20,13 +21,24 @@ use tabletop_core::{Paused, SimCommand};
 use tabletop_gui::GuiPlugin;
 use tabletop_view::ViewPlugin;
 
+use crate::{TabletopSimPlugins, replay::Replay};
+
 /// What to show in a window.
 #[derive(Clone, Debug)]
 pub struct WindowOptions {
-    /// The task file to begin with.
-    pub setup: PathBuf,
+    /// What is on the table.
+    pub show: Show,
     /// A picture to take, after which the program ends.
     pub screenshot: Option<ScreenshotAt>,
+}
+
+/// What is on the table of a window.
+#[derive(Clone, Debug)]
+pub enum Show {
+    /// What a task file says, for the user to act on.
+    Task(PathBuf),
+    /// What was recorded. When it is over, the user can go on from there.
+    Replay(Box<Replay>),
 }
 
 /// Runs the simulation in a window until the user or a screenshot ends it.
@@ -58,14 +70,22 @@ fn build(options: WindowOptions) -> App {
             .disable::<PanicHandlerPlugin>()
             .disable::<LogPlugin>()
             .disable::<TerminalCtrlCHandlerPlugin>(),
-        crate::TabletopSimPlugins,
+        match &options.show {
+            Show::Task(_) => TabletopSimPlugins.build(),
+            Show::Replay(replay) => replay.plugins(),
+        },
         ViewPlugin,
         GuiPlugin,
     ))
     .insert_resource(WinitSettings::game())
     .add_systems(Update, save_power.run_if(resource_changed::<Paused>));
-    app.world_mut()
-        .write_message(SimCommand::LoadTask(options.setup));
+    match options.show {
+        Show::Task(setup) => {
+            let load = SimCommand::LoadTask(setup);
+            app.world_mut().write_message(load);
+        }
+        Show::Replay(replay) => replay::play(&replay, &mut app),
+    }
     if let Some(screenshot) = options.screenshot {
         screenshot.plan(&mut app);
     }

@@ -6,6 +6,7 @@
 
 mod check;
 mod replay;
+mod robot;
 mod run;
 mod window;
 
@@ -33,6 +34,8 @@ enum Command {
     Replay(replay::ReplayArgs),
     /// Check task files: every fault with its place; exit code 2 if there is one
     Check(check::CheckArgs),
+    /// Answer questions about the robot's joints and frames, a line of JSON each
+    Robot(robot::RobotArgs),
 }
 
 /// The task file that is loaded when none is named.
@@ -73,6 +76,7 @@ pub fn main() -> ExitCode {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::Check(args)) => check::check(&args),
+        Some(Command::Robot(args)) => robot::robot(&args),
         None => window::open(cli.window),
     };
     result.unwrap_or_else(|failure| {

@@ -2,13 +2,15 @@
 
 use std::{fs, path::PathBuf, process::ExitCode};
 
+use bevy::math::Vec3;
 use clap::Args;
 use tabletop::{
-    core::HeadCamera,
-    replay::{first_difference, replay},
+    core::Pose,
+    recorder::Channels,
+    replay::{Replay, first_difference},
 };
 
-use super::Failure;
+use super::{Failure, window};
 
 #[derive(Args)]
 pub(super) struct ReplayArgs {
@@ -18,12 +20,38 @@ pub(super) struct ReplayArgs {
     /// Compare every state and picture with the recorded ones; exit code 1 with the first difference
     #[arg(long)]
     verify: bool,
-    /// Make the pictures again at another size
-    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size, conflicts_with = "verify", requires = "out")]
-    render: Option<(u32, u32)>,
+    /// Play it in the window
+    #[arg(long, conflicts_with_all = ["verify", "out"])]
+    window: bool,
     /// Keep the recording of the replay here
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    pictures: PictureArgs,
+}
+
+/// What the pictures of a replay are to be instead of the recorded ones.
+#[derive(Args)]
+#[group(multiple = true, conflicts_with_all = ["verify", "window"], requires = "out")]
+struct PictureArgs {
+    /// Make the pictures again at another size
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
+    render: Option<(u32, u32)>,
+    /// Make the pictures again from another place, in units of 10 cm
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    camera: Option<Vec3>,
+    /// What that camera looks at [default: the centre of the table]
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, requires = "camera", allow_hyphen_values = true)]
+    look_at: Option<Vec3>,
+    /// Make the pictures again with this angle of view from top to bottom
+    #[arg(long, value_name = "DEGREES", value_parser = angle_of_view)]
+    fov: Option<f32>,
+    /// Write a 16-bit PNG file of distances beside each picture
+    #[arg(long)]
+    depth: bool,
+    /// Write a 16-bit PNG file of the objects' numbers beside each picture
+    #[arg(long)]
+    ids: bool,
 }
 
 /// Reads a picture size such as `640x480`.
@@ -35,24 +63,70 @@ fn size(text: &str) -> Result<(u32, u32), String> {
         .ok_or_else(|| format!("expected a width and a height of 1 to {MOST}, such as 640x480"))
 }
 
+/// Reads a point such as `0,-8,12.5`.
+fn point(text: &str) -> Result<Vec3, String> {
+    let numbers: Result<Vec<f32>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    numbers
+        .ok()
+        .and_then(|numbers| <[f32; 3]>::try_from(numbers).ok())
+        .map(Vec3::from)
+        .filter(|point| point.is_finite())
+        .ok_or_else(|| "expected three numbers, such as 0,-8,12.5".to_owned())
+}
+
+/// Reads an angle of 1 to 179 degrees.
+fn angle_of_view(text: &str) -> Result<f32, String> {
+    text.parse()
+        .ok()
+        .filter(|degrees| (1.0..=179.0).contains(degrees))
+        .ok_or_else(|| "expected an angle of 1 to 179 degrees".to_owned())
+}
+
 pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
-    let camera = args.render.map(|(width, height)| HeadCamera {
-        width,
-        height,
-        ..HeadCamera::default()
-    });
+    let replay = Replay::read(&args.recording).map_err(Failure::input)?;
+    if args.window {
+        return window::play(replay);
+    }
     let temporary = std::env::temp_dir().join(format!("tabletop-replay-{}", std::process::id()));
     let out = args.out.as_ref().unwrap_or(&temporary);
-    let replayed = replay(&args.recording, out, camera).map_err(Failure::input);
-    let difference = match (&replayed, args.verify) {
-        (Ok(()), true) => first_difference(&args.recording, out).map_err(Failure::input),
-        _ => Ok(None),
+    args.pictures.record(&replay, out.clone())?;
+    let difference = match args.verify {
+        true => first_difference(&args.recording, out).map_err(Failure::input),
+        false => Ok(None),
     };
-    // Nothing is there if the replay could not start.
+    // It is not there if the recording of the replay is to be kept.
     let _ = fs::remove_dir_all(&temporary);
-    replayed?;
-    match difference? {
-        Some(difference) => Err(Failure::run(format!("the replay differs: {difference}"))),
-        None => Ok(ExitCode::SUCCESS),
+    let Some(difference) = difference? else {
+        return Ok(ExitCode::SUCCESS);
+    };
+    let version = match replay.program() {
+        env!("CARGO_PKG_VERSION") => String::new(),
+        other => format!(" (it was recorded with version {other})"),
+    };
+    Err(Failure::run(format!("the replay differs: {difference}{version}")))
+}
+
+impl PictureArgs {
+    fn record(&self, replay: &Replay, into: PathBuf) -> Result<(), Failure> {
+        let mut camera = replay.camera();
+        if let Some((width, height)) = self.render {
+            (camera.width, camera.height) = (width, height);
+        }
+        if let Some(from) = self.camera {
+            let at = self.look_at.unwrap_or_default();
+            if from == at {
+                return Err(Failure::input("--camera and --look-at are the same point"));
+            }
+            camera.mount = Some(Pose::looking_at(from, at));
+        }
+        if let Some(degrees) = self.fov {
+            camera.vertical_fov = degrees.to_radians();
+        }
+        let channels = Channels {
+            depth: self.depth,
+            ids: self.ids,
+        };
+        replay.record(into, camera, channels);
+        Ok(())
     }
 }

@@ -12,7 +12,7 @@ use tabletop::{
     TabletopSimPlugins,
     core::{SceneSpec, SimCommand, StepApp as _, TICKS_PER_SECOND},
     headless_app, headless_app_with,
-    recorder::RecorderPlugin,
+    recorder::{RecorderPlugin, RehearsalPlugin},
     report,
     xml::read_task,
 };
@@ -118,11 +118,11 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     outcome
 }
 
-/// The simulator with a recorder if one is wanted.
+/// The simulator, with a recorder if one is wanted.
 fn recording_plugins(args: &RunArgs) -> PluginGroupBuilder {
     let plugins = TabletopSimPlugins.build();
     let Some(folder) = args.record.clone() else {
-        return plugins.disable::<RecorderPlugin>();
+        return plugins.disable::<RecorderPlugin>().add(RehearsalPlugin);
     };
     let settings = [
         ("scenario".to_owned(), json!(args.scenario)),
@@ -131,6 +131,7 @@ fn recording_plugins(args: &RunArgs) -> PluginGroupBuilder {
     plugins.set(RecorderPlugin {
         folder,
         header: settings.into_iter().collect(),
+        ..default()
     })
 }
 

@@ -3,6 +3,7 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use clap::Args;
+use tabletop::replay::Replay;
 
 use super::{Failure, Output, run};
 
@@ -21,29 +22,53 @@ pub(super) struct WindowArgs {
 
 #[cfg(feature = "window")]
 pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
-    use tabletop::window::{ScreenshotAt, WindowOptions};
+    use tabletop::window::{self, ScreenshotAt, Show, WindowOptions};
 
     let options = WindowOptions {
-        setup: args.setup.clone(),
+        show: Show::Task(args.setup.clone()),
         screenshot: args.screenshot.map(|path| ScreenshotAt {
             path,
             seconds: args.after as f32,
         }),
     };
-    match tabletop::window::run(options) {
-        Ok(bevy::app::AppExit::Success) => Ok(ExitCode::SUCCESS),
-        Ok(bevy::app::AppExit::Error(code)) => Ok(ExitCode::from(code.get())),
-        Err(no_window) => {
-            eprintln!("tabletop: {no_window}");
-            run_instead(args.setup)
-        }
+    window::run(options).map(exit_code).or_else(|no_window| {
+        eprintln!("tabletop: {no_window}");
+        run_instead(args.setup)
+    })
+}
+
+/// Plays a recording.
+#[cfg(feature = "window")]
+pub(super) fn play(replay: Replay) -> Result<ExitCode, Failure> {
+    use tabletop::window::{self, Show, WindowOptions};
+
+    let options = WindowOptions {
+        show: Show::Replay(Box::new(replay)),
+        screenshot: None,
+    };
+    window::run(options).map(exit_code).map_err(Failure::run)
+}
+
+#[cfg(feature = "window")]
+fn exit_code(exit: bevy::app::AppExit) -> ExitCode {
+    match exit {
+        bevy::app::AppExit::Success => ExitCode::SUCCESS,
+        bevy::app::AppExit::Error(code) => ExitCode::from(code.get()),
     }
 }
 
 #[cfg(not(feature = "window"))]
+const NO_WINDOW: &str = "this program was built without a window (feature `window`)";
+
+#[cfg(not(feature = "window"))]
 pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
-    eprintln!("tabletop: this program was built without a window (feature `window`)");
+    eprintln!("tabletop: {NO_WINDOW}");
     run_instead(args.setup)
+}
+
+#[cfg(not(feature = "window"))]
+pub(super) fn play(_: Replay) -> Result<ExitCode, Failure> {
+    Err(Failure::run(NO_WINDOW))
 }
 
 /// What the window would have shown after ten seconds, as a table.

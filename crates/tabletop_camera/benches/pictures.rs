@@ -1,23 +1,33 @@
 //! How many pictures a second one core draws.
 //!
 //! `cargo bench -p tabletop -p tabletop_camera --bench pictures` prints it for the two blocks of `default.xml` with ten more,
-//! and for a table of balls and cylinders, plain and with smooth edges.
+//! for these with two arms of 2400 triangles over them, and for a table of balls and cylinders, plain and with smooth edges.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 
-use std::time::Instant;
+use std::{f32::consts::TAU, sync::Arc, time::Instant};
 
 use bevy::math::{Quat, Vec3};
-use tabletop_camera::{Camera, DrawnSolid, Painter};
-use tabletop_core::{HeadCamera, Picture, Pose, Rgb, Solid, Table};
+use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Facets, Painter, Scene};
+use tabletop_core::{HeadCamera, Picture, Pose, Rgb, Solid, Table, Triangles};
 
 const TURNS: usize = 20;
 const SECONDS_PER_TURN: f64 = 0.1;
 
 fn main() {
     println!("scene                  size      plain      smooth   pictures/s, median (best)");
+    let without_arms = |solids| Scene {
+        solids,
+        ..Scene::default()
+    };
+    let with_arms = Scene {
+        solids: blocks(),
+        figures: arms(),
+        ..Scene::default()
+    };
     for (name, scene) in [
-        ("default and 10 blocks", blocks()),
-        ("20 balls and cylinders", rounds()),
+        ("default and 10 blocks", without_arms(blocks())),
+        ("the same with two arms", with_arms),
+        ("20 balls and cylinders", without_arms(rounds())),
     ] {
         for (width, height) in [(200, 150), (640, 480), (1024, 600)] {
             let [plain, smooth] = [false, true].map(|antialiasing| {
@@ -34,13 +44,13 @@ fn main() {
     }
 }
 
-fn pictures_a_second(scene: &[DrawnSolid], camera: &Camera) -> String {
+fn pictures_a_second(scene: &Scene, camera: &Camera) -> String {
     let (mut painter, mut picture) = (Painter::default(), Picture::default());
     let mut rates: Vec<f64> = (0..TURNS)
         .map(|_| {
             let (start, mut count) = (Instant::now(), 0);
             while start.elapsed().as_secs_f64() < SECONDS_PER_TURN {
-                painter.draw(scene.iter().copied(), camera, &mut picture);
+                painter.draw(scene, camera, &mut picture);
                 count += 1;
             }
             f64::from(count) / start.elapsed().as_secs_f64()
@@ -111,4 +121,58 @@ fn rounds() -> Vec<DrawnSolid> {
         }
     }));
     scene
+}
+
+/// Two arms of twelve links that hang over the near half of the table.
+fn arms() -> Vec<DrawnFigure> {
+    let facets = Arc::new(Facets::from(&drum()));
+    let links = [-1.0, 1.0].into_iter().flat_map(|side: f32| {
+        (0..12u16).map(move |link| {
+            let along = f32::from(link) / 12.0;
+            let location = Vec3::new(side * (5.0 - 3.0 * along), -7.0 + 6.0 * along, 5.0 - 3.0 * along);
+            Pose::new(location, Quat::from_rotation_y(side * f32::from(link)))
+        })
+    });
+    (20..)
+        .zip(links)
+        .map(|(object, pose)| DrawnFigure {
+            pose,
+            facets: Arc::clone(&facets),
+            object,
+        })
+        .collect()
+}
+
+/// A drum of 100 triangles: five rings of ten corners.
+fn drum() -> Triangles {
+    const CORNERS: u32 = 10;
+    let mut drum = Triangles::default();
+    for ring in 0..5u16 {
+        let height = f32::from(ring) * 0.25 - 0.5;
+        for corner in 0..CORNERS {
+            let turned = Quat::from_rotation_z(TAU * corner as f32 / CORNERS as f32) * Vec3::X;
+            drum.positions.push(turned * 0.6 + Vec3::Z * height);
+            drum.normals.push(turned);
+        }
+    }
+    for ring in 0..4 {
+        for corner in 0..CORNERS {
+            let [a, b] = [corner, (corner + 1) % CORNERS].map(|i| ring * CORNERS + i);
+            let [c, d] = [a + CORNERS, b + CORNERS];
+            drum.indices.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    for (ring, normal) in [(0, Vec3::NEG_Z), (4, Vec3::Z)] {
+        let first = drum.positions.len() as u32;
+        for corner in 0..CORNERS {
+            drum.positions.push(drum.positions[(ring * CORNERS + corner) as usize]);
+            drum.normals.push(normal);
+        }
+        drum.indices.extend((2..CORNERS).map(|i| match ring {
+            0 => [first, first + i, first + i - 1],
+            _ => [first, first + i - 1, first + i],
+        }));
+    }
+    drum.colors = vec![Rgb::new(0.7, 0.1, 0.1); drum.positions.len()];
+    drum
 }

@@ -39,7 +39,7 @@ impl Camera {
     /// The robot's head camera at this table.
     pub fn of_head(head: &HeadCamera, table: &Table) -> Self {
         Self {
-            pose: head_pose(head.pan, table),
+            pose: head.mount.unwrap_or_else(|| head_pose(head.pan, table)),
             vertical_fov: head.vertical_fov,
             square_fov: head.square_fov,
             width: head.width,
@@ -114,7 +114,7 @@ impl View {
     }
 
     /// Where a point, given relative to the eye, is seen.
-    fn pixel_of(&self, point: Vec3) -> Option<Vec2> {
+    pub fn pixel_of(&self, point: Vec3) -> Option<Vec2> {
         let local = self.axes.inverse() * point;
         let depth = -local.z;
         (depth >= NEAR).then(|| self.center + Vec2::new(local.x, -local.y) / (depth * self.pixel))
@@ -207,6 +207,11 @@ impl Linear {
             right: 0.0,
             down: 0.0,
         }
+    }
+
+    /// Its value at a point of the picture.
+    pub fn at(&self, x: f32, y: f32) -> f32 {
+        self.first + self.right * x + self.down * y
     }
 
     /// Its values along a row of samples.

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Faces whose plane passes the eye nearer than this, in units, are seen edge-on: they are thinner than a pixel.
-const EDGE_ON: f32 = 1e-4;
+pub(crate) const EDGE_ON: f32 = 1e-4;
 
 /// The corners of each face of a cuboid, counter-clockwise as seen from outside. The corner's number has a bit for each
 /// axis, X the lowest, which says whether it is on the positive side. Faces come in pairs: negative and positive side of X,
@@ -38,14 +38,15 @@ pub(crate) const CUBOID_NORMALS: [Vec3; 6] = [
     Vec3::Z,
 ];
 
-/// A face as it is seen.
+/// A face of N corners as it is seen.
 #[derive(Clone, Debug)]
-pub(crate) struct Face {
+pub(crate) struct Face<const N: usize> {
     /// The rows in which it may be seen.
     pub rows: Range<u32>,
     surface: u32,
     nearness: Linear,
-    edges: [Edge; 5],
+    edges: [Edge; N],
+    near_plane: Edge,
 }
 
 /// Where the samples of a row have to be to lie on the inner side of an edge. For the two faces that share an edge these
@@ -60,12 +61,12 @@ enum Edge {
     Level { first: f32, down: f32 },
 }
 
-impl Face {
+impl<const N: usize> Face<N> {
     /// The face with these corners, given relative to the eye and counter-clockwise as seen from outside, and with this
     /// normal of unit length; none if it is not seen from outside.
     pub fn seen(
         view: &View,
-        corners: [Vec3; 4],
+        corners: [Vec3; N],
         normal: Vec3,
         rows: Range<u32>,
         surface: u32,
@@ -80,19 +81,16 @@ impl Face {
             right: -nearness.right,
             down: -nearness.down,
         };
-        let [a, b, c, d] = corners;
-        let edge = |from: Vec3, to: Vec3| Edge::from(view.rays.dot(to.cross(from)));
+        let edge = |i: usize| {
+            let (from, to) = (corners[i], corners[(i + 1) % N]);
+            Edge::from(view.rays.dot(to.cross(from)))
+        };
         Some(Self {
             rows,
             surface,
             nearness,
-            edges: [
-                edge(a, b),
-                edge(b, c),
-                edge(c, d),
-                edge(d, a),
-                Edge::from(behind_near_plane),
-            ],
+            edges: std::array::from_fn(edge),
+            near_plane: Edge::from(behind_near_plane),
         })
     }
 
@@ -107,7 +105,7 @@ impl Face {
     /// The samples of a row that lie inside all edges.
     fn columns(&self, y: f32, x_offset: f32, width: usize) -> Range<usize> {
         let (mut start, mut end) = (0, width);
-        for edge in &self.edges {
+        for edge in self.edges.iter().chain([&self.near_plane]) {
             match *edge {
                 Edge::From { slope, offset } => {
                     start = start.max(first_column(slope * y + offset - x_offset, width));

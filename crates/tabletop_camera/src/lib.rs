@@ -1,18 +1,23 @@
 //! The robot's eye: what its head camera sees, as a picture with depth and object numbers, with or without a window.
 //!
 //! Everything is worked out on one thread of the processor from IEEE arithmetic, so the same scene gives the same bytes on
-//! every run. There are no meshes: faces are found row by row from the planes through the eye and their edges, cylinders and
-//! balls by meeting each ray with the exact surface, and only what is seen in the end is lit. (The rasteriser crate `euc`
-//! 0.5 draws the same blocks at a seventh of the speed.) [`Painter`] draws any scene for any [`Camera`]; it knows no ECS:
+//! every run. Objects are no meshes: faces are found row by row from the planes through the eye and their edges, cylinders
+//! and balls by meeting each ray with the exact surface, and only what is seen in the end is lit. (The rasteriser crate `euc`
+//! 0.5 draws the same blocks at a seventh of the speed.) Figures are faces of three corners, lit at their corners.
+//! [`Painter`] draws any [`Scene`] for any [`Camera`]; it knows no ECS:
 //!
 //! ```
-//! use tabletop_camera::{Camera, DrawnSolid, Painter};
+//! use tabletop_camera::{Camera, DrawnSolid, Painter, Scene};
 //! use tabletop_core::{HeadCamera, Picture, Table};
 //!
 //! let table = Table::default();
 //! let camera = Camera::of_head(&HeadCamera::default(), &table);
 //! let mut picture = Picture::default();
-//! Painter::default().draw([DrawnSolid::of_table(&table, 1)], &camera, &mut picture);
+//! let scene = Scene {
+//!     solids: vec![DrawnSolid::of_table(&table, 1)],
+//!     ..Scene::default()
+//! };
+//! Painter::default().draw(&scene, &camera, &mut picture);
 //!
 //! let straight_ahead = picture.index(99, 74).unwrap();
 //! assert_eq!(picture.objects[straight_ahead], 1);
@@ -39,6 +44,8 @@
 
 mod camera;
 mod face;
+mod facets;
+mod glass;
 mod light;
 mod mount;
 mod painter;
@@ -50,12 +57,13 @@ mod sense;
 mod surface;
 
 pub use camera::Camera;
+pub use facets::Facets;
 pub use mount::head_pose;
 pub use painter::Painter;
-pub use scene::DrawnSolid;
+pub use scene::{DrawnFigure, DrawnSolid, Scene};
 
 use bevy::prelude::*;
-use tabletop_core::{HeadCamera, PictureDemand, PictureSystems, SensorImage, SimSystems};
+use tabletop_core::{HeadCamera, Markers, PictureDemand, PictureSystems, SensorImage, SimSystems};
 
 /// Takes the head camera's picture when it is asked for: of [`HeadCamera`], on [`PictureDemand`], into [`SensorImage`].
 /// Needs [`CorePlugin`](tabletop_core::CorePlugin).
@@ -65,10 +73,13 @@ pub struct CameraPlugin;
 impl Plugin for CameraPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<HeadCamera>()
+            .init_resource::<Markers>()
             .init_resource::<PictureDemand>()
             .init_resource::<SensorImage>()
             .init_resource::<sense::Eye>()
             .add_observer(sense::note_looks)
+            .add_observer(sense::note_figure)
+            .add_observer(sense::forget_figure)
             .configure_sets(FixedUpdate, PictureSystems.in_set(SimSystems::Sense))
             .add_systems(FixedUpdate, sense::take_picture.in_set(PictureSystems));
     }

@@ -5,8 +5,9 @@ use tabletop_core::Picture;
 
 use crate::{
     camera::{Camera, View},
+    glass::Glass,
     row::{Offset, SampleRow},
-    scene::DrawnSolid,
+    scene::Scene,
     seen::{InRow, Seen},
     surface::bytes,
 };
@@ -16,22 +17,19 @@ use crate::{
 #[derive(Clone, Debug, Default)]
 pub struct Painter {
     seen: Seen,
+    glass: Glass,
     in_row: InRow,
     centers: SampleRow,
     smooth: [SampleRow; 4],
 }
 
 impl Painter {
-    /// Draws what the camera sees. Of surfaces that are equally near, one of the first kind of solid is seen (cuboids are
-    /// before cylinders and balls), and of those the first in the scene.
-    pub fn draw(
-        &mut self,
-        scene: impl IntoIterator<Item = DrawnSolid>,
-        camera: &Camera,
-        picture: &mut Picture,
-    ) {
+    /// Draws what the camera sees. Of surfaces that are equally near, one of the first kind is seen (cuboids are before
+    /// cylinders and balls, and these before figures), and of those the first in the scene.
+    pub fn draw(&mut self, scene: &Scene, camera: &Camera, picture: &mut Picture) {
         let view = View::of(camera);
         self.seen.look_at(scene, &view);
+        self.glass.look_at(&scene.markers, &view);
         picture.resize(camera.width, camera.height);
         for row in 0..camera.height {
             self.seen.find_in_row(row, &mut self.in_row);
@@ -39,6 +37,7 @@ impl Painter {
             if camera.antialiasing {
                 self.smooth_row(&view, row, picture);
             }
+            self.blend_row(&view, row, camera.antialiasing, picture);
         }
     }
 
@@ -83,9 +82,23 @@ impl Painter {
         let [a, b, c, d] = self.smooth.each_ref().map(|samples| samples.surface.iter());
         let surfaces = a.zip(b).zip(c.zip(d)).zip(&self.centers.surface);
         for (column, (pixel, (((a, b), (c, d)), center))) in pixels.zip(surfaces).enumerate() {
-            if (a ^ center) | (b ^ center) | (c ^ center) | (d ^ center) != 0 {
+            let is_one_surface = (a ^ center) | (b ^ center) | (c ^ center) | (d ^ center) == 0;
+            if !is_one_surface && self.seen.is_edge_between([*center, *a, *b, *c, *d]) {
                 pixel.copy_from_slice(&bytes(self.mixed(view, row, column)));
             }
+        }
+    }
+
+    /// Blends what is transparent into a row.
+    fn blend_row(&mut self, view: &View, row: u32, is_smooth: bool, picture: &mut Picture) {
+        if is_smooth {
+            let [a, b, c, d] = self.smooth.each_ref();
+            let [o, p, q, r] = Offset::SMOOTH;
+            let samples = [(o, a), (p, b), (q, c), (r, d)];
+            self.glass.blend(view, row, &samples, picture);
+        } else {
+            let samples = [(Offset::CENTER, &self.centers)];
+            self.glass.blend(view, row, &samples, picture);
         }
     }
 

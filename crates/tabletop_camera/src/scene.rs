@@ -1,7 +1,33 @@
 //! What a camera looks at.
 
+use std::sync::Arc;
+
 use bevy::math::Vec3;
 use tabletop_core::{Pose, Primitive, Rgb, Solid, Table};
+
+use crate::facets::Facets;
+
+/// What a camera looks at.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// Solids.
+    pub solids: Vec<DrawnSolid>,
+    /// Surfaces of triangles.
+    pub figures: Vec<DrawnFigure>,
+    /// Middles of transparent balls ([`Markers`](tabletop_core::Markers)), in units. They change colours only.
+    pub markers: Vec<Vec3>,
+}
+
+/// A figure in the picture.
+#[derive(Clone, Debug)]
+pub struct DrawnFigure {
+    /// Pose in the world.
+    pub pose: Pose,
+    /// Its surface.
+    pub facets: Arc<Facets>,
+    /// The number that its pixels have in [`Picture::objects`](tabletop_core::Picture::objects); above 0.
+    pub object: u32,
+}
 
 /// A solid in the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,14 +1,18 @@
 //! What of a scene a camera can see.
 
-use bevy::math::{Mat3, Vec3};
-use tabletop_core::Solid;
+use std::ops::Range;
+
+use bevy::math::{Mat3, Vec2, Vec3};
+use tabletop_core::{Pose, Solid};
 
 use crate::{
-    camera::{View, Window},
-    face::{CUBOID, CUBOID_NORMALS, Face},
+    camera::{Linear, View, Window},
+    face::{CUBOID, CUBOID_NORMALS, EDGE_ON, Face},
+    facets::Vertex,
+    light::{LAMP, light},
     round::{Curve, Ends, Round},
     row::{Offset, SampleRow},
-    scene::DrawnSolid,
+    scene::{DrawnFigure, DrawnSolid, Scene},
     surface::Surface,
 };
 
@@ -17,8 +21,14 @@ use crate::{
 pub(crate) struct Seen {
     /// What the surfaces look like; the first stands for nothing.
     pub surfaces: Vec<Surface>,
-    faces: Vec<Face>,
+    faces: Vec<Face<4>>,
     rounds: Vec<Round>,
+    triangles: Vec<Face<3>>,
+    coming_up: ComingUp,
+    /// So many patches there are.
+    patches: u32,
+    /// The vertices of a figure.
+    corners: Vec<Corner>,
 }
 
 /// What may be seen in a row, as indices.
@@ -26,27 +36,57 @@ pub(crate) struct Seen {
 pub(crate) struct InRow {
     faces: Vec<usize>,
     rounds: Vec<usize>,
+    triangles: Vec<u32>,
+}
+
+/// In which order triangles come up from row to row.
+#[derive(Clone, Debug, Default)]
+struct ComingUp {
+    /// The triangles, by the first row in which they may be seen.
+    order: Vec<u32>,
+    /// Where those of each row start in the order, and where those of the last one end.
+    starts: Vec<u32>,
+}
+
+/// A vertex of a figure as it is seen.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    /// Where it is relative to the eye.
+    place: Vec3,
+    /// Where in the picture it is; `None` behind the eye.
+    pixel: Option<Vec2>,
+    /// The factor of its colour.
+    light: f32,
 }
 
 impl Seen {
     /// Forgets everything and looks at this scene.
-    pub fn look_at(&mut self, scene: impl IntoIterator<Item = DrawnSolid>, view: &View) {
+    pub fn look_at(&mut self, scene: &Scene, view: &View) {
         self.surfaces.clear();
         self.surfaces.push(Surface::NOTHING);
+        self.patches = 1;
         self.faces.clear();
         self.rounds.clear();
-        for drawn in scene {
-            let corners = corners(&drawn, view);
+        self.triangles.clear();
+        for drawn in &scene.solids {
+            let corners = corners_of_solid(drawn, view);
             if let Some(window) = view.window_of(&corners) {
                 match drawn.solid {
-                    Solid::Cuboid(_) => self.add_cuboid(&drawn, view, window, &corners),
+                    Solid::Cuboid(_) => self.add_cuboid(drawn, view, window, &corners),
                     Solid::Cylinder { radius, yspan } => {
-                        self.add_cylinder(&drawn, view, window, radius, yspan);
+                        self.add_cylinder(drawn, view, window, radius, yspan);
                     }
-                    Solid::Ball(radius) => self.add_ball(&drawn, view, window, radius),
+                    Solid::Ball(radius) => self.add_ball(drawn, view, window, radius),
                 }
             }
         }
+        for drawn in &scene.figures {
+            let corners = corners_of_box(drawn.pose, drawn.facets.bounds, view);
+            if let Some(window) = view.window_of(&corners) {
+                self.add_figure(drawn, view, &window);
+            }
+        }
+        self.coming_up.sort(&self.triangles, view.height);
     }
 
     fn add_cuboid(&mut self, drawn: &DrawnSolid, view: &View, window: Window, corners: &[Vec3; 8]) {
@@ -56,7 +96,8 @@ impl Seen {
             let surface = self.surfaces.len() as u32;
             if let Some(face) = Face::seen(view, corners, normal, window.rows.clone(), surface) {
                 self.faces.push(face);
-                let plane = Surface::flat(view, drawn, corners[0], normal);
+                let patch = self.next_patch();
+                let plane = Surface::flat(view, drawn, patch, corners[0], normal);
                 self.surfaces.push(plane);
             }
         }
@@ -78,9 +119,10 @@ impl Seen {
         let side = self.surfaces.len() as u32;
         self.rounds
             .push(Round::new(curve, ends, window, [side, side + 1]));
+        let patches = [self.next_patch(), self.next_patch()];
         self.surfaces.extend([
-            Surface::round(drawn, curve),
-            Surface::flat(view, drawn, center + to_eye * yspan / 2.0, to_eye),
+            Surface::round(drawn, patches[0], curve),
+            Surface::flat(view, drawn, patches[1], center + to_eye * yspan / 2.0, to_eye),
         ]);
     }
 
@@ -89,18 +131,65 @@ impl Seen {
         let surface = self.surfaces.len() as u32;
         self.rounds
             .push(Round::new(curve, Ends::NONE, window, [surface; 2]));
-        self.surfaces.push(Surface::round(drawn, curve));
+        let patch = self.next_patch();
+        self.surfaces.push(Surface::round(drawn, patch, curve));
     }
 
-    /// Finds what may be seen in a row.
+    fn add_figure(&mut self, drawn: &DrawnFigure, view: &View, window: &Window) {
+        let facets = &*drawn.facets;
+        let axes = Mat3::from_quat(drawn.pose.rotation);
+        let vertices = facets.vertices.iter();
+        self.corners.clear();
+        self.corners
+            .extend(vertices.map(|vertex| Corner::of(vertex, drawn.pose.location, &axes, view)));
+        let eye = drawn.pose.inverse() * view.eye;
+        for facet in &facets.triangles {
+            if facet.normal.dot(eye) - facet.height < EDGE_ON {
+                continue;
+            }
+            let corners = facet.corners.map(|i| self.corners[i as usize]);
+            let Some(rows) = rows_of(&corners, view, window) else {
+                continue;
+            };
+            let places = corners.map(|corner| corner.place);
+            let normal = axes * facet.normal;
+            let surface = self.surfaces.len() as u32;
+            if let Some(face) = Face::seen(view, places, normal, rows, surface) {
+                self.triangles.push(face);
+                self.surfaces.push(Surface::shaded(
+                    drawn.object,
+                    self.patches + facet.patch,
+                    facet.color,
+                    light_by_depth(view, &corners, normal),
+                ));
+            }
+        }
+        self.patches += facets.patches;
+    }
+
+    fn next_patch(&mut self) -> u32 {
+        self.patches += 1;
+        self.patches - 1
+    }
+
+    /// Finds what may be seen in a row. Rows are taken one after the other, from the first one on.
     pub fn find_in_row(&self, row: u32, in_row: &mut InRow) {
-        let InRow { faces, rounds } = in_row;
+        let InRow {
+            faces,
+            rounds,
+            triangles,
+        } = in_row;
         faces.clear();
         faces.extend((0..self.faces.len()).filter(|&face| self.faces[face].rows.contains(&row)));
         rounds.clear();
         rounds.extend(
             (0..self.rounds.len()).filter(|&round| self.rounds[round].window.rows.contains(&row)),
         );
+        if row == 0 {
+            triangles.clear();
+        }
+        triangles.retain(|&triangle| row < self.triangles[triangle as usize].rows.end);
+        triangles.extend(self.coming_up.in_row(row));
     }
 
     /// Finds which surface is nearest at each of these samples of a row, in which no more may be seen than this.
@@ -111,11 +200,97 @@ impl Seen {
         for &round in &in_row.rounds {
             self.rounds[round].draw(row, offset, samples);
         }
+        for &triangle in &in_row.triangles {
+            self.triangles[triangle as usize].draw(row, offset, samples);
+        }
+    }
+
+    /// Whether there is an edge between any of these surfaces.
+    pub fn is_edge_between(&self, surfaces: [u32; 5]) -> bool {
+        let [first, others @ ..] = surfaces.map(|i| self.surfaces[i as usize].patch);
+        others.iter().any(|&patch| patch != first)
     }
 }
 
+impl ComingUp {
+    fn sort(&mut self, triangles: &[Face<3>], height: u32) {
+        let Self { order, starts } = self;
+        starts.clear();
+        starts.resize(height as usize + 1, 0);
+        for triangle in triangles {
+            starts[triangle.rows.start as usize + 1] += 1;
+        }
+        let mut sum = 0;
+        for start in starts.iter_mut() {
+            sum += *start;
+            *start = sum;
+        }
+        // While they are filled, what belongs to a row is where that of the row before ends.
+        order.clear();
+        order.resize(triangles.len(), 0);
+        for (triangle, i) in triangles.iter().zip(0..) {
+            let end = &mut starts[triangle.rows.start as usize];
+            order[*end as usize] = i;
+            *end += 1;
+        }
+        starts.rotate_right(1);
+        starts[0] = 0;
+    }
+
+    fn in_row(&self, row: u32) -> impl Iterator<Item = u32> {
+        let row = row as usize;
+        let range = self.starts[row] as usize..self.starts[row + 1] as usize;
+        self.order[range].iter().copied()
+    }
+}
+
+impl Corner {
+    fn of(vertex: &Vertex, location: Vec3, axes: &Mat3, view: &View) -> Self {
+        let point = location + *axes * vertex.position;
+        let place = point - view.eye;
+        let to_lamp = LAMP - point;
+        Self {
+            place,
+            pixel: view.pixel_of(place),
+            light: light((*axes * vertex.normal).dot(to_lamp), to_lamp),
+        }
+    }
+}
+
+/// The rows in which a triangle with these corners may be seen; `None` if no sample lies in it.
+fn rows_of(corners: &[Corner; 3], view: &View, window: &Window) -> Option<Range<u32>> {
+    /// The outermost samples of a pixel, and a bit for rounding.
+    const REACH: f32 = 0.375 + 0.01;
+    let [Some(a), Some(b), Some(c)] = corners.map(|corner| corner.pixel) else {
+        return Some(window.rows.clone());
+    };
+    let first = (a.min(b).min(c) - REACH).ceil().max(Vec2::ZERO);
+    let last = (a.max(b).max(c) + REACH).floor();
+    let last = last.min(Vec2::new(view.width as f32, view.height as f32) - 1.0);
+    first
+        .cmple(last)
+        .all()
+        .then(|| first.y as u32..last.y as u32 + 1)
+}
+
+/// The light on a triangle, divided by the depth: as it is at the corners, and linear in between.
+fn light_by_depth(view: &View, corners: &[Corner; 3], normal: Vec3) -> Linear {
+    let [a, b, c] = corners.map(|corner| corner.place);
+    let [light, more_b, more_c] = [0, 1, 2].map(|i| match i {
+        0 => corners[0].light,
+        _ => corners[i].light - corners[0].light,
+    });
+    // The vector whose product with each point of the plane is the light there.
+    let mut slope = normal * (light / normal.dot(a));
+    let volume = a.dot((b - a).cross(c - a));
+    if volume != 0.0 {
+        slope += ((c - a).cross(a) * more_b + a.cross(b - a) * more_c) / volume;
+    }
+    view.rays.dot(slope)
+}
+
 /// The corners of the cuboid around a solid, relative to the eye, numbered as [`CUBOID`] has them.
-fn corners(drawn: &DrawnSolid, view: &View) -> [Vec3; 8] {
+pub(crate) fn corners_of_solid(drawn: &DrawnSolid, view: &View) -> [Vec3; 8] {
     let half = match drawn.solid {
         Solid::Cuboid(span) => span / 2.0,
         Solid::Cylinder { radius, yspan } => Vec3::new(radius, yspan / 2.0, radius),
@@ -126,5 +301,13 @@ fn corners(drawn: &DrawnSolid, view: &View) -> [Vec3; 8] {
     std::array::from_fn(|corner| {
         let side = |axis: usize| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
         center + axes * (half * Vec3::new(side(0), side(1), side(2)))
+    })
+}
+
+/// The corners of a box with these least and largest coordinates in the frame of a body, relative to the eye.
+fn corners_of_box(body: Pose, bounds: [Vec3; 2], view: &View) -> [Vec3; 8] {
+    std::array::from_fn(|corner| {
+        let coordinate = |axis: usize| bounds[corner >> axis & 1][axis];
+        body * Vec3::new(coordinate(0), coordinate(1), coordinate(2)) - view.eye
     })
 }

@@ -1,22 +1,36 @@
 //! Taking the picture of a tick.
 
+use std::sync::Arc;
+
 use bevy::prelude::*;
 use tabletop_core::{
-    HeadCamera, ObjectIndex, ObjectSpec, PictureDemand, Primitive, SensorImage, SimTick, Table,
+    Figure, HeadCamera, Markers, ObjectIndex, ObjectSpec, PictureDemand, Primitive, SensorImage,
+    SimTick, Table,
 };
 
-use crate::{Camera, DrawnSolid, Painter};
+use crate::{Camera, DrawnFigure, DrawnSolid, Facets, Painter, Scene};
 
 /// The solids that an object is drawn as, in its own frame: they are worked out once.
 #[derive(Component, Debug)]
 #[component(immutable)]
 pub(crate) struct Looks(Vec<Primitive>);
 
+/// A figure, made ready for being drawn.
+#[derive(Component, Clone, Debug)]
+#[component(immutable)]
+pub(crate) struct FigureLooks {
+    facets: Arc<Facets>,
+    /// How many figures there were before it.
+    order: u64,
+}
+
 /// What is kept from picture to picture.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Eye {
     painter: Painter,
-    scene: Vec<DrawnSolid>,
+    scene: Scene,
+    /// So many figures there have been.
+    figures: u64,
 }
 
 /// Works out what an object looks like as soon as it appears or becomes another.
@@ -30,6 +44,30 @@ pub(crate) fn note_looks(
     Ok(())
 }
 
+/// Makes a figure ready as soon as it appears or changes.
+pub(crate) fn note_figure(
+    insert: On<Insert, Figure>,
+    figures: Query<(&Figure, Option<&FigureLooks>)>,
+    mut eye: ResMut<Eye>,
+    mut commands: Commands,
+) -> Result {
+    let (figure, before) = figures.get(insert.entity)?;
+    let order = before.map_or(eye.figures, |looks| looks.order);
+    eye.figures = eye.figures.max(order + 1);
+    let facets = Facets::from(&*figure.coarse).into();
+    commands
+        .entity(insert.entity)
+        .try_insert(FigureLooks { facets, order });
+    Ok(())
+}
+
+/// What is no figure any more is not drawn.
+pub(crate) fn forget_figure(remove: On<Remove, Figure>, mut commands: Commands) {
+    commands
+        .entity(remove.entity)
+        .try_remove::<FigureLooks>();
+}
+
 /// Draws what the head camera sees at this moment, if a picture was asked for.
 pub(crate) fn take_picture(
     mut demand: ResMut<PictureDemand>,
@@ -38,31 +76,45 @@ pub(crate) fn take_picture(
     index: Res<ObjectIndex>,
     tables: Query<(Entity, &Table)>,
     objects: Query<(&Transform, &Looks), With<ObjectSpec>>,
+    figures: Query<(Entity, &GlobalTransform, &FigureLooks)>,
+    markers: Res<Markers>,
     mut eye: ResMut<Eye>,
     mut image: ResMut<SensorImage>,
 ) {
     if !demand.take() {
         return;
     }
-    let Eye { painter, scene } = &mut *eye;
+    let Eye { painter, scene, .. } = &mut *eye;
     let SensorImage { picture, shown, .. } = &mut *image;
-    scene.clear();
+    scene.solids.clear();
+    scene.figures.clear();
     shown.clear();
     let table = tables.iter().next();
     if let Some((entity, table)) = table {
         shown.push(entity);
-        scene.push(DrawnSolid::of_table(table, shown.len() as u32));
+        scene.solids.push(DrawnSolid::of_table(table, shown.len() as u32));
     }
     for entity in index.iter() {
         if let Ok((place, looks)) = objects.get(entity) {
             shown.push(entity);
             let number = shown.len() as u32;
             let solids = looks.0.iter();
-            scene.extend(solids.map(|solid| DrawnSolid::of(place.into(), solid, number)));
+            scene.solids.extend(solids.map(|solid| DrawnSolid::of(place.into(), solid, number)));
         }
     }
+    let mut in_order: Vec<_> = figures.iter().collect();
+    in_order.sort_by_key(|(_, _, looks)| looks.order);
+    for (entity, place, looks) in in_order {
+        shown.push(entity);
+        scene.figures.push(DrawnFigure {
+            pose: (&place.compute_transform()).into(),
+            facets: Arc::clone(&looks.facets),
+            object: shown.len() as u32,
+        });
+    }
+    scene.markers.clone_from(&markers.0);
     let table = table.map_or_else(Table::default, |(_, table)| *table);
     let camera = Camera::of_head(&head, &table);
-    painter.draw(scene.iter().copied(), &camera, picture);
+    painter.draw(scene, &camera, picture);
     image.tick = *tick;
 }

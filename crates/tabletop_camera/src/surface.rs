@@ -1,20 +1,23 @@
 //! Surfaces and what they look like.
 
 use bevy::math::Vec3;
+use tabletop_core::Rgb;
 
 use crate::{
-    camera::View,
+    camera::{Linear, View},
     light::{AMBIENT, LAMP, light},
     round::Curve,
     row::Offset,
     scene::DrawnSolid,
 };
 
-/// A surface of one colour: one face of a cuboid, an end or the side of a cylinder, a ball.
+/// A surface of one colour: one face of a cuboid, an end or the side of a cylinder, a ball, a triangle of a figure.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
     /// The number of its object.
     pub object: u32,
+    /// Surfaces of the same patch are parts of a smooth surface, and between them is no edge.
+    pub patch: u32,
     /// Red, green, blue in 0..=255.
     color: Vec3,
     form: Form,
@@ -27,33 +30,45 @@ enum Form {
         below_lamp: f32,
     },
     Round(Curve),
+    /// What the light is at the corners of a triangle, divided by the depth, and linear in between.
+    Shaded(Linear),
 }
 
 impl Surface {
     /// What is seen where nothing is.
     pub const NOTHING: Self = Self {
         object: 0,
+        patch: 0,
         color: Vec3::ZERO,
         form: Form::Flat { below_lamp: 0.0 },
     };
 
     /// A plane through a point that is given relative to the eye.
-    pub fn flat(view: &View, drawn: &DrawnSolid, point: Vec3, normal: Vec3) -> Self {
+    pub fn flat(view: &View, drawn: &DrawnSolid, patch: u32, point: Vec3, normal: Vec3) -> Self {
         let below_lamp = normal.dot(LAMP - view.eye - point).max(0.0);
-        Self::of(drawn, Form::Flat { below_lamp })
+        Self::of(drawn, patch, Form::Flat { below_lamp })
     }
 
     /// A ball, or the side of a cylinder.
-    pub fn round(drawn: &DrawnSolid, curve: Curve) -> Self {
-        Self::of(drawn, Form::Round(curve))
+    pub fn round(drawn: &DrawnSolid, patch: u32, curve: Curve) -> Self {
+        Self::of(drawn, patch, Form::Round(curve))
     }
 
-    fn of(drawn: &DrawnSolid, form: Form) -> Self {
-        let color = drawn.color;
+    /// A triangle of this colour, red, green and blue in 0..=255.
+    pub const fn shaded(object: u32, patch: u32, color: Vec3, light_by_depth: Linear) -> Self {
+        Self {
+            object,
+            patch,
+            color,
+            form: Form::Shaded(light_by_depth),
+        }
+    }
+
+    fn of(drawn: &DrawnSolid, patch: u32, form: Form) -> Self {
         Self {
             object: drawn.object,
-            color: Vec3::new(color.red, color.green, color.blue).clamp(Vec3::ZERO, Vec3::ONE)
-                * 255.0,
+            patch,
+            color: in_bytes(drawn.color),
             form,
         }
     }
@@ -68,6 +83,7 @@ impl Surface {
                 let normal = curve.normal(curve.rays.through(x, y), depth);
                 light(normal.dot(to_lamp), to_lamp)
             }
+            Form::Shaded(light_by_depth) => (light_by_depth.at(x, y) * depth).max(AMBIENT),
         })
     }
 
@@ -91,6 +107,12 @@ impl Surface {
                 self.paint_lit(column, depths, rgb, |x, depth| {
                     let to_lamp = to_lamp(x, depth);
                     light(curve.normal(own_ray.at(x), depth).dot(to_lamp), to_lamp)
+                });
+            }
+            Form::Shaded(light_by_depth) => {
+                let light_by_depth = light_by_depth.on_row(row, Offset::CENTER);
+                self.paint_lit(column, depths, rgb, |x, depth| {
+                    (light_by_depth.at(x) * depth).max(AMBIENT)
                 });
             }
         }
@@ -128,6 +150,11 @@ impl Surface {
     fn lit(&self, light: f32) -> Vec3 {
         (self.color * light).min(Vec3::splat(255.0))
     }
+}
+
+/// A colour as numbers of 0..=255.
+pub(crate) fn in_bytes(color: Rgb) -> Vec3 {
+    Vec3::new(color.red, color.green, color.blue).clamp(Vec3::ZERO, Vec3::ONE) * 255.0
 }
 
 /// The nearest bytes to numbers of 0..=255.

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use bevy::{prelude::*, time::TimeUpdateStrategy};
-use tabletop_camera::{Camera, CameraPlugin, DrawnSolid, Painter};
+use tabletop_camera::{Camera, CameraPlugin, DrawnSolid, Painter, Scene};
 use tabletop_core::{HeadCamera, Picture, PictureDemand, SensorImage, prelude::*};
 
 /// Every object moves this far along X in a tick.
@@ -86,7 +86,11 @@ fn pictures(app: &App) -> &[(u64, SensorImage)] {
 fn expected(solids: &[DrawnSolid], table: &Table) -> Picture {
     let camera = Camera::of_head(&HeadCamera::default(), table);
     let mut picture = Picture::default();
-    Painter::default().draw(solids.iter().copied(), &camera, &mut picture);
+    let scene = Scene {
+        solids: solids.to_vec(),
+        ..default()
+    };
+    Painter::default().draw(&scene, &camera, &mut picture);
     picture
 }
 

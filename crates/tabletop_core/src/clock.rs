@@ -36,6 +36,24 @@ pub enum SimSystems {
     Advance,
 }
 
+/// Who carries out commands on what [`SimSystems::Ingest`] has brought, in this order. Runs while paused, too.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CommandSystems {
+    /// The demonstrator's hands, undo and redo.
+    Hands,
+    /// The robot.
+    Robot,
+}
+
+/// Who moves things in [`SimSystems::Actuate`], in this order.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ActuateSystems {
+    /// The demonstrator's hands.
+    Hands,
+    /// The robot.
+    Robot,
+}
+
 /// How many ticks have been simulated.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SimTick(pub u64);
@@ -68,6 +86,22 @@ pub(crate) fn configure(app: &mut App) {
                 SimSystems::Advance.run_if(Paused::is_running),
             )
                 .chain(),
+        )
+        .configure_sets(
+            FixedUpdate,
+            (
+                SimSystems::Ingest,
+                CommandSystems::Hands,
+                CommandSystems::Robot,
+                SimSystems::Actuate,
+            )
+                .chain(),
+        )
+        .configure_sets(
+            FixedUpdate,
+            (ActuateSystems::Hands, ActuateSystems::Robot)
+                .chain()
+                .in_set(SimSystems::Actuate),
         )
         .add_systems(FixedUpdate, advance_tick.in_set(SimSystems::Advance));
 }

@@ -20,6 +20,7 @@
 
 mod clock;
 mod color;
+mod figure;
 mod hand;
 mod message;
 mod number;
@@ -27,22 +28,32 @@ mod object;
 mod pose;
 mod ray;
 mod recording;
+mod rewind;
+mod robot;
 mod scene;
 mod sensor;
 mod shape;
+mod twist;
 mod user;
 
-pub use clock::{Paused, SimSystems, SimTick, StepApp, TICK_SECONDS, TICKS_PER_SECOND};
+pub use clock::{ActuateSystems, CommandSystems, Paused, SimSystems, SimTick, StepApp, TICK_SECONDS, TICKS_PER_SECOND};
 pub use color::{ColorError, NAMED_COLORS, Rgb};
+pub use figure::{Figure, Triangles};
 pub use hand::{Hand, Hands, Held};
 pub use message::{SimCommand, SimFact};
 pub use number::Decimal;
 pub use object::{ObjectIndex, ObjectSpec};
 pub use pose::{Pose, degrees_from_quat, quat_from_degrees};
 pub use recording::{History, Recording};
+pub use rewind::{Remembered, Rewinds, Rewound};
+pub use robot::{
+    Arm, ArmState, Drive, Face, Gripped, JOINTS_PER_ARM, JointState, Markers, Robot, RobotJoint, RobotMode,
+    WIDEST_GRIP, robot_base,
+};
 pub use scene::{ChainSpec, Joint, JointKind, JointSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
 pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage};
 pub use shape::{Part, Primitive, Shape, Solid};
+pub use twist::Twist;
 pub use user::{DragPlane, KeySystems, Orbit, UserCamera};
 
 use bevy::prelude::*;
@@ -51,7 +62,7 @@ use bevy::prelude::*;
 pub mod prelude {
     #[doc(hidden)]
     pub use crate::{
-        CorePlugin, Hand, Hands, ObjectIndex, ObjectSpec, Paused, Pose, Rgb, SceneItem, SceneSpec,
+        Arm, CorePlugin, Drive, Hand, Hands, ObjectIndex, ObjectSpec, Paused, Pose, Rgb, Robot, RobotJoint, SceneItem, SceneSpec,
         Shape, SimCommand, SimFact, SimSystems, SimTick, StepApp, Table,
     };
 }
@@ -77,7 +88,10 @@ impl Plugin for CorePlugin {
             .init_resource::<DragPlane>()
             .init_resource::<Hands>()
             .init_resource::<History>()
+            .init_resource::<Markers>()
             .init_resource::<Recording>()
+            .init_resource::<Rewound>()
+            .init_resource::<Robot>()
             .init_resource::<ObjectIndex>()
             .add_systems(
                 FixedUpdate,
@@ -89,6 +103,10 @@ impl Plugin for CorePlugin {
                 RunFixedMainLoop,
                 KeySystems.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
             );
+        let mut rewound = app.world_mut().resource_mut::<Rewound>();
+        rewound.add::<Hands>();
+        rewound.add::<ObjectIndex>();
+        rewound.add::<SimTick>();
         clock::configure(app);
         if self.one_thread {
             clock::run_ticks_on_one_thread(app);

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use bevy::{ecs::system::SystemState, prelude::*};
 use serde::{Deserialize, Serialize};
 
-use crate::{Hand, SceneSpec};
+use crate::{Arm, Drive, Face, Hand, Pose, RobotJoint, SceneSpec};
 
 /// Something the simulation is to do in its next tick.
 #[derive(Message, Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -65,6 +65,21 @@ pub enum SimCommand {
     Redo,
     /// Stop the clock, or let it run on.
     SetPaused(bool),
+    /// Put the robot to the table, or take it away.
+    ShowRobot(bool),
+    /// Move joints of the robot; of two orders for a joint in a tick the later one counts.
+    Drive(Vec<(RobotJoint, Drive)>),
+    /// Bring an end effector to a pose at the speed of manual control.
+    ReachTo {
+        /// The arm.
+        arm: Arm,
+        /// Where [the end effector](crate::ArmState::end_effector) is to be, in the table's frame.
+        pose: Pose,
+    },
+    /// Show this face on the robot's screen.
+    ShowFace(Face),
+    /// Show these points, in the table's frame, instead of those shown before.
+    ShowMarkers(Vec<Vec3>),
 }
 
 impl SimCommand {
@@ -144,6 +159,38 @@ pub enum SimFact {
     Undone,
     /// The world is again as it was when the undone segment was undone; the tick has gone forward with it.
     Redone,
+    /// The robot now stands at the table, or no longer does.
+    RobotShown(bool),
+    /// A gripper has closed on an object and holds it.
+    GripMade {
+        /// The arm.
+        arm: Arm,
+        /// Id of the object.
+        id: String,
+    },
+    /// Both fingers of a closing gripper touch an object, and cannot hold it like this.
+    GripRefused {
+        /// The arm.
+        arm: Arm,
+        /// Id of the object.
+        id: String,
+        /// The angle θ of the report's figure 11, in rad, which had to be below π/16.
+        angle: f32,
+    },
+    /// A gripper has let go of an object, or it was taken from it.
+    GripReleased {
+        /// The arm.
+        arm: Arm,
+        /// Id of the object.
+        id: String,
+    },
+    /// An arm was stopped by something that it cannot push away; told once until it is free again.
+    ArmBlocked {
+        /// The arm.
+        arm: Arm,
+        /// What is in its way: an object's id, `table`, or a part of the robot.
+        by: String,
+    },
     /// Something could not be done as it was told.
     Refused {
         /// What and why.

@@ -46,6 +46,11 @@ impl Pose {
         Self::new(location, quat_from_degrees(rotation))
     }
 
+    /// The pose of a camera at a point that looks at another: its -Z goes there, its X is level. Locations in units.
+    pub fn looking_at(from: Vec3, at: Vec3) -> Self {
+        Self::from(&Transform::from_translation(from).looking_at(at, Vec3::Z))
+    }
+
     /// The motion that undoes this one.
     pub fn inverse(self) -> Self {
         let rotation = self.rotation.inverse();
@@ -149,6 +154,16 @@ mod tests {
         ] {
             let back = degrees_from_quat(quat_from_degrees(degrees));
             assert!((back - degrees).length() < 1e-3, "{degrees} became {back}");
+        }
+    }
+
+    #[test]
+    fn a_camera_looks_where_it_is_told_with_a_level_horizon() {
+        let from = Vec3::new(1.0, -5.0, 4.0);
+        for at in [Vec3::ZERO, Vec3::new(1.0, -5.0, 0.0), Vec3::new(9.0, 1.0, 7.0)] {
+            let pose = Pose::looking_at(from, at);
+            assert!((pose.rotation * Vec3::NEG_Z - (at - from).normalize()).length() < 1e-5);
+            assert!((pose.rotation * Vec3::X).z.abs() < 1e-5);
         }
     }
 

@@ -8,11 +8,11 @@ use std::{
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::SimTick;
+use crate::{Pose, SimTick};
 
 /// How the robot's head camera looks at the table (report section 4, "head camera").
 ///
-/// Where it is mounted follows from the table, in front of which the robot stands.
+/// Where it is mounted follows from the table, in front of which the robot stands, unless it is said.
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeadCamera {
     /// Angle of the neck joint H0 in radians; positive turns the view to the robot's left.
@@ -28,6 +28,9 @@ pub struct HeadCamera {
     pub height: u32,
     /// Smooth edges, from four samples a pixel.
     pub antialiasing: bool,
+    /// Where it is instead of on the robot's head: it looks along its own -Z, with its Y up. Lengths in units.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mount: Option<Pose>,
 }
 
 impl Default for HeadCamera {
@@ -39,6 +42,7 @@ impl Default for HeadCamera {
             width: 200,
             height: 150,
             antialiasing: true,
+            mount: None,
         }
     }
 }

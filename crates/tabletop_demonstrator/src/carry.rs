@@ -3,10 +3,11 @@
 use bevy::prelude::*;
 use bevy_rapier3d::{prelude::*, rapier::prelude as rapier};
 use tabletop_core::{Hand, Hands, Pose, TICK_SECONDS};
+use tabletop_physics::{Convex, convex_parts, nearest};
 
 use crate::{
     grasp::{Carry, CarryTarget},
-    obstacles::{Convex, convex_parts, nearest, slide},
+    obstacles::slide,
 };
 
 /// Fastest a hand moves, in units/s, and turns, in rad/s.

@@ -5,7 +5,7 @@ use bevy_rapier3d::prelude::*;
 use tabletop_core::{
     Hand, Hands, Held, Joint, ObjectIndex, ObjectSpec, Paused, Pose, SimCommand, SimFact,
 };
-use tabletop_physics::remove_object;
+use tabletop_physics::{JustReleased, hold, let_go, remove_object};
 
 use crate::{history, rules};
 
@@ -20,27 +20,6 @@ pub enum Carry {
     Freely,
     /// Drawn towards its target, as far as its joints let it.
     AgainstJoints,
-}
-
-/// An object that was let go of in this tick.
-///
-/// Rapier finds out what a body lies on when it has moved, so an object that was let go of at rest would fall freely for a
-/// tick, into what is below it. Instead it sinks for a tick by next to nothing, and falls from then on.
-#[derive(Component, Clone, Copy, Debug)]
-pub(crate) struct JustReleased;
-
-/// How fast it sinks in that tick, in units/s.
-const SETTLING_SPEED: f32 = 1e-3;
-
-/// Lets fall what was let go of in the tick before.
-pub(crate) fn let_fall(
-    mut released: Query<(Entity, &mut GravityScale), With<JustReleased>>,
-    mut commands: Commands,
-) {
-    for (object, mut gravity) in &mut released {
-        gravity.0 = 1.0;
-        commands.entity(object).remove::<JustReleased>();
-    }
 }
 
 /// Carries out the commands to hands, one after the other.
@@ -132,11 +111,12 @@ fn grasp(world: &mut World, hand: Hand, id: &str) {
         .map_or(Pose::IDENTITY, Pose::from);
     let mut body = world.entity_mut(object);
     body.insert((Held { by: hand }, CarryTarget(here)));
-    body.remove::<JustReleased>();
     if is_jointed && !is_fixed {
         body.insert((Carry::AgainstJoints, GravityScale(0.0)));
+        body.remove::<JustReleased>();
     } else {
-        body.insert((Carry::Freely, RigidBody::KinematicPositionBased));
+        body.insert(Carry::Freely);
+        hold(body);
     }
     world.resource_mut::<Hands>().set_held(hand, Some(object));
     world.write_message(SimFact::Grasped {
@@ -151,21 +131,9 @@ fn release(world: &mut World, hand: Hand) {
     };
     history::begin_segment(world);
     world.resource_mut::<Hands>().set_held(hand, None);
-    let is_fixed = world
-        .get::<ObjectSpec>(object)
-        .is_some_and(ObjectSpec::is_fixed);
     let mut body = world.entity_mut(object);
     body.remove::<(Held, CarryTarget, Carry)>();
-    if is_fixed {
-        body.insert(RigidBody::Fixed);
-    } else {
-        body.insert((
-            RigidBody::Dynamic,
-            GravityScale(0.0),
-            Velocity::linear(Vec3::NEG_Z * SETTLING_SPEED),
-            JustReleased,
-        ));
-    }
+    let_go(body);
     world.write_message(SimFact::Released { hand, id });
 }
 

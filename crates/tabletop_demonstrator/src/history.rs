@@ -6,12 +6,11 @@ use bevy::{
 };
 use bevy_rapier3d::prelude::*;
 use tabletop_core::{
-    Hands, Held, History, Joint, ObjectIndex, ObjectSpec, Recording, SimCommand, SimFact, SimTick,
-    Table,
+    Gripped, Held, History, Recording, Remembered, Rewinds, Rewound, SimCommand, SimFact,
 };
-use tabletop_physics::{KeepRemoved, Parked, PhysicsSnapshot};
+use tabletop_physics::{JustReleased, KeepRemoved, Parked, PhysicsSnapshot};
 
-use crate::grasp::{Carry, CarryTarget, JustReleased};
+use crate::grasp::{Carry, CarryTarget};
 
 /// The snapshots of the present recording.
 #[derive(Resource, Default)]
@@ -30,12 +29,10 @@ struct Undone {
 struct Snapshot {
     physics: Option<PhysicsSnapshot>,
     entities: Vec<(Entity, EntityState)>,
-    index: ObjectIndex,
-    hands: Hands,
-    tick: SimTick,
+    resources: Remembered,
 }
 
-/// What changes in an object, joint or table while it exists.
+/// What changes in an object, joint, table or link while it exists.
 #[derive(Clone, Default)]
 struct EntityState {
     transform: Option<Transform>,
@@ -44,14 +41,14 @@ struct EntityState {
     sleeping: Option<Sleeping>,
     body: Option<RigidBody>,
     gravity: Option<GravityScale>,
+    disabled: Option<RigidBodyDisabled>,
     held: Option<Held>,
+    gripped: Option<Gripped>,
     target: Option<CarryTarget>,
     carry: Option<Carry>,
     just_released: Option<JustReleased>,
 }
 
-/// What snapshots are made of.
-type Simulated = Or<(With<ObjectSpec>, With<Joint>, With<Table>)>;
 
 /// Tells that a hand is about to act, and remembers the world before it if that can be undone.
 pub(crate) fn begin_segment(world: &mut World) {
@@ -131,7 +128,7 @@ fn forget(world: &mut World) {
     world.resource_mut::<KeepRemoved>().0 = false;
     *world.resource_mut::<Snapshots>() = Snapshots::default();
     publish(world);
-    let mut disabled = world.query_filtered::<Entity, (Simulated, With<Disabled>)>();
+    let mut disabled = world.query_filtered::<Entity, (With<Rewinds>, With<Disabled>)>();
     for entity in disabled.iter(world).collect::<Vec<_>>() {
         world.try_despawn(entity).ok();
     }
@@ -139,7 +136,7 @@ fn forget(world: &mut World) {
 
 impl Snapshot {
     fn take(world: &mut World) -> Self {
-        let mut simulated = world.query_filtered::<Entity, Simulated>();
+        let mut simulated = world.query_filtered::<Entity, With<Rewinds>>();
         let entities: Vec<_> = simulated.iter(world).collect();
         Self {
             physics: PhysicsSnapshot::take(world),
@@ -147,21 +144,20 @@ impl Snapshot {
                 .into_iter()
                 .map(|entity| (entity, EntityState::of(world.entity(entity))))
                 .collect(),
-            index: world.resource::<ObjectIndex>().clone(),
-            hands: world.resource::<Hands>().clone(),
-            tick: *world.resource::<SimTick>(),
+            resources: world.resource::<Rewound>().remember(world),
         }
     }
 
     fn restore(&self, world: &mut World) {
-        let mut simulated = world.query_filtered::<Entity, Simulated>();
+        let mut simulated = world.query_filtered::<Entity, With<Rewinds>>();
         let present: Vec<_> = simulated.iter(world).collect();
         for entity in present {
             if !self.entities.iter().any(|(kept, _)| *kept == entity) {
                 world.entity_mut(entity).insert(Disabled);
             }
         }
-        *world.resource_mut::<Hands>() = self.hands.clone();
+        // Before the marks of what hands hold go, which would be taken for a loss.
+        self.resources.restore(world);
         for (entity, state) in &self.entities {
             let Ok(mut entity) = world.get_entity_mut(*entity) else {
                 continue;
@@ -169,8 +165,7 @@ impl Snapshot {
             entity.remove::<(Parked, Disabled)>();
             state.restore(&mut entity);
         }
-        *world.resource_mut::<ObjectIndex>() = self.index.clone();
-        *world.resource_mut::<SimTick>() = self.tick;
+        self.resources.restore(world);
         if let Some(physics) = &self.physics {
             physics.restore(world);
         }
@@ -186,7 +181,9 @@ impl EntityState {
             sleeping: entity.get().copied(),
             body: entity.get().copied(),
             gravity: entity.get().copied(),
+            disabled: entity.get().copied(),
             held: entity.get().copied(),
+            gripped: entity.get().copied(),
             target: entity.get().copied(),
             carry: entity.get().copied(),
             just_released: entity.get().copied(),
@@ -200,7 +197,9 @@ impl EntityState {
         put(entity, self.sleeping);
         put(entity, self.body);
         put(entity, self.gravity);
+        put(entity, self.disabled);
         put(entity, self.held);
+        put(entity, self.gripped);
         put(entity, self.target);
         put(entity, self.carry);
         put(entity, self.just_released);

@@ -47,8 +47,8 @@ mod rules;
 pub use grasp::{Carry, CarryTarget};
 
 use bevy::prelude::*;
-use tabletop_core::{Paused, SimSystems};
-use tabletop_physics::BodySystems;
+use tabletop_core::{ActuateSystems, CommandSystems, Paused};
+use tabletop_physics::{BodySystems, let_fall};
 
 /// Adds the hands. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin).
 #[derive(Clone, Copy, Debug, Default)]
@@ -62,13 +62,13 @@ impl Plugin for DemonstratorPlugin {
                 (
                     (
                         history::undo_and_redo,
-                        grasp::let_fall.run_if(Paused::is_running),
+                        let_fall.run_if(Paused::is_running),
                         grasp::obey,
                     )
                         .chain()
                         .after(BodySystems)
-                        .before(SimSystems::Actuate),
-                    carry::carry.in_set(SimSystems::Actuate),
+                        .in_set(CommandSystems::Hands),
+                    carry::carry.in_set(ActuateSystems::Hands),
                 ),
             )
             .add_observer(grasp::note_lost);

@@ -1,33 +1,8 @@
 //! What a held object cannot pass, and how it slides along it.
 
 use bevy::prelude::*;
-use bevy_rapier3d::{parry, rapier::prelude as rapier};
 use tabletop_core::Pose;
-
-/// A convex solid with its pose in the frame of what it is a part of.
-#[derive(Clone)]
-pub(crate) struct Convex {
-    pub pose: Pose,
-    pub shape: rapier::SharedShape,
-}
-
-/// The convex parts of a collider's shape.
-pub(crate) fn convex_parts(pose: Pose, shape: &rapier::SharedShape) -> Vec<Convex> {
-    match shape.as_compound() {
-        Some(compound) => compound
-            .shapes()
-            .iter()
-            .map(|(place, shape)| Convex {
-                pose: pose * Pose::new(place.translation, place.rotation),
-                shape: shape.clone(),
-            })
-            .collect(),
-        None => vec![Convex {
-            pose,
-            shape: shape.clone(),
-        }],
-    }
-}
+use tabletop_physics::{Convex, nearest};
 
 /// Depths, in units, that count as touching and not as inside.
 const TOUCHING: f32 = 1e-4;
@@ -40,46 +15,6 @@ const MOST_STEPS: usize = 96;
 
 /// Rounds in which an object is pushed out of what it has entered.
 const MOST_PUSHES: usize = 12;
-
-/// The nearest points of a part of the held object and an obstacle.
-pub(crate) struct Nearest {
-    /// How far they are apart; negative inside.
-    pub distance: f32,
-    /// From the obstacle towards the held object.
-    pub away: Vec3,
-}
-
-/// Where each part of the held object is near each obstacle.
-pub(crate) fn nearest<'a>(
-    held: &'a [Convex],
-    at: Pose,
-    obstacles: &'a [Convex],
-    within: f32,
-) -> impl Iterator<Item = Nearest> + 'a {
-    held.iter().flat_map(move |part| {
-        let part_at = to_rapier(at * part.pose);
-        obstacles.iter().filter_map(move |obstacle| {
-            let obstacle_at = to_rapier(obstacle.pose);
-            parry::query::contact(
-                &part_at,
-                &*part.shape,
-                &obstacle_at,
-                &*obstacle.shape,
-                within,
-            )
-            .ok()
-            .flatten()
-            .map(|contact| Nearest {
-                distance: contact.dist,
-                away: contact.normal2,
-            })
-        })
-    })
-}
-
-fn to_rapier(pose: Pose) -> rapier::Pose {
-    rapier::Pose::from_parts(pose.location, pose.rotation)
-}
 
 /// The pose without depth: pushed out of what the object has entered, along the shortest ways. `None` if there is no way
 /// out. Every direction of a push is added to `pushed`.
@@ -167,6 +102,8 @@ fn clipped(way: Vec3, normals: &[Vec3]) -> Vec3 {
 
 #[cfg(test)]
 mod tests {
+    use bevy_rapier3d::rapier::prelude as rapier;
+
     use super::*;
 
     fn cuboid(span: Vec3, location: Vec3) -> Convex {

@@ -1,8 +1,8 @@
-//! What lies under the mouse cursor: the nearest visible surface counts. The table hides what is behind it, but is no
-//! object.
+//! What lies under the mouse cursor: the nearest visible surface counts. The table and figures hide what is behind them,
+//! but are no objects.
 
 use bevy::{ecs::system::SystemParam, prelude::*};
-use tabletop_core::{ObjectIndex, ObjectSpec, Pose, Primitive, Table};
+use tabletop_core::{Figure, ObjectIndex, ObjectSpec, Pose, Primitive, Table};
 
 /// What can be seen and what can hide it.
 #[derive(SystemParam)]
@@ -10,6 +10,7 @@ pub(crate) struct Pickable<'w, 's> {
     index: Res<'w, ObjectIndex>,
     objects: Query<'w, 's, (Entity, &'static ObjectSpec, &'static Transform)>,
     tables: Query<'w, 's, &'static Table>,
+    figures: Query<'w, 's, (&'static Figure, &'static GlobalTransform)>,
 }
 
 impl Pickable<'_, '_> {
@@ -23,11 +24,18 @@ impl Pickable<'_, '_> {
                     Some((distance, object))
                 });
         let (nearest, object) = objects.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let is_hidden = self.tables.iter().any(|table| {
+        let mut tables = self.tables.iter();
+        let is_behind_table = tables.any(|table| {
             distance_along(ray, &[table.slab()], Pose::IDENTITY)
                 .is_some_and(|table| table < nearest)
         });
-        (!is_hidden).then_some(object)
+        let mut figures = self.figures.iter();
+        let is_behind_figure = figures.any(|(figure, place)| {
+            let place = place.compute_transform();
+            let distance = figure.coarse.distance_along(ray, (&place).into());
+            distance.is_some_and(|figure| figure < nearest)
+        });
+        (!is_behind_table && !is_behind_figure).then_some(object)
     }
 }
 
@@ -43,7 +51,7 @@ fn distance_along(ray: Ray3d, solids: &[Primitive], body: Pose) -> Option<f32> {
 mod tests {
     use super::*;
     use bevy::ecs::system::RunSystemOnce;
-    use tabletop_core::{Rgb, Shape};
+    use tabletop_core::{Rgb, Shape, Triangles};
 
     fn block(world: &mut World, id: &str, location: Vec3) -> Entity {
         let spec = ObjectSpec {
@@ -95,6 +103,29 @@ mod tests {
         let below = block(&mut world, "below", Vec3::Z * -10.0);
         assert_eq!(picked(&mut world, Vec3::Z * 20.0, Vec3::NEG_Z), None);
         assert_eq!(picked(&mut world, Vec3::Z * -20.0, Vec3::Z), Some(below));
+    }
+
+    #[test]
+    fn a_figure_hides_what_is_behind_it() {
+        let mut world = world();
+        let block = block(&mut world, "block", Vec3::Z);
+        let plate = Triangles {
+            positions: vec![Vec3::ZERO, Vec3::X * 9.0, Vec3::Y * 9.0],
+            normals: vec![Vec3::Z; 3],
+            colors: vec![Rgb::GRAY; 3],
+            indices: vec![[0, 1, 2]],
+        };
+        let figure = Figure {
+            fine: Triangles::default().into(),
+            coarse: plate.into(),
+        };
+        let place = Transform::from_xyz(-3.0, -3.0, 5.0);
+        let link = world.spawn((figure, place, GlobalTransform::from(place))).id();
+        let above = Vec3::Z * 20.0;
+        assert_eq!(picked(&mut world, above, Vec3::NEG_Z), None);
+        assert_eq!(picked(&mut world, Vec3::Z * 4.0, Vec3::NEG_Z), Some(block));
+        world.despawn(link);
+        assert_eq!(picked(&mut world, above, Vec3::NEG_Z), Some(block));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{ObjectSpec, Pose, Primitive, Shape, Solid, Table};
+use tabletop_core::{ObjectSpec, Pose, Primitive, Shape, Solid, Table, Twist};
 
 use crate::{PhysicsSettings, mass::mass_properties};
 
@@ -20,7 +20,12 @@ const SOFT_CCD_PREDICTION: f32 = 3.0;
 pub(crate) fn add_object(world: &mut World, object: Entity, spec: &ObjectSpec) {
     let settings = *world.resource::<PhysicsSettings>();
     let mut body = world.entity_mut(object);
-    body.insert_if_new((collider(&spec.shape), surface(&settings)));
+    body.insert_if_new((
+        collider(&spec.shape),
+        surface(&settings),
+        Velocity::default(),
+        Twist::default(),
+    ));
     if spec.is_fixed() {
         body.insert_if_new(RigidBody::Fixed);
         return;
@@ -28,7 +33,6 @@ pub(crate) fn add_object(world: &mut World, object: Entity, spec: &ObjectSpec) {
     body.insert_if_new((
         RigidBody::Dynamic,
         ColliderMassProperties::MassProperties(mass_properties(&spec.shape, spec.mass)),
-        Velocity::default(),
         Ccd::enabled(),
         SoftCcd {
             prediction: SOFT_CCD_PREDICTION,

@@ -2,7 +2,8 @@
 //!
 //! Every entity with an [`ObjectSpec`](tabletop_core::ObjectSpec) or a [`Table`](tabletop_core::Table) gets a rigid body,
 //! every [`Joint`](tabletop_core::Joint) a constraint, in the tick in which it appears. One step is made a tick, in
-//! [`SimSystems::Physics`]; the poses are in the entities' `Transform` afterwards.
+//! [`SimSystems::Physics`]; the poses are in the entities' `Transform` afterwards, the velocities in
+//! their [`Twist`](tabletop_core::Twist).
 //!
 //! ```
 //! use bevy::prelude::*;
@@ -28,6 +29,8 @@
 //! ```
 
 mod body;
+mod convex;
+mod holding;
 mod joint;
 mod mass;
 mod newcomers;
@@ -35,13 +38,16 @@ mod parking;
 mod settings;
 mod snapshot;
 mod transforms;
+mod twist;
 
 pub use body::collider;
+pub use convex::{Convex, Nearest, convex_parts, nearest};
+pub use holding::{JustReleased, hold, let_fall, let_go};
 pub use mass::mass_properties;
 pub use newcomers::BodySystems;
 pub use parking::{KeepRemoved, Parked, remove_object};
 pub use settings::PhysicsSettings;
-pub use snapshot::PhysicsSnapshot;
+pub use snapshot::{PhysicsSnapshot, renew_if_empty};
 
 use bevy::{ecs::schedule::ScheduleConfigs, ecs::system::ScheduleSystem, prelude::*};
 use bevy_rapier3d::{
@@ -106,7 +112,7 @@ impl Plugin for PhysicsPlugin {
                     sync_backend().in_set(PhysicsSet::SyncBackend),
                     RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::StepSimulation),
                     RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::Writeback),
-                    transforms::propagate().in_set(SimSystems::Propagate),
+                    (transforms::propagate(), twist::note_twists).in_set(SimSystems::Propagate),
                 ),
             )
             .add_plugins(newcomers::plugin);

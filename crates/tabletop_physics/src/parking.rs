@@ -12,11 +12,11 @@ pub struct KeepRemoved(pub bool);
 #[derive(Component, Clone, Copy, Debug)]
 pub struct Parked;
 
-/// Removes an object from the world.
+/// Removes an object from the world. Its body goes at once, so that it makes no difference to the others whether the object is kept.
 pub fn remove_object(world: &mut World, object: Entity) {
+    remove_body(world, object);
     let keep = world.get_resource::<KeepRemoved>();
     if keep.is_some_and(|keep| keep.0) {
-        remove_body(world, object);
         world.entity_mut(object).insert(Parked).insert(Disabled);
     } else {
         world.despawn(object);

@@ -9,7 +9,7 @@ use bevy_rapier3d::{
 /// The physics engine's whole state: not poses alone, but contacts, sleep and everything else that decides what comes next.
 /// A world that is [restored](Self::restore) goes on bit for bit as the one that the snapshot was [taken](Self::take) of,
 /// if the entities of its bodies have their components of that moment, too.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct PhysicsSnapshot {
     bodies: RapierRigidBodySet,
     colliders: RapierContextColliders,
@@ -60,6 +60,14 @@ impl PhysicsSnapshot {
         simulation.narrow_phase = self.narrow_phase.clone();
         simulation.ccd_solver = self.ccd_solver.clone();
         simulation.pipeline = PhysicsPipeline::new();
+    }
+}
+
+/// Makes the engine as new if it has no bodies: which places they had would decide the last bits of what comes next.
+pub fn renew_if_empty(world: &mut World) {
+    let mut bodies = world.query_filtered::<&RapierRigidBodySet, With<DefaultRapierContext>>();
+    if bodies.single(world).is_ok_and(|set| set.bodies.is_empty()) {
+        PhysicsSnapshot::default().restore(world);
     }
 }
 

@@ -3,6 +3,8 @@
 use bevy::math::Vec3;
 use tabletop_core::Pose;
 
+use crate::states::State;
+
 /// Square of the distance, in units, beyond which a move is reported.
 const REPORTED_DISTANCE_SQUARED: f32 = 0.001;
 
@@ -13,16 +15,19 @@ const REPORTED_DEGREES: f32 = 0.5;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tracked {
     pub(crate) id: String,
-    /// Where it was at the end of the tick before.
-    last: Option<Pose>,
+    /// Which `create` line of the recording is its, from 1.
+    pub(crate) number: usize,
+    /// Where it was at the end of the tick before, and how fast.
+    last: Option<State>,
     /// Where its last `move` line says it is.
     reported: Option<Pose>,
 }
 
 impl Tracked {
-    pub(crate) fn new(id: &str) -> Self {
+    pub(crate) fn new(id: &str, number: usize) -> Self {
         Self {
             id: id.to_owned(),
+            number,
             last: None,
             reported: None,
         }
@@ -32,7 +37,7 @@ impl Tracked {
     /// bit, where it was a tick ago) somewhere else than last reported; or is farther from there than the thresholds.
     pub(crate) fn is_news(&self, pose: Pose) -> bool {
         self.reported.is_none_or(|reported| {
-            let rests = self.last.is_some_and(|last| is_same(last, pose));
+            let rests = self.last.is_some_and(|last| is_same(last.pose, pose));
             rests && !is_same(reported, pose) || is_far(reported, pose)
         })
     }
@@ -41,12 +46,10 @@ impl Tracked {
         self.reported = Some(pose);
     }
 
-    /// Notes where it is at the end of a tick, and says whether that differs in any bit from the tick before.
-    pub(crate) fn note(&mut self, pose: Pose) -> bool {
-        !self
-            .last
-            .replace(pose)
-            .is_some_and(|last| is_same(last, pose))
+    /// Notes its state at the end of a tick, and says whether that differs in any bit from the tick before.
+    pub(crate) fn note(&mut self, state: State) -> bool {
+        let last = self.last.replace(state);
+        !last.is_some_and(|last| last.is_same(state))
     }
 }
 
@@ -73,11 +76,17 @@ fn is_far(a: Pose, b: Pose) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use bevy::prelude::default;
+
     use super::*;
 
+    fn still(pose: Pose) -> State {
+        State { pose, ..default() }
+    }
+
     fn reported_at(pose: Pose) -> Tracked {
-        let mut tracked = Tracked::new("it");
-        tracked.note(pose);
+        let mut tracked = Tracked::new("it", 1);
+        tracked.note(still(pose));
         tracked.report(pose);
         tracked
     }
@@ -88,7 +97,7 @@ mod tests {
 
     #[test]
     fn an_object_that_was_never_reported_is_news() {
-        assert!(Tracked::new("it").is_news(Pose::IDENTITY));
+        assert!(Tracked::new("it", 1).is_news(Pose::IDENTITY));
         assert!(!reported_at(Pose::IDENTITY).is_news(Pose::IDENTITY));
     }
 
@@ -120,14 +129,24 @@ mod tests {
     }
 
     #[test]
+    fn a_change_of_velocity_alone_is_noted_and_no_news() {
+        let mut tracked = reported_at(Pose::IDENTITY);
+        let mut state = still(Pose::IDENTITY);
+        assert!(!tracked.note(state));
+        state.twist.angular.z = 1e-9;
+        assert!(!tracked.is_news(state.pose));
+        assert!(tracked.note(state));
+    }
+
+    #[test]
     fn an_object_that_comes_to_rest_is_news_once() {
         let mut tracked = reported_at(Pose::IDENTITY);
         let rest = Pose::at(Vec3::X * 1e-6);
         assert!(!tracked.is_news(rest), "it still moves");
-        assert!(tracked.note(rest));
+        assert!(tracked.note(still(rest)));
         assert!(tracked.is_news(rest), "it has come to rest");
         tracked.report(rest);
-        assert!(!tracked.note(rest));
+        assert!(!tracked.note(still(rest)));
         assert!(!tracked.is_news(rest), "it is where it was reported");
     }
 }

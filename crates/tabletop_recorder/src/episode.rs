@@ -3,19 +3,20 @@
 use std::path::Path;
 
 use bevy::prelude::{Entity, warn};
-use tabletop_core::{ObjectSpec, Picture, Pose, SimCommand, SimFact, SimTick};
+use tabletop_core::{ObjectSpec, SensorImage, SimCommand, SimFact, SimTick};
 
 use crate::{
-    RecorderError, SessionHeader, SessionScene,
+    Channels, RecorderError, SessionHeader, SessionScene,
     cause::{Beginning, beginnings},
     change::Tracked,
     event::Event,
     folder::{Folder, create_folder},
     frame::FrameClock,
     log_file::LogFile,
-    picture::write_png,
+    order::{in_order, is_about_recordings, turns_the_clock},
+    picture::{write_depth, write_ids, write_png},
     session::{command_line, session_line},
-    states,
+    states::{self, State},
 };
 
 /// A running recording.
@@ -28,16 +29,29 @@ pub(crate) struct Episode {
     text: LogFile,
     segment: u32,
     objects: Vec<Tracked>,
+    /// How many `create` lines were written.
+    created: usize,
+    channels: Channels,
     /// The objects of the first tick, until their `create` lines are written.
     opening: Option<Vec<ObjectSpec>>,
     /// The tick before its commands were carried out; they may turn the clock.
     tick: SimTick,
     /// The commands of this tick, each with the length of the session log before it.
     logged: Vec<(SimCommand, u64)>,
+    /// Length of the session log before the first recorded command.
+    head: u64,
     /// The commands of this tick that are carried out after the clock was turned.
     unlogged: Vec<SimCommand>,
     undoable: Vec<SegmentStart>,
     redoable: Vec<UndoneSegment>,
+}
+
+/// What an image shows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Shown<'w> {
+    Table,
+    Object(&'w ObjectSpec),
+    Other,
 }
 
 /// How far a recording had come.
@@ -45,6 +59,7 @@ pub(crate) struct Episode {
 struct Progress {
     segment: u32,
     objects: Vec<Tracked>,
+    created: usize,
     text: u64,
     session: u64,
     states: u64,
@@ -67,11 +82,13 @@ struct UndoneSegment {
 }
 
 impl Episode {
-    /// Begins a recording in a new folder.
+    /// Begins a recording in a new folder. `earlier` are the lines of the commands that came before it.
     pub(crate) fn begin(
         folder: &Path,
         header: &SessionHeader,
         scene: &SessionScene,
+        earlier: &[u8],
+        channels: Channels,
     ) -> Result<Self, RecorderError> {
         let folder = Folder::create(folder)?;
         let mut session = LogFile::create(folder.session())?;
@@ -80,6 +97,7 @@ impl Episode {
                 line.map_err(|error| RecorderError::write(&folder.session())(error.into()))?;
             session.append(&line)?;
         }
+        session.append(earlier)?;
         let mut states = LogFile::create(folder.states())?;
         states.append_records(&[states::header()])?;
         create_folder(&folder.pictures(0))?;
@@ -89,11 +107,14 @@ impl Episode {
         Ok(Self {
             folder,
             clock: FrameClock { start },
+            head: session.len(),
             session,
             states,
             text,
             segment: 0,
             objects: Vec::new(),
+            created: 0,
+            channels,
             opening: Some(objects.collect()),
             tick: start,
             logged: Vec::new(),
@@ -118,8 +139,7 @@ impl Episode {
         tick: SimTick,
         commands: &[SimCommand],
     ) -> Result<(), RecorderError> {
-        let (first, then): (Vec<_>, Vec<_>) =
-            commands.iter().cloned().partition(is_carried_out_first);
+        let (first, then) = in_order(commands);
         self.tick = tick;
         self.logged.clear();
         self.log(first)?;
@@ -135,15 +155,10 @@ impl Episode {
         let mut lines = Vec::new();
         for command in commands {
             let before = self.session.len() + lines.len() as u64;
-            if turns_the_clock(&command) || command == SimCommand::StartRecording {
+            if is_about_recordings(&command) {
                 continue;
             }
-            match command_line(self.tick.0, &command) {
-                Some(line) => lines.extend(line),
-                None => {
-                    warn!("{command:?} is not in the session log: not all of it can be written");
-                }
-            }
+            lines.extend(command_line(self.tick.0, &command).unwrap_or_default());
             self.logged.push((command, before));
         }
         self.session.append(&lines)
@@ -213,7 +228,7 @@ impl Episode {
                     if self.is_tracked(id) {
                         continue;
                     }
-                    self.objects.push(Tracked::new(id));
+                    self.track(id);
                     Event::Create(spec)
                 }
                 SimFact::ObjectDeleted { id } => {
@@ -241,12 +256,16 @@ impl Episode {
     /// The `create` lines of the objects that are there at the beginning.
     fn open(&mut self, frame: u64) -> Vec<Vec<String>> {
         let objects = self.opening.take().unwrap_or_default();
-        self.objects
-            .extend(objects.iter().map(|spec| Tracked::new(&spec.id)));
+        objects.iter().for_each(|spec| self.track(&spec.id));
         objects
             .iter()
             .map(|spec| Event::Create(spec).fields(frame))
             .collect()
+    }
+
+    fn track(&mut self, id: &str) {
+        self.created += 1;
+        self.objects.push(Tracked::new(id, self.created));
     }
 
     fn is_tracked(&self, id: &str) -> bool {
@@ -279,6 +298,7 @@ impl Episode {
         Progress {
             segment: self.segment,
             objects: self.objects.clone(),
+            created: self.created,
             text: self.text.len(),
             session: self.session.len(),
             states: self.states.len(),
@@ -333,61 +353,96 @@ impl Episode {
         self.text = LogFile::reopen(self.folder.text(progress.segment), progress.text)?;
         self.segment = progress.segment;
         self.objects = progress.objects;
+        self.created = progress.created;
         Ok(())
     }
 
     /// Writes what the end of a tick brings: a row for each object that has moved, and at a frame the moves and a picture.
-    pub(crate) fn write_tick(
+    pub(crate) fn write_tick<'w>(
         &mut self,
         tick: SimTick,
-        pose: impl Fn(&str) -> Option<Pose>,
-        picture: Option<&Picture>,
+        state: impl Fn(&str) -> Option<State>,
+        image: Option<&SensorImage>,
+        what: impl Fn(Entity) -> Shown<'w>,
     ) -> Result<(), RecorderError> {
         let is_frame = self.clock.is_frame(tick);
         let frame = self.clock.frame(tick);
         let mut moves = Vec::new();
         let mut rows = Vec::new();
         for object in &mut self.objects {
-            let Some(pose) = pose(&object.id) else {
+            let Some(state) = state(&object.id) else {
                 continue;
             };
+            let pose = state.pose;
             if is_frame && object.is_news(pose) {
                 object.report(pose);
                 let id = &object.id;
                 moves.push(Event::Move { id, pose }.fields(frame));
             }
-            if object.note(pose) {
-                rows.push(states::row(tick, &object.id, pose));
+            if object.note(state) {
+                rows.push(states::row(tick, &object.id, state));
             }
         }
         if !moves.is_empty()
-            && let Some(picture) = picture
+            && let Some(image) = image
         {
-            write_png(picture, &self.folder.picture(self.segment, frame))?;
+            self.write_image(frame, image, what)?;
         }
         self.text.append_records(&moves)?;
         self.states.append_records(&rows)
     }
 
+    fn write_image<'w>(
+        &self,
+        frame: u64,
+        image: &SensorImage,
+        what: impl Fn(Entity) -> Shown<'w>,
+    ) -> Result<(), RecorderError> {
+        let channel = |name| self.folder.channel(self.segment, frame, name);
+        let picture = &image.picture;
+        write_png(picture, &self.folder.picture(self.segment, frame))?;
+        if self.channels.depth {
+            write_depth(picture, &channel("depth"))?;
+        }
+        if self.channels.ids {
+            let numbers = image.shown.iter().map(|&entity| self.number_of(what(entity)));
+            write_ids(picture, &numbers.collect::<Vec<_>>(), &channel("ids"))?;
+        }
+        Ok(())
+    }
+
+    /// What stands for something in an image of ids.
+    fn number_of(&self, shown: Shown) -> u16 {
+        let number = match shown {
+            Shown::Table => Some(1),
+            Shown::Object(spec) => {
+                let object = self.objects.iter().find(|object| object.id == spec.id);
+                object.and_then(|object| u16::try_from(object.number + 1).ok())
+            }
+            Shown::Other => None,
+        };
+        number.unwrap_or(u16::MAX)
+    }
+
+    /// The lines of the commands that were logged since the recording began.
+    pub(crate) fn commands(&self) -> Result<Vec<u8>, RecorderError> {
+        self.session.read_from(self.head)
+    }
+
+    /// Ends the recording.
+    pub(crate) fn finish(&mut self, tick: SimTick) -> Result<(), RecorderError> {
+        let line = command_line(tick.0, &SimCommand::FinishRecording).unwrap_or_default();
+        self.session.append(&line)?;
+        if let Err(error) = self.drop_undone() {
+            warn!("what was undone is still there: {error}");
+        }
+        Ok(())
+    }
+
     /// Removes for good what was undone.
-    pub(crate) fn drop_undone(&self) -> Result<(), RecorderError> {
+    fn drop_undone(&self) -> Result<(), RecorderError> {
         self.folder.undone().remove()
     }
-}
-
-/// Whether a command takes effect before any that hands carry out, and before the clock is turned.
-fn is_carried_out_first(command: &SimCommand) -> bool {
-    matches!(
-        command,
-        SimCommand::LoadTask(_)
-            | SimCommand::SetScene(_)
-            | SimCommand::ClearTable
-            | SimCommand::SetPaused(_)
-    )
-}
-
-fn turns_the_clock(command: &SimCommand) -> bool {
-    matches!(command, SimCommand::Undo | SimCommand::Redo)
 }
 
 /// The facts without those at their end that only tell what turning the clock has brought back or taken away.

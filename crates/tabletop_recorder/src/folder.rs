@@ -50,6 +50,11 @@ impl Folder {
         self.pictures(segment).join(format!("{frame}.png"))
     }
 
+    /// A picture's channel, `depth` or `ids`.
+    pub(crate) fn channel(&self, segment: u32, frame: u64, name: &str) -> PathBuf {
+        self.pictures(segment).join(format!("{frame}.{name}.png"))
+    }
+
     /// What was undone and can be redone.
     pub(crate) fn undone(&self) -> Self {
         Self(self.0.join(".undone"))
@@ -71,12 +76,13 @@ impl Folder {
         Ok(())
     }
 
-    /// Removes the pictures of a segment from this frame on.
+    /// Removes the pictures of a segment, and their channels, from this frame on.
     pub(crate) fn remove_pictures(&self, segment: u32, first: u64) -> Result<(), RecorderError> {
         let folder = self.pictures(segment);
         for entry in fs::read_dir(&folder).map_err(RecorderError::read(&folder))? {
             let path = entry.map_err(RecorderError::read(&folder))?.path();
-            let frame = path.file_stem().and_then(|frame| frame.to_str());
+            let name = path.file_name().and_then(|name| name.to_str());
+            let frame = name.and_then(|name| name.split('.').next());
             if frame.is_some_and(|frame| frame.parse().is_ok_and(|frame: u64| frame >= first)) {
                 fs::remove_file(&path).map_err(RecorderError::write(&path))?;
             }

@@ -33,18 +33,20 @@ mod event;
 mod folder;
 mod frame;
 mod log_file;
+mod order;
 mod picture;
+mod prelude;
 mod properties;
 mod recorder;
+mod rehearsal;
 mod session;
 mod states;
 
 pub use error::RecorderError;
 pub use event::Event;
 pub use frame::{FRAMES_PER_SECOND, TICKS_PER_FRAME};
-pub use session::{
-    Session, SessionCommand, SessionHeader, SessionObject, SessionScene, SessionTask,
-};
+pub use rehearsal::RehearsalPlugin;
+pub use session::{Session, SessionCommand, SessionHeader, SessionObject, SessionScene, SessionSettings};
 
 use std::path::PathBuf;
 
@@ -66,8 +68,20 @@ use crate::recorder::{Recorder, ask_for_picture, record, take_commands};
 pub struct RecorderPlugin {
     /// The folder. What is there when a recording starts is moved aside.
     pub folder: PathBuf,
-    /// What the [header](SessionHeader::settings) of a session log says besides.
+    /// What the [settings](SessionSettings) are to begin with.
     pub header: Map<String, Value>,
+    /// What is written beside the pictures.
+    pub channels: Channels,
+}
+
+/// What is written of a frame beside its picture, of the same pixels, as PNG files of 16 bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Channels {
+    /// `<frame>.depth.png`: how far away it is, in tenths of a millimetre along the axis of view; 0 where nothing is.
+    pub depth: bool,
+    /// `<frame>.ids.png`: what it is; 0 where nothing is, 1 for the table, n + 1 for the object of the recording's n-th `create`
+    /// line, 65535 for anything else.
+    pub ids: bool,
 }
 
 impl Default for RecorderPlugin {
@@ -75,13 +89,15 @@ impl Default for RecorderPlugin {
         Self {
             folder: "demo".into(),
             header: Map::new(),
+            channels: Channels::default(),
         }
     }
 }
 
 impl Plugin for RecorderPlugin {
     fn build(&self, app: &mut App) {
-        app.insert_resource(Recorder::new(self.folder.clone(), self.header.clone()))
+        app.insert_resource(Recorder::new(self.folder.clone(), self.channels))
+            .insert_resource(SessionSettings(self.header.clone()))
             .add_systems(
                 FixedUpdate,
                 (

@@ -73,12 +73,16 @@ impl LogFile {
         self.set_len(len).map_err(RecorderError::write(&self.path))
     }
 
+    /// What comes after the first `len` bytes.
+    pub(crate) fn read_from(&self, len: u64) -> Result<Vec<u8>, RecorderError> {
+        let mut whole = std::fs::read(&self.path).map_err(RecorderError::read(&self.path))?;
+        Ok(whole.split_off(whole.len().min(len as usize)))
+    }
+
     /// Keeps the first `len` bytes, and moves the others to a new file.
     pub(crate) fn cut_to_file(&mut self, len: u64, path: PathBuf) -> Result<(), RecorderError> {
         let mut tail = Self::create(path)?;
-        let whole = std::fs::read(&self.path).map_err(RecorderError::read(&self.path))?;
-        let kept = whole.len().min(len as usize);
-        tail.append(&whole[kept..])?;
+        tail.append(&self.read_from(len)?)?;
         self.cut(len)
     }
 

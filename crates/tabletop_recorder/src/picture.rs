@@ -6,13 +6,70 @@ use tabletop_core::Picture;
 
 use crate::RecorderError;
 
+/// Depths in a depth image are counted in tenths of a millimetre, of which a unit has this many.
+const DEPTHS_PER_UNIT: f32 = 1000.0;
+
 /// Writes a picture with 8 bits each of red, green, blue and alpha, as the original program did. Under its name the file
 /// is never incomplete.
 pub(crate) fn write_png(picture: &Picture, path: &Path) -> Result<(), RecorderError> {
-    let bytes = encode(picture).map_err(|source| RecorderError::Picture {
-        path: path.to_owned(),
-        source,
-    })?;
+    let (pixels, _) = picture.rgb.as_chunks();
+    let rgba: Vec<u8> = pixels
+        .iter()
+        .flat_map(|&[red, green, blue]| [red, green, blue, u8::MAX])
+        .collect();
+    write(picture, png::ColorType::Rgba, png::BitDepth::Eight, &rgba, path)
+}
+
+/// Writes how far away is what each pixel shows, in 16 bits: tenths of a millimetre along the axis of view, 0 where nothing
+/// is, 65535 for that far and beyond.
+pub(crate) fn write_depth(picture: &Picture, path: &Path) -> Result<(), RecorderError> {
+    let values = picture.depth.iter().map(|&depth| match depth {
+        f32::INFINITY => 0,
+        depth => (depth * DEPTHS_PER_UNIT).round() as u16,
+    });
+    write_16_bits(picture, values, path)
+}
+
+/// Writes in 16 bits what each pixel shows: 0 for nothing, or the number of what stands in this place of the list.
+pub(crate) fn write_ids(
+    picture: &Picture,
+    numbers: &[u16],
+    path: &Path,
+) -> Result<(), RecorderError> {
+    let values = picture.objects.iter().map(|&object| {
+        let place = (object as usize).checked_sub(1);
+        place.and_then(|place| numbers.get(place)).copied().unwrap_or(0)
+    });
+    write_16_bits(picture, values, path)
+}
+
+fn write_16_bits(
+    picture: &Picture,
+    values: impl Iterator<Item = u16>,
+    path: &Path,
+) -> Result<(), RecorderError> {
+    let bytes: Vec<u8> = values.flat_map(u16::to_be_bytes).collect();
+    write(
+        picture,
+        png::ColorType::Grayscale,
+        png::BitDepth::Sixteen,
+        &bytes,
+        path,
+    )
+}
+
+fn write(
+    picture: &Picture,
+    color: png::ColorType,
+    depth: png::BitDepth,
+    data: &[u8],
+    path: &Path,
+) -> Result<(), RecorderError> {
+    let bytes =
+        encode(picture, color, depth, data).map_err(|source| RecorderError::Picture {
+            path: path.to_owned(),
+            source,
+        })?;
     let part = path.with_extension("png.part");
     fs::write(&part, bytes)
         .and_then(|()| fs::rename(&part, path))
@@ -23,19 +80,19 @@ pub(crate) fn write_png(picture: &Picture, path: &Path) -> Result<(), RecorderEr
         })
 }
 
-fn encode(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
-    let (pixels, _) = picture.rgb.as_chunks();
-    let rgba: Vec<u8> = pixels
-        .iter()
-        .flat_map(|&[red, green, blue]| [red, green, blue, u8::MAX])
-        .collect();
+fn encode(
+    picture: &Picture,
+    color: png::ColorType,
+    depth: png::BitDepth,
+    data: &[u8],
+) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, picture.width, picture.height);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
     encoder.set_compression(png::Compression::Fast);
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&rgba)?;
+    writer.write_image_data(data)?;
     writer.finish()?;
     Ok(bytes)
 }
@@ -44,6 +101,24 @@ fn encode(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
 mod tests {
     use super::*;
 
+    /// Writes a file, and reads its pixels back.
+    fn written(
+        name: &str,
+        write: impl Fn(&Path) -> Result<(), RecorderError>,
+    ) -> (png::OutputInfo, Vec<u8>) {
+        let name = format!("tabletop_{name}_{}.png", std::process::id());
+        let path = std::env::temp_dir().join(name);
+        write(&path).unwrap();
+        let file = fs::File::open(&path).unwrap();
+        let mut reader = png::Decoder::new(std::io::BufReader::new(file))
+            .read_info()
+            .unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut pixels).unwrap();
+        fs::remove_file(path).unwrap();
+        (info, pixels)
+    }
+
     #[test]
     fn the_pixels_come_back_opaque() {
         let mut picture = Picture::default();
@@ -51,12 +126,7 @@ mod tests {
         for (index, value) in picture.rgb.iter_mut().enumerate() {
             *value = index as u8 * 10;
         }
-        let bytes = encode(&picture).unwrap();
-        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
-            .read_info()
-            .unwrap();
-        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-        let info = reader.next_frame(&mut pixels).unwrap();
+        let (info, pixels) = written("color", |path| write_png(&picture, path));
         assert_eq!((info.width, info.height), (3, 2));
         assert_eq!(info.color_type, png::ColorType::Rgba);
         assert_eq!(info.bit_depth, png::BitDepth::Eight);
@@ -64,5 +134,23 @@ mod tests {
             assert_eq!(pixel[..3], picture.rgb[index * 3..index * 3 + 3]);
             assert_eq!(pixel[3], 255);
         }
+    }
+
+    #[test]
+    fn depths_are_tenths_of_a_millimetre_and_objects_have_their_numbers() {
+        let mut picture = Picture::default();
+        picture.resize(2, 2);
+        picture.depth = vec![f32::INFINITY, 1.0, 12.3456, 70.0];
+        picture.objects = vec![0, 1, 2, 3];
+        let (info, pixels) = written("depth", |path| write_depth(&picture, path));
+        assert_eq!(info.bit_depth, png::BitDepth::Sixteen);
+        assert_eq!(info.color_type, png::ColorType::Grayscale);
+        let values = |pixels: &[u8]| -> Vec<u16> {
+            let (values, _) = pixels.as_chunks();
+            values.iter().map(|&value| u16::from_be_bytes(value)).collect()
+        };
+        assert_eq!(values(&pixels), [0, 1000, 12346, 65535]);
+        let (_, pixels) = written("ids", |path| write_ids(&picture, &[1, 9], path));
+        assert_eq!(values(&pixels), [0, 1, 9, 0]);
     }
 }

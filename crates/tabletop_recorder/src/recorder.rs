@@ -3,35 +3,41 @@
 use std::path::PathBuf;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
-use serde_json::{Map, Value};
 use tabletop_core::{
-    HeadCamera, Joint, JointSpec, ObjectIndex, ObjectSpec, Paused, PictureDemand, Pose, Recording,
-    SensorImage, SimCommand, SimFact, SimTick, TICKS_PER_SECOND, Table,
+    Hand, Hands, HeadCamera, Joint, JointSpec, ObjectIndex, ObjectSpec, Paused, PictureDemand, Recording,
+    SensorImage, SimCommand, SimFact, SimTick, TICKS_PER_SECOND, Table, Twist,
 };
 
 use crate::{
-    RecorderError, SessionHeader, SessionObject, SessionScene, SessionTask, TICKS_PER_FRAME,
-    episode::Episode, session::FORMAT,
+    Channels, RecorderError, SessionHeader, SessionObject, SessionScene, SessionSettings, TICKS_PER_FRAME,
+    episode::{Episode, Shown}, prelude::Prelude, session::FORMAT,
+    states::State,
 };
+
+/// Why a recording cannot be started.
+pub(crate) const IS_RUNNING: &str = "a recording is running; finish it first";
+
+/// Why no recording can be finished.
+pub(crate) const NONE_IS_RUNNING: &str = "no recording is running; start one first";
 
 /// Makes the recordings.
 #[derive(Resource, Debug)]
 pub(crate) struct Recorder {
     folder: PathBuf,
-    settings: Map<String, Value>,
+    channels: Channels,
     episode: Option<Episode>,
     is_finishing: bool,
-    task: Option<SessionTask>,
+    prelude: Prelude,
 }
 
 impl Recorder {
-    pub(crate) fn new(folder: PathBuf, settings: Map<String, Value>) -> Self {
+    pub(crate) fn new(folder: PathBuf, channels: Channels) -> Self {
         Self {
             folder,
-            settings,
+            channels,
             episode: None,
             is_finishing: false,
-            task: None,
+            prelude: Prelude::default(),
         }
     }
 
@@ -41,15 +47,19 @@ impl Recorder {
             program: env!("CARGO_PKG_VERSION").to_owned(),
             ticks_per_second: TICKS_PER_SECOND,
             ticks_per_frame: TICKS_PER_FRAME,
+            begin_tick: self.prelude.begin().map(|tick| tick.0),
             start_tick: tick.0,
+            earlier_commands: self.prelude.count(),
             camera: stage.camera.as_deref().copied(),
-            settings: self.settings.clone(),
+            settings: stage.settings.0.clone(),
         };
-        let scene = SessionScene {
-            task: self.task.clone(),
-            ..stage.scene()
-        };
-        self.episode = Some(Episode::begin(&self.folder, &header, &scene)?);
+        self.episode = Some(Episode::begin(
+            &self.folder,
+            &header,
+            &stage.scene(),
+            self.prelude.lines(),
+            self.channels,
+        )?);
         self.is_finishing = false;
         let folder = self.folder.clone();
         Ok(SimFact::RecordingStarted { folder })
@@ -60,18 +70,20 @@ impl Recorder {
 #[derive(SystemParam)]
 pub(crate) struct Stage<'w, 's> {
     index: Res<'w, ObjectIndex>,
-    objects: Query<'w, 's, (&'static ObjectSpec, &'static Transform)>,
+    objects: Query<'w, 's, (&'static ObjectSpec, &'static Transform, Option<&'static Twist>)>,
     tables: Query<'w, 's, &'static Table>,
-    joints: Query<'w, 's, (Entity, &'static Joint)>,
+    joints: Query<'w, 's, &'static Joint>,
     camera: Option<Res<'w, HeadCamera>>,
+    settings: Res<'w, SessionSettings>,
 }
 
 impl Stage<'_, '_> {
     fn scene(&self) -> SessionScene {
+        let place = |object| self.index.iter().position(|other| other == object);
         let mut joints: Vec<_> = self.joints.iter().collect();
-        joints.sort_by_key(|(entity, _)| *entity);
+        joints.sort_by_key(|joint| joint.objects.map(place));
         let objects = self.index.iter().filter_map(|object| {
-            let (spec, transform) = self.objects.get(object).ok()?;
+            let (spec, transform, _) = self.objects.get(object).ok()?;
             Some(SessionObject {
                 pose: transform.into(),
                 spec: spec.clone(),
@@ -82,9 +94,8 @@ impl Stage<'_, '_> {
             objects: objects.collect(),
             joints: joints
                 .into_iter()
-                .filter_map(|(_, joint)| self.joint(joint))
+                .filter_map(|joint| self.joint(joint))
                 .collect(),
-            task: None,
         }
     }
 
@@ -99,12 +110,23 @@ impl Stage<'_, '_> {
     }
 
     fn spec(&self, object: Entity) -> Option<&ObjectSpec> {
-        self.objects.get(object).ok().map(|(spec, _)| spec)
+        self.objects.get(object).ok().map(|(spec, ..)| spec)
     }
 
-    fn pose(&self, id: &str) -> Option<Pose> {
-        let (_, transform) = self.objects.get(self.index.get(id)?).ok()?;
-        Some(transform.into())
+    fn shown(&self, entity: Entity) -> Shown<'_> {
+        match self.spec(entity) {
+            Some(spec) => Shown::Object(spec),
+            None if self.tables.contains(entity) => Shown::Table,
+            None => Shown::Other,
+        }
+    }
+
+    fn state(&self, id: &str) -> Option<State> {
+        let (_, transform, twist) = self.objects.get(self.index.get(id)?).ok()?;
+        Some(State {
+            pose: transform.into(),
+            twist: twist.copied().unwrap_or_default(),
+        })
     }
 }
 
@@ -115,16 +137,14 @@ pub(crate) fn take_commands(
     mut commands: MessageReader<SimCommand>,
     mut facts: MessageWriter<SimFact>,
     tick: Res<SimTick>,
+    hands: Res<Hands>,
     stage: Stage,
 ) {
     let commands: Vec<_> = commands.read().cloned().collect();
     for command in &commands {
         match command {
             SimCommand::StartRecording if recorder.episode.is_some() => {
-                facts.write(refused(format!(
-                    "a recording into {} is running; finish it first",
-                    recorder.folder.display()
-                )));
+                facts.write(refused(IS_RUNNING.into()));
             }
             SimCommand::StartRecording => match recorder.start(*tick, &stage) {
                 Ok(started) => {
@@ -137,27 +157,24 @@ pub(crate) fn take_commands(
                 }
             },
             SimCommand::FinishRecording if recorder.episode.is_none() => {
-                facts.write(refused("no recording is running; start one first".into()));
+                facts.write(refused(NONE_IS_RUNNING.into()));
             }
             SimCommand::FinishRecording => recorder.is_finishing = true,
             _ => {}
         }
     }
-    for command in &commands {
-        match command {
-            SimCommand::SetScene(scene) => {
-                recorder.task = Some(SessionTask {
-                    tick: tick.0,
-                    scene: (**scene).clone(),
-                });
-            }
-            SimCommand::ClearTable => recorder.task = None,
-            _ => {}
-        }
-    }
-    if let Some(episode) = &mut recorder.episode {
+    let Recorder {
+        episode, prelude, ..
+    } = &mut *recorder;
+    if let Some(episode) = episode {
+        commands
+            .iter()
+            .for_each(|command| prelude.note_lasting(command));
         let result = episode.log_commands(*tick, &commands);
         recorder.stop_on_error(result, &mut recording, &mut facts);
+    } else {
+        let hands_are_empty = Hand::ALL.iter().all(|&hand| hands.held_by(hand).is_none());
+        prelude.note(*tick, &commands, hands_are_empty);
     }
 }
 
@@ -191,16 +208,16 @@ pub(crate) fn record(
     let told: Vec<_> = facts.p0().read().cloned().collect();
     let mut result = episode.write_facts(*tick, &told, |object| stage.spec(object));
     if result.is_ok() && !paused.0 {
-        let picture = image
+        let image = image
             .as_deref()
-            .filter(|image| image.tick == *tick && image.picture.width > 0)
-            .map(|image| &image.picture);
-        result = episode.write_tick(*tick, |id| stage.pose(id), picture);
+            .filter(|image| image.tick == *tick && image.picture.width > 0);
+        let state = |id: &str| stage.state(id);
+        result = episode.write_tick(*tick, state, image, |entity| stage.shown(entity));
     }
     let mut facts = facts.p1();
     recorder.stop_on_error(result, &mut recording, &mut facts);
     if recorder.is_finishing {
-        recorder.finish(&mut recording, &mut facts);
+        recorder.finish(*tick, &mut recording, &mut facts);
     }
 }
 
@@ -215,21 +232,37 @@ impl Recorder {
         if let Err(error) = result {
             error!("the recording has ended: {error}");
             facts.write(refused(format!("the recording has ended: {error}")));
-            self.end(recording, facts);
+            self.end(None, recording, facts);
         }
     }
 
-    fn finish(&mut self, recording: &mut Recording, facts: &mut MessageWriter<SimFact>) {
-        if let Some(episode) = &self.episode
-            && let Err(error) = episode.drop_undone()
-        {
-            warn!("what was undone is still there: {error}");
+    fn finish(
+        &mut self,
+        tick: SimTick,
+        recording: &mut Recording,
+        facts: &mut MessageWriter<SimFact>,
+    ) {
+        let Some(episode) = &mut self.episode else {
+            self.is_finishing = false;
+            return;
+        };
+        let commands = episode.commands();
+        let result = episode.finish(tick).and(commands);
+        match result {
+            Ok(commands) => self.end(Some(&commands), recording, facts),
+            Err(error) => self.stop_on_error(Err(error), recording, facts),
         }
-        self.end(recording, facts);
     }
 
-    fn end(&mut self, recording: &mut Recording, facts: &mut MessageWriter<SimFact>) {
+    /// Ends the recording, of which these are the lines of its commands.
+    fn end(
+        &mut self,
+        commands: Option<&[u8]>,
+        recording: &mut Recording,
+        facts: &mut MessageWriter<SimFact>,
+    ) {
         self.is_finishing = false;
+        self.prelude.append_recorded(commands);
         if let Some(episode) = self.episode.take() {
             let folder = episode.folder().to_owned();
             recording.0 = false;
@@ -238,7 +271,7 @@ impl Recorder {
     }
 }
 
-fn refused(reason: String) -> SimFact {
+pub(crate) fn refused(reason: String) -> SimFact {
     SimFact::Refused { reason }
 }
 

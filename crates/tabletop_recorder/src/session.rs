@@ -5,14 +5,15 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use bevy::prelude::{Resource, warn};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
-use tabletop_core::{HeadCamera, JointSpec, ObjectSpec, Pose, SceneSpec, SimCommand, Table};
+use tabletop_core::{HeadCamera, JointSpec, ObjectSpec, Pose, SimCommand, Table};
 
 use crate::RecorderError;
 
 /// Version of the format that is written here.
-pub(crate) const FORMAT: u32 = 1;
+pub(crate) const FORMAT: u32 = 2;
 
 /// First line of a session log: who wrote it, and how.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -25,13 +26,22 @@ pub struct SessionHeader {
     pub ticks_per_second: u32,
     /// Ticks from one frame to the next.
     pub ticks_per_frame: u64,
+    /// The tick from which on the log holds every command. The world was empty before it. `None` if the log does not go back
+    /// that far.
+    pub begin_tick: Option<u64>,
     /// The first recorded tick.
     pub start_tick: u64,
+    /// How many commands of the log were carried out before the recording started.
+    pub earlier_commands: usize,
     /// The head camera, if there is one.
     pub camera: Option<HeadCamera>,
-    /// What [`RecorderPlugin::header`](crate::RecorderPlugin::header) adds.
+    /// The [settings](SessionSettings) when the recording started.
     pub settings: Map<String, Value>,
 }
+
+/// What else the header of the next recording is to say: whatever a replay must know.
+#[derive(Resource, Clone, Debug, Default, PartialEq)]
+pub struct SessionSettings(pub Map<String, Value>);
 
 /// Second line of a session log: the world as it was before the first recorded tick.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -42,8 +52,6 @@ pub struct SessionScene {
     pub objects: Vec<SessionObject>,
     /// The joints between them.
     pub joints: Vec<JointSpec>,
-    /// The last scene, if the table was not cleared since.
-    pub task: Option<SessionTask>,
 }
 
 /// An object as it was before the first recorded tick.
@@ -53,15 +61,6 @@ pub struct SessionObject {
     pub pose: Pose,
     /// What it is, and where it was first put.
     pub spec: ObjectSpec,
-}
-
-/// A scene that was put on the table before the recording.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SessionTask {
-    /// The tick in which it was.
-    pub tick: u64,
-    /// The scene.
-    pub scene: SceneSpec,
 }
 
 /// Every further line of a session log: a command that was carried out.
@@ -80,7 +79,9 @@ pub struct Session {
     pub header: SessionHeader,
     /// The world before the first recorded tick.
     pub scene: SessionScene,
-    /// The commands, in their order.
+    /// The commands that were carried out before the recording, from [`SessionHeader::begin_tick`] on, in their order.
+    pub earlier: Vec<SessionCommand>,
+    /// The commands of the recording, in their order.
     pub commands: Vec<SessionCommand>,
 }
 
@@ -98,12 +99,14 @@ impl Session {
             return Err(RecorderError::Format { path, found });
         }
         let scene = parse(&path, next())?;
-        let commands = lines
+        let mut earlier = lines
             .map(|line| parse(&path, line))
-            .collect::<Result<_, _>>()?;
+            .collect::<Result<Vec<_>, _>>()?;
+        let commands = earlier.split_off(earlier.len().min(header.earlier_commands));
         Ok(Self {
             header,
             scene,
+            earlier,
             commands,
         })
     }
@@ -127,13 +130,19 @@ pub(crate) fn session_line(content: &impl Serialize) -> serde_json::Result<Vec<u
     Ok(line)
 }
 
-/// The line of a command; none if it would not read back, because it holds numbers that are none.
+/// The line of a command; none, with a warning, if it would not read back, because it holds numbers that are none.
 pub(crate) fn command_line(tick: u64, command: &SimCommand) -> Option<Vec<u8>> {
-    let command = command.clone();
-    let line = session_line(&SessionCommand { tick, command }).ok()?;
-    serde_json::from_slice::<SessionCommand>(&line)
-        .is_ok()
-        .then_some(line)
+    let entry = SessionCommand {
+        tick,
+        command: command.clone(),
+    };
+    let line = session_line(&entry)
+        .ok()
+        .filter(|line| serde_json::from_slice::<SessionCommand>(line).is_ok());
+    if line.is_none() {
+        warn!("{command:?} is not in the session log: not all of it can be written");
+    }
+    line
 }
 
 #[cfg(test)]
@@ -175,37 +184,43 @@ mod tests {
             program: "0".into(),
             ticks_per_second: 60,
             ticks_per_frame: 15,
+            begin_tick: Some(2),
             start_tick: 3,
+            earlier_commands: 1,
             camera: None,
             settings: Map::new(),
         };
         let mut log = session_line(&header).unwrap();
         log.extend(session_line(&SessionScene::default()).unwrap());
-        log.extend(command_line(4, &SimCommand::ClearTable).unwrap());
+        for tick in [2, 4] {
+            log.extend(command_line(tick, &SimCommand::ClearTable).unwrap());
+        }
         log.extend(b"{\"tick\":5,\"comm");
         let path = std::env::temp_dir().join(format!("tabletop_session_{}", std::process::id()));
         fs::write(&path, &log).unwrap();
         let session = Session::read(&path).unwrap();
         assert_eq!(session.header, header);
-        assert_eq!(session.commands.len(), 1);
+        let ticks = |commands: &[SessionCommand]| commands.iter().map(|c| c.tick).collect::<Vec<_>>();
+        assert_eq!(ticks(&session.earlier), [2]);
+        assert_eq!(ticks(&session.commands), [4]);
 
         log.push(b'\n');
         fs::write(&path, &log).unwrap();
         let error = Session::read(&path).unwrap_err().to_string();
         assert!(
-            error.starts_with(&format!("{}:4: ", path.display())),
+            error.starts_with(&format!("{}:5: ", path.display())),
             "{error}"
         );
         fs::write(&path, "").unwrap();
         assert!(Session::read(&path).is_err());
 
         let header = SessionHeader {
-            format: 2,
+            format: FORMAT + 1,
             ..header
         };
         fs::write(&path, session_line(&header).unwrap()).unwrap();
         let error = Session::read(&path).unwrap_err().to_string();
-        assert!(error.contains("format 2"), "{error}");
+        assert!(error.contains("format 3"), "{error}");
         fs::remove_file(path).unwrap();
     }
 }

@@ -240,3 +240,59 @@ fn in_words(vector: Vec3) -> String {
     let [x, y, z] = vector.to_array();
     format!("({x:.3}, {y:.3}, {z:.3})")
 }
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::Hand;
+
+    use crate::test_stage::Stage;
+
+    #[test]
+    fn checks_find_what_is_there() {
+        let all = "WaitUntilRest(1), Expect(Location(object: \"low\", at: (0, 0, 0.5))), \
+            Expect(Rotation(object: \"low\", degrees: (0, 0, 1))), \
+            Expect(OnTopOf(object: \"high\", of: \"low\")), Expect(OnTable(object: \"low\")), \
+            Expect(Inside(object: \"low\", of: \"low\")), Expect(AllAtRest), Expect(AtRest(\"low\")), \
+            Expect(Exists(\"low\")), Expect(Gone(\"x\")), Expect(Free(\"low\")), \
+            Expect(HeldBy(object: \"high\", hand: Both))";
+        let mut stage = Stage::new(all);
+        stage.holders[1] = Some(Hand::Both);
+        assert_eq!(stage.failure(), "Done");
+    }
+
+    #[test]
+    fn checks_say_what_they_expected_and_found() {
+        for (check, words) in [
+            (
+                "Location(object: \"low\", at: (1, 0, 0.5))",
+                "expected `low` within 0.05 of (1.000, 0.000, 0.500), found it at (0.000, 0.000, 0.500), 1.000 away",
+            ),
+            (
+                "Rotation(object: \"low\", degrees: (0, 0, 3))",
+                "3.0 degrees away",
+            ),
+            ("OnTopOf(object: \"low\", of: \"high\")", "2.000 too low"),
+            ("OnTable(object: \"high\")", "1.000 above"),
+            ("Inside(object: \"high\", of: \"low\")", "1.000 outside"),
+            ("AllAtRest", "expected all at rest, found `low` moving"),
+            ("AtRest(\"high\")", "found it moving"),
+            ("Exists(\"x\")", "expected an object `x`, found none"),
+            ("Gone(\"low\")", "expected no `low`, found it"),
+            (
+                "Free(\"high\")",
+                "expected `high` in no hand, found it in LeftHand",
+            ),
+            (
+                "HeldBy(object: \"low\", hand: Right)",
+                "expected `low` in RightHand, found it in no hand",
+            ),
+        ] {
+            let mut stage = Stage::new(&format!("Expect({check})"));
+            stage.holders[1] = Some(Hand::Left);
+            let failure = stage.failure();
+            let text = format!("s.ron:1:10: Expect({check}): ");
+            assert!(failure.starts_with(&text), "{failure}");
+            assert!(failure.contains(words), "{failure}");
+        }
+    }
+}

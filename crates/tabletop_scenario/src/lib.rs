@@ -21,6 +21,7 @@
 //! # Ok::<_, tabletop_scenario::ScenarioError>(())
 //! ```
 
+mod act;
 mod bounds;
 mod check;
 mod error;
@@ -33,6 +34,8 @@ mod scenario;
 mod seen;
 mod source;
 mod step;
+#[cfg(test)]
+mod test_stage;
 
 pub use check::Check;
 pub use error::ScenarioError;

@@ -7,8 +7,8 @@ use bevy::{
     },
     prelude::*,
 };
-use tabletop_core::{Held, Joint, ObjectIndex, ObjectSpec, SceneSpec, SimCommand, SimFact, Table};
-use tabletop_physics::{Parked, remove_object};
+use tabletop_core::{Gripped, Held, Joint, ObjectIndex, ObjectSpec, SceneSpec, SimCommand, SimFact, Table};
+use tabletop_physics::{Parked, remove_object, renew_if_empty};
 
 use crate::{IdAllocator, assemble};
 
@@ -104,6 +104,7 @@ fn set_scene(world: &mut World, scene: &SceneSpec) {
     for table in tables.iter(world).collect::<Vec<_>>() {
         remove_object(world, table);
     }
+    renew_if_empty(world);
 
     let held = world.resource::<ObjectIndex>().ids().map(str::to_owned);
     let assembly = assemble(scene, &mut IdAllocator::with_taken(held));
@@ -125,11 +126,12 @@ fn set_scene(world: &mut World, scene: &SceneSpec) {
     }
 }
 
-/// Removes every object that no hand holds.
+/// Removes every object that no hand and no gripper holds.
 fn clear(world: &mut World) {
     let objects: Vec<_> = world.resource::<ObjectIndex>().iter().collect();
     for object in objects {
-        if world.get::<Held>(object).is_none() {
+        let object_is = world.entity(object);
+        if !object_is.contains::<Held>() && !object_is.contains::<Gripped>() {
             remove_object(world, object);
         }
     }

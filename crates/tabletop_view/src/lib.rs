@@ -1,9 +1,9 @@
-//! What the window shows: the table and the objects on it in the light of the original program, through the user's
+//! What the window shows: the table, the objects on it and what else has a figure, in the light of the original program, through the user's
 //! camera.
 //!
 //! What the selected hand holds is outlined, with the plane in which the mouse drags it, its axes and its shadow line.
 //!
-//! The view only reads. For each object it makes a picture of its own, a [`Visual`], which follows the object smoothly
+//! The view only reads. For each object and figure it makes a picture of its own, a [`Visual`], which follows the object smoothly
 //! at any frame rate; no entity of the simulation is touched.
 //!
 //! ```no_run
@@ -22,6 +22,7 @@
 mod aids;
 mod camera;
 mod held;
+mod markers;
 mod mesh;
 mod motion;
 mod polyhedron;
@@ -47,6 +48,7 @@ impl Plugin for ViewPlugin {
         app.add_plugins((
             surface::plugin,
             visual::plugin,
+            markers::plugin,
             camera::plugin,
             sheet::plugin,
             aids::plugin,

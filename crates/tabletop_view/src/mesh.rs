@@ -1,8 +1,12 @@
-//! The meshes of solids. There is one for each kind of solid, which its transform stretches to size, so that objects
-//! of all sizes are drawn together.
+//! The meshes of solids and figures. There is one for each kind of solid, which its transform stretches to size, so that
+//! objects of all sizes are drawn together.
 
-use bevy::prelude::*;
-use tabletop_core::Solid;
+use bevy::{
+    asset::RenderAssetUsages,
+    mesh::{Indices, PrimitiveTopology},
+    prelude::*,
+};
+use tabletop_core::{Rgb, Solid, Triangles};
 
 /// Sides of a cylinder, and of a ball around its axis.
 pub(crate) const SIDES: u32 = 64;
@@ -32,6 +36,19 @@ pub(crate) fn scale_of(solid: Solid) -> Vec3 {
         Solid::Cylinder { radius, yspan } => Vec3::new(radius, yspan, radius),
         Solid::Ball(radius) => Vec3::splat(radius),
     }
+}
+
+/// A surface of triangles with the colours of its vertices.
+pub(crate) fn of_triangles(surface: &Triangles) -> Mesh {
+    let colors = surface.colors.iter();
+    let colors: Vec<_> = colors
+        .map(|&Rgb { red, green, blue }| [red, green, blue, 1.0])
+        .collect();
+    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, surface.positions.clone())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, surface.normals.clone())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
+        .with_inserted_indices(Indices::U32(surface.indices.concat()))
 }
 
 /// No surface has a texture.

@@ -1,4 +1,5 @@
-// The light of the original program, worked out in display values: no gamma, no specular, no shadows.
+// The light of the original program, worked out in display values: no gamma, no specular, no shadows. Vertices may have
+// colours of their own, as displayed, by which that of the material is multiplied.
 
 #import bevy_pbr::forward_io::VertexOutput
 
@@ -12,8 +13,13 @@ const LAMP_RANGE: f32 = 50.0;
 @fragment
 fn fragment(in: VertexOutput) -> @location(0) vec4<f32> {
     let light = AMBIENT + light_of_lamp(in.world_position.xyz, normalize(in.world_normal));
-    let shown = clamp(color.rgb * light, vec3<f32>(0.0), vec3<f32>(1.0));
-    return vec4<f32>(linear_from_display(shown), 1.0);
+#ifdef VERTEX_COLORS
+    let own_color = color.rgb * in.color.rgb;
+#else
+    let own_color = color.rgb;
+#endif
+    let shown = clamp(own_color * light, vec3<f32>(0.0), vec3<f32>(1.0));
+    return vec4<f32>(linear_from_display(shown), color.a);
 }
 
 fn light_of_lamp(location: vec3<f32>, normal: vec3<f32>) -> f32 {

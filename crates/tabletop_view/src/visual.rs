@@ -1,16 +1,16 @@
-//! The pictures of the table and the objects on it. They are entities of their own that follow the bodies, which the
-//! view never touches.
+//! The pictures of the table, the objects on it and the figures around it. They are entities of their own that follow the
+//! bodies, which the view never touches.
 
 use bevy::{ecs::entity::EntityHashMap, platform::collections::HashMap, prelude::*, time::Fixed};
-use tabletop_core::{ObjectSpec, Primitive, Rgb, Solid, Table};
+use tabletop_core::{Figure, ObjectSpec, Primitive, Rgb, Solid, Table};
 
 use crate::{mesh, motion::Motion, surface::Surface};
 
-/// The picture of an object or of the table; its children are the drawn solids.
+/// The picture of an object, of the table or of a figure; its children are the drawn solids or the figure's surface.
 #[derive(Component, Clone, Copy, Debug)]
 #[require(Transform, Visibility)]
 pub struct Visual {
-    /// The entity that has the [`ObjectSpec`] or the [`Table`].
+    /// The entity that has the [`ObjectSpec`], the [`Table`] or the [`Figure`].
     pub of: Entity,
 }
 
@@ -18,8 +18,8 @@ pub struct Visual {
 #[derive(Component, Clone, Debug)]
 pub(crate) struct Drawn(pub Vec<Primitive>);
 
-/// What has a picture: the table and the objects.
-type Drawable = Or<(With<ObjectSpec>, With<Table>)>;
+/// What has a picture: the table, the objects and the figures.
+type Drawable = Or<(With<ObjectSpec>, With<Table>, With<Figure>)>;
 
 /// The picture of each body.
 #[derive(Resource, Default)]
@@ -67,12 +67,13 @@ fn note_moves(mut visuals: Query<(&Visual, &mut Motion)>, bodies: Query<&Transfo
 fn drop_pictures(
     mut commands: Commands,
     mut visuals: ResMut<Visuals>,
-    bodies: Query<(Option<Ref<ObjectSpec>>, Option<Ref<Table>>), Drawable>,
+    bodies: Query<(Option<Ref<ObjectSpec>>, Option<Ref<Table>>, Option<Ref<Figure>>), Drawable>,
 ) {
     visuals.0.retain(|body, visual| {
-        let is_drawn = bodies.get(*body).is_ok_and(|(object, table)| {
+        let is_drawn = bodies.get(*body).is_ok_and(|(object, table, figure)| {
             !object.is_some_and(|object| object.is_changed())
                 && !table.is_some_and(|table| table.is_changed())
+                && !figure.is_some_and(|figure| figure.is_changed())
         });
         if !is_drawn {
             commands.entity(*visual).despawn();
@@ -87,9 +88,13 @@ fn make_pictures(
     mut visuals: ResMut<Visuals>,
     mut looks: ResMut<Looks>,
     mut surfaces: ResMut<Assets<Surface>>,
-    bodies: Query<(Entity, &Transform, Option<&ObjectSpec>, Option<&Table>), Drawable>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    bodies: Query<
+        (Entity, &Transform, Option<&ObjectSpec>, Option<&Table>, Option<&Figure>),
+        Drawable,
+    >,
 ) {
-    for (body, place, object, table) in &bodies {
+    for (body, place, object, table, figure) in &bodies {
         if visuals.0.contains_key(&body) {
             continue;
         }
@@ -104,6 +109,12 @@ fn make_pictures(
             .with_children(|parts| {
                 for primitive in &drawn {
                     parts.spawn(looks.of(primitive, &mut surfaces));
+                }
+                if let Some(figure) = figure {
+                    parts.spawn((
+                        Mesh3d(meshes.add(mesh::of_triangles(&figure.fine))),
+                        MeshMaterial3d(looks.surface(Rgb::WHITE, &mut surfaces)),
+                    ));
                 }
             })
             .insert(Drawn(drawn))
@@ -161,7 +172,7 @@ impl Looks {
 mod tests {
     use super::*;
     use bevy::time::TimeUpdateStrategy;
-    use tabletop_core::{CorePlugin, Pose, Shape};
+    use tabletop_core::{CorePlugin, Pose, Shape, Triangles};
 
     fn app() -> App {
         let mut app = App::new();
@@ -256,6 +267,42 @@ mod tests {
             seen.push(drawn(&mut app)[0].1.x);
         }
         assert_eq!(seen, [0.0, 1.0, 2.0]);
+    }
+
+    fn figure(x: f32) -> Figure {
+        let surface = Triangles {
+            positions: vec![Vec3::X * x, Vec3::Y, Vec3::Z],
+            normals: vec![Vec3::ONE.normalize(); 3],
+            colors: vec![Rgb::GRAY; 3],
+            indices: vec![[0, 1, 2]],
+        };
+        Figure {
+            fine: surface.into(),
+            coarse: Triangles::default().into(),
+        }
+    }
+
+    #[test]
+    fn a_figure_is_drawn_while_it_is_there_and_anew_when_it_changes() {
+        let mut app = app();
+        let link = app.world_mut().spawn(figure(1.0)).id();
+        let mesh_of_picture = |app: &mut App| {
+            app.update();
+            let world = app.world_mut();
+            let mut pictures = world.query::<&Visual>();
+            assert!(pictures.iter(world).all(|visual| visual.of == link));
+            let mut parts = world.query::<&Mesh3d>();
+            let mesh = parts.single(world).ok()?.id();
+            let meshes = world.resource::<Assets<Mesh>>();
+            Some((mesh, meshes.get(mesh)?.count_vertices()))
+        };
+        let first = mesh_of_picture(&mut app).unwrap();
+        assert_eq!(first.1, 3);
+        assert_eq!(mesh_of_picture(&mut app), Some(first));
+        app.world_mut().entity_mut(link).insert(figure(2.0));
+        assert_ne!(mesh_of_picture(&mut app).unwrap().0, first.0);
+        app.world_mut().entity_mut(link).remove::<Figure>();
+        assert_eq!(mesh_of_picture(&mut app), None);
     }
 
     #[test]

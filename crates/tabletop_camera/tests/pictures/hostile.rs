@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use tabletop_camera::{Camera, DrawnSolid, Painter};
 use tabletop_core::{Picture, Pose, Rgb, Solid};
 
-use crate::scenes::{draw, head, mixed_scene, smooth};
+use crate::scenes::{draw, head, mixed_scene, of_solids, smooth};
 
 fn any_number() -> impl Strategy<Value = f32> {
     prop_oneof![
@@ -87,7 +87,7 @@ fn a_painter_forgets_the_picture_before() {
     ];
     for camera in cameras {
         for scene in [mixed_scene(), Vec::new(), mixed_scene()] {
-            painter.draw(scene.iter().copied(), &camera, &mut picture);
+            painter.draw(&of_solids(&scene), &camera, &mut picture);
             assert!(picture == draw(&scene, &camera), "{camera:?}");
         }
     }

@@ -1,13 +1,24 @@
 //! Scenes and cameras to look at them.
 
 use bevy::math::{Quat, Vec3};
-use tabletop_camera::{Camera, DrawnSolid, Painter};
+use tabletop_camera::{Camera, DrawnSolid, Painter, Scene};
 use tabletop_core::{HeadCamera, Picture, Pose, Rgb, Solid, Table};
 
-pub fn draw(scene: &[DrawnSolid], camera: &Camera) -> Picture {
+pub fn draw(solids: &[DrawnSolid], camera: &Camera) -> Picture {
+    draw_scene(&of_solids(solids), camera)
+}
+
+pub fn draw_scene(scene: &Scene, camera: &Camera) -> Picture {
     let mut picture = Picture::default();
-    Painter::default().draw(scene.iter().copied(), camera, &mut picture);
+    Painter::default().draw(scene, camera, &mut picture);
     picture
+}
+
+pub fn of_solids(solids: &[DrawnSolid]) -> Scene {
+    Scene {
+        solids: solids.to_vec(),
+        ..Scene::default()
+    }
 }
 
 pub fn head() -> Camera {

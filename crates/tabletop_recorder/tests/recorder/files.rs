@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, fs};
 
 use tabletop_core::{Hand, Recording, SimCommand, SimFact, SimTick, StepApp as _};
-use tabletop_recorder::Session;
+use tabletop_recorder::{Session, SessionCommand};
 
 use crate::stage::{Place, app, app_into, block, grasp, heard, location, run, scene};
 
@@ -228,7 +228,9 @@ fn states_hold_every_tick_of_what_moves() {
     let mut reader = csv::Reader::from_reader(states.as_bytes());
     assert_eq!(
         reader.headers().unwrap(),
-        vec!["tick", "id", "x", "y", "z", "qx", "qy", "qz", "qw"]
+        vec![
+            "tick", "id", "x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz"
+        ]
     );
     let rows: Vec<_> = reader.records().map(|row| row.unwrap()).collect();
     let of = |id: &str| -> Vec<(u64, f32)> {
@@ -267,16 +269,17 @@ fn the_session_log_holds_the_scene_and_every_command() {
     };
     assert_eq!(object.spec, block("a"));
     assert_eq!(object.pose.location, location("a", SimTick(2)));
-    let task = session.scene.task.unwrap();
-    assert_eq!(task.tick, 0);
-    assert_eq!(SimCommand::SetScene(Box::new(task.scene)), scene(&["a"]));
-    let commands: Vec<_> = session
-        .commands
-        .into_iter()
-        .map(|command| (command.tick, command.command))
-        .collect();
+    let told = |commands: Vec<SessionCommand>| -> Vec<_> {
+        let told = commands.into_iter();
+        told.map(|told| (told.tick, told.command)).collect()
+    };
+    assert_eq!(session.header.begin_tick, Some(0));
     assert_eq!(
-        commands,
+        told(session.earlier),
+        [(0, scene(&["a"])), (3, SimCommand::SetPaused(true))]
+    );
+    assert_eq!(
+        told(session.commands),
         [
             (3, grasp(Hand::Left, "a")),
             (3, SimCommand::SetPaused(false)),
@@ -287,6 +290,39 @@ fn the_session_log_holds_the_scene_and_every_command() {
         place.read("1.txt").lines().next(),
         Some("0,grasp,LeftHand,a")
     );
+}
+
+#[test]
+fn an_earlier_recording_is_part_of_what_came_before_without_what_was_undone() {
+    let place = Place::new();
+    let mut app = app(&place);
+    run(
+        &mut app,
+        &[
+            (2, scene(&["a", "bb"])),
+            (1, grasp(Hand::Left, "a")),
+            (1, SimCommand::StartRecording),
+            (9, grasp(Hand::Right, "bb")),
+            (5, SimCommand::Undo),
+            (0, SimCommand::Release(Hand::Left)),
+            (2, SimCommand::FinishRecording),
+            (3, SimCommand::ClearTable),
+            (2, SimCommand::StartRecording),
+        ],
+    );
+    let session = Session::read(place.demo().join("session.jsonl")).unwrap();
+    assert_eq!(session.header.begin_tick, Some(2));
+    let earlier: Vec<_> = session.earlier.into_iter().map(|told| told.command).collect();
+    assert_eq!(
+        earlier,
+        [
+            scene(&["a", "bb"]),
+            grasp(Hand::Left, "a"),
+            SimCommand::Release(Hand::Left),
+            SimCommand::ClearTable,
+        ]
+    );
+    assert_eq!(session.commands, []);
 }
 
 #[test]

@@ -108,7 +108,7 @@ fn check_recording(demo: &Path, ticks: u64) {
     let mut seen: BTreeMap<u64, Vec<String>> = BTreeMap::new();
     for row in csv::Reader::from_reader(states.as_bytes()).records() {
         let row = row.unwrap();
-        assert_eq!(row.len(), 9);
+        assert_eq!(row.len(), 15);
         let tick = row[0].parse().unwrap();
         seen.entry(tick).or_default().push(row[1].to_owned());
     }

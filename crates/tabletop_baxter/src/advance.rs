@@ -1,0 +1,254 @@
+//! A tick of the robot in kinematic mode.
+
+use std::collections::BTreeSet;
+
+use bevy::{ecs::system::SystemParam, prelude::*};
+use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*};
+use tabletop_core::{
+    Arm, Gripped, Held, Joint, ObjectSpec, Pose, Robot, RobotJoint, SimFact, Table,
+    robot_base,
+};
+use tabletop_physics::convex_parts;
+
+use crate::{
+    clearance::{Owner, are_near},
+    grip::{Closing, STEEPEST_GRIP},
+    grips::{self, Grips},
+    meeting::Meetings,
+    motion::{Carried, Motion, reach},
+    orders::Orders,
+    parts::{Parts, RobotBody, poses, positions, put},
+    skeleton::Skeleton,
+    surroundings::Surroundings,
+};
+
+/// Farthest that something moves in a tick, in units, and still pushes what it meets; what goes farther has jumped.
+const JUMP: f32 = 1.0;
+
+/// What the robot knows of the world.
+#[derive(SystemParam)]
+pub(crate) struct Known<'w, 's> {
+    skeleton: Res<'w, Skeleton>,
+    meetings: Res<'w, Meetings>,
+    parts: Res<'w, Parts>,
+    tables: Query<'w, 's, &'static Table>,
+    is_table: Query<'w, 's, (), With<Table>>,
+    bodies: Query<'w, 's, (), With<RobotBody>>,
+    objects: Query<'w, 's, (&'static ObjectSpec, Has<Held>, Has<Gripped>)>,
+    joints: Query<'w, 's, &'static Joint>,
+}
+
+/// Moves the joints, the grippers and what they hold.
+pub(crate) fn advance(
+    known: Known,
+    mut orders: ResMut<Orders>,
+    mut robot: ResMut<Robot>,
+    mut grips: ResMut<Grips>,
+    mut rapier: WriteRapierContext,
+    mut transforms: Query<&mut Transform>,
+    mut sleeping: Query<&mut Sleeping>,
+    mut facts: MessageWriter<SimFact>,
+    mut commands: Commands,
+) -> Result {
+    if !orders.are_given() {
+        if robot.joints.iter().any(|joint| joint.velocity != 0.0) {
+            robot.joints.iter_mut().for_each(|joint| joint.velocity = 0.0);
+        }
+        return Ok(());
+    }
+    let mut rapier = rapier.single_mut()?;
+    let mut motion = known.motion(&robot, &grips, &rapier);
+    motion.turn_head(&orders);
+    let mut actions = Vec::new();
+    for arm in Arm::BOTH {
+        motion.move_arm(arm, &orders);
+        let wide = motion.positions[RobotJoint::gripper(arm).index()];
+        let closing = motion.move_fingers(arm, &orders);
+        let opens = motion.positions[RobotJoint::gripper(arm).index()] > wide;
+        actions.extend(known.decide(arm, opens, closing, &mut grips));
+    }
+
+    robot.move_to(&motion.positions);
+    orders.end_tick(&robot);
+    for arm in Arm::BOTH {
+        let squeezed = orders.wait_for(arm, motion.held_up_by[arm as usize]);
+        let obstacle = motion.blocked_by[arm as usize].or(squeezed.map(Owner::Thing));
+        let blocked_by = obstacle.map(|owner| known.name(owner));
+        if let Some(by) = blocked_by.clone() {
+            orders.give_up(arm);
+            if robot.arm(arm).blocked_by.as_ref() != Some(&by) {
+                facts.write(SimFact::ArmBlocked { arm, by });
+            }
+        }
+        robot.arms[arm as usize].blocked_by = blocked_by;
+    }
+    known.publish(&mut robot, &orders, motion.base);
+
+    let awake = known.near_arms(&mut motion);
+    for object in awake {
+        if let Ok(mut sleeping) = sleeping.get_mut(object) {
+            sleeping.sleeping = false;
+        }
+    }
+    let posture = known.skeleton.posture(&motion.positions);
+    let mut place = |entity, pose: Pose| {
+        let Ok(mut transform) = transforms.get_mut(entity) else {
+            return;
+        };
+        if transform.translation.distance(pose.location) > JUMP {
+            put(&mut rapier.rigidbody_set, entity, pose);
+        }
+        transform.set_if_neq(pose.into());
+    };
+    for (&part, pose) in known.parts.0.iter().zip(poses(&known.skeleton, &posture, motion.base)) {
+        place(part, pose);
+    }
+    for arm in Arm::BOTH {
+        for grip in grips.of(arm) {
+            place(grip.object, robot.arm(arm).end_effector * grip.pose);
+        }
+    }
+    for action in actions {
+        action.carry_out(&mut commands, &mut facts);
+    }
+    Ok(())
+}
+
+/// What a gripper does besides moving its fingers.
+enum Action {
+    Take(Arm, Entity),
+    Release(Arm),
+    Refuse { arm: Arm, id: String, angle: f32 },
+}
+
+impl Action {
+    fn carry_out(self, commands: &mut Commands, facts: &mut MessageWriter<SimFact>) {
+        match self {
+            Self::Take(arm, object) => {
+                commands.queue(move |world: &mut World| grips::take(world, arm, object));
+            }
+            Self::Release(arm) => {
+                commands.queue(move |world: &mut World| grips::release(world, arm));
+            }
+            Self::Refuse { arm, id, angle } => {
+                facts.write(SimFact::GripRefused { arm, id, angle });
+            }
+        }
+    }
+}
+
+impl Known<'_, '_> {
+    /// The tick's motion, before anything has moved.
+    fn motion<'a>(&'a self, robot: &Robot, grips: &Grips, rapier: &RapierContextMut) -> Motion<'a> {
+        let table = self.tables.iter().next().copied().unwrap_or_default();
+        let base = robot_base(&table);
+        let positions = positions(robot);
+        let posture = self.skeleton.posture(&positions);
+        let held: BTreeSet<_> = grips.all().collect();
+        let near = reach(
+            poses(&self.skeleton, &posture, base)
+                .into_iter()
+                .map(|pose| pose.location),
+        );
+        let surroundings = Surroundings::new(
+            rapier,
+            &near,
+            &self.bodies,
+            &self.is_table,
+            &held,
+            robot.is_shown,
+        );
+        let carried = Arm::BOTH.map(|arm| {
+            grips
+                .of(arm)
+                .iter()
+                .map(|grip| Carried {
+                    object: grip.object,
+                    pose: grip.pose,
+                    parts: parts_of(rapier, grip.object),
+                })
+                .collect()
+        });
+        Motion {
+            skeleton: &self.skeleton,
+            meetings: &self.meetings,
+            base,
+            surroundings,
+            carried,
+            positions,
+            blocked_by: [None; 2],
+            held_up_by: [None; 2],
+            scratch: posture,
+        }
+    }
+
+    /// What follows from a gripper's opening or closing.
+    fn decide(&self, arm: Arm, opens: bool, closing: Closing, grips: &mut Grips) -> Vec<Action> {
+        if opens {
+            grips.refused[arm as usize].clear();
+            let holds = !grips.of(arm).is_empty();
+            return holds.then_some(Action::Release(arm)).into_iter().collect();
+        }
+        let mut actions = Vec::new();
+        for (object, angle) in closing.touched {
+            if !grips::can_take(object, &self.objects, &self.joints) {
+                continue;
+            }
+            if angle < STEEPEST_GRIP {
+                actions.push(Action::Take(arm, object));
+            } else if !grips.refused[arm as usize].contains(&object) {
+                grips.refused[arm as usize].push(object);
+                let id = self.name(Owner::Thing(object));
+                actions.push(Action::Refuse { arm, id, angle });
+            }
+        }
+        actions
+    }
+
+    /// What something is called.
+    fn name(&self, owner: Owner) -> String {
+        match owner {
+            Owner::Body(number) => self.skeleton.bodies[number].name.clone(),
+            Owner::Thing(thing) => match self.objects.get(thing) {
+                Ok((spec, ..)) => spec.id.clone(),
+                Err(_) => "table".into(),
+            },
+        }
+    }
+
+    /// Writes what is known of the arms.
+    pub fn publish(&self, robot: &mut Robot, orders: &Orders, base: Pose) {
+        let posture = self.skeleton.posture(&positions(robot));
+        for arm in Arm::BOTH {
+            let state = &mut robot.arms[arm as usize];
+            state.end_effector = self.skeleton.end_effector(arm, &posture, base);
+            state.joint_origins = self.skeleton.joint_origins(arm, &posture, base);
+            state.is_moving = orders.is_under_way(arm);
+        }
+    }
+
+    /// The sleeping objects that the arms may touch in this tick: Rapier lets things move into sleeping ones for a tick.
+    fn near_arms(&self, motion: &mut Motion) -> Vec<Entity> {
+        let mut bounds: Vec<Aabb> = Vec::new();
+        if motion.surroundings.free.iter().any(|thing| thing.is_sleeping) {
+            for arm in Arm::BOTH {
+                bounds.extend(motion.bounds(arm));
+            }
+        }
+        let things = motion.surroundings.free.iter();
+        things
+            .filter(|thing| thing.is_sleeping)
+            .filter(|thing| bounds.iter().any(|bounds| are_near(bounds, &thing.bounds)))
+            .map(|thing| thing.object)
+            .collect()
+    }
+}
+
+/// The convex parts of an object, in its own frame.
+fn parts_of(rapier: &RapierContextMut, object: Entity) -> Vec<tabletop_physics::Convex> {
+    let handle = rapier.colliders.entity2collider().get(&object).copied();
+    handle
+        .and_then(|handle| rapier.colliders.colliders.get(handle))
+        .map(|collider| convex_parts(Pose::IDENTITY, collider.shared_shape()))
+        .unwrap_or_default()
+}

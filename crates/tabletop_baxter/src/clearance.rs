@@ -1,0 +1,233 @@
+//! Whether solids that are to move have something in their way.
+
+use bevy::prelude::*;
+use bevy_rapier3d::{
+    parry::{
+        bounding_volume::{Aabb, BoundingVolume},
+        query::contact,
+    },
+    rapier::prelude as rapier,
+};
+use tabletop_core::Pose;
+use tabletop_physics::Convex;
+
+/// Distance, in units, that is kept from what is in the way.
+const MARGIN: f32 = 0.01;
+
+/// Changes of distance, in units, that are no approach.
+const APPROACH: f32 = 1e-5;
+
+/// Distance, in units, at which something free is touched, and pushed from the next tick on.
+const TOUCHING: f32 = 0.01;
+
+/// Depth, in units, to which something free is squeezed before what squeezes it stops.
+const SQUEEZE: f32 = 0.05;
+
+/// What a solid belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Owner {
+    /// An object or the table.
+    Thing(Entity),
+    /// A body of the robot, by its number.
+    Body(usize),
+}
+
+/// A convex solid that goes from one pose to another, or stays.
+#[derive(Clone, Debug)]
+pub(crate) struct Solid {
+    /// What it belongs to.
+    pub owner: Owner,
+    shape: rapier::SharedShape,
+    from: Pose,
+    to: Pose,
+    bounds: Aabb,
+}
+
+impl Solid {
+    /// The solids of something that goes from one pose to another.
+    pub fn moving(parts: &[Convex], owner: Owner, from: Pose, to: Pose) -> impl Iterator<Item = Self> {
+        parts.iter().map(move |part| {
+            let to = to * part.pose;
+            Self {
+                owner,
+                shape: part.shape.clone(),
+                from: from * part.pose,
+                to,
+                bounds: part.shape.compute_aabb(&to_rapier(to)),
+            }
+        })
+    }
+
+    /// A solid that stays where it is, in the table's frame.
+    pub fn resting(part: Convex, owner: Owner) -> Self {
+        Self {
+            owner,
+            bounds: part.shape.compute_aabb(&to_rapier(part.pose)),
+            shape: part.shape,
+            from: part.pose,
+            to: part.pose,
+        }
+    }
+
+    /// Whether the two solids would enter each other, or come nearer to each other than they may.
+    pub fn collides_with(&self, other: &Self) -> bool {
+        if !are_near(&self.bounds, &other.bounds) {
+            return false;
+        }
+        let Some(ahead) = self.distance(self.to, other, other.to, MARGIN) else {
+            return false;
+        };
+        self.distance(self.from, other, other.from, MARGIN)
+            .is_none_or(|here| ahead < here - APPROACH)
+    }
+
+    /// How this solid comes nearer to something free on its way in a tick; `None` if it does not.
+    pub fn approach(&self, free: &Self) -> Option<Approach> {
+        let reach = self.from.location.distance(self.to.location)
+            + self.from.rotation.angle_between(self.to.rotation) * self.extent();
+        let [here, ahead] =
+            [self.from, self.to].map(|at| self.distance(at, free, free.to, reach + TOUCHING));
+        let approach = Approach {
+            distance: here?,
+            way: here? - ahead?,
+        };
+        (approach.way > 0.0).then_some(approach)
+    }
+
+    /// How deep this solid is inside another one, in units, before they move.
+    pub fn depth_in(&self, other: &Self) -> f32 {
+        let distance = self.distance(self.from, other, other.from, 0.0);
+        distance.map_or(0.0, |distance| -distance)
+    }
+
+    /// The radius of a ball about the solid's origin that holds it.
+    fn extent(&self) -> f32 {
+        let ball = self.shape.compute_local_bounding_sphere();
+        ball.center().length() + ball.radius()
+    }
+
+    /// Whether the two solids are nearer to each other than `distance`, in units, before they move.
+    pub fn is_within(&self, distance: f32, other: &Self) -> bool {
+        self.distance(self.from, other, other.from, distance)
+            .is_some()
+    }
+
+    /// Whether its way passes a box.
+    pub fn passes(&self, bounds: &Aabb) -> bool {
+        let start = self.shape.compute_aabb(&to_rapier(self.from));
+        are_near(&self.bounds.merged(&start), bounds)
+    }
+
+    /// The box around it where it goes.
+    pub const fn bounds(&self) -> &Aabb {
+        &self.bounds
+    }
+
+    /// How far the solids are apart at these poses, in units, negative inside; `None` if farther than `most`.
+    fn distance(&self, at: Pose, other: &Self, other_at: Pose, most: f32) -> Option<f32> {
+        contact(
+            &to_rapier(at),
+            &*self.shape,
+            &to_rapier(other_at),
+            &*other.shape,
+            most,
+        )
+        .ok()
+        .flatten()
+        .map(|contact| contact.dist)
+    }
+}
+
+/// How a solid comes nearer to something free in a tick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Approach {
+    /// How far apart they are at its beginning, in units.
+    distance: f32,
+    /// By how much less that would be at its end.
+    way: f32,
+}
+
+impl Approach {
+    /// Whether the physics engine knows that they touch, so that the one pushes the other.
+    pub fn is_push(self) -> bool {
+        self.distance <= TOUCHING
+    }
+
+    /// The part of its way that the solid can go: it reaches what is free in one tick and pushes it from the next one on,
+    /// the slower the more it squeezes it.
+    pub fn part(self) -> f32 {
+        if self.is_push() {
+            part_left(-self.distance)
+        } else {
+            ((self.distance - TOUCHING / 2.0) / self.way).min(1.0)
+        }
+    }
+}
+
+/// The part of a push that is left when something is squeezed so deep, in units.
+pub(crate) fn part_left(depth: f32) -> f32 {
+    (1.0 - depth / SQUEEZE).clamp(0.0, 1.0)
+}
+
+/// Whether two boxes are no farther apart than the margin.
+pub(crate) fn are_near(a: &Aabb, b: &Aabb) -> bool {
+    a.mins.cmple(b.maxs + MARGIN).all() && a.maxs.cmpge(b.mins - MARGIN).all()
+}
+
+fn to_rapier(pose: Pose) -> rapier::Pose {
+    rapier::Pose::from_parts(pose.location, pose.rotation)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_blocked(from: f32, to: f32) -> bool {
+        let slab = Convex {
+            pose: Pose::at(Vec3::NEG_Z * 2.0),
+            shape: rapier::SharedShape::cuboid(10.0, 6.0, 2.0),
+        };
+        let table = Solid::resting(slab, Owner::Body(0));
+        let cylinder = Convex {
+            pose: Pose::IDENTITY,
+            shape: rapier::SharedShape::cylinder(1.0, 0.6),
+        };
+        let [from, to] = [from, to].map(|z| Pose::from_degrees(Vec3::Z * z, Vec3::X * 90.0));
+        Solid::moving(&[cylinder], Owner::Body(1), from, to).any(|it| it.collides_with(&table))
+    }
+
+    #[test]
+    fn nothing_comes_nearer_than_the_margin() {
+        assert!(!is_blocked(2.0, 1.02));
+        assert!(is_blocked(2.0, 1.005));
+        assert!(is_blocked(2.0, 0.5));
+    }
+
+    #[test]
+    fn something_free_is_reached_then_pushed_and_not_squeezed() {
+        let block = |z: f32| {
+            let shape = rapier::SharedShape::cuboid(0.5, 0.5, 0.5);
+            let pose = Pose::at(Vec3::Z * z);
+            Convex { pose, shape }
+        };
+        let push = |from: f32| {
+            let [from, to] = [from, from - 0.1].map(|z| Pose::at(Vec3::Z * z));
+            let solid = Solid::moving(&[block(0.0)], Owner::Body(0), from, to).next();
+            let approach = solid.unwrap().approach(&Solid::resting(block(0.0), Owner::Body(1)));
+            approach.map_or(1.0, Approach::part)
+        };
+        assert_eq!(push(1.5), 1.0);
+        assert!((push(1.055) - 0.5).abs() < 1e-3);
+        assert_eq!(push(1.005), 1.0);
+        assert!((push(0.98) - 0.6).abs() < 1e-3);
+        assert_eq!(push(0.9), 0.0);
+    }
+
+    #[test]
+    fn what_is_too_near_may_leave_and_not_come_nearer() {
+        assert!(!is_blocked(1.0, 1.005));
+        assert!(is_blocked(1.0, 0.99));
+        assert!(!is_blocked(0.5, 0.6));
+        assert!(is_blocked(0.5, 0.4));
+    }
+}

@@ -1,0 +1,129 @@
+//! What is seen of the robot in the world.
+
+use bevy::{math::DAffine3, prelude::*};
+use tabletop_core::{Face, Figure, Robot};
+use tabletop_kinematics::{Geometry, Link, Shape};
+
+use crate::{
+    look::{LookError, figure_of, merged, screen_with, stand_in},
+    parts::Parts,
+    plugin::Description,
+    skeleton::{Carrier, Skeleton, WRIST_TURNED},
+};
+
+/// The link whose face changes.
+const SCREEN: &str = "screen";
+
+/// The looks of the robot's bodies, made when it is shown for the first time.
+#[derive(Resource, Default)]
+pub(crate) struct Figures {
+    bodies: Vec<Option<Figure>>,
+    /// What is on the entities now: nothing, or the robot with this face.
+    shown: Option<Face>,
+}
+
+/// Gives the bodies what they look like while the robot is shown, and its screen the face.
+pub(crate) fn show_figures(
+    robot: Res<Robot>,
+    description: Res<Description>,
+    skeleton: Res<Skeleton>,
+    parts: Res<Parts>,
+    mut figures: ResMut<Figures>,
+    mut commands: Commands,
+) {
+    let show = robot.is_shown.then_some(robot.face);
+    if figures.shown == show {
+        return;
+    }
+    if show.is_some() && figures.bodies.is_empty() {
+        figures.bodies = figures_of(&description, &skeleton);
+    }
+    for (number, &part) in parts.0.iter().enumerate() {
+        let is_screen = matches!(skeleton.bodies[number].carrier, Carrier::Link(link)
+            if description.model.link(link).name == SCREEN);
+        let mut part = commands.entity(part);
+        match (show, figures.shown) {
+            (None, _) => {
+                part.remove::<Figure>();
+            }
+            (Some(face), _) if is_screen => {
+                part.insert_if_some(screen(&description, face));
+            }
+            (Some(_), None) => {
+                part.insert_if_some(figures.bodies[number].clone());
+            }
+            _ => {}
+        }
+    }
+    figures.shown = show;
+}
+
+trait InsertIfSome {
+    fn insert_if_some(&mut self, figure: Option<Figure>);
+}
+
+impl InsertIfSome for EntityCommands<'_> {
+    fn insert_if_some(&mut self, figure: Option<Figure>) {
+        if let Some(figure) = figure {
+            self.insert(figure);
+        }
+    }
+}
+
+fn figures_of(description: &Description, skeleton: &Skeleton) -> Vec<Option<Figure>> {
+    let bodies = skeleton.bodies.iter();
+    bodies
+        .map(|body| match body.carrier {
+            Carrier::Link(link) => figure_of_link(description, description.model.link(link)),
+            Carrier::Gripper(..) => seen(&finger(), description).ok(),
+        })
+        .collect()
+}
+
+/// What a link looks like. A mesh that cannot be read is told once, and what the link is touched by stands in for it.
+fn figure_of_link(description: &Description, link: &Link) -> Option<Figure> {
+    let visuals: Result<Vec<_>, _> = link
+        .visuals
+        .iter()
+        .map(|visual| seen(visual, description))
+        .collect();
+    match visuals {
+        Ok(visuals) => merged(visuals),
+        Err(error) => {
+            warn!("link {} is shown by what it is touched by: {error}", link.name);
+            stand_in(&link.collisions)
+        }
+    }
+}
+
+fn screen(description: &Description, face: Face) -> Option<Figure> {
+    let link = description.model.find_link(SCREEN).ok()?;
+    let link = description.model.link(link);
+    match &link.visuals[..] {
+        [visual] if is_ours(visual) => {
+            screen_with(face, visual, description.path.as_deref()).ok()
+        }
+        _ => figure_of_link(description, link),
+    }
+}
+
+fn seen(visual: &Shape, description: &Description) -> Result<Figure, LookError> {
+    figure_of(visual, description.path.as_deref())
+}
+
+/// Whether a visual is one of the program's own shapes.
+fn is_ours(visual: &Shape) -> bool {
+    matches!(&visual.geometry, Geometry::Mesh { file, .. } if file.starts_with("package://tabletop/"))
+}
+
+/// The visual of a finger. Its shape has the axes of a wrist.
+fn finger() -> Shape {
+    Shape {
+        origin: DAffine3::from_mat3(WRIST_TURNED),
+        geometry: Geometry::Mesh {
+            file: "package://tabletop/finger.shape.json".into(),
+            scale: bevy::math::DVec3::ONE,
+        },
+        color: None,
+    }
+}

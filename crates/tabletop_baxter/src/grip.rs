@@ -1,0 +1,175 @@
+//! Whether a gripper holds what is between its fingers (report section 5, figure 11), and how far it can close.
+
+use std::{collections::BTreeMap, f32::consts::PI};
+
+use bevy::prelude::*;
+use tabletop_core::Pose;
+use tabletop_physics::Convex;
+
+use crate::pad::{Feeler, Pad, Touch, opposite};
+
+/// The angle θ of figure 11 below which an object is held.
+pub const STEEPEST_GRIP: f32 = PI / 16.0;
+
+/// Sum of the distances to both fingers, in units, at which an object counts as touched by both.
+const TOUCHING: f32 = 0.004;
+
+/// Something that may be between the fingers.
+pub(crate) struct Candidate {
+    /// The object.
+    pub object: Entity,
+    /// Its convex parts, in the table's frame.
+    pub parts: Vec<Convex>,
+}
+
+/// What a gripper finds between its fingers.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct Closing {
+    /// By how much the opening can still shrink until something is in the way, in units.
+    pub room: f32,
+    /// The objects that both fingers touch, with the angle θ of each.
+    pub touched: Vec<(Entity, f32)>,
+}
+
+/// What happens to a gripper that closes.
+pub(crate) fn close(end_effector: Pose, opening: f32, between: &[Candidate]) -> Closing {
+    let pads = Pad::pair(end_effector, opening);
+    let mut closing = Closing {
+        room: opening,
+        touched: Vec::new(),
+    };
+    let mut thickness = BTreeMap::new();
+    for candidate in between {
+        let [Some(left), Some(right)] = pads.map(|pad| pad.touch(&candidate.parts, opening)) else {
+            continue;
+        };
+        let gap = left.distance + right.distance;
+        closing.room = closing.room.min(gap.max(0.0));
+        if gap <= TOUCHING {
+            let theta = angle(left, right, end_effector);
+            closing.touched.push((candidate.object, theta));
+        }
+        add_thickness(&mut thickness, pads, candidate, opening);
+    }
+    let thickest = thickness.values().copied().fold(0.0, f32::max);
+    closing.room = closing.room.min((opening - thickest).max(0.0));
+    closing
+}
+
+/// The angle between the line from contact to contact and the normal of the fingers' inner faces.
+fn angle(left: Touch, right: Touch, end_effector: Pose) -> f32 {
+    let across = right.point - left.point;
+    across.angle_between(end_effector.rotation * Vec3::X)
+}
+
+/// Adds what an object takes of each line from finger to finger, so that objects behind each other add up.
+fn add_thickness(
+    thickness: &mut BTreeMap<Feeler, f32>,
+    [left, right]: [Pad; 2],
+    candidate: &Candidate,
+    opening: f32,
+) {
+    let from_right: BTreeMap<_, _> = right.feel(&candidate.parts, opening).collect();
+    for (feeler, from_left) in left.feel(&candidate.parts, opening) {
+        if let Some(from_right) = from_right.get(&opposite(feeler)) {
+            *thickness.entry(feeler).or_default() += opening - from_left - from_right;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_rapier3d::rapier::prelude::SharedShape;
+
+    use super::*;
+
+    const OBJECT: Entity = Entity::PLACEHOLDER;
+
+    fn candidate(shape: SharedShape, pose: Pose) -> Candidate {
+        Candidate {
+            object: OBJECT,
+            parts: vec![Convex { pose, shape }],
+        }
+    }
+
+    fn unit_block(pose: Pose) -> Candidate {
+        candidate(SharedShape::cuboid(0.5, 0.5, 0.5), pose)
+    }
+
+    /// θ when the gripper has closed on this, without moving it.
+    fn theta(candidate: Candidate) -> f32 {
+        let candidates = [candidate];
+        let free = close(Pose::IDENTITY, 2.0, &candidates);
+        let closed = close(Pose::IDENTITY, 2.0 - free.room, &candidates);
+        assert!(closed.room < 1e-3, "{closed:?}");
+        closed.touched[0].1
+    }
+
+    fn turned(degrees: Vec3) -> Pose {
+        Pose::from_degrees(Vec3::ZERO, degrees)
+    }
+
+    #[test]
+    fn the_angle_decides_between_ten_and_fifteen_degrees() {
+        for held in [0.0, 5.0, 10.0] {
+            let theta = theta(unit_block(turned(Vec3::Z * held)));
+            assert!(theta < STEEPEST_GRIP, "{held}°: {theta}");
+        }
+        for refused in [15.0, 20.0, 30.0] {
+            let theta = theta(unit_block(turned(Vec3::Z * refused)));
+            assert!(theta > STEEPEST_GRIP, "{refused}°: {theta}");
+        }
+    }
+
+    #[test]
+    fn round_things_are_touched_at_opposite_points() {
+        let lying_across = turned(Vec3::ZERO);
+        let lying_along = turned(Vec3::Z * 90.0);
+        let standing = turned(Vec3::X * 90.0);
+        for pose in [lying_across, lying_along, standing] {
+            let theta = theta(candidate(SharedShape::cylinder(0.5, 0.4), pose));
+            assert!(theta < 0.02, "{pose:?}: {theta}");
+        }
+        assert!(theta(candidate(SharedShape::ball(0.5), Pose::IDENTITY)) < 0.02);
+    }
+
+    #[test]
+    fn a_block_off_the_centre_leaves_the_same_room() {
+        for x in [0.0, 0.2, -0.4] {
+            let closing = close(Pose::IDENTITY, 2.0, &[unit_block(Pose::at(Vec3::X * x))]);
+            assert!((closing.room - 1.0).abs() < 1e-4, "{closing:?}");
+            assert!(closing.touched.is_empty());
+        }
+    }
+
+    #[test]
+    fn blocks_behind_each_other_add_up() {
+        let halves = [-0.5, 0.4].map(|x| {
+            candidate(
+                SharedShape::cuboid(0.25, 0.5, 0.5),
+                Pose::at(Vec3::X * x),
+            )
+        });
+        let closing = close(Pose::IDENTITY, 2.0, &halves);
+        assert!((closing.room - 1.0).abs() < 1e-4, "{closing:?}");
+        assert!(closing.touched.is_empty());
+    }
+
+    #[test]
+    fn blocks_above_each_other_are_both_touched() {
+        let stacked = [-0.3, 0.3].map(|z| {
+            candidate(
+                SharedShape::cuboid(0.25, 0.25, 0.25),
+                Pose::at(Vec3::Z * z),
+            )
+        });
+        let closing = close(Pose::IDENTITY, 0.5, &stacked);
+        assert_eq!(closing.touched.len(), 2);
+        assert_eq!(closing.room, 0.0);
+    }
+
+    #[test]
+    fn nothing_between_the_fingers_lets_them_meet() {
+        assert_eq!(close(Pose::IDENTITY, 1.5, &[]).room, 1.5);
+    }
+}

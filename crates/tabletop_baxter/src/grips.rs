@@ -1,0 +1,130 @@
+//! What the grippers hold.
+
+use bevy::prelude::*;
+use tabletop_core::{Arm, Gripped, Held, Joint, ObjectSpec, Pose, Robot, SimFact};
+use tabletop_physics::{hold, let_go};
+
+/// What the grippers hold, and how.
+#[derive(Resource, Clone, Debug, Default)]
+pub(crate) struct Grips {
+    held: [Vec<Grip>; 2],
+    /// Objects that a closing gripper could not hold, until it opens.
+    pub refused: [Vec<Entity>; 2],
+}
+
+/// An object in a gripper.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Grip {
+    /// The object.
+    pub object: Entity,
+    /// Its pose in the end effector's frame.
+    pub pose: Pose,
+}
+
+impl Grips {
+    /// What a gripper holds, in the order in which it took it.
+    pub fn of(&self, arm: Arm) -> &[Grip] {
+        &self.held[arm as usize]
+    }
+
+    /// Everything that is held.
+    pub fn all(&self) -> impl Iterator<Item = Entity> {
+        self.held.iter().flatten().map(|grip| grip.object)
+    }
+}
+
+/// Takes an object into a gripper.
+pub(crate) fn take(world: &mut World, arm: Arm, object: Entity) {
+    let end_effector = world.resource::<Robot>().arm(arm).end_effector;
+    let Some(here) = world.get::<Transform>(object).map(Pose::from) else {
+        return;
+    };
+    let Some(id) = id(world, object) else {
+        return;
+    };
+    world.resource_mut::<Grips>().held[arm as usize].push(Grip {
+        object,
+        pose: end_effector.inverse() * here,
+    });
+    let mut body = world.entity_mut(object);
+    body.insert(Gripped { by: arm });
+    hold(body);
+    world.write_message(SimFact::GripMade { arm, id });
+}
+
+/// Lets go of everything that a gripper holds.
+pub(crate) fn release(world: &mut World, arm: Arm) {
+    let grips = std::mem::take(&mut world.resource_mut::<Grips>().held[arm as usize]);
+    for Grip { object, .. } in grips {
+        let Some(id) = id(world, object) else {
+            continue;
+        };
+        let mut body = world.entity_mut(object);
+        body.remove::<Gripped>();
+        let_go(body);
+        world.write_message(SimFact::GripReleased { arm, id });
+    }
+}
+
+/// Gives up what a hand has taken out of a gripper.
+pub(crate) fn give_to_hands(
+    held: Query<&ObjectSpec, (With<Held>, With<Gripped>)>,
+    mut grips: ResMut<Grips>,
+    mut commands: Commands,
+    mut facts: MessageWriter<SimFact>,
+) {
+    if held.is_empty() {
+        return;
+    }
+    for arm in Arm::BOTH {
+        grips.held[arm as usize].retain(|grip| {
+            let Ok(spec) = held.get(grip.object) else {
+                return true;
+            };
+            commands.entity(grip.object).remove::<Gripped>();
+            facts.write(SimFact::GripReleased {
+                arm,
+                id: spec.id.clone(),
+            });
+            false
+        });
+    }
+}
+
+/// A gripper whose object goes without it is empty.
+pub(crate) fn note_lost(
+    remove: On<Remove, Gripped>,
+    objects: Query<&ObjectSpec>,
+    mut grips: ResMut<Grips>,
+    mut facts: MessageWriter<SimFact>,
+) {
+    for arm in Arm::BOTH {
+        let held = &mut grips.held[arm as usize];
+        let Some(place) = held.iter().position(|grip| grip.object == remove.entity) else {
+            continue;
+        };
+        held.remove(place);
+        if let Ok(spec) = objects.get(remove.entity) {
+            facts.write(SimFact::GripReleased {
+                arm,
+                id: spec.id.clone(),
+            });
+        }
+    }
+}
+
+/// Whether a gripper can take an object: it has mass, no hand holds it, and no joint.
+pub(crate) fn can_take(
+    object: Entity,
+    objects: &Query<(&ObjectSpec, Has<Held>, Has<Gripped>)>,
+    joints: &Query<&Joint>,
+) -> bool {
+    let is_free = objects
+        .get(object)
+        .is_ok_and(|(spec, is_held, is_gripped)| !spec.is_fixed() && !is_held && !is_gripped);
+    is_free && !joints.iter().any(|joint| joint.objects.contains(&object))
+}
+
+fn id(world: &World, object: Entity) -> Option<String> {
+    Some(world.get::<ObjectSpec>(object)?.id.clone())
+}

@@ -1,0 +1,52 @@
+//! Surfaces of revolution.
+
+use std::f64::consts::TAU;
+
+use bevy::math::Vec3;
+use serde::Deserialize;
+
+use super::{axis::Axis, detail::Detail, hull::Hull};
+
+/// What a lathe makes: a profile turned about an axis. Lengths in m.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Lathe {
+    /// A point of the axis.
+    pub origin: Vec3,
+    pub axis: Axis,
+    /// Points as radius and height above the origin. Where it does not start or end at the axis, it is closed straight to it.
+    pub profile: Vec<[f32; 2]>,
+}
+
+impl Lathe {
+    /// Its surface.
+    pub fn hull(&self, detail: Detail) -> Hull {
+        let largest = self.profile.iter().map(|point| point[0]).fold(0.0, f32::max);
+        let segments = detail.segments(largest);
+        let mut profile: Vec<_> = detail
+            .thinned(&self.profile)
+            .into_iter()
+            .filter_map(|i| self.profile.get(i).copied())
+            .collect();
+        let [first, last] = [profile.first(), profile.last()].map(|end| {
+            let end = end.filter(|end| end[0] > 0.0)?;
+            Some([0.0, end[1]])
+        });
+        profile.splice(0..0, first);
+        profile.extend(last);
+        let rings: Vec<_> = profile
+            .iter()
+            .map(|&[radius, height]| {
+                let count = if radius > 0.0 { segments } else { 1 };
+                (0..count)
+                    .map(|i| {
+                        let (sin, cos) = (TAU * i as f64 / count as f64).sin_cos();
+                        let (u, v) = (radius * cos as f32, radius * sin as f32);
+                        self.origin + self.axis.point(u, v, height)
+                    })
+                    .collect()
+            })
+            .collect();
+        Hull::through(&rings).oriented()
+    }
+}

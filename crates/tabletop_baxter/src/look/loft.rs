@@ -1,0 +1,79 @@
+//! Surfaces through sections of different sizes.
+
+use std::f64::consts::TAU;
+
+use bevy::math::Vec3;
+use serde::Deserialize;
+
+use super::{axis::Axis, detail::Detail, hull::Hull};
+
+/// A surface through superellipses across an axis, closed flat at both ends. Lengths in m.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Loft {
+    axis: Axis,
+    sections: Vec<Section>,
+}
+
+/// The superellipse |u|^n + |v|^n = 1 stretched to a rectangle: an ellipse for exponent 2, nearly the rectangle for 10.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Section {
+    /// Where on the axis it is.
+    at: f32,
+    /// From where to where along u it reaches.
+    u: [f32; 2],
+    /// From where to where along v it reaches.
+    v: [f32; 2],
+    exponent: f64,
+}
+
+impl Section {
+    fn radius(&self) -> f32 {
+        ((self.u[1] - self.u[0]) / 2.0).max((self.v[1] - self.v[0]) / 2.0)
+    }
+
+    fn middle(&self, axis: Axis) -> Vec3 {
+        axis.point((self.u[0] + self.u[1]) / 2.0, (self.v[0] + self.v[1]) / 2.0, self.at)
+    }
+
+    fn ring(&self, axis: Axis, segments: usize) -> Vec<Vec3> {
+        let [u_half, v_half] = [self.u, self.v].map(|[least, most]| (most - least) / 2.0);
+        (0..segments)
+            .map(|i| {
+                let (sin, cos) = (TAU * i as f64 / segments as f64).sin_cos();
+                let on_unit = |part: f64| (part.abs().powf(2.0 / self.exponent) * part.signum()) as f32;
+                // Sine and cosine of right angles are not quite 0, which roots would make large.
+                let [u, v] = [cos, sin].map(|part| if part.abs() < 1e-9 { 0.0 } else { on_unit(part) });
+                self.middle(axis) + axis.point(u * u_half, v * v_half, 0.0)
+            })
+            .collect()
+    }
+}
+
+impl Loft {
+    /// Its surface.
+    pub fn hull(&self, detail: Detail) -> Hull {
+        let largest = self.sections.iter().map(Section::radius).fold(0.0, f32::max);
+        // So that there are points where the sections are widest.
+        let segments = detail.segments(largest).next_multiple_of(4);
+        let sizes: Vec<_> = self
+            .sections
+            .iter()
+            .map(|section| [section.at, section.u[0], section.u[1], section.v[0], section.v[1]])
+            .collect();
+        let sections: Vec<_> = detail
+            .thinned(&sizes)
+            .into_iter()
+            .filter_map(|i| self.sections.get(i))
+            .collect();
+        let mut rings: Vec<_> = sections
+            .iter()
+            .map(|section| section.ring(self.axis, segments))
+            .collect();
+        let end = |section: Option<&&Section>| section.map(|section| vec![section.middle(self.axis)]);
+        rings.splice(0..0, end(sections.first()));
+        rings.extend(end(sections.last()));
+        Hull::through(&rings).oriented()
+    }
+}

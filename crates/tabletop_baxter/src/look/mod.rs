@@ -1,0 +1,104 @@
+//! What robots look like: Baxter's own shapes, faces on its screen, and the meshes of other robots.
+//!
+//! [`figure_of`] makes what is seen of a visual of a robot's description; a link with several of them has them [`merged`].
+//! Where that fails, [`stand_in`] shows what the link would be touched by. Descriptions are in metres, figures in units.
+
+mod axis;
+mod boxes;
+mod detail;
+mod error;
+mod extrusion;
+mod faces;
+mod hull;
+mod lathe;
+mod loft;
+mod meshes;
+mod palette;
+mod parts;
+mod shape_file;
+mod solids;
+mod tube;
+
+pub use error::LookError;
+pub use faces::face;
+
+use std::{path::Path, sync::Arc};
+
+use bevy::math::{Affine3A, DAffine3, Vec3};
+use tabletop_core::{Face, Figure, Rgb, Triangles};
+use tabletop_kinematics::{Geometry, Shape};
+
+use hull::UNITS_PER_METER;
+
+/// What a visual of a link looks like, in the frame of the link, in units. `urdf` is the file of the description, from
+/// which the meshes that it names are found; without it only Baxter's own are known (`package://tabletop/...`).
+///
+/// # Errors
+///
+/// If a mesh cannot be found or read.
+pub fn figure_of(visual: &Shape, urdf: Option<&Path>) -> Result<Figure, LookError> {
+    let color = visual.color.map_or(Rgb::GRAY, |color| {
+        let [red, green, blue, _] = color.map(|part| part as f32);
+        Rgb::new(red, green, blue)
+    });
+    let figure = match &visual.geometry {
+        Geometry::Mesh { file, scale } => meshes::figure(file, scale.as_vec3(), color, urdf)?,
+        solid => solids::figure(solid, color),
+    };
+    Ok(placed(figure, visual))
+}
+
+/// What shows that a link is there whose looks are not known: the bodies that it would be touched by, in grey, in the frame
+/// of the link, in units. `None` if there are none but meshes.
+pub fn stand_in(collisions: &[Shape]) -> Option<Figure> {
+    let solids = collisions
+        .iter()
+        .filter(|shape| !matches!(shape.geometry, Geometry::Mesh { .. }));
+    merged(solids.map(|shape| placed(solids::figure(&shape.geometry, Rgb::GRAY), shape)))
+}
+
+/// One figure that looks like all of these in one place; `None` of none.
+pub fn merged(figures: impl IntoIterator<Item = Figure>) -> Option<Figure> {
+    figures.into_iter().reduce(|mut one, other| {
+        let append = |surface: &mut Arc<Triangles>, more: &Triangles| {
+            Arc::make_mut(surface).append(more);
+        };
+        append(&mut one.fine, &other.fine);
+        append(&mut one.coarse, &other.coarse);
+        one
+    })
+}
+
+/// What the robot's screen looks like with a face on it, in the frame of its link, in units: a visual that is
+/// `screen.shape.json`.
+///
+/// # Errors
+///
+/// If the visual cannot be found or read.
+pub fn screen_with(shown: Face, visual: &Shape, urdf: Option<&Path>) -> Result<Figure, LookError> {
+    let screen = figure_of(visual, urdf)?;
+    let face = Arc::new(face(shown));
+    let face = Figure {
+        fine: Arc::clone(&face),
+        coarse: face,
+    };
+    Ok(merged([screen.clone(), placed(face, visual)]).unwrap_or(screen))
+}
+
+/// A figure, made in the frame of a visual, in the frame of its link.
+fn placed(mut figure: Figure, visual: &Shape) -> Figure {
+    let DAffine3 { matrix3, translation } = visual.origin;
+    let to_link = Affine3A::from_mat3_translation(matrix3.as_mat3(), translation.as_vec3() * UNITS_PER_METER);
+    if to_link != Affine3A::IDENTITY {
+        for surface in [&mut figure.fine, &mut figure.coarse] {
+            let surface = Arc::make_mut(surface);
+            for point in &mut surface.positions {
+                *point = to_link.transform_point3(*point);
+            }
+            for normal in &mut surface.normals {
+                *normal = to_link.transform_vector3(*normal).normalize_or(Vec3::Z);
+            }
+        }
+    }
+    figure
+}

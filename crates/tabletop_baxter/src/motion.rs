@@ -1,0 +1,313 @@
+//! How far the joints can go: where they are told to, as far as nothing is in the way (report section 5).
+
+use bevy::prelude::*;
+use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
+use tabletop_core::{Arm, Pose, RobotJoint};
+use tabletop_physics::Convex;
+
+use crate::{
+    clearance::{Owner, Solid, are_near, part_left},
+    grip::{Candidate, Closing, close},
+    meeting::Meetings,
+    orders::{Orders, Want},
+    skeleton::{Body, Carrier, Place, Posture, Skeleton},
+    surroundings::Surroundings,
+};
+
+/// Farthest a body goes, in units, before it is looked for what is in its way: less than a finger is thick.
+const STEP: f32 = 0.2;
+
+/// Most steps of a tick: what is faster is looked at less often.
+const MOST_STEPS: f32 = 400.0;
+
+/// Halvings of the last step, to come as near as possible.
+const HALVINGS: u32 = 6;
+
+/// Least part of a tick's way that is gone.
+const LEAST_PUSH: f64 = 0.05;
+
+/// How far from an end effector, in units, something may be between its fingers.
+const BETWEEN: f32 = 2.0;
+
+/// What a gripper holds, as the arm carries it.
+pub(crate) struct Carried {
+    /// The object.
+    pub object: Entity,
+    /// Its pose in the end effector's frame.
+    pub pose: Pose,
+    /// Its convex parts, in its own frame.
+    pub parts: Vec<Convex>,
+}
+
+/// The motion of a tick.
+pub(crate) struct Motion<'a> {
+    /// The robot.
+    pub skeleton: &'a Skeleton,
+    /// Which of its bodies can meet.
+    pub meetings: &'a Meetings,
+    /// Where its torso stands.
+    pub base: Pose,
+    /// What is around it.
+    pub surroundings: Surroundings,
+    /// What its grippers hold.
+    pub carried: [Vec<Carried>; 2],
+    /// Positions of the joints, by [`RobotJoint::index`].
+    pub positions: [f64; 17],
+    /// What stopped each arm in this tick.
+    pub blocked_by: [Option<Owner>; 2],
+    /// What each arm has squeezed so much in this tick that it waited.
+    pub held_up_by: [Option<Entity>; 2],
+    /// A posture to compute with.
+    pub scratch: Posture,
+}
+
+impl Motion<'_> {
+    /// Turns the neck.
+    pub fn turn_head(&mut self, orders: &Orders) {
+        let position = &mut self.positions[RobotJoint::HeadPan.index()];
+        *position = orders.want(RobotJoint::HeadPan, *position).position();
+    }
+
+    /// Moves the joints of an arm.
+    pub fn move_arm(&mut self, arm: Arm, orders: &Orders) {
+        let joints = RobotJoint::of_arm(arm);
+        let here = joints.map(|joint| self.positions[joint.index()]);
+        let wants = orders.want_arm(arm, here);
+        let mut there = self.positions;
+        for (joint, want) in joints.into_iter().zip(wants) {
+            there[joint.index()] = want.position();
+        }
+        if there == self.positions {
+            return;
+        }
+        let jumps = wants.iter().any(|want| matches!(want, Want::Jump(_)));
+        if jumps && self.obstacle(arm, &self.positions.clone(), &there).is_none() {
+            self.positions = there;
+            return;
+        }
+        let (part, pushed) = self.push(arm, &there);
+        if part < LEAST_PUSH {
+            self.held_up_by[arm as usize] = pushed;
+            return;
+        }
+        self.blocked_by[arm as usize] = self.sweep(arm, lerp(&self.positions, &there, part));
+    }
+
+    /// Opens or closes a gripper. Returns what it has found between its fingers while closing.
+    pub fn move_fingers(&mut self, arm: Arm, orders: &Orders) -> Closing {
+        let joint = RobotJoint::gripper(arm);
+        let opening = self.positions[joint.index()];
+        let want = orders.want(joint, opening).position();
+        let mut closing = Closing::default();
+        let mut there = self.positions;
+        if want > opening {
+            there[joint.index()] = want;
+        } else if want < opening && self.carried[arm as usize].is_empty() {
+            closing = close(self.end_effector(arm), opening as f32, &self.between(arm));
+            there[joint.index()] = want.max(opening - f64::from(closing.room)).max(0.0);
+        }
+        let (part, _) = self.push(arm, &there);
+        if there != self.positions && part >= LEAST_PUSH {
+            self.sweep(arm, lerp(&self.positions, &there, part));
+        }
+        closing
+    }
+
+    /// Where an end effector is.
+    pub fn end_effector(&mut self, arm: Arm) -> Pose {
+        self.skeleton.update(&mut self.scratch, &self.positions);
+        self.skeleton.end_effector(arm, &self.scratch, self.base)
+    }
+
+    /// What may be between the fingers of a gripper.
+    fn between(&mut self, arm: Arm) -> Vec<Candidate> {
+        let at = self.end_effector(arm).location;
+        let near = Aabb::new(at - BETWEEN, at + BETWEEN);
+        let things = self.surroundings.free.iter();
+        things
+            .filter(|thing| are_near(&thing.bounds, &near))
+            .map(|thing| Candidate {
+                object: thing.object,
+                parts: thing.parts.clone(),
+            })
+            .collect()
+    }
+
+    /// Goes towards these positions, as far as nothing is in the way of an arm. Returns what is.
+    fn sweep(&mut self, arm: Arm, there: [f64; 17]) -> Option<Owner> {
+        let start = self.positions;
+        let between = |part: f64| lerp(&start, &there, part);
+        let steps = (self.way(arm, &start, &there) / STEP)
+            .ceil()
+            .clamp(1.0, MOST_STEPS);
+        for step in 1..=steps as u32 {
+            let ahead = f64::from(step) / f64::from(steps);
+            let Some(obstacle) = self.obstacle(arm, &self.positions.clone(), &between(ahead)) else {
+                self.positions = between(ahead);
+                continue;
+            };
+            let (mut free, mut blocked) = (f64::from(step - 1) / f64::from(steps), ahead);
+            for _ in 0..HALVINGS {
+                let middle = (free + blocked) / 2.0;
+                match self.obstacle(arm, &self.positions.clone(), &between(middle)) {
+                    None => free = middle,
+                    Some(_) => blocked = middle,
+                }
+            }
+            self.positions = between(free);
+            return Some(obstacle);
+        }
+        None
+    }
+
+    /// The part of the way to these positions that an arm can go in a tick with what it pushes, and what it pushes most.
+    fn push(&mut self, arm: Arm, there: &[f64; 17]) -> (f64, Option<Entity>) {
+        if self.surroundings.free.is_empty() {
+            return (1.0, None);
+        }
+        let here = self.positions;
+        let solids = self.solids(arm, &here, there);
+        let (mut part, mut most_pushed) = (1.0, None);
+        for (i, thing) in self.surroundings.free.iter().enumerate() {
+            let approaches = solids
+                .iter()
+                .filter(|(_, solid)| solid.passes(&thing.bounds))
+                .flat_map(|(_, solid)| thing.solids().filter_map(|thing| solid.approach(&thing)));
+            let mut can_go = 1.0_f32;
+            let mut is_pushed = false;
+            for approach in approaches {
+                can_go = can_go.min(approach.part());
+                is_pushed |= approach.is_push();
+            }
+            if is_pushed {
+                can_go = can_go.min(part_left(self.surroundings.squeeze(i)));
+            }
+            if can_go < part {
+                (part, most_pushed) = (can_go, Some(thing.object));
+            }
+        }
+        (f64::from(part), most_pushed)
+    }
+
+    /// About how far the bodies of an arm go between two positions, in units.
+    fn way(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> f32 {
+        let from = self.poses(arm, from);
+        let to = self.poses(arm, to);
+        from.into_iter()
+            .zip(to)
+            .map(|((_, from), (_, to))| {
+                from.location.distance(to.location) + from.rotation.angle_between(to.rotation)
+            })
+            .fold(0.0, f32::max)
+    }
+
+    /// Where the bodies of an arm are, with their numbers.
+    fn poses(&mut self, arm: Arm, positions: &[f64; 17]) -> Vec<(usize, Pose)> {
+        self.skeleton.update(&mut self.scratch, positions);
+        let bodies = self.skeleton.bodies.iter().enumerate();
+        bodies
+            .filter(|(_, body)| is_of(body, arm))
+            .map(|(number, body)| {
+                let pose = self.skeleton.pose(body, &self.scratch, self.base);
+                (number, pose)
+            })
+            .collect()
+    }
+
+    /// The solids of an arm and of what it holds, each with the number of a body that meets what it meets.
+    fn solids(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> Vec<(usize, Solid)> {
+        let from_poses = self.poses(arm, from);
+        let from_hand = self.skeleton.end_effector(arm, &self.scratch, self.base);
+        let to_poses = self.poses(arm, to);
+        let to_hand = self.skeleton.end_effector(arm, &self.scratch, self.base);
+        let mut solids = Vec::new();
+        for ((number, from), (_, to)) in from_poses.into_iter().zip(to_poses) {
+            let parts = &self.skeleton.bodies[number].parts;
+            let moving = Solid::moving(parts, Owner::Body(number), from, to);
+            solids.extend(moving.map(|solid| (number, solid)));
+        }
+        let finger = self.finger(arm);
+        for carried in &self.carried[arm as usize] {
+            let [from, to] = [from_hand, to_hand].map(|hand| hand * carried.pose);
+            let moving = Solid::moving(&carried.parts, Owner::Thing(carried.object), from, to);
+            solids.extend(moving.map(|solid| (finger, solid)));
+        }
+        solids
+    }
+
+    /// The number of a finger of an arm.
+    fn finger(&self, arm: Arm) -> usize {
+        let is_finger =
+            |body: &Body| matches!(body.carrier, Carrier::Gripper(of, _) if of == arm);
+        self.skeleton.bodies.iter().position(is_finger).unwrap_or(0)
+    }
+
+    /// What is in the way of an arm between two positions.
+    fn obstacle(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> Option<Owner> {
+        let solids = self.solids(arm, from, to);
+        let outside = solids.iter().find_map(|(_, solid)| {
+            let mut immovable = self.surroundings.immovable.iter();
+            immovable
+                .find(|obstacle| solid.collides_with(obstacle))
+                .map(|obstacle| obstacle.owner)
+        });
+        outside.or_else(|| self.own_body(arm, &solids))
+    }
+
+    /// The body of the robot that solids of an arm would run into.
+    fn own_body(&mut self, arm: Arm, solids: &[(usize, Solid)]) -> Option<Owner> {
+        for (i, (a, solid)) in solids.iter().enumerate() {
+            let met = solids[..i]
+                .iter()
+                .find(|(b, other)| self.meetings.can_meet(*a, *b) && solid.collides_with(other));
+            if let Some((_, other)) = met {
+                return Some(other.owner);
+            }
+        }
+        self.skeleton.update(&mut self.scratch, &self.positions);
+        for (number, body) in self.skeleton.bodies.iter().enumerate() {
+            if is_of(body, arm) || !solids.iter().any(|(a, _)| self.meetings.can_meet(*a, number)) {
+                continue;
+            }
+            let pose = self.skeleton.pose(body, &self.scratch, self.base);
+            for other in Solid::moving(&body.parts, Owner::Body(number), pose, pose) {
+                let is_met = solids
+                    .iter()
+                    .any(|(a, solid)| self.meetings.can_meet(*a, number) && solid.collides_with(&other));
+                if is_met {
+                    return Some(other.owner);
+                }
+            }
+        }
+        None
+    }
+
+    /// The boxes around the solids of an arm where it is now.
+    pub fn bounds(&mut self, arm: Arm) -> Vec<Aabb> {
+        let here = self.positions;
+        let solids = self.solids(arm, &here, &here);
+        solids.iter().map(|(_, solid)| *solid.bounds()).collect()
+    }
+}
+
+/// A box around everything that the arms may meet in a tick.
+pub(crate) fn reach(poses: impl Iterator<Item = Vec3>) -> Aabb {
+    let mut bounds: Option<Aabb> = None;
+    for at in poses {
+        let around = Aabb::new(at - 5.0, at + 5.0);
+        bounds = Some(bounds.map_or(around, |bounds| bounds.merged(&around)));
+    }
+    bounds.unwrap_or_else(Aabb::new_invalid)
+}
+
+/// Positions on the way between others.
+fn lerp(from: &[f64; 17], to: &[f64; 17], part: f64) -> [f64; 17] {
+    std::array::from_fn(|i| match part < 1.0 {
+        true => from[i] + (to[i] - from[i]) * part,
+        false => to[i],
+    })
+}
+
+fn is_of(body: &Body, arm: Arm) -> bool {
+    matches!(body.place, Place::Arm(of, _) if of == arm)
+}

@@ -1,0 +1,121 @@
+//! The robot's bodies in the world.
+
+use bevy::prelude::*;
+use bevy_rapier3d::{
+    plugin::systems::{init_colliders, init_rigid_bodies},
+    prelude::*,
+};
+use tabletop_core::{Pose, Rewinds, Robot, Table, robot_base};
+
+use crate::skeleton::{Body, Posture, Skeleton};
+
+/// A body of the robot: a link, or a finger of a gripper.
+#[derive(Component, Clone, Debug)]
+#[require(Transform, Rewinds)]
+pub struct RobotBody {
+    /// What it is called.
+    pub name: String,
+}
+
+/// The robot's bodies, by their numbers.
+#[derive(Resource, Clone, Debug)]
+pub(crate) struct Parts(pub Vec<Entity>);
+
+/// Friction of the robot's surface. Two surfaces in contact have the product of theirs.
+const FRICTION: f32 = 1.0;
+
+/// Makes the bodies, hidden.
+pub(crate) fn spawn(world: &mut World) -> Result {
+    let skeleton = world.resource::<Skeleton>().clone();
+    let posture = skeleton.posture(&positions(world.resource::<Robot>()));
+    let base = base(world);
+    let mut parts = Vec::new();
+    for body in &skeleton.bodies {
+        let place = Transform::from(skeleton.pose(body, &posture, base));
+        let mut part = world.spawn((
+            RobotBody {
+                name: body.name.clone(),
+            },
+            place,
+            GlobalTransform::from(place),
+        ));
+        if let Some(collider) = collider(body) {
+            part.insert((
+                RigidBody::KinematicPositionBased,
+                collider,
+                Friction {
+                    coefficient: FRICTION,
+                    combine_rule: CoefficientCombineRule::Multiply,
+                },
+                RigidBodyDisabled,
+            ));
+        }
+        parts.push(part.id());
+    }
+    world.insert_resource(Parts(parts));
+    // Now, before objects can come: the order of bodies decides the last bits of their motion.
+    world.run_system_cached(init_rigid_bodies)?;
+    world.run_system_cached(init_colliders)?;
+    Ok(())
+}
+
+fn collider(body: &Body) -> Option<Collider> {
+    let parts: Vec<_> = body
+        .parts
+        .iter()
+        .map(|part| (part.pose.location, part.pose.rotation, part.shape.clone().into()))
+        .collect();
+    (!parts.is_empty()).then(|| Collider::compound(parts))
+}
+
+/// The positions of the joints.
+pub(crate) fn positions(robot: &Robot) -> [f64; 17] {
+    robot.joints.map(|joint| joint.position)
+}
+
+/// Where the torso's frame stands, in front of the present table.
+pub(crate) fn base(world: &mut World) -> Pose {
+    let mut tables = world.query::<&Table>();
+    let table = tables.iter(world).next().copied();
+    robot_base(&table.unwrap_or_default())
+}
+
+/// Puts the bodies where a posture has them, without pushing anything on the way.
+pub(crate) fn teleport(world: &mut World) -> Result {
+    let posture = world
+        .resource::<Skeleton>()
+        .posture(&positions(world.resource::<Robot>()));
+    let base = base(world);
+    let poses = poses(world.resource::<Skeleton>(), &posture, base);
+    let parts = world.resource::<Parts>().clone();
+    for (&part, &pose) in parts.0.iter().zip(&poses) {
+        if let Some(mut transform) = world.get_mut::<Transform>(part) {
+            transform.set_if_neq(pose.into());
+        }
+    }
+    let mut contexts = world.query_filtered::<&mut RapierRigidBodySet, With<DefaultRapierContext>>();
+    let mut bodies = contexts.single_mut(world)?;
+    for (part, pose) in parts.0.iter().zip(poses) {
+        put(&mut bodies, *part, pose);
+    }
+    Ok(())
+}
+
+/// Puts a body somewhere, without pushing anything on the way.
+pub(crate) fn put(bodies: &mut RapierRigidBodySet, part: Entity, pose: Pose) {
+    let handle = bodies.entity2body().get(&part).copied();
+    if let Some(body) = handle.and_then(|handle| bodies.bodies.get_mut(handle)) {
+        let pose = bevy_rapier3d::rapier::prelude::Pose::from_parts(pose.location, pose.rotation);
+        body.set_position(pose, true);
+        body.set_next_kinematic_position(pose);
+    }
+}
+
+/// Where the bodies are in a posture, by their numbers.
+pub(crate) fn poses(skeleton: &Skeleton, posture: &Posture, base: Pose) -> Vec<Pose> {
+    skeleton
+        .bodies
+        .iter()
+        .map(|body| skeleton.pose(body, posture, base))
+        .collect()
+}

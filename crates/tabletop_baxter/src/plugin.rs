@@ -1,0 +1,135 @@
+//! What the plugin adds to an app.
+
+use std::path::PathBuf;
+
+use bevy::prelude::*;
+use tabletop_core::{
+    ActuateSystems, CommandSystems, HeadCamera, Rewound, Robot, RobotJoint, RobotMode, SimSystems, Table,
+};
+use tabletop_kinematics::{Model, ModelError};
+use tabletop_physics::BodySystems;
+
+use crate::{
+    advance, feel,
+    figures::{Figures, show_figures},
+    grips::{self, Grips},
+    meeting::Meetings,
+    orders::{self, Orders},
+    parts,
+    skeleton::Skeleton,
+};
+
+/// Which robot stands at the table.
+#[derive(Resource, Clone, Debug)]
+pub struct Description {
+    /// Its model.
+    pub model: Model,
+    /// The file that it was read from, beside which its meshes are; `None` for the robot that comes with the program.
+    pub path: Option<PathBuf>,
+}
+
+impl Description {
+    /// The Baxter that comes with the program.
+    ///
+    /// # Errors
+    ///
+    /// None that a test of the program would not find.
+    pub fn baxter() -> Result<Self, ModelError> {
+        Ok(Self {
+            model: tabletop_kinematics::baxter()?,
+            path: None,
+        })
+    }
+}
+
+/// Adds the robot. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin).
+#[derive(Clone, Debug, Default)]
+pub struct BaxterPlugin {
+    /// Another robot than the one that comes with the program.
+    pub description: Option<Description>,
+    /// How its joints move.
+    pub mode: RobotMode,
+}
+
+impl Plugin for BaxterPlugin {
+    fn build(&self, app: &mut App) {
+        let description = match self.description.clone().map_or_else(Description::baxter, Ok) {
+            Ok(description) => description,
+            Err(error) => {
+                error!("there is no robot: {error}");
+                return;
+            }
+        };
+        let skeleton = match Skeleton::new(description.model.clone()) {
+            Ok(skeleton) => skeleton,
+            Err(error) => {
+                error!("there is no robot: {error}");
+                return;
+            }
+        };
+        app.insert_resource(Meetings::new(&skeleton))
+            .insert_resource(skeleton)
+            .insert_resource(description)
+            .init_resource::<Figures>()
+            .init_resource::<Orders>()
+            .init_resource::<Grips>()
+            .init_resource::<HeadCamera>();
+        let world = app.world_mut();
+        world.resource_mut::<Robot>().mode = self.mode;
+        let mut rewound = world.resource_mut::<Rewound>();
+        rewound.add::<Robot>();
+        rewound.add::<Orders>();
+        rewound.add::<Grips>();
+        app.add_systems(Startup, (parts::spawn, publish).chain())
+            .add_systems(
+                FixedUpdate,
+                (
+                    (
+                        stand_at_table.run_if(table_has_come),
+                        orders::obey,
+                        grips::give_to_hands,
+                    )
+                        .chain()
+                        .after(BodySystems)
+                        .in_set(CommandSystems::Robot),
+                    (advance::advance, turn_camera)
+                        .chain()
+                        .in_set(ActuateSystems::Robot),
+                    feel::feel.in_set(SimSystems::Sense),
+                    show_figures.run_if(resource_changed::<Robot>).in_set(SimSystems::Propagate),
+                ),
+            )
+            .add_observer(grips::note_lost);
+    }
+}
+
+fn table_has_come(tables: Query<(), Added<Table>>) -> bool {
+    !tables.is_empty()
+}
+
+/// Puts the robot in front of a new table.
+fn stand_at_table(world: &mut World) -> Result {
+    parts::teleport(world)?;
+    world.run_system_cached(publish)?;
+    Ok(())
+}
+
+/// Writes where the arms are.
+fn publish(
+    known: advance::Known,
+    tables: Query<&Table>,
+    orders: Res<Orders>,
+    mut robot: ResMut<Robot>,
+) {
+    let table = tables.iter().next().copied().unwrap_or_default();
+    let base = tabletop_core::robot_base(&table);
+    known.publish(&mut robot, &orders, base);
+}
+
+/// Lets the head camera turn with the neck.
+fn turn_camera(robot: Res<Robot>, mut camera: ResMut<HeadCamera>) {
+    let pan = robot.joint(RobotJoint::HeadPan).position as f32;
+    if camera.pan != pan {
+        camera.pan = pan;
+    }
+}

@@ -1,0 +1,34 @@
+//! Bringing an end effector to a pose.
+
+use bevy::prelude::*;
+use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, Robot, RobotJoint};
+use tabletop_kinematics::Target;
+
+use crate::{
+    parts::base,
+    skeleton::{Skeleton, in_meters},
+};
+
+/// The angles of an arm that bring its end effector to a pose in the table's frame, near to those that it has now.
+pub(crate) fn solve(world: &mut World, arm: Arm, pose: Pose) -> Result<[f64; JOINTS_PER_ARM], String> {
+    if !pose.location.is_finite() || !pose.rotation.is_finite() {
+        return Err(format!("the {arm} arm cannot reach for {pose:?}: not a pose"));
+    }
+    let base = base(world);
+    let robot = world.resource::<Robot>();
+    let (chain, end_effector) = world.resource::<Skeleton>().chain(arm);
+    let chain = chain
+        .clone()
+        .with_limits(RobotJoint::of_arm(arm).map(|joint| joint.limits().into()));
+    let target = in_meters(base.inverse() * pose) * end_effector.inverse();
+    chain
+        .solve(&Target::Pose(target), &robot.angles(arm))
+        .map_err(|unreachable| {
+            format!(
+                "the {arm} arm cannot reach {:.3}: it comes no nearer than {:.3} units and {:.1}°",
+                pose.location,
+                unreachable.miss.position * crate::skeleton::UNITS_PER_METER,
+                unreachable.miss.rotation.to_degrees()
+            )
+        })
+}

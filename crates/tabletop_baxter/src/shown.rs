@@ -1,0 +1,39 @@
+//! Whether the robot stands at the table.
+
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
+use tabletop_core::{Arm, Robot, SimFact};
+
+use crate::{
+    grips,
+    parts::{Parts, teleport},
+};
+
+/// Puts the robot to the table, or takes it away; what its grippers hold is let go of before.
+pub(crate) fn show(world: &mut World, show: bool) {
+    if world.resource::<Robot>().is_shown == show {
+        return;
+    }
+    if !show {
+        for arm in Arm::BOTH {
+            grips::release(world, arm);
+        }
+    }
+    world.resource_mut::<Robot>().is_shown = show;
+    let parts = world.resource::<Parts>().clone();
+    for part in parts.0 {
+        let mut part = world.entity_mut(part);
+        if !part.contains::<Collider>() {
+            continue;
+        }
+        if show {
+            part.remove::<RigidBodyDisabled>();
+        } else {
+            part.insert(RigidBodyDisabled);
+        }
+    }
+    if let Err(error) = teleport(world) {
+        error!("cannot place the robot: {error}");
+    }
+    world.write_message(SimFact::RobotShown(show));
+}

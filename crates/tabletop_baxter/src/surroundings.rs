@@ -1,0 +1,129 @@
+//! What is around the robot.
+
+use std::collections::BTreeSet;
+
+use bevy::prelude::*;
+use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*, rapier::prelude as rapier};
+use tabletop_core::{Pose, Table};
+use tabletop_physics::{Convex, convex_parts};
+
+use crate::{
+    clearance::{Owner, Solid, are_near},
+    parts::RobotBody,
+};
+
+/// Something free that the robot can push or take.
+pub(crate) struct FreeThing {
+    /// The object.
+    pub object: Entity,
+    /// Its convex parts, in the table's frame.
+    pub parts: Vec<Convex>,
+    /// The box around it.
+    pub bounds: Aabb,
+    /// Whether it sleeps.
+    pub is_sleeping: bool,
+}
+
+impl FreeThing {
+    /// Its solids, where they are.
+    pub fn solids(&self) -> impl Iterator<Item = Solid> {
+        let parts = self.parts.iter().cloned();
+        parts.map(|part| Solid::resting(part, Owner::Thing(self.object)))
+    }
+}
+
+/// What is around the robot, as far as it is near.
+pub(crate) struct Surroundings {
+    /// What it cannot pass.
+    pub immovable: Vec<Solid>,
+    /// What it pushes, in the order of its creation.
+    pub free: Vec<FreeThing>,
+}
+
+impl Surroundings {
+    /// Looks at what is in this box. A hidden robot meets nothing but the table.
+    pub fn new(
+        rapier: &RapierContextMut,
+        near: &Aabb,
+        is_robot: &Query<(), With<RobotBody>>,
+        is_table: &Query<(), With<Table>>,
+        held: &BTreeSet<Entity>,
+        is_shown: bool,
+    ) -> Self {
+        let mut surroundings = Self {
+            immovable: Vec::new(),
+            free: Vec::new(),
+        };
+        for (_, collider) in rapier.colliders.colliders.iter() {
+            let bounds = collider.compute_aabb();
+            let Some((object, body)) = body_of(rapier, collider) else {
+                continue;
+            };
+            let is_mine = is_robot.contains(object) || held.contains(&object);
+            let is_met = is_shown || is_table.contains(object);
+            if !are_near(&bounds, near) || is_mine || !is_met || !body.is_enabled() {
+                continue;
+            }
+            let at = collider.position();
+            let parts = convex_parts(Pose::new(at.translation, at.rotation), collider.shared_shape());
+            if body.is_dynamic() {
+                surroundings.free.push(FreeThing {
+                    object,
+                    parts,
+                    bounds,
+                    is_sleeping: body.is_sleeping(),
+                });
+            } else {
+                let solids = parts
+                    .into_iter()
+                    .map(|part| Solid::resting(part, Owner::Thing(object)));
+                surroundings.immovable.extend(solids);
+            }
+        }
+        surroundings
+    }
+}
+
+impl Surroundings {
+    /// How deep a free thing, by its number, and what it pushes in turn, are squeezed into each other and into what cannot
+    /// move, in units.
+    pub fn squeeze(&self, pushed: usize) -> f32 {
+        let mut deepest = 0.0_f32;
+        let mut cluster = vec![pushed];
+        let mut next = 0;
+        while let Some(&thing) = cluster.get(next) {
+            next += 1;
+            let bounds = &self.free[thing].bounds;
+            for solid in self.free[thing].solids() {
+                let immovable = self.immovable.iter();
+                deepest = immovable
+                    .filter(|obstacle| are_near(obstacle.bounds(), bounds))
+                    .map(|obstacle| solid.depth_in(obstacle))
+                    .fold(deepest, f32::max);
+            }
+            for (other, neighbour) in self.free.iter().enumerate() {
+                if !cluster.contains(&other) && are_near(&neighbour.bounds, bounds) {
+                    let depth = depth_between(&self.free[thing], neighbour);
+                    deepest = deepest.max(depth);
+                    cluster.push(other);
+                }
+            }
+        }
+        deepest
+    }
+}
+
+fn depth_between(one: &FreeThing, other: &FreeThing) -> f32 {
+    one.solids()
+        .flat_map(|one| other.solids().map(move |other| one.depth_in(&other)))
+        .fold(0.0, f32::max)
+}
+
+fn body_of<'a>(
+    rapier: &'a RapierContextMut,
+    collider: &rapier::Collider,
+) -> Option<(Entity, &'a rapier::RigidBody)> {
+    let parent = collider.parent()?;
+    let entity = rapier.rigidbody_set.rigid_body_entity(parent)?;
+    Some((entity, rapier.rigidbody_set.bodies.get(parent)?))
+}

@@ -1,0 +1,194 @@
+//! Grippers and what they take.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+mod kit;
+
+use bevy::prelude::*;
+use kit::{Stage, block};
+use tabletop_baxter::STEEPEST_GRIP;
+use tabletop_core::{
+    Arm, Drive, Part, Pose, Rgb, Robot, RobotJoint, Shape, SimCommand, SimFact, StepApp,
+};
+
+const ARM: Arm = Arm::Right;
+
+/// A gripper over a place on the table, its fingers pointing down and wide open, around an object that is put there.
+fn gripper_around(shape: Shape, mass: f32, place: Vec3, degrees: Vec3) -> Stage {
+    let mut stage = Stage::new();
+    stage.reach(ARM, Vec3::new(3.0, -2.0, place.z.max(0.85)), 0.0);
+    stage.put("thing", shape, mass, Pose::from_degrees(Vec3::new(3.0, -2.0, 0.0) + place, degrees));
+    stage.app.step(5);
+    stage
+}
+
+fn close(stage: &mut Stage) -> Vec<SimFact> {
+    stage.tell(SimCommand::Drive(vec![(RobotJoint::gripper(ARM), Drive::Toward(0.0))]));
+    stage.facts_of(150)
+}
+
+fn grip_facts(facts: Vec<SimFact>) -> Vec<SimFact> {
+    let is_grip = |fact: &SimFact| {
+        matches!(
+            fact,
+            SimFact::GripMade { .. } | SimFact::GripRefused { .. } | SimFact::GripReleased { .. }
+        )
+    };
+    facts.into_iter().filter(is_grip).collect()
+}
+
+fn made() -> Vec<SimFact> {
+    vec![SimFact::GripMade {
+        arm: ARM,
+        id: "thing".into(),
+    }]
+}
+
+fn unit_block() -> Shape {
+    block(Vec3::ONE)
+}
+
+#[test]
+fn a_block_is_held_lifted_carried_and_let_go_of() {
+    let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, Vec3::ZERO);
+    assert_eq!(grip_facts(close(&mut stage)), made());
+    let opening = stage.robot().joint(RobotJoint::gripper(ARM)).position;
+    assert!((opening - 1.0).abs() < 0.01, "{opening}");
+
+    let place = stage.place("thing");
+    let hand = stage.robot().arm(ARM).end_effector;
+    stage.reach(ARM, Vec3::new(4.0, -1.0, 3.0), 40.0);
+    let moved = stage.robot().arm(ARM).end_effector;
+    let expected = moved * (hand.inverse() * place);
+    assert!((stage.place("thing").location - expected.location).length() < 1e-3);
+
+    stage.tell(SimCommand::Drive(vec![(RobotJoint::gripper(ARM), Drive::Toward(2.0))]));
+    let facts = grip_facts(stage.facts_of(120));
+    assert!(matches!(facts[..], [SimFact::GripReleased { .. }]), "{facts:?}");
+    assert!(stage.place("thing").location.z < 1.0);
+}
+
+#[test]
+fn a_block_off_the_centre_is_pushed_there_and_held() {
+    let mut stage = gripper_around(unit_block(), 1.0, Vec3::new(0.2, 0.0, 0.5), Vec3::ZERO);
+    assert_eq!(grip_facts(close(&mut stage)), made());
+    let hand = stage.robot().arm(ARM).end_effector.location;
+    let place = stage.place("thing").location;
+    assert!((place.x - hand.x).abs() < 0.02, "{place} under {hand}");
+}
+
+#[test]
+fn the_angle_of_figure_11_decides() {
+    for degrees in [5.0, 10.0] {
+        let turned = Vec3::Z * degrees;
+        let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, turned);
+        assert_eq!(grip_facts(close(&mut stage)), made(), "{degrees}°");
+    }
+    for degrees in [15.0, 30.0] {
+        let turned = Vec3::Z * degrees;
+        let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, turned);
+        let facts = grip_facts(close(&mut stage));
+        assert!(
+            matches!(facts[..], [SimFact::GripRefused { angle, .. }] if angle > STEEPEST_GRIP),
+            "{degrees}°: {facts:?}"
+        );
+        assert!(stage.robot().arm(ARM).holds.is_empty());
+    }
+}
+
+#[test]
+fn round_things_and_composites_are_held() {
+    let ball = Shape::Sphere {
+        radius: 0.5,
+        color: Rgb::GRAY,
+    };
+    let cylinder = Shape::Cylinder {
+        radius: 0.4,
+        yspan: 1.0,
+        color: Rgb::GRAY,
+    };
+    let hammer = Shape::Composite {
+        parts: vec![
+            Part {
+                id: String::new(),
+                pose: Pose::IDENTITY,
+                shape: block(Vec3::new(0.6, 2.0, 0.6)),
+            },
+            Part {
+                id: String::new(),
+                pose: Pose::at(Vec3::new(0.0, 1.2, 0.0)),
+                shape: block(Vec3::new(1.8, 0.6, 0.6)),
+            },
+        ],
+    };
+    let things = [
+        ("ball", ball, 0.5, Vec3::ZERO),
+        ("lying cylinder", cylinder.clone(), 0.4, Vec3::ZERO),
+        ("cylinder along the opening", cylinder.clone(), 0.4, Vec3::Z * 90.0),
+        ("standing cylinder", cylinder, 0.5, Vec3::X * 90.0),
+        ("composite", hammer, 0.3, Vec3::ZERO),
+    ];
+    for (name, shape, z, degrees) in things {
+        let mut stage = gripper_around(shape, 1.0, Vec3::Z * z, degrees);
+        assert_eq!(grip_facts(close(&mut stage)), made(), "{name}");
+    }
+}
+
+#[test]
+fn two_blocks_are_held_at_once_and_let_go_of_together() {
+    let mut stage = Stage::new();
+    stage.reach(ARM, Vec3::new(3.0, -2.0, 1.2), 0.0);
+    for (id, z) in [("lower", 0.25), ("upper", 0.75)] {
+        let shape = block(Vec3::new(1.0, 0.5, 0.5));
+        stage.put(id, shape, 1.0, Pose::at(Vec3::new(3.0, -2.0, z)));
+    }
+    stage.app.step(5);
+    let facts = grip_facts(close(&mut stage));
+    assert_eq!(facts.len(), 2, "{facts:?}");
+    assert_eq!(stage.robot().arm(ARM).holds.len(), 2);
+    stage.tell(SimCommand::Drive(vec![(RobotJoint::gripper(ARM), Drive::Velocity(1.0))]));
+    assert_eq!(grip_facts(stage.facts_of(2)).len(), 2);
+    assert!(stage.robot().arm(ARM).holds.is_empty());
+}
+
+#[test]
+fn a_fixed_object_is_not_held_and_stops_the_fingers() {
+    let mut stage = gripper_around(unit_block(), 0.0, Vec3::Z * 0.5, Vec3::ZERO);
+    assert!(grip_facts(close(&mut stage)).is_empty());
+    let opening = stage.robot().joint(RobotJoint::gripper(ARM)).position;
+    assert!((1.0..1.05).contains(&opening), "{opening}");
+}
+
+#[test]
+fn a_hand_takes_an_object_out_of_a_gripper() {
+    let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, Vec3::ZERO);
+    close(&mut stage);
+    stage.tell(SimCommand::Grasp {
+        hand: tabletop_core::Hand::Left,
+        object: "thing".into(),
+    });
+    let facts = grip_facts(stage.facts_of(2));
+    assert!(matches!(facts[..], [SimFact::GripReleased { .. }]), "{facts:?}");
+    assert!(stage.robot().arm(ARM).holds.is_empty());
+}
+
+#[test]
+fn hiding_the_robot_lets_go_of_what_it_holds() {
+    let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, Vec3::ZERO);
+    close(&mut stage);
+    stage.reach(ARM, Vec3::new(3.0, -2.0, 2.0), 0.0);
+    stage.tell(SimCommand::ShowRobot(false));
+    let facts = stage.facts_of(120);
+    assert!(facts.contains(&SimFact::RobotShown(false)));
+    assert!((stage.place("thing").location.z - 0.5).abs() < 0.02);
+}
+
+#[test]
+fn a_held_object_stays_when_the_table_is_cleared() {
+    let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, Vec3::ZERO);
+    close(&mut stage);
+    stage.tell(SimCommand::ClearTable);
+    stage.app.step(5);
+    assert_eq!(stage.robot().arm(ARM).holds.len(), 1);
+    let robot = stage.app.world().resource::<Robot>().clone();
+    assert_eq!(robot.arm(ARM).touches[0], robot.arm(ARM).holds);
+}

@@ -1,0 +1,93 @@
+//! A table with a robot, for tests.
+#![allow(dead_code, reason = "not every test needs everything")]
+
+use bevy::{ecs::message::MessageCursor, prelude::*};
+use tabletop_baxter::BaxterPlugin;
+use tabletop_core::*;
+use tabletop_demonstrator::DemonstratorPlugin;
+use tabletop_physics::PhysicsPlugin;
+use tabletop_scene::ScenePlugin;
+
+pub struct Stage {
+    pub app: App,
+    facts: MessageCursor<SimFact>,
+}
+
+/// A block of this size.
+pub fn block(span: Vec3) -> Shape {
+    Shape::Block {
+        span,
+        color: Rgb::GRAY,
+    }
+}
+
+impl Stage {
+    /// An empty table with the robot at it.
+    pub fn new() -> Self {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), PhysicsPlugin::default()))
+            .add_plugins((ScenePlugin, DemonstratorPlugin, BaxterPlugin::default()))
+            .start();
+        let mut stage = Self {
+            app,
+            facts: MessageCursor::default(),
+        };
+        stage.tell(SimCommand::SetScene(Box::default()));
+        stage.tell(SimCommand::ShowRobot(true));
+        stage.app.step(1);
+        stage
+    }
+
+    pub fn tell(&mut self, command: SimCommand) {
+        self.app.world_mut().write_message(command);
+    }
+
+    pub fn put(&mut self, id: &str, shape: Shape, mass: f32, pose: Pose) -> Entity {
+        let spec = ObjectSpec {
+            id: id.into(),
+            pose,
+            mass,
+            shape,
+            descriptions: Vec::new(),
+        };
+        self.app.world_mut().spawn((Transform::from(pose), spec)).id()
+    }
+
+    pub fn robot(&self) -> &Robot {
+        self.app.world().resource()
+    }
+
+    pub fn place(&self, id: &str) -> Pose {
+        let object = self.app.world().resource::<ObjectIndex>().get(id).unwrap();
+        Pose::from(self.app.world().get::<Transform>(object).unwrap())
+    }
+
+    /// The facts of so many ticks.
+    pub fn facts_of(&mut self, ticks: u64) -> Vec<SimFact> {
+        let mut all = Vec::new();
+        for _ in 0..ticks {
+            self.app.step(1);
+            let facts = self.app.world().resource::<Messages<SimFact>>();
+            all.extend(self.facts.read(facts).cloned());
+        }
+        all
+    }
+
+    /// Brings an end effector to a place, its fingers pointing down and opening along X, turned about Z.
+    pub fn reach(&mut self, arm: Arm, location: Vec3, yaw_degrees: f32) {
+        let pose = Pose::from_degrees(location, Vec3::Z * yaw_degrees);
+        self.tell(SimCommand::ReachTo { arm, pose });
+        let mut facts = self.facts_of(1);
+        for _ in 0..600 {
+            if !self.robot().arm(arm).is_moving {
+                break;
+            }
+            facts.extend(self.facts_of(1));
+        }
+        let there = self.robot().arm(arm).end_effector;
+        assert!(
+            (there.location - location).length() < 1e-3,
+            "{there:?} instead of {pose:?}: {facts:?}"
+        );
+    }
+}

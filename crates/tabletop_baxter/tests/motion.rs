@@ -1,0 +1,236 @@
+//! How the robot moves in kinematic mode.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+mod kit;
+
+use std::f32::consts::PI;
+
+use bevy::prelude::*;
+use bevy_rapier3d::{parry, prelude::Collider, rapier::prelude as rapier};
+use kit::{Stage, block};
+use proptest::prelude::*;
+use tabletop_baxter::RobotBody;
+use tabletop_core::{
+    Arm, Drive, HeadCamera, Pose, Robot, RobotJoint, SimCommand, SimFact, Solid, StepApp,
+    TICK_SECONDS, Table,
+};
+
+fn drive(stage: &mut Stage, joint: RobotJoint, drive: Drive) {
+    stage.tell(SimCommand::Drive(vec![(joint, drive)]));
+}
+
+#[test]
+fn a_velocity_moves_a_joint_for_one_tick() {
+    let mut stage = Stage::new();
+    let joint = RobotJoint::LeftS0;
+    drive(&mut stage, joint, Drive::Velocity(0.6));
+    stage.app.step(1);
+    let state = *stage.robot().joint(joint);
+    assert!((state.position - joint.home() - 0.6 * f64::from(TICK_SECONDS)).abs() < 1e-12);
+    assert!((state.velocity - 0.6).abs() < 1e-9);
+    stage.app.step(1);
+    assert_eq!(stage.robot().joint(joint).position, state.position);
+    assert_eq!(stage.robot().joint(joint).velocity, 0.0);
+}
+
+#[test]
+fn the_neck_turns_the_camera_and_the_hidden_robot_moves() {
+    let mut stage = Stage::new();
+    stage.tell(SimCommand::ShowRobot(false));
+    drive(&mut stage, RobotJoint::HeadPan, Drive::Position(0.5));
+    drive(&mut stage, RobotJoint::RightW2, Drive::Position(1.0));
+    stage.app.step(1);
+    assert_eq!(stage.app.world().resource::<HeadCamera>().pan, 0.5);
+    assert_eq!(stage.robot().joint(RobotJoint::RightW2).position, 1.0);
+}
+
+#[test]
+fn an_arm_stops_at_the_table_and_says_so_once() {
+    let mut stage = Stage::new();
+    stage.reach(Arm::Right, Vec3::new(3.0, -3.0, 1.5), 0.0);
+    let mut facts = Vec::new();
+    for _ in 0..120 {
+        drive(&mut stage, RobotJoint::RightS1, Drive::Velocity(1.0));
+        facts.extend(stage.facts_of(1));
+    }
+    let blocked = SimFact::ArmBlocked {
+        arm: Arm::Right,
+        by: "table".into(),
+    };
+    assert_eq!(facts, [blocked]);
+    let tip = stage.robot().arm(Arm::Right).end_effector * Vec3::new(0.0, 0.0, -0.75);
+    assert!((0.0..0.3).contains(&tip.z), "{tip}");
+    // It can go back.
+    drive(&mut stage, RobotJoint::RightS1, Drive::Velocity(-1.0));
+    stage.app.step(1);
+    assert_eq!(stage.robot().arm(Arm::Right).blocked_by, None);
+}
+
+#[test]
+fn an_arm_stops_at_a_fixed_object_and_pushes_a_free_one() {
+    for (mass, moves) in [(0.0, false), (1.0, true)] {
+        let mut stage = Stage::new();
+        stage.reach(Arm::Right, Vec3::new(2.0, -3.0, 0.9), 0.0);
+        drive(&mut stage, RobotJoint::RightGripper, Drive::Position(0.2));
+        stage.put("thing", block(Vec3::ONE), mass, Pose::at(Vec3::new(4.0, -3.0, 0.5)));
+        let pose = Pose::at(Vec3::new(5.0, -3.0, 0.9));
+        stage.tell(SimCommand::ReachTo { arm: Arm::Right, pose });
+        let facts = stage.facts_of(200);
+        let is_blocked = facts
+            .iter()
+            .any(|fact| matches!(fact, SimFact::ArmBlocked { by, .. } if by == "thing"));
+        assert_eq!(is_blocked, !moves, "{facts:?}");
+        let place = stage.place("thing").location;
+        assert_eq!(place.x > 5.0, moves, "{place}");
+    }
+}
+
+#[test]
+fn the_arms_do_not_enter_each_other() {
+    let mut stage = Stage::new();
+    stage.reach(Arm::Right, Vec3::new(2.0, -3.0, 3.0), 0.0);
+    stage.reach(Arm::Left, Vec3::new(-2.0, -3.0, 3.0), 0.0);
+    let pose = Pose::at(Vec3::new(3.0, -3.0, 3.0));
+    stage.tell(SimCommand::ReachTo { arm: Arm::Left, pose });
+    let facts = stage.facts_of(300);
+    let is_blocked = facts.iter().any(|fact| {
+        matches!(fact, SimFact::ArmBlocked { arm: Arm::Left, by } if by.contains("right"))
+    });
+    assert!(is_blocked, "{facts:?}");
+}
+
+#[test]
+fn a_held_object_is_never_inside_the_table() {
+    let mut stage = Stage::new();
+    stage.reach(Arm::Right, Vec3::new(3.0, -2.0, 1.7), 0.0);
+    stage.put("tall", block(Vec3::new(1.0, 1.0, 2.0)), 1.0, Pose::at(Vec3::new(3.0, -2.0, 1.0)));
+    drive(&mut stage, RobotJoint::RightGripper, Drive::Toward(0.0));
+    stage.app.step(120);
+    assert_eq!(stage.robot().arm(Arm::Right).holds.len(), 1);
+    stage.reach(Arm::Right, Vec3::new(3.0, -2.0, 2.7), 0.0);
+    for _ in 0..200 {
+        drive(&mut stage, RobotJoint::RightS1, Drive::Velocity(1.0));
+        stage.app.step(1);
+    }
+    let place = stage.place("tall");
+    let lowest = [-0.5f32, 0.5]
+        .into_iter()
+        .flat_map(|x| [-0.5f32, 0.5].map(|y| (place * Vec3::new(x, y, -1.0)).z))
+        .fold(f32::INFINITY, f32::min);
+    assert!((0.0..0.2).contains(&lowest), "{lowest}");
+}
+
+#[test]
+fn a_pose_out_of_reach_is_refused() {
+    let mut stage = Stage::new();
+    let pose = Pose::at(Vec3::new(30.0, 0.0, 1.0));
+    stage.tell(SimCommand::ReachTo { arm: Arm::Left, pose });
+    let facts = stage.facts_of(1);
+    assert!(
+        matches!(&facts[..], [SimFact::Refused { reason }] if reason.contains("cannot reach")),
+        "{facts:?}"
+    );
+}
+
+#[test]
+fn undo_takes_the_robot_back_too() {
+    let mut stage = Stage::new();
+    stage.put("thing", block(Vec3::ONE), 1.0, Pose::at(Vec3::new(-3.0, 0.0, 0.5)));
+    stage.app.world_mut().resource_mut::<tabletop_core::Recording>().0 = true;
+    stage.app.step(1);
+    let before = stage.robot().clone();
+    stage.tell(SimCommand::Grasp {
+        hand: tabletop_core::Hand::Left,
+        object: "thing".into(),
+    });
+    drive(&mut stage, RobotJoint::RightE1, Drive::Toward(1.0));
+    stage.app.step(30);
+    assert_ne!(stage.robot(), &before);
+    stage.tell(SimCommand::Undo);
+    stage.app.step(1);
+    assert_eq!(stage.robot().joints, before.joints);
+    assert_eq!(stage.robot().arms[1].end_effector, before.arms[1].end_effector);
+}
+
+/// The bodies of the arms that are inside the table.
+fn inside_the_table(stage: &mut Stage) -> Vec<String> {
+    let slab = Table::default().slab();
+    let Solid::Cuboid(span) = slab.solid else {
+        panic!("{slab:?}");
+    };
+    let table = rapier::SharedShape::cuboid(span.x / 2.0, span.y / 2.0, span.z / 2.0);
+    let table_at = rapier::Pose::from_translation(slab.pose.location);
+    let world = stage.app.world_mut();
+    let mut bodies = world.query::<(&RobotBody, &Transform, &Collider)>();
+    bodies
+        .iter(world)
+        .filter(|(body, ..)| body.name.contains("left") || body.name.contains("right"))
+        .filter(|(_, place, collider)| {
+            let at = rapier::Pose::from_parts(place.translation, place.rotation);
+            parry::query::intersection_test(&at, &*collider.raw, &table_at, &*table).unwrap()
+        })
+        .map(|(body, ..)| body.name.clone())
+        .collect()
+}
+
+fn any_drive() -> impl Strategy<Value = (RobotJoint, Drive)> {
+    let drive = prop_oneof![
+        4 => (-50.0..50.0).prop_map(Drive::Velocity),
+        1 => (-PI..PI).prop_map(|position| Drive::Position(f64::from(position))),
+        2 => (-4.0..4.0).prop_map(Drive::Toward),
+    ];
+    (0..17usize, drive).prop_map(|(joint, drive)| (RobotJoint::ALL[joint], drive))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    #[test]
+    fn no_command_brings_a_joint_out_of_its_limits_or_a_link_into_the_table(
+        drives in proptest::collection::vec(proptest::collection::vec(any_drive(), 1..6), 1..60),
+        is_shown: bool,
+    ) {
+        let mut stage = Stage::new();
+        stage.tell(SimCommand::ShowRobot(is_shown));
+        for drives in drives {
+            stage.tell(SimCommand::Drive(drives));
+            stage.app.step(3);
+            for joint in RobotJoint::ALL {
+                let position = stage.robot().joint(joint).position;
+                prop_assert_eq!(joint.clamp(position), position, "{}", joint);
+            }
+            let inside = inside_the_table(&mut stage);
+            prop_assert!(inside.is_empty(), "{:?}", inside);
+        }
+    }
+}
+
+#[test]
+fn what_it_does_is_the_same_every_time() {
+    let run = || -> (Robot, Pose) {
+        let mut stage = Stage::new();
+        stage.reach(Arm::Right, Vec3::new(3.0, -2.0, 0.9), 0.0);
+        stage.put("thing", block(Vec3::ONE), 1.0, Pose::at(Vec3::new(3.2, -2.0, 0.5)));
+        drive(&mut stage, RobotJoint::RightGripper, Drive::Toward(0.0));
+        stage.app.step(100);
+        (stage.robot().clone(), stage.place("thing"))
+    };
+    let (robot, place) = run();
+    let (again, place_again) = run();
+    assert_eq!(robot.joints, again.joints);
+    assert_eq!(place, place_again);
+}
+
+#[test]
+fn an_arm_that_presses_a_block_onto_the_table_stops() {
+    let mut stage = Stage::new();
+    stage.put("thing", block(Vec3::ONE), 1.0, Pose::at(Vec3::new(3.0, -3.0, 0.5)));
+    drive(&mut stage, RobotJoint::RightGripper, Drive::Position(0.2));
+    stage.reach(Arm::Right, Vec3::new(3.0, -3.0, 2.5), 0.0);
+    let pose = Pose::at(Vec3::new(3.0, -3.0, 0.9));
+    stage.tell(SimCommand::ReachTo { arm: Arm::Right, pose });
+    stage.app.step(140);
+    assert_eq!(stage.robot().arm(Arm::Right).blocked_by.as_deref(), Some("thing"));
+    let place = stage.place("thing").location;
+    assert!((place - Vec3::new(3.0, -3.0, 0.5)).length() < 0.2, "{place}");
+}

@@ -1,0 +1,101 @@
+//! Balls that one can see through: they are blended into a picture of all that one cannot see through.
+
+use bevy::math::{Vec3, Vec4};
+use tabletop_core::{Markers, Picture, Pose, Solid};
+
+use crate::{
+    camera::View,
+    round::{Curve, Ends, Round},
+    row::{Offset, SampleRow},
+    scene::DrawnSolid,
+    seen::corners_of_solid,
+    surface::{Surface, bytes},
+};
+
+/// The transparent balls that a camera can see.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Glass {
+    /// The balls, the farthest first.
+    balls: Vec<Ball>,
+    samples: SampleRow,
+    /// Sum of the colours of the samples in each pixel of a row, and how many these are.
+    sums: Vec<Vec4>,
+}
+
+#[derive(Clone, Debug)]
+struct Ball {
+    distance: f32,
+    round: Round,
+    surface: Surface,
+}
+
+impl Glass {
+    /// Forgets everything and looks at balls around these points.
+    pub fn look_at(&mut self, markers: &[Vec3], view: &View) {
+        self.balls.clear();
+        self.balls
+            .extend(markers.iter().filter_map(|&center| Ball::seen(center, view)));
+        self.balls.sort_by(|one, other| other.distance.total_cmp(&one.distance));
+    }
+
+    /// Blends the balls into a row of a picture: where they are nearer than all else in these samples.
+    pub fn blend(
+        &mut self,
+        view: &View,
+        row: u32,
+        others: &[(Offset, &SampleRow)],
+        picture: &mut Picture,
+    ) {
+        let Self {
+            balls,
+            samples,
+            sums,
+        } = self;
+        let first = row as usize * view.width as usize;
+        for ball in balls.iter().filter(|ball| ball.round.window.rows.contains(&row)) {
+            let columns = &ball.round.window.columns;
+            sums.clear();
+            sums.resize(columns.len(), Vec4::ZERO);
+            for (offset, other) in others {
+                samples.clear(view.width);
+                ball.round.draw(row, *offset, samples);
+                for (column, sum) in columns.clone().zip(sums.iter_mut()) {
+                    let nearness = samples.nearness[column as usize];
+                    if nearness > other.nearness[column as usize] {
+                        let (x, y) = (column as f32 + offset.x, row as f32 + offset.y);
+                        let shown = ball.surface.shown(view, x, y, 1.0 / nearness);
+                        *sum += shown.extend(1.0);
+                    }
+                }
+            }
+            let weight = Markers::OPACITY / others.len() as f32;
+            for (column, sum) in columns.clone().zip(sums.iter()) {
+                if sum.w > 0.0 {
+                    let start = 3 * (first + column as usize);
+                    let pixel = &mut picture.rgb[start..start + 3];
+                    let behind = Vec3::from_slice(&[pixel[0], pixel[1], pixel[2]].map(f32::from));
+                    let mixed = behind * (1.0 - weight * sum.w) + sum.truncate() * weight;
+                    pixel.copy_from_slice(&bytes(mixed));
+                }
+            }
+        }
+    }
+}
+
+impl Ball {
+    fn seen(center: Vec3, view: &View) -> Option<Self> {
+        let drawn = DrawnSolid {
+            pose: Pose::at(center),
+            solid: Solid::Ball(Markers::RADIUS),
+            color: Markers::COLOR,
+            object: 0,
+        };
+        let window = view.window_of(&corners_of_solid(&drawn, view))?;
+        let curve = Curve::around_point(view, center - view.eye, Markers::RADIUS);
+        Some(Self {
+            distance: center.distance(view.eye),
+            round: Round::new(curve, Ends::NONE, window, [1; 2]),
+            surface: Surface::round(&drawn, 1, curve),
+        })
+    }
+}

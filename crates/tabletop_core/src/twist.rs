@@ -1,0 +1,12 @@
+//! How fast something moves.
+
+use bevy::prelude::*;
+
+/// How fast an object moves and turns at the end of a tick, in the table's frame. Physics writes it.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
+pub struct Twist {
+    /// Velocity of its centre of mass, in units/s.
+    pub linear: Vec3,
+    /// Angular velocity, in rad/s.
+    pub angular: Vec3,
+}

@@ -1,0 +1,27 @@
+//! What undo keeps. (That it is exact is tested with recordings, at the root.)
+
+use bevy::{ecs::entity_disabling::Disabled, prelude::*};
+use tabletop_core::{History, Recording, prelude::*};
+
+use crate::desk::{Desk, two_blocks};
+
+#[test]
+fn what_is_kept_for_undo_goes_when_the_recording_ends() {
+    let mut desk = Desk::new(two_blocks());
+    let undoable = |desk: &Desk| desk.0.world().resource::<History>().undoable;
+    desk.0.insert_resource(Recording(true));
+    desk.grasp(Hand::Left, "red")
+        .tell(SimCommand::Destroy(Hand::Left))
+        .tell(SimCommand::SetScene(Box::default()))
+        .step(1);
+    desk.tell(SimCommand::Undo).step(1);
+    assert_eq!(undoable(&desk), 1);
+    desk.0.insert_resource(Recording(false));
+    desk.tell(SimCommand::Undo).step(1);
+    assert_eq!(undoable(&desk), 0);
+    let mut hidden = desk
+        .0
+        .world_mut()
+        .query_filtered::<(), (With<ObjectSpec>, With<Disabled>)>();
+    assert_eq!(hidden.iter(desk.0.world()).count(), 0);
+}

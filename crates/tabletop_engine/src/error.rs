@@ -1,0 +1,190 @@
+//! What can go wrong with an engine.
+
+use std::{fmt, io, path::PathBuf, time::Duration};
+
+use crate::{motor::Misuse, protocol::ProtocolError};
+
+/// Why an engine did not do what it was asked to.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum EngineError {
+    /// There is no engine to start.
+    #[error("{0}")]
+    NotFound(String),
+    /// The engine could not be started.
+    #[error("{engine} cannot be started: {reason}")]
+    Start {
+        /// The engine's program.
+        engine: PathBuf,
+        /// What the system said.
+        reason: String,
+    },
+    /// The session's folder cannot be written or read.
+    #[error("{path}: {reason}")]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        reason: String,
+    },
+    /// The script failed.
+    #[error("{0}")]
+    Script(ScriptError),
+    /// The script set a variable to what cannot be used.
+    #[error("{0}")]
+    Misuse(#[from] Misuse),
+    /// There was no answer in time. The engine has been ended.
+    #[error("no answer from {what} within {} s; the engine was ended", .limit.as_secs_f64())]
+    Timeout {
+        /// What did not answer: the engine's start, the init script or the callback script.
+        what: &'static str,
+        /// How long it was waited for.
+        limit: Duration,
+    },
+    /// The engine ended by itself: it crashed, or the script called `exit`.
+    #[error("the engine ended ({status}){}", last_words(.stderr))]
+    Died {
+        /// How it ended, as the system says it.
+        status: String,
+        /// The last lines that it wrote to its standard error.
+        stderr: String,
+    },
+    /// The engine answered what is no answer.
+    #[error("the engine's answer cannot be read: {0}")]
+    Protocol(#[from] ProtocolError),
+    /// The engine was stopped.
+    #[error("the engine was stopped")]
+    Stopped,
+}
+
+impl EngineError {
+    /// Whether the engine is gone, so that only a new one can go on.
+    pub fn is_fatal(&self) -> bool {
+        !matches!(self, Self::Script(_) | Self::Misuse(_) | Self::Protocol(_))
+    }
+
+    pub(crate) fn file(path: impl Into<PathBuf>, error: &io::Error) -> Self {
+        Self::File {
+            path: path.into(),
+            reason: error.to_string(),
+        }
+    }
+}
+
+fn last_words(stderr: &str) -> String {
+    if stderr.trim().is_empty() {
+        String::new()
+    } else {
+        format!(": {}", stderr.trim())
+    }
+}
+
+/// An error in a script: what, and where.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ScriptError {
+    /// The error's identifier ("Octave:undefined-function"); empty if it has none.
+    pub id: String,
+    /// What the engine says.
+    pub message: String,
+    /// Where, innermost first.
+    pub stack: Vec<Place>,
+}
+
+/// A line of a script.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The script.
+    pub file: PathBuf,
+    /// The line, from 1.
+    pub line: u32,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        write!(formatter, "{}:{}", self.file.display(), self.line)
+    }
+}
+
+impl ScriptError {
+    /// Where the error happened, as far as the engine says.
+    pub fn place(&self) -> Option<&Place> {
+        self.stack.first()
+    }
+
+    /// An error from what a driver sends: the stack as lines of "line file".
+    pub(crate) fn new(id: &str, message: &str, stack: &str) -> Self {
+        let syntax = place_in_message(message);
+        let stack = syntax
+            .into_iter()
+            .chain(stack.lines().filter_map(place_of_frame))
+            .collect();
+        Self {
+            id: id.to_owned(),
+            message: message.trim_end().to_owned(),
+            stack,
+        }
+    }
+}
+
+impl fmt::Display for ScriptError {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str(&self.message)?;
+        for place in &self.stack {
+            write!(formatter, "\n  at {place}")?;
+        }
+        Ok(())
+    }
+}
+
+fn place_of_frame(frame: &str) -> Option<Place> {
+    let (line, file) = frame.trim().split_once(' ')?;
+    Some(Place {
+        file: file.into(),
+        // An engine that does not know the line says -1.
+        line: line.parse::<i64>().ok()?.clamp(0, i64::from(u32::MAX)) as u32,
+    })
+}
+
+/// The place that a message about wrong syntax names: "near line 3 of file x.m" (Octave) or "File: x.m Line: 3" (MATLAB).
+fn place_in_message(message: &str) -> Option<Place> {
+    let octave = || {
+        let (line, rest) = message
+            .split_once("near line ")?
+            .1
+            .split_once(" of file ")?;
+        Some((line, rest.lines().next()?))
+    };
+    let matlab = || {
+        let (file, rest) = message.split_once("File: ")?.1.split_once(" Line: ")?;
+        Some((rest.split_whitespace().next()?, file))
+    };
+    let (line, file) = octave().or_else(matlab)?;
+    Some(Place {
+        file: file.trim().into(),
+        line: line.trim().parse().ok()?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_are_found_in_frames_and_messages() {
+        let error = ScriptError::new("a:b", "no\n", "2 /x y/helper.m\n-1 /x/top.m\n");
+        assert_eq!(
+            error.to_string(),
+            "no\n  at /x y/helper.m:2\n  at /x/top.m:0"
+        );
+        let octave = "parse error near line 3 of file /x/bad.m\n\n  syntax error\n";
+        assert_eq!(
+            ScriptError::new("", octave, "")
+                .place()
+                .unwrap()
+                .to_string(),
+            "/x/bad.m:3"
+        );
+        let matlab = "Error: File: C:\\x\\bad.m Line: 12 Column: 5\nUnexpected operator.";
+        assert_eq!(ScriptError::new("", matlab, "").place().unwrap().line, 12);
+        assert_eq!(ScriptError::new("", "near line", "x\n\n7").place(), None);
+    }
+}

@@ -1,0 +1,476 @@
+//! Which engine runs the scripts, and where it is.
+
+use std::{
+    convert::Infallible,
+    env, fmt,
+    path::{Path, PathBuf},
+    str::FromStr,
+};
+
+use crate::error::EngineError;
+
+/// The variable that names the engine where nobody else does: "matlab", "octave" or a program's path.
+pub const ENGINE_VARIABLE: &str = "TABLETOP_ENGINE";
+
+/// A kind of engine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EngineKind {
+    /// MATLAB, R2007b and later.
+    Matlab,
+    /// GNU Octave, 6 and later.
+    Octave,
+    /// Python 3.
+    Python,
+}
+
+impl fmt::Display for EngineKind {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Matlab => "MATLAB",
+            Self::Octave => "GNU Octave",
+            Self::Python => "Python",
+        })
+    }
+}
+
+impl EngineKind {
+    fn programs(self, platform: Platform) -> &'static [&'static str] {
+        match (self, platform) {
+            (Self::Matlab, Platform::Windows) => &["matlab.exe"],
+            (Self::Matlab, _) => &["matlab"],
+            (Self::Octave, Platform::Windows) => &["octave-cli.exe"],
+            (Self::Octave, _) => &["octave-cli", "octave"],
+            (Self::Python, Platform::Windows) => &["python3.exe", "python.exe"],
+            (Self::Python, _) => &["python3"],
+        }
+    }
+
+    /// Folders beside PATH, each with at most one part that is a pattern: everything up to "*" and after it must fit.
+    fn usual_places(self, platform: Platform) -> &'static [&'static str] {
+        match (self, platform) {
+            (Self::Matlab, Platform::Linux) => &[
+                "usr/local/MATLAB/R20*/bin",
+                "opt/MATLAB/R20*/bin",
+                "opt/matlab/R20*/bin",
+            ],
+            (Self::Matlab, Platform::MacOs) => &["Applications/MATLAB_R20*/bin"],
+            (Self::Matlab, Platform::Windows) => &["Program Files/MATLAB/R20*/bin"],
+            (Self::Octave, Platform::Linux) => &["usr/bin", "usr/local/bin", "snap/bin"],
+            (Self::Octave, Platform::MacOs) => &[
+                "opt/homebrew/bin",
+                "usr/local/bin",
+                "opt/local/bin",
+                "Applications/Octave*/Contents/Resources/usr/bin",
+            ],
+            (Self::Octave, Platform::Windows) => &[
+                "Program Files/GNU Octave/Octave-*/mingw64/bin",
+                "Octave/Octave-*/mingw64/bin",
+            ],
+            (Self::Python, Platform::MacOs) => &["opt/homebrew/bin", "usr/local/bin", "usr/bin"],
+            (Self::Python, Platform::Linux) => &["usr/bin", "usr/local/bin"],
+            (Self::Python, Platform::Windows) => &[],
+        }
+    }
+}
+
+/// What was asked for.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum EngineChoice {
+    /// The variable `TABLETOP_ENGINE`, else MATLAB if it is there, else Octave.
+    #[default]
+    Auto,
+    /// One kind of engine.
+    Kind(EngineKind),
+    /// A program, or the folder in which it is.
+    Program(PathBuf),
+}
+
+impl FromStr for EngineChoice {
+    type Err = Infallible;
+
+    /// "auto", "matlab", "octave", "python", or the path of a program.
+    fn from_str(text: &str) -> Result<Self, Infallible> {
+        Ok(match text.to_ascii_lowercase().as_str() {
+            "" | "auto" => Self::Auto,
+            "matlab" => Self::Kind(EngineKind::Matlab),
+            "octave" => Self::Kind(EngineKind::Octave),
+            "python" => Self::Kind(EngineKind::Python),
+            _ => Self::Program(text.into()),
+        })
+    }
+}
+
+/// An engine that is there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FoundEngine {
+    /// What it is.
+    pub kind: EngineKind,
+    /// Its program.
+    pub program: PathBuf,
+}
+
+/// A platform with habits of its own about where programs are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Platform {
+    /// Linux and other Unix systems.
+    Linux,
+    /// macOS.
+    MacOs,
+    /// Windows.
+    Windows,
+}
+
+/// Where engines are looked for.
+#[derive(Clone, Debug)]
+pub struct Surroundings {
+    /// The platform.
+    pub platform: Platform,
+    /// The folders of PATH.
+    pub path: Vec<PathBuf>,
+    /// What the variable `TABLETOP_ENGINE` says.
+    pub variable: Option<String>,
+    /// The root of the file system, under which the usual places are.
+    pub root: PathBuf,
+}
+
+impl Surroundings {
+    /// Those of this process.
+    pub fn system() -> Self {
+        let platform = if cfg!(windows) {
+            Platform::Windows
+        } else if cfg!(target_os = "macos") {
+            Platform::MacOs
+        } else {
+            Platform::Linux
+        };
+        let drive = || env::var("SystemDrive").map(|drive| PathBuf::from(drive + "\\"));
+        Self {
+            platform,
+            path: env::var_os("PATH").map_or(Vec::new(), |path| env::split_paths(&path).collect()),
+            variable: env::var(ENGINE_VARIABLE).ok(),
+            root: match platform {
+                Platform::Windows => drive().unwrap_or_else(|_| "C:\\".into()),
+                _ => "/".into(),
+            },
+        }
+    }
+
+    /// The engine that was asked for.
+    ///
+    /// # Errors
+    /// It is not there; the message says what to do.
+    pub fn find(&self, choice: &EngineChoice) -> Result<FoundEngine, EngineError> {
+        match choice {
+            EngineChoice::Kind(kind) => self
+                .find_kind(*kind)
+                .ok_or_else(|| self.not_found(&[*kind])),
+            EngineChoice::Program(program) => self.find_program(program),
+            EngineChoice::Auto => match &self.variable {
+                Some(variable) if !matches!(variable.as_str(), "" | "auto") => {
+                    let Ok(choice) = variable.parse::<EngineChoice>();
+                    match choice {
+                        EngineChoice::Auto => self.first(),
+                        named => self.find(&named),
+                    }
+                }
+                _ => self.first(),
+            },
+        }
+    }
+
+    fn first(&self) -> Result<FoundEngine, EngineError> {
+        let kinds = [EngineKind::Matlab, EngineKind::Octave];
+        let mut found = kinds.iter().filter_map(|kind| self.find_kind(*kind));
+        found.next().ok_or_else(|| self.not_found(&kinds))
+    }
+
+    fn find_kind(&self, kind: EngineKind) -> Option<FoundEngine> {
+        let usual = kind.usual_places(self.platform).iter();
+        let usual = usual.flat_map(|place| matching(&self.root, place));
+        let mut folders = self.path.iter().cloned().chain(usual);
+        let program = folders.find_map(|folder| self.program_in(&folder, kind))?;
+        Some(FoundEngine { kind, program })
+    }
+
+    fn program_in(&self, folder: &Path, kind: EngineKind) -> Option<PathBuf> {
+        let mut programs = kind
+            .programs(self.platform)
+            .iter()
+            .map(|name| folder.join(name));
+        programs.find(|program| is_program(program))
+    }
+
+    fn find_program(&self, program: &Path) -> Result<FoundEngine, EngineError> {
+        let kinds = [EngineKind::Matlab, EngineKind::Octave, EngineKind::Python];
+        if program.is_dir() {
+            let folders = [program.to_owned(), program.join("bin")];
+            let found = kinds.iter().find_map(|kind| {
+                let program = folders
+                    .iter()
+                    .find_map(|folder| self.program_in(folder, *kind))?;
+                Some(FoundEngine {
+                    kind: *kind,
+                    program,
+                })
+            });
+            return found.ok_or_else(|| {
+                EngineError::NotFound(format!(
+                    "there is neither MATLAB nor Octave in {}",
+                    program.display()
+                ))
+            });
+        }
+        let name = program
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .to_ascii_lowercase();
+        let kind = kinds.into_iter().find(|kind| match kind {
+            EngineKind::Matlab => name.contains("matlab"),
+            EngineKind::Octave => name.contains("octave"),
+            EngineKind::Python => name.contains("python"),
+        });
+        let Some(kind) = kind else {
+            let message = format!(
+                "the engine \"{}\" is not known; write \"matlab\", \"octave\" or the path of a program whose name says which it is",
+                program.display()
+            );
+            return Err(EngineError::NotFound(message));
+        };
+        // A bare name is looked for as a shell would.
+        let bare = program.components().count() == 1;
+        let on_path = self
+            .path
+            .iter()
+            .map(|folder| folder.join(program))
+            .find(|program| is_program(program));
+        let found = if bare {
+            on_path
+        } else {
+            is_program(program).then(|| program.to_owned())
+        };
+        let program = found.ok_or_else(|| {
+            EngineError::NotFound(format!("there is no program {}", program.display()))
+        })?;
+        Ok(FoundEngine { kind, program })
+    }
+
+    fn not_found(&self, kinds: &[EngineKind]) -> EngineError {
+        let names: Vec<_> = kinds.iter().map(EngineKind::to_string).collect();
+        let help = match (kinds, self.platform) {
+            ([EngineKind::Matlab], _) => {
+                "install it, add its bin folder to PATH, or say --engine octave"
+            }
+            ([EngineKind::Python], Platform::Windows) => {
+                "install it from https://www.python.org/downloads"
+            }
+            ([EngineKind::Python], Platform::MacOs) => "install it with \"brew install python\"",
+            ([EngineKind::Python], Platform::Linux) => "install python3 with your package manager",
+            (_, Platform::Linux) => {
+                "install Octave, which is free, with \"sudo apt install octave\" (Debian, Ubuntu), \"sudo dnf install octave\" \
+                 (Fedora) or \"sudo pacman -S octave\" (Arch)"
+            }
+            (_, Platform::MacOs) => "install Octave, which is free, with \"brew install octave\"",
+            (_, Platform::Windows) => {
+                "install Octave, which is free, with \"winget install GNU.Octave\" or from https://octave.org/download"
+            }
+        };
+        let there = if kinds.len() > 1 {
+            "neither is"
+        } else {
+            "it is not"
+        };
+        let message = format!(
+            "{} runs scripts, but {there} there: {help}",
+            names.join(" or ")
+        );
+        EngineError::NotFound(message)
+    }
+}
+
+/// The folders that fit a pattern, the one with the highest version first.
+fn matching(root: &Path, place: &str) -> Vec<PathBuf> {
+    let Some((before, after)) = place.split_once('*') else {
+        return vec![root.join(place)];
+    };
+    let (parent, prefix) = before.rsplit_once('/').unwrap_or(("", before));
+    let (suffix, rest) = after.split_once('/').unwrap_or((after, ""));
+    let entries = root.join(parent).read_dir().into_iter().flatten().flatten();
+    let mut names: Vec<_> = entries
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .filter(|name| name.starts_with(prefix) && name.ends_with(suffix))
+        .collect();
+    names.sort_by_cached_key(|name| std::cmp::Reverse(version(name)));
+    names
+        .iter()
+        .map(|name| root.join(parent).join(name).join(rest))
+        .collect()
+}
+
+/// The numbers and letters of a name, so that 10 comes after 9 and R2023b after R2023a.
+fn version(name: &str) -> Vec<(u64, String)> {
+    let mut parts = Vec::new();
+    for letter in name.chars() {
+        match (letter.to_digit(10), parts.last_mut()) {
+            (Some(digit), Some((number, text))) if String::is_empty(text) => {
+                *number = u64::saturating_add(u64::saturating_mul(*number, 10), digit.into());
+            }
+            (Some(digit), _) => parts.push((u64::from(digit), String::new())),
+            (None, Some((0, text))) if !text.is_empty() => text.push(letter),
+            (None, _) => parts.push((0, letter.to_string())),
+        }
+    }
+    parts
+}
+
+fn is_program(path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        path.metadata()
+            .is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0)
+    }
+    #[cfg(not(unix))]
+    path.is_file()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    /// A file system with programs in it.
+    struct Disk(PathBuf);
+
+    impl Disk {
+        fn new(name: &str, programs: &[&str]) -> Self {
+            let root = env::temp_dir().join(format!("tabletop-find-{name}-{}", std::process::id()));
+            for program in programs {
+                let program = root.join(program);
+                fs::create_dir_all(program.parent().unwrap()).unwrap();
+                fs::write(&program, "").unwrap();
+                #[cfg(unix)]
+                {
+                    use std::os::unix::fs::PermissionsExt as _;
+                    fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
+                }
+            }
+            Self(root)
+        }
+
+        fn surroundings(&self, platform: Platform) -> Surroundings {
+            Surroundings {
+                platform,
+                path: vec![self.0.join("path")],
+                variable: None,
+                root: self.0.clone(),
+            }
+        }
+
+        fn find(&self, platform: Platform, choice: &str) -> Result<String, String> {
+            let choice = choice.parse().unwrap();
+            self.relative(self.surroundings(platform).find(&choice))
+        }
+
+        fn relative(&self, found: Result<FoundEngine, EngineError>) -> Result<String, String> {
+            let found = found.map_err(|error| error.to_string())?;
+            let program = found.program.strip_prefix(&self.0).unwrap();
+            Ok(format!("{}: {}", found.kind, program.display()))
+        }
+    }
+
+    impl Drop for Disk {
+        fn drop(&mut self) {
+            drop(fs::remove_dir_all(&self.0));
+        }
+    }
+
+    #[test]
+    fn matlab_comes_first_and_the_newest_of_it() {
+        let octave = "path/octave-cli";
+        let old = "usr/local/MATLAB/R2019b/bin/matlab";
+        let new = "usr/local/MATLAB/R2023a/bin/matlab";
+        let disk = Disk::new("first", &[octave, old, new]);
+        assert_eq!(
+            disk.find(Platform::Linux, "auto").unwrap(),
+            format!("MATLAB: {new}")
+        );
+        assert_eq!(
+            disk.find(Platform::Linux, "octave").unwrap(),
+            format!("GNU Octave: {octave}")
+        );
+    }
+
+    #[test]
+    fn the_usual_places_of_other_platforms_are_known() {
+        let nine = "Program Files/GNU Octave/Octave-9.1.0/mingw64/bin/octave-cli.exe";
+        let ten = "Program Files/GNU Octave/Octave-10.1.0/mingw64/bin/octave-cli.exe";
+        let mac = "Applications/MATLAB_R2024b.app/bin/matlab";
+        let disk = Disk::new("places", &[nine, ten, mac]);
+        assert_eq!(
+            disk.find(Platform::Windows, "auto").unwrap(),
+            format!("GNU Octave: {ten}")
+        );
+        assert_eq!(
+            disk.find(Platform::MacOs, "auto").unwrap(),
+            format!("MATLAB: {mac}")
+        );
+    }
+
+    #[test]
+    fn what_was_asked_for_wins_over_the_variable() {
+        let disk = Disk::new(
+            "variable",
+            &["path/octave-cli", "path/matlab", "mine/octave-cli-8"],
+        );
+        let mut surroundings = disk.surroundings(Platform::Linux);
+        surroundings.variable = Some("octave".into());
+        let find = |choice| disk.relative(surroundings.find(&choice)).unwrap();
+        assert_eq!(find(EngineChoice::Auto), "GNU Octave: path/octave-cli");
+        assert_eq!(
+            find(EngineChoice::Kind(EngineKind::Matlab)),
+            "MATLAB: path/matlab"
+        );
+        let mine = EngineChoice::Program(disk.0.join("mine/octave-cli-8"));
+        assert_eq!(find(mine), "GNU Octave: mine/octave-cli-8");
+        assert_eq!(
+            find(EngineChoice::Program(disk.0.join("path"))),
+            "MATLAB: path/matlab"
+        );
+        assert_eq!(
+            find(EngineChoice::Program("octave-cli".into())),
+            "GNU Octave: path/octave-cli"
+        );
+    }
+
+    #[test]
+    fn what_is_missing_is_said_with_a_remedy() {
+        let disk = Disk::new("missing", &[]);
+        let fault = disk.find(Platform::Linux, "auto").unwrap_err();
+        assert!(
+            fault.contains("neither is there") && fault.contains("apt install octave"),
+            "{fault}"
+        );
+        assert!(
+            disk.find(Platform::MacOs, "octave")
+                .unwrap_err()
+                .contains("brew install octave")
+        );
+        assert!(
+            disk.find(Platform::Windows, "octave")
+                .unwrap_err()
+                .contains("winget")
+        );
+        assert!(
+            disk.find(Platform::Linux, "/x/scilab")
+                .unwrap_err()
+                .contains("not known")
+        );
+        assert!(
+            disk.find(Platform::Linux, "/x/octave")
+                .unwrap_err()
+                .contains("no program /x/octave")
+        );
+    }
+}

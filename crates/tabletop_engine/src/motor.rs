@@ -1,0 +1,289 @@
+//! What the robot shall do: the script's `motor` variable (report section 5.2), checked before anybody uses it.
+
+use crate::protocol::{Array, Arrays, Data};
+
+/// What a script orders for one tick. Rows and pairs are in the order left, right; joints in the order S0, S1, E0, E1, W0, W1,
+/// W2.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Motor {
+    /// Velocities of the arms' joints, in rad/s.
+    pub joint_velocities: [[f64; 7]; 2],
+    /// How fast the grippers open (positive) or close, in units/s.
+    pub gripper_velocities: [f64; 2],
+    /// Angles that the joints take at once, in rad. The velocities then mean nothing.
+    pub joint_angles: Option<[[f64; 7]; 2]>,
+    /// Torques of the arms' joints, in N m, for a robot that is moved by forces.
+    pub joint_torques: Option<[[f64; 7]; 2]>,
+    /// How fast the head turns, in rad/s, positive to the robot's left.
+    pub head_velocity: Option<f64>,
+}
+
+/// Why a variable that a script has set cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Misuse {
+    /// A variable is missing or is no struct.
+    #[error("{name} is {found}; it must be a struct")]
+    NoStruct {
+        /// The variable.
+        name: String,
+        /// Size and class of what is there.
+        found: String,
+    },
+    /// A field has another size or class.
+    #[error("{field} is {found}; it must be {expected}")]
+    Size {
+        /// The field, with its variable.
+        field: String,
+        /// Size and class of what is there.
+        found: String,
+        /// What should be there.
+        expected: &'static str,
+    },
+    /// A number is not one.
+    #[error("{field} is {found}; it must be a finite number")]
+    NotFinite {
+        /// The element, with its indices.
+        field: String,
+        /// NaN, Inf or -Inf.
+        found: &'static str,
+    },
+    /// There is a field that nobody knows.
+    #[error("{field} is no field that the robot knows; known are {known}{}", suggest(.suggestion))]
+    Unknown {
+        /// The field, with its variable.
+        field: String,
+        /// All that may be there.
+        known: String,
+        /// The one that may have been meant.
+        suggestion: Option<&'static str>,
+    },
+}
+
+fn suggest(suggestion: &Option<&str>) -> String {
+    suggestion.map_or(String::new(), |name| format!(" (did you mean {name}?)"))
+}
+
+const FIELDS: [&str; 5] = [
+    "jointVelocities",
+    "gripperVelocities",
+    "jointAngles",
+    "jointTorques",
+    "headVelocity",
+];
+
+impl Motor {
+    /// Reads the fields "motor.…" of an engine's reply. What is missing is at rest.
+    ///
+    /// # Errors
+    /// A field is unknown, has another size or class than it must, or holds what is no number.
+    pub fn read(arrays: &Arrays) -> Result<Self, Misuse> {
+        let mut motor = Self::default();
+        for (name, array) in arrays.iter() {
+            let Some(field) = name.strip_prefix("motor") else {
+                continue;
+            };
+            match field.strip_prefix('.').unwrap_or_default() {
+                "" => return Err(no_struct(name, array)),
+                "jointVelocities" => motor.joint_velocities = joints(name, array)?,
+                "gripperVelocities" => motor.gripper_velocities = pair(name, array)?,
+                "jointAngles" => motor.joint_angles = Some(joints(name, array)?),
+                "jointTorques" => motor.joint_torques = Some(joints(name, array)?),
+                "headVelocity" => motor.head_velocity = Some(number(name, array)?),
+                other => return Err(unknown(name, other)),
+            }
+        }
+        Ok(motor)
+    }
+}
+
+pub(crate) fn no_struct(name: &str, array: &Array) -> Misuse {
+    Misuse::NoStruct {
+        name: name.to_owned(),
+        found: array.describe(),
+    }
+}
+
+fn unknown(field: &str, name: &str) -> Misuse {
+    let known = FIELDS
+        .iter()
+        .map(|known| (common_prefix(known, name), *known));
+    let nearest = known.max_by_key(|(letters, _)| *letters);
+    Misuse::Unknown {
+        field: field.to_owned(),
+        known: FIELDS.join(", "),
+        suggestion: nearest.and_then(|(letters, known)| (letters > "joint".len()).then_some(known)),
+    }
+}
+
+fn common_prefix(known: &str, name: &str) -> usize {
+    let pairs = known.bytes().zip(name.bytes());
+    pairs.take_while(|(a, b)| a.eq_ignore_ascii_case(b)).count()
+}
+
+/// A matrix of two rows of joints.
+pub(crate) fn joints(field: &str, array: &Array) -> Result<[[f64; 7]; 2], Misuse> {
+    let numbers = numbers(field, array, &[2, 7], "2x7 double")?;
+    let mut rows = [[0.0; 7]; 2];
+    for (place, number) in numbers.iter().enumerate() {
+        rows[place % 2][place / 2] = *number;
+    }
+    Ok(rows)
+}
+
+fn pair(field: &str, array: &Array) -> Result<[f64; 2], Misuse> {
+    match numbers(field, array, &[2, 1], "2x1 double")? {
+        [left, right] => Ok([*left, *right]),
+        _ => Err(size(field, array, "2x1 double")),
+    }
+}
+
+fn number(field: &str, array: &Array) -> Result<f64, Misuse> {
+    match numbers(field, array, &[1, 1], "1x1 double")? {
+        [number] => Ok(*number),
+        _ => Err(size(field, array, "1x1 double")),
+    }
+}
+
+/// Points in space, one in each row.
+pub(crate) fn points(field: &str, array: &Array) -> Result<Vec<[f64; 3]>, Misuse> {
+    let expected = "Nx3 double";
+    let rows = match array.dims[..] {
+        [_, 0] | [0, _] => 0,
+        [rows, 3] => rows,
+        _ => return Err(size(field, array, "Nx3")),
+    };
+    let dims = if rows == 0 {
+        array.dims.clone()
+    } else {
+        vec![rows, 3]
+    };
+    let numbers = numbers(field, array, &dims, expected)?;
+    let rows = rows as usize;
+    Ok((0..rows)
+        .map(|row| {
+            [0, 1, 2].map(|column| {
+                numbers
+                    .get(column * rows + row)
+                    .copied()
+                    .unwrap_or_default()
+            })
+        })
+        .collect())
+}
+
+fn numbers<'a>(
+    field: &str,
+    array: &'a Array,
+    dims: &[u32],
+    expected: &'static str,
+) -> Result<&'a [f64], Misuse> {
+    let Data::Double(numbers) = &array.data else {
+        return Err(size(field, array, expected));
+    };
+    if array.dims != dims {
+        return Err(size(field, array, expected.trim_end_matches(" double")));
+    }
+    let Some(place) = numbers.iter().position(|number| !number.is_finite()) else {
+        return Ok(numbers);
+    };
+    let rows = dims.first().map_or(1, |rows| *rows as usize).max(1);
+    let number = numbers.get(place).copied().unwrap_or(f64::NAN);
+    Err(Misuse::NotFinite {
+        field: format!("{field}({},{})", place % rows + 1, place / rows + 1),
+        found: match number {
+            _ if number.is_nan() => "NaN",
+            _ if number > 0.0 => "Inf",
+            _ => "-Inf",
+        },
+    })
+}
+
+fn size(field: &str, array: &Array, expected: &'static str) -> Misuse {
+    Misuse::Size {
+        field: field.to_owned(),
+        found: array.describe(),
+        expected,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fault(field: &str, array: Array) -> String {
+        let mut arrays = Arrays::default();
+        arrays.put(field, array);
+        Motor::read(&arrays).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_motor_is_read() {
+        let mut arrays = Arrays::default();
+        let mut rows = [[0.0; 7]; 2];
+        rows[1][2] = 0.5;
+        arrays.put("motor.jointVelocities", Array::matrix(&rows));
+        arrays.put("motor.gripperVelocities", Array::column(vec![1.0, -1.0]));
+        arrays.put("motor.headVelocity", Array::scalar(0.25));
+        arrays.put("aux.exit", Array::scalar(1.0));
+        let motor = Motor::read(&arrays).unwrap();
+        assert_eq!(motor.joint_velocities, rows);
+        assert_eq!(motor.gripper_velocities, [1.0, -1.0]);
+        assert_eq!(
+            (motor.joint_angles, motor.head_velocity),
+            (None, Some(0.25))
+        );
+    }
+
+    #[test]
+    fn faults_say_what_was_found_and_expected() {
+        let three = Array::matrix(&[[0.0; 7]; 3]);
+        assert_eq!(
+            fault("motor.jointVelocities", three),
+            "motor.jointVelocities is 3x7 double; it must be 2x7"
+        );
+        let row = Array::matrix(&[[0.0; 2]]);
+        assert_eq!(
+            fault("motor.gripperVelocities", row),
+            "motor.gripperVelocities is 1x2 double; it must be 2x1"
+        );
+        let mut rows = [[0.0; 7]; 2];
+        rows[1][2] = f64::NAN;
+        let nan = "motor.jointAngles(2,3) is NaN; it must be a finite number";
+        assert_eq!(fault("motor.jointAngles", Array::matrix(&rows)), nan);
+        let text = "motor.headVelocity is 1x4 char; it must be 1x1 double";
+        assert_eq!(fault("motor.headVelocity", Array::text("fast")), text);
+        assert_eq!(
+            fault("motor", Array::scalar(1.0)),
+            "motor is 1x1 double; it must be a struct"
+        );
+        let typo = fault("motor.velocity", Array::scalar(1.0));
+        assert!(
+            typo.starts_with("motor.velocity is no field that the robot knows"),
+            "{typo}"
+        );
+        let typo = fault("motor.JointVelocity", Array::scalar(1.0));
+        assert!(typo.ends_with("(did you mean jointVelocities?)"), "{typo}");
+    }
+
+    #[test]
+    fn markers_are_rows_of_three() {
+        let rows = points(
+            "aux.drawMarkers",
+            &Array::matrix(&[[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]),
+        );
+        assert_eq!(rows.unwrap(), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+        let empty = Array {
+            dims: vec![0, 0],
+            data: Data::Double(Vec::new()),
+        };
+        assert_eq!(
+            points("aux.drawMarkers", &empty).unwrap(),
+            Vec::<[f64; 3]>::new()
+        );
+        let fault = points("aux.drawMarkers", &Array::matrix(&[[1.0, 2.0]])).unwrap_err();
+        assert_eq!(
+            fault.to_string(),
+            "aux.drawMarkers is 1x2 double; it must be Nx3"
+        );
+    }
+}

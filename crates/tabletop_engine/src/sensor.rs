@@ -1,0 +1,201 @@
+//! What the robot senses: the script's `sensor` variable (report section 5.2).
+
+use crate::protocol::{Array, Arrays, Data};
+
+/// What a script gets to know in a tick. Rows and pairs are in the order left, right; joints in the order S0, S1, E0, E1, W0,
+/// W1, W2.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sensor {
+    /// Simulation time since the last call, in s.
+    pub time_elapsed: f64,
+    /// Angles of the arms' joints, in rad.
+    pub joint_angles: [[f64; 7]; 2],
+    /// Where the end effectors are, in units of 10 cm.
+    pub end_eff_pos: [[f64; 3]; 2],
+    /// How far the grippers are open, in units.
+    pub gripper_opening: [f64; 2],
+    /// What the head camera sees, if there is a fresh picture.
+    pub picture: Option<Picture>,
+    /// Points on the arms by name, in units. A map costs Octave half a millisecond, so leave it out where nobody asks for it.
+    pub tracker_loc: Option<Vec<(String, [f64; 3])>>,
+    /// Whether a demonstration is going on: one that is being recorded or replayed.
+    pub demo_cue: bool,
+    /// The head's angle, in rad, positive to the robot's left.
+    pub head_angle: Option<f64>,
+    /// The objects of the world, if the script may know them.
+    pub objects: Option<Vec<SensedObject>>,
+    /// What touches what.
+    pub contacts: Option<Vec<SensedContact>>,
+    /// The ids of the objects that each gripper holds.
+    pub held: Option<[Vec<String>; 2]>,
+    /// Torques of the arms' joints, in N m.
+    pub joint_torques: Option<[[f64; 7]; 2]>,
+}
+
+/// A picture: rows from the top, pixels from the left, red, green and blue of each.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    width: u32,
+    height: u32,
+    rgb: Vec<u8>,
+}
+
+impl Picture {
+    /// A picture of `width` × `height` pixels, or nothing if `rgb` has not three bytes for each.
+    pub fn new(width: u32, height: u32, rgb: Vec<u8>) -> Option<Self> {
+        let expected = (width as usize)
+            .checked_mul(height as usize)?
+            .checked_mul(3)?;
+        (rgb.len() == expected).then_some(Self { width, height, rgb })
+    }
+
+    /// The picture as a script sees it: rows × columns × colours.
+    fn array(&self) -> Array {
+        let (width, height) = (self.width as usize, self.height as usize);
+        let mut data = vec![0; self.rgb.len()];
+        let (red, rest) = data.split_at_mut(width * height);
+        let (green, blue) = rest.split_at_mut(width * height);
+        for (row, pixels) in self.rgb.chunks_exact((3 * width).max(1)).enumerate() {
+            for (column, pixel) in pixels.chunks_exact(3).enumerate() {
+                let place = column * height + row;
+                red[place] = pixel[0];
+                green[place] = pixel[1];
+                blue[place] = pixel[2];
+            }
+        }
+        Array {
+            dims: vec![self.height, self.width, 3],
+            data: Data::Picture(data),
+        }
+    }
+}
+
+/// An object as a script may know it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SensedObject {
+    /// Its name.
+    pub id: String,
+    /// Where its centre is, in units.
+    pub position: [f64; 3],
+    /// How it is turned: about the fixed axes X, then Y, then Z, in rad.
+    pub rotation: [f64; 3],
+    /// Its mass, in kg; zero if nothing moves it.
+    pub mass: f64,
+    /// What it is, in words.
+    pub description: String,
+}
+
+/// Two things that touch.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SensedContact {
+    /// The ids of the two.
+    pub ids: [String; 2],
+    /// Where they touch, in units.
+    pub point: [f64; 3],
+    /// How hard they pushed each other in the last tick, in kg units/s.
+    pub impulse: f64,
+}
+
+impl Sensor {
+    /// The sensor as named arrays.
+    pub fn arrays(&self) -> Arrays {
+        let mut arrays = Arrays::default();
+        let mut put = |name: &str, array| arrays.put(format!("sensor.{name}"), array);
+        put("timeElapsed", Array::scalar(self.time_elapsed));
+        put("jointAngles", Array::matrix(&self.joint_angles));
+        put("endEffPos", Array::matrix(&self.end_eff_pos));
+        put("gripperOpening", Array::matrix(&[self.gripper_opening]));
+        put("demoCue", Array::logical(self.demo_cue));
+        if let Some(picture) = &self.picture {
+            put("rgbVision", picture.array());
+        }
+        if let Some(points) = &self.tracker_loc {
+            put("trackerLoc", Array::map(points.clone()));
+        }
+        if let Some(angle) = self.head_angle {
+            put("headAngle", Array::scalar(angle));
+        }
+        if let Some(torques) = &self.joint_torques {
+            put("jointTorques", Array::matrix(torques));
+        }
+        if let Some([left, right]) = &self.held {
+            put("held.left", Array::texts(left.clone()));
+            put("held.right", Array::texts(right.clone()));
+        }
+        if let Some(objects) = &self.objects {
+            let texts = |of: fn(&SensedObject) -> &String| {
+                Array::texts(objects.iter().map(|object| of(object).clone()).collect())
+            };
+            let points = |of: fn(&SensedObject) -> [f64; 3]| {
+                Array::matrix(&objects.iter().map(of).collect::<Vec<_>>())
+            };
+            put("objects.id", texts(|object| &object.id));
+            put("objects.position", points(|object| object.position));
+            put("objects.rotation", points(|object| object.rotation));
+            put(
+                "objects.mass",
+                Array::column(objects.iter().map(|object| object.mass).collect()),
+            );
+            put("objects.description", texts(|object| &object.description));
+        }
+        if let Some(contacts) = &self.contacts {
+            let ids = |side: usize| {
+                Array::texts(
+                    contacts
+                        .iter()
+                        .map(|contact| contact.ids[side].clone())
+                        .collect(),
+                )
+            };
+            let points: Vec<_> = contacts.iter().map(|contact| contact.point).collect();
+            put("contacts.first", ids(0));
+            put("contacts.second", ids(1));
+            put("contacts.point", Array::matrix(&points));
+            put(
+                "contacts.impulse",
+                Array::column(contacts.iter().map(|contact| contact.impulse).collect()),
+            );
+        }
+        arrays
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_is_turned_into_columns() {
+        let picture = Picture::new(2, 1, vec![1, 2, 3, 4, 5, 6]).unwrap();
+        let array = picture.array();
+        assert_eq!(array.dims, [1, 2, 3]);
+        assert_eq!(array.data, Data::Picture(vec![1, 4, 2, 5, 3, 6]));
+        assert!(Picture::new(2, 2, vec![0; 6]).is_none());
+        assert!(Picture::new(u32::MAX, u32::MAX, Vec::new()).is_none());
+        assert_eq!(
+            Picture::new(0, 3, Vec::new()).unwrap().array().dims,
+            [3, 0, 3]
+        );
+    }
+
+    #[test]
+    fn what_is_not_sensed_is_not_sent() {
+        let names = |sensor: &Sensor| {
+            sensor
+                .arrays()
+                .iter()
+                .map(|(name, _)| name.to_owned())
+                .collect::<Vec<_>>()
+        };
+        let bare = names(&Sensor::default());
+        assert_eq!(bare.len(), 5);
+        let full = Sensor {
+            objects: Some(vec![SensedObject::default()]),
+            contacts: Some(Vec::new()),
+            held: Some([vec!["a".into()], Vec::new()]),
+            ..Default::default()
+        };
+        assert!(full.arrays().encode().is_ok());
+        assert!(names(&full).contains(&"sensor.objects.position".to_owned()));
+    }
+}

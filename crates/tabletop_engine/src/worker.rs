@@ -1,0 +1,557 @@
+//! The thread on which an engine lives.
+
+use std::{
+    collections::VecDeque,
+    fs::{self, File, OpenOptions},
+    io::{self, Read, Seek as _, SeekFrom, Write as _},
+    path::{Path, PathBuf, absolute},
+    process::{Command, ExitStatus},
+    sync::mpsc::{Receiver, RecvTimeoutError, Sender},
+    thread,
+    time::{Duration, Instant},
+};
+
+use crate::{
+    agent::{Aux, InitReply},
+    console::{Console, Piece, Splitter, Stream},
+    driver,
+    engine::{EngineConfig, Reply, StepReply, Trigger},
+    error::{EngineError, ScriptError},
+    find::EngineKind,
+    motor::Motor,
+    process::{Killer, Process},
+    protocol::{Array, Arrays},
+    sensor::Sensor,
+    session::Session,
+};
+
+/// How often an engine that polls is told that this program is alive, and one that waits is looked after.
+const HEARTBEAT: Duration = Duration::from_secs(1);
+/// How often an engine that runs a script is looked after.
+const LOOK_AFTER: Duration = Duration::from_millis(50);
+/// How long an engine may take to end by itself.
+const GRACE: Duration = Duration::from_secs(1);
+/// How long the last output of an engine that has ended is waited for.
+const LAST_OUTPUT: Duration = Duration::from_millis(300);
+/// Figures are brought up to date at most this often.
+const DRAW_INTERVAL: Duration = Duration::from_millis(200);
+
+/// What the worker hears.
+#[derive(Debug)]
+pub(crate) enum Signal {
+    /// Run the init script.
+    Init(Box<Aux>),
+    /// Run the callback script.
+    Step(Box<Sensor>),
+    /// End.
+    Stop,
+    /// The engine has printed that a request is done.
+    Done(u32),
+    /// One of the engine's outputs has ended.
+    Closed,
+}
+
+/// What an engine is asked to do.
+#[derive(Clone, Copy)]
+enum Op {
+    End,
+    Hello,
+    Init,
+    Step,
+}
+
+impl Op {
+    fn name(self) -> &'static str {
+        match self {
+            Self::End => "end",
+            Self::Hello => "hello",
+            Self::Init => "init",
+            Self::Step => "step",
+        }
+    }
+}
+
+/// The engine's side of the program.
+pub(crate) struct Worker {
+    pub(crate) config: EngineConfig,
+    pub(crate) inbox: Receiver<Signal>,
+    pub(crate) own_inbox: Sender<Signal>,
+    pub(crate) outbox: Sender<Reply>,
+    pub(crate) console: Console,
+    pub(crate) killer: Killer,
+}
+
+impl Worker {
+    /// Starts the engine and serves requests until the end.
+    pub(crate) fn run(self) {
+        let outbox = self.outbox.clone();
+        let error = match Running::start(self) {
+            Ok(running) => running.serve(),
+            Err(error) => error,
+        };
+        // If nobody listens any more, nobody needs to know.
+        drop(outbox.send(Reply::Failed(error)));
+    }
+}
+
+/// An engine that has been started.
+struct Running {
+    worker: Worker,
+    // The process goes before the folder that it uses.
+    process: Process,
+    session: Session,
+    trigger_file: Option<TriggerFile>,
+    waiting: VecDeque<Signal>,
+    seq: u32,
+    open_outputs: u32,
+    last_drawn: Option<Instant>,
+}
+
+impl Running {
+    fn start(worker: Worker) -> Result<Self, EngineError> {
+        let config = &worker.config;
+        let session = Session::new(match config.engine.kind {
+            EngineKind::Python => driver::PYTHON,
+            EngineKind::Matlab | EngineKind::Octave => driver::MATLAB,
+        })?;
+        if config.engine.kind == EngineKind::Octave {
+            for name in driver::UNDRAWN {
+                session.add(&format!("undrawn/{name}.m"), &driver::undrawn(name))?;
+            }
+        }
+        let trigger_file = match config.trigger {
+            Trigger::Poll => Some(TriggerFile::create(session.folder())?),
+            Trigger::Stdin => None,
+        };
+        let start_fault = |reason: String| EngineError::Start {
+            engine: config.engine.program.clone(),
+            reason,
+        };
+        if !config.working_dir.is_dir() {
+            let reason = format!(
+                "there is no directory {} to run in",
+                config.working_dir.display()
+            );
+            return Err(start_fault(reason));
+        }
+        let command = command(config, &session).map_err(start_fault)?;
+        let piped = config.trigger == Trigger::Stdin;
+        let process = Process::start(command, piped, session.folder(), worker.killer.clone());
+        let process = process.map_err(|error| match error.kind() {
+            io::ErrorKind::Interrupted => EngineError::Stopped,
+            _ => start_fault(error.to_string()),
+        })?;
+        let mut running = Self {
+            process,
+            session,
+            trigger_file,
+            waiting: VecDeque::new(),
+            seq: 0,
+            open_outputs: 0,
+            last_drawn: None,
+            worker,
+        };
+        running.read_outputs()?;
+        running.hello()?;
+        Ok(running)
+    }
+
+    fn read_outputs(&mut self) -> Result<(), EngineError> {
+        for (output, stream) in self.process.outputs().zip([Stream::Out, Stream::Error]) {
+            let console = self.worker.console.clone();
+            let inbox = self.worker.own_inbox.clone();
+            self.open_outputs += 1;
+            thread::Builder::new()
+                .name("script output".into())
+                .spawn(move || read_output(output, stream, &console, &inbox))
+                .map_err(|error| EngineError::Start {
+                    engine: "a thread".into(),
+                    reason: error.to_string(),
+                })?;
+        }
+        Ok(())
+    }
+
+    fn hello(&mut self) -> Result<(), EngineError> {
+        if self.worker.config.engine.kind == EngineKind::Octave
+            && self.worker.config.trigger == Trigger::Stdin
+        {
+            let line = format!("addpath({});", quoted(&self.session.driver()));
+            self.process.write_line(&line).map_err(|_| self.death())?;
+        }
+        let limit = self.worker.config.timeouts.start;
+        let reply = self.call(Op::Hello, "the engine's start", limit)?;
+        let engine = reply
+            .get("engine")
+            .and_then(Array::as_text)
+            .unwrap_or("an engine");
+        let program = self.worker.config.engine.program.display();
+        let description = format!("{engine} ({program})");
+        drop(self.worker.outbox.send(Reply::Started { description }));
+        Ok(())
+    }
+
+    /// Serves requests until the engine ends. What is returned says why it did.
+    fn serve(mut self) -> EngineError {
+        loop {
+            let signal = match self.waiting.pop_front() {
+                Some(signal) => Ok(signal),
+                None => self.worker.inbox.recv_timeout(HEARTBEAT),
+            };
+            let reply = match signal {
+                Ok(Signal::Init(aux)) => self.init(&aux).map(Reply::Init),
+                Ok(Signal::Step(sensor)) => {
+                    self.step(&sensor).map(|reply| Reply::Step(Box::new(reply)))
+                }
+                Ok(Signal::Stop) | Err(RecvTimeoutError::Disconnected) => {
+                    self.end();
+                    return EngineError::Stopped;
+                }
+                Ok(Signal::Done(_)) => continue,
+                Ok(Signal::Closed) => {
+                    self.open_outputs = self.open_outputs.saturating_sub(1);
+                    // The end of the outputs comes a moment before that of the process.
+                    match self.process.wait(LOOK_AFTER) {
+                        Some(status) => return self.died(status),
+                        None => continue,
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => {
+                    if let Some(file) = &mut self.trigger_file {
+                        file.beat();
+                    }
+                    match self.process.ended() {
+                        Some(status) => return self.died(status),
+                        None => continue,
+                    }
+                }
+            };
+            match reply {
+                Ok(reply) => drop(self.worker.outbox.send(reply)),
+                Err(error) if error.is_fatal() => return error,
+                Err(error) => drop(self.worker.outbox.send(Reply::Failed(error))),
+            }
+        }
+    }
+
+    fn init(&mut self, aux: &Aux) -> Result<InitReply, EngineError> {
+        let config = &self.worker.config;
+        let agent = config.working_dir.join(&config.agent);
+        let agent = absolute(&agent).map_err(|error| EngineError::file(&agent, &error))?;
+        let folder = match config.engine.kind {
+            EngineKind::Python => config.agent.parent().unwrap_or(Path::new(".")),
+            EngineKind::Matlab | EngineKind::Octave => &config.agent,
+        };
+        let mut path = folder.to_string_lossy().into_owned();
+        if !path.is_empty() && !path.ends_with(['/', '\\']) {
+            path.push('/');
+        }
+        let mut arrays = aux.arrays(&path);
+        arrays.put("agent.folder", Array::text(agent.to_string_lossy()));
+        if let Some([init, callback]) = &config.pair {
+            arrays.put("agent.init", Array::text(init.as_str()));
+            arrays.put("agent.callback", Array::text(callback.as_str()));
+        }
+        self.session.write_request(&arrays)?;
+        let limit = config.timeouts.init;
+        let reply = self.call(Op::Init, "the init script", limit)?;
+        Ok(InitReply::read(&reply)?)
+    }
+
+    fn step(&mut self, sensor: &Sensor) -> Result<StepReply, EngineError> {
+        let start = Instant::now();
+        self.session.write_request(&sensor.arrays())?;
+        let limit = self.worker.config.timeouts.step;
+        let reply = self.call(Op::Step, "the callback script", limit)?;
+        Ok(StepReply {
+            motor: Motor::read(&reply)?,
+            exit: reply.get("aux.exit").is_some(),
+            took: start.elapsed(),
+        })
+    }
+
+    /// Has the engine do something and reads its answer.
+    fn call(&mut self, op: Op, what: &'static str, limit: Duration) -> Result<Arrays, EngineError> {
+        self.seq = self.seq.wrapping_add(1).max(1);
+        self.trigger(op)?;
+        self.wait(what, limit)?;
+        let reply = self.session.read_reply()?;
+        if reply.get("error.message").is_none() {
+            return Ok(reply);
+        }
+        let text = |name| reply.get(name).and_then(Array::as_text).unwrap_or_default();
+        let error = ScriptError::new(text("error.id"), text("error.message"), text("error.stack"));
+        Err(EngineError::Script(error))
+    }
+
+    fn trigger(&mut self, op: Op) -> Result<(), EngineError> {
+        let config = &self.worker.config;
+        let draw = match op {
+            Op::Hello => config.display,
+            _ => {
+                config.display
+                    && self
+                        .last_drawn
+                        .is_none_or(|last| last.elapsed() >= DRAW_INTERVAL)
+            }
+        };
+        if draw {
+            self.last_drawn = Some(Instant::now());
+        }
+        let seq = self.seq;
+        if let Some(file) = &mut self.trigger_file {
+            return file.request(seq, op, draw);
+        }
+        let (name, draw) = (op.name(), u8::from(draw));
+        let line = match config.engine.kind {
+            EngineKind::Python => format!("{name} {seq}"),
+            EngineKind::Matlab | EngineKind::Octave => {
+                format!(
+                    "tabletop_call('{name}', {}, {seq}, {draw}, 0);",
+                    quoted(self.session.folder())
+                )
+            }
+        };
+        self.process.write_line(&line).map_err(|_| self.death())
+    }
+
+    /// Waits until the engine has done what it was asked to.
+    fn wait(&mut self, what: &'static str, limit: Duration) -> Result<(), EngineError> {
+        let start = Instant::now();
+        let mut looked_after = start;
+        loop {
+            let waited = start.elapsed();
+            if waited >= limit {
+                self.worker.killer.kill();
+                return Err(EngineError::Timeout { what, limit });
+            }
+            let pause = match self.trigger_file {
+                None => LOOK_AFTER,
+                Some(_) if waited < Duration::from_millis(20) => Duration::from_micros(50),
+                Some(_) => Duration::from_millis(1),
+            };
+            match self.worker.inbox.recv_timeout(pause.min(limit - waited)) {
+                Ok(Signal::Done(seq)) if seq == self.seq => return Ok(()),
+                Ok(Signal::Done(_)) => {}
+                Ok(Signal::Stop) | Err(RecvTimeoutError::Disconnected) => {
+                    self.worker.killer.kill();
+                    return Err(EngineError::Stopped);
+                }
+                Ok(Signal::Closed) => {
+                    self.open_outputs = self.open_outputs.saturating_sub(1);
+                    if self.process.wait(LOOK_AFTER).is_some() {
+                        return Err(self.death());
+                    }
+                }
+                Ok(request) => self.waiting.push_back(request),
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+            if self
+                .trigger_file
+                .as_mut()
+                .is_some_and(|file| file.is_done(self.seq))
+            {
+                return Ok(());
+            }
+            if looked_after.elapsed() >= LOOK_AFTER {
+                looked_after = Instant::now();
+                if let Some(status) = self.process.ended() {
+                    return Err(self.died(status));
+                }
+            }
+        }
+    }
+
+    /// The engine does not listen any more: why.
+    fn death(&mut self) -> EngineError {
+        match self.process.wait(GRACE) {
+            Some(status) => self.died(status),
+            None => EngineError::Died {
+                status: "it closed its input".into(),
+                stderr: self.worker.console.last_words(),
+            },
+        }
+    }
+
+    fn died(&mut self, status: ExitStatus) -> EngineError {
+        let start = Instant::now();
+        while self.open_outputs > 0 {
+            let rest = LAST_OUTPUT.saturating_sub(start.elapsed());
+            match self.worker.inbox.recv_timeout(rest) {
+                Ok(Signal::Closed) => self.open_outputs -= 1,
+                Ok(_) => {}
+                Err(_) => break,
+            }
+        }
+        EngineError::Died {
+            status: status.to_string(),
+            stderr: self.worker.console.last_words(),
+        }
+    }
+
+    /// Lets the engine end by itself, so that it closes the script's files. Dropping it does the rest.
+    fn end(&mut self) {
+        self.seq = self.seq.wrapping_add(1).max(1);
+        if let Some(file) = &mut self.trigger_file {
+            drop(file.request(self.seq, Op::End, false));
+        }
+        self.process.close_input();
+        self.process.wait(GRACE);
+    }
+}
+
+/// The command that starts an engine.
+fn command(config: &EngineConfig, session: &Session) -> Result<Command, String> {
+    let mut command = Command::new(&config.engine.program);
+    command.current_dir(&config.working_dir);
+    let poll = || {
+        format!(
+            "addpath({}); tabletop_poll({}); exit",
+            quoted(&session.driver()),
+            quoted(session.folder())
+        )
+    };
+    match (config.engine.kind, config.trigger) {
+        (EngineKind::Octave, trigger) => {
+            command.args(["-q", "--no-history"]);
+            if config
+                .engine
+                .program
+                .file_stem()
+                .is_some_and(|name| name == "octave")
+            {
+                command.arg("--no-gui");
+            }
+            if trigger == Trigger::Poll {
+                command.args(["--eval", &poll()]);
+            }
+        }
+        (EngineKind::Matlab, Trigger::Poll) => {
+            let window = if cfg!(windows) { "-wait" } else { "-nodesktop" };
+            command.args(["-nosplash", window, "-r", &poll()]);
+        }
+        (EngineKind::Python, Trigger::Stdin) => {
+            command.args([
+                "-u".as_ref(),
+                session.driver().join("tabletop.py").as_os_str(),
+            ]);
+            command.arg(session.folder());
+        }
+        (EngineKind::Matlab, Trigger::Stdin) => {
+            return Err("MATLAB cannot be driven by its standard input".into());
+        }
+        (EngineKind::Python, Trigger::Poll) => return Err("Python does not poll".into()),
+    }
+    Ok(command)
+}
+
+/// A folder as a Matlab text, with a separator at its end.
+fn quoted(folder: &Path) -> String {
+    let mut folder = folder.to_string_lossy().replace('\'', "''");
+    folder.push(std::path::MAIN_SEPARATOR);
+    format!("'{folder}'")
+}
+
+/// Reads what an engine prints until it ends.
+fn read_output(mut output: impl Read, stream: Stream, console: &Console, inbox: &Sender<Signal>) {
+    let mut splitter = Splitter::default();
+    let mut each = |piece: Piece| match piece {
+        Piece::Text(text) => console.push(stream, text),
+        Piece::Mark(mark) => {
+            let seq = str::from_utf8(mark)
+                .ok()
+                .and_then(|mark| mark.strip_prefix("done "));
+            if let Some(seq) = seq.and_then(|seq| seq.trim().parse().ok()) {
+                drop(inbox.send(Signal::Done(seq)));
+            }
+        }
+    };
+    let mut buffer = [0; 16 << 10];
+    while let Ok(count) = output.read(&mut buffer)
+        && count > 0
+    {
+        splitter.feed(buffer.get(..count).unwrap_or_default(), &mut each);
+    }
+    splitter.finish(each);
+    drop(inbox.send(Signal::Closed));
+}
+
+/// The files by which an engine that polls and this program tell each other what is to do and what is done.
+struct TriggerFile {
+    path: PathBuf,
+    trigger: File,
+    done: File,
+    words: [u32; 4],
+}
+
+impl TriggerFile {
+    fn create(folder: &Path) -> Result<Self, EngineError> {
+        let path = folder.join("trigger.bin");
+        let fault = |error| EngineError::file(&path, &error);
+        let done = folder.join("done.bin");
+        fs::write(&done, [0; 8]).map_err(fault)?;
+        let done = File::open(done).map_err(fault)?;
+        let mut options = OpenOptions::new();
+        let trigger = options
+            .write(true)
+            .create(true)
+            .truncate(true)
+            .open(&path)
+            .map_err(fault)?;
+        Ok(Self {
+            trigger,
+            done,
+            words: [0; 4],
+            path,
+        })
+    }
+
+    fn request(&mut self, seq: u32, op: Op, draw: bool) -> Result<(), EngineError> {
+        let op = match op {
+            Op::End => 0,
+            Op::Hello => 1,
+            Op::Init => 2,
+            Op::Step => 3,
+        };
+        let [.., beat] = self.words;
+        self.words = [seq, op, u32::from(draw), beat.wrapping_add(1)];
+        self.write()
+    }
+
+    /// Says that this program is alive.
+    fn beat(&mut self) {
+        let [.., beat] = &mut self.words;
+        *beat = beat.wrapping_add(1);
+        // The next request tells whether the file is there.
+        drop(self.write());
+    }
+
+    /// Writes the file in place. A reader that sees half of it sees that the sum is wrong.
+    fn write(&mut self) -> Result<(), EngineError> {
+        let sum = self
+            .words
+            .iter()
+            .fold(0u32, |sum, word| sum.wrapping_add(*word));
+        let bytes: Vec<_> = self
+            .words
+            .iter()
+            .chain([&sum])
+            .flat_map(|word| word.to_le_bytes())
+            .collect();
+        self.trigger
+            .seek(SeekFrom::Start(0))
+            .and_then(|_| self.trigger.write_all(&bytes))
+            .map_err(|error| EngineError::file(&self.path, &error))
+    }
+
+    /// Whether the engine has done a request.
+    fn is_done(&mut self, seq: u32) -> bool {
+        let mut words = [0; 8];
+        let read = self
+            .done
+            .seek(SeekFrom::Start(0))
+            .and_then(|_| self.done.read_exact(&mut words));
+        let [a, b, c, d, e, f, g, h] = words;
+        read.is_ok() && [[a, b, c, d], [e, f, g, h]].map(u32::from_le_bytes) == [seq, seq]
+    }
+}

@@ -1,0 +1,68 @@
+//! A robot that turns its joints as it is told and knows where its hands are.
+
+use tabletop_engine::{Aux, InitReply, Motor, Sensor};
+use tabletop_kinematics::{ArmChain, baxter};
+
+use super::limits;
+
+/// A tick, in s.
+pub const TICK: f64 = 1.0 / 60.0;
+
+pub struct Robot {
+    arms: [ArmChain; 2],
+    limits: Aux,
+    pub angles: [[f64; 7]; 2],
+    pub grippers: [f64; 2],
+    pub head: f64,
+}
+
+impl Robot {
+    pub fn new(init: &InitReply) -> Self {
+        let model = baxter().unwrap();
+        let arm =
+            |side| ArmChain::between(&model, "torso", &format!("{side}_end_effector")).unwrap();
+        Self {
+            arms: [arm("left"), arm("right")],
+            limits: limits(),
+            angles: init.init_joint_angles.unwrap_or_default(),
+            grippers: [2.0; 2],
+            head: 0.0,
+        }
+    }
+
+    pub fn hands(&self) -> [[f64; 3]; 2] {
+        [0, 1].map(|side: usize| {
+            let tip = self.arms[side].tip(&self.angles[side]).translation;
+            [-10.0 * tip.y, 10.0 * tip.x - 9.0, 10.0 * tip.z + 2.0]
+        })
+    }
+
+    pub fn sensor(&self) -> Sensor {
+        Sensor {
+            time_elapsed: TICK,
+            joint_angles: self.angles,
+            end_eff_pos: self.hands(),
+            gripper_opening: self.grippers,
+            head_angle: Some(self.head),
+            ..Sensor::default()
+        }
+    }
+
+    pub fn obey(&mut self, motor: &Motor) {
+        for side in 0..2 {
+            for joint in 0..7 {
+                let angle = match &motor.joint_angles {
+                    Some(angles) => angles[side][joint],
+                    None => self.angles[side][joint] + motor.joint_velocities[side][joint] * TICK,
+                };
+                let least = self.limits.min_joint_angles[side][joint];
+                self.angles[side][joint] =
+                    angle.clamp(least, self.limits.max_joint_angles[side][joint]);
+            }
+            let opening = self.grippers[side] + motor.gripper_velocities[side] * TICK;
+            self.grippers[side] = opening.clamp(0.0, 2.0);
+        }
+        self.head =
+            (self.head + motor.head_velocity.unwrap_or_default() * TICK).clamp(-1.571, 1.571);
+    }
+}

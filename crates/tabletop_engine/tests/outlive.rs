@@ -1,0 +1,152 @@
+//! No engine outlives its program, however that ends.
+
+#![cfg(unix)]
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+mod common;
+
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    time::{Duration, Instant},
+};
+
+use common::{Folder, Session, TRIGGERS};
+use nix::{sys::signal, unistd::Pid};
+use tabletop_engine::{Sensor, Trigger};
+
+const FOLDER: &str = "TABLETOP_TEST_FOLDER";
+const TRIGGER: &str = "TABLETOP_TEST_TRIGGER";
+
+/// A script that writes its process, that of a child of its own and its session's folder to a file, then hangs or not.
+fn pair(folder: &Path, hang: bool) -> Folder {
+    let note = folder.join("processes");
+    let init = format!(
+        "[~, child] = system('sleep 1000 >/dev/null 2>&1 & echo $!');\nsession = fileparts(fileparts(which('tabletop_call')));\n\
+         fid = fopen('{0}.part', 'w'); fprintf(fid, '%d %s %s', getpid(), strtrim(child), session); fclose(fid); rename('{0}.part', '{0}');",
+        note.display()
+    );
+    Folder::pair(&init, if hang { "while true, end" } else { "" })
+}
+
+struct Note {
+    processes: Vec<Pid>,
+    session: PathBuf,
+}
+
+fn read(folder: &Path) -> Note {
+    let start = Instant::now();
+    loop {
+        if let Ok(text) = fs::read_to_string(folder.join("processes")) {
+            let (engine, rest) = text.split_once(' ').unwrap();
+            let (child, session) = rest.split_once(' ').unwrap();
+            let processes = [engine, child].map(|pid| Pid::from_raw(pid.parse().unwrap()));
+            return Note {
+                processes: processes.into(),
+                session: session.into(),
+            };
+        }
+        assert!(
+            start.elapsed() < Duration::from_secs(60),
+            "the script has not run"
+        );
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+/// Whether a process is there and no zombie.
+fn lives(pid: Pid) -> bool {
+    let state = fs::read_to_string(format!("/proc/{pid}/stat")).unwrap_or_default();
+    signal::kill(pid, None).is_ok()
+        && !state
+            .rsplit(')')
+            .next()
+            .unwrap_or_default()
+            .trim_start()
+            .starts_with('Z')
+}
+
+fn all_gone(note: &Note, limit: Duration) -> bool {
+    let start = Instant::now();
+    while start.elapsed() < limit {
+        if !note.processes.iter().any(|pid| lives(*pid)) && !note.session.exists() {
+            return true;
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    false
+}
+
+#[test]
+fn with_the_last_handle_all_is_gone() {
+    for trigger in TRIGGERS {
+        let folder = Folder::new(&[]);
+        let scripts = pair(&folder.0, false);
+        let session = Session::octave(&scripts.0, trigger);
+        session.init().unwrap();
+        session.step(&Sensor::default()).unwrap();
+        let note = read(&folder.0);
+        assert!(note.processes.iter().all(|pid| lives(*pid)) && note.session.exists());
+        drop(session);
+        assert!(all_gone(&note, Duration::from_secs(2)));
+    }
+}
+
+#[test]
+fn with_a_killed_program_all_is_gone() {
+    for trigger in TRIGGERS {
+        let folder = Folder::new(&[]);
+        // This test again, as a program that has an engine with a script that hangs.
+        let mut program = Command::new(env::current_exe().unwrap())
+            .args(["--exact", "a_program", "--ignored"])
+            .env(FOLDER, &folder.0)
+            .env(TRIGGER, format!("{trigger:?}"))
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let note = read(&folder.0);
+        std::thread::sleep(Duration::from_millis(200));
+        assert!(note.processes.iter().all(|pid| lives(*pid)));
+        program.kill().unwrap();
+        program.wait().unwrap();
+        assert!(all_gone(&note, Duration::from_secs(10)), "{trigger:?}");
+    }
+}
+
+#[test]
+#[ignore = "a program for another test"]
+fn a_program() {
+    let folder = PathBuf::from(env::var_os(FOLDER).unwrap());
+    let trigger = if env::var(TRIGGER).unwrap() == "Poll" {
+        Trigger::Poll
+    } else {
+        Trigger::Stdin
+    };
+    let scripts = pair(&folder, true);
+    let session = Session::octave(&scripts.0, trigger);
+    session.init().unwrap();
+    session.step(&Sensor::default()).unwrap();
+}
+
+#[test]
+fn a_polling_engine_ends_when_nobody_asks_any_more() {
+    let folder = Folder::new(&[("done.bin", "12345678")]);
+    let driver = Path::new(env!("CARGO_MANIFEST_DIR")).join("matlab");
+    // The real limit is half a minute.
+    let poll = fs::read_to_string(driver.join("tabletop_poll.m"))
+        .unwrap()
+        .replace("quiet < 30", "quiet < 0.3");
+    fs::write(folder.0.join("tabletop_poll.m"), poll).unwrap();
+    let start = Instant::now();
+    let script = format!(
+        "addpath('{}'); tabletop_poll('{0}/'); exit",
+        folder.0.display()
+    );
+    let ended = Command::new("octave-cli")
+        .args(["-q", "--eval", &script])
+        .output()
+        .unwrap();
+    assert!(ended.status.success() && start.elapsed() < Duration::from_secs(20));
+}

@@ -1,0 +1,182 @@
+//! Python as an engine, with a real python3.
+
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+mod common;
+
+use std::{fs, path::PathBuf, time::Duration};
+
+use common::{Folder, Session, script_error};
+use tabletop_engine::{
+    EngineChoice, EngineConfig, EngineError, EngineKind, Picture, SensedObject, Sensor,
+    Surroundings,
+};
+
+fn config(file: PathBuf) -> EngineConfig {
+    let found = Surroundings::system().find(&EngineChoice::Kind(EngineKind::Python));
+    let found = found.unwrap_or_else(|error| panic!("these tests need python3: {error}"));
+    let mut config = EngineConfig::new(found);
+    config.agent = file;
+    config
+}
+
+fn start(script: &str) -> (Folder, Session) {
+    let folder = Folder::new(&[("robot.py", script)]);
+    let session = Session::start(config(folder.0.join("robot.py"))).unwrap();
+    (folder, session)
+}
+
+#[test]
+fn the_example_turns_every_joint() {
+    let root = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
+    let mut config = config("python/example.py".into());
+    config.working_dir = root;
+    let session = Session::start(config).unwrap();
+    assert!(
+        session.description.starts_with("Python 3"),
+        "{}",
+        session.description
+    );
+    let reply = session.init().unwrap();
+    assert_eq!(reply.draw_markers.len(), 4);
+    assert_eq!(
+        reply.init_joint_angles.unwrap()[1][2],
+        std::f64::consts::FRAC_PI_2
+    );
+    let sensor = Sensor {
+        time_elapsed: 3.0,
+        ..Sensor::default()
+    };
+    let speed = || session.step(&sensor).unwrap().motor.joint_velocities;
+    assert_eq!(
+        [speed(), speed(), speed()],
+        [[[0.5; 7]; 2], [[0.5; 7]; 2], [[-0.5; 7]; 2]]
+    );
+    assert!(session.printed("jointAngles").contains("sensed: "));
+}
+
+#[test]
+fn everything_that_is_sensed_arrives() {
+    let (_folder, session) = start(
+        "import os\n\
+         def init(aux):\n    assert aux.numLimbs == 2 and aux.maxJointAngles[1][3] == 2.618 and aux.path.endswith('/'), vars(aux)\n\
+         def callback(sensor, motor, aux):\n\
+         \x20   assert abs(sensor.rgbVision[1, 2][0] - 0.2) < 1e-12\n\
+         \x20   assert sensor.trackerLoc['l-S1'][2] == 3 and sensor.demoCue is True\n\
+         \x20   assert sensor.objects.id == ['a', 'b'] and sensor.objects.position[1][0] == 7\n\
+         \x20   motor.jointVelocities[1][2] = sensor.jointAngles[1][6]\n\
+         \x20   motor.gripperVelocities = [1, -1]\n",
+    );
+    session.init().unwrap();
+    let mut rgb = vec![0; 18];
+    rgb[15] = 51;
+    let mut sensor = Sensor {
+        picture: Picture::new(3, 2, rgb),
+        demo_cue: true,
+        ..Sensor::default()
+    };
+    sensor.tracker_loc = Some(vec![("l-S1".into(), [1.0, 2.0, 3.0])]);
+    sensor.joint_angles[1][6] = 0.75;
+    let b = SensedObject {
+        id: "b".into(),
+        position: [7.0, 0.0, 0.0],
+        ..SensedObject::default()
+    };
+    sensor.objects = Some(vec![
+        SensedObject {
+            id: "a".into(),
+            ..b.clone()
+        },
+        b,
+    ]);
+    let motor = session.step(&sensor).unwrap().motor;
+    assert_eq!(
+        (motor.joint_velocities[1][2], motor.gripper_velocities),
+        (0.75, [1.0, -1.0])
+    );
+}
+
+#[test]
+fn faults_are_told_with_their_place() {
+    let (folder, session) = start(
+        "def init(aux): pass\ndef callback(sensor, motor, aux):\n    helper()\ndef helper():\n    1 / 0\n",
+    );
+    session.init().unwrap();
+    let error = script_error(session.step(&Sensor::default()));
+    assert_eq!(
+        (error.id.as_str(), error.message.as_str()),
+        ("ZeroDivisionError", "ZeroDivisionError: division by zero")
+    );
+    let lines: Vec<_> = error.stack.iter().map(|place| place.line).collect();
+    assert_eq!(
+        (lines, &error.place().unwrap().file),
+        (vec![5, 3], &folder.0.join("robot.py"))
+    );
+    fs::write(folder.0.join("robot.py"), "def init(aux):\n  x = = 3\n").unwrap();
+    let error = script_error(session.init());
+    assert_eq!(
+        error.place().unwrap().to_string(),
+        format!("{}:2", folder.0.join("robot.py").display())
+    );
+    for (callback, message) in [
+        (
+            "motor.jointVelocities = [[0] * 7] * 3",
+            "motor.jointVelocities is 3x7 double; it must be 2x7",
+        ),
+        (
+            "motor.jointVelocities = [[0] * 7, [0]]",
+            "motor.jointVelocities is 1x1 list; it must be 2x7 double",
+        ),
+        (
+            "motor.headVelocity = None",
+            "motor.headVelocity is 1x1 NoneType; it must be 1x1 double",
+        ),
+        (
+            "motor.headVelocity = float('nan')",
+            "motor.headVelocity(1,1) is NaN; it must be a finite number",
+        ),
+        (
+            "motor.spin = 1",
+            "motor.spin is no field that the robot knows",
+        ),
+        ("input()", "EOFError"),
+    ] {
+        let script =
+            format!("def init(aux): pass\ndef callback(sensor, motor, aux):\n    {callback}\n");
+        fs::write(folder.0.join("robot.py"), script).unwrap();
+        session.init().unwrap();
+        let error = session.step(&Sensor::default()).unwrap_err();
+        assert!(
+            !error.is_fatal() && error.to_string().starts_with(message),
+            "{callback}: {error}"
+        );
+    }
+}
+
+#[test]
+fn hangs_exits_and_missing_files_are_told() {
+    let folder = Folder::new(&[("robot.py", "def init(aux):\n    while True: pass\n")]);
+    let mut config = config(folder.0.join("robot.py"));
+    config.timeouts.init = Duration::from_millis(300);
+    let session = Session::start(config.clone()).unwrap();
+    assert!(matches!(session.init(), Err(EngineError::Timeout { .. })));
+    fs::write(
+        folder.0.join("robot.py"),
+        "import sys\ndef init(aux):\n    sys.exit(3)\n",
+    )
+    .unwrap();
+    let session = Session::start(config.clone()).unwrap();
+    let error = session.init().unwrap_err();
+    assert!(
+        matches!(&error, EngineError::Died { status, .. } if status.contains('3')),
+        "{error}"
+    );
+    config.agent = folder.0.join("nosuch.py");
+    let session = Session::start(config).unwrap();
+    assert!(script_error(session.init()).message.contains("nosuch.py"));
+    let exit =
+        "def init(aux): aux.exit = False\ndef callback(sensor, motor, aux): aux.exit = None\n";
+    let (_folder, session) = start(exit);
+    assert_eq!(session.init().unwrap().init_joint_angles, None);
+    assert!(session.step(&Sensor::default()).unwrap().exit);
+}

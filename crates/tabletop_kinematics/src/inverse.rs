@@ -1,0 +1,320 @@
+//! Inverse kinematics: which angles bring an arm's tip somewhere.
+//!
+//! Damped least squares: each step moves the joints so that the tip comes as close to its target as a linear model of the
+//! arm says, at the price of the joints' motion. The price falls with the distance (Sugihara 2011), so steps are careful
+//! far away and exact in the end. A joint that would leave its limits goes to the limit and stays out of that step. The
+//! freedom that a tip's six coordinates leave to seven joints pulls them to where the search began, so that small motions
+//! of a target are small motions of the joints.
+//!
+//! Where the search gets stuck it begins anew, from a fixed sequence of postures: same question, same answer.
+//!
+//! The crate `k` solves the same problem, but has its own linear algebra (another version than ours), no limits inside the
+//! step and no say in what becomes of the seventh joint.
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use thiserror::Error;
+
+use crate::{ARM_JOINTS, ArmChain, Twist};
+
+/// Where the tip of an arm shall be, in the frame of the arm's base, in m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// There, turned like this: from the tip's frame to the base's. A rigid motion.
+    Pose(DAffine3),
+    /// There, turned as it may.
+    Point(DVec3),
+}
+
+/// By how much the tip misses a target.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Miss {
+    /// Distance in m.
+    pub position: f64,
+    /// Angle in rad; 0 if the target leaves the rotation free.
+    pub rotation: f64,
+}
+
+/// No angles within the limits were found that bring the tip to the target.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[error(
+    "unreachable: the nearest posture found misses it by {:.3} mm and {:.3}°",
+    miss.position * 1e3,
+    miss.rotation.to_degrees()
+)]
+pub struct Unreachable {
+    /// The angles that come nearest, in rad, a rad counting as much as 0.3 m.
+    pub best: [f64; ARM_JOINTS],
+    /// By how much they miss the target.
+    pub miss: Miss,
+}
+
+/// Solved is what misses its target by less, in m and rad.
+const TOLERANCE: Miss = Miss {
+    position: 1e-6,
+    rotation: 1e-6,
+};
+
+/// How much a rotation of the tip counts against its distance.
+const METERS_PER_RAD: f64 = 0.3;
+/// Least squared damping, in m²: far below what an arm in a usual posture moves per rad.
+const LEAST_DAMPING: f64 = 1e-7;
+/// Squared damping per squared miss.
+const DAMPING: f64 = 0.1;
+/// A joint turns by no more in a step, in rad.
+const LONGEST_STEP: f64 = 0.7;
+/// The part of the way back to the start that the free motion goes in a step.
+const PULL: f64 = 0.5;
+/// The pull ends after this many steps; then only the target counts.
+const PULLED_STEPS: usize = 12;
+/// Steps of a search.
+const STEPS: usize = 100;
+/// How many steps a search may come no nearer, except the one from the seed, whose answer is wanted most.
+const PATIENCE: usize = 10;
+/// Postures that the search begins from.
+const STARTS: usize = 256;
+
+impl ArmChain {
+    /// Angles within the limits that bring the tip to the target, to 1 µm and 1 µrad; near the seed where there is a choice.
+    ///
+    /// # Errors
+    ///
+    /// None were found: the target is out of reach, or not a number.
+    pub fn solve(
+        &self,
+        target: &Target,
+        seed: &[f64; ARM_JOINTS],
+    ) -> Result<[f64; ARM_JOINTS], Unreachable> {
+        let mut nearest = (f64::INFINITY, self.clamp(seed));
+        for search in 0..STARTS {
+            let (cost, angles) = match search {
+                0 => self.search(target, nearest.1, STEPS),
+                _ => self.search(target, self.posture(search), PATIENCE),
+            };
+            if self.miss(target, &angles).is_within(&TOLERANCE) {
+                return Ok(angles);
+            }
+            if cost < nearest.0 {
+                nearest = (cost, angles);
+            }
+        }
+        Err(Unreachable {
+            best: nearest.1,
+            miss: self.miss(target, &nearest.1),
+        })
+    }
+
+    /// By how much the tip misses the target with these angles.
+    pub fn miss(&self, target: &Target, angles: &[f64; ARM_JOINTS]) -> Miss {
+        let error = target.error(&self.tip(angles));
+        Miss {
+            position: error.linear.length(),
+            rotation: error.angular.length(),
+        }
+    }
+
+    /// Goes downhill from a posture: the nearest one on the way, and what it costs in m². Ends when it has not come nearer
+    /// by a tenth in as many steps as its patience is.
+    fn search(
+        &self,
+        target: &Target,
+        start: [f64; ARM_JOINTS],
+        patience: usize,
+    ) -> (f64, [f64; ARM_JOINTS]) {
+        let mut angles = start;
+        let mut nearest = (f64::INFINITY, start);
+        let mut steps_left = patience;
+        for step in 0..STEPS {
+            let (tip, jacobian) = self.tip_and_jacobian(&angles);
+            let error = target.error(&tip);
+            let cost = error.linear.length_squared()
+                + error.angular.length_squared() * METERS_PER_RAD.powi(2);
+            steps_left = match cost < 0.8 * nearest.0 {
+                true => patience,
+                false => steps_left - 1,
+            };
+            if cost < nearest.0 {
+                nearest = (cost, angles);
+            }
+            let miss = Miss {
+                position: error.linear.length(),
+                rotation: error.angular.length(),
+            };
+            if steps_left == 0 || miss.is_within(&TOLERANCE) {
+                break;
+            }
+            let pull = match step < PULLED_STEPS {
+                true => std::array::from_fn(|i| PULL * (start[i] - angles[i])),
+                false => [0.0; ARM_JOINTS],
+            };
+            let turns_count = matches!(target, Target::Pose(_));
+            let system = System::new(&error, &jacobian, cost, turns_count);
+            let motion = self.motion(&system, &angles, pull);
+            let longest = motion.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+            let part = (LONGEST_STEP / longest).min(1.0);
+            angles = self.clamp(&std::array::from_fn(|i| angles[i] + part * motion[i]));
+        }
+        nearest
+    }
+
+    /// A step that no joint takes beyond its limits.
+    fn motion(
+        &self,
+        system: &System,
+        angles: &[f64; ARM_JOINTS],
+        pull: [f64; ARM_JOINTS],
+    ) -> [f64; ARM_JOINTS] {
+        let mut wish = pull;
+        let mut is_free = [true; ARM_JOINTS];
+        loop {
+            let motion = system.solve(&wish, &is_free);
+            let mut is_within = true;
+            for i in 0..ARM_JOINTS {
+                let end = angles[i] + motion[i];
+                let [least, largest] = self.limits()[i];
+                if is_free[i] && !(least..=largest).contains(&end) {
+                    is_free[i] = false;
+                    wish[i] = end.max(least).min(largest) - angles[i];
+                    is_within = false;
+                }
+            }
+            if is_within {
+                return motion;
+            }
+        }
+    }
+
+    /// The postures that searches begin from: the middle of the limits, then all over them (a Halton sequence).
+    fn posture(&self, index: usize) -> [f64; ARM_JOINTS] {
+        const PRIMES: [usize; ARM_JOINTS] = [2, 3, 5, 7, 11, 13, 17];
+        std::array::from_fn(|i| {
+            let [least, largest] = self.limits()[i].map(|limit| limit.clamp(-3.2, 3.2));
+            let share = match index {
+                1 => 0.5,
+                _ => halton(index, PRIMES[i]),
+            };
+            least + share * (largest - least)
+        })
+    }
+}
+
+impl Target {
+    /// The motion from the tip to the target, as velocities for 1 s.
+    fn error(&self, tip: &DAffine3) -> Twist {
+        match self {
+            Self::Pose(pose) => Twist {
+                linear: pose.translation - tip.translation,
+                angular: rotation_vector(pose.matrix3 * tip.matrix3.transpose()),
+            },
+            Self::Point(point) => Twist {
+                linear: *point - tip.translation,
+                angular: DVec3::ZERO,
+            },
+        }
+    }
+}
+
+impl Miss {
+    fn is_within(&self, tolerance: &Self) -> bool {
+        self.position < tolerance.position && self.rotation < tolerance.rotation
+    }
+}
+
+/// Axis times angle of a rotation, the short way round.
+fn rotation_vector(rotation: DMat3) -> DVec3 {
+    let rotation = DQuat::from_mat3(&rotation);
+    let rotation = if rotation.w < 0.0 {
+        -rotation
+    } else {
+        rotation
+    };
+    let (sine, cosine) = (rotation.xyz().length(), rotation.w);
+    match sine > 1e-12 {
+        true => rotation.xyz() * (2.0 * sine.atan2(cosine) / sine),
+        false => 2.0 * rotation.xyz(),
+    }
+}
+
+/// The number whose digits to a base are those of the index, mirrored at the point.
+fn halton(mut index: usize, base: usize) -> f64 {
+    let (mut share, mut number) = (1.0, 0.0);
+    while index > 0 {
+        share /= base as f64;
+        number += share * (index % base) as f64;
+        index /= base;
+    }
+    number
+}
+
+/// Coordinates of a tip.
+const ROWS: usize = 6;
+
+/// What a step has to do: the linear model of the arm, weighted.
+struct System {
+    /// By joint.
+    columns: [[f64; ROWS]; ARM_JOINTS],
+    error: [f64; ROWS],
+    damping: f64,
+}
+
+impl System {
+    fn new(error: &Twist, jacobian: &[Twist; ARM_JOINTS], cost: f64, turns_count: bool) -> Self {
+        let weight = if turns_count { METERS_PER_RAD } else { 0.0 };
+        let row = |twist: &Twist| {
+            let (v, w) = (twist.linear, twist.angular * weight);
+            [v.x, v.y, v.z, w.x, w.y, w.z]
+        };
+        Self {
+            columns: std::array::from_fn(|i| row(&jacobian[i])),
+            error: row(error),
+            damping: DAMPING * cost + LEAST_DAMPING,
+        }
+    }
+
+    /// The motion of the joints: those that are not free do as they wish, the others what serves the error, and as far as
+    /// that leaves it open, what they wish.
+    fn solve(&self, wish: &[f64; ARM_JOINTS], is_free: &[bool; ARM_JOINTS]) -> [f64; ARM_JOINTS] {
+        let mut matrix = [[0.0; ROWS]; ROWS];
+        let mut rest = self.error;
+        for (j, column) in self.columns.iter().enumerate() {
+            for row in 0..ROWS {
+                rest[row] -= column[row] * wish[j];
+                if is_free[j] {
+                    for other in 0..=row {
+                        matrix[row][other] += column[row] * column[other];
+                    }
+                }
+            }
+        }
+        for (i, row) in matrix.iter_mut().enumerate() {
+            row[i] += self.damping;
+        }
+        let force = solve_symmetric(matrix, rest);
+        std::array::from_fn(|j| {
+            let served: f64 = self.columns[j].iter().zip(&force).map(|(a, b)| a * b).sum();
+            wish[j] + if is_free[j] { served } else { 0.0 }
+        })
+    }
+}
+
+/// Solves a symmetric, positive definite system, of which the lower half is given (Cholesky).
+fn solve_symmetric(mut matrix: [[f64; ROWS]; ROWS], mut right: [f64; ROWS]) -> [f64; ROWS] {
+    for i in 0..ROWS {
+        for j in 0..=i {
+            let known: f64 = (0..j).map(|k| matrix[i][k] * matrix[j][k]).sum();
+            let value = matrix[i][j] - known;
+            matrix[i][j] = match i == j {
+                true => value.max(f64::MIN_POSITIVE).sqrt(),
+                false => value / matrix[j][j],
+            };
+        }
+    }
+    for i in 0..ROWS {
+        let known: f64 = (0..i).map(|k| matrix[i][k] * right[k]).sum();
+        right[i] = (right[i] - known) / matrix[i][i];
+    }
+    for i in (0..ROWS).rev() {
+        let known: f64 = (i + 1..ROWS).map(|k| matrix[k][i] * right[k]).sum();
+        right[i] = (right[i] - known) / matrix[i][i];
+    }
+    right
+}

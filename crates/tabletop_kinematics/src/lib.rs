@@ -1,0 +1,48 @@
+//! Robots as URDF describes them: where their links are, how to bring a hand somewhere, and what their weight does to the
+//! joints.
+//!
+//! Everything here is in URDF's units: **metres, radians, kilograms, seconds**, in the frame of the model's root link
+//! (for Baxter: x forward, y left, z up), in `f64`. A unit of the simulator's table is 0.1 m.
+//!
+//! - [`Model`]: links and joints, read from URDF and checked; [`Model::frames`] and [`Model::jacobian`] are its forward
+//!   kinematics.
+//! - [`ArmChain`]: the seven joints from a base to a tip; [`ArmChain::solve`] is its inverse kinematics.
+//! - [`Model::gravity_torques`], [`Model::inverse_dynamics`], [`Model::inertia_matrix`]: its dynamics.
+//! - [`baxter()`] and [`baxter_smile()`]: the robot of the report, embedded.
+//!
+//! ```
+//! use tabletop_kinematics::{ArmChain, Target, baxter};
+//!
+//! let robot = baxter()?;
+//! let arm = ArmChain::between(&robot, "torso", "left_end_effector")?;
+//! let start = [0.25, 0.0, -1.527, 2.618, 1.529, 1.5, 0.0];
+//!
+//! // 5 cm up from where the hand is.
+//! let mut hand = arm.tip(&start);
+//! hand.translation.z += 0.05;
+//! let angles = arm.solve(&Target::Pose(hand), &start)?;
+//! assert!((arm.tip(&angles).translation - hand.translation).length() < 1e-4);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod arm;
+mod baxter;
+mod dynamics;
+mod error;
+mod forward;
+mod inverse;
+mod link;
+mod model;
+mod outline;
+mod urdf;
+mod values;
+
+pub use arm::{ARM_JOINTS, ArmChain, Twist};
+pub use baxter::{baxter, baxter_smile};
+pub use dynamics::{InertiaMatrix, Load};
+pub use error::ModelError;
+pub use forward::Frames;
+pub use inverse::{Miss, Target, Unreachable};
+pub use link::{Geometry, Inertial, Link, Shape};
+pub use model::{Joint, JointId, JointKind, LinkId, Mimic, Model};
+pub use values::JointValues;

@@ -1,0 +1,71 @@
+//! What a link is made of.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use crate::JointId;
+
+/// A rigid part of a robot.
+#[derive(Clone, Debug)]
+pub struct Link {
+    /// Its name, unique among links.
+    pub name: String,
+    /// The joint that carries it; `None` for the root.
+    pub joint: Option<JointId>,
+    /// Its mass and how that is spread.
+    pub inertial: Inertial,
+    /// What is seen of it.
+    pub visuals: Vec<Shape>,
+    /// What is touched of it.
+    pub collisions: Vec<Shape>,
+}
+
+/// A mass and how it is spread, in the frame of its link. Without mass for links that are mere frames.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Inertial {
+    /// Mass in kg.
+    pub mass: f64,
+    /// Centre of mass in m.
+    pub center: DVec3,
+    /// Moments of inertia about the centre of mass, along the link's axes, in kg m².
+    pub inertia: DMat3,
+}
+
+/// A body in the frame of its link.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    /// From the body's own frame to the link's, in m.
+    pub origin: DAffine3,
+    /// What it is.
+    pub geometry: Geometry,
+    /// Red, green, blue and opacity, 0 to 1; `None` where the description names no colour, as for collisions.
+    pub color: Option<[f64; 4]>,
+}
+
+/// A body about the origin of its own frame. Lengths in m.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Geometry {
+    /// A box.
+    Box {
+        /// Its whole lengths along x, y and z.
+        size: DVec3,
+    },
+    /// A cylinder along z.
+    Cylinder {
+        /// Its radius.
+        radius: f64,
+        /// Its whole length.
+        length: f64,
+    },
+    /// A ball.
+    Sphere {
+        /// Its radius.
+        radius: f64,
+    },
+    /// A mesh in a file of its own.
+    Mesh {
+        /// The file, as the description names it: `package://tabletop/wrist.shape.json`.
+        file: String,
+        /// Factors along x, y and z.
+        scale: DVec3,
+    },
+}

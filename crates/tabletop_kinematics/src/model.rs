@@ -1,0 +1,207 @@
+//! A robot: links, and the joints between them.
+
+use glam::{DAffine3, DVec3};
+
+use crate::{JointValues, Link, ModelError};
+
+/// A link of a [`Model`], by its place in [`Model::links`]. It belongs to the model that it is from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LinkId(pub(crate) usize);
+
+impl LinkId {
+    /// Its place in [`Model::links`].
+    pub const fn index(self) -> usize {
+        self.0
+    }
+}
+
+/// A joint of a [`Model`], by its place in [`Model::joints`]. It belongs to the model that it is from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct JointId(pub(crate) usize);
+
+impl JointId {
+    /// Its place in [`Model::joints`].
+    pub const fn index(self) -> usize {
+        self.0
+    }
+}
+
+/// What a joint leaves free.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// Nothing.
+    Fixed,
+    /// A turn about its axis, within limits.
+    Revolute,
+    /// A turn about its axis, without limits.
+    Continuous,
+    /// A slide along its axis, within limits.
+    Prismatic,
+}
+
+impl JointKind {
+    /// Whether it turns about its axis.
+    pub const fn turns(self) -> bool {
+        matches!(self, Self::Revolute | Self::Continuous)
+    }
+}
+
+/// A joint: how a link hangs on another one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// Its name, unique among joints.
+    pub name: String,
+    /// What it leaves free.
+    pub kind: JointKind,
+    /// The link that it hangs on.
+    pub parent: LinkId,
+    /// The link that it carries.
+    pub child: LinkId,
+    /// From its child's frame, while it stands at 0, to its parent's. In m.
+    pub origin: DAffine3,
+    /// The unit vector that it turns about or slides along, in its child's frame.
+    pub axis: DVec3,
+    /// Least and largest position, in rad or m; infinite for [`Continuous`](JointKind::Continuous) ones.
+    pub limits: [f64; 2],
+    /// Largest torque or force of its motor, in N m or N; 0 if the description names none.
+    pub effort: f64,
+    /// Largest speed, in rad/s or m/s; 0 if the description names none.
+    pub velocity: f64,
+    /// Torque or force against its motion, per rad/s or m/s.
+    pub damping: f64,
+    /// The joint that it follows, if it does not move by itself.
+    pub mimic: Option<Mimic>,
+}
+
+impl Joint {
+    /// From the child's frame to the parent's, with the joint at a position in rad or m.
+    pub fn motion(&self, position: f64) -> DAffine3 {
+        match self.kind {
+            JointKind::Fixed => self.origin,
+            JointKind::Revolute | JointKind::Continuous => {
+                self.origin * DAffine3::from_axis_angle(self.axis, position)
+            }
+            JointKind::Prismatic => self.origin * DAffine3::from_translation(self.axis * position),
+        }
+    }
+}
+
+/// How a joint follows another one: its position is `multiplier * leader + offset`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mimic {
+    /// The joint that leads; it follows none itself.
+    pub leader: JointId,
+    /// Motion per motion of the leader.
+    pub multiplier: f64,
+    /// Position while the leader stands at 0, in rad or m.
+    pub offset: f64,
+}
+
+/// A robot: a tree of links and joints. Parents stand before their children.
+#[derive(Clone, Debug)]
+pub struct Model {
+    pub(crate) name: String,
+    /// The first one is the root.
+    pub(crate) links: Vec<Link>,
+    /// `joints[i]` carries `links[i + 1]`.
+    pub(crate) joints: Vec<Joint>,
+}
+
+impl Model {
+    /// The robot's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The links, the root first, each one after the link that it hangs on.
+    pub fn links(&self) -> &[Link] {
+        &self.links
+    }
+
+    /// The joints, in the order of the links that they carry.
+    pub fn joints(&self) -> &[Joint] {
+        &self.joints
+    }
+
+    /// The link that hangs on nothing; its frame is the frame of all results.
+    pub const fn root(&self) -> LinkId {
+        LinkId(0)
+    }
+
+    /// A link.
+    pub fn link(&self, link: LinkId) -> &Link {
+        &self.links[link.index()]
+    }
+
+    /// A joint.
+    pub fn joint(&self, joint: JointId) -> &Joint {
+        &self.joints[joint.index()]
+    }
+
+    /// The link of this name.
+    ///
+    /// # Errors
+    ///
+    /// There is none.
+    pub fn find_link(&self, name: &str) -> Result<LinkId, ModelError> {
+        let found = self.links.iter().position(|link| link.name == name);
+        found.map(LinkId).ok_or_else(|| ModelError::NoSuchLink {
+            robot: self.name.clone(),
+            link: name.to_owned(),
+        })
+    }
+
+    /// The joint of this name.
+    ///
+    /// # Errors
+    ///
+    /// There is none.
+    pub fn find_joint(&self, name: &str) -> Result<JointId, ModelError> {
+        let found = self.joints.iter().position(|joint| joint.name == name);
+        found.map(JointId).ok_or_else(|| ModelError::NoSuchJoint {
+            robot: self.name.clone(),
+            joint: name.to_owned(),
+        })
+    }
+
+    /// The joints that can be told where to be: neither fixed nor following another one.
+    pub fn movable(&self) -> impl Iterator<Item = JointId> {
+        let joints = self.joints.iter().enumerate();
+        joints
+            .filter(|(_, joint)| joint.kind != JointKind::Fixed && joint.mimic.is_none())
+            .map(|(i, _)| JointId(i))
+    }
+
+    /// The link that a link hangs on; `None` for the root.
+    pub fn parent(&self, link: LinkId) -> Option<LinkId> {
+        self.link(link).joint.map(|joint| self.joint(joint).parent)
+    }
+
+    /// A 0 for every joint.
+    pub fn zero(&self) -> JointValues {
+        JointValues(vec![0.0; self.joints.len()])
+    }
+
+    /// Where a joint is, in rad or m: its own number, or what the joint that it follows makes of it.
+    pub fn position(&self, joint: JointId, configuration: &JointValues) -> f64 {
+        match self.joint(joint).mimic {
+            Some(mimic) => mimic.multiplier * configuration[mimic.leader] + mimic.offset,
+            None => configuration[joint],
+        }
+    }
+
+    /// The joint whose number moves this one, and how much this one moves per motion of it.
+    pub(crate) fn leader(&self, joint: JointId) -> (JointId, f64) {
+        match self.joint(joint).mimic {
+            Some(mimic) => (mimic.leader, mimic.multiplier),
+            None => (joint, 1.0),
+        }
+    }
+
+    /// The moving joints between a link and the root, from the link.
+    pub(crate) fn carriers(&self, link: LinkId) -> impl Iterator<Item = JointId> {
+        let next = |joint: &JointId| self.link(self.joint(*joint).parent).joint;
+        std::iter::successors(self.link(link).joint, next)
+            .filter(|&joint| self.joint(joint).kind != JointKind::Fixed)
+    }
+}

@@ -1,0 +1,180 @@
+//! Inverse kinematics: reached, within limits, always the same, smooth, and honest where nothing reaches.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::array::from_fn;
+
+use glam::{DAffine3, DQuat, DVec3};
+use proptest::prelude::*;
+use tabletop_kinematics::{ARM_JOINTS, ArmChain, Target, baxter};
+
+const START: [f64; ARM_JOINTS] = [0.25, 0.0, -1.527, 2.618, 1.529, 1.5, 0.0];
+
+fn left_arm() -> ArmChain {
+    ArmChain::between(&baxter().unwrap(), "torso", "left_end_effector").unwrap()
+}
+
+/// Random numbers from 0 to 1 that are the same everywhere.
+fn random(state: &mut u64) -> f64 {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    (*state >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+fn random_angles(arm: &ArmChain, state: &mut u64) -> [f64; ARM_JOINTS] {
+    arm.limits()
+        .map(|[least, largest]| least + random(state) * (largest - least))
+}
+
+fn assert_solves(arm: &ArmChain, target: &Target, angles: &[f64; ARM_JOINTS]) {
+    let miss = arm.miss(target, angles);
+    assert!(miss.position < 1e-4, "{} m", miss.position);
+    assert!(
+        miss.rotation < 0.1_f64.to_radians(),
+        "{} rad",
+        miss.rotation
+    );
+    assert_eq!(arm.clamp(angles), *angles, "within the limits");
+}
+
+#[test]
+fn a_thousand_poses_that_can_be_reached_are_reached() {
+    let robot = baxter().unwrap();
+    let mut state = 1;
+    for side in ["left", "right"] {
+        let arm = ArmChain::between(&robot, "torso", &format!("{side}_end_effector")).unwrap();
+        for i in 0..1000 {
+            let pose = arm.tip(&random_angles(&arm, &mut state));
+            let target = Target::Pose(pose);
+            match arm.solve(&target, &START) {
+                Ok(angles) => assert_solves(&arm, &target, &angles),
+                Err(error) => panic!("{side} {i}: {error}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn the_same_question_has_the_same_answer() {
+    let arm = left_arm();
+    let mut state = 7;
+    for _ in 0..50 {
+        let target = Target::Pose(arm.tip(&random_angles(&arm, &mut state)));
+        assert_eq!(
+            arm.solve(&target, &START).unwrap(),
+            arm.solve(&target, &START).unwrap()
+        );
+    }
+}
+
+#[test]
+fn where_the_hand_is_already_nothing_moves() {
+    let arm = left_arm();
+    assert_eq!(
+        arm.solve(&Target::Pose(arm.tip(&START)), &START).unwrap(),
+        START
+    );
+}
+
+#[test]
+fn small_steps_of_the_hand_are_small_steps_of_the_joints() {
+    let arm = left_arm();
+    let start = arm.tip(&START);
+    let mut angles = START;
+    // A circle of 20 cm in front of the robot in steps of 2.5 mm.
+    for i in 0..=250 {
+        let turn = f64::from(i) * std::f64::consts::TAU / 250.0;
+        let mut pose = start;
+        pose.translation += 0.1 * DVec3::new(1.0 - turn.cos(), turn.sin(), 0.0)
+            + DVec3::new(0.15, 0.0, 0.1) * f64::from(i.min(50)) / 50.0;
+        let target = Target::Pose(pose);
+        let next = arm.solve(&target, &angles).unwrap();
+        assert_solves(&arm, &target, &next);
+        let step = (0..ARM_JOINTS)
+            .map(|i| (next[i] - angles[i]).abs())
+            .fold(0.0, f64::max);
+        assert!(step < 0.05, "step {i}: {step} rad");
+        angles = next;
+    }
+}
+
+#[test]
+fn a_point_is_reached_with_any_rotation() {
+    let arm = left_arm();
+    let mut state = 3;
+    for _ in 0..200 {
+        let point = arm.tip(&random_angles(&arm, &mut state)).translation;
+        let target = Target::Point(point);
+        let angles = arm.solve(&target, &START).unwrap();
+        assert_solves(&arm, &target, &angles);
+    }
+}
+
+#[test]
+fn what_is_out_of_reach_is_told_with_the_nearest_posture() {
+    let arm = left_arm();
+    let far = Target::Point(DVec3::new(3.0, 1.0, 0.4));
+    let error = arm.solve(&far, &START).unwrap_err();
+    assert_eq!(arm.miss(&far, &error.best), error.miss);
+    // The shoulder is 1.17 m of arm and gripper away from the hand at best.
+    assert!((1.5..2.1).contains(&error.miss.position), "{error}");
+    assert!(error.to_string().starts_with("unreachable: "), "{error}");
+}
+
+#[test]
+fn hostile_targets_are_unreachable_and_nothing_else() {
+    let arm = left_arm();
+    for target in [
+        Target::Point(DVec3::NAN),
+        Target::Point(DVec3::splat(f64::INFINITY)),
+        Target::Point(DVec3::splat(1e300)),
+        Target::Pose(DAffine3::from_mat3(glam::DMat3::ZERO)),
+        Target::Pose(DAffine3::from_translation(DVec3::NAN)),
+    ] {
+        let error = arm.solve(&target, &[f64::NAN; ARM_JOINTS]).unwrap_err();
+        assert!(
+            error.best.iter().all(|angle| angle.is_finite()),
+            "{target:?}: {error:?}"
+        );
+    }
+}
+
+#[test]
+fn narrower_limits_are_kept() {
+    let arm = left_arm();
+    let mut limits = *arm.limits();
+    limits[2] = [-1.6, -1.4];
+    let arm = arm.with_limits(limits);
+    let mut state = 11;
+    for _ in 0..100 {
+        let target = Target::Pose(arm.tip(&random_angles(&arm, &mut state)));
+        assert_solves(&arm, &target, &arm.solve(&target, &START).unwrap());
+    }
+}
+
+proptest! {
+    #[test]
+    fn the_jacobian_is_the_derivative_of_the_tip(
+        shares in prop::array::uniform7(0.0..1.0_f64),
+        joint in 0..ARM_JOINTS,
+    ) {
+        const STEP: f64 = 1e-6;
+        let arm = left_arm();
+        let angles: [f64; ARM_JOINTS] = from_fn(|i| {
+            let [least, largest] = arm.limits()[i];
+            least + shares[i] * (largest - least)
+        });
+        let moved = |by: f64| {
+            let mut moved = angles;
+            moved[joint] += by;
+            arm.tip(&moved)
+        };
+        let (before, after) = (moved(-STEP), moved(STEP));
+        let twist = arm.jacobian(&angles)[joint];
+        let linear = (after.translation - before.translation) / (2.0 * STEP);
+        prop_assert!(linear.distance(twist.linear) < 1e-8);
+        let turn = DQuat::from_mat3(&(after.matrix3 * before.matrix3.transpose()));
+        let angular = turn.to_scaled_axis() / (2.0 * STEP);
+        prop_assert!(angular.distance(twist.angular) < 1e-8);
+    }
+}

@@ -1,0 +1,72 @@
+//! How near convex solids are to each other: for bodies that are moved without the physics engine.
+
+use bevy::prelude::*;
+use bevy_rapier3d::{parry, rapier::prelude as rapier};
+use tabletop_core::Pose;
+
+/// A convex solid with its pose in the frame of what it is a part of.
+#[derive(Clone, Debug)]
+pub struct Convex {
+    /// Pose of its own frame.
+    pub pose: Pose,
+    /// The solid, in its own frame.
+    pub shape: rapier::SharedShape,
+}
+
+/// The convex parts of a collider's shape.
+pub fn convex_parts(pose: Pose, shape: &rapier::SharedShape) -> Vec<Convex> {
+    match shape.as_compound() {
+        Some(compound) => compound
+            .shapes()
+            .iter()
+            .map(|(place, shape)| Convex {
+                pose: pose * Pose::new(place.translation, place.rotation),
+                shape: shape.clone(),
+            })
+            .collect(),
+        None => vec![Convex {
+            pose,
+            shape: shape.clone(),
+        }],
+    }
+}
+
+/// The nearest points of a part of a moving body and an obstacle.
+pub struct Nearest {
+    /// How far they are apart; negative inside.
+    pub distance: f32,
+    /// From the obstacle towards the moving body.
+    pub away: Vec3,
+}
+
+/// Where each part of a moving body at a pose is within a distance, in units, of each obstacle.
+pub fn nearest<'a>(
+    body: &'a [Convex],
+    at: Pose,
+    obstacles: &'a [Convex],
+    within: f32,
+) -> impl Iterator<Item = Nearest> + 'a {
+    body.iter().flat_map(move |part| {
+        let part_at = to_rapier(at * part.pose);
+        obstacles.iter().filter_map(move |obstacle| {
+            let obstacle_at = to_rapier(obstacle.pose);
+            parry::query::contact(
+                &part_at,
+                &*part.shape,
+                &obstacle_at,
+                &*obstacle.shape,
+                within,
+            )
+            .ok()
+            .flatten()
+            .map(|contact| Nearest {
+                distance: contact.dist,
+                away: contact.normal2,
+            })
+        })
+    })
+}
+
+fn to_rapier(pose: Pose) -> rapier::Pose {
+    rapier::Pose::from_parts(pose.location, pose.rotation)
+}

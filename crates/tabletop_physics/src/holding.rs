@@ -1,0 +1,47 @@
+//! Bodies that something holds, and that it lets go of.
+
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
+use tabletop_core::ObjectSpec;
+
+/// An object that was let go of in this tick.
+///
+/// Rapier finds out what a body lies on when it has moved, so an object that was let go of at rest would fall freely for a
+/// tick, into what is below it. Instead it sinks for a tick by next to nothing, and falls from then on.
+#[derive(Component, Clone, Copy, Debug)]
+pub struct JustReleased;
+
+/// How fast it sinks in that tick, in units/s.
+const SETTLING_SPEED: f32 = 1e-3;
+
+/// Makes an object go exactly where its [`Transform`] says, whatever acts on it.
+pub fn hold(mut object: EntityWorldMut) {
+    object.insert(RigidBody::KinematicPositionBased);
+    object.remove::<JustReleased>();
+}
+
+/// Leaves an object to itself, at rest.
+pub fn let_go(mut object: EntityWorldMut) {
+    let is_fixed = object.get().is_some_and(ObjectSpec::is_fixed);
+    if is_fixed {
+        object.insert(RigidBody::Fixed);
+    } else {
+        object.insert((
+            RigidBody::Dynamic,
+            GravityScale(0.0),
+            Velocity::linear(Vec3::NEG_Z * SETTLING_SPEED),
+            JustReleased,
+        ));
+    }
+}
+
+/// Lets fall what was let go of in the tick before.
+pub fn let_fall(
+    mut released: Query<(Entity, &mut GravityScale), With<JustReleased>>,
+    mut commands: Commands,
+) {
+    for (object, mut gravity) in &mut released {
+        gravity.0 = 1.0;
+        commands.entity(object).remove::<JustReleased>();
+    }
+}

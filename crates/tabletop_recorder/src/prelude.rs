@@ -1,0 +1,169 @@
+//! What was told before a recording: its replay begins with that.
+
+use tabletop_core::{SimCommand, SimTick};
+
+use crate::{
+    order::{in_order, is_about_recordings},
+    session::command_line,
+};
+
+/// A longer log is not kept: some three hours of moving something without a break.
+const MOST_BYTES: usize = 64 << 20;
+
+/// The commands since the world was last empty: since the program started, or since a scene was put on the table while no
+/// hand held anything and the robot had not been used.
+#[derive(Debug)]
+pub(crate) struct Prelude {
+    /// The tick of the first command; `None` if they were too many to be kept.
+    begin: Option<SimTick>,
+    /// Their lines in a session log.
+    lines: Vec<u8>,
+    /// How many there are.
+    count: usize,
+    is_paused: bool,
+    /// The robot and what it shows outlive a scene.
+    has_used_robot: bool,
+}
+
+impl Default for Prelude {
+    fn default() -> Self {
+        Self {
+            begin: Some(SimTick(0)),
+            lines: Vec::new(),
+            count: 0,
+            is_paused: false,
+            has_used_robot: false,
+        }
+    }
+}
+
+impl Prelude {
+    pub(crate) fn begin(&self) -> Option<SimTick> {
+        self.begin
+    }
+
+    pub(crate) fn lines(&self) -> &[u8] {
+        &self.lines
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Takes in the commands of a tick in which nothing is recorded.
+    pub(crate) fn note(&mut self, tick: SimTick, commands: &[SimCommand], hands_are_empty: bool) {
+        let (first, then) = in_order(commands);
+        for command in first.iter().chain(&then) {
+            let empties_the_world =
+                hands_are_empty && !self.has_used_robot && matches!(command, SimCommand::SetScene(_));
+            if empties_the_world {
+                self.begin_at(tick);
+            }
+            if !is_about_recordings(command) {
+                self.append(&command_line(tick.0, command).unwrap_or_default());
+            }
+            self.note_lasting(command);
+        }
+    }
+
+    /// Notes what a command changes for longer than a scene stands. To be called for recorded commands, too.
+    pub(crate) fn note_lasting(&mut self, command: &SimCommand) {
+        match command {
+            SimCommand::SetPaused(paused) => self.is_paused = *paused,
+            SimCommand::ShowRobot(_)
+            | SimCommand::Drive(_)
+            | SimCommand::ReachTo { .. }
+            | SimCommand::ShowFace(_)
+            | SimCommand::ShowMarkers(_) => self.has_used_robot = true,
+            _ => {}
+        }
+    }
+
+    /// Adds lines of a session log: what a recording has logged since it started. `None` if that is not known.
+    pub(crate) fn append_recorded(&mut self, lines: Option<&[u8]>) {
+        match lines {
+            Some(lines) => self.append(lines),
+            None => self.forget(),
+        }
+    }
+
+    fn begin_at(&mut self, tick: SimTick) {
+        self.forget();
+        self.begin = Some(tick);
+        if self.is_paused {
+            let pause = SimCommand::SetPaused(true);
+            self.append(&command_line(tick.0, &pause).unwrap_or_default());
+        }
+    }
+
+    fn append(&mut self, lines: &[u8]) {
+        if self.lines.len() + lines.len() > MOST_BYTES {
+            self.forget();
+        } else if self.begin.is_some() {
+            self.count += lines.iter().filter(|&&byte| byte == b'\n').count();
+            self.lines.extend_from_slice(lines);
+        }
+    }
+
+    fn forget(&mut self) {
+        self.begin = None;
+        self.count = 0;
+        self.lines = Vec::new();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::{Hand, SceneSpec};
+
+    use super::*;
+
+    fn scene() -> SimCommand {
+        SimCommand::SetScene(Box::new(SceneSpec::default()))
+    }
+
+    fn told(prelude: &Prelude) -> Vec<String> {
+        let lines = std::str::from_utf8(prelude.lines()).unwrap();
+        let told: Vec<_> = lines.lines().map(str::to_owned).collect();
+        assert_eq!(told.len(), prelude.count());
+        told
+    }
+
+    #[test]
+    fn it_goes_back_to_the_last_scene_that_empties_the_world() {
+        let mut prelude = Prelude::default();
+        assert_eq!(prelude.begin(), Some(SimTick(0)));
+        prelude.note(SimTick(3), &[SimCommand::Release(Hand::Left), scene()], true);
+        assert_eq!(prelude.begin(), Some(SimTick(3)));
+        let told_first = told(&prelude);
+        assert!(told_first[0].contains("SetScene") && told_first[1].contains("Release"));
+        prelude.note(SimTick(5), &[scene()], false);
+        assert_eq!(prelude.begin(), Some(SimTick(3)));
+        assert_eq!(prelude.count(), 3);
+        prelude.note(SimTick(9), &[scene(), SimCommand::StartRecording], true);
+        assert_eq!((prelude.begin(), prelude.count()), (Some(SimTick(9)), 1));
+    }
+
+    #[test]
+    fn a_pause_and_the_robot_outlive_a_scene() {
+        let mut prelude = Prelude::default();
+        prelude.note(SimTick(1), &[SimCommand::SetPaused(true)], true);
+        prelude.note(SimTick(1), &[scene()], true);
+        assert!(told(&prelude)[0].contains("SetPaused"));
+        prelude.note(SimTick(2), &[SimCommand::ShowRobot(true)], true);
+        prelude.note(SimTick(3), &[scene()], true);
+        assert_eq!((prelude.begin(), prelude.count()), (Some(SimTick(1)), 4));
+    }
+
+    #[test]
+    fn too_long_a_log_is_dropped_until_the_next_scene() {
+        let mut prelude = Prelude::default();
+        prelude.append_recorded(Some(&vec![b'\n'; MOST_BYTES + 1]));
+        prelude.note(SimTick(8), &[SimCommand::ClearTable], true);
+        assert_eq!((prelude.begin(), prelude.count()), (None, 0));
+        prelude.note(SimTick(9), &[scene()], true);
+        assert_eq!((prelude.begin(), prelude.count()), (Some(SimTick(9)), 1));
+        prelude.append_recorded(None);
+        assert_eq!(prelude.begin(), None);
+    }
+}

@@ -1,0 +1,195 @@
+//! What the steps of a scenario do.
+
+use bevy::prelude::*;
+use tabletop_core::{Hand, SimCommand, TICKS_PER_SECOND};
+
+use crate::{ScenarioRun, Step, program::Action, seen::Seen};
+
+/// What comes of a step in a tick.
+pub(crate) enum Progress {
+    /// It is over without having taken time.
+    Over,
+    /// It is over with this command.
+    Command(SimCommand),
+    /// It goes on in the next tick, now with this command.
+    GoesOn(Option<SimCommand>),
+}
+
+impl ScenarioRun {
+    /// Takes the step that is due.
+    pub(crate) fn act(&mut self, action: &Action, seen: &Seen) -> Result<Progress, String> {
+        match action {
+            Action::SetScene(scene) => Ok(Progress::Command(SimCommand::SetScene(scene.clone()))),
+            Action::Do(step) => self.take(step, seen.selected, seen),
+        }
+    }
+
+    fn take(&mut self, step: &Step, hand: Hand, seen: &Seen) -> Result<Progress, String> {
+        Ok(Progress::Command(match step {
+            Step::With(hand, step) => return self.take(step, *hand, seen),
+            Step::Load { file, .. } => SimCommand::LoadTask(file.clone()),
+            Step::Clear => SimCommand::ClearTable,
+            Step::Select(hand) => SimCommand::SelectHand(*hand),
+            Step::Grasp(object) => SimCommand::Grasp {
+                hand,
+                object: object.clone(),
+            },
+            Step::MoveTo(location) => SimCommand::MoveTo {
+                hand,
+                location: *location,
+            },
+            Step::MoveBy(offset) => SimCommand::MoveBy {
+                hand,
+                offset: *offset,
+            },
+            Step::Turn { axis, degrees } => SimCommand::Turn {
+                hand,
+                axis: axis.direction(),
+                degrees: *degrees,
+            },
+            Step::Release => {
+                seen.held_by(hand)?;
+                SimCommand::Release(hand)
+            }
+            Step::Destroy => SimCommand::Destroy(hand),
+            Step::Start => SimCommand::StartRecording,
+            Step::Finish => SimCommand::FinishRecording,
+            Step::Undo => SimCommand::Undo,
+            Step::Redo => SimCommand::Redo,
+            Step::Pause(pause) => SimCommand::SetPaused(*pause),
+            Step::Glide { to, seconds } => return self.glide(*to, *seconds, hand, seen),
+            Step::Wait(seconds) => return Ok(self.wait(*seconds)),
+            Step::WaitUntilRest(timeout) => {
+                let moving = self.stillness.moving(seen);
+                return self.wait_while(moving, *timeout, "expected all at rest");
+            }
+            Step::WaitUntilThere(timeout) => {
+                let held = seen.held_by(hand)?;
+                let moving = (!self.stillness.has_arrived(held)).then_some(&*held.spec.id);
+                return self.wait_while(moving, *timeout, "expected the hand to arrive");
+            }
+            Step::Expect(check) => {
+                check.judge(seen, &self.stillness)?;
+                return Ok(Progress::Over);
+            }
+        }))
+    }
+
+    fn wait(&self, seconds: f32) -> Progress {
+        match self.ticks_in_step < ticks(seconds) {
+            true => Progress::GoesOn(None),
+            false => Progress::Over,
+        }
+    }
+
+    fn wait_while(
+        &self,
+        moving: Option<&str>,
+        timeout: f32,
+        expected: &str,
+    ) -> Result<Progress, String> {
+        match moving {
+            None => Ok(Progress::Over),
+            Some(_) if self.ticks_in_step < ticks(timeout) => Ok(Progress::GoesOn(None)),
+            Some(id) => Err(format!(
+                "{expected}, found `{id}` still moving after {timeout} s"
+            )),
+        }
+    }
+
+    fn glide(
+        &mut self,
+        to: Vec3,
+        seconds: f32,
+        hand: Hand,
+        seen: &Seen,
+    ) -> Result<Progress, String> {
+        if self.ticks_in_step == 0 {
+            self.glides_from = seen.held_by(hand)?.pose.location;
+        }
+        let fraction = (self.ticks_in_step + 1) as f32 / ticks(seconds).max(1) as f32;
+        let location = self.glides_from.lerp(to, fraction.min(1.0));
+        let command = SimCommand::MoveTo { hand, location };
+        Ok(match fraction < 1.0 {
+            true => Progress::GoesOn(Some(command)),
+            false => Progress::Command(command),
+        })
+    }
+}
+
+fn ticks(seconds: f32) -> u64 {
+    (seconds * TICKS_PER_SECOND as f32).round() as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Outcome, test_stage::Stage};
+
+    #[test]
+    fn waits_take_their_time_also_while_paused() {
+        assert_eq!(Stage::new("Wait(0)").finish(), 0);
+        let mut stage = Stage::new("Wait(0.5), Wait(1)");
+        stage.paused = true;
+        assert_eq!(stage.finish(), 90);
+    }
+
+    #[test]
+    fn rest_is_half_a_second_without_motion() {
+        let mut stage = Stage::new("WaitUntilRest(2)");
+        for tick in 0..20 {
+            stage.poses[0].location.x = tick as f32;
+            stage.tick();
+        }
+        assert_eq!(stage.finish(), 29);
+        assert_eq!(*stage.run.outcome(), Outcome::Done);
+
+        let mut stage = Stage::new("WaitUntilRest(1)");
+        let mut ticks = 0;
+        while *stage.run.outcome() == Outcome::Running {
+            stage.poses[1].location.x += 0.006;
+            stage.tick();
+            ticks += 1;
+        }
+        assert_eq!(ticks, 61);
+        assert_eq!(
+            stage.failure(),
+            "s.ron:1:10: WaitUntilRest(1): expected all at rest, found `high` still moving after 1 s"
+        );
+    }
+
+    #[test]
+    fn nothing_comes_to_rest_while_paused() {
+        let mut stage = Stage::new("WaitUntilRest(1)");
+        stage.paused = true;
+        assert!(stage.failure().contains("still moving"));
+    }
+
+    #[test]
+    fn a_glide_goes_evenly_and_ends_where_it_is_told() {
+        let mut stage = Stage::new("Glide(to: (6, 0, 0.5), seconds: 0.1)");
+        stage.holders[0] = Some(Hand::Any);
+        let way: Vec<_> = std::iter::from_fn(|| stage.tick())
+            .map(|command| match command {
+                SimCommand::MoveTo { location, .. } => location.x,
+                other => panic!("{other:?}"),
+            })
+            .collect();
+        assert_eq!(way.len(), 6);
+        for (index, x) in way.into_iter().enumerate() {
+            assert!((x - (index + 1) as f32).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn a_hand_needs_something_to_carry() {
+        for step in [
+            "Release",
+            "WaitUntilThere(1)",
+            "Glide(to: (0, 0, 0), seconds: 1)",
+        ] {
+            let failure = Stage::new(step).failure();
+            assert!(failure.contains("found nothing"), "{failure}");
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! A world for the tests of scenarios.
+
+use std::path::Path;
+
+use bevy::prelude::*;
+use tabletop_core::{Hand, ObjectSpec, Pose, Rgb, SceneSpec, Shape, SimCommand, Table};
+
+use crate::{
+    Outcome, Program, Scenario, ScenarioRun,
+    seen::{Seen, SeenObject},
+};
+
+/// A world that holds still unless a test moves it.
+pub struct Stage {
+    pub run: ScenarioRun,
+    pub specs: Vec<ObjectSpec>,
+    pub poses: Vec<Pose>,
+    pub holders: Vec<Option<Hand>>,
+    pub selected: Hand,
+    pub paused: bool,
+}
+
+impl Stage {
+    pub fn new(steps: &str) -> Self {
+        let text = format!("(steps: [{steps}])");
+        let load = |_: &Path| Ok(SceneSpec::default());
+        let program = Scenario::parse("s.ron", &text)
+            .and_then(|scenario| Program::new(&scenario, load, 0));
+        let program = match program {
+            Ok(program) => program,
+            Err(error) => panic!("{error}"),
+        };
+        let block = |id: &str| ObjectSpec {
+            id: id.into(),
+            pose: Pose::IDENTITY,
+            mass: 1.0,
+            shape: Shape::Block {
+                span: Vec3::ONE,
+                color: Rgb::GRAY,
+            },
+            descriptions: Vec::new(),
+        };
+        Self {
+            run: ScenarioRun::new(program),
+            specs: vec![block("low"), block("high")],
+            poses: vec![Pose::at(Vec3::Z * 0.5), Pose::at(Vec3::Z * 1.5)],
+            holders: vec![None, None],
+            selected: Hand::Any,
+            paused: false,
+        }
+    }
+
+    pub fn tick_refused(&mut self, refusal: Option<&str>) -> Option<SimCommand> {
+        let mut world = World::new();
+        let objects = self
+            .specs
+            .iter()
+            .enumerate()
+            .map(|(index, spec)| SeenObject {
+                entity: world.spawn_empty().id(),
+                spec,
+                pose: self.poses[index],
+                holder: self.holders[index],
+            });
+        let seen = Seen {
+            objects: objects.collect(),
+            table: Some(Table::default()),
+            selected: self.selected,
+            paused: self.paused,
+        };
+        self.run.tick(&seen, refusal)
+    }
+
+    pub fn tick(&mut self) -> Option<SimCommand> {
+        self.tick_refused(None)
+    }
+
+    /// Ticks until it is over, and how many that were.
+    pub fn finish(&mut self) -> u64 {
+        (0..10_000)
+            .find(|_| {
+                self.tick();
+                *self.run.outcome() != Outcome::Running
+            })
+            .unwrap_or(10_000)
+    }
+
+    pub fn failure(&mut self) -> String {
+        self.finish();
+        match self.run.outcome() {
+            Outcome::Failed(error) => error.to_string(),
+            other => format!("{other:?}"),
+        }
+    }
+}

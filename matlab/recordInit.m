@@ -1,0 +1,6 @@
+% RECORDINIT  Saves what the robot sees of demonstrations to numbered files in the folder "pictures" beside this script.
+
+recordFolder = [aux.path 'pictures/'];
+if ~exist(recordFolder, 'dir'), mkdir(aux.path, 'pictures'); end
+delete([recordFolder '*.png']);
+recorded = 0;

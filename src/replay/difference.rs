@@ -1,0 +1,84 @@
+//! Where two recordings differ.
+
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use super::ReplayError;
+
+/// The first file in which two recordings differ, and how.
+///
+/// # Errors
+///
+/// A folder or file cannot be read.
+pub fn first_difference(recorded: &Path, replayed: &Path) -> Result<Option<String>, ReplayError> {
+    let mut files = files_in(recorded)?;
+    files.extend(files_in(replayed)?);
+    for file in files {
+        let name = file.display();
+        let (before, after) = (recorded.join(&file), replayed.join(&file));
+        let difference = match (before.exists(), after.exists()) {
+            (true, false) => format!("{name}: was recorded, and is not there in the replay"),
+            (false, true) => format!("{name}: was not recorded, and is there in the replay"),
+            _ => {
+                let (before, after) = (read(&before)?, read(&after)?);
+                if before == after {
+                    continue;
+                }
+                format!("{name}: {}", first_difference_of(&before, &after))
+            }
+        };
+        return Ok(Some(difference));
+    }
+    Ok(None)
+}
+
+/// Where two files differ: line and texts, or for pictures that they do.
+fn first_difference_of(before: &[u8], after: &[u8]) -> String {
+    let (Ok(before), Ok(after)) = (std::str::from_utf8(before), std::str::from_utf8(after)) else {
+        return "the pictures differ".into();
+    };
+    let (mut before, mut after) = (before.lines(), after.lines());
+    let end = "the end of the file";
+    for line in 1.. {
+        let (was, is) = (before.next(), after.next());
+        if was != is || was.is_none() {
+            let (was, is) = (was.unwrap_or(end), is.unwrap_or(end));
+            return format!("line {line}: recorded `{was}`, replayed `{is}`");
+        }
+    }
+    String::new()
+}
+
+/// The files of a recording, relative to its folder, in alphabetical order.
+fn files_in(folder: &Path) -> Result<BTreeSet<PathBuf>, ReplayError> {
+    let mut files = BTreeSet::new();
+    let mut folders = vec![PathBuf::new()];
+    while let Some(inner) = folders.pop() {
+        let path = folder.join(&inner);
+        let failed = |source| ReplayError::Io {
+            path: path.clone(),
+            source,
+        };
+        for entry in fs::read_dir(&path).map_err(failed)? {
+            let entry = entry.map_err(failed)?;
+            let name = inner.join(entry.file_name());
+            match entry.file_type().map_err(failed)?.is_dir() {
+                true => folders.push(name),
+                false => {
+                    files.insert(name);
+                }
+            }
+        }
+    }
+    Ok(files)
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, ReplayError> {
+    fs::read(path).map_err(|source| ReplayError::Io {
+        path: path.to_owned(),
+        source,
+    })
+}

@@ -1,0 +1,7 @@
+//! The command line, as a user types it.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+mod replay;
+mod scenarios;
+mod support;
+mod task_files;

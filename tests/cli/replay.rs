@@ -1,0 +1,246 @@
+//! Recordings, run again.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use crate::support::{place, scenario, shipped, stderr, tabletop};
+
+/// A recording of a scenario, in a folder of this name.
+fn record(scenario: &Path, name: &str) -> PathBuf {
+    let folder = place(name);
+    let [scenario, into] = [scenario, &folder].map(|path| path.to_str().unwrap());
+    let output = tabletop(&["run", scenario, "--record", into]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    folder
+}
+
+/// A recording of a shipped scenario.
+fn recording(name: &str, folder: &str) -> PathBuf {
+    record(&shipped("scenarios", &format!("{name}.ron")), folder)
+}
+
+fn replays_to_the_same_bytes(recording: &Path) {
+    let output = tabletop(&["replay", recording.to_str().unwrap(), "--verify"]);
+    let name = recording.display();
+    assert_eq!(output.status.code(), Some(0), "{name}: {}", stderr(&output));
+}
+
+#[test]
+fn every_shipped_scenario_replays_to_the_same_bytes() {
+    for scenario in ["stack_two_blocks", "build_letters", "lidbox", "break_chain"] {
+        let folder = recording(scenario, scenario);
+        assert!(folder.join("0/0.png").exists(), "{scenario} has no picture");
+        replays_to_the_same_bytes(&folder);
+    }
+}
+
+#[test]
+fn what_hands_did_before_the_start_is_done_again() {
+    for (name, steps) in [
+        (
+            "before",
+            "Grasp(\"RedBlock\"), Glide(to: (-2, 0.3, 4), seconds: 0.7), Turn(axis: Z, degrees: 30), Wait(0.1), Release,
+             Wait(0.2), Start, Grasp(\"GreenBlock\"), MoveTo((5, 0, 3)), Wait(1), Release, Wait(1), Finish,",
+        ),
+        (
+            "held",
+            "With(Left, Grasp(\"RedBlock\")), With(Left, MoveTo((3, 1, 3))), Wait(0.3), Start, Wait(0.3),
+             Select(Right), Grasp(\"RedBlock\"), MoveTo((-2, 0, 6)), Wait(0.5), Destroy, Wait(0.5), Finish,",
+        ),
+        (
+            "held_over_a_scene",
+            "Grasp(\"RedBlock\"), MoveTo((-6, 0, 3)), Wait(0.5), Load(file: \"SETUP\"), Wait(0.2), Start,
+             Grasp(\"GreenBlock\"), MoveTo((0, 0, 3)), Wait(1), Release, Wait(1), Finish,",
+        ),
+        (
+            "another_scene_before",
+            "Grasp(\"RedBlock\"), MoveTo((-2, 0, 3)), Wait(0.5), Release, Wait(0.2),
+             Load(file: \"LIDBOX\"), Wait(0.5), Grasp(\"obj-lid\"), MoveBy((0, 3, 2)), Wait(1), Release, Wait(0.3),
+             Load(file: \"SETUP\"), Grasp(\"RedBlock\"), MoveTo((-2, 0.4, 4)), Wait(0.5), Release, Wait(0.1), Start,
+             Grasp(\"GreenBlock\"), MoveTo((2, 0, 4)), Wait(1), Release, Wait(2), Finish,",
+        ),
+        (
+            "recorded_and_undone_before",
+            "Start, Grasp(\"RedBlock\"), MoveTo((-2, 0.1, 5)), Wait(0.4), Release, Wait(0.1), Grasp(\"GreenBlock\"), Wait(0.2),
+             Destroy, Wait(0.2), Undo, Undo, Wait(0.1), Finish, Grasp(\"RedBlock\"), MoveTo((-2, 0, 5)), Wait(0.4), Release,
+             Start, Grasp(\"GreenBlock\"), MoveBy((2, 0, 4)), Wait(1), Release, Wait(2), Finish,",
+        ),
+        (
+            "paused",
+            "Wait(0.2), Grasp(\"RedBlock\"), MoveTo((-2, 0.1, 5)), Wait(0.2), Pause(true), Load(file: \"CHAIN\"), Wait(0.1), Start,
+             Wait(0.1), Pause(false), Wait(1), Pause(true), Clear, Wait(0.2), Pause(false), Wait(0.5), Finish,",
+        ),
+        (
+            "cleared_before",
+            "Clear, Wait(0.2), Start, Wait(0.3), Load(file: \"CHAIN\"), Wait(1), Finish,",
+        ),
+    ] {
+        let mut steps = steps.to_owned();
+        for (word, file) in [
+            ("SETUP", "default.xml"),
+            ("LIDBOX", "lidbox.xml"),
+            ("CHAIN", "chain.xml"),
+        ] {
+            steps = steps.replace(word, shipped("tablesetup", file).to_str().unwrap());
+        }
+        let scenario = scenario(&format!("replay_{name}.ron"), &steps);
+        let folder = record(&scenario, &format!("replay_{name}"));
+        replays_to_the_same_bytes(&folder);
+    }
+}
+
+#[test]
+fn a_changed_recording_differs_in_the_changed_line() {
+    let folder = recording("stack_two_blocks", "changed");
+    let states = folder.join("states.csv");
+    let text = fs::read_to_string(&states).unwrap();
+    fs::write(
+        &states,
+        text.replacen("RedBlock,1.9999999", "RedBlock,2.0", 1),
+    )
+    .unwrap();
+    let output = tabletop(&["replay", folder.to_str().unwrap(), "--verify"]);
+    assert_eq!(output.status.code(), Some(1));
+    let message = stderr(&output);
+    assert!(message.contains("states.csv: line 2"), "{message}");
+}
+
+#[test]
+fn pictures_are_made_again_at_another_size() {
+    let folder = recording("stack_two_blocks", "rendered");
+    let out = place("rendered-large");
+    let output = tabletop(&[
+        "replay",
+        folder.to_str().unwrap(),
+        "--render",
+        "640x480",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let png = fs::read(out.join("0/0.png")).unwrap();
+    // Width and height stand at the beginning of a PNG file's header.
+    assert_eq!(png[16..24], [0, 0, 2, 128, 0, 0, 1, 224]);
+    let text = |folder: &Path| fs::read_to_string(folder.join("1.txt")).unwrap();
+    assert_eq!(text(&folder), text(&out));
+}
+
+#[test]
+fn pictures_are_made_from_another_place_with_distances_and_numbers() {
+    let folder = recording("stack_two_blocks", "seen_from_above");
+    let out = place("from-above");
+    let output = tabletop(&[
+        "replay",
+        folder.to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+        "--camera",
+        "2,0,20",
+        "--look-at",
+        "2,0,0",
+        "--fov",
+        "30",
+        "--depth",
+        "--ids",
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    // The red block lies at (2, 0, 1), and is two units high.
+    let (width, _, color) = pixels(&out.join("0/0.png"));
+    let middle = (75 * width + 100) as usize;
+    assert_eq!(color[4 * middle..][..4], [255, 0, 0, 255]);
+    let value = |name: &str| {
+        let (_, _, bytes) = pixels(&out.join(name));
+        u16::from_be_bytes([bytes[2 * middle], bytes[2 * middle + 1]])
+    };
+    let depth = value("0/0.depth.png");
+    assert!(depth.abs_diff(18_000) < 20, "{depth}");
+    let text = fs::read_to_string(out.join("0.txt")).unwrap();
+    let red = text.lines().position(|line| line.starts_with("0,create,RedBlock"));
+    assert_eq!(usize::from(value("0/0.ids.png")), red.unwrap() + 2);
+}
+
+/// Width, height and bytes of a PNG file.
+fn pixels(path: &Path) -> (u32, u32, Vec<u8>) {
+    let file = fs::File::open(path).unwrap();
+    let mut reader = png::Decoder::new(std::io::BufReader::new(file))
+        .read_info()
+        .unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    (info.width, info.height, bytes)
+}
+
+/// A recording of which the header says something else.
+fn with_header(name: &str, old: &str, new: &str) -> PathBuf {
+    let folder = recording("stack_two_blocks", name);
+    let session = folder.join("session.jsonl");
+    let text = fs::read_to_string(&session).unwrap();
+    assert!(text.contains(old), "{text}");
+    fs::write(&session, text.replacen(old, new, 1)).unwrap();
+    folder
+}
+
+#[test]
+fn settings_that_this_program_does_not_have_are_located() {
+    for (name, old, new, words) in [
+        (
+            "stickiness",
+            "\"friction\"",
+            "\"stickiness\"",
+            "settings.physics: unknown field `stickiness`",
+        ),
+        (
+            "ticks",
+            "\"ticks_per_second\":60",
+            "\"ticks_per_second\":50",
+            "ticks_per_second: expected 60, found 50",
+        ),
+        (
+            "beginning",
+            "\"begin_tick\":0",
+            "\"begin_tick\":null",
+            "begin_tick: the commands before the recording are not known",
+        ),
+    ] {
+        let folder = with_header(name, old, new);
+        let output = tabletop(&["replay", folder.to_str().unwrap(), "--verify"]);
+        assert_eq!(output.status.code(), Some(2));
+        let message = format!("tabletop: {}:1: {words}", folder.join("session.jsonl").display());
+        assert!(stderr(&output).starts_with(&message), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn other_settings_give_other_states() {
+    let folder = with_header("moon", "\"gravity\":98.1", "\"gravity\":16.2");
+    let output = tabletop(&["replay", folder.to_str().unwrap(), "--verify"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("the replay differs: "), "{}", stderr(&output));
+}
+
+#[test]
+fn a_recording_of_another_version_that_differs_says_so() {
+    let version = concat!("\"program\":\"", env!("CARGO_PKG_VERSION"), "\"");
+    let folder = with_header("version", version, "\"program\":\"0.0.7\"");
+    let output = tabletop(&["replay", folder.to_str().unwrap(), "--verify"]);
+    let message = stderr(&output);
+    assert!(message.contains("recorded with version 0.0.7"), "{message}");
+}
+
+#[test]
+fn without_a_display_a_replay_in_the_window_says_so() {
+    let folder = recording("stack_two_blocks", "windowless");
+    let output = tabletop(&["replay", folder.to_str().unwrap(), "--window"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("no window"), "{}", stderr(&output));
+    assert_eq!(stderr(&output).lines().count(), 1, "{}", stderr(&output));
+}
+
+#[test]
+fn what_is_no_recording_is_exit_code_2() {
+    let output = tabletop(&["replay", "no such folder"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(stderr(&output).lines().count(), 1, "{}", stderr(&output));
+}

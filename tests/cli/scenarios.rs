@@ -1,0 +1,239 @@
+//! Scenario files: those that are shipped, and what the command line says of others.
+
+use std::{fs, path::Path, process::Output};
+
+use bevy::{
+    ecs::schedule::{LogLevel, ScheduleBuildSettings},
+    prelude::*,
+};
+use tabletop::{TabletopSimPlugins, core::StepApp as _, headless_app_with};
+use tabletop_scenario::ScenarioPlugin;
+
+use crate::support::{command, place, scenario, shipped, stderr, stdout, tabletop};
+
+fn run(scenario: &Path, arguments: &[&str]) -> Output {
+    let command = ["run", scenario.to_str().unwrap()];
+    tabletop(&[&command, arguments].concat())
+}
+
+fn passes(name: &str) {
+    let output = run(&shipped("scenarios", name), &[]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(stderr(&output), "");
+}
+
+#[test]
+fn two_blocks_are_stacked() {
+    passes("stack_two_blocks.ron");
+}
+
+#[test]
+fn letters_are_built() {
+    passes("build_letters.ron");
+}
+
+#[test]
+fn a_block_is_put_into_the_lid_box() {
+    passes("lidbox.ron");
+}
+
+#[test]
+fn a_chain_breaks() {
+    passes("break_chain.ron");
+}
+
+#[test]
+fn every_shipped_scenario_has_its_test() {
+    let files = fs::read_dir(shipped("scenarios", "")).unwrap();
+    let mut names: Vec<_> = files
+        .map(|file| file.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    let tested = [
+        "break_chain.ron",
+        "build_letters.ron",
+        "lidbox.ron",
+        "stack_two_blocks.ron",
+    ];
+    assert_eq!(names, tested);
+}
+
+#[test]
+fn a_failed_check_says_where_what_and_what_instead() {
+    let path = scenario(
+        "failing.ron",
+        "  WaitUntilRest(2),\n  Expect(OnTopOf(object: \"RedBlock\", of: \"GreenBlock\")),",
+    );
+    let output = run(&path, &["--final-state", "-"]);
+    assert_eq!(output.status.code(), Some(1));
+    let expected = format!(
+        "tabletop: {}:3:3: Expect(OnTopOf(object: \"RedBlock\", of: \"GreenBlock\")): \
+         expected `RedBlock` on top of `GreenBlock`, found it",
+        path.display()
+    );
+    assert!(
+        stderr(&output).starts_with(&expected),
+        "{}",
+        stderr(&output)
+    );
+    assert_eq!(stdout(&output).lines().count(), 2, "{}", stdout(&output));
+}
+
+#[test]
+fn what_a_hand_refuses_fails_at_its_step() {
+    let path = scenario("refused.ron", "  Grasp(\"BlueBlock\"),\n  Wait(9),");
+    let output = run(&path, &[]);
+    assert_eq!(output.status.code(), Some(1));
+    let error = stderr(&output);
+    assert!(
+        error.contains(":2:3: Grasp(\"BlueBlock\"): refused: "),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_bad_file_is_exit_code_2_and_says_where() {
+    for (name, steps, words) in [
+        ("syntax.ron", "  Grab(\"RedBlock\"),", ":2:3: "),
+        ("step.ron", "  Wait(-1),", ":2:3: Wait(-1): expected a time"),
+        (
+            "task.ron",
+            "  Load(file: \"no such.xml\"),",
+            ":2:3: Load(file: \"no such.xml\"): ",
+        ),
+        (
+            "place.ron",
+            "  Load(file: \"../../tablesetup/none.xml\", place: []),",
+            ":2:3: Load(",
+        ),
+    ] {
+        let path = scenario(name, steps);
+        let output = run(&path, &[]);
+        assert_eq!(output.status.code(), Some(2), "{name}");
+        let at = format!("tabletop: {}{words}", path.display());
+        assert!(stderr(&output).starts_with(&at), "{}", stderr(&output));
+    }
+    let output = run(Path::new("no such.ron"), &[]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("no such.ron: it cannot be read"));
+}
+
+#[test]
+fn the_seed_decides_where_objects_are() {
+    let task = shipped("tablesetup", "default.xml");
+    let steps = format!(
+        "  Load(file: {task:?}, place: [\n\
+           (object: \"RedBlock\", x: (-8, 8), y: (-4, 4), turn: (0, 360)),\n\
+           (object: \"GreenBlock\", x: (-8, 8), y: (-4, 4)),\n\
+         ]),\n  WaitUntilRest(2), Expect(OnTable(object: \"RedBlock\")), Expect(OnTable(object: \"GreenBlock\")),"
+    );
+    let path = scenario("random.ron", &steps);
+    let state = |seed: &str| {
+        let output = run(&path, &["--seed", seed, "--final-state", "-"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        stdout(&output)
+    };
+    assert_eq!(state("5"), state("5"));
+    assert_ne!(state("5"), state("6"));
+    assert_eq!(state("0"), {
+        let output = run(&path, &["--final-state", "-"]);
+        stdout(&output)
+    });
+}
+
+#[test]
+fn a_pause_holds_the_world_and_not_the_scenario() {
+    let path = scenario(
+        "pause.ron",
+        "  Grasp(\"RedBlock\"), MoveBy((0, 0, 5)), WaitUntilThere(2), Release, Pause(true), Wait(5),
+           Expect(Location(object: \"RedBlock\", at: (2, 0, 6), within: 0.1)),
+           Pause(false), WaitUntilRest(5), Expect(OnTable(object: \"RedBlock\")),",
+    );
+    let output = run(&path, &[]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}
+
+/// Destroys a block, and goes back and forth over that.
+const UNDO: &str = "  Start, Grasp(\"RedBlock\"), Wait(0.5), Destroy, Expect(Gone(\"RedBlock\")),
+    Undo, Expect(HeldBy(object: \"RedBlock\", hand: Any)), Redo, Expect(Gone(\"RedBlock\")), Finish";
+
+#[test]
+fn what_is_not_recorded_can_be_undone_and_leaves_no_files() {
+    let path = scenario("unrecorded.ron", UNDO);
+    let empty = place("unrecorded");
+    fs::create_dir(&empty).unwrap();
+    let output = command(&["run", path.to_str().unwrap()])
+        .current_dir(&empty)
+        .env("TMPDIR", &empty)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(fs::read_dir(&empty).unwrap().count(), 0);
+}
+
+#[test]
+fn hands_do_not_act_while_paused() {
+    let path = scenario("paused.ron", "  Pause(true),\n  Grasp(\"RedBlock\"),");
+    let output = run(&path, &[]);
+    assert_eq!(output.status.code(), Some(1));
+    let error = stderr(&output);
+    let words = ":3:3: Grasp(\"RedBlock\"): refused: hands cannot act while the simulation is paused";
+    assert!(error.contains(words), "{error}");
+}
+
+#[test]
+fn undo_brings_back_what_was_destroyed() {
+    let path = scenario("undo.ron", UNDO);
+    let folder = place("undo");
+    let output = run(&path, &["--record", folder.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}
+
+#[test]
+fn a_scenario_is_recorded() {
+    let folder = place("recorded");
+    let arguments = ["--record", folder.to_str().unwrap(), "--seed", "3"];
+    let output = run(&shipped("scenarios", "stack_two_blocks.ron"), &arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let session = fs::read_to_string(folder.join("session.jsonl")).unwrap();
+    assert!(session.contains("\"seed\":3"), "{session}");
+    assert!(folder.join("states.csv").exists());
+    let events = fs::read_to_string(folder.join("1.txt")).unwrap();
+    assert!(events.contains("RedBlock"), "{events}");
+    assert!(fs::read_dir(folder.join("1")).unwrap().count() > 5);
+}
+
+#[test]
+fn what_takes_too_long_fails() {
+    let path = scenario("long.ron", "  Wait(3600),");
+    let output = run(&path, &["--seconds", "2"]);
+    assert_eq!(output.status.code(), Some(1));
+    let error = stderr(&output);
+    assert!(
+        error.contains(":2:3: Wait(3600): the limit of 2 s is over"),
+        "{error}"
+    );
+}
+
+#[test]
+fn another_task_file_can_be_named() {
+    let path = scenario(
+        "setup.ron",
+        "  Expect(Exists(\"obj-box\")), Expect(Gone(\"RedBlock\")),",
+    );
+    assert_eq!(run(&path, &[]).status.code(), Some(1));
+    let output = run(&path, &["--setup", "tablesetup/lidbox.xml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}
+
+#[test]
+fn a_scenario_has_its_place_in_a_tick() {
+    let mut app = headless_app_with((TabletopSimPlugins, ScenarioPlugin));
+    app.edit_schedule(FixedUpdate, |schedule| {
+        schedule.set_build_settings(ScheduleBuildSettings {
+            ambiguity_detection: LogLevel::Error,
+            ..default()
+        });
+    });
+    app.step(1);
+}

@@ -1,0 +1,56 @@
+//! The program, as a user runs it.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+};
+
+/// Runs the program without a display, in the folder of this package.
+pub fn tabletop(arguments: &[&str]) -> Output {
+    command(arguments).output().unwrap()
+}
+
+/// The program, to be run like [`tabletop`] unless something is changed.
+pub fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tabletop"));
+    command
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY");
+    command
+}
+
+pub fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+pub fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// Where a test writes something; what an earlier run has left there is gone.
+pub fn place(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    match path.is_dir() {
+        true => fs::remove_dir_all(&path).unwrap(),
+        false => drop(fs::remove_file(&path)),
+    }
+    path
+}
+
+/// A file that is shipped, by its name in this folder of the package.
+pub fn shipped(folder: &str, name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join(folder)
+        .join(name)
+}
+
+/// A scenario of these steps, which begin in the second line, on the default table.
+pub fn scenario(name: &str, steps: &str) -> PathBuf {
+    let setup = shipped("tablesetup", "default.xml");
+    let path = place(name);
+    fs::write(&path, format!("(setup: {setup:?}, steps: [\n{steps}\n])")).unwrap();
+    path
+}

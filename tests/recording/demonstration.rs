@@ -1,0 +1,89 @@
+//! A simulator that records into a folder of its own.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::{Sleeping, Velocity};
+use tabletop::{
+    core::{HeadCamera, History, Twist},
+    headless_app_with,
+    physics::PhysicsSettings,
+    prelude::*,
+    recorder::RecorderPlugin,
+};
+
+pub struct Demonstration {
+    pub app: App,
+    pub folder: PathBuf,
+}
+
+impl Demonstration {
+    pub fn new(name: &str) -> Self {
+        Self::with_physics(name, PhysicsSettings::default())
+    }
+
+    pub fn with_physics(name: &str, settings: PhysicsSettings) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        let _not_there = fs::remove_dir_all(&folder);
+        let recorder = RecorderPlugin {
+            folder: folder.clone(),
+            ..default()
+        };
+        let plugins = TabletopSimPlugins.build();
+        let plugins = plugins.set(recorder).set(PhysicsPlugin { settings });
+        let mut app = headless_app_with(plugins);
+        app.insert_resource(HeadCamera {
+            width: 40,
+            height: 30,
+            ..default()
+        });
+        Self { app, folder }
+    }
+
+    /// Simulates a tick with these commands.
+    pub fn tick(&mut self, commands: &[SimCommand]) {
+        self.act(&[(commands.to_vec(), 1)]);
+    }
+
+    /// Gives commands, and simulates so many ticks after each of these acts.
+    pub fn act(&mut self, acts: &[(Vec<SimCommand>, u64)]) {
+        for (commands, ticks) in acts {
+            for command in commands {
+                self.app.world_mut().write_message(command.clone());
+            }
+            self.app.step(*ticks);
+        }
+    }
+
+    pub fn undoable(&self) -> usize {
+        self.app.world().resource::<History>().undoable
+    }
+
+    /// Every bit that tells the state of the objects.
+    pub fn bits(&self) -> Vec<(String, Vec<u32>)> {
+        let world = self.app.world();
+        let tick = world.resource::<SimTick>().0 as u32;
+        let objects = world.resource::<ObjectIndex>().iter().map(|object| {
+            let place = world.get::<Transform>(object).unwrap();
+            let velocity = world.get::<Velocity>(object).unwrap();
+            let twist = world.get::<Twist>(object).unwrap();
+            assert_eq!((twist.linear, twist.angular), (velocity.linear, velocity.angular));
+            let numbers = [place.translation, velocity.linear, velocity.angular]
+                .into_iter()
+                .flat_map(|vector| vector.to_array())
+                .chain(place.rotation.to_array())
+                .map(f32::to_bits);
+            let sleeps = world
+                .get::<Sleeping>(object)
+                .is_some_and(|state| state.sleeping);
+            let id = world.get::<ObjectSpec>(object).unwrap().id.clone();
+            (id, numbers.chain([u32::from(sleeps)]).collect())
+        });
+        std::iter::once(("tick".into(), vec![tick]))
+            .chain(objects)
+            .collect()
+    }
+}

@@ -1,0 +1,7 @@
+//! Recordings of the whole simulator.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+mod demonstration;
+mod random;
+mod settings;
+mod undo;

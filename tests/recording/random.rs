@@ -1,0 +1,147 @@
+//! Random demonstrations.
+
+use bevy::prelude::*;
+use tabletop::{
+    core::{ChainSpec, LidBoxSpec},
+    prelude::*,
+};
+
+/// A small random stream (SplitMix64).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn below(&mut self, limit: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) % limit as u64) as usize
+    }
+
+    fn between(&mut self, low: f32, high: f32) -> f32 {
+        low + (high - low) * self.below(10_000) as f32 / 10_000.0
+    }
+
+    fn of<T: Copy>(&mut self, choices: &[T]) -> T {
+        choices[self.below(choices.len())]
+    }
+}
+
+const IDS: [&str; 13] = [
+    "block0", "block1", "block2", "block3", "block4", "ball", "wall", "log", "c-link2", "c-link5",
+    "c-start", "b-lid", "b-box",
+];
+
+fn object(id: &str, location: (f32, f32, f32), mass: f32, shape: Shape) -> SceneItem {
+    SceneItem::Object(ObjectSpec {
+        id: id.into(),
+        pose: Pose::at(location.into()),
+        mass,
+        shape,
+        descriptions: Vec::new(),
+    })
+}
+
+/// A table with something of everything on it, much of it falling.
+pub fn scene() -> SimCommand {
+    let color = Rgb::GRAY;
+    let span = Vec3::ONE;
+    let mut items: Vec<_> = (0..5)
+        .map(|i| {
+            let location = (-5.0, 0.0, i as f32 * 1.2 + 0.6);
+            object(
+                &format!("block{i}"),
+                location,
+                1.0,
+                Shape::Block { span, color },
+            )
+        })
+        .collect();
+    let (radius, yspan) = (0.5, 2.0);
+    items.extend([
+        object(
+            "ball",
+            (-5.2, 0.2, 12.0),
+            1.0,
+            Shape::Sphere { radius, color },
+        ),
+        object(
+            "log",
+            (-1.0, 3.0, 3.0),
+            1.0,
+            Shape::Cylinder {
+                radius,
+                yspan,
+                color,
+            },
+        ),
+        object(
+            "wall",
+            (-2.0, 0.0, 1.0),
+            0.0,
+            Shape::Block {
+                span: Vec3::new(0.2, 6.0, 2.0),
+                color,
+            },
+        ),
+        SceneItem::Chain(ChainSpec {
+            id: "c".into(),
+            start: Vec3::new(-6.0, -4.0, 4.0),
+            end: Vec3::new(1.0, -4.0, 4.0),
+            link_span: Vec3::new(0.1, 1.0, 0.1),
+            link_count: 8,
+            link_padding: 0.05,
+            link_mass: 1.0,
+            color,
+        }),
+        SceneItem::LidBox(LidBoxSpec {
+            id: "b".into(),
+            pose: Pose::at(Vec3::new(5.0, 0.0, 2.5)),
+            span: Vec3::new(4.0, 4.0, 5.0),
+            thickness: 0.4,
+            box_mass: 9.0,
+            lid_mass: 1.0,
+            color,
+            handle_span: Vec3::ONE,
+            handle_thickness: 0.2,
+            handle_color: color,
+            descriptions: Vec::new(),
+        }),
+    ]);
+    SimCommand::SetScene(Box::new(SceneSpec { items, ..default() }))
+}
+
+fn hand_command(random: &mut Random) -> SimCommand {
+    let hand = random.of(&Hand::ALL);
+    match random.below(8) {
+        0..=2 => SimCommand::Grasp {
+            hand,
+            object: random.of(&IDS).into(),
+        },
+        3 => SimCommand::Turn {
+            hand,
+            axis: random.of(&[Vec3::X, Vec3::Y, Vec3::Z]),
+            degrees: random.between(-90.0, 90.0),
+        },
+        4 => SimCommand::Release(hand),
+        5 if random.below(3) == 0 => SimCommand::Destroy(hand),
+        _ => SimCommand::MoveTo {
+            hand,
+            location: Vec3::new(
+                random.between(-9.0, 9.0),
+                random.between(-5.0, 5.0),
+                random.between(-1.0, 7.0),
+            ),
+        },
+    }
+}
+
+/// What is told at which tick.
+pub fn script(random: &mut Random, ticks: u64) -> Vec<Vec<SimCommand>> {
+    (0..ticks)
+        .map(|_| match random.below(6) {
+            0 => vec![hand_command(random)],
+            _ => Vec::new(),
+        })
+        .collect()
+}

@@ -1,0 +1,42 @@
+//! Recordings that were made with other settings.
+
+use bevy::prelude::*;
+use tabletop::{
+    physics::PhysicsSettings,
+    prelude::*,
+    recorder::Channels,
+    replay::{Replay, first_difference},
+};
+
+use crate::demonstration::Demonstration;
+
+#[test]
+fn a_replay_has_the_settings_and_the_camera_of_its_recording() {
+    let physics = PhysicsSettings {
+        gravity: 16.2,
+        friction: 0.1,
+        ..default()
+    };
+    let mut moon = Demonstration::with_physics("moon", physics);
+    let hand = Hand::Left;
+    let object = "RedBlock".to_owned();
+    moon.act(&[
+        (vec![SimCommand::LoadTask("tablesetup/default.xml".into())], 30),
+        (vec![SimCommand::Grasp { hand, object }], 1),
+        (
+            vec![SimCommand::MoveTo {
+                hand,
+                location: Vec3::new(-1.2, 0.3, 6.0),
+            }],
+            40,
+        ),
+        (vec![SimCommand::StartRecording], 10),
+        (vec![SimCommand::Release(hand)], 120),
+        (vec![SimCommand::FinishRecording], 1),
+    ]);
+    let replay = Replay::read(&moon.folder).unwrap();
+    let replayed = moon.folder.with_file_name("moon_replayed");
+    let _not_there = std::fs::remove_dir_all(&replayed);
+    replay.record(replayed.clone(), replay.camera(), Channels::default());
+    assert_eq!(first_difference(&moon.folder, &replayed).unwrap(), None);
+}

@@ -1,0 +1,225 @@
+//! A demonstration after undo goes on, bit for bit and byte for byte, like one that never took the detour.
+
+use std::fs;
+
+use tabletop::{prelude::*, replay::first_difference};
+
+use crate::{
+    demonstration::Demonstration,
+    random::{Random, scene, script},
+};
+
+const TICKS: u64 = 150;
+
+/// A demonstration of the random scene that is being recorded.
+fn begun(name: &str) -> Demonstration {
+    let mut demonstration = Demonstration::new(name);
+    demonstration.tick(&[scene()]);
+    demonstration.tick(&[SimCommand::StartRecording]);
+    demonstration
+}
+
+fn assert_same_files(expected: &Demonstration, found: &Demonstration, seed: u64) {
+    let difference = first_difference(&expected.folder, &found.folder).unwrap();
+    assert_eq!(difference, None, "seed {seed}");
+}
+
+#[test]
+fn undo_leaves_no_trace() {
+    let mut detours = 0;
+    for seed in 0..100 {
+        let mut random = Random(seed);
+        let script = script(&mut random, TICKS);
+        let turning_point = random.below(TICKS as usize - 20);
+        let detour = self::script(&mut random, 5 + seed % 60);
+
+        let mut straight = begun("straight");
+        let mut with_detour = begun("with_detour");
+        for (tick, commands) in script.iter().enumerate() {
+            straight.tick(commands);
+            if tick != turning_point {
+                with_detour.tick(commands);
+                continue;
+            }
+            let before = with_detour.undoable();
+            with_detour.tick(&[SimCommand::Grasp {
+                hand: Hand::Both,
+                object: "ball".into(),
+            }]);
+            if with_detour.undoable() == before {
+                break; // The ball is in these hands already, or gone.
+            }
+            detours += 1;
+            for commands in &detour {
+                with_detour.tick(commands);
+            }
+            let undos = with_detour.undoable() - before;
+            let mut last = vec![SimCommand::Undo; undos];
+            last.extend_from_slice(commands);
+            with_detour.tick(&last);
+            assert_eq!(
+                with_detour.bits(),
+                straight.bits(),
+                "seed {seed}, right after undo"
+            );
+        }
+        if with_detour.bits()[0] != straight.bits()[0] {
+            continue;
+        }
+        assert_eq!(with_detour.bits(), straight.bits(), "seed {seed}");
+        for demonstration in [&mut straight, &mut with_detour] {
+            demonstration.tick(&[SimCommand::FinishRecording]);
+        }
+        assert_same_files(&straight, &with_detour, seed);
+    }
+    assert!(detours > 50, "only {detours} detours were taken");
+}
+
+#[test]
+fn redo_brings_back_what_was_undone() {
+    for seed in 1000..1020 {
+        let script = script(&mut Random(seed), 80);
+        let mut expected = begun("expected");
+        let mut world = begun("there_and_back_again");
+        for commands in &script {
+            world.tick(commands);
+            expected.tick(commands);
+        }
+        let segments = world.undoable();
+
+        // A tick that undoes everything and brings it back simulates one tick more.
+        let mut there_and_back = vec![SimCommand::Undo; segments];
+        there_and_back.extend(vec![SimCommand::Redo; segments]);
+        world.tick(&there_and_back);
+        expected.tick(&[]);
+        for _ in 0..40 {
+            assert_eq!(
+                world.bits(),
+                expected.bits(),
+                "seed {seed}, {segments} segments"
+            );
+            world.tick(&[]);
+            expected.tick(&[]);
+        }
+        assert_eq!(world.undoable(), segments);
+        for demonstration in [&mut expected, &mut world] {
+            demonstration.tick(&[SimCommand::FinishRecording]);
+        }
+        assert_same_files(&expected, &world, seed);
+    }
+}
+
+#[test]
+fn a_recording_changes_nothing() {
+    for seed in 2000..2010 {
+        let script = script(&mut Random(seed), 2 * TICKS);
+        let mut recorded = begun("recorded");
+        let mut unrecorded = Demonstration::new("unrecorded");
+        unrecorded.tick(&[scene()]);
+        unrecorded.tick(&[]);
+        for (tick, commands) in script.iter().enumerate() {
+            let mut commands = commands.clone();
+            if tick == 200 {
+                commands.push(scene());
+            }
+            recorded.tick(&commands);
+            unrecorded.tick(&commands);
+        }
+        assert_eq!(recorded.bits(), unrecorded.bits(), "seed {seed}");
+    }
+}
+
+/// Commands, and how many ticks to simulate with them.
+type Act = (Vec<SimCommand>, u64);
+
+fn grasp(hand: Hand, object: &str) -> SimCommand {
+    SimCommand::Grasp {
+        hand,
+        object: object.into(),
+    }
+}
+
+fn move_to(hand: Hand, location: (f32, f32, f32)) -> SimCommand {
+    SimCommand::MoveTo {
+        hand,
+        location: location.into(),
+    }
+}
+
+/// What is done before and after the detour, which begins in the middle of a fall.
+fn way() -> [Vec<Act>; 2] {
+    use Hand::{Left, Right};
+    [
+        vec![
+            (
+                vec![SimCommand::LoadTask("tablesetup/default.xml".into())],
+                40,
+            ),
+            (vec![SimCommand::StartRecording], 7),
+            (vec![grasp(Right, "RedBlock")], 5),
+            (vec![move_to(Right, (-1.5, 0.2, 5.0))], 40),
+            (vec![SimCommand::Release(Right)], 9),
+        ],
+        vec![
+            (vec![grasp(Left, "GreenBlock")], 1),
+            (vec![move_to(Left, (4.0, 2.0, 3.0))], 45),
+            (vec![SimCommand::Release(Left)], 80),
+            (vec![SimCommand::FinishRecording], 1),
+        ],
+    ]
+}
+
+fn detour() -> Vec<Act> {
+    vec![
+        (vec![grasp(Hand::Left, "RedBlock")], 20),
+        (vec![move_to(Hand::Left, (-5.0, -4.0, 2.0))], 33),
+        (vec![grasp(Hand::Both, "GreenBlock")], 3),
+        (vec![SimCommand::Destroy(Hand::Both)], 28),
+    ]
+}
+
+#[test]
+fn what_was_undone_left_no_trace_on_disk() {
+    let [before, mut after] = way();
+    let mut straight = Demonstration::new("straight_way");
+    straight.act(&before);
+    straight.act(&after);
+
+    let mut with_detour = Demonstration::new("way_with_detour");
+    with_detour.act(&before);
+    let segments = with_detour.undoable();
+    with_detour.act(&detour());
+    let undone = with_detour.undoable() - segments;
+    assert!(undone >= 3, "only {undone} segments were begun");
+    // In the tick that undoes, the way goes on.
+    let commands = &mut after[0].0;
+    commands.splice(0..0, vec![SimCommand::Undo; undone]);
+    with_detour.act(&after);
+
+    let text = fs::read_to_string(straight.folder.join("3.txt")).unwrap();
+    assert!(text.contains("grasp,LeftHand,GreenBlock"), "{text}");
+    let difference = first_difference(&straight.folder, &with_detour.folder).unwrap();
+    assert_eq!(difference, None);
+}
+
+#[test]
+fn what_was_undone_and_redone_is_there_again() {
+    let [before, _] = way();
+    let finish = [(vec![SimCommand::FinishRecording], 1)];
+    let mut straight = Demonstration::new("straight_on");
+    straight.act(&before);
+    straight.act(&detour());
+    straight.act(&finish);
+
+    let mut there_and_back = Demonstration::new("there_and_back");
+    there_and_back.act(&before);
+    there_and_back.act(&detour());
+    let undone = 3;
+    let mut commands = vec![SimCommand::Undo; undone];
+    commands.extend(vec![SimCommand::Redo; undone]);
+    commands.push(SimCommand::FinishRecording);
+    there_and_back.act(&[(commands, 1)]);
+
+    let difference = first_difference(&straight.folder, &there_and_back.folder).unwrap();
+    assert_eq!(difference, None);
+}
