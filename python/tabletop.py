@@ -210,7 +210,7 @@ class _Agent:
             return _structs(decode(file.read()))
 
     def hello(self):
-        return {"engine": "Python " + sys.version.split()[0], "pid": os.getpid()}
+        return {"engine": "Python " + sys.version.split()[0]}
 
     def init(self):
         request = self.request()

@@ -12,6 +12,7 @@
 //! | [`kinematics`] | robots as URDF describes them |
 //! | [`camera`] | what the robot's head camera sees |
 //! | [`recorder`] | recordings on disk |
+//! | [`script`] | users' Matlab, Octave and Python scripts drive the robot |
 //! | [`scenario`] | scripted demonstrations, for tests and datasets |
 //!
 //! [`TabletopSimPlugins`] is the simulator without a window. It runs on Bevy's `MinimalPlugins`:
@@ -41,6 +42,7 @@ pub use tabletop_physics as physics;
 pub use tabletop_recorder as recorder;
 pub use tabletop_scenario as scenario;
 pub use tabletop_scene as scene;
+pub use tabletop_script as script;
 pub use tabletop_xml as xml;
 
 mod headless;
@@ -84,6 +86,7 @@ impl PluginGroup for TabletopSimPlugins {
             .add(baxter::BaxterPlugin::default())
             .add(camera::CameraPlugin)
             .add(recorder::RecorderPlugin::default())
+            .add(script::ScriptPlugin::default())
             .add(RecordedSettingsPlugin)
     }
 }

@@ -21,13 +21,22 @@ use tabletop_core::{Paused, SimCommand};
 use tabletop_gui::GuiPlugin;
 use tabletop_view::ViewPlugin;
 
-use crate::{TabletopSimPlugins, replay::Replay};
+use crate::{
+    TabletopSimPlugins,
+    baxter::BaxterPlugin,
+    replay::Replay,
+    script::{ScriptPlugin, ScriptSettings, Waiting},
+};
 
 /// What to show in a window.
 #[derive(Clone, Debug)]
 pub struct WindowOptions {
     /// What is on the table.
     pub show: Show,
+    /// The robot at the table; a replay has that of its recording.
+    pub robot: BaxterPlugin,
+    /// The scripts that can drive the robot, and their engine.
+    pub scripts: ScriptSettings,
     /// A picture to take, after which the program ends.
     pub screenshot: Option<ScreenshotAt>,
 }
@@ -40,6 +49,9 @@ pub enum Show {
     /// What was recorded. When it is over, the user can go on from there.
     Replay(Box<Replay>),
 }
+
+/// How long a frame waits for a script.
+const LONGEST_WAIT: Duration = Duration::from_millis(50);
 
 /// Runs the simulation in a window until the user or a screenshot ends it.
 ///
@@ -71,9 +83,15 @@ fn build(options: WindowOptions) -> App {
             .disable::<LogPlugin>()
             .disable::<TerminalCtrlCHandlerPlugin>(),
         match &options.show {
-            Show::Task(_) => TabletopSimPlugins.build(),
+            Show::Task(_) => TabletopSimPlugins.build().set(options.robot),
             Show::Replay(replay) => replay.plugins(),
-        },
+        }
+        .set(ScriptPlugin {
+            settings: ScriptSettings {
+                waiting: Waiting::Frame(LONGEST_WAIT),
+                ..options.scripts
+            },
+        }),
         ViewPlugin,
         GuiPlugin,
     ))

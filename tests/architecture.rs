@@ -6,7 +6,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// What each of our crates may depend on of ours, and whether it may name Rapier and enable what draws or opens windows.
-const RULES: [Rule; 11] = [
+const RULES: [Rule; 15] = [
     Rule::new("tabletop_core", &[]),
     Rule::new("tabletop_xml", &["tabletop_core"]),
     Rule::new("tabletop_physics", &["tabletop_core"]).with_rapier(),
@@ -16,6 +16,14 @@ const RULES: [Rule; 11] = [
         &["tabletop_core", "tabletop_physics"],
     )
     .with_rapier(),
+    Rule::new("tabletop_kinematics", &[]),
+    Rule::new(
+        "tabletop_baxter",
+        &["tabletop_core", "tabletop_kinematics", "tabletop_physics"],
+    )
+    .with_rapier(),
+    Rule::new("tabletop_engine", &[]),
+    Rule::new("tabletop_script", &["tabletop_core", "tabletop_engine"]),
     Rule::new("tabletop_camera", &["tabletop_core"]),
     Rule::new("tabletop_recorder", &["tabletop_core"]),
     Rule::new("tabletop_scenario", &["tabletop_core"]),
@@ -29,6 +37,9 @@ const RULES: [Rule; 11] = [
             "tabletop_physics",
             "tabletop_scene",
             "tabletop_demonstrator",
+            "tabletop_kinematics",
+            "tabletop_baxter",
+            "tabletop_script",
             "tabletop_camera",
             "tabletop_recorder",
             "tabletop_scenario",

@@ -7,6 +7,7 @@
 mod check;
 mod replay;
 mod robot;
+mod robot_options;
 mod run;
 mod window;
 

@@ -65,7 +65,10 @@ fn size(text: &str) -> Result<(u32, u32), String> {
 
 /// Reads a point such as `0,-8,12.5`.
 fn point(text: &str) -> Result<Vec3, String> {
-    let numbers: Result<Vec<f32>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    let numbers: Result<Vec<f32>, _> = text
+        .split(',')
+        .map(|number| number.trim().parse())
+        .collect();
     numbers
         .ok()
         .and_then(|numbers| <[f32; 3]>::try_from(numbers).ok())
@@ -103,7 +106,9 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         env!("CARGO_PKG_VERSION") => String::new(),
         other => format!(" (it was recorded with version {other})"),
     };
-    Err(Failure::run(format!("the replay differs: {difference}{version}")))
+    Err(Failure::run(format!(
+        "the replay differs: {difference}{version}"
+    )))
 }
 
 impl PictureArgs {

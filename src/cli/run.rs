@@ -5,20 +5,24 @@ use std::{
     process::ExitCode,
 };
 
-use bevy::{app::PluginGroupBuilder, prelude::*};
+use bevy::{app::PluginGroupBuilder, ecs::message::MessageCursor, prelude::*};
 use clap::Args;
 use serde_json::json;
 use tabletop::{
     TabletopSimPlugins,
-    core::{SceneSpec, SimCommand, StepApp as _, TICKS_PER_SECOND},
-    headless_app, headless_app_with,
+    core::{AgentNews, AgentOrder, SceneSpec, SimCommand, StepApp as _, TICKS_PER_SECOND},
+    headless_app_with,
     recorder::{RecorderPlugin, RehearsalPlugin},
     report,
+    script::ScriptPlugin,
     xml::read_task,
 };
 use tabletop_scenario::{Outcome, Program, Scenario, ScenarioPlugin, ScenarioRun};
 
-use super::{Failure, Output, WRONG_INPUT};
+use super::{
+    Failure, Output, WRONG_INPUT,
+    robot_options::{EngineOptions, RobotOptions, script},
+};
 
 #[derive(Args)]
 pub(super) struct RunArgs {
@@ -46,6 +50,17 @@ pub(super) struct RunArgs {
     /// Write where every object is in the end, as CSV (`id,x,y,z,rx,ry,rz`); `-` for standard output
     #[arg(long, value_name = "FILE|-")]
     final_state: Option<Output>,
+    /// Write how the robot is in the end, as JSON; `-` for standard output
+    #[arg(long, value_name = "FILE|-")]
+    final_robot: Option<Output>,
+    /// Let a script drive the robot: `matlab` (the scripts that matlab/agentBehavior.m names), `matlab:FOLDER`, `octave:FOLDER`,
+    /// or `python:FILE`. Without a scenario, the run ends with the script
+    #[arg(long, value_name = "LANGUAGE[:PATH]", value_parser = script)]
+    script: Option<String>,
+    #[command(flatten)]
+    engine: EngineOptions,
+    #[command(flatten)]
+    robot: RobotOptions,
 }
 
 /// Reads a time of 0 to a year.
@@ -58,38 +73,48 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
+    let seconds = args.seconds;
     match &args.scenario {
         Some(scenario) => perform(scenario, args),
         None => {
             let setup = args.setup.as_deref();
             let setup = setup.unwrap_or(Path::new(super::DEFAULT_SETUP));
-            let seconds = args.seconds.unwrap_or(10.0);
-            simulate(setup, seconds, args.final_state.as_ref())
+            let (mut app, result) = put_on_table(setup, plugins(args)?)?;
+            let script = Script::start(&mut app, args);
+            let script = script.run(&mut app, ticks(seconds.unwrap_or(10.0)));
+            args.write_ends(&app)?;
+            script.and(Ok(result))
         }
     }
 }
 
-/// Simulates a task file for so many seconds. Its faults are reported and do not stop the run, but give exit code 2.
+/// Simulates a task file for so many seconds, and writes where every object is in the end. Its faults are reported and do
+/// not stop the run, but give exit code 2.
 pub(super) fn simulate(
     setup: &Path,
     seconds: f64,
-    final_state: Option<&Output>,
+    final_state: &Output,
 ) -> Result<ExitCode, Failure> {
+    let (mut app, result) = put_on_table(setup, TabletopSimPlugins.build())?;
+    app.step(ticks(seconds));
+    write_final_state(&app, final_state)?;
+    Ok(result)
+}
+
+/// The simulator with a task file's scene on its table, and the exit code for the file's faults.
+fn put_on_table(setup: &Path, plugins: PluginGroupBuilder) -> Result<(App, ExitCode), Failure> {
     let task = read_task(setup).map_err(Failure::input)?;
     for fault in &task.faults {
         eprintln!("{fault}");
     }
-
-    let mut app = headless_app();
+    let mut app = headless_app_with(plugins);
     app.world_mut()
         .write_message(SimCommand::SetScene(Box::new(task.scene)));
-    app.step(ticks(seconds));
-
-    write_final_state(&app, final_state)?;
-    Ok(match task.faults.is_empty() {
+    let result = match task.faults.is_empty() {
         true => ExitCode::SUCCESS,
         false => ExitCode::from(WRONG_INPUT),
-    })
+    };
+    Ok((app, result))
 }
 
 /// Performs a scenario until it is done or has failed.
@@ -104,23 +129,33 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
         program.limit = ticks(seconds);
     }
 
-    let mut app = headless_app_with((recording_plugins(args), ScenarioPlugin));
+    let mut app = headless_app_with((recording(plugins(args)?, args), ScenarioPlugin));
     app.insert_resource(ScenarioRun::new(program));
+    let mut script = Script::start(&mut app, args);
     let outcome = loop {
         app.step(1);
+        script.listen(&app);
         match app.world().resource::<ScenarioRun>().outcome() {
             Outcome::Running => {}
             Outcome::Done => break Ok(ExitCode::SUCCESS),
             Outcome::Failed(error) => break Err(Failure::run(error)),
         }
     };
-    write_final_state(&app, args.final_state.as_ref())?;
-    outcome
+    args.write_ends(&app)?;
+    outcome.and_then(|done| script.result().and(Ok(done)))
 }
 
-/// The simulator, with a recorder if one is wanted.
-fn recording_plugins(args: &RunArgs) -> PluginGroupBuilder {
-    let plugins = TabletopSimPlugins.build();
+/// The simulator with the robot and the engine that were asked for.
+fn plugins(args: &RunArgs) -> Result<PluginGroupBuilder, Failure> {
+    let settings = args.engine.settings(args.script.as_deref());
+    Ok(TabletopSimPlugins
+        .build()
+        .set(args.robot.plugin()?)
+        .set(ScriptPlugin { settings }))
+}
+
+/// The same with a recorder, if one is wanted.
+fn recording(plugins: PluginGroupBuilder, args: &RunArgs) -> PluginGroupBuilder {
     let Some(folder) = args.record.clone() else {
         return plugins.disable::<RecorderPlugin>().add(RehearsalPlugin);
     };
@@ -133,6 +168,75 @@ fn recording_plugins(args: &RunArgs) -> PluginGroupBuilder {
         header: settings.into_iter().collect(),
         ..default()
     })
+}
+
+/// The script that drives the robot, if one was asked for.
+struct Script {
+    is_wanted: bool,
+    news: MessageCursor<AgentNews>,
+    /// How it has ended, if it has.
+    end: Option<Result<(), Failure>>,
+}
+
+impl Script {
+    fn start(app: &mut App, args: &RunArgs) -> Self {
+        let is_wanted = args.script.is_some();
+        if is_wanted {
+            app.world_mut().write_message(AgentOrder::Start);
+        }
+        Self {
+            is_wanted,
+            news: MessageCursor::default(),
+            end: None,
+        }
+    }
+
+    /// Prints what the script prints, and notes its end.
+    fn listen(&mut self, app: &App) {
+        for news in self.news.read(app.world().resource::<Messages<AgentNews>>()) {
+            match news {
+                AgentNews::Started { engine } => eprintln!("tabletop: {engine}"),
+                AgentNews::Printed { line, .. } => eprintln!("{line}"),
+                AgentNews::Stopped => self.end = Some(Ok(())),
+                AgentNews::Failed { reason } => self.end = Some(Err(Failure::run(reason))),
+            }
+        }
+    }
+
+    /// Simulates so many ticks, or until the script has ended.
+    fn run(mut self, app: &mut App, ticks: u64) -> Result<(), Failure> {
+        if !self.is_wanted {
+            app.step(ticks);
+            return Ok(());
+        }
+        for _ in 0..ticks {
+            app.step(1);
+            self.listen(app);
+            if self.end.is_some() {
+                break;
+            }
+        }
+        self.result()
+    }
+
+    fn result(self) -> Result<(), Failure> {
+        self.end.unwrap_or(Ok(()))
+    }
+}
+
+impl RunArgs {
+    /// Writes what was asked for at the end of a run.
+    fn write_ends(&self, app: &App) -> Result<(), Failure> {
+        if let Some(output) = &self.final_state {
+            write_final_state(app, output)?;
+        }
+        if let Some(output) = &self.final_robot {
+            let mut json = Vec::new();
+            report::write_robot(app.world(), &mut json).map_err(Failure::run)?;
+            output.write(&json)?;
+        }
+        Ok(())
+    }
 }
 
 /// The scene of a task file, or everything that is wrong with it.
@@ -149,10 +253,7 @@ fn ticks(seconds: f64) -> u64 {
     (seconds * f64::from(TICKS_PER_SECOND)).round() as u64
 }
 
-fn write_final_state(app: &App, output: Option<&Output>) -> Result<(), Failure> {
-    let Some(output) = output else {
-        return Ok(());
-    };
+fn write_final_state(app: &App, output: &Output) -> Result<(), Failure> {
     let mut csv = Vec::new();
     report::write_state(app.world(), &mut csv).map_err(Failure::run)?;
     output.write(&csv)

@@ -3,9 +3,13 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use clap::Args;
-use tabletop::replay::Replay;
+use tabletop::{baxter::BaxterPlugin, replay::Replay, script::ScriptSettings};
 
-use super::{Failure, Output, run};
+use super::{
+    Failure, Output,
+    robot_options::{EngineOptions, RobotOptions, script},
+    run,
+};
 
 #[derive(Args)]
 pub(super) struct WindowArgs {
@@ -18,6 +22,14 @@ pub(super) struct WindowArgs {
     /// When to take the picture, in seconds of simulated time
     #[arg(long, value_name = "S", default_value = "1", value_parser = run::seconds, requires = "screenshot")]
     after: f64,
+    /// The scripts that the key M starts: `matlab` (those that matlab/agentBehavior.m names), `matlab:FOLDER`, `octave:FOLDER`,
+    /// or `python:FILE`
+    #[arg(long, value_name = "LANGUAGE[:PATH]", value_parser = script)]
+    script: Option<String>,
+    #[command(flatten)]
+    engine: EngineOptions,
+    #[command(flatten)]
+    robot: RobotOptions,
 }
 
 #[cfg(feature = "window")]
@@ -26,6 +38,8 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
 
     let options = WindowOptions {
         show: Show::Task(args.setup.clone()),
+        robot: args.robot.plugin()?,
+        scripts: args.engine.settings(args.script.as_deref()),
         screenshot: args.screenshot.map(|path| ScreenshotAt {
             path,
             seconds: args.after as f32,
@@ -44,6 +58,8 @@ pub(super) fn play(replay: Replay) -> Result<ExitCode, Failure> {
 
     let options = WindowOptions {
         show: Show::Replay(Box::new(replay)),
+        robot: BaxterPlugin::default(),
+        scripts: ScriptSettings::default(),
         screenshot: None,
     };
     window::run(options).map(exit_code).map_err(Failure::run)
@@ -77,5 +93,5 @@ fn run_instead(setup: PathBuf) -> Result<ExitCode, Failure> {
         "tabletop: running {} for 10 s without a window",
         setup.display()
     );
-    run::simulate(&setup, 10.0, Some(&Output::Stdout))
+    run::simulate(&setup, 10.0, &Output::Stdout)
 }

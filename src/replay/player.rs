@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use bevy::prelude::*;
+use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop_core::{Paused, SimCommand, SimFact, SimSystems, SimTick};
 use tabletop_recorder::{Session, SessionCommand};
 
@@ -17,6 +17,8 @@ pub struct Player {
     start: SimTick,
     /// Whether the recording has paused the simulation.
     has_paused: bool,
+    /// Whether a recording is to be made of it.
+    records: bool,
 }
 
 impl Player {
@@ -26,6 +28,7 @@ impl Player {
             commands: commands.cloned().collect(),
             start: SimTick(session.header.start_tick),
             has_paused: false,
+            records: false,
         }
     }
 
@@ -37,6 +40,7 @@ impl Player {
             command: SimCommand::StartRecording,
         };
         player.commands.insert(session.earlier.len(), start);
+        player.records = true;
         player
     }
 
@@ -70,7 +74,8 @@ impl Player {
             if let SimCommand::SetPaused(paused) = next.command {
                 self.has_paused = paused;
             }
-            due.extend(self.commands.pop_front().map(|next| next.command));
+            let next = self.commands.pop_front().map(|next| next.command);
+            due.extend(next.filter(|next| self.records || *next != SimCommand::FinishRecording));
         }
         due
     }
@@ -79,6 +84,7 @@ impl Player {
 fn play(
     mut player: ResMut<Player>,
     mut commands: ResMut<Messages<SimCommand>>,
+    mut seen: Local<MessageCursor<SimCommand>>,
     mut facts: MessageWriter<SimFact>,
     tick: Res<SimTick>,
     paused: Res<Paused>,
@@ -88,11 +94,11 @@ fn play(
     }
     let mut is_held_up = paused.0 && !player.has_paused;
     let mut kept = Vec::new();
-    for command in commands.drain() {
+    for command in seen.read(&commands) {
         match command {
             SimCommand::SetPaused(pause) => {
-                is_held_up = pause;
-                kept.push(command);
+                is_held_up = *pause;
+                kept.push(command.clone());
             }
             SimCommand::SelectHand(_) => {}
             _ => {
@@ -102,15 +108,17 @@ fn play(
             }
         }
     }
+    commands.clear();
     commands.write_batch(kept);
     if !is_held_up {
         commands.write_batch(player.due(*tick));
     }
+    seen.clear(&commands);
 }
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::Hand;
+    use tabletop_core::{CorePlugin, Hand, StepApp as _};
 
     use super::*;
 
@@ -122,16 +130,68 @@ mod tests {
                 .collect(),
             start: SimTick(0),
             has_paused: false,
+            records: false,
         }
     }
 
     #[test]
     fn commands_are_due_at_their_tick() {
         let [left, right] = [Hand::Left, Hand::Right].map(SimCommand::Release);
-        let mut player = player(&[(1, left.clone()), (1, right.clone()), (3, left.clone())]);
-        let given: Vec<_> = (0..5).map(|tick| player.due(SimTick(tick)).len()).collect();
-        assert_eq!(given, [0, 2, 0, 1, 0]);
+        let mut player = player(&[
+            (1, left.clone()),
+            (1, right.clone()),
+            (3, left.clone()),
+            (4, SimCommand::FinishRecording),
+        ]);
+        let given: Vec<_> = (0..4).map(|tick| player.due(SimTick(tick)).len()).collect();
+        assert_eq!(given, [0, 2, 0, 1]);
+        assert!(!player.is_over());
+        assert_eq!(player.due(SimTick(4)), [], "nothing is recorded");
         assert!(player.is_over());
+    }
+
+    /// Simulates a tick in which the user tells something, and says what was carried out.
+    fn tick(app: &mut App, told: &[SimCommand]) -> Vec<SimCommand> {
+        app.world_mut().write_message_batch(told.to_vec());
+        app.step(1);
+        let mut carried_out = app.world_mut().resource_mut::<CarriedOut>();
+        std::mem::take(&mut carried_out.0)
+    }
+
+    #[derive(Resource, Default)]
+    struct CarriedOut(Vec<SimCommand>);
+
+    #[test]
+    fn only_the_recording_acts_and_the_user_can_hold_it_up() {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .init_resource::<CarriedOut>()
+            .add_systems(
+                FixedUpdate,
+                (|mut commands: MessageReader<SimCommand>, mut carried_out: ResMut<CarriedOut>| {
+                    carried_out.0.extend(commands.read().cloned());
+                })
+                .in_set(SimSystems::Ingest),
+            )
+            .start();
+        let [left, right] = [Hand::Left, Hand::Right].map(SimCommand::Release);
+        let pause = SimCommand::SetPaused;
+        player(&[
+            (0, left.clone()),
+            (1, pause(true)),
+            (1, pause(false)),
+            (1, right.clone()),
+            (2, left.clone()),
+        ])
+        .play_in(&mut app);
+        assert_eq!(tick(&mut app, &[SimCommand::ClearTable]), [left.clone()]);
+        assert_eq!(tick(&mut app, &[pause(true)]), [pause(true)]);
+        assert_eq!(tick(&mut app, &[]), []);
+        assert_eq!(tick(&mut app, &[pause(false)]), [pause(false), pause(true)]);
+        assert_eq!(tick(&mut app, &[]), [pause(false), right.clone()]);
+        assert_eq!(app.world().resource::<SimTick>().0, 2);
+        assert_eq!(tick(&mut app, &[right.clone()]), [left]);
+        assert_eq!(tick(&mut app, &[right.clone()]), [right]);
     }
 
     #[test]

@@ -157,7 +157,9 @@ fn pictures_are_made_from_another_place_with_distances_and_numbers() {
     let depth = value("0/0.depth.png");
     assert!(depth.abs_diff(18_000) < 20, "{depth}");
     let text = fs::read_to_string(out.join("0.txt")).unwrap();
-    let red = text.lines().position(|line| line.starts_with("0,create,RedBlock"));
+    let red = text
+        .lines()
+        .position(|line| line.starts_with("0,create,RedBlock"));
     assert_eq!(usize::from(value("0/0.ids.png")), red.unwrap() + 2);
 }
 
@@ -207,7 +209,10 @@ fn settings_that_this_program_does_not_have_are_located() {
         let folder = with_header(name, old, new);
         let output = tabletop(&["replay", folder.to_str().unwrap(), "--verify"]);
         assert_eq!(output.status.code(), Some(2));
-        let message = format!("tabletop: {}:1: {words}", folder.join("session.jsonl").display());
+        let message = format!(
+            "tabletop: {}:1: {words}",
+            folder.join("session.jsonl").display()
+        );
         assert!(stderr(&output).starts_with(&message), "{}", stderr(&output));
     }
 }
@@ -217,7 +222,11 @@ fn other_settings_give_other_states() {
     let folder = with_header("moon", "\"gravity\":98.1", "\"gravity\":16.2");
     let output = tabletop(&["replay", folder.to_str().unwrap(), "--verify"]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(stderr(&output).contains("the replay differs: "), "{}", stderr(&output));
+    assert!(
+        stderr(&output).contains("the replay differs: "),
+        "{}",
+        stderr(&output)
+    );
 }
 
 #[test]

@@ -177,7 +177,8 @@ fn hands_do_not_act_while_paused() {
     let output = run(&path, &[]);
     assert_eq!(output.status.code(), Some(1));
     let error = stderr(&output);
-    let words = ":3:3: Grasp(\"RedBlock\"): refused: hands cannot act while the simulation is paused";
+    let words =
+        ":3:3: Grasp(\"RedBlock\"): refused: hands cannot act while the simulation is paused";
     assert!(error.contains(words), "{error}");
 }
 

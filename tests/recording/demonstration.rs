@@ -70,7 +70,10 @@ impl Demonstration {
             let place = world.get::<Transform>(object).unwrap();
             let velocity = world.get::<Velocity>(object).unwrap();
             let twist = world.get::<Twist>(object).unwrap();
-            assert_eq!((twist.linear, twist.angular), (velocity.linear, velocity.angular));
+            assert_eq!(
+                (twist.linear, twist.angular),
+                (velocity.linear, velocity.angular)
+            );
             let numbers = [place.translation, velocity.linear, velocity.angular]
                 .into_iter()
                 .flat_map(|vector| vector.to_array())

@@ -3,5 +3,6 @@
 
 mod demonstration;
 mod random;
+mod robot;
 mod settings;
 mod undo;

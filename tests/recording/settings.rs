@@ -21,7 +21,10 @@ fn a_replay_has_the_settings_and_the_camera_of_its_recording() {
     let hand = Hand::Left;
     let object = "RedBlock".to_owned();
     moon.act(&[
-        (vec![SimCommand::LoadTask("tablesetup/default.xml".into())], 30),
+        (
+            vec![SimCommand::LoadTask("tablesetup/default.xml".into())],
+            30,
+        ),
         (vec![SimCommand::Grasp { hand, object }], 1),
         (
             vec![SimCommand::MoveTo {

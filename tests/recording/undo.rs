@@ -27,7 +27,7 @@ fn assert_same_files(expected: &Demonstration, found: &Demonstration, seed: u64)
 #[test]
 fn undo_leaves_no_trace() {
     let mut detours = 0;
-    for seed in 0..100 {
+    'seeds: for seed in 0..150 {
         let mut random = Random(seed);
         let script = script(&mut random, TICKS);
         let turning_point = random.below(TICKS as usize - 20);
@@ -47,7 +47,7 @@ fn undo_leaves_no_trace() {
                 object: "ball".into(),
             }]);
             if with_detour.undoable() == before {
-                break; // The ball is in these hands already, or gone.
+                continue 'seeds; // The ball is in these hands already, or gone.
             }
             detours += 1;
             for commands in &detour {
@@ -63,16 +63,13 @@ fn undo_leaves_no_trace() {
                 "seed {seed}, right after undo"
             );
         }
-        if with_detour.bits()[0] != straight.bits()[0] {
-            continue;
-        }
         assert_eq!(with_detour.bits(), straight.bits(), "seed {seed}");
         for demonstration in [&mut straight, &mut with_detour] {
             demonstration.tick(&[SimCommand::FinishRecording]);
         }
         assert_same_files(&straight, &with_detour, seed);
     }
-    assert!(detours > 50, "only {detours} detours were taken");
+    assert!(detours >= 100, "only {detours} detours were taken");
 }
 
 #[test]

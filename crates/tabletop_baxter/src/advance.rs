@@ -1,17 +1,18 @@
-//! A tick of the robot in kinematic mode.
+//! A tick of the robot.
 
 use std::collections::BTreeSet;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*};
 use tabletop_core::{
-    Arm, Gripped, Held, Joint, ObjectSpec, Pose, Robot, RobotJoint, SimFact, Table,
+    Arm, Gripped, Held, ObjectSpec, Pose, Robot, RobotJoint, RobotMode, SimFact, Table,
     robot_base,
 };
-use tabletop_physics::convex_parts;
+use tabletop_physics::{PhysicsSettings, convex_parts};
 
 use crate::{
     clearance::{Owner, are_near},
+    driven::Motors,
     grip::{Closing, STEEPEST_GRIP},
     grips::{self, Grips},
     meeting::Meetings,
@@ -20,6 +21,7 @@ use crate::{
     parts::{Parts, RobotBody, poses, positions, put},
     skeleton::Skeleton,
     surroundings::Surroundings,
+    touch::touches,
 };
 
 /// Farthest that something moves in a tick, in units, and still pushes what it meets; what goes farther has jumped.
@@ -32,16 +34,16 @@ pub(crate) struct Known<'w, 's> {
     meetings: Res<'w, Meetings>,
     parts: Res<'w, Parts>,
     tables: Query<'w, 's, &'static Table>,
-    is_table: Query<'w, 's, (), With<Table>>,
     bodies: Query<'w, 's, (), With<RobotBody>>,
     objects: Query<'w, 's, (&'static ObjectSpec, Has<Held>, Has<Gripped>)>,
-    joints: Query<'w, 's, &'static Joint>,
 }
 
 /// Moves the joints, the grippers and what they hold.
 pub(crate) fn advance(
     known: Known,
+    settings: Res<PhysicsSettings>,
     mut orders: ResMut<Orders>,
+    mut motors: ResMut<Motors>,
     mut robot: ResMut<Robot>,
     mut grips: ResMut<Grips>,
     mut rapier: WriteRapierContext,
@@ -50,7 +52,9 @@ pub(crate) fn advance(
     mut facts: MessageWriter<SimFact>,
     mut commands: Commands,
 ) -> Result {
-    if !orders.are_given() {
+    let is_dynamic = robot.mode == RobotMode::Dynamic;
+    let is_told = orders.are_given();
+    if !is_dynamic && !is_told {
         if robot.joints.iter().any(|joint| joint.velocity != 0.0) {
             robot.joints.iter_mut().for_each(|joint| joint.velocity = 0.0);
         }
@@ -59,28 +63,52 @@ pub(crate) fn advance(
     let mut rapier = rapier.single_mut()?;
     let mut motion = known.motion(&robot, &grips, &rapier);
     motion.turn_head(&orders);
+    let pulls = is_dynamic.then(|| {
+        motors.look(&robot);
+        motors.pull(&mut motion, &orders, settings.gravity, |motion, arm| {
+            let is_mine =
+                |body| known.bodies.contains(body) || grips.all().any(|object| object == body);
+            touches(motion, arm, &rapier, settings.gravity, is_mine)
+        })
+    });
     let mut actions = Vec::new();
     for arm in Arm::BOTH {
-        motion.move_arm(arm, &orders);
+        let wants = match &pulls {
+            Some(pulls) => pulls[arm as usize].wants(arm),
+            None => orders.want_arm(arm, robot.angles(arm)),
+        };
+        motion.move_arm(arm, wants);
         let wide = motion.positions[RobotJoint::gripper(arm).index()];
         let closing = motion.move_fingers(arm, &orders);
         let opens = motion.positions[RobotJoint::gripper(arm).index()] > wide;
         actions.extend(known.decide(arm, opens, closing, &mut grips));
     }
 
+    let was = positions(&robot);
     robot.move_to(&motion.positions);
-    orders.end_tick(&robot);
+    if let Some(pulls) = pulls {
+        motors.note(&pulls, &motion, &mut robot);
+        orders.end_tick(&motors.reached(&motion.positions));
+    } else {
+        orders.end_tick(&motion.positions);
+    }
     for arm in Arm::BOTH {
         let squeezed = orders.wait_for(arm, motion.held_up_by[arm as usize]);
         let obstacle = motion.blocked_by[arm as usize].or(squeezed.map(Owner::Thing));
         let blocked_by = obstacle.map(|owner| known.name(owner));
         if let Some(by) = blocked_by.clone() {
             orders.give_up(arm);
+            motors.stay(arm);
             if robot.arm(arm).blocked_by.as_ref() != Some(&by) {
                 facts.write(SimFact::ArmBlocked { arm, by });
             }
         }
-        robot.arms[arm as usize].blocked_by = blocked_by;
+        let has_moved = RobotJoint::of_arm(arm)
+            .iter()
+            .any(|joint| motion.positions[joint.index()] != was[joint.index()]);
+        if (is_told && has_moved) || blocked_by.is_some() {
+            robot.arms[arm as usize].blocked_by = blocked_by;
+        }
     }
     known.publish(&mut robot, &orders, motion.base);
 
@@ -104,7 +132,7 @@ pub(crate) fn advance(
         place(part, pose);
     }
     for arm in Arm::BOTH {
-        for grip in grips.of(arm) {
+        for grip in grips.of(arm).iter().filter(|grip| !grip.is_jointed) {
             place(grip.object, robot.arm(arm).end_effector * grip.pose);
         }
     }
@@ -154,7 +182,6 @@ impl Known<'_, '_> {
             rapier,
             &near,
             &self.bodies,
-            &self.is_table,
             &held,
             robot.is_shown,
         );
@@ -162,9 +189,11 @@ impl Known<'_, '_> {
             grips
                 .of(arm)
                 .iter()
+                .filter(|grip| !grip.is_jointed)
                 .map(|grip| Carried {
                     object: grip.object,
                     pose: grip.pose,
+                    mass: self.objects.get(grip.object).map_or(0.0, |(spec, ..)| spec.mass.into()),
                     parts: parts_of(rapier, grip.object),
                 })
                 .collect()
@@ -178,6 +207,9 @@ impl Known<'_, '_> {
             positions,
             blocked_by: [None; 2],
             held_up_by: [None; 2],
+            is_squeezing: [false; 2],
+            holds: Arm::BOTH.map(|arm| !grips.of(arm).is_empty()),
+            is_shown: robot.is_shown,
             scratch: posture,
         }
     }
@@ -191,7 +223,7 @@ impl Known<'_, '_> {
         }
         let mut actions = Vec::new();
         for (object, angle) in closing.touched {
-            if !grips::can_take(object, &self.objects, &self.joints) {
+            if !grips::can_take(object, &self.objects) {
                 continue;
             }
             if angle < STEEPEST_GRIP {

@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::{
     parry::{
         bounding_volume::{Aabb, BoundingVolume},
-        query::contact,
+        query::{Contact, contact},
     },
     rapier::prelude as rapier,
 };
@@ -18,7 +18,7 @@ const MARGIN: f32 = 0.01;
 const APPROACH: f32 = 1e-5;
 
 /// Distance, in units, at which something free is touched, and pushed from the next tick on.
-const TOUCHING: f32 = 0.01;
+pub(crate) const TOUCHING: f32 = 0.01;
 
 /// Depth, in units, to which something free is squeezed before what squeezes it stops.
 const SQUEEZE: f32 = 0.05;
@@ -98,6 +98,12 @@ impl Solid {
     pub fn depth_in(&self, other: &Self) -> f32 {
         let distance = self.distance(self.from, other, other.from, 0.0);
         distance.map_or(0.0, |distance| -distance)
+    }
+
+    /// Where this solid is nearest to another one before they move, if that is no farther than `most`, in units.
+    pub fn contact(&self, other: &Self, most: f32) -> Option<Contact> {
+        let [here, there] = [self, other].map(|solid| to_rapier(solid.from));
+        contact(&here, &*self.shape, &there, &*other.shape, most).ok().flatten()
     }
 
     /// The radius of a ball about the solid's origin that holds it.

@@ -1,8 +1,9 @@
 //! What the grippers hold.
 
 use bevy::prelude::*;
+use bevy_rapier3d::prelude::{GravityScale, Velocity};
 use tabletop_core::{Arm, Gripped, Held, Joint, ObjectSpec, Pose, Robot, SimFact};
-use tabletop_physics::{hold, let_go};
+use tabletop_physics::{JustReleased, drawn, hold, let_go};
 
 /// What the grippers hold, and how.
 #[derive(Resource, Clone, Debug, Default)]
@@ -19,6 +20,8 @@ pub(crate) struct Grip {
     pub object: Entity,
     /// Its pose in the end effector's frame.
     pub pose: Pose,
+    /// Whether joints hold it, too: then it is drawn along as far as they let it.
+    pub is_jointed: bool,
 }
 
 impl Grips {
@@ -42,13 +45,23 @@ pub(crate) fn take(world: &mut World, arm: Arm, object: Entity) {
     let Some(id) = id(world, object) else {
         return;
     };
+    let is_jointed = world
+        .query::<&Joint>()
+        .iter(world)
+        .any(|joint| joint.objects.contains(&object));
     world.resource_mut::<Grips>().held[arm as usize].push(Grip {
         object,
         pose: end_effector.inverse() * here,
+        is_jointed,
     });
     let mut body = world.entity_mut(object);
     body.insert(Gripped { by: arm });
-    hold(body);
+    if is_jointed {
+        body.insert(GravityScale(0.0));
+        body.remove::<JustReleased>();
+    } else {
+        hold(body);
+    }
     world.write_message(SimFact::GripMade { arm, id });
 }
 
@@ -63,6 +76,22 @@ pub(crate) fn release(world: &mut World, arm: Arm) {
         body.remove::<Gripped>();
         let_go(body);
         world.write_message(SimFact::GripReleased { arm, id });
+    }
+}
+
+/// Draws along what joints hold as well.
+pub(crate) fn draw_jointed(
+    grips: Res<Grips>,
+    robot: Res<Robot>,
+    mut objects: Query<(&Transform, &mut Velocity)>,
+) {
+    for arm in Arm::BOTH {
+        for grip in grips.of(arm).iter().filter(|grip| grip.is_jointed) {
+            if let Ok((transform, mut velocity)) = objects.get_mut(grip.object) {
+                let target = robot.arm(arm).end_effector * grip.pose;
+                *velocity = drawn(Pose::from(transform), target);
+            }
+        }
     }
 }
 
@@ -113,16 +142,14 @@ pub(crate) fn note_lost(
     }
 }
 
-/// Whether a gripper can take an object: it has mass, no hand holds it, and no joint.
+/// Whether a gripper can take an object: it has mass, and nothing holds it.
 pub(crate) fn can_take(
     object: Entity,
     objects: &Query<(&ObjectSpec, Has<Held>, Has<Gripped>)>,
-    joints: &Query<&Joint>,
 ) -> bool {
-    let is_free = objects
+    objects
         .get(object)
-        .is_ok_and(|(spec, is_held, is_gripped)| !spec.is_fixed() && !is_held && !is_gripped);
-    is_free && !joints.iter().any(|joint| joint.objects.contains(&object))
+        .is_ok_and(|(spec, is_held, is_gripped)| !spec.is_fixed() && !is_held && !is_gripped)
 }
 
 fn id(world: &World, object: Entity) -> Option<String> {

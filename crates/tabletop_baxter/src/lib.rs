@@ -22,13 +22,17 @@
 
 mod advance;
 mod clearance;
+mod driven;
+mod dynamics;
 mod feel;
 mod figures;
 mod grip;
 mod grips;
 pub mod look;
+mod matrix;
 mod meeting;
 mod motion;
+mod motor;
 mod orders;
 mod pad;
 mod parts;
@@ -37,6 +41,7 @@ mod reach;
 mod shown;
 mod skeleton;
 mod surroundings;
+mod touch;
 
 pub use grip::STEEPEST_GRIP;
 pub use orders::MANUAL_SPEED;

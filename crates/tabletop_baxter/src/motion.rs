@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
-use tabletop_core::{Arm, Pose, RobotJoint};
+use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, RobotJoint};
 use tabletop_physics::Convex;
 
 use crate::{
@@ -35,6 +35,8 @@ pub(crate) struct Carried {
     pub object: Entity,
     /// Its pose in the end effector's frame.
     pub pose: Pose,
+    /// Its mass in kg.
+    pub mass: f64,
     /// Its convex parts, in its own frame.
     pub parts: Vec<Convex>,
 }
@@ -49,7 +51,9 @@ pub(crate) struct Motion<'a> {
     pub base: Pose,
     /// What is around it.
     pub surroundings: Surroundings,
-    /// What its grippers hold.
+    /// Whether its grippers hold anything.
+    pub holds: [bool; 2],
+    /// What its grippers hold rigidly.
     pub carried: [Vec<Carried>; 2],
     /// Positions of the joints, by [`RobotJoint::index`].
     pub positions: [f64; 17],
@@ -57,6 +61,10 @@ pub(crate) struct Motion<'a> {
     pub blocked_by: [Option<Owner>; 2],
     /// What each arm has squeezed so much in this tick that it waited.
     pub held_up_by: [Option<Entity>; 2],
+    /// Whether each arm was slowed in this tick by squeezing something free.
+    pub is_squeezing: [bool; 2],
+    /// Whether it can meet anything.
+    pub is_shown: bool,
     /// A posture to compute with.
     pub scratch: Posture,
 }
@@ -68,11 +76,9 @@ impl Motion<'_> {
         *position = orders.want(RobotJoint::HeadPan, *position).position();
     }
 
-    /// Moves the joints of an arm.
-    pub fn move_arm(&mut self, arm: Arm, orders: &Orders) {
+    /// Moves the joints of an arm to where they are to be.
+    pub fn move_arm(&mut self, arm: Arm, wants: [Want; JOINTS_PER_ARM]) {
         let joints = RobotJoint::of_arm(arm);
-        let here = joints.map(|joint| self.positions[joint.index()]);
-        let wants = orders.want_arm(arm, here);
         let mut there = self.positions;
         for (joint, want) in joints.into_iter().zip(wants) {
             there[joint.index()] = want.position();
@@ -86,6 +92,7 @@ impl Motion<'_> {
             return;
         }
         let (part, pushed) = self.push(arm, &there);
+        self.is_squeezing[arm as usize] = pushed.is_some();
         if part < LEAST_PUSH {
             self.held_up_by[arm as usize] = pushed;
             return;
@@ -102,7 +109,7 @@ impl Motion<'_> {
         let mut there = self.positions;
         if want > opening {
             there[joint.index()] = want;
-        } else if want < opening && self.carried[arm as usize].is_empty() {
+        } else if want < opening && !self.holds[arm as usize] {
             closing = close(self.end_effector(arm), opening as f32, &self.between(arm));
             there[joint.index()] = want.max(opening - f64::from(closing.room)).max(0.0);
         }
@@ -160,7 +167,7 @@ impl Motion<'_> {
         None
     }
 
-    /// The part of the way to these positions that an arm can go in a tick with what it pushes, and what it pushes most.
+    /// The part of the way to these positions that an arm can go in a tick with what it pushes, and what it squeezes most.
     fn push(&mut self, arm: Arm, there: &[f64; 17]) -> (f64, Option<Entity>) {
         if self.surroundings.free.is_empty() {
             return (1.0, None);
@@ -183,10 +190,11 @@ impl Motion<'_> {
                 can_go = can_go.min(part_left(self.surroundings.squeeze(i)));
             }
             if can_go < part {
-                (part, most_pushed) = (can_go, Some(thing.object));
+                (part, most_pushed) = (can_go, is_pushed.then_some(thing.object));
             }
         }
-        (f64::from(part), most_pushed)
+        let least = if most_pushed.is_some() { 0.0 } else { LEAST_PUSH };
+        (f64::from(part).max(least), most_pushed)
     }
 
     /// About how far the bodies of an arm go between two positions, in units.
@@ -215,7 +223,7 @@ impl Motion<'_> {
     }
 
     /// The solids of an arm and of what it holds, each with the number of a body that meets what it meets.
-    fn solids(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> Vec<(usize, Solid)> {
+    pub fn solids(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> Vec<(usize, Solid)> {
         let from_poses = self.poses(arm, from);
         let from_hand = self.skeleton.end_effector(arm, &self.scratch, self.base);
         let to_poses = self.poses(arm, to);
@@ -244,6 +252,9 @@ impl Motion<'_> {
 
     /// What is in the way of an arm between two positions.
     fn obstacle(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> Option<Owner> {
+        if !self.is_shown {
+            return None;
+        }
         let solids = self.solids(arm, from, to);
         let outside = solids.iter().find_map(|(_, solid)| {
             let mut immovable = self.surroundings.immovable.iter();

@@ -18,6 +18,8 @@ pub(crate) struct Orders {
     now: [Option<Drive>; 17],
     /// Where joints are on their way to.
     toward: [Option<f64>; 17],
+    /// Where joints are on their way to as fast as their motors can.
+    rush: [Option<f64>; 17],
     /// Where whole arms are on their way to, all joints arriving together.
     reach: [Option<[f64; JOINTS_PER_ARM]>; 2],
     /// For how many ticks each arm has waited for what it squeezes.
@@ -55,6 +57,12 @@ impl Orders {
         }
     }
 
+    /// Sends a joint to a position as fast as its motor can, in place of all earlier orders for it.
+    fn rush(&mut self, joint: RobotJoint, position: f64) {
+        self.cancel(joint);
+        self.rush[joint.index()] = Some(joint.clamp(position));
+    }
+
     /// Sends an arm to these angles.
     pub fn send(&mut self, arm: Arm, angles: [f64; JOINTS_PER_ARM]) {
         for joint in RobotJoint::of_arm(arm) {
@@ -67,6 +75,7 @@ impl Orders {
     fn cancel(&mut self, joint: RobotJoint) {
         self.now[joint.index()] = None;
         self.toward[joint.index()] = None;
+        self.rush[joint.index()] = None;
         if let Some(arm) = joint.arm().filter(|_| !joint.is_gripper()) {
             self.reach[arm as usize] = None;
         }
@@ -76,6 +85,7 @@ impl Orders {
     pub fn are_given(&self) -> bool {
         self.now.iter().any(Option::is_some)
             || self.toward.iter().any(Option::is_some)
+            || self.rush.iter().any(Option::is_some)
             || self.reach.iter().any(Option::is_some)
     }
 
@@ -83,20 +93,22 @@ impl Orders {
     pub fn is_under_way(&self, arm: Arm) -> bool {
         let joints = RobotJoint::of_arm(arm);
         self.reach[arm as usize].is_some()
-            || joints
-                .into_iter()
-                .any(|joint| self.toward[joint.index()].is_some())
+            || joints.into_iter().any(|joint| {
+                self.toward[joint.index()].is_some() || self.rush[joint.index()].is_some()
+            })
     }
 
-    /// Ends the orders of this tick, and those that have been carried out.
-    pub fn end_tick(&mut self, robot: &Robot) {
+    /// Ends the orders of this tick, and those that have been carried out now that the joints are at these positions.
+    pub fn end_tick(&mut self, reached: &[f64; 17]) {
         self.now = [None; 17];
-        for joint in RobotJoint::ALL {
-            let toward = &mut self.toward[joint.index()];
-            toward.take_if(|toward| *toward == robot.joint(joint).position);
+        for goals in [&mut self.toward, &mut self.rush] {
+            for (goal, reached) in goals.iter_mut().zip(reached) {
+                goal.take_if(|goal| goal == reached);
+            }
         }
         for arm in Arm::BOTH {
-            self.reach[arm as usize].take_if(|angles| *angles == robot.angles(arm));
+            let reached = RobotJoint::of_arm(arm).map(|joint| reached[joint.index()]);
+            self.reach[arm as usize].take_if(|angles| *angles == reached);
         }
     }
 
@@ -127,9 +139,10 @@ impl Orders {
         let step = match self.now[joint.index()] {
             Some(Drive::Velocity(velocity)) => velocity * f64::from(TICK_SECONDS),
             Some(Drive::Position(there)) => return Want::Jump(joint.clamp(there)),
-            _ => match self.toward[joint.index()] {
-                Some(there) => toward(position, there, MANUAL_SPEED),
-                None => 0.0,
+            _ => match (self.toward[joint.index()], self.rush[joint.index()]) {
+                (_, Some(there)) => return Want::Jump(there),
+                (Some(there), _) => toward(position, there, MANUAL_SPEED),
+                (None, None) => 0.0,
             },
         };
         Want::Move(joint.clamp(position + step))
@@ -190,12 +203,16 @@ fn carry_out(world: &mut World, command: SimCommand) -> Result<(), String> {
         SimCommand::ShowRobot(show) => shown::show(world, show),
         SimCommand::Drive(drives) => {
             refuse_while_paused(world)?;
+            let mode = world.resource::<Robot>().mode;
             for &(joint, drive) in &drives {
-                check(world.resource::<Robot>().mode, joint, drive)?;
+                check(mode, joint, drive)?;
             }
             let mut orders = world.resource_mut::<Orders>();
             for (joint, drive) in drives {
-                orders.take(joint, drive);
+                match drive {
+                    Drive::Position(there) if has_motor(mode, joint) => orders.rush(joint, there),
+                    _ => orders.take(joint, drive),
+                }
             }
         }
         SimCommand::ReachTo { arm, pose } => {
@@ -226,6 +243,11 @@ fn refuse_while_paused(world: &World) -> Result<(), String> {
     }
 }
 
+/// Whether a joint is moved by a motor with limited torque.
+fn has_motor(mode: RobotMode, joint: RobotJoint) -> bool {
+    mode == RobotMode::Dynamic && !joint.is_gripper() && joint != RobotJoint::HeadPan
+}
+
 /// Whether a joint can do what it is told.
 fn check(mode: RobotMode, joint: RobotJoint, drive: Drive) -> Result<(), String> {
     let value = match drive {
@@ -237,11 +259,8 @@ fn check(mode: RobotMode, joint: RobotJoint, drive: Drive) -> Result<(), String>
     if !value.is_finite() {
         return Err(format!("joint {joint} cannot be told {drive:?}: not a number"));
     }
-    let takes_torque = mode == RobotMode::Dynamic
-        && !joint.is_gripper()
-        && joint != RobotJoint::HeadPan;
     match drive {
-        Drive::Torque(_) if !takes_torque => Err(format!(
+        Drive::Torque(_) if !has_motor(mode, joint) => Err(format!(
             "joint {joint} cannot be told a torque: only the joints of arms can, in dynamic mode"
         )),
         _ => Ok(()),
@@ -251,6 +270,7 @@ fn check(mode: RobotMode, joint: RobotJoint, drive: Drive) -> Result<(), String>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parts::positions;
 
     const E1: RobotJoint = RobotJoint::LeftE1;
 
@@ -264,7 +284,7 @@ mod tests {
     fn a_velocity_holds_for_one_tick() {
         let mut orders = orders(E1, Drive::Velocity(-1.5));
         assert_eq!(orders.want(E1, 1.0), Want::Move(1.0 - 1.5 * f64::from(TICK_SECONDS)));
-        orders.end_tick(&Robot::default());
+        orders.end_tick(&positions(&Robot::default()));
         assert_eq!(orders.want(E1, 1.0), Want::Move(1.0));
     }
 
@@ -283,7 +303,7 @@ mod tests {
         for _ in 0..2 {
             let next = orders.want(E1, robot.joint(E1).position).position();
             robot.joints[E1.index()].position = next;
-            orders.end_tick(&robot);
+            orders.end_tick(&positions(&robot));
         }
         assert_eq!(robot.joint(E1).position, 1.02);
         assert!(!orders.are_given());
@@ -308,7 +328,7 @@ mod tests {
             for (joint, want) in RobotJoint::of_arm(Arm::Right).into_iter().zip(wants) {
                 robot.joints[joint.index()].position = want.position();
             }
-            orders.end_tick(&robot);
+            orders.end_tick(&positions(&robot));
             ticks += 1;
         }
         assert!((60..=61).contains(&ticks), "{ticks}");

@@ -10,7 +10,9 @@ use tabletop_kinematics::{Model, ModelError};
 use tabletop_physics::BodySystems;
 
 use crate::{
-    advance, feel,
+    advance,
+    driven::Motors,
+    feel,
     figures::{Figures, show_figures},
     grips::{self, Grips},
     meeting::Meetings,
@@ -29,6 +31,16 @@ pub struct Description {
 }
 
 impl Description {
+    /// The robot of a model, read from this file.
+    ///
+    /// # Errors
+    ///
+    /// The model lacks joints or links that the robot's arms need; the error names them.
+    pub fn new(model: Model, path: Option<PathBuf>) -> Result<Self, ModelError> {
+        Skeleton::new(model.clone())?;
+        Ok(Self { model, path })
+    }
+
     /// The Baxter that comes with the program.
     ///
     /// # Errors
@@ -73,6 +85,7 @@ impl Plugin for BaxterPlugin {
             .init_resource::<Figures>()
             .init_resource::<Orders>()
             .init_resource::<Grips>()
+            .init_resource::<Motors>()
             .init_resource::<HeadCamera>();
         let world = app.world_mut();
         world.resource_mut::<Robot>().mode = self.mode;
@@ -80,6 +93,7 @@ impl Plugin for BaxterPlugin {
         rewound.add::<Robot>();
         rewound.add::<Orders>();
         rewound.add::<Grips>();
+        rewound.add::<Motors>();
         app.add_systems(Startup, (parts::spawn, publish).chain())
             .add_systems(
                 FixedUpdate,
@@ -92,7 +106,7 @@ impl Plugin for BaxterPlugin {
                         .chain()
                         .after(BodySystems)
                         .in_set(CommandSystems::Robot),
-                    (advance::advance, turn_camera)
+                    (advance::advance, grips::draw_jointed, turn_camera)
                         .chain()
                         .in_set(ActuateSystems::Robot),
                     feel::feel.in_set(SimSystems::Sense),

@@ -9,7 +9,7 @@ use bevy::{
 use bevy_rapier3d::rapier::prelude::SharedShape;
 use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, RobotJoint};
 use tabletop_kinematics::{
-    ArmChain, Frames, Geometry, JointId, JointValues, LinkId, Model, ModelError,
+    ArmChain, Frames, Geometry, JointId, JointValues, LinkId, Load, Model, ModelError,
 };
 use tabletop_physics::Convex;
 
@@ -76,6 +76,13 @@ pub(crate) struct Posture {
     values: JointValues,
     frames: Frames,
     openings: [f64; 2],
+}
+
+impl Posture {
+    /// Where the links are, in m.
+    pub const fn frames(&self) -> &Frames {
+        &self.frames
+    }
 }
 
 impl Skeleton {
@@ -218,6 +225,25 @@ impl Skeleton {
     pub fn end_effector(&self, arm: Arm, posture: &Posture, base: Pose) -> Pose {
         let (link, offset) = self.end_effectors[arm as usize];
         base * in_units(posture.frames[link] * offset)
+    }
+
+    /// What the joints of an arm turn about: a point and a unit vector, in m in the torso's frame.
+    pub fn axes(&self, arm: Arm, posture: &Posture) -> [(DVec3, DVec3); JOINTS_PER_ARM] {
+        self.chains[arm as usize].joints().map(|joint| {
+            let joint = self.model.joint(joint);
+            let frame = posture.frames[joint.child];
+            (frame.translation, frame.transform_vector3(joint.axis))
+        })
+    }
+
+    /// Something that an end effector carries, at this pose in its frame, in units, with this mass in kg.
+    pub fn load(&self, arm: Arm, pose: Pose, mass: f64) -> Load {
+        let (link, offset) = self.end_effectors[arm as usize];
+        Load {
+            link,
+            point: offset.transform_point3(pose.location.as_dvec3() / UNITS_PER_METER),
+            mass,
+        }
     }
 
     /// Where the origins of the joints S1, E1 and W1 of an arm are.

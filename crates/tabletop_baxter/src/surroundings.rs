@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use bevy::prelude::*;
 use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*, rapier::prelude as rapier};
-use tabletop_core::{Pose, Table};
+use tabletop_core::Pose;
 use tabletop_physics::{Convex, convex_parts};
 
 use crate::{
@@ -41,12 +41,11 @@ pub(crate) struct Surroundings {
 }
 
 impl Surroundings {
-    /// Looks at what is in this box. A hidden robot meets nothing but the table.
+    /// Looks at what is in this box. A hidden robot meets nothing.
     pub fn new(
         rapier: &RapierContextMut,
         near: &Aabb,
         is_robot: &Query<(), With<RobotBody>>,
-        is_table: &Query<(), With<Table>>,
         held: &BTreeSet<Entity>,
         is_shown: bool,
     ) -> Self {
@@ -54,14 +53,16 @@ impl Surroundings {
             immovable: Vec::new(),
             free: Vec::new(),
         };
+        if !is_shown {
+            return surroundings;
+        }
         for (_, collider) in rapier.colliders.colliders.iter() {
             let bounds = collider.compute_aabb();
             let Some((object, body)) = body_of(rapier, collider) else {
                 continue;
             };
             let is_mine = is_robot.contains(object) || held.contains(&object);
-            let is_met = is_shown || is_table.contains(object);
-            if !are_near(&bounds, near) || is_mine || !is_met || !body.is_enabled() {
+            if !are_near(&bounds, near) || is_mine || !body.is_enabled() {
                 continue;
             }
             let at = collider.position();

@@ -7,7 +7,8 @@ use bevy::prelude::*;
 use kit::{Stage, block};
 use tabletop_baxter::STEEPEST_GRIP;
 use tabletop_core::{
-    Arm, Drive, Part, Pose, Rgb, Robot, RobotJoint, Shape, SimCommand, SimFact, StepApp,
+    Arm, Drive, LidBoxSpec, ObjectIndex, Part, Pose, Rgb, Robot, RobotJoint, SceneItem, SceneSpec,
+    Shape, SimCommand, SimFact, StepApp,
 };
 
 const ARM: Arm = Arm::Right;
@@ -191,4 +192,44 @@ fn a_held_object_stays_when_the_table_is_cleared() {
     assert_eq!(stage.robot().arm(ARM).holds.len(), 1);
     let robot = stage.app.world().resource::<Robot>().clone();
     assert_eq!(robot.arm(ARM).touches[0], robot.arm(ARM).holds);
+}
+
+#[test]
+fn a_lid_is_pulled_open_by_its_handle() {
+    let mut stage = Stage::new();
+    let chest = LidBoxSpec {
+        id: "chest".into(),
+        pose: Pose::at(Vec3::new(3.5, -2.0, 0.75)),
+        span: Vec3::new(3.0, 2.0, 1.5),
+        thickness: 0.2,
+        box_mass: 20.0,
+        lid_mass: 0.3,
+        color: Rgb::GRAY,
+        handle_span: Vec3::new(0.8, 0.6, 0.6),
+        handle_thickness: 0.1,
+        handle_color: Rgb::GRAY,
+        descriptions: Vec::new(),
+    };
+    let scene = SceneSpec {
+        items: vec![SceneItem::LidBox(chest)],
+        ..default()
+    };
+    stage.tell(SimCommand::SetScene(Box::new(scene)));
+    stage.app.step(60);
+    let ids: Vec<String> = {
+        let index = stage.app.world().resource::<ObjectIndex>();
+        index.ids().map(str::to_owned).collect()
+    };
+    let lid = ids.iter().find(|id| id.contains("lid")).unwrap().clone();
+    let before = stage.place(&lid).location;
+    stage.reach(ARM, Vec3::new(before.x, -2.0, 3.6), 0.0);
+    stage.reach(ARM, Vec3::new(before.x, -2.0, 2.65), 0.0);
+    let facts = grip_facts(close(&mut stage));
+    assert!(matches!(&facts[..], [SimFact::GripMade { id, .. }] if *id == lid), "{facts:?}");
+    stage.reach(ARM, Vec3::new(before.x - 1.0, -2.0, 2.65), 0.0);
+    stage.app.step(30);
+    let pulled = before.x - stage.place(&lid).location.x;
+    assert!((0.9..1.1).contains(&pulled), "{pulled}");
+    let rose = stage.place(&lid).location.z - before.z;
+    assert!(rose.abs() < 0.1, "{rose}");
 }

@@ -129,7 +129,11 @@ fn arms() -> Vec<DrawnFigure> {
     let links = [-1.0, 1.0].into_iter().flat_map(|side: f32| {
         (0..12u16).map(move |link| {
             let along = f32::from(link) / 12.0;
-            let location = Vec3::new(side * (5.0 - 3.0 * along), -7.0 + 6.0 * along, 5.0 - 3.0 * along);
+            let location = Vec3::new(
+                side * (5.0 - 3.0 * along),
+                -7.0 + 6.0 * along,
+                5.0 - 3.0 * along,
+            );
             Pose::new(location, Quat::from_rotation_y(side * f32::from(link)))
         })
     });
@@ -165,7 +169,8 @@ fn drum() -> Triangles {
     for (ring, normal) in [(0, Vec3::NEG_Z), (4, Vec3::Z)] {
         let first = drum.positions.len() as u32;
         for corner in 0..CORNERS {
-            drum.positions.push(drum.positions[(ring * CORNERS + corner) as usize]);
+            drum.positions
+                .push(drum.positions[(ring * CORNERS + corner) as usize]);
             drum.normals.push(normal);
         }
         drum.indices.extend((2..CORNERS).map(|i| match ring {

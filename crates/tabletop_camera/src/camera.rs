@@ -227,7 +227,7 @@ impl Linear {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OnRow<T> {
     first: T,
-    step: T,
+    pub step: T,
 }
 
 impl<T: Copy + Add<Output = T> + Mul<f32, Output = T>> OnRow<T> {

@@ -38,15 +38,14 @@ pub(crate) const CUBOID_NORMALS: [Vec3; 6] = [
     Vec3::Z,
 ];
 
-/// A face of N corners as it is seen.
+/// A face as it is seen.
 #[derive(Clone, Debug)]
-pub(crate) struct Face<const N: usize> {
+pub(crate) struct Face {
     /// The rows in which it may be seen.
     pub rows: Range<u32>,
     surface: u32,
     nearness: Linear,
-    edges: [Edge; N],
-    near_plane: Edge,
+    edges: [Edge; 5],
 }
 
 /// Where the samples of a row have to be to lie on the inner side of an edge. For the two faces that share an edge these
@@ -61,12 +60,12 @@ enum Edge {
     Level { first: f32, down: f32 },
 }
 
-impl<const N: usize> Face<N> {
+impl Face {
     /// The face with these corners, given relative to the eye and counter-clockwise as seen from outside, and with this
     /// normal of unit length; none if it is not seen from outside.
     pub fn seen(
         view: &View,
-        corners: [Vec3; N],
+        corners: [Vec3; 4],
         normal: Vec3,
         rows: Range<u32>,
         surface: u32,
@@ -81,16 +80,19 @@ impl<const N: usize> Face<N> {
             right: -nearness.right,
             down: -nearness.down,
         };
-        let edge = |i: usize| {
-            let (from, to) = (corners[i], corners[(i + 1) % N]);
-            Edge::from(view.rays.dot(to.cross(from)))
-        };
+        let [a, b, c, d] = corners;
+        let edge = |from: Vec3, to: Vec3| Edge::from(view.rays.dot(to.cross(from)));
         Some(Self {
             rows,
             surface,
             nearness,
-            edges: std::array::from_fn(edge),
-            near_plane: Edge::from(behind_near_plane),
+            edges: [
+                edge(a, b),
+                edge(b, c),
+                edge(c, d),
+                edge(d, a),
+                Edge::from(behind_near_plane),
+            ],
         })
     }
 
@@ -105,7 +107,7 @@ impl<const N: usize> Face<N> {
     /// The samples of a row that lie inside all edges.
     fn columns(&self, y: f32, x_offset: f32, width: usize) -> Range<usize> {
         let (mut start, mut end) = (0, width);
-        for edge in self.edges.iter().chain([&self.near_plane]) {
+        for edge in &self.edges {
             match *edge {
                 Edge::From { slope, offset } => {
                     start = start.max(first_column(slope * y + offset - x_offset, width));
@@ -126,7 +128,7 @@ impl<const N: usize> Face<N> {
 }
 
 /// The first column that is not left of x.
-fn first_column(x: f32, width: usize) -> usize {
+pub(crate) fn first_column(x: f32, width: usize) -> usize {
     let x = x.clamp(0.0, width as f32);
     let column = x as u32;
     (column + u32::from(x > column as f32)) as usize

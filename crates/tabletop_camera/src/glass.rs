@@ -33,9 +33,13 @@ impl Glass {
     /// Forgets everything and looks at balls around these points.
     pub fn look_at(&mut self, markers: &[Vec3], view: &View) {
         self.balls.clear();
+        self.balls.extend(
+            markers
+                .iter()
+                .filter_map(|&center| Ball::seen(center, view)),
+        );
         self.balls
-            .extend(markers.iter().filter_map(|&center| Ball::seen(center, view)));
-        self.balls.sort_by(|one, other| other.distance.total_cmp(&one.distance));
+            .sort_by(|one, other| other.distance.total_cmp(&one.distance));
     }
 
     /// Blends the balls into a row of a picture: where they are nearer than all else in these samples.
@@ -52,7 +56,10 @@ impl Glass {
             sums,
         } = self;
         let first = row as usize * view.width as usize;
-        for ball in balls.iter().filter(|ball| ball.round.window.rows.contains(&row)) {
+        for ball in balls
+            .iter()
+            .filter(|ball| ball.round.window.rows.contains(&row))
+        {
             let columns = &ball.round.window.columns;
             sums.clear();
             sums.resize(columns.len(), Vec4::ZERO);

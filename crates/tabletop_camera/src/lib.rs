@@ -3,7 +3,7 @@
 //! Everything is worked out on one thread of the processor from IEEE arithmetic, so the same scene gives the same bytes on
 //! every run. Objects are no meshes: faces are found row by row from the planes through the eye and their edges, cylinders
 //! and balls by meeting each ray with the exact surface, and only what is seen in the end is lit. (The rasteriser crate `euc`
-//! 0.5 draws the same blocks at a seventh of the speed.) Figures are faces of three corners, lit at their corners.
+//! 0.5 draws the same blocks at a seventh of the speed.) Figures are triangles, lit at their corners.
 //! [`Painter`] draws any [`Scene`] for any [`Camera`]; it knows no ECS:
 //!
 //! ```
@@ -55,6 +55,7 @@ mod scene;
 mod seen;
 mod sense;
 mod surface;
+mod triangle;
 
 pub use camera::Camera;
 pub use facets::Facets;

@@ -19,7 +19,7 @@ pub struct Painter {
     seen: Seen,
     glass: Glass,
     in_row: InRow,
-    centers: SampleRow,
+    centers: [SampleRow; 1],
     smooth: [SampleRow; 4],
 }
 
@@ -49,8 +49,11 @@ impl Painter {
             centers,
             ..
         } = self;
-        centers.clear(view.width);
-        seen.sample(in_row, row, Offset::CENTER, centers);
+        let offset = Offset::CENTER;
+        centers[0].clear(view.width);
+        seen.sample(in_row, row, offset, &mut centers[0]);
+        seen.sample_figures(in_row, row, [offset], centers);
+        let [centers] = centers;
         let mut start = row as usize * view.width as usize;
         let row_of_depths = &mut picture.depth[start..start + view.width as usize];
         for (depth, nearness) in row_of_depths.iter_mut().zip(&centers.nearness) {
@@ -77,10 +80,12 @@ impl Painter {
             samples.clear(view.width);
             self.seen.sample(&self.in_row, row, offset, samples);
         }
+        self.seen
+            .sample_figures(&self.in_row, row, Offset::SMOOTH, &mut self.smooth);
         let first = row as usize * view.width as usize;
         let pixels = picture.rgb[3 * first..].chunks_exact_mut(3);
         let [a, b, c, d] = self.smooth.each_ref().map(|samples| samples.surface.iter());
-        let surfaces = a.zip(b).zip(c.zip(d)).zip(&self.centers.surface);
+        let surfaces = a.zip(b).zip(c.zip(d)).zip(&self.centers[0].surface);
         for (column, (pixel, (((a, b), (c, d)), center))) in pixels.zip(surfaces).enumerate() {
             let is_one_surface = (a ^ center) | (b ^ center) | (c ^ center) | (d ^ center) == 0;
             if !is_one_surface && self.seen.is_edge_between([*center, *a, *b, *c, *d]) {
@@ -97,7 +102,7 @@ impl Painter {
             let samples = [(o, a), (p, b), (q, c), (r, d)];
             self.glass.blend(view, row, &samples, picture);
         } else {
-            let samples = [(Offset::CENTER, &self.centers)];
+            let samples = [(Offset::CENTER, &self.centers[0])];
             self.glass.blend(view, row, &samples, picture);
         }
     }

@@ -2,6 +2,10 @@
 
 use std::ops::Range;
 
+use bevy::math::Vec4;
+
+use crate::camera::OnRow;
+
 /// Nearest surface at each sample of a row.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SampleRow {
@@ -48,6 +52,38 @@ impl SampleRow {
         self.nearness.resize(width, 0.0);
         self.surface.clear();
         self.surface.resize(width, 0);
+    }
+
+    /// Puts a surface into those samples of these few columns that see nothing nearer.
+    #[inline]
+    pub fn put_some(&mut self, columns: Range<usize>, nearness: OnRow<f32>, surface: u32) {
+        const LANES: Vec4 = Vec4::new(0.0, 1.0, 2.0, 3.0);
+        let Some(last) = self.nearness.len().checked_sub(4) else {
+            self.put(columns, |x| (nearness.at(x), surface));
+            return;
+        };
+        let ends = [columns.start, columns.end].map(|end| Vec4::splat(end as i32 as f32));
+        let [base, step] = [nearness.at(0.0), nearness.step].map(Vec4::splat);
+        let surface = Vec4::splat(f32::from_bits(surface));
+        for first in columns.step_by(4) {
+            // Four samples at once, among them some that are before or behind the columns. Their surfaces are bits only.
+            let first = first.min(last);
+            let (Some(seen_nearness), Some(seen_surface)) = (
+                self.nearness[first..].first_chunk_mut::<4>(),
+                self.surface[first..].first_chunk_mut::<4>(),
+            ) else {
+                return;
+            };
+            let x = Vec4::splat(first as i32 as f32) + LANES;
+            let own = base + step * x;
+            let seen = Vec4::from(*seen_nearness);
+            let is_seen = own.cmpgt(seen) & x.cmpge(ends[0]) & x.cmplt(ends[1]);
+            *seen_nearness = Vec4::select(is_seen, own, seen).to_array();
+            let seen = Vec4::from(seen_surface.map(f32::from_bits));
+            *seen_surface = Vec4::select(is_seen, surface, seen)
+                .to_array()
+                .map(f32::to_bits);
+        }
     }
 
     /// Puts surfaces into those samples of these columns that see nothing nearer. `seen_at` says for a column how near

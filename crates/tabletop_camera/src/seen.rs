@@ -7,13 +7,14 @@ use tabletop_core::{Pose, Solid};
 
 use crate::{
     camera::{Linear, View, Window},
-    face::{CUBOID, CUBOID_NORMALS, EDGE_ON, Face},
+    face::{CUBOID, CUBOID_NORMALS, EDGE_ON, Face, first_column},
     facets::Vertex,
     light::{LAMP, light},
     round::{Curve, Ends, Round},
     row::{Offset, SampleRow},
     scene::{DrawnFigure, DrawnSolid, Scene},
     surface::Surface,
+    triangle::Triangle,
 };
 
 /// The surfaces that face a camera, and what they bound.
@@ -21,14 +22,14 @@ use crate::{
 pub(crate) struct Seen {
     /// What the surfaces look like; the first stands for nothing.
     pub surfaces: Vec<Surface>,
-    faces: Vec<Face<4>>,
+    faces: Vec<Face>,
     rounds: Vec<Round>,
-    triangles: Vec<Face<3>>,
+    triangles: Vec<Triangle>,
     coming_up: ComingUp,
     /// So many patches there are.
     patches: u32,
-    /// The vertices of a figure.
-    corners: Vec<Corner>,
+    /// The vertices of a figure, as far as they have been looked at.
+    corners: Vec<Option<Corner>>,
 }
 
 /// What may be seen in a row, as indices.
@@ -122,7 +123,13 @@ impl Seen {
         let patches = [self.next_patch(), self.next_patch()];
         self.surfaces.extend([
             Surface::round(drawn, patches[0], curve),
-            Surface::flat(view, drawn, patches[1], center + to_eye * yspan / 2.0, to_eye),
+            Surface::flat(
+                view,
+                drawn,
+                patches[1],
+                center + to_eye * yspan / 2.0,
+                to_eye,
+            ),
         ]);
     }
 
@@ -138,31 +145,32 @@ impl Seen {
     fn add_figure(&mut self, drawn: &DrawnFigure, view: &View, window: &Window) {
         let facets = &*drawn.facets;
         let axes = Mat3::from_quat(drawn.pose.rotation);
-        let vertices = facets.vertices.iter();
+        let corner = |vertex| Corner::of(vertex, drawn.pose.location, &axes, view);
         self.corners.clear();
-        self.corners
-            .extend(vertices.map(|vertex| Corner::of(vertex, drawn.pose.location, &axes, view)));
+        self.corners.resize(facets.vertices.len(), None);
         let eye = drawn.pose.inverse() * view.eye;
         for facet in &facets.triangles {
             if facet.normal.dot(eye) - facet.height < EDGE_ON {
                 continue;
             }
-            let corners = facet.corners.map(|i| self.corners[i as usize]);
+            let corners = facet.corners.map(|i| {
+                let i = i as usize;
+                *self.corners[i].get_or_insert_with(|| corner(&facets.vertices[i]))
+            });
             let Some(rows) = rows_of(&corners, view, window) else {
                 continue;
             };
             let places = corners.map(|corner| corner.place);
             let normal = axes * facet.normal;
             let surface = self.surfaces.len() as u32;
-            if let Some(face) = Face::seen(view, places, normal, rows, surface) {
-                self.triangles.push(face);
-                self.surfaces.push(Surface::shaded(
-                    drawn.object,
-                    self.patches + facet.patch,
-                    facet.color,
-                    light_by_depth(view, &corners, normal),
-                ));
-            }
+            self.triangles
+                .push(Triangle::seen(view, places, normal, rows, surface));
+            self.surfaces.push(Surface::shaded(
+                drawn.object,
+                self.patches + facet.patch,
+                facet.color,
+                light_by_depth(view, &corners, normal),
+            ));
         }
         self.patches += facets.patches;
     }
@@ -200,8 +208,18 @@ impl Seen {
         for &round in &in_row.rounds {
             self.rounds[round].draw(row, offset, samples);
         }
+    }
+
+    /// Finds where figures are nearer than what was found at each of these samples of a row.
+    pub fn sample_figures<const N: usize>(
+        &self,
+        in_row: &InRow,
+        row: u32,
+        offsets: [Offset; N],
+        samples: &mut [SampleRow; N],
+    ) {
         for &triangle in &in_row.triangles {
-            self.triangles[triangle as usize].draw(row, offset, samples);
+            self.triangles[triangle as usize].draw(row, offsets, samples);
         }
     }
 
@@ -213,7 +231,7 @@ impl Seen {
 }
 
 impl ComingUp {
-    fn sort(&mut self, triangles: &[Face<3>], height: u32) {
+    fn sort(&mut self, triangles: &[Triangle], height: u32) {
         let Self { order, starts } = self;
         starts.clear();
         starts.resize(height as usize + 1, 0);
@@ -262,15 +280,15 @@ fn rows_of(corners: &[Corner; 3], view: &View, window: &Window) -> Option<Range<
     /// The outermost samples of a pixel, and a bit for rounding.
     const REACH: f32 = 0.375 + 0.01;
     let [Some(a), Some(b), Some(c)] = corners.map(|corner| corner.pixel) else {
-        return Some(window.rows.clone());
+        return (!window.rows.is_empty()).then(|| window.rows.clone());
     };
-    let first = (a.min(b).min(c) - REACH).ceil().max(Vec2::ZERO);
-    let last = (a.max(b).max(c) + REACH).floor();
-    let last = last.min(Vec2::new(view.width as f32, view.height as f32) - 1.0);
-    first
-        .cmple(last)
-        .all()
-        .then(|| first.y as u32..last.y as u32 + 1)
+    let (least, most) = (a.min(b).min(c) - REACH, a.max(b).max(c) + REACH);
+    let between = |least, most, count: u32| {
+        let [first, end] = [least, most].map(|x| first_column(x, count as usize) as u32);
+        (first < end).then_some(first..end)
+    };
+    between(least.x, most.x, view.width)?;
+    between(least.y, most.y, view.height)
 }
 
 /// The light on a triangle, divided by the depth: as it is at the corners, and linear in between.

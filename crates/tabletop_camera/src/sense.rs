@@ -63,9 +63,7 @@ pub(crate) fn note_figure(
 
 /// What is no figure any more is not drawn.
 pub(crate) fn forget_figure(remove: On<Remove, Figure>, mut commands: Commands) {
-    commands
-        .entity(remove.entity)
-        .try_remove::<FigureLooks>();
+    commands.entity(remove.entity).try_remove::<FigureLooks>();
 }
 
 /// Draws what the head camera sees at this moment, if a picture was asked for.
@@ -92,14 +90,18 @@ pub(crate) fn take_picture(
     let table = tables.iter().next();
     if let Some((entity, table)) = table {
         shown.push(entity);
-        scene.solids.push(DrawnSolid::of_table(table, shown.len() as u32));
+        scene
+            .solids
+            .push(DrawnSolid::of_table(table, shown.len() as u32));
     }
     for entity in index.iter() {
         if let Ok((place, looks)) = objects.get(entity) {
             shown.push(entity);
             let number = shown.len() as u32;
             let solids = looks.0.iter();
-            scene.solids.extend(solids.map(|solid| DrawnSolid::of(place.into(), solid, number)));
+            scene
+                .solids
+                .extend(solids.map(|solid| DrawnSolid::of(place.into(), solid, number)));
         }
     }
     let mut in_order: Vec<_> = figures.iter().collect();

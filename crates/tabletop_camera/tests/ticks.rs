@@ -3,8 +3,10 @@
 use std::time::Duration;
 
 use bevy::{prelude::*, time::TimeUpdateStrategy};
-use tabletop_camera::{Camera, CameraPlugin, DrawnSolid, Painter, Scene};
-use tabletop_core::{HeadCamera, Picture, PictureDemand, SensorImage, prelude::*};
+use tabletop_camera::{Camera, CameraPlugin, DrawnFigure, DrawnSolid, Facets, Painter, Scene};
+use tabletop_core::{
+    Figure, HeadCamera, Markers, Picture, PictureDemand, SensorImage, Triangles, prelude::*,
+};
 
 /// Every object moves this far along X in a tick.
 const STEP: f32 = 0.125;
@@ -84,13 +86,17 @@ fn pictures(app: &App) -> &[(u64, SensorImage)] {
 }
 
 fn expected(solids: &[DrawnSolid], table: &Table) -> Picture {
-    let camera = Camera::of_head(&HeadCamera::default(), table);
-    let mut picture = Picture::default();
     let scene = Scene {
         solids: solids.to_vec(),
         ..default()
     };
-    Painter::default().draw(&scene, &camera, &mut picture);
+    expected_of(&scene, table)
+}
+
+fn expected_of(scene: &Scene, table: &Table) -> Picture {
+    let camera = Camera::of_head(&HeadCamera::default(), table);
+    let mut picture = Picture::default();
+    Painter::default().draw(scene, &camera, &mut picture);
     picture
 }
 
@@ -232,4 +238,76 @@ fn a_demand_waits_for_the_end_of_a_pause() {
     app.insert_resource(Paused(false));
     app.step(1);
     assert_eq!(app.world().resource::<SensorImage>().picture.width, 200);
+}
+
+fn plate(size: f32) -> Triangles {
+    Triangles {
+        positions: vec![Vec3::ZERO, Vec3::X * size, Vec3::Y * size],
+        normals: vec![Vec3::Z; 3],
+        colors: vec![Rgb::new(0.0, 0.0, 1.0); 3],
+        indices: vec![[0, 1, 2]],
+    }
+}
+
+fn figure(size: f32) -> Figure {
+    Figure {
+        fine: Triangles::default().into(),
+        coarse: plate(size).into(),
+    }
+}
+
+#[test]
+fn figures_are_seen_where_their_global_transforms_are_in_the_order_of_their_creation() {
+    let mut app = app();
+    app.add_plugins(TransformPlugin).start();
+    let world = app.world_mut();
+    let table = world.spawn(Table::default()).id();
+    let turned = Transform::from_xyz(1.0, 0.0, 2.0).with_rotation(Quat::from_rotation_z(0.5));
+    let arm = world.spawn(turned).id();
+    let first = world
+        .spawn((
+            Transform::from_xyz(0.0, 1.0, 0.0),
+            ChildOf(arm),
+            figure(2.0),
+        ))
+        .id();
+    let second = world
+        .spawn((Transform::from_xyz(-4.0, 0.0, 1.0), figure(1.0)))
+        .id();
+    world
+        .resource_mut::<Markers>()
+        .0
+        .push(Vec3::new(3.0, 3.0, 1.0));
+    let drawn = |size: f32, place: Transform, object| DrawnFigure {
+        pose: (&place).into(),
+        facets: Facets::from(&plate(size)).into(),
+        object,
+    };
+    let place_of_first = turned * Transform::from_xyz(0.0, 1.0, 0.0);
+    let scene = |size| Scene {
+        solids: vec![DrawnSolid::of_table(&Table::default(), 1)],
+        figures: vec![
+            drawn(size, place_of_first, 2),
+            drawn(1.0, Transform::from_xyz(-4.0, 0.0, 1.0), 3),
+        ],
+        markers: vec![Vec3::new(3.0, 3.0, 1.0)],
+    };
+    app.update();
+    app.step(3);
+    let image = app.world().resource::<SensorImage>();
+    assert_eq!(image.shown, [table, first, second]);
+    assert!(image.picture == expected_of(&scene(2.0), &Table::default()));
+    assert!(image.picture.objects.contains(&3));
+
+    // A figure that changes keeps its place.
+    app.world_mut().entity_mut(first).insert(figure(3.0));
+    app.step(4);
+    let image = app.world().resource::<SensorImage>();
+    assert_eq!(image.shown, [table, first, second]);
+    assert!(image.picture == expected_of(&scene(3.0), &Table::default()));
+
+    app.world_mut().entity_mut(first).remove::<Figure>();
+    app.world_mut().despawn(second);
+    app.step(4);
+    assert_eq!(app.world().resource::<SensorImage>().shown, [table]);
 }

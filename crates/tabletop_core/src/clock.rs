@@ -9,11 +9,17 @@ use bevy::{
     prelude::*,
 };
 
+use crate::Standstill;
+
 /// Ticks per second of simulated time.
 pub const TICKS_PER_SECOND: u32 = 60;
 
 /// Length of a tick in seconds.
 pub const TICK_SECONDS: f32 = 1.0 / TICKS_PER_SECOND as f32;
+
+/// Everything of a tick. Does not run at a [`Standstill`].
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct TickSystems;
 
 /// The phases of a tick, in their order, all in the [`FixedUpdate`] schedule.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -34,6 +40,17 @@ pub enum SimSystems {
     Record,
     /// [`SimTick`] moves on.
     Advance,
+}
+
+/// Who gives commands for the tick that begins, in this order, before [`TickSystems`].
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum OrderSystems {
+    /// Scenarios.
+    Scenario,
+    /// What a user holds down: keys and buttons.
+    User,
+    /// Scripts.
+    Script,
 }
 
 /// Who carries out commands on what [`SimSystems::Ingest`] has brought, in this order. Runs while paused, too.
@@ -85,6 +102,17 @@ pub(crate) fn configure(app: &mut App) {
                 SimSystems::Record.run_if(Paused::is_running),
                 SimSystems::Advance.run_if(Paused::is_running),
             )
+                .chain()
+                .in_set(TickSystems),
+        )
+        .configure_sets(
+            FixedUpdate,
+            (
+                OrderSystems::Scenario,
+                OrderSystems::User,
+                OrderSystems::Script,
+                TickSystems.run_if(Standstill::is_over),
+            )
                 .chain(),
         )
         .configure_sets(
@@ -95,7 +123,8 @@ pub(crate) fn configure(app: &mut App) {
                 CommandSystems::Robot,
                 SimSystems::Actuate,
             )
-                .chain(),
+                .chain()
+                .in_set(TickSystems),
         )
         .configure_sets(
             FixedUpdate,

@@ -18,6 +18,7 @@
 //! assert_eq!(app.world().resource::<SimTick>().0, 60);
 //! ```
 
+mod agent;
 mod clock;
 mod color;
 mod figure;
@@ -36,7 +37,8 @@ mod shape;
 mod twist;
 mod user;
 
-pub use clock::{ActuateSystems, CommandSystems, Paused, SimSystems, SimTick, StepApp, TICK_SECONDS, TICKS_PER_SECOND};
+pub use agent::{Agent, AgentNews, AgentOrder, Standstill};
+pub use clock::{ActuateSystems, CommandSystems, OrderSystems, Paused, SimSystems, SimTick, StepApp, TICK_SECONDS, TICKS_PER_SECOND, TickSystems};
 pub use color::{ColorError, NAMED_COLORS, Rgb};
 pub use figure::{Figure, Triangles};
 pub use hand::{Hand, Hands, Held};
@@ -84,7 +86,11 @@ impl Plugin for CorePlugin {
     fn build(&self, app: &mut App) {
         app.add_message::<SimCommand>()
             .add_message::<SimFact>()
+            .add_message::<AgentOrder>()
+            .add_message::<AgentNews>()
             .add_message::<Orbit>()
+            .init_resource::<Agent>()
+            .init_resource::<Standstill>()
             .init_resource::<DragPlane>()
             .init_resource::<Hands>()
             .init_resource::<History>()
@@ -97,7 +103,8 @@ impl Plugin for CorePlugin {
                 FixedUpdate,
                 set_paused
                     .after(SimSystems::Load)
-                    .before(SimSystems::Ingest),
+                    .before(SimSystems::Ingest)
+                    .in_set(TickSystems),
             )
             .configure_sets(
                 RunFixedMainLoop,

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use bevy_rapier3d::{prelude::*, rapier::prelude as rapier};
 use tabletop_core::{Hand, Hands, Pose, TICK_SECONDS};
-use tabletop_physics::{Convex, convex_parts, nearest};
+use tabletop_physics::{Convex, convex_parts, drawn, nearest};
 
 use crate::{
     grasp::{Carry, CarryTarget},
@@ -18,9 +18,6 @@ const FASTEST_PUSH: f32 = 6.0;
 
 /// Depth, in units, to which a free object may be squeezed against something before the hand yields.
 const MOST_SQUEEZE: f32 = 0.002;
-
-/// Part of the way to its target that a jointed object is drawn in a tick.
-const DRAWN_PER_TICK: f32 = 0.25;
 
 /// Moves every held object towards its target for one tick, and keeps awake what is near it: Rapier lets things fall into
 /// sleeping ones for a tick.
@@ -103,16 +100,6 @@ fn advanced(here: Pose, target: Pose) -> Pose {
             .normalize()
     };
     Pose::new(location, rotation)
-}
-
-/// The velocity that draws a jointed object to its target.
-fn drawn(here: Pose, target: Pose) -> Velocity {
-    let per_second = DRAWN_PER_TICK / TICK_SECONDS;
-    let turn = (target.rotation * here.rotation.inverse()).to_scaled_axis();
-    Velocity {
-        linear: ((target.location - here.location) * per_second).clamp_length_max(FASTEST.0),
-        angular: (turn * per_second).clamp_length_max(FASTEST.1),
-    }
 }
 
 /// What is near the way of a carried object, as convex parts in the frame of the world.

@@ -2,7 +2,6 @@ function [names, values] = tabletop_hello(display)
 % TABLETOP_HELLO  Prepare the engine and say which one it is.
 if exist('OCTAVE_VERSION', 'builtin')
     engine = ['GNU Octave ' OCTAVE_VERSION];
-    pid = getpid();
     % Octave reads its own commands where a script would read answers.
     before = warning('off', 'Octave:shadowed-function');
     driver = fileparts(mfilename('fullpath'));
@@ -13,9 +12,8 @@ if exist('OCTAVE_VERSION', 'builtin')
     struct_levels_to_print(0);                     % sizes instead of pages of numbers, as in MATLAB
 else
     engine = ['MATLAB ' version];
-    pid = feature('getpid');
 end
 if ~display, set(0, 'DefaultFigureVisible', 'off'); end
-names = {'engine', 'pid'};
-values = {engine, pid};
+names = {'engine'};
+values = {engine};
 end

@@ -9,11 +9,14 @@ tabletop_global('sensor', struct());
 tabletop_global('motor', struct());
 tabletop_global('aux', request.aux);
 evalin('base', 'global sensor motor aux');
-if isfield(request.agent, 'init')
-    initFunc = str2func(request.agent.init);
-    callbackFunc = str2func(request.agent.callback);
-else
-    [initFunc, callbackFunc] = agentBehavior;
+while true
+    try
+        [initFunc, callbackFunc] = tabletop_pair(request.agent);
+        break
+    catch err
+        octave = exist('OCTAVE_VERSION', 'builtin');
+        if ~octave || ~tabletop_repair(err.message, folder), rethrow(err); end
+    end
 end
 assignin('base', 'initFunc', initFunc);
 assignin('base', 'callbackFunc', callbackFunc);
@@ -29,5 +32,14 @@ if isstruct(aux) && numel(aux) == 1
         if ~isfield(aux, given{k}), aux.(given{k}) = request.aux.(given{k}); end
     end
     tabletop_global('aux', aux);
+end
+end
+
+function [initFunc, callbackFunc] = tabletop_pair(agent)
+if isfield(agent, 'init')
+    initFunc = str2func(agent.init);
+    callbackFunc = str2func(agent.callback);
+else
+    [initFunc, callbackFunc] = agentBehavior;
 end
 end

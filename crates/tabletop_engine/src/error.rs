@@ -59,7 +59,7 @@ pub enum EngineError {
 impl EngineError {
     /// Whether the engine is gone, so that only a new one can go on.
     pub fn is_fatal(&self) -> bool {
-        !matches!(self, Self::Script(_) | Self::Misuse(_) | Self::Protocol(_))
+        !matches!(self, Self::Script(_) | Self::Misuse(_))
     }
 
     pub(crate) fn file(path: impl Into<PathBuf>, error: &io::Error) -> Self {

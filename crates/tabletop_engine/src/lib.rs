@@ -50,11 +50,14 @@ mod driver;
 mod engine;
 mod error;
 mod find;
+mod launch;
 mod motor;
+mod output;
 mod process;
 pub mod protocol;
 mod sensor;
 mod session;
+mod trigger;
 mod worker;
 
 pub use agent::{Aux, InitReply};

@@ -4,7 +4,7 @@ use std::{
     collections::hash_map::RandomState,
     env, fs,
     hash::{BuildHasher, Hasher},
-    io,
+    io::{self, Write as _},
     path::{Path, PathBuf},
 };
 
@@ -21,7 +21,7 @@ pub(crate) struct Session {
 
 impl Session {
     /// Makes the folder, with the driver's files in "driver".
-    pub(crate) fn new(driver: &[(&str, &str)]) -> Result<Self, EngineError> {
+    pub(crate) fn new(driver: &[(String, String)]) -> Result<Self, EngineError> {
         let mut result = Err(io::Error::from(io::ErrorKind::NotFound));
         let mut tried = env::temp_dir();
         for base in bases() {
@@ -37,20 +37,16 @@ impl Session {
         result.map_err(|error| EngineError::file(&tried, &error))?;
         let session = Self { folder: tried };
         for (name, text) in driver {
-            session.add(name, text)?;
+            let path = session.driver().join(name);
+            let parent = path.parent().unwrap_or(&session.folder);
+            fs::create_dir_all(parent)
+                .and_then(|()| fs::write(&path, text))
+                .map_err(|error| EngineError::file(&path, &error))?;
         }
         Ok(session)
     }
 
-    /// Writes a file of the driver.
-    pub(crate) fn add(&self, name: &str, text: &str) -> Result<(), EngineError> {
-        let path = self.driver().join(name);
-        let parent = path.parent().unwrap_or(&self.folder);
-        fs::create_dir_all(parent)
-            .and_then(|()| fs::write(&path, text))
-            .map_err(|error| EngineError::file(&path, &error))
-    }
-
+    /// The folder itself.
     pub(crate) fn folder(&self) -> &Path {
         &self.folder
     }
@@ -63,7 +59,15 @@ impl Session {
     /// Writes a request, for the engine to read when it is told to.
     pub(crate) fn write_request(&self, arrays: &Arrays) -> Result<(), EngineError> {
         let path = self.folder.join("request.bin");
-        fs::write(&path, arrays.encode()?).map_err(|error| EngineError::file(path, &error))
+        let bytes = arrays.encode()?;
+        // Written over: to give the memory back and take it anew costs more than all the rest.
+        let mut options = fs::OpenOptions::new();
+        let file = options.write(true).create(true).truncate(false).open(&path);
+        file.and_then(|mut file| {
+            file.write_all(&bytes)?;
+            file.set_len(bytes.len() as u64)
+        })
+        .map_err(|error| EngineError::file(path, &error))
     }
 
     /// Reads what the engine answered.
@@ -116,7 +120,7 @@ mod tests {
 
     #[test]
     fn the_folder_is_private_and_goes() {
-        let session = Session::new(&[("sub/a.m", "x = 1;")]).unwrap();
+        let session = Session::new(&[("sub/a.m".into(), "x = 1;".into())]).unwrap();
         let folder = session.folder().to_owned();
         assert_eq!(
             fs::read_to_string(folder.join("driver/sub/a.m")).unwrap(),

@@ -2,10 +2,9 @@
 
 use std::{
     collections::VecDeque,
-    fs::{self, File, OpenOptions},
-    io::{self, Read, Seek as _, SeekFrom, Write as _},
+    io,
     path::{Path, PathBuf, absolute},
-    process::{Command, ExitStatus},
+    process::ExitStatus,
     sync::mpsc::{Receiver, RecvTimeoutError, Sender},
     thread,
     time::{Duration, Instant},
@@ -13,16 +12,19 @@ use std::{
 
 use crate::{
     agent::{Aux, InitReply},
-    console::{Console, Piece, Splitter, Stream},
+    console::{Console, Stream},
     driver,
     engine::{EngineConfig, Reply, StepReply, Trigger},
     error::{EngineError, ScriptError},
     find::EngineKind,
+    launch::{command, quoted},
     motor::Motor,
+    output::read_output,
     process::{Killer, Process},
     protocol::{Array, Arrays},
     sensor::Sensor,
     session::Session,
+    trigger::{Op, TriggerFile},
 };
 
 /// How often an engine that polls is told that this program is alive, and one that waits is looked after.
@@ -49,26 +51,6 @@ pub(crate) enum Signal {
     Done(u32),
     /// One of the engine's outputs has ended.
     Closed,
-}
-
-/// What an engine is asked to do.
-#[derive(Clone, Copy)]
-enum Op {
-    End,
-    Hello,
-    Init,
-    Step,
-}
-
-impl Op {
-    fn name(self) -> &'static str {
-        match self {
-            Self::End => "end",
-            Self::Hello => "hello",
-            Self::Init => "init",
-            Self::Step => "step",
-        }
-    }
 }
 
 /// The engine's side of the program.
@@ -110,15 +92,7 @@ struct Running {
 impl Running {
     fn start(worker: Worker) -> Result<Self, EngineError> {
         let config = &worker.config;
-        let session = Session::new(match config.engine.kind {
-            EngineKind::Python => driver::PYTHON,
-            EngineKind::Matlab | EngineKind::Octave => driver::MATLAB,
-        })?;
-        if config.engine.kind == EngineKind::Octave {
-            for name in driver::UNDRAWN {
-                session.add(&format!("undrawn/{name}.m"), &driver::undrawn(name))?;
-            }
-        }
+        let session = Session::new(&driver::files(config.engine.kind))?;
         let trigger_file = match config.trigger {
             Trigger::Poll => Some(TriggerFile::create(session.folder())?),
             Trigger::Stdin => None,
@@ -236,8 +210,11 @@ impl Running {
 
     fn init(&mut self, aux: &Aux) -> Result<InitReply, EngineError> {
         let config = &self.worker.config;
-        let agent = config.working_dir.join(&config.agent);
-        let agent = absolute(&agent).map_err(|error| EngineError::file(&agent, &error))?;
+        let agent = self.agent();
+        if !agent.exists() {
+            let message = format!("there is no {}", agent.display());
+            return Err(EngineError::Script(ScriptError::new("", &message, "")));
+        }
         let folder = match config.engine.kind {
             EngineKind::Python => config.agent.parent().unwrap_or(Path::new(".")),
             EngineKind::Matlab | EngineKind::Octave => &config.agent,
@@ -279,9 +256,22 @@ impl Running {
         if reply.get("error.message").is_none() {
             return Ok(reply);
         }
-        let text = |name| reply.get(name).and_then(Array::as_text).unwrap_or_default();
-        let error = ScriptError::new(text("error.id"), text("error.message"), text("error.stack"));
-        Err(EngineError::Script(error))
+        // Octave may run repaired copies of scripts; the user knows the originals.
+        let copies = self.session.folder().join("repaired");
+        let originals = self.agent();
+        let text = |name| {
+            let text = reply.get(name).and_then(Array::as_text).unwrap_or_default();
+            text.replace(&*copies.to_string_lossy(), &originals.to_string_lossy())
+        };
+        let [id, message, stack] = ["error.id", "error.message", "error.stack"].map(text);
+        Err(EngineError::Script(ScriptError::new(&id, &message, &stack)))
+    }
+
+    /// Where the scripts are.
+    fn agent(&self) -> PathBuf {
+        let config = &self.worker.config;
+        let agent = config.working_dir.join(&config.agent);
+        absolute(&agent).unwrap_or(agent)
     }
 
     fn trigger(&mut self, op: Op) -> Result<(), EngineError> {
@@ -397,161 +387,5 @@ impl Running {
         }
         self.process.close_input();
         self.process.wait(GRACE);
-    }
-}
-
-/// The command that starts an engine.
-fn command(config: &EngineConfig, session: &Session) -> Result<Command, String> {
-    let mut command = Command::new(&config.engine.program);
-    command.current_dir(&config.working_dir);
-    let poll = || {
-        format!(
-            "addpath({}); tabletop_poll({}); exit",
-            quoted(&session.driver()),
-            quoted(session.folder())
-        )
-    };
-    match (config.engine.kind, config.trigger) {
-        (EngineKind::Octave, trigger) => {
-            command.args(["-q", "--no-history"]);
-            if config
-                .engine
-                .program
-                .file_stem()
-                .is_some_and(|name| name == "octave")
-            {
-                command.arg("--no-gui");
-            }
-            if trigger == Trigger::Poll {
-                command.args(["--eval", &poll()]);
-            }
-        }
-        (EngineKind::Matlab, Trigger::Poll) => {
-            let window = if cfg!(windows) { "-wait" } else { "-nodesktop" };
-            command.args(["-nosplash", window, "-r", &poll()]);
-        }
-        (EngineKind::Python, Trigger::Stdin) => {
-            command.args([
-                "-u".as_ref(),
-                session.driver().join("tabletop.py").as_os_str(),
-            ]);
-            command.arg(session.folder());
-        }
-        (EngineKind::Matlab, Trigger::Stdin) => {
-            return Err("MATLAB cannot be driven by its standard input".into());
-        }
-        (EngineKind::Python, Trigger::Poll) => return Err("Python does not poll".into()),
-    }
-    Ok(command)
-}
-
-/// A folder as a Matlab text, with a separator at its end.
-fn quoted(folder: &Path) -> String {
-    let mut folder = folder.to_string_lossy().replace('\'', "''");
-    folder.push(std::path::MAIN_SEPARATOR);
-    format!("'{folder}'")
-}
-
-/// Reads what an engine prints until it ends.
-fn read_output(mut output: impl Read, stream: Stream, console: &Console, inbox: &Sender<Signal>) {
-    let mut splitter = Splitter::default();
-    let mut each = |piece: Piece| match piece {
-        Piece::Text(text) => console.push(stream, text),
-        Piece::Mark(mark) => {
-            let seq = str::from_utf8(mark)
-                .ok()
-                .and_then(|mark| mark.strip_prefix("done "));
-            if let Some(seq) = seq.and_then(|seq| seq.trim().parse().ok()) {
-                drop(inbox.send(Signal::Done(seq)));
-            }
-        }
-    };
-    let mut buffer = [0; 16 << 10];
-    while let Ok(count) = output.read(&mut buffer)
-        && count > 0
-    {
-        splitter.feed(buffer.get(..count).unwrap_or_default(), &mut each);
-    }
-    splitter.finish(each);
-    drop(inbox.send(Signal::Closed));
-}
-
-/// The files by which an engine that polls and this program tell each other what is to do and what is done.
-struct TriggerFile {
-    path: PathBuf,
-    trigger: File,
-    done: File,
-    words: [u32; 4],
-}
-
-impl TriggerFile {
-    fn create(folder: &Path) -> Result<Self, EngineError> {
-        let path = folder.join("trigger.bin");
-        let fault = |error| EngineError::file(&path, &error);
-        let done = folder.join("done.bin");
-        fs::write(&done, [0; 8]).map_err(fault)?;
-        let done = File::open(done).map_err(fault)?;
-        let mut options = OpenOptions::new();
-        let trigger = options
-            .write(true)
-            .create(true)
-            .truncate(true)
-            .open(&path)
-            .map_err(fault)?;
-        Ok(Self {
-            trigger,
-            done,
-            words: [0; 4],
-            path,
-        })
-    }
-
-    fn request(&mut self, seq: u32, op: Op, draw: bool) -> Result<(), EngineError> {
-        let op = match op {
-            Op::End => 0,
-            Op::Hello => 1,
-            Op::Init => 2,
-            Op::Step => 3,
-        };
-        let [.., beat] = self.words;
-        self.words = [seq, op, u32::from(draw), beat.wrapping_add(1)];
-        self.write()
-    }
-
-    /// Says that this program is alive.
-    fn beat(&mut self) {
-        let [.., beat] = &mut self.words;
-        *beat = beat.wrapping_add(1);
-        // The next request tells whether the file is there.
-        drop(self.write());
-    }
-
-    /// Writes the file in place. A reader that sees half of it sees that the sum is wrong.
-    fn write(&mut self) -> Result<(), EngineError> {
-        let sum = self
-            .words
-            .iter()
-            .fold(0u32, |sum, word| sum.wrapping_add(*word));
-        let bytes: Vec<_> = self
-            .words
-            .iter()
-            .chain([&sum])
-            .flat_map(|word| word.to_le_bytes())
-            .collect();
-        self.trigger
-            .seek(SeekFrom::Start(0))
-            .and_then(|_| self.trigger.write_all(&bytes))
-            .map_err(|error| EngineError::file(&self.path, &error))
-    }
-
-    /// Whether the engine has done a request.
-    fn is_done(&mut self, seq: u32) -> bool {
-        let mut words = [0; 8];
-        let read = self
-            .done
-            .seek(SeekFrom::Start(0))
-            .and_then(|_| self.done.read_exact(&mut words));
-        let [a, b, c, d, e, f, g, h] = words;
-        read.is_ok() && [[a, b, c, d], [e, f, g, h]].map(u32::from_le_bytes) == [seq, seq]
     }
 }

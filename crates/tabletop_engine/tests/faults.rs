@@ -260,6 +260,10 @@ fn a_misused_motor_is_told() {
             "motor.headVelocity = Inf;",
             "motor.headVelocity(1,1) is Inf; it must be a finite number",
         ),
+        (
+            "motor.jointAngles = zeros(9000);",
+            "motor.jointAngles is 9000x9000 double; it must be 2x7 double",
+        ),
         ("motor = 3;", "motor is 1x1 double; it must be a struct"),
         (
             "motor(2).jointVelocities = 3;",
@@ -515,4 +519,19 @@ fn an_engine_that_cannot_start_says_why() {
     config.engine.program = "/bin/false".into();
     let error = Session::start(config).err().unwrap();
     assert!(matches!(error, EngineError::Died { .. }), "{error}");
+}
+
+#[test]
+#[cfg(unix)]
+fn an_engine_that_answers_nonsense_is_told() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let script = "#!/bin/sh\nread -r first\nread -r call\nfolder=$(echo \"$call\" | cut -d \"'\" -f 4)\n\
+                  printf 'TTA1\\1\\0\\0\\0\\377\\377\\377\\377' > \"$folder/reply.bin\"\nprintf '\\001done 1\\n'\nsleep 1000\n";
+    let folder = Folder::new(&[("octave-cli", script)]);
+    let program = folder.0.join("octave-cli");
+    fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
+    let mut config = octave(&folder.0, Trigger::Stdin);
+    config.engine.program = program;
+    let error = Session::start(config).err().unwrap();
+    assert!(matches!(error, EngineError::Protocol(_)), "{error}");
 }

@@ -1,7 +1,5 @@
 //! An engine's life: start, init, callbacks, end.
 
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
-
 mod common;
 
 use common::{Folder, Session, TRIGGERS};
@@ -64,4 +62,10 @@ fn pictures_and_all_else_arrive() {
         session.step(&sensor).unwrap().motor.head_velocity,
         Some(-1.0)
     );
+}
+
+#[test]
+fn a_handle_may_be_shared_between_threads() {
+    fn shareable<T: Clone + Send + Sync + 'static>() {}
+    shareable::<tabletop_engine::EngineHandle>();
 }

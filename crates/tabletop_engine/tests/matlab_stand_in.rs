@@ -1,8 +1,6 @@
 //! How MATLAB would be started: with a stand-in of that name, which runs the text after "-r" in Octave.
 
 #![cfg(unix)]
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
-
 mod common;
 
 use std::{fs, os::unix::fs::PermissionsExt as _};

@@ -97,10 +97,11 @@ fn with_the_last_handle_all_is_gone() {
 fn with_a_killed_program_all_is_gone() {
     for trigger in TRIGGERS {
         let folder = Folder::new(&[]);
+        let scripts = pair(&folder.0, true);
         // This test again, as a program that has an engine with a script that hangs.
         let mut program = Command::new(env::current_exe().unwrap())
             .args(["--exact", "a_program", "--ignored"])
-            .env(FOLDER, &folder.0)
+            .env(FOLDER, &scripts.0)
             .env(TRIGGER, format!("{trigger:?}"))
             .stdout(Stdio::null())
             .stderr(Stdio::null())
@@ -124,8 +125,7 @@ fn a_program() {
     } else {
         Trigger::Stdin
     };
-    let scripts = pair(&folder, true);
-    let session = Session::octave(&scripts.0, trigger);
+    let session = Session::octave(&folder, trigger);
     session.init().unwrap();
     session.step(&Sensor::default()).unwrap();
 }

@@ -142,6 +142,13 @@ fn files_are_read_and_written() {
 }
 
 #[test]
+fn a_script_may_be_left_by_break() {
+    for (tick, motor) in until_exit("leaves") {
+        assert_eq!((tick, motor.head_velocity), (3, Some(20.0)));
+    }
+}
+
+#[test]
 fn figures_do_no_harm_without_a_display() {
     for (tick, motor) in until_exit("drawing") {
         assert_eq!(tick, 2);

@@ -9,17 +9,20 @@ const PANEL_WIDTH: f32 = 320.0;
 /// A panel that the user can open and close.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Panel {
+    /// The robot's joints, and what is known of it.
+    Robot,
     /// Hands, rotations and recording.
     DemonstrationTools,
 }
 
 impl Panel {
     /// The panels, in the order of their buttons.
-    pub const ALL: [Self; 1] = [Self::DemonstrationTools];
+    pub const ALL: [Self; 2] = [Self::Robot, Self::DemonstrationTools];
 
     /// The text of its button.
     pub const fn label(self) -> &'static str {
         match self {
+            Self::Robot => "Robot",
             Self::DemonstrationTools => "Demo Tools",
         }
     }
@@ -27,7 +30,16 @@ impl Panel {
     /// The text of its title bar.
     pub const fn title(self) -> &'static str {
         match self {
+            Self::Robot => "Robot",
             Self::DemonstrationTools => "Demonstration Tools",
+        }
+    }
+
+    /// Where it appears first.
+    const fn place(self) -> egui::Pos2 {
+        match self {
+            Self::Robot => egui::pos2(8.0, 276.0),
+            Self::DemonstrationTools => egui::pos2(8.0, 8.0),
         }
     }
 
@@ -52,7 +64,7 @@ impl Panel {
             .resizable(false)
             .default_width(inner_width)
             .collapsible(false)
-            .default_pos(egui::pos2(8.0, 8.0))
+            .default_pos(self.place())
             .show(context, |ui| {
                 ui.set_width(inner_width);
                 content(ui);
@@ -86,12 +98,22 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(EguiPrimaryContextPass, show_bar);
 }
 
+fn id() -> egui::Id {
+    egui::Id::new("bar")
+}
+
+/// Upper edge of the bar, in points from the top of the window.
+pub(crate) fn top(context: &egui::Context) -> f32 {
+    let bar = context.memory(|memory| memory.area_rect(id()));
+    bar.map_or_else(|| context.viewport_rect().bottom(), |bar| bar.top())
+}
+
 fn show_bar(mut contexts: EguiContexts, mut panels: ResMut<Panels>) {
     let Ok(context) = contexts.ctx_mut() else {
         return;
     };
     let width = context.viewport_rect().width();
-    egui::Area::new(egui::Id::new("bar"))
+    egui::Area::new(id())
         .anchor(egui::Align2::LEFT_BOTTOM, egui::Vec2::ZERO)
         .show(context, |ui| {
             let frame = egui::Frame::side_top_panel(ui.style());

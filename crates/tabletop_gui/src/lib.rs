@@ -10,6 +10,15 @@
 //! | press anywhere else | lets it go |
 //! | `/`, Shift + `/` | turns the drag plane counter-clockwise, clockwise |
 //! | left Ctrl | shows the plane at right angles while held |
+//! | R | shows, hides the robot |
+//! | 1, 2 | shows, hides the head view; saves it as a file |
+//! | `\` | the robot's next face |
+//! | T Y U I O P `[` | joints W2, W1, W0, E1, E0, S1, S0 of the right arm |
+//! | G H J K L `;` `'` | the same joints of the left arm |
+//! | `]` | the head joint H0 |
+//! | Shift + any of these joints | the other way |
+//! | `=`, `-` | opens, closes the right gripper |
+//! | 0, 9 | opens, closes the left gripper |
 //!
 //! Panels are drawn over the picture of the [`UserCamera`].
 //!
@@ -24,8 +33,11 @@
 //! ```
 
 mod bar;
+mod clipboard;
 mod demo_tools;
 mod drag;
+mod head_view;
+mod jog;
 mod keys;
 mod mouse;
 mod notices;
@@ -33,7 +45,11 @@ mod pause;
 mod pick;
 mod plane;
 mod pointer;
+mod robot_keys;
+mod robot_news;
+mod robot_window;
 mod slider;
+mod snapshot;
 mod style;
 #[cfg(test)]
 mod test_world;
@@ -72,6 +88,14 @@ impl Plugin for GuiPlugin {
             bar::plugin,
             notices::plugin,
             pause::plugin,
+        ))
+        .add_plugins((
+            jog::plugin,
+            robot_keys::plugin,
+            robot_news::plugin,
+            robot_window::plugin,
+            head_view::plugin,
+            snapshot::plugin,
         ));
     }
 }

@@ -1,8 +1,10 @@
-//! What the user must know: the faults of task files, and what could not be done.
+//! What the user must know: the faults of task files, what could not be done, and what the robot has done.
 
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 use tabletop_core::SimFact;
+
+use crate::clipboard::Clipboard;
 
 /// Older notices are forgotten, so that a script that is refused a million times does not fill the memory.
 const MAX_NOTICES: usize = 200;
@@ -23,6 +25,12 @@ impl Notices {
         self.0.push(notice.to_owned());
     }
 
+    /// Adds a notice after all others, also if it was there already.
+    pub fn renew(&mut self, notice: &str) {
+        self.0.retain(|there| there != notice);
+        self.add(notice);
+    }
+
     /// The notices, oldest first.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &str> {
         self.0.iter().map(String::as_str)
@@ -33,6 +41,14 @@ impl Notices {
         self.0.is_empty()
     }
 
+    /// All of them, a line each.
+    pub fn text(&self) -> String {
+        self.0
+            .iter()
+            .flat_map(|notice| [notice.as_str(), "\n"])
+            .collect()
+    }
+
     /// Forgets them all.
     pub fn clear(&mut self) {
         self.0.clear();
@@ -41,7 +57,8 @@ impl Notices {
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Notices>()
-        .add_systems(Update, note_facts)
+        .init_resource::<Clipboard>()
+        .add_systems(Update, (note_facts, note_clipboard))
         .add_systems(EguiPrimaryContextPass, show_notices);
 }
 
@@ -57,7 +74,17 @@ fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
     }
 }
 
-fn show_notices(mut contexts: EguiContexts, mut notices: ResMut<Notices>) {
+fn note_clipboard(clipboard: Res<Clipboard>, mut notices: ResMut<Notices>) {
+    if let Some(problem) = clipboard.take_problem() {
+        notices.add(&problem);
+    }
+}
+
+fn show_notices(
+    mut contexts: EguiContexts,
+    mut notices: ResMut<Notices>,
+    clipboard: Res<Clipboard>,
+) {
     if notices.is_empty() {
         return;
     }
@@ -72,6 +99,9 @@ fn show_notices(mut contexts: EguiContexts, mut notices: ResMut<Notices>) {
         .default_height(160.0)
         .vscroll(true)
         .show(context, |ui| {
+            if ui.button("Copy").clicked() {
+                clipboard.copy(notices.text());
+            }
             for notice in notices.iter() {
                 ui.add(egui::Label::new(egui::RichText::new(notice).monospace()).selectable(true));
             }
@@ -125,5 +155,6 @@ mod tests {
         }
         assert_eq!(notices.iter().len(), MAX_NOTICES);
         assert_eq!(notices.iter().next(), Some("1"));
+        assert!(notices.text().starts_with("1\n2\n"));
     }
 }

@@ -120,7 +120,9 @@ mod tests {
             coarse: plate.into(),
         };
         let place = Transform::from_xyz(-3.0, -3.0, 5.0);
-        let link = world.spawn((figure, place, GlobalTransform::from(place))).id();
+        let link = world
+            .spawn((figure, place, GlobalTransform::from(place)))
+            .id();
         let above = Vec3::Z * 20.0;
         assert_eq!(picked(&mut world, above, Vec3::NEG_Z), None);
         assert_eq!(picked(&mut world, Vec3::Z * 4.0, Vec3::NEG_Z), Some(block));

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::ObjectSpec;
+use tabletop_core::{ObjectSpec, Pose, TICK_SECONDS};
 
 /// An object that was let go of in this tick.
 ///
@@ -13,6 +13,12 @@ pub struct JustReleased;
 
 /// How fast it sinks in that tick, in units/s.
 const SETTLING_SPEED: f32 = 1e-3;
+
+/// Part of the way to its target that a jointed object is drawn in a tick.
+const DRAWN_PER_TICK: f32 = 0.25;
+
+/// Fastest that it is drawn, in units/s, and turned, in rad/s.
+const FASTEST: (f32, f32) = (40.0, 10.0);
 
 /// Makes an object go exactly where its [`Transform`] says, whatever acts on it.
 pub fn hold(mut object: EntityWorldMut) {
@@ -43,5 +49,15 @@ pub fn let_fall(
     for (object, mut gravity) in &mut released {
         gravity.0 = 1.0;
         commands.entity(object).remove::<JustReleased>();
+    }
+}
+
+/// The velocity that draws a jointed object to its target.
+pub fn drawn(here: Pose, target: Pose) -> Velocity {
+    let per_second = DRAWN_PER_TICK / TICK_SECONDS;
+    let turn = (target.rotation * here.rotation.inverse()).to_scaled_axis();
+    Velocity {
+        linear: ((target.location - here.location) * per_second).clamp_length_max(FASTEST.0),
+        angular: (turn * per_second).clamp_length_max(FASTEST.1),
     }
 }

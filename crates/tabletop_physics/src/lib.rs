@@ -42,7 +42,7 @@ mod twist;
 
 pub use body::collider;
 pub use convex::{Convex, Nearest, convex_parts, nearest};
-pub use holding::{JustReleased, hold, let_fall, let_go};
+pub use holding::{JustReleased, drawn, hold, let_fall, let_go};
 pub use mass::mass_properties;
 pub use newcomers::BodySystems;
 pub use parking::{KeepRemoved, Parked, remove_object};

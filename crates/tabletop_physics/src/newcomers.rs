@@ -5,7 +5,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::plugin::systems::{init_colliders, init_joints, init_rigid_bodies};
-use tabletop_core::{Joint, ObjectSpec, SimSystems, Table};
+use tabletop_core::{Joint, ObjectSpec, SimSystems, Table, TickSystems};
 
 use crate::{body, joint};
 
@@ -26,6 +26,7 @@ pub(crate) fn plugin(app: &mut App) {
         .configure_sets(
             FixedUpdate,
             BodySystems
+                .in_set(TickSystems)
                 .after(SimSystems::Ingest)
                 .before(SimSystems::Actuate),
         )

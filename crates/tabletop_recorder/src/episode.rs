@@ -405,7 +405,10 @@ impl Episode {
             write_depth(picture, &channel("depth"))?;
         }
         if self.channels.ids {
-            let numbers = image.shown.iter().map(|&entity| self.number_of(what(entity)));
+            let numbers = image
+                .shown
+                .iter()
+                .map(|&entity| self.number_of(what(entity)));
             write_ids(picture, &numbers.collect::<Vec<_>>(), &channel("ids"))?;
         }
         Ok(())

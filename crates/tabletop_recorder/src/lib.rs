@@ -46,7 +46,9 @@ pub use error::RecorderError;
 pub use event::Event;
 pub use frame::{FRAMES_PER_SECOND, TICKS_PER_FRAME};
 pub use rehearsal::RehearsalPlugin;
-pub use session::{Session, SessionCommand, SessionHeader, SessionObject, SessionScene, SessionSettings};
+pub use session::{
+    Session, SessionCommand, SessionHeader, SessionObject, SessionScene, SessionSettings,
+};
 
 use std::path::PathBuf;
 

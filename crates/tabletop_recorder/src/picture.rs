@@ -17,7 +17,13 @@ pub(crate) fn write_png(picture: &Picture, path: &Path) -> Result<(), RecorderEr
         .iter()
         .flat_map(|&[red, green, blue]| [red, green, blue, u8::MAX])
         .collect();
-    write(picture, png::ColorType::Rgba, png::BitDepth::Eight, &rgba, path)
+    write(
+        picture,
+        png::ColorType::Rgba,
+        png::BitDepth::Eight,
+        &rgba,
+        path,
+    )
 }
 
 /// Writes how far away is what each pixel shows, in 16 bits: tenths of a millimetre along the axis of view, 0 where nothing
@@ -38,7 +44,10 @@ pub(crate) fn write_ids(
 ) -> Result<(), RecorderError> {
     let values = picture.objects.iter().map(|&object| {
         let place = (object as usize).checked_sub(1);
-        place.and_then(|place| numbers.get(place)).copied().unwrap_or(0)
+        place
+            .and_then(|place| numbers.get(place))
+            .copied()
+            .unwrap_or(0)
     });
     write_16_bits(picture, values, path)
 }
@@ -65,11 +74,10 @@ fn write(
     data: &[u8],
     path: &Path,
 ) -> Result<(), RecorderError> {
-    let bytes =
-        encode(picture, color, depth, data).map_err(|source| RecorderError::Picture {
-            path: path.to_owned(),
-            source,
-        })?;
+    let bytes = encode(picture, color, depth, data).map_err(|source| RecorderError::Picture {
+        path: path.to_owned(),
+        source,
+    })?;
     let part = path.with_extension("png.part");
     fs::write(&part, bytes)
         .and_then(|()| fs::rename(&part, path))
@@ -147,7 +155,10 @@ mod tests {
         assert_eq!(info.color_type, png::ColorType::Grayscale);
         let values = |pixels: &[u8]| -> Vec<u16> {
             let (values, _) = pixels.as_chunks();
-            values.iter().map(|&value| u16::from_be_bytes(value)).collect()
+            values
+                .iter()
+                .map(|&value| u16::from_be_bytes(value))
+                .collect()
         };
         assert_eq!(values(&pixels), [0, 1000, 12346, 65535]);
         let (_, pixels) = written("ids", |path| write_ids(&picture, &[1, 9], path));

@@ -54,8 +54,9 @@ impl Prelude {
     pub(crate) fn note(&mut self, tick: SimTick, commands: &[SimCommand], hands_are_empty: bool) {
         let (first, then) = in_order(commands);
         for command in first.iter().chain(&then) {
-            let empties_the_world =
-                hands_are_empty && !self.has_used_robot && matches!(command, SimCommand::SetScene(_));
+            let empties_the_world = hands_are_empty
+                && !self.has_used_robot
+                && matches!(command, SimCommand::SetScene(_));
             if empties_the_world {
                 self.begin_at(tick);
             }
@@ -133,7 +134,11 @@ mod tests {
     fn it_goes_back_to_the_last_scene_that_empties_the_world() {
         let mut prelude = Prelude::default();
         assert_eq!(prelude.begin(), Some(SimTick(0)));
-        prelude.note(SimTick(3), &[SimCommand::Release(Hand::Left), scene()], true);
+        prelude.note(
+            SimTick(3),
+            &[SimCommand::Release(Hand::Left), scene()],
+            true,
+        );
         assert_eq!(prelude.begin(), Some(SimTick(3)));
         let told_first = told(&prelude);
         assert!(told_first[0].contains("SetScene") && told_first[1].contains("Release"));

@@ -4,13 +4,16 @@ use std::path::PathBuf;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
-    Hand, Hands, HeadCamera, Joint, JointSpec, ObjectIndex, ObjectSpec, Paused, PictureDemand, Recording,
-    SensorImage, SimCommand, SimFact, SimTick, TICKS_PER_SECOND, Table, Twist,
+    Hand, Hands, HeadCamera, Joint, JointSpec, ObjectIndex, ObjectSpec, Paused, PictureDemand,
+    Recording, SensorImage, SimCommand, SimFact, SimTick, TICKS_PER_SECOND, Table, Twist,
 };
 
 use crate::{
-    Channels, RecorderError, SessionHeader, SessionObject, SessionScene, SessionSettings, TICKS_PER_FRAME,
-    episode::{Episode, Shown}, prelude::Prelude, session::FORMAT,
+    Channels, RecorderError, SessionHeader, SessionObject, SessionScene, SessionSettings,
+    TICKS_PER_FRAME,
+    episode::{Episode, Shown},
+    prelude::Prelude,
+    session::FORMAT,
     states::State,
 };
 
@@ -70,7 +73,15 @@ impl Recorder {
 #[derive(SystemParam)]
 pub(crate) struct Stage<'w, 's> {
     index: Res<'w, ObjectIndex>,
-    objects: Query<'w, 's, (&'static ObjectSpec, &'static Transform, Option<&'static Twist>)>,
+    objects: Query<
+        'w,
+        's,
+        (
+            &'static ObjectSpec,
+            &'static Transform,
+            Option<&'static Twist>,
+        ),
+    >,
     tables: Query<'w, 's, &'static Table>,
     joints: Query<'w, 's, &'static Joint>,
     camera: Option<Res<'w, HeadCamera>>,

@@ -200,7 +200,8 @@ mod tests {
         fs::write(&path, &log).unwrap();
         let session = Session::read(&path).unwrap();
         assert_eq!(session.header, header);
-        let ticks = |commands: &[SessionCommand]| commands.iter().map(|c| c.tick).collect::<Vec<_>>();
+        let ticks =
+            |commands: &[SessionCommand]| commands.iter().map(|c| c.tick).collect::<Vec<_>>();
         assert_eq!(ticks(&session.earlier), [2]);
         assert_eq!(ticks(&session.commands), [4]);
 

@@ -3,7 +3,9 @@
 use bevy::prelude::*;
 use tabletop_core::{Hand, SimCommand, TICKS_PER_SECOND};
 
-use crate::{ScenarioRun, Step, program::Action, seen::Seen};
+use crate::{
+    RobotStep, ScenarioRun, Step, program::Action, robot::TICKS_TO_STILL, seen::Seen,
+};
 
 /// What comes of a step in a tick.
 pub(crate) enum Progress {
@@ -58,6 +60,14 @@ impl ScenarioRun {
             Step::Redo => SimCommand::Redo,
             Step::Pause(pause) => SimCommand::SetPaused(*pause),
             Step::Glide { to, seconds } => return self.glide(*to, *seconds, hand, seen),
+            Step::Robot(RobotStep::WaitUntilStill(timeout)) => {
+                let moving = (self.robot_still < TICKS_TO_STILL).then_some("the robot");
+                return self.wait_while(moving, *timeout, "expected the robot to be still");
+            }
+            Step::Robot(step) => match step.command() {
+                Some(command) => command,
+                None => return Ok(Progress::Over),
+            },
             Step::Wait(seconds) => return Ok(self.wait(*seconds)),
             Step::WaitUntilRest(timeout) => {
                 let moving = self.stillness.moving(seen);

@@ -5,6 +5,7 @@ use serde::Deserialize;
 use tabletop_core::{Hand, quat_from_degrees};
 
 use crate::{
+    RobotCheck,
     bounds::Bounds,
     rest::Stillness,
     seen::{Seen, SeenObject},
@@ -80,6 +81,8 @@ pub enum Check {
     },
     /// No hand holds the object of this id.
     Free(String),
+    /// The robot is as this says.
+    Robot(RobotCheck),
 }
 
 const fn close() -> f32 {
@@ -125,6 +128,7 @@ impl Check {
             Self::Inside { object, of, within } => {
                 is_inside(seen.object(object)?, seen.object(of)?, *within)
             }
+            Self::Robot(check) => check.judge(seen),
             Self::AtRest(object) => {
                 let object = seen.object(object)?;
                 stillness.is_at_rest(object).then_some(()).ok_or_else(|| {

@@ -29,6 +29,7 @@ mod place;
 mod program;
 mod random;
 mod rest;
+mod robot;
 mod run;
 mod scenario;
 mod seen;
@@ -41,6 +42,7 @@ pub use check::Check;
 pub use error::ScenarioError;
 pub use place::Place;
 pub use program::Program;
+pub use robot::{RobotCheck, RobotStep};
 pub use run::{Outcome, ScenarioRun};
 pub use scenario::{LocatedStep, Scenario};
 pub use source::SourceLocation;
@@ -48,14 +50,14 @@ pub use step::{Axis, Step};
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Hands, ObjectIndex, ObjectSpec, Paused, Pose, SimCommand, SimFact, SimSystems, Table,
+    Hands, ObjectIndex, ObjectSpec, OrderSystems, Paused, Pose, Robot, SimCommand, SimFact, Table,
 };
 
 use crate::seen::{Seen, SeenObject};
 
 /// Runs the [`ScenarioRun`] that is in the world, if there is one. Needs [`CorePlugin`](tabletop_core::CorePlugin).
 ///
-/// A tick's command is written before [`SimSystems::Load`], from the state in which the tick before has left the world.
+/// A tick's command is written before [`SimSystems::Load`](tabletop_core::SimSystems::Load), from the state in which the tick before has left the world.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ScenarioPlugin;
 
@@ -64,7 +66,7 @@ impl Plugin for ScenarioPlugin {
         app.add_systems(
             FixedUpdate,
             take_due_steps
-                .before(SimSystems::Load)
+                .in_set(OrderSystems::Scenario)
                 .run_if(resource_exists::<ScenarioRun>),
         );
     }
@@ -79,6 +81,7 @@ fn take_due_steps(
     tables: Query<&Table>,
     hands: Res<Hands>,
     paused: Res<Paused>,
+    robot: Res<Robot>,
 ) {
     let refusals: Vec<&str> = facts
         .read()
@@ -101,6 +104,7 @@ fn take_due_steps(
         table: tables.iter().next().copied(),
         selected: hands.selected,
         paused: paused.0,
+        robot: robot.clone(),
     };
     commands.write_batch(run.tick(&seen, refusals.first().copied()));
 }

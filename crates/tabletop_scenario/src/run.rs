@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use tabletop_core::{SimCommand, TICKS_PER_SECOND};
 
 use crate::{
-    Program, ScenarioError, act::Progress, program::ProgramStep, rest::Stillness, seen::Seen,
+    Program, ScenarioError, act::Progress, program::ProgramStep, rest::Stillness, robot::is_still, seen::Seen,
 };
 
 /// A scenario on its way. [`ScenarioPlugin`](crate::ScenarioPlugin) runs the one that is in the world.
@@ -21,6 +21,8 @@ pub struct ScenarioRun {
     commanded: Option<usize>,
     ticks: u64,
     pub(crate) stillness: Stillness,
+    /// For how many ticks nothing of the robot has moved.
+    pub(crate) robot_still: u64,
     outcome: Outcome,
 }
 
@@ -47,6 +49,7 @@ impl ScenarioRun {
             commanded: None,
             ticks: 0,
             stillness: Stillness::default(),
+            robot_still: 0,
             outcome: Outcome::Running,
         }
     }
@@ -63,6 +66,10 @@ impl ScenarioRun {
             return None;
         }
         self.stillness.observe(seen);
+        self.robot_still = match is_still(&seen.robot) {
+            true => self.robot_still + 1,
+            false => 0,
+        };
         if let (Some(step), Some(reason)) = (self.commanded.take(), refusal) {
             return self.fail(step, format!("refused: {reason}"));
         }
@@ -99,6 +106,7 @@ impl ScenarioRun {
     }
 
     fn go_on(&mut self) {
+        self.robot_still = 0;
         self.next += 1;
         self.ticks_in_step = 0;
     }

@@ -1,7 +1,7 @@
 //! What a scenario sees of the world: its state at the end of the last tick.
 
 use bevy::prelude::*;
-use tabletop_core::{Hand, ObjectSpec, Pose, Table};
+use tabletop_core::{Hand, ObjectSpec, Pose, Robot, Table};
 
 /// The world as a scenario sees it.
 #[derive(Clone, Debug, Default)]
@@ -14,6 +14,8 @@ pub(crate) struct Seen<'a> {
     pub selected: Hand,
     /// Whether the simulation stands still.
     pub paused: bool,
+    /// The robot.
+    pub robot: Robot,
 }
 
 /// An object as a scenario sees it.

@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use serde::Deserialize;
 use tabletop_core::Hand;
 
-use crate::{Check, Place};
+use crate::{Check, Place, RobotStep};
 
 /// Longest time that a step may ask for, in seconds.
 const LONGEST: f32 = 24.0 * 3600.0;
@@ -72,6 +72,8 @@ pub enum Step {
     Redo,
     /// Stop the simulation, or let it run on. Waiting goes on while it stands still, but hands cannot act.
     Pause(bool),
+    /// Let the robot do something.
+    Robot(RobotStep),
     /// Fail if the world is not as this says.
     Expect(Check),
 }
@@ -115,6 +117,7 @@ impl Step {
             Self::Wait(seconds) | Self::WaitUntilRest(seconds) | Self::WaitUntilThere(seconds) => {
                 fault_of_time(*seconds)
             }
+            Self::Robot(step) => step.fault(),
             Self::Expect(check) => check.fault(),
             _ => None,
         }
@@ -140,7 +143,7 @@ pub(crate) fn fault_of_vector(vector: Vec3) -> Option<String> {
     (!vector.is_finite()).then(|| "expected three finite numbers".to_owned())
 }
 
-fn fault_of_time(seconds: f32) -> Option<String> {
+pub(crate) fn fault_of_time(seconds: f32) -> Option<String> {
     (!(0.0..=LONGEST).contains(&seconds))
         .then(|| format!("expected a time of 0 to {LONGEST} seconds, found {seconds}"))
 }

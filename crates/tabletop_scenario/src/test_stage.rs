@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use bevy::prelude::*;
-use tabletop_core::{Hand, ObjectSpec, Pose, Rgb, SceneSpec, Shape, SimCommand, Table};
+use tabletop_core::{Hand, ObjectSpec, Pose, Rgb, Robot, SceneSpec, Shape, SimCommand, Table};
 
 use crate::{
     Outcome, Program, Scenario, ScenarioRun,
@@ -18,6 +18,7 @@ pub struct Stage {
     pub holders: Vec<Option<Hand>>,
     pub selected: Hand,
     pub paused: bool,
+    pub robot: Robot,
 }
 
 impl Stage {
@@ -47,6 +48,7 @@ impl Stage {
             holders: vec![None, None],
             selected: Hand::Any,
             paused: false,
+            robot: Robot::default(),
         }
     }
 
@@ -67,6 +69,7 @@ impl Stage {
             table: Some(Table::default()),
             selected: self.selected,
             paused: self.paused,
+            robot: self.robot.clone(),
         };
         self.run.tick(&seen, refusal)
     }

@@ -54,14 +54,15 @@ pub(crate) fn note_parked(
     joints: Query<(Entity, &Joint)>,
     mut forget: Forget,
     mut commands: Commands,
-) -> Result {
+) {
     for (joint, connection) in &joints {
         if connection.objects.contains(&park.entity) {
             commands.entity(joint).insert(Disabled);
         }
     }
-    forget.object(objects.get(park.entity)?);
-    Ok(())
+    if let Ok(spec) = objects.get(park.entity) {
+        forget.object(spec);
+    }
 }
 
 /// What knows of an object that has gone.

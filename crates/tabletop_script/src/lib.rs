@@ -1,1 +1,58 @@
-//! The script bridge.
+//! The script bridge: a user's Matlab (or Octave, or Python) scripts sense and move the robot, a call a tick (report
+//! section 5.2).
+//!
+//! An [`AgentOrder`](tabletop_core::AgentOrder) starts and stops them; what they order becomes
+//! [`SimCommand`](tabletop_core::SimCommand)s, so a recording of what they do runs again without them. What becomes of them
+//! is told by [`AgentNews`](tabletop_core::AgentNews) and stands in [`Agent`](tabletop_core::Agent).
+//!
+//! The simulation waits for the script, as long as it takes; what is drawn does not. Without a window a run is the same every
+//! time.
+//!
+//! ```no_run
+//! use bevy::prelude::*;
+//! use tabletop_core::{prelude::*, AgentOrder};
+//! use tabletop_script::{ScriptPlugin, ScriptSettings};
+//!
+//! let mut app = App::new();
+//! app.add_plugins((MinimalPlugins, CorePlugin::default()))
+//!     .add_plugins(ScriptPlugin { settings: ScriptSettings::default() })
+//!     .start();
+//! app.world_mut().write_message(AgentOrder::Start); // runs the scripts that matlab/agentBehavior.m names
+//! app.step(600);
+//! ```
+
+mod act;
+mod agency;
+mod sense;
+mod settings;
+
+pub use settings::{ScriptSettings, Waiting};
+pub use tabletop_engine::{EngineChoice, Surroundings, Timeouts};
+
+use bevy::prelude::*;
+use tabletop_core::{HeadCamera, ObjectIndex, OrderSystems, PictureDemand, SensorImage};
+
+use agency::{Agency, call, drop_overstep, resume_time};
+
+/// Adds the script bridge. Needs [`CorePlugin`](tabletop_core::CorePlugin).
+#[derive(Clone, Debug, Default)]
+pub struct ScriptPlugin {
+    /// Which scripts run in which engine, and how; they stay as a resource.
+    pub settings: ScriptSettings,
+}
+
+impl Plugin for ScriptPlugin {
+    fn build(&self, app: &mut App) {
+        app.insert_resource(self.settings.clone())
+            .init_resource::<Agency>()
+            .init_resource::<HeadCamera>()
+            .init_resource::<ObjectIndex>()
+            .init_resource::<PictureDemand>()
+            .init_resource::<SensorImage>()
+            .add_systems(FixedUpdate, (call, drop_overstep).chain().in_set(OrderSystems::Script))
+            .add_systems(
+                RunFixedMainLoop,
+                resume_time.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+            );
+    }
+}

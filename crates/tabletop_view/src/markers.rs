@@ -75,7 +75,10 @@ mod tests {
             app.insert_resource(Markers(points.clone()));
             app.update();
             let mut balls = app.world_mut().query_filtered::<&Transform, With<Marker>>();
-            let shown: Vec<_> = balls.iter(app.world()).map(|ball| ball.translation).collect();
+            let shown: Vec<_> = balls
+                .iter(app.world())
+                .map(|ball| ball.translation)
+                .collect();
             assert_eq!(shown, points);
         }
     }

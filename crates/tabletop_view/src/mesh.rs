@@ -44,11 +44,14 @@ pub(crate) fn of_triangles(surface: &Triangles) -> Mesh {
     let colors: Vec<_> = colors
         .map(|&Rgb { red, green, blue }| [red, green, blue, 1.0])
         .collect();
-    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, surface.positions.clone())
-        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, surface.normals.clone())
-        .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
-        .with_inserted_indices(Indices::U32(surface.indices.concat()))
+    Mesh::new(
+        PrimitiveTopology::TriangleList,
+        RenderAssetUsages::default(),
+    )
+    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, surface.positions.clone())
+    .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, surface.normals.clone())
+    .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
+    .with_inserted_indices(Indices::U32(surface.indices.concat()))
 }
 
 /// No surface has a texture.

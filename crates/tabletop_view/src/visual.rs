@@ -67,7 +67,14 @@ fn note_moves(mut visuals: Query<(&Visual, &mut Motion)>, bodies: Query<&Transfo
 fn drop_pictures(
     mut commands: Commands,
     mut visuals: ResMut<Visuals>,
-    bodies: Query<(Option<Ref<ObjectSpec>>, Option<Ref<Table>>, Option<Ref<Figure>>), Drawable>,
+    bodies: Query<
+        (
+            Option<Ref<ObjectSpec>>,
+            Option<Ref<Table>>,
+            Option<Ref<Figure>>,
+        ),
+        Drawable,
+    >,
 ) {
     visuals.0.retain(|body, visual| {
         let is_drawn = bodies.get(*body).is_ok_and(|(object, table, figure)| {
@@ -90,7 +97,13 @@ fn make_pictures(
     mut surfaces: ResMut<Assets<Surface>>,
     mut meshes: ResMut<Assets<Mesh>>,
     bodies: Query<
-        (Entity, &Transform, Option<&ObjectSpec>, Option<&Table>, Option<&Figure>),
+        (
+            Entity,
+            &Transform,
+            Option<&ObjectSpec>,
+            Option<&Table>,
+            Option<&Figure>,
+        ),
         Drawable,
     >,
 ) {

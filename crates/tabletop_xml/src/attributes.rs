@@ -188,7 +188,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::{decode::decode, tree};
+    use crate::{build, decode::decode};
 
     fn read<T>(
         text: &str,
@@ -196,7 +196,7 @@ mod tests {
     ) -> (Option<T>, Vec<String>) {
         let decoded = decode(text.as_bytes());
         let mut faults = Faults::default();
-        let element = tree::read(&decoded, &mut faults).unwrap();
+        let element = build::read(&decoded, &mut faults).unwrap();
         let mut reader = AttributeReader::of(&element, &mut faults);
         let value = read(&mut reader);
         let value = reader.finish(Some(value));

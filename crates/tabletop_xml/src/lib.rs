@@ -23,12 +23,18 @@
 //! ```
 
 mod attributes;
+mod build;
+mod chain;
 mod decode;
 mod element;
 mod fault;
+mod hollow;
+mod lidbox;
+mod object;
 mod parse;
 mod plugin;
 mod position;
+mod prolog;
 mod suggestion;
 mod syntax;
 mod tree;

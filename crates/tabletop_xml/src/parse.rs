@@ -9,10 +9,10 @@ use std::{
 use tabletop_core::SceneSpec;
 
 use crate::{
+    build,
     decode::decode,
     element,
     fault::{Fault, Faults, Place},
-    tree,
 };
 
 /// The most bytes that a task file can have: 16 MiB.
@@ -81,7 +81,7 @@ pub fn parse(file: &Path, text: &[u8]) -> ParsedTask {
         };
     }
     let decoded = decode(text);
-    let scene = match tree::read(&decoded, &mut faults) {
+    let scene = match build::read(&decoded, &mut faults) {
         Some(root) => element::scene(&root, &mut faults),
         None => SceneSpec::default(),
     };

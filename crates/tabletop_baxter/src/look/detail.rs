@@ -60,7 +60,12 @@ impl Detail {
         kept: &mut Vec<usize>,
     ) {
         let farthest = (first + 1..last)
-            .map(|i| (distance_from_line(points[i], points[first], points[last]), i))
+            .map(|i| {
+                (
+                    distance_from_line(points[i], points[first], points[last]),
+                    i,
+                )
+            })
             .max_by(|a, b| a.0.total_cmp(&b.0));
         if let Some((distance, i)) = farthest
             && distance > self.tolerance()
@@ -97,7 +102,10 @@ mod tests {
             for radius in [0.01, 0.05, 0.08] {
                 let segments = detail.segments(radius);
                 let missed = radius * (1.0 - (std::f32::consts::PI / segments as f32).cos());
-                assert!(missed <= detail.tolerance(), "{detail:?} {radius}: {missed}");
+                assert!(
+                    missed <= detail.tolerance(),
+                    "{detail:?} {radius}: {missed}"
+                );
                 assert_eq!(segments % 2, 0);
             }
             for radius in [0.0, 1e-30, 1e30, f32::INFINITY, f32::NAN, -1.0] {
@@ -108,7 +116,13 @@ mod tests {
 
     #[test]
     fn points_on_a_line_are_left_out() {
-        let points = [[0.0, 0.0], [0.1, 0.0001], [0.2, 0.0], [0.2, 0.1], [0.2, 0.3]];
+        let points = [
+            [0.0, 0.0],
+            [0.1, 0.0001],
+            [0.2, 0.0],
+            [0.2, 0.1],
+            [0.2, 0.3],
+        ];
         assert_eq!(Detail::Fine.thinned(&points), [0, 2, 4]);
         assert_eq!(Detail::Fine.thinned::<2>(&points[..1]), [0]);
         assert_eq!(Detail::Fine.thinned::<2>(&[]), [0]);

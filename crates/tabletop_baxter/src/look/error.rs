@@ -44,6 +44,9 @@ fn list(paths: &[PathBuf]) -> String {
     if paths.is_empty() {
         return "no folder, because the description of the robot is not in a file".into();
     }
-    let names: Vec<_> = paths.iter().map(|path| path.display().to_string()).collect();
+    let names: Vec<_> = paths
+        .iter()
+        .map(|path| path.display().to_string())
+        .collect();
     names.join(", ")
 }

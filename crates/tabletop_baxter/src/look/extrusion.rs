@@ -26,9 +26,14 @@ impl Extrusion {
             .into_iter()
             .filter_map(|i| self.outline.get(i).copied())
             .collect();
-        let ring = |at: f32| outline.iter().map(|&[u, v]| self.axis.point(u, v, at)).collect();
+        let ring = |at: f32| {
+            outline
+                .iter()
+                .map(|&[u, v]| self.axis.point(u, v, at))
+                .collect()
+        };
         let (lower, upper): (Vec<Vec3>, _) = (ring(self.from), ring(self.to));
-        let mut hull = Hull::through(&[lower, upper]);
+        let mut hull = Hull::around(&[lower, upper]);
         let count = outline.len() as u32;
         let corners: Vec<_> = outline.into_iter().map(Vec2::from).collect();
         let is_clockwise = twice_area(&corners) < 0.0;
@@ -56,12 +61,20 @@ fn triangles_in(corners: &[Vec2]) -> Vec<[u32; 3]> {
     let mut triangles = Vec::new();
     while left.len() >= 3 {
         let count = left.len();
-        let around = |i: usize| [left[(i + count - 1) % count], left[i], left[(i + 1) % count]];
+        let around = |i: usize| {
+            [
+                left[(i + count - 1) % count],
+                left[i],
+                left[(i + 1) % count],
+            ]
+        };
         let is_ear = |&i: &usize| {
             let ear = around(i);
             let [a, b, c] = ear.map(|corner| corners[corner]);
             let is_outside = |p: Vec2| {
-                (b - a).perp_dot(p - a) < 0.0 || (c - b).perp_dot(p - b) < 0.0 || (a - c).perp_dot(p - c) < 0.0
+                (b - a).perp_dot(p - a) < 0.0
+                    || (c - b).perp_dot(p - b) < 0.0
+                    || (a - c).perp_dot(p - c) < 0.0
             };
             (b - a).perp_dot(c - b) > 0.0
                 && left
@@ -93,15 +106,30 @@ mod tests {
                 .inspect(|area| assert!(*area > 0.0))
                 .sum();
             assert!((area - twice_area(&corners).abs()).abs() < 1e-6);
-            let plate = Extrusion { axis: Axis::Y, from: 0.5, to: 1.0, outline };
+            let plate = Extrusion {
+                axis: Axis::Y,
+                from: 0.5,
+                to: 1.0,
+                outline,
+            };
             assert!((plate.hull(Detail::Fine).volume() - area / 4.0).abs() < 1e-6);
         }
     }
 
     #[test]
     fn senseless_outlines_do_no_harm() {
-        for outline in [vec![], vec![[0.0, 0.0]], vec![[0.0, 0.0], [1.0, 0.0]], vec![[0.0; 2]; 5]] {
-            let plate = Extrusion { axis: Axis::Z, from: 0.0, to: 1.0, outline };
+        for outline in [
+            vec![],
+            vec![[0.0, 0.0]],
+            vec![[0.0, 0.0], [1.0, 0.0]],
+            vec![[0.0; 2]; 5],
+        ] {
+            let plate = Extrusion {
+                axis: Axis::Z,
+                from: 0.0,
+                to: 1.0,
+                outline,
+            };
             plate.hull(Detail::Fine);
         }
     }

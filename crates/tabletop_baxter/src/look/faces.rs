@@ -119,11 +119,20 @@ impl Drawing {
             let [one, next] = [ray(step), ray(step + 1)];
             let at = |ray: Vec2, radius: f32| center + ray * radius;
             let (inner, outer) = (radius - HALF_WIDTH, radius + HALF_WIDTH);
-            let corners = [at(one, inner), at(one, outer), at(next, outer), at(next, inner)];
+            let corners = [
+                at(one, inner),
+                at(one, outer),
+                at(next, outer),
+                at(next, inner),
+            ];
             self.shape(1, LINE, corners.to_vec());
         }
         for end in [ray(0), ray(STEPS)] {
-            self.shape(1, LINE, ellipse(center + end * radius, Vec2::splat(HALF_WIDTH)));
+            self.shape(
+                1,
+                LINE,
+                ellipse(center + end * radius, Vec2::splat(HALF_WIDTH)),
+            );
         }
     }
 }

@@ -22,32 +22,41 @@ pub(super) struct Hull {
 }
 
 impl Hull {
-    /// The surface from ring to ring. Rings have equally many points, or one, which is then a tip or the middle of an end:
-    /// the surface is closed if there is one at both ends.
+    /// The surface from ring to ring, closed at both ends. Rings have equally many points, or one, which is then a tip;
+    /// those at the ends are flat and convex.
     pub fn through(rings: &[Vec<Vec3>]) -> Self {
-        let mut hull = Self::default();
-        let firsts: Vec<u32> = rings
-            .iter()
-            .map(|ring| {
-                let first = hull.points.len() as u32;
-                hull.points.extend(ring);
-                first
-            })
-            .collect();
-        for (lower, upper) in (0..rings.len()).zip(1..rings.len()) {
-            let (below, above) = (rings[lower].len() as u32, rings[upper].len() as u32);
+        let mut hull = Self::around(rings);
+        let [Some(first), Some(last)] = [rings.first(), rings.last()] else {
+            return hull;
+        };
+        let top = (hull.points.len() - last.len()) as u32;
+        hull.triangles
+            .extend((2..first.len() as u32).map(|i| [0, i, i - 1]));
+        hull.triangles
+            .extend((2..last.len() as u32).map(|i| [top, top + i - 1, top + i]));
+        hull
+    }
+
+    /// The same without its ends.
+    pub fn around(rings: &[Vec<Vec3>]) -> Self {
+        let points: Vec<_> = rings.concat();
+        let mut triangles = Vec::new();
+        let mut first = 0;
+        for (lower, upper) in rings.iter().zip(rings.iter().skip(1)) {
+            let (below, above) = (lower.len() as u32, upper.len() as u32);
             for i in 0..below.max(above) {
-                let [a, b] = [i, i + 1].map(|i| firsts[lower] + i % below);
-                let [c, d] = [i, i + 1].map(|i| firsts[upper] + i % above);
+                let [a, b] = [i, i + 1].map(|i| first + i % below);
+                let [c, d] = [i, i + 1].map(|i| first + below + i % above);
                 if below > 1 {
-                    hull.triangles.push([a, b, d]);
+                    triangles.push([a, b, d]);
                 }
                 if above > 1 {
-                    hull.triangles.push([a, d, c]);
+                    triangles.push([a, d, c]);
                 }
             }
+            first += below;
         }
-        hull
+        Self { points, triangles }
     }
 
     /// The surface of these triangles, whose corners are shared where they are the same.
@@ -90,14 +99,18 @@ impl Hull {
     /// The same surface with its outside outside.
     pub fn oriented(mut self) -> Self {
         if self.volume() < 0.0 {
-            self.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+            self.triangles
+                .iter_mut()
+                .for_each(|triangle| triangle.swap(1, 2));
         }
         self
     }
 
     /// The same surface with all points mapped by something that keeps it as it is but for its place, or mirrors it.
     pub fn mapped(mut self, map: impl Fn(Vec3) -> Vec3) -> Self {
-        self.points.iter_mut().for_each(|point| *point = map(*point));
+        self.points
+            .iter_mut()
+            .for_each(|point| *point = map(*point));
         self
     }
 
@@ -251,7 +264,9 @@ mod tests {
         /// Whether each edge is passed once in each direction.
         pub fn is_closed(&self) -> bool {
             let edges = self.triangles.iter();
-            let mut edges: Vec<_> = edges.flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+            let mut edges: Vec<_> = edges
+                .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+                .collect();
             let mut turned: Vec<_> = edges.iter().map(|&[a, b]| [b, a]).collect();
             edges.sort_unstable();
             turned.sort_unstable();
@@ -260,24 +275,20 @@ mod tests {
     }
 
     fn cube() -> Hull {
-        let ring = |z| [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Vec3::new(x, y, z));
-        Hull::through(
-            &[
-                vec![Vec3::Z],
-                ring(1.0).to_vec(),
-                ring(-1.0).to_vec(),
-                vec![Vec3::NEG_Z],
-            ],
-        )
-        .oriented()
+        let ring = |z| {
+            [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Vec3::new(x, y, z))
+        };
+        Hull::through(&[ring(1.0).to_vec(), ring(-1.0).to_vec()]).oriented()
     }
 
     #[test]
-    fn a_surface_that_ends_in_tips_is_closed_and_can_be_turned_right() {
+    fn a_surface_through_rings_is_closed_and_can_be_turned_right() {
         let cube = cube();
         assert!(cube.is_closed());
         assert!((cube.volume() - 8.0).abs() < 1e-5);
-        let mirrored = cube.clone().mapped(|point| point * Vec3::new(1.0, -1.0, 1.0));
+        let mirrored = cube
+            .clone()
+            .mapped(|point| point * Vec3::new(1.0, -1.0, 1.0));
         assert!((mirrored.volume() + 8.0).abs() < 1e-5);
         assert!((mirrored.oriented().volume() - 8.0).abs() < 1e-5);
     }
@@ -285,26 +296,34 @@ mod tests {
     #[test]
     fn edges_stay_sharp_and_round_surfaces_smooth() {
         let cube = cube().shaded(Rgb::GRAY);
-        // Four corners a side, and the middles of two of them.
-        assert_eq!(cube.positions.len(), 6 * 4 + 2);
-        assert!(cube.normals.iter().all(|normal| normal.abs().max_element() > 0.999));
+        assert_eq!(cube.positions.len(), 6 * 4);
+        assert!(
+            cube.normals
+                .iter()
+                .all(|normal| normal.abs().max_element() > 0.999)
+        );
         let ring = |z: f32| {
             let turn = |i: i32| (i as f32 * 30.0_f32).to_radians();
-            (0..12).map(|i| Vec3::new(turn(i).cos(), turn(i).sin(), z)).collect()
+            (0..12)
+                .map(|i| Vec3::new(turn(i).cos(), turn(i).sin(), z))
+                .collect()
         };
-        let drum = Hull::through(&[vec![Vec3::Z], ring(1.0), ring(-1.0), vec![Vec3::NEG_Z]]);
+        let drum = Hull::through(&[ring(1.0), ring(-1.0)]);
         let drum = drum.oriented().shaded(Rgb::GRAY);
-        assert_eq!(drum.positions.len(), 2 * 12 + 2 * 13);
+        assert_eq!(drum.positions.len(), 2 * 12 + 2 * 12);
     }
 
     #[test]
     fn equal_corners_are_welded_and_cells_merged() {
         let cube = cube();
-        let soup = cube.triangles.iter().map(|&triangle| cube.corners(triangle));
+        let soup = cube
+            .triangles
+            .iter()
+            .map(|&triangle| cube.corners(triangle));
         let welded = Hull::welded(soup);
         assert_eq!(welded.points.len(), cube.points.len());
         assert!(welded.is_closed());
-        // The middle of a side at ±1 and its corners are in cells of their own, unless these are large.
+        // The corners are in cells of their own, unless these are large.
         assert_eq!(welded.simplified(0.5).triangles.len(), cube.triangles.len());
         assert_eq!(welded.simplified(10.0).triangles.len(), 0);
     }

@@ -21,22 +21,18 @@ pub(super) struct Lathe {
 impl Lathe {
     /// Its surface.
     pub fn hull(&self, detail: Detail) -> Hull {
-        let largest = self.profile.iter().map(|point| point[0]).fold(0.0, f32::max);
+        let largest = self
+            .profile
+            .iter()
+            .map(|point| point[0])
+            .fold(0.0, f32::max);
         let segments = detail.segments(largest);
-        let mut profile: Vec<_> = detail
+        let profile = detail
             .thinned(&self.profile)
             .into_iter()
-            .filter_map(|i| self.profile.get(i).copied())
-            .collect();
-        let [first, last] = [profile.first(), profile.last()].map(|end| {
-            let end = end.filter(|end| end[0] > 0.0)?;
-            Some([0.0, end[1]])
-        });
-        profile.splice(0..0, first);
-        profile.extend(last);
+            .filter_map(|i| self.profile.get(i).copied());
         let rings: Vec<_> = profile
-            .iter()
-            .map(|&[radius, height]| {
+            .map(|[radius, height]| {
                 let count = if radius > 0.0 { segments } else { 1 };
                 (0..count)
                     .map(|i| {

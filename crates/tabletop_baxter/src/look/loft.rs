@@ -34,7 +34,11 @@ impl Section {
     }
 
     fn middle(&self, axis: Axis) -> Vec3 {
-        axis.point((self.u[0] + self.u[1]) / 2.0, (self.v[0] + self.v[1]) / 2.0, self.at)
+        axis.point(
+            (self.u[0] + self.u[1]) / 2.0,
+            (self.v[0] + self.v[1]) / 2.0,
+            self.at,
+        )
     }
 
     fn ring(&self, axis: Axis, segments: usize) -> Vec<Vec3> {
@@ -42,9 +46,16 @@ impl Section {
         (0..segments)
             .map(|i| {
                 let (sin, cos) = (TAU * i as f64 / segments as f64).sin_cos();
-                let on_unit = |part: f64| (part.abs().powf(2.0 / self.exponent) * part.signum()) as f32;
+                let on_unit =
+                    |part: f64| (part.abs().powf(2.0 / self.exponent) * part.signum()) as f32;
                 // Sine and cosine of right angles are not quite 0, which roots would make large.
-                let [u, v] = [cos, sin].map(|part| if part.abs() < 1e-9 { 0.0 } else { on_unit(part) });
+                let [u, v] = [cos, sin].map(|part| {
+                    if part.abs() < 1e-9 {
+                        0.0
+                    } else {
+                        on_unit(part)
+                    }
+                });
                 self.middle(axis) + axis.point(u * u_half, v * v_half, 0.0)
             })
             .collect()
@@ -54,26 +65,31 @@ impl Section {
 impl Loft {
     /// Its surface.
     pub fn hull(&self, detail: Detail) -> Hull {
-        let largest = self.sections.iter().map(Section::radius).fold(0.0, f32::max);
+        let largest = self
+            .sections
+            .iter()
+            .map(Section::radius)
+            .fold(0.0, f32::max);
         // So that there are points where the sections are widest.
         let segments = detail.segments(largest).next_multiple_of(4);
         let sizes: Vec<_> = self
             .sections
             .iter()
-            .map(|section| [section.at, section.u[0], section.u[1], section.v[0], section.v[1]])
+            .map(|section| {
+                [
+                    section.at,
+                    section.u[0],
+                    section.u[1],
+                    section.v[0],
+                    section.v[1],
+                ]
+            })
             .collect();
-        let sections: Vec<_> = detail
+        let rings: Vec<_> = detail
             .thinned(&sizes)
             .into_iter()
-            .filter_map(|i| self.sections.get(i))
+            .filter_map(|i| Some(self.sections.get(i)?.ring(self.axis, segments)))
             .collect();
-        let mut rings: Vec<_> = sections
-            .iter()
-            .map(|section| section.ring(self.axis, segments))
-            .collect();
-        let end = |section: Option<&&Section>| section.map(|section| vec![section.middle(self.axis)]);
-        rings.splice(0..0, end(sections.first()));
-        rings.extend(end(sections.last()));
         Hull::through(&rings).oriented()
     }
 }

@@ -77,7 +77,11 @@ fn load(path: &Path, scale: Vec3, color: Rgb) -> io::Result<Vec<(Hull, Rgb)>> {
             let mut corners = [Vec3::ZERO; 3];
             for (corner, i) in corners.iter_mut().zip(face) {
                 let point = Vec3::from(*mesh.vertices.get(*i as usize)?) * scale;
-                *corner = point.abs().cmple(Vec3::splat(FARTHEST)).all().then_some(point)?;
+                *corner = point
+                    .abs()
+                    .cmple(Vec3::splat(FARTHEST))
+                    .all()
+                    .then_some(point)?;
             }
             if is_mirrored {
                 corners.swap(1, 2);
@@ -144,4 +148,126 @@ fn find(file: &str, urdf: Option<&Path>) -> Result<PathBuf, LookError> {
         file: file.to_owned(),
         searched,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+    use super::*;
+
+    /// A folder of its own for each test, with files in it.
+    struct Folder(PathBuf);
+
+    impl Folder {
+        fn with(name: &str, files: &[(&str, &str)]) -> Self {
+            let folder = std::env::temp_dir().join(format!("tabletop-{name}-{}", std::process::id()));
+            for (path, text) in files {
+                let path = folder.join(path);
+                fs::create_dir_all(path.parent().unwrap()).unwrap();
+                fs::write(path, text).unwrap();
+            }
+            Self(folder)
+        }
+
+        fn look(&self, file: &str, urdf: &str) -> Result<Figure, LookError> {
+            let urdf = self.0.join(urdf);
+            figure(file, Vec3::new(1.0, 2.0, -1.0), Rgb::WHITE, Some(&urdf))
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            fs::remove_dir_all(&self.0).unwrap();
+        }
+    }
+
+    const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
+        endloop\nendfacet\nendsolid a\n";
+    const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    const DAE: &str = r##"<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+  <asset><unit meter="0.5"/></asset>
+  <library_geometries><geometry id="g"><mesh>
+    <source id="p"><float_array id="a" count="9">0 0 0 2 0 0 0 2 0</float_array>
+      <technique_common><accessor source="#a" count="3" stride="3">
+        <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>
+      </accessor></technique_common></source>
+    <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+    <triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+  </mesh></geometry></library_geometries>
+  <library_visual_scenes><visual_scene id="s">
+    <node id="n"><instance_geometry url="#g"/></node>
+  </visual_scene></library_visual_scenes>
+  <scene><instance_visual_scene url="#s"/></scene>
+</COLLADA>"##;
+
+    #[test]
+    fn meshes_are_read_scaled_and_keep_their_outside_outside() {
+        let folder = Folder::with("kinds", &[("a.stl", STL), ("a.obj", OBJ), ("a.dae", DAE)]);
+        for file in ["a.stl", "a.obj", "a.dae"] {
+            let figure = folder.look(file, "robot.urdf").unwrap();
+            let surface = &*figure.fine;
+            assert_eq!(surface.indices.len(), 1, "{file}");
+            // From m to units, and mirrored.
+            let farthest = surface.positions.iter().copied().fold(Vec3::ZERO, Vec3::max);
+            assert_eq!(farthest, Vec3::new(10.0, 20.0, 0.0), "{file}");
+            assert_eq!(surface.normals, [Vec3::NEG_Z; 3], "{file}");
+            assert_eq!(surface.colors, [Rgb::WHITE; 3], "{file}");
+            assert!(Arc::ptr_eq(&figure.fine, &figure.coarse));
+        }
+    }
+
+    #[test]
+    fn packages_are_found_in_the_folders_around_the_description() {
+        let folder = Folder::with("packages", &[("arm_description/meshes/a.stl", STL)]);
+        for urdf in [
+            "robot.urdf",
+            "arm_description/robot.urdf",
+            "arm_description/urdf/robot.urdf",
+            "other/urdf/robot.urdf",
+        ] {
+            let file = "package://arm_description/meshes/a.stl";
+            assert!(folder.look(file, urdf).is_ok(), "{urdf}");
+        }
+        assert!(folder.look("../meshes/a.stl", "arm_description/urdf/robot.urdf").is_err());
+        fs::create_dir(folder.0.join("arm_description/urdf")).unwrap();
+        assert!(folder.look("../meshes/a.stl", "arm_description/urdf/robot.urdf").is_ok());
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_is_an_error_that_names_the_file() {
+        let broken = [
+            ("broken.stl", "solid a\nfacet normal 0 0"),
+            ("empty.stl", "solid a\nendsolid a\n"),
+            ("far.obj", "v 0 0 0\nv 1e30 0 0\nv 0 1 nan\nf 1 2 3\n"),
+            ("wrong.obj", "v 0 0 0\nf 1 2 9\n"),
+            ("broken.dae", "<COLLADA><library_geometries>"),
+            ("text.txt", "what?"),
+            ("a.shape.json", "{}"),
+        ];
+        let folder = Folder::with("broken", &broken);
+        for (file, _) in broken.iter().chain([&("missing.stl", "")]) {
+            let error = folder.look(file, "robot.urdf").unwrap_err().to_string();
+            assert!(error.contains(file), "{error}");
+        }
+        let missing = figure("package://a/b.stl", Vec3::ONE, Rgb::WHITE, None).unwrap_err();
+        assert!(missing.to_string().contains("not in a file"), "{missing}");
+    }
+
+    #[test]
+    fn a_mesh_of_many_triangles_has_fewer_for_the_head_camera() {
+        let mut text = String::new();
+        for i in 0..2000 {
+            let (x, y) = (i % 50, i / 50);
+            for (x, y) in [(x, y), (x + 1, y), (x, y + 1)] {
+                text += &format!("v {} {} 0\n", f64::from(x) * 0.01, f64::from(y) * 0.01);
+            }
+            text += &format!("f {} {} {}\n", 3 * i + 1, 3 * i + 2, 3 * i + 3);
+        }
+        let folder = Folder::with("many", &[("a.obj", &text)]);
+        let figure = folder.look("a.obj", "robot.urdf").unwrap();
+        assert_eq!(figure.fine.indices.len(), 2000);
+        assert!((200..800).contains(&figure.coarse.indices.len()));
+    }
 }

@@ -87,8 +87,12 @@ pub fn screen_with(shown: Face, visual: &Shape, urdf: Option<&Path>) -> Result<F
 
 /// A figure, made in the frame of a visual, in the frame of its link.
 fn placed(mut figure: Figure, visual: &Shape) -> Figure {
-    let DAffine3 { matrix3, translation } = visual.origin;
-    let to_link = Affine3A::from_mat3_translation(matrix3.as_mat3(), translation.as_vec3() * UNITS_PER_METER);
+    let DAffine3 {
+        matrix3,
+        translation,
+    } = visual.origin;
+    let to_link =
+        Affine3A::from_mat3_translation(matrix3.as_mat3(), translation.as_vec3() * UNITS_PER_METER);
     if to_link != Affine3A::IDENTITY {
         for surface in [&mut figure.fine, &mut figure.coarse] {
             let surface = Arc::make_mut(surface);

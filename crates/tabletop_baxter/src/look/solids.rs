@@ -28,7 +28,10 @@ fn hull(solid: &Geometry, detail: Detail) -> Hull {
         .hull(),
         Geometry::Cylinder { radius, length } => {
             let (radius, half) = (*radius as f32, *length as f32 / 2.0);
-            turned(vec![[0.0, -half], [radius, -half], [radius, half], [0.0, half]], detail)
+            turned(
+                vec![[0.0, -half], [radius, -half], [radius, half], [0.0, half]],
+                detail,
+            )
         }
         Geometry::Sphere { radius } => {
             let radius = *radius as f32;
@@ -66,7 +69,9 @@ mod tests {
         let round = std::f32::consts::PI * 0.1_f32.powi(2);
         for (solid, volume, extents) in [
             (
-                Geometry::Box { size: DVec3::new(0.1, 0.2, 0.3) },
+                Geometry::Box {
+                    size: DVec3::new(0.1, 0.2, 0.3),
+                },
                 0.006,
                 Vec3::new(0.1, 0.2, 0.3),
             ),
@@ -75,7 +80,11 @@ mod tests {
                 round * 0.5,
                 Vec3::new(0.2, 0.2, 0.5),
             ),
-            (Geometry::Sphere { radius }, round * 0.4 / 3.0, Vec3::splat(0.2)),
+            (
+                Geometry::Sphere { radius },
+                round * 0.4 / 3.0,
+                Vec3::splat(0.2),
+            ),
         ] {
             for (detail, tolerance) in [(Detail::Fine, 0.02), (Detail::Coarse, 0.35)] {
                 let hull = hull(&solid, detail);

@@ -25,16 +25,14 @@ impl Tube {
             .into_iter()
             .filter_map(|i| self.path.get(i).copied())
             .collect();
-        let (Some(&first), Some(&last)) = (path.first(), path.last()) else {
-            return Hull::default();
-        };
         let segments = detail.segments(self.radius);
         let direction = |from: usize| {
-            let step = |[a, b]: [usize; 2]| Some((*path.get(b)? - *path.get(a)?).normalize_or_zero());
+            let step =
+                |[a, b]: [usize; 2]| Some((*path.get(b)? - *path.get(a)?).normalize_or_zero());
             [step([from.wrapping_sub(1), from]), step([from, from + 1])]
         };
         let mut across = Vec3::ZERO;
-        let mut rings = vec![vec![first]];
+        let mut rings = Vec::new();
         for (i, &point) in path.iter().enumerate() {
             let [before, after] = direction(i).map(|step| step.unwrap_or_default());
             let along = (before + after).normalize_or(Vec3::Z);
@@ -50,14 +48,14 @@ impl Tube {
             rings.push(
                 (0..segments)
                     .map(|i| {
-                        let turn = Quat::from_axis_angle(along, (TAU * i as f64 / segments as f64) as f32);
+                        let turn =
+                            Quat::from_axis_angle(along, (TAU * i as f64 / segments as f64) as f32);
                         let offset = turn * across * self.radius;
                         point + offset + in_bend * in_bend.dot(offset) * (widened - 1.0)
                     })
                     .collect(),
             );
         }
-        rings.push(vec![last]);
         Hull::through(&rings).oriented()
     }
 }

@@ -2,7 +2,8 @@
 #![allow(dead_code, reason = "not every test needs everything")]
 
 use bevy::{ecs::message::MessageCursor, prelude::*};
-use tabletop_baxter::BaxterPlugin;
+use bevy_rapier3d::{parry, prelude::Collider, rapier::prelude as rapier};
+use tabletop_baxter::{BaxterPlugin, RobotBody};
 use tabletop_core::*;
 use tabletop_demonstrator::DemonstratorPlugin;
 use tabletop_physics::PhysicsPlugin;
@@ -24,9 +25,21 @@ pub fn block(span: Vec3) -> Shape {
 impl Stage {
     /// An empty table with the robot at it.
     pub fn new() -> Self {
+        Self::with(BaxterPlugin::default())
+    }
+
+    /// The same in dynamic mode.
+    pub fn dynamic() -> Self {
+        Self::with(BaxterPlugin {
+            mode: RobotMode::Dynamic,
+            ..BaxterPlugin::default()
+        })
+    }
+
+    fn with(robot: BaxterPlugin) -> Self {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default(), PhysicsPlugin::default()))
-            .add_plugins((ScenePlugin, DemonstratorPlugin, BaxterPlugin::default()))
+            .add_plugins((ScenePlugin, DemonstratorPlugin, robot))
             .start();
         let mut stage = Self {
             app,
@@ -84,10 +97,35 @@ impl Stage {
             }
             facts.extend(self.facts_of(1));
         }
+        if self.robot().mode == RobotMode::Dynamic {
+            // It is there, but for what its motors still have to pull.
+            facts.extend(self.facts_of(30));
+        }
         let there = self.robot().arm(arm).end_effector;
         assert!(
             (there.location - location).length() < 1e-3,
             "{there:?} instead of {pose:?}: {facts:?}"
         );
     }
+}
+
+/// The bodies of the arms that are inside the table.
+pub fn inside_the_table(stage: &mut Stage) -> Vec<String> {
+    let slab = Table::default().slab();
+    let Solid::Cuboid(span) = slab.solid else {
+        panic!("{slab:?}");
+    };
+    let table = rapier::SharedShape::cuboid(span.x / 2.0, span.y / 2.0, span.z / 2.0);
+    let table_at = rapier::Pose::from_translation(slab.pose.location);
+    let world = stage.app.world_mut();
+    let mut bodies = world.query::<(&RobotBody, &Transform, &Collider)>();
+    bodies
+        .iter(world)
+        .filter(|(body, ..)| body.name.contains("left") || body.name.contains("right"))
+        .filter(|(_, place, collider)| {
+            let at = rapier::Pose::from_parts(place.translation, place.rotation);
+            parry::query::intersection_test(&at, &*collider.raw, &table_at, &*table).unwrap()
+        })
+        .map(|(body, ..)| body.name.clone())
+        .collect()
 }

@@ -2,6 +2,7 @@
 
 mod colors;
 mod edges;
+mod figures;
 mod geometry;
 mod hostile;
 mod scenes;

@@ -12,8 +12,8 @@ fn what_is_kept_for_undo_goes_when_the_recording_ends() {
     desk.0.insert_resource(Recording(true));
     desk.grasp(Hand::Left, "red")
         .tell(SimCommand::Destroy(Hand::Left))
-        .tell(SimCommand::SetScene(Box::default()))
         .step(1);
+    desk.tell(SimCommand::SetScene(Box::default())).step(1);
     desk.tell(SimCommand::Undo).step(1);
     assert_eq!(undoable(&desk), 1);
     desk.0.insert_resource(Recording(false));

@@ -312,7 +312,11 @@ fn an_earlier_recording_is_part_of_what_came_before_without_what_was_undone() {
     );
     let session = Session::read(place.demo().join("session.jsonl")).unwrap();
     assert_eq!(session.header.begin_tick, Some(2));
-    let earlier: Vec<_> = session.earlier.into_iter().map(|told| told.command).collect();
+    let earlier: Vec<_> = session
+        .earlier
+        .into_iter()
+        .map(|told| told.command)
+        .collect();
     assert_eq!(
         earlier,
         [

@@ -1,0 +1,116 @@
+//! What the robot costs in a tick without a window, on one core.
+//!
+//! `cargo bench --bench robot_speed` prints the median time of a tick of the whole simulator with ten blocks on the table:
+//! with the robot hidden, shown and still, and with all fourteen joints of its arms moving, in both modes; and how much
+//! more that is than with the robot hidden. All run in turns in one process, so that what else the machine does touches
+//! all of them.
+#![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
+
+use std::time::{Duration, Instant};
+
+use bevy::prelude::*;
+use tabletop::{
+    baxter::BaxterPlugin,
+    core::{Drive, RobotMode},
+    prelude::*,
+};
+
+const TICKS_PER_TURN: u32 = 60;
+const TURNS: usize = 40;
+
+fn main() {
+    let mut cases = [
+        Case::new("hidden", RobotMode::Kinematic, false, false),
+        Case::new("shown, still", RobotMode::Kinematic, true, false),
+        Case::new("both arms moving", RobotMode::Kinematic, true, true),
+        Case::new("still, dynamic", RobotMode::Dynamic, true, false),
+        Case::new("moving, dynamic", RobotMode::Dynamic, true, true),
+    ];
+    for _ in 0..TURNS {
+        for case in &mut cases {
+            case.take_turn();
+        }
+    }
+    println!("robot               a tick   more than hidden");
+    let hidden = cases[0].median();
+    for case in &mut cases {
+        let tick = case.median();
+        let more = (tick.as_secs_f64() - hidden.as_secs_f64()) * 1e6;
+        let tick = tick.as_secs_f64() * 1e6;
+        println!("{:18} {tick:6.1} µs {more:8.1} µs", case.name);
+    }
+}
+
+struct Case {
+    name: &'static str,
+    app: App,
+    moves: bool,
+    tick: u64,
+    times: Vec<Duration>,
+}
+
+impl Case {
+    fn new(name: &'static str, mode: RobotMode, is_shown: bool, moves: bool) -> Self {
+        let robot = BaxterPlugin {
+            mode,
+            ..default()
+        };
+        let mut app = headless_app_with(TabletopSimPlugins.build().set(robot));
+        let blocks = (0..10).map(|block| {
+            SceneItem::Object(ObjectSpec {
+                id: format!("block{block}"),
+                pose: Pose::at(Vec3::new(block as f32 * 1.5 - 7.0, 4.0, 0.5)),
+                mass: 1.0,
+                shape: Shape::Block {
+                    span: Vec3::ONE,
+                    color: Rgb::GRAY,
+                },
+                descriptions: Vec::new(),
+            })
+        });
+        let scene = SceneSpec {
+            items: blocks.collect(),
+            ..default()
+        };
+        app.world_mut()
+            .write_message(SimCommand::SetScene(Box::new(scene)));
+        app.world_mut()
+            .write_message(SimCommand::ShowRobot(is_shown));
+        app.step(60);
+        Self {
+            name,
+            app,
+            moves,
+            tick: 0,
+            times: Vec::new(),
+        }
+    }
+
+    fn take_turn(&mut self) {
+        let start = Instant::now();
+        for _ in 0..TICKS_PER_TURN {
+            if self.moves {
+                self.swing();
+            }
+            self.app.step(1);
+        }
+        self.times.push(start.elapsed() / TICKS_PER_TURN);
+    }
+
+    /// Moves every joint of both arms, to and fro.
+    fn swing(&mut self) {
+        let forth = (self.tick / 60).is_multiple_of(2);
+        self.tick += 1;
+        let speed = if forth { 0.3 } else { -0.3 };
+        let joints = Arm::BOTH.into_iter().flat_map(RobotJoint::of_arm);
+        let drives = joints.map(|joint| (joint, Drive::Velocity(-joint.mirror() * speed)));
+        self.app
+            .world_mut()
+            .write_message(SimCommand::Drive(drives.collect()));
+    }
+
+    fn median(&mut self) -> Duration {
+        self.times.sort();
+        self.times[self.times.len() / 2]
+    }
+}

@@ -1,0 +1,244 @@
+//! Dynamic mode: arms that motors with limited torque drive.
+//!
+//! Each motor pulls its joint along with a place that goes where orders send it, as a joint of kinematic mode would. It is
+//! never farther ahead than the motor can pull, so a joint that is held back does not wind up. Grippers and neck go as in
+//! kinematic mode. The arms' own weight is borne by springs, as in the real robot; the motors bear what the grippers hold.
+
+use std::array::from_fn;
+
+use bevy::{math::DVec3, prelude::*};
+use tabletop_core::{Arm, JOINTS_PER_ARM, Robot, RobotJoint, TICK_SECONDS};
+use tabletop_kinematics::Load;
+
+use crate::{
+    dynamics::{Masses, Step, Touch},
+    matrix::{Joints, Matrix},
+    motion::Motion,
+    motor::{Motor, STRETCH, Task},
+    orders::{Orders, Want},
+    skeleton::{Skeleton, UNITS_PER_METER},
+};
+
+/// Share of a motor's torque with which a joint is slowed down where it is to be as fast as possible.
+const BRAKES: f64 = 0.5;
+
+/// Speed in rad/s below which a joint stands still, as gears do.
+const STILL: f64 = 1e-6;
+
+/// Torques (N m) and speeds (rad/s) of Baxter's motors from the shoulder to the elbow, and of those beyond.
+const USUAL: [(f64, f64); 2] = [(50.0, 1.5), (15.0, 4.0)];
+
+/// What the motors have to remember from tick to tick.
+#[derive(Resource, Clone, Debug, Default)]
+pub(crate) struct Motors {
+    arms: [Driven; 2],
+    was_shown: bool,
+}
+
+/// An arm that motors drive.
+#[derive(Clone, Debug, Default)]
+struct Driven {
+    /// Where the joints were when the motors left them, in rad.
+    angles: Joints,
+    /// How fast they were, in rad/s.
+    velocities: Joints,
+    /// Where the motors pull them to, in rad.
+    places: Joints,
+}
+
+/// A tick of an arm.
+pub(crate) struct Pull {
+    masses: Masses,
+    motors: [Motor; 7],
+    step: Step,
+}
+
+impl Motors {
+    /// Forgets the motion of arms that have been moved by something else.
+    pub fn look(&mut self, robot: &Robot) {
+        let appears = std::mem::replace(&mut self.was_shown, robot.is_shown) != robot.is_shown;
+        for arm in Arm::BOTH {
+            let (driven, angles) = (&mut self.arms[arm as usize], robot.angles(arm));
+            if appears || driven.angles != angles {
+                *driven = Driven {
+                    angles,
+                    velocities: [0.0; 7],
+                    places: angles,
+                };
+            }
+        }
+    }
+
+    /// What the motors do in this tick. `gravity` in units/s².
+    pub fn pull(
+        &self,
+        motion: &mut Motion,
+        orders: &Orders,
+        gravity: f32,
+        mut touches: impl FnMut(&mut Motion, Arm) -> Vec<Touch>,
+    ) -> [Pull; 2] {
+        let touched = Arm::BOTH.map(|arm| touches(motion, arm));
+        let skeleton = motion.skeleton;
+        skeleton.update(&mut motion.scratch, &motion.positions);
+        let (model, frames) = (skeleton.model(), motion.scratch.frames());
+        let loads = Arm::BOTH.map(|arm| -> Vec<Load> {
+            let carried = motion.carried[arm as usize].iter();
+            carried.map(|it| skeleton.load(arm, it.pose, it.mass)).collect()
+        });
+        let all_loads = loads.concat();
+        let mut velocities = model.zero();
+        for arm in Arm::BOTH {
+            let chain = skeleton.chain(arm).0;
+            chain.set_angles(&self.arms[arm as usize].velocities, &mut velocities);
+        }
+        let inertia = model.inertia_matrix(frames, &all_loads);
+        let turning = model.inverse_dynamics(frames, &velocities, &model.zero(), DVec3::ZERO, &all_loads);
+        let down = DVec3::NEG_Z * (f64::from(gravity) / UNITS_PER_METER);
+        let mut touched = touched.into_iter();
+        Arm::BOTH.map(|arm| {
+            let driven = &self.arms[arm as usize];
+            let chain = skeleton.chain(arm).0;
+            let joints = *chain.joints();
+            let inertia: Matrix = from_fn(|i| from_fn(|j| inertia[(joints[i], joints[j])]));
+            let axes = skeleton.axes(arm, &motion.scratch);
+            let weights: Joints = from_fn(|i| {
+                let (origin, axis) = axes[i];
+                let of_load = |load: &Load| {
+                    let arm = frames[load.link].transform_point3(load.point) - origin;
+                    -axis.dot(arm.cross(down * load.mass))
+                };
+                loads[arm as usize].iter().map(of_load).sum()
+            });
+            let motors = driven.motors(skeleton, arm, orders, &inertia, &weights);
+            let masses = Masses {
+                angles: driven.angles,
+                velocities: driven.velocities,
+                inertia,
+                bias: add(&chain.angles(&turning), &weights),
+                damping: joints.map(|joint| model.joint(joint).damping),
+                stops: RobotJoint::of_arm(arm).map(|joint| joint.limits().into()),
+                touches: touched.next().unwrap_or_default(),
+            };
+            let mut step = masses.step(&motors, f64::from(TICK_SECONDS));
+            if step.velocities.iter().all(|velocity| velocity.abs() < STILL) {
+                step.velocities = [0.0; 7];
+            }
+            Pull {
+                masses,
+                motors,
+                step,
+            }
+        })
+    }
+
+    /// Notes what has become of a tick: how far the arms have come, and with which torques.
+    pub fn note(&mut self, pulls: &[Pull; 2], motion: &Motion, robot: &mut Robot) {
+        for (arm, pull) in Arm::BOTH.into_iter().zip(pulls) {
+            let joints = RobotJoint::of_arm(arm);
+            let angles = joints.map(|joint| motion.positions[joint.index()]);
+            // Where something free is only just reached, an arm keeps its speed.
+            let is_free = motion.blocked_by[arm as usize].is_none() && !motion.is_squeezing[arm as usize];
+            let (velocities, torques) = match is_free {
+                true => (pull.step.velocities, pull.step.torques),
+                false => pull.held_back(&angles),
+            };
+            for (joint, torque) in joints.into_iter().zip(torques) {
+                robot.joints[joint.index()].torque = torque;
+            }
+            let places = from_fn(|i| match pull.motors[i].task {
+                Task::Follow { angle, .. } => angle.clamp(angles[i] - STRETCH, angles[i] + STRETCH),
+                Task::Pull(_) => angles[i],
+            });
+            self.arms[arm as usize] = Driven {
+                angles,
+                velocities,
+                places,
+            };
+        }
+    }
+
+    /// Lets an arm stay where it is.
+    pub fn stay(&mut self, arm: Arm) {
+        let driven = &mut self.arms[arm as usize];
+        driven.places = driven.angles;
+    }
+
+    /// How far orders have been carried out: where the arms' motors pull to, and these positions of all else.
+    pub fn reached(&self, positions: &[f64; 17]) -> [f64; 17] {
+        let mut reached = *positions;
+        for arm in Arm::BOTH {
+            for (joint, place) in RobotJoint::of_arm(arm).into_iter().zip(self.arms[arm as usize].places) {
+                reached[joint.index()] = place;
+            }
+        }
+        reached
+    }
+}
+
+impl Driven {
+    /// What the motors are to do in this tick. `inertia` in kg m², `weights` in N m.
+    fn motors(
+        &self,
+        skeleton: &Skeleton,
+        arm: Arm,
+        orders: &Orders,
+        inertia: &Matrix,
+        weights: &Joints,
+    ) -> [Motor; 7] {
+        let joints = RobotJoint::of_arm(arm);
+        let wants = orders.want_arm(arm, self.places);
+        from_fn(|i| {
+            let joint = skeleton.model().joint(skeleton.chain(arm).0.joints()[i]);
+            let usual = USUAL[usize::from(i > 3)];
+            let effort = if joint.effort > 0.0 { joint.effort } else { usual.0 };
+            let speed = if joint.velocity > 0.0 { joint.velocity } else { usual.1 };
+            let task = match orders.torque(joints[i]) {
+                Some(torque) => Task::Pull(torque),
+                None => {
+                    let way = wants[i].position() - self.places[i];
+                    let fastest = match wants[i] {
+                        Want::Move(_) => speed,
+                        Want::Jump(_) => {
+                            let brakes = BRAKES * effort / inertia[i][i].max(f64::MIN_POSITIVE);
+                            speed.min((2.0 * brakes * way.abs()).sqrt())
+                        }
+                    };
+                    let most = fastest * f64::from(TICK_SECONDS);
+                    let step = way.clamp(-most, most);
+                    Task::Follow {
+                        angle: if step == way { wants[i].position() } else { self.places[i] + step },
+                        velocity: step / f64::from(TICK_SECONDS),
+                        known: weights[i],
+                    }
+                }
+            };
+            Motor {
+                effort,
+                speed,
+                task,
+            }
+        })
+    }
+}
+
+impl Pull {
+    /// Where the joints are to be after the tick.
+    pub fn wants(&self, arm: Arm) -> [Want; JOINTS_PER_ARM] {
+        let joints = RobotJoint::of_arm(arm);
+        from_fn(|i| {
+            let way = f64::from(TICK_SECONDS) * self.step.velocities[i];
+            Want::Move(joints[i].clamp(self.masses.angles[i] + way))
+        })
+    }
+
+    /// Velocities and torques of an arm that came only to these angles, because something is in its way.
+    fn held_back(&self, angles: &Joints) -> (Joints, Joints) {
+        let velocities = from_fn(|i| (angles[i] - self.masses.angles[i]) / f64::from(TICK_SECONDS));
+        let torques = from_fn(|i| self.motors[i].torque(angles[i], velocities[i]));
+        (velocities, torques)
+    }
+}
+
+fn add(a: &Joints, b: &Joints) -> Joints {
+    from_fn(|i| a[i] + b[i])
+}

@@ -1,0 +1,64 @@
+//! The motor of a joint: what it can do, and what it tries to do.
+
+/// How far a joint is from where it shall be, in rad, when its motor pulls with all its might: 0.57°.
+///
+/// So whatever a motor can hold at all, it holds within this angle, whether its weight is known or not.
+pub(crate) const STRETCH: f64 = 0.01;
+
+/// Time in s in which a joint that nothing hinders gets to where it shall be, but for a third.
+const SETTLING: f64 = 0.04;
+
+/// A motor in a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Motor {
+    /// Largest torque, in N m.
+    pub effort: f64,
+    /// Largest speed, in rad/s.
+    pub speed: f64,
+    /// What it is to do.
+    pub task: Task,
+}
+
+/// What a motor is to do in a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Task {
+    /// Bring its joint to a place.
+    Follow {
+        /// Where the joint shall be at the tick's end, in rad.
+        angle: f64,
+        /// How fast it shall be then, in rad/s.
+        velocity: f64,
+        /// What is known to pull at the joint, in N m the other way.
+        known: f64,
+    },
+    /// Pull with this torque, in N m.
+    Pull(f64),
+}
+
+impl Motor {
+    /// Torque per rad that the joint is away from where it shall be, and per rad/s that it is too slow or too fast.
+    pub fn gains(&self) -> (f64, f64) {
+        match self.task {
+            Task::Follow { .. } => (self.effort / STRETCH, self.effort / STRETCH * SETTLING),
+            Task::Pull(_) => (0.0, 0.0),
+        }
+    }
+
+    /// The torque in N m that it would have if it had any torque, with its joint at this angle (rad) and velocity (rad/s).
+    pub fn wish(&self, at: f64, velocity_there: f64) -> f64 {
+        let (stiffness, damping) = self.gains();
+        match self.task {
+            Task::Follow {
+                angle,
+                velocity,
+                known,
+            } => known + stiffness * (angle - at) + damping * (velocity - velocity_there),
+            Task::Pull(torque) => torque,
+        }
+    }
+
+    /// The torque in N m that it has then.
+    pub fn torque(&self, at: f64, velocity_there: f64) -> f64 {
+        self.wish(at, velocity_there).clamp(-self.effort, self.effort)
+    }
+}

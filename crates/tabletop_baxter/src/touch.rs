@@ -1,0 +1,137 @@
+//! What an arm touches that is free to move, for the arm's own dynamics.
+//!
+//! To physics the robot's bodies go where they go, whatever is in their way: what they push gets their speed at once. So what
+//! it takes to push something must be known before the arm moves, not after.
+
+use std::array::from_fn;
+
+use bevy::{
+    math::{DAffine3, DVec3},
+    prelude::*,
+};
+use bevy_rapier3d::{parry::bounding_volume::BoundingVolume, plugin::RapierContextMut, rapier::prelude as rapier};
+use tabletop_core::{Arm, JOINTS_PER_ARM, TICK_SECONDS};
+
+use crate::{
+    clearance::TOUCHING,
+    dynamics::Touch,
+    matrix::Joints,
+    motion::Motion,
+    skeleton::{Place, UNITS_PER_METER, in_meters},
+    surroundings::FreeThing,
+};
+
+/// Cosine of the angle to a direction within which something fixed is straight ahead.
+const AHEAD: f32 = 0.7;
+
+/// What an arm touches or is about to be touched by: each thing once, where it is nearest. `gravity` in units/s²; `is_mine` tells
+/// the robot's bodies and what it holds.
+pub(crate) fn touches(
+    motion: &mut Motion,
+    arm: Arm,
+    rapier: &RapierContextMut,
+    gravity: f32,
+    is_mine: impl Fn(Entity) -> bool,
+) -> Vec<Touch> {
+    if motion.surroundings.free.is_empty() || !motion.is_shown {
+        return Vec::new();
+    }
+    let here = motion.positions;
+    let solids = motion.solids(arm, &here, &here);
+    motion.skeleton.update(&mut motion.scratch, &here);
+    let axes = motion.skeleton.axes(arm, &motion.scratch);
+    let to_robot = in_meters(motion.base).inverse();
+    let mut touches = Vec::new();
+    for thing in &motion.surroundings.free {
+        let Some(body) = body(rapier, thing.object) else {
+            continue;
+        };
+        // What comes is touched on its way.
+        let reach = TOUCHING + body.linvel().length() * TICK_SECONDS;
+        let bounds = thing.bounds.loosened(reach);
+        let near = solids.iter().filter(|(_, solid)| solid.bounds().intersects(&bounds));
+        let contacts = near.flat_map(|(number, solid)| {
+            let contacts = thing.solids().filter_map(|thing| solid.contact(&thing, reach));
+            contacts.map(move |contact| (*number, contact))
+        });
+        let Some((number, contact)) = contacts.min_by(|(_, a), (_, b)| a.dist.total_cmp(&b.dist)) else {
+            continue;
+        };
+        let normal = contact.normal1;
+        let speed = body.velocity_at_point(contact.point2).dot(normal);
+        if contact.dist > TOUCHING - speed.min(0.0) * TICK_SECONDS {
+            continue;
+        }
+        // What weighs on the arm falls towards it; what lies elsewhere stays there.
+        let falls = (Vec3::NEG_Z.dot(normal) * gravity * TICK_SECONDS).min(0.0);
+        let carriers = match motion.skeleton.bodies[number].place {
+            Place::Arm(_, joints) => joints.min(JOINTS_PER_ARM),
+            Place::Trunk | Place::Head => 0,
+        };
+        let resistance = resistance(rapier, thing, normal, &is_mine);
+        touches.push(Touch {
+            lever: lever(&axes[..carriers], to_robot, contact.point1, normal),
+            mass: f64::from(body.mass()),
+            speed: f64::from(speed + falls) / UNITS_PER_METER,
+            resistance: f64::from(resistance) / UNITS_PER_METER,
+        });
+    }
+    touches
+}
+
+/// How fast a point goes along a direction per rad/s of each joint, in m, if these joints carry it.
+fn lever(carriers: &[(DVec3, DVec3)], to_robot: DAffine3, point: Vec3, direction: Vec3) -> Joints {
+    let point = to_robot.transform_point3(point.as_dvec3() / UNITS_PER_METER);
+    let direction = to_robot.transform_vector3(direction.as_dvec3());
+    from_fn(|i| {
+        carriers
+            .get(i)
+            .map_or(0.0, |(origin, axis)| axis.cross(point - *origin).dot(direction))
+    })
+}
+
+/// The momentum in kg units/s that what else touches a thing can take from it in a tick, if it goes that way: what it pushes there itself,
+/// and friction, by the impulses of the last tick.
+fn resistance(
+    rapier: &RapierContextMut,
+    thing: &FreeThing,
+    direction: Vec3,
+    is_mine: impl Fn(Entity) -> bool,
+) -> f32 {
+    let Some(&handle) = rapier.colliders.entity2collider().get(&thing.object) else {
+        return 0.0;
+    };
+    let mut total = 0.0;
+    for pair in rapier.simulation.narrow_phase.contact_pairs_with(handle) {
+        let (other, sign) = match pair.collider1 == handle {
+            true => (pair.collider2, 1.0),
+            false => (pair.collider1, -1.0),
+        };
+        let [Some(own), Some(other)] = [handle, other].map(|handle| rapier.colliders.colliders.get(handle)) else {
+            continue;
+        };
+        let other_body = other.parent().and_then(|body| {
+            let entity = rapier.rigidbody_set.rigid_body_entity(body)?;
+            Some((entity, rapier.rigidbody_set.bodies.get(body)?))
+        });
+        let Some((_, other_body)) = other_body.filter(|(entity, _)| !is_mine(*entity)) else {
+            continue;
+        };
+        let friction = own.friction() * other.friction();
+        for manifold in pair.solver_manifolds() {
+            let impulse: f32 = manifold.points.iter().map(|point| point.data.impulse).sum();
+            let ahead = manifold.data.normal.dot(direction) * sign;
+            let touches = manifold.points.iter().any(|point| point.dist < TOUCHING);
+            if ahead > AHEAD && touches && other_body.is_fixed() {
+                return f32::INFINITY;
+            }
+            total += impulse * (ahead.max(0.0) + friction * (1.0 - ahead * ahead).max(0.0).sqrt());
+        }
+    }
+    total
+}
+
+fn body<'a>(rapier: &'a RapierContextMut, object: Entity) -> Option<&'a rapier::RigidBody> {
+    let handle = *rapier.rigidbody_set.entity2body().get(&object)?;
+    rapier.rigidbody_set.bodies.get(handle)
+}

@@ -1,0 +1,376 @@
+//! How the robot moves in dynamic mode.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+mod kit;
+
+use bevy::prelude::*;
+use kit::{Stage, block};
+use proptest::prelude::*;
+use tabletop_core::{
+    Arm, Drive, JOINTS_PER_ARM, Pose, Recording, Robot, RobotJoint, SimCommand, SimFact, StepApp,
+    TICK_SECONDS,
+};
+use tabletop_kinematics::baxter;
+
+const ARM: Arm = Arm::Right;
+
+const SECONDS: f64 = TICK_SECONDS as f64;
+
+/// Ticks of a second.
+const SECOND: u64 = 60;
+
+fn drive(stage: &mut Stage, drives: &[(RobotJoint, Drive)]) {
+    stage.tell(SimCommand::Drive(drives.to_vec()));
+}
+
+/// Sends an arm to angles, and waits until it is there.
+fn go(stage: &mut Stage, arm: Arm, angles: [f64; JOINTS_PER_ARM]) {
+    let drives: Vec<_> = RobotJoint::of_arm(arm)
+        .into_iter()
+        .zip(angles)
+        .map(|(joint, angle)| (joint, Drive::Toward(angle)))
+        .collect();
+    // Up first, out of the way of the table.
+    drive(stage, &[(RobotJoint::of_arm(arm)[1], Drive::Toward(-1.2))]);
+    stage.app.step(90);
+    drive(stage, &drives);
+    stage.app.step(1);
+    for _ in 0..400 {
+        if !stage.robot().arm(arm).is_moving {
+            break;
+        }
+        stage.app.step(1);
+    }
+    stage.app.step(30);
+    let off = worst(stage, arm, angles);
+    assert!(off < 0.1, "{off}° off: {:?}", stage.robot().arm(arm).blocked_by);
+}
+
+/// How far the arm's joints are from these angles at most, in degrees.
+fn worst(stage: &Stage, arm: Arm, angles: [f64; JOINTS_PER_ARM]) -> f64 {
+    let is = stage.robot().angles(arm);
+    is.iter()
+        .zip(angles)
+        .map(|(is, angle)| (is - angle).abs().to_degrees())
+        .fold(0.0, f64::max)
+}
+
+/// Largest torques of the motors, in N m.
+fn effort(joint: RobotJoint) -> f64 {
+    if joint.index() % JOINTS_PER_ARM < 4 { 50.0 } else { 15.0 }
+}
+
+/// Checks what holds in every tick.
+fn check_limits(robot: &Robot) {
+    for joint in RobotJoint::of_arm(Arm::Left).into_iter().chain(RobotJoint::of_arm(Arm::Right)) {
+        let state = robot.joint(joint);
+        let speed = if joint.index() % JOINTS_PER_ARM < 4 { 1.5 } else { 4.0 };
+        assert!(state.torque.abs() <= effort(joint), "{joint}: {state:?}");
+        assert!(state.velocity.abs() <= speed + 1e-6, "{joint}: {state:?}");
+        assert_eq!(joint.clamp(state.position), state.position, "{joint}: {state:?}");
+    }
+}
+
+/// Straight out to the side of the table, level, over nothing but the table.
+const STRAIGHT: [f64; JOINTS_PER_ARM] = [0.0, -0.25, 0.0, 0.0, 0.0, 0.0, 0.0];
+
+/// A block of a mass in the right gripper, which then is stretched out.
+fn stretched_with(mass: f32) -> Stage {
+    let mut stage = Stage::dynamic();
+    stage.reach(ARM, Vec3::new(3.0, -2.0, 0.9), 0.0);
+    stage.put("payload", block(Vec3::ONE), mass, Pose::at(Vec3::new(3.0, -2.0, 0.5)));
+    stage.app.step(5);
+    drive(&mut stage, &[(RobotJoint::gripper(ARM), Drive::Toward(0.0))]);
+    stage.app.step(100);
+    assert_eq!(stage.robot().arm(ARM).holds.len(), 1);
+    for k in 0..40 { stage.app.step(3); println!("{k} {:?} {:?}", stage.robot().angles(ARM), RobotJoint::of_arm(ARM).map(|j| stage.robot().joint(j).torque)); }
+    stage.reach(ARM, Vec3::new(3.0, -2.0, 4.0), 0.0);
+    go(&mut stage, ARM, STRAIGHT);
+    stage
+}
+
+#[test]
+fn a_pose_is_held_with_two_kilograms_at_full_stretch() {
+    let mut stage = stretched_with(2.0);
+    let reach = stage.robot().arm(ARM).end_effector.location;
+    let shoulder = stage.robot().arm(ARM).joint_origins[0];
+    assert!((reach - shoulder).length() > 10.0, "stretched");
+    let torque = stage.robot().joint(RobotJoint::RightS1).torque;
+    let expected = 2.0 * 9.81 * f64::from((reach - shoulder).truncate().length()) / 10.0;
+    assert!((torque.abs() / expected - 1.0).abs() < 0.02, "{torque} instead of {expected} N m");
+    for _ in 0..10 * SECOND {
+        stage.app.step(1);
+        check_limits(stage.robot());
+        let off = worst(&stage, ARM, STRAIGHT);
+        assert!(off < 0.1, "{off}°");
+    }
+}
+
+#[test]
+fn a_weight_that_nobody_told_of_is_held_too() {
+    let mut stage = Stage::dynamic();
+    go(&mut stage, ARM, STRAIGHT);
+    let robot = stage.robot().clone();
+    let hand = robot.arm(ARM).end_effector.location;
+    let shoulder = robot.arm(ARM).joint_origins[0];
+    // Laid across the wrist.
+    let place = hand.lerp(shoulder, 0.2) + Vec3::Z * 1.6;
+    stage.put("weight", block(Vec3::new(4.0, 4.0, 1.0)), 2.0, Pose::at(place));
+    let mut worst_off = 0.0_f64;
+    let mut torque = 0.0_f64;
+    for _ in 0..10 * SECOND {
+        stage.app.step(1);
+        check_limits(stage.robot());
+        worst_off = worst_off.max(worst(&stage, ARM, STRAIGHT));
+        torque = torque.max(stage.robot().joint(RobotJoint::RightS1).torque.abs());
+    }
+    assert!(torque > 10.0, "it lay on the arm: {torque} N m, {:?}", stage.place("weight"));
+    assert!(worst_off < 0.5, "{worst_off}°");
+}
+
+#[test]
+fn a_swing_into_a_fixed_block_stops_there_within_the_efforts() {
+    let mut stage = Stage::dynamic();
+    stage.reach(ARM, Vec3::new(6.0, -1.5, 1.2), 0.0);
+    stage.put("wall", block(Vec3::new(1.0, 6.0, 4.0)), 0.0, Pose::at(Vec3::new(0.0, -3.0, 2.0)));
+    stage.app.step(1);
+    let (mut fastest, mut strongest) = (0.0_f32, 0.0_f64);
+    let mut facts = Vec::new();
+    let mut before = stage.robot().arm(ARM).end_effector.location;
+    for _ in 0..2 * SECOND {
+        drive(&mut stage, &[(RobotJoint::RightS0, Drive::Velocity(1.5))]);
+        facts.extend(stage.facts_of(1));
+        check_limits(stage.robot());
+        let hand = stage.robot().arm(ARM).end_effector;
+        fastest = fastest.max((hand.location - before).length() / TICK_SECONDS);
+        before = hand.location;
+        strongest = strongest.max(stage.robot().joint(RobotJoint::RightS0).torque.abs());
+        let left_finger = hand * Vec3::new(-1.3, 0.0, 0.0);
+        assert!(left_finger.x > 0.5, "{left_finger} is in the wall");
+    }
+    assert!(fastest > 10.0, "{fastest} units/s");
+    assert!(strongest > 40.0, "it pressed: {strongest} N m");
+    let blocked = SimFact::ArmBlocked { arm: ARM, by: "wall".into() };
+    assert_eq!(facts, [blocked]);
+}
+
+#[test]
+fn a_velocity_is_kept() {
+    let mut stage = Stage::dynamic();
+    go(&mut stage, ARM, STRAIGHT);
+    for (joint, velocity) in [(RobotJoint::RightS0, 0.7), (RobotJoint::RightE1, 1.2), (RobotJoint::RightW1, 1.0)] {
+        for tick in 0..45 {
+            drive(&mut stage, &[(joint, Drive::Velocity(velocity))]);
+            stage.app.step(1);
+            check_limits(stage.robot());
+            let is = stage.robot().joint(joint).velocity;
+            assert!(tick < 15 || (is / velocity - 1.0).abs() < 0.03, "{joint}, tick {tick}: {is} rad/s");
+        }
+        stage.app.step(30);
+        let is = stage.robot().joint(joint).velocity;
+        assert!(is.abs() < 1e-3, "{joint} stops: {is} rad/s");
+    }
+}
+
+#[test]
+fn a_torque_accelerates_as_the_masses_have_it() {
+    let model = baxter().unwrap();
+    for arm in Arm::BOTH {
+        let mut stage = Stage::dynamic();
+        let angles = stage.robot().angles(arm);
+        let joints = RobotJoint::of_arm(arm);
+        let torques = [4.0, -3.0, 2.0, -1.5, 0.3, -0.2, 0.02];
+        let drives: Vec<_> = joints.into_iter().zip(torques.map(Drive::Torque)).collect();
+        drive(&mut stage, &drives);
+        stage.app.step(1);
+        let mut configuration = model.zero();
+        let mut accelerations = model.zero();
+        for (joint, angle) in joints.into_iter().zip(angles) {
+            let id = model.find_joint(joint.name()).unwrap();
+            configuration[id] = angle;
+            accelerations[id] = stage.robot().joint(joint).velocity / SECONDS;
+        }
+        let frames = model.frames(&configuration);
+        let gravity = bevy::math::DVec3::ZERO;
+        let found = model.inverse_dynamics(&frames, &model.zero(), &accelerations, gravity, &[]);
+        for (joint, torque) in joints.into_iter().zip(torques) {
+            let state = stage.robot().joint(joint);
+            let needs = found[model.find_joint(joint.name()).unwrap()] + 0.7 * state.velocity;
+            assert!((needs - torque).abs() < 1e-3, "{joint}: {needs} instead of {torque} N m");
+            assert_eq!(state.torque, torque);
+        }
+    }
+}
+
+#[test]
+fn a_joint_stays_where_it_is_when_its_torque_ends() {
+    let mut stage = Stage::dynamic();
+    go(&mut stage, ARM, STRAIGHT);
+    for _ in 0..20 {
+        drive(&mut stage, &[(RobotJoint::RightS0, Drive::Torque(-8.0))]);
+        stage.app.step(1);
+    }
+    let at = stage.robot().joint(RobotJoint::RightS0).position;
+    assert!(at < -0.03, "it has moved: {at}");
+    stage.app.step(SECOND);
+    let then = stage.robot().joint(RobotJoint::RightS0);
+    assert!((then.position - at).abs() < 0.03, "{} after {at}", then.position);
+    assert_eq!(then.velocity, 0.0);
+}
+
+#[test]
+fn a_position_is_reached_as_fast_as_the_motors_can() {
+    let mut stage = Stage::dynamic();
+    go(&mut stage, ARM, STRAIGHT);
+    let mut goal = STRAIGHT;
+    goal[0] = 0.6;
+    goal[6] = -2.0;
+    drive(&mut stage, &[(RobotJoint::RightS0, Drive::Position(goal[0])), (RobotJoint::RightW2, Drive::Position(goal[6]))]);
+    for tick in 0..70 {
+        stage.app.step(1);
+        check_limits(stage.robot());
+        let past = stage.robot().joint(RobotJoint::RightS0).position - goal[0];
+        assert!(past < 0.01, "tick {tick}: {past} rad past the goal");
+    }
+    let off = worst(&stage, ARM, goal);
+    assert!(off < 0.1, "{off}°: {:?}", stage.robot().angles(ARM));
+    assert!(!stage.robot().arm(ARM).is_moving);
+}
+
+/// Pushes a block along the table for a second. Returns how far it and the hand have come, in units.
+fn push(mass: Option<f32>) -> (f32, f32, Stage) {
+    let mut stage = Stage::dynamic();
+    stage.reach(ARM, Vec3::new(2.0, -3.0, 0.9), 0.0);
+    drive(&mut stage, &[(RobotJoint::gripper(ARM), Drive::Toward(0.2))]);
+    stage.app.step(120);
+    if let Some(mass) = mass {
+        stage.put("thing", block(Vec3::ONE), mass, Pose::at(Vec3::new(4.0, -3.0, 0.5)));
+    }
+    stage.app.step(30);
+    let pose = Pose::at(Vec3::new(7.0, -3.0, 0.9));
+    stage.tell(SimCommand::ReachTo { arm: ARM, pose });
+    for _ in 0..SECOND {
+        stage.app.step(1);
+        check_limits(stage.robot());
+        if mass == Some(50.0) { println!("{:?} {:?} {:?} {:?}", stage.robot().arm(ARM).end_effector, stage.place("thing").location, RobotJoint::of_arm(ARM).map(|j| stage.robot().joint(j).torque), stage.robot().arm(ARM).blocked_by); }
+    }
+    let hand = stage.robot().arm(ARM).end_effector.location.x - 2.0;
+    let thing = if mass.is_some() { stage.place("thing").location.x - 4.0 } else { 0.0 };
+    (thing, hand, stage)
+}
+
+#[test]
+fn a_light_block_is_pushed_and_a_heavy_one_stalls_the_arm() {
+    let (_, free, _) = push(None);
+    let (light, hand, _) = push(Some(0.2));
+    assert!(light > 1.5, "the light block came {light}");
+    assert!(hand > 0.97 * free, "the hand came {hand} instead of {free}");
+    let (heavy, hand, stage) = push(Some(50.0));
+    assert!(heavy < 0.3, "the heavy block came {heavy}");
+    assert!(hand < 0.5 * free, "the hand came {hand}");
+    let strongest = RobotJoint::of_arm(ARM)
+        .into_iter()
+        .map(|joint| stage.robot().joint(joint).torque.abs() / effort(joint))
+        .fold(0.0, f64::max);
+    assert!(strongest > 0.9, "it pushes: {strongest}");
+}
+
+fn any_drive() -> impl Strategy<Value = (RobotJoint, Drive)> {
+    let drive = prop_oneof![
+        3 => (-50.0..50.0).prop_map(Drive::Velocity),
+        2 => (-3.2..3.2).prop_map(Drive::Position),
+        2 => (-4.0..4.0).prop_map(Drive::Toward),
+        3 => (-80.0..80.0).prop_map(Drive::Torque),
+    ];
+    (0..14usize, drive).prop_map(|(joint, drive)| (RobotJoint::ALL[joint], drive))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    #[test]
+    fn no_command_brings_a_joint_beyond_its_limits(
+        drives in proptest::collection::vec(proptest::collection::vec(any_drive(), 1..10), 1..60),
+        is_shown: bool,
+    ) {
+        let mut stage = Stage::dynamic();
+        stage.tell(SimCommand::ShowRobot(is_shown));
+        for drives in drives {
+            for _ in 0..5 {
+                drive(&mut stage, &drives);
+                stage.app.step(1);
+                check_limits(stage.robot());
+                let inside = kit::inside_the_table(&mut stage);
+                prop_assert!(inside.is_empty(), "{:?}", inside);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_it_does_is_the_same_every_time() {
+    let run = || {
+        let (_, _, stage) = push(Some(1.0));
+        (stage.robot().joints, stage.place("thing"))
+    };
+    assert_eq!(run(), run());
+}
+
+#[test]
+fn undo_takes_the_motors_back_too() {
+    let mut stage = Stage::dynamic();
+    stage.put("thing", block(Vec3::ONE), 1.0, Pose::at(Vec3::new(-3.0, 0.0, 0.5)));
+    stage.app.world_mut().resource_mut::<Recording>().0 = true;
+    drive(&mut stage, &[(RobotJoint::RightE1, Drive::Toward(1.0))]);
+    stage.app.step(30);
+    let joints = stage.robot().joints;
+    stage.tell(SimCommand::Grasp {
+        hand: tabletop_core::Hand::Left,
+        object: "thing".into(),
+    });
+    stage.app.step(30);
+    let then = stage.robot().joints;
+    stage.tell(SimCommand::Undo);
+    stage.app.step(30);
+    assert_ne!(joints, then);
+    assert_eq!(stage.robot().joints, then, "it goes on as it did the first time");
+}
+
+#[test]
+fn what_hinders_an_arm_is_left_when_the_robot_goes_away() {
+    let mut stage = Stage::dynamic();
+    drive(&mut stage, &[(RobotJoint::RightS1, Drive::Velocity(-1.0))]);
+    stage.app.step(3);
+    let angles = stage.robot().angles(ARM);
+    stage.tell(SimCommand::ShowRobot(false));
+    stage.app.step(1);
+    assert_eq!(stage.robot().angles(ARM), angles);
+    assert!(stage.robot().joints.iter().all(|joint| joint.velocity == 0.0));
+}
+
+/// Cost of a tick, to be read: `cargo test --release -p tabletop_baxter --test dynamic -- --ignored cost --nocapture`.
+#[test]
+#[ignore = "measures"]
+fn cost() {
+    for (name, mut stage) in [("kinematic", Stage::new()), ("dynamic", Stage::dynamic())] {
+        for moves in [false, true] {
+            let start = std::time::Instant::now();
+            let ticks = 2000;
+            for tick in 0..ticks {
+                let sign = if tick % 120 < 60 { 0.4 } else { -0.4 };
+                if moves {
+                    let drives: Vec<_> = RobotJoint::ALL[..14]
+                        .iter()
+                        .filter(|joint| !joint.name().ends_with("s1"))
+                        .map(|&joint| (joint, Drive::Velocity(sign * 0.3)))
+                        .collect();
+                    drive(&mut stage, &drives);
+                }
+                stage.app.step(1);
+            }
+            let micros = start.elapsed().as_secs_f64() * 1e6 / f64::from(ticks);
+            info!("{name}, moves: {moves}: {micros:.1} µs");
+            let _ = std::fs::write(format!("/tmp/dyn-cost-{name}-{moves}"), format!("{micros:.1}\n"));
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! How each engine is started.
+
+use std::{
+    path::{MAIN_SEPARATOR, Path},
+    process::Command,
+};
+
+use crate::{
+    engine::{EngineConfig, Trigger},
+    find::EngineKind,
+    session::Session,
+};
+
+/// The command that starts an engine.
+pub(crate) fn command(config: &EngineConfig, session: &Session) -> Result<Command, String> {
+    let mut command = Command::new(&config.engine.program);
+    command.current_dir(&config.working_dir);
+    let poll = || {
+        format!(
+            "addpath({}); tabletop_poll({}); exit",
+            quoted(&session.driver()),
+            quoted(session.folder())
+        )
+    };
+    match (config.engine.kind, config.trigger) {
+        (EngineKind::Octave, trigger) => {
+            command.args(["-q", "--no-history"]);
+            if config
+                .engine
+                .program
+                .file_stem()
+                .is_some_and(|name| name == "octave")
+            {
+                command.arg("--no-gui");
+            }
+            if trigger == Trigger::Poll {
+                command.args(["--eval", &poll()]);
+            }
+        }
+        (EngineKind::Matlab, Trigger::Poll) => {
+            let window = if cfg!(windows) { "-wait" } else { "-nodesktop" };
+            command.args(["-nosplash", window, "-r", &poll()]);
+        }
+        (EngineKind::Python, Trigger::Stdin) => {
+            command.args([
+                "-u".as_ref(),
+                session.driver().join("tabletop.py").as_os_str(),
+            ]);
+            command.arg(session.folder());
+        }
+        (EngineKind::Matlab, Trigger::Stdin) => {
+            return Err("MATLAB cannot be driven by its standard input".into());
+        }
+        (EngineKind::Python, Trigger::Poll) => return Err("Python does not poll".into()),
+    }
+    Ok(command)
+}
+
+/// A folder as a Matlab text, with a separator at its end.
+pub(crate) fn quoted(folder: &Path) -> String {
+    let mut folder = folder.to_string_lossy().replace('\'', "''");
+    folder.push(MAIN_SEPARATOR);
+    format!("'{folder}'")
+}

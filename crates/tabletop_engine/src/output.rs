@@ -1,0 +1,37 @@
+//! What an engine prints: lines for a person and marks for the worker.
+
+use std::{io::Read, sync::mpsc::Sender};
+
+use crate::{
+    console::{Console, Piece, Splitter, Stream},
+    worker::Signal,
+};
+
+/// Reads what an engine prints until it ends.
+pub(crate) fn read_output(
+    mut output: impl Read,
+    stream: Stream,
+    console: &Console,
+    inbox: &Sender<Signal>,
+) {
+    let mut splitter = Splitter::default();
+    let mut each = |piece: Piece| match piece {
+        Piece::Text(text) => console.push(stream, text),
+        Piece::Mark(mark) => {
+            let seq = str::from_utf8(mark)
+                .ok()
+                .and_then(|mark| mark.strip_prefix("done "));
+            if let Some(seq) = seq.and_then(|seq| seq.trim().parse().ok()) {
+                drop(inbox.send(Signal::Done(seq)));
+            }
+        }
+    };
+    let mut buffer = [0; 16 << 10];
+    while let Ok(count) = output.read(&mut buffer)
+        && count > 0
+    {
+        splitter.feed(buffer.get(..count).unwrap_or_default(), &mut each);
+    }
+    splitter.finish(each);
+    drop(inbox.send(Signal::Closed));
+}

@@ -1,0 +1,272 @@
+//! What a scenario lets the robot do, and expects of it.
+
+use bevy::prelude::*;
+use serde::Deserialize;
+use tabletop_core::{Arm, Drive, Face, Pose, Robot, RobotJoint, SimCommand, WIDEST_GRIP};
+
+use crate::{seen::Seen, step::fault_of_vector};
+
+/// Ticks without any motion after which the robot is still: more than an arm waits for what it squeezes.
+pub(crate) const TICKS_TO_STILL: u64 = 15;
+
+/// One thing that the robot does. Positions of joints are in rad, openings of grippers in units, other angles in degrees.
+/// All motions but [`Set`](Self::Set) take their time; [`WaitUntilStill`](Self::WaitUntilStill) waits for their end.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum RobotStep {
+    /// Put the robot to the table.
+    Show,
+    /// Take it away.
+    Hide,
+    /// Move joints to these positions at the speed of manual control.
+    Move(Vec<(RobotJoint, f64)>),
+    /// Put joints to these positions at once.
+    Set(Vec<(RobotJoint, f64)>),
+    /// Move all joints to where they are in the beginning.
+    Home,
+    /// Bring an end effector to a pose: with `degrees` 0 its fingers point down and open along X.
+    ReachTo {
+        /// The arm.
+        arm: Arm,
+        /// The location, in units.
+        at: Vec3,
+        /// The rotation about the fixed X, then Y, then Z axis.
+        #[serde(default)]
+        degrees: Vec3,
+    },
+    /// Close a gripper until it holds or meets something.
+    Close(Arm),
+    /// Open a gripper, and let go of what it holds.
+    Open(Arm),
+    /// Show this face.
+    Face(Face),
+    /// Wait until nothing of the robot moves, at most so many seconds.
+    WaitUntilStill(f32),
+}
+
+/// Something that is to be true of the robot.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum RobotCheck {
+    /// A joint is at a position, in rad, or units for a gripper.
+    Joint {
+        /// The joint.
+        joint: RobotJoint,
+        /// The position.
+        at: f64,
+        /// How far away from it is near enough.
+        #[serde(default = "precise")]
+        within: f64,
+    },
+    /// An end effector is at a location, in units.
+    EndEffector {
+        /// The arm.
+        arm: Arm,
+        /// The location.
+        at: Vec3,
+        /// How far away from it is near enough.
+        #[serde(default = "close")]
+        within: f32,
+    },
+    /// A gripper holds an object.
+    Holds {
+        /// The arm.
+        arm: Arm,
+        /// The object's id.
+        object: String,
+    },
+    /// A gripper holds nothing.
+    HoldsNothing(Arm),
+    /// An arm is stopped by something: an object's id, `table` or a part of the robot.
+    BlockedBy {
+        /// The arm.
+        arm: Arm,
+        /// What is in its way.
+        by: String,
+    },
+}
+
+const fn precise() -> f64 {
+    0.01
+}
+
+const fn close() -> f32 {
+    0.05
+}
+
+impl RobotStep {
+    /// What makes no sense in it.
+    pub(crate) fn fault(&self) -> Option<String> {
+        match self {
+            Self::Move(positions) | Self::Set(positions) => {
+                positions.iter().find_map(|(joint, position)| {
+                    let (least, largest) = joint.limits();
+                    let is_there = (least..=largest).contains(position);
+                    (!is_there).then(|| {
+                        format!("joint {joint} goes from {least} to {largest}, not to {position}")
+                    })
+                })
+            }
+            Self::ReachTo { at, degrees, .. } => {
+                fault_of_vector(*at).or_else(|| fault_of_vector(*degrees))
+            }
+            Self::WaitUntilStill(seconds) => crate::step::fault_of_time(*seconds),
+            _ => None,
+        }
+    }
+
+    /// The command for it; `None` if it only waits.
+    pub(crate) fn command(&self) -> Option<SimCommand> {
+        let gripper = |arm: Arm, opening| vec![(RobotJoint::gripper(arm), Drive::Toward(opening))];
+        let drives = match self {
+            Self::Show => return Some(SimCommand::ShowRobot(true)),
+            Self::Hide => return Some(SimCommand::ShowRobot(false)),
+            Self::Face(face) => return Some(SimCommand::ShowFace(*face)),
+            Self::ReachTo { arm, at, degrees } => {
+                return Some(SimCommand::ReachTo {
+                    arm: *arm,
+                    pose: Pose::from_degrees(*at, *degrees),
+                });
+            }
+            Self::WaitUntilStill(_) => return None,
+            Self::Move(positions) => each(positions, Drive::Toward),
+            Self::Set(positions) => each(positions, Drive::Position),
+            Self::Home => each(&RobotJoint::ALL.map(|joint| (joint, joint.home())), Drive::Toward),
+            Self::Close(arm) => gripper(*arm, 0.0),
+            Self::Open(arm) => gripper(*arm, WIDEST_GRIP),
+        };
+        Some(SimCommand::Drive(drives))
+    }
+}
+
+fn each(positions: &[(RobotJoint, f64)], drive: fn(f64) -> Drive) -> Vec<(RobotJoint, Drive)> {
+    let positions = positions.iter();
+    positions.map(|(joint, at)| (*joint, drive(*at))).collect()
+}
+
+/// Whether nothing of the robot has moved in the last tick.
+pub(crate) fn is_still(robot: &Robot) -> bool {
+    robot.joints.iter().all(|joint| joint.velocity == 0.0)
+}
+
+impl RobotCheck {
+    /// Compares with what is seen; an error says what was expected and what was found.
+    pub(crate) fn judge(&self, seen: &Seen) -> Result<(), String> {
+        let robot = &seen.robot;
+        match self {
+            Self::Joint { joint, at, within } => {
+                let found = robot.joint(*joint).position;
+                let is_there = (found - at).abs() <= *within;
+                is_there.then_some(()).ok_or_else(|| {
+                    format!("expected joint {joint} within {within} of {at}, found it at {found:.4}")
+                })
+            }
+            Self::EndEffector { arm, at, within } => {
+                let found = robot.arm(*arm).end_effector.location;
+                let away = found.distance(*at);
+                (away <= *within).then_some(()).ok_or_else(|| {
+                    format!(
+                        "expected the {arm} end effector within {within} of {at:.3}, found it at {found:.3}, {away:.3} away"
+                    )
+                })
+            }
+            Self::Holds { arm, object } => {
+                let held = held(seen, *arm);
+                held.contains(&object.as_str()).then_some(()).ok_or_else(|| {
+                    format!("expected `{object}` in the {arm} gripper, found {}", in_words(&held))
+                })
+            }
+            Self::HoldsNothing(arm) => {
+                let held = held(seen, *arm);
+                held.is_empty().then_some(()).ok_or_else(|| {
+                    format!("expected nothing in the {arm} gripper, found {}", in_words(&held))
+                })
+            }
+            Self::BlockedBy { arm, by } => {
+                let found = robot.arm(*arm).blocked_by.as_deref();
+                (found == Some(by)).then_some(()).ok_or_else(|| {
+                    format!(
+                        "expected the {arm} arm blocked by {by}, found it {}",
+                        found.map_or("free".into(), |found| format!("blocked by {found}"))
+                    )
+                })
+            }
+        }
+    }
+}
+
+/// The ids of what a gripper holds.
+fn held<'a>(seen: &'a Seen, arm: Arm) -> Vec<&'a str> {
+    let holds = &seen.robot.arm(arm).holds;
+    let held = seen.objects.iter().filter(|object| holds.contains(&object.entity));
+    held.map(|object| object.spec.id.as_str()).collect()
+}
+
+fn in_words(ids: &[&str]) -> String {
+    match ids {
+        [] => "nothing".into(),
+        ids => format!("`{}`", ids.join("`, `")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_stage::Stage;
+
+    #[test]
+    fn the_robot_is_told_what_its_steps_say() {
+        let mut stage = Stage::new(
+            "Robot(Show), Robot(Move([(RightE1, 1.5)])), Robot(Close(Left)), \
+             Robot(ReachTo(arm: Right, at: (3, -2, 1), degrees: (0, 0, 90)))",
+        );
+        let given: Vec<_> = std::iter::from_fn(|| stage.tick()).collect();
+        assert_eq!(
+            given,
+            [
+                SimCommand::ShowRobot(true),
+                SimCommand::Drive(vec![(RobotJoint::RightE1, Drive::Toward(1.5))]),
+                SimCommand::Drive(vec![(RobotJoint::LeftGripper, Drive::Toward(0.0))]),
+                SimCommand::ReachTo {
+                    arm: Arm::Right,
+                    pose: Pose::from_degrees(Vec3::new(3.0, -2.0, 1.0), Vec3::Z * 90.0),
+                },
+            ]
+        );
+    }
+
+    #[test]
+    fn a_position_out_of_limits_is_a_fault() {
+        let fault = RobotStep::Set(vec![(RobotJoint::LeftE1, 3.0)]).fault();
+        assert_eq!(
+            fault.as_deref(),
+            Some("joint left_e1 goes from -0.05 to 2.618, not to 3")
+        );
+    }
+
+    #[test]
+    fn waiting_ends_when_nothing_has_moved_for_a_while() {
+        let mut stage = Stage::new("Robot(WaitUntilStill(2))");
+        assert_eq!(stage.finish() + 1, TICKS_TO_STILL);
+        let mut stage = Stage::new("Robot(WaitUntilStill(2))");
+        stage.robot.joints[3].velocity = 0.1;
+        assert!(stage.failure().contains("the robot to be still"));
+    }
+
+    #[test]
+    fn checks_say_what_they_expected_and_found() {
+        for (check, words) in [
+            ("Joint(joint: LeftE1, at: 1)", "found it at 2.6180"),
+            ("EndEffector(arm: Left, at: (1, 0, 0))", "1.000 away"),
+            ("Holds(arm: Left, object: \"low\")", "found nothing"),
+            ("BlockedBy(arm: Left, by: \"table\")", "found it free"),
+        ] {
+            let mut stage = Stage::new(&format!("Expect(Robot({check}))"));
+            let failure = stage.failure();
+            assert!(failure.contains(words), "{failure}");
+        }
+        let all = "Expect(Robot(Joint(joint: LeftE1, at: 2.618))), \
+             Expect(Robot(EndEffector(arm: Left, at: (0, 0, 0)))), Expect(Robot(HoldsNothing(Left)))";
+        assert_eq!(Stage::new(all).failure(), "Done");
+    }
+}

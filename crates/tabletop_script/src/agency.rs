@@ -1,0 +1,274 @@
+//! The life of a script: start, a call a tick, end.
+
+use std::time::{Duration, Instant};
+
+use bevy::prelude::*;
+use tabletop_core::{
+    Agent, AgentNews, AgentOrder, Paused, PictureDemand, SimCommand, SimTick,
+    Standstill,
+};
+use tabletop_engine::{EngineConfig, EngineError, EngineHandle, Reply, Stream};
+
+use crate::{
+    act::{command_of_motor, commands_of_init, last_command},
+    sense::{Senses, aux},
+    settings::{ScriptSettings, Waiting},
+};
+
+/// Longest time that one look for an answer takes while the simulation waits for the script anyway.
+const ONE_LOOK: Duration = Duration::from_millis(500);
+
+/// The script that drives the robot, if there is one.
+#[derive(Resource, Default)]
+pub(crate) struct Agency(Option<Session>);
+
+/// A script with its engine.
+struct Session {
+    engine: EngineHandle,
+    stage: Stage,
+    /// When the engine was asked for what it has not answered yet.
+    asked: Instant,
+    /// The tick of the last call, or of the init script.
+    called_at: SimTick,
+    /// The tick in which the init script has run.
+    began_at: SimTick,
+    /// Whether the last tick has drawn a picture for the script.
+    has_picture: bool,
+}
+
+/// What is expected of the engine next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// That it comes up.
+    Start,
+    /// That the init script has run.
+    Init,
+    /// Nothing: the callback script is due.
+    Idle,
+    /// That the callback script has run.
+    Step,
+}
+
+/// Starts and stops the script as told, calls it for the tick that begins, and lets the simulation wait until it has answered.
+pub(crate) fn call(
+    mut orders: MessageReader<AgentOrder>,
+    mut agency: ResMut<Agency>,
+    settings: Res<ScriptSettings>,
+    paused: Res<Paused>,
+    tick: Res<SimTick>,
+    senses: Senses,
+    demand: Res<PictureDemand>,
+    mut agent: ResMut<Agent>,
+    mut standstill: ResMut<Standstill>,
+    mut commands: MessageWriter<SimCommand>,
+    mut news: MessageWriter<AgentNews>,
+) {
+    for order in orders.read() {
+        match order {
+            AgentOrder::Start if agency.0.is_none() => match start(&settings, *tick) {
+                Ok(session) => {
+                    agency.0 = Some(session);
+                    *agent = Agent::Starting;
+                }
+                Err(error) => fail(&error, &mut agent, &mut news),
+            },
+            AgentOrder::Start => {}
+            AgentOrder::Stop => {
+                if let Some(session) = agency.0.take() {
+                    session.engine.kill();
+                    print(&session.engine, &mut news);
+                    end(&mut commands);
+                    *agent = Agent::Off;
+                    news.write(AgentNews::Stopped);
+                }
+            }
+        }
+    }
+    standstill.set_if_neq(Standstill(false));
+    let Some(session) = &mut agency.0 else {
+        return;
+    };
+    if paused.0 && session.stage == Stage::Idle {
+        return;
+    }
+    let answered = loop {
+        if session.stage == Stage::Idle {
+            let is_fresh = std::mem::take(&mut session.has_picture);
+            let ticks = tick.0.saturating_sub(session.called_at.0).max(1);
+            session.called_at = *tick;
+            let sensor = senses.sensor(ticks, is_fresh, &settings);
+            session.ask(Stage::Step, |engine| engine.step(sensor));
+        }
+        let look = match (settings.waiting, session.stage) {
+            (Waiting::Frame(_), Stage::Start) => Duration::ZERO,
+            (Waiting::Frame(most), _) => most,
+            (Waiting::Blocking, _) => ONE_LOOK,
+        };
+        let reply = session.engine.recv_timeout(look);
+        print(&session.engine, &mut news);
+        match reply {
+            Some(reply) => {
+                match session.take(reply, *tick, &senses, &mut agent, &mut commands, &mut news) {
+                    Ok(Answer::None) => {}
+                    answered => break answered,
+                }
+            }
+            None if !session.engine.is_alive() => break Err(EngineError::Stopped),
+            None if settings.waiting == Waiting::Blocking => {}
+            None => {
+                // The engine comes up while the simulation goes on; the script itself is waited for.
+                standstill.set_if_neq(Standstill(session.stage != Stage::Start));
+                if session.stage != Stage::Start {
+                    *agent = Agent::Waiting {
+                        since: session.asked.elapsed(),
+                    };
+                }
+                return;
+            }
+        }
+    };
+    match answered {
+        Ok(Answer::Exit) => {
+            if let Some(session) = agency.0.take() {
+                session.engine.stop();
+                print(&session.engine, &mut news);
+            }
+            end(&mut commands);
+            *agent = Agent::Off;
+            news.write(AgentNews::Stopped);
+        }
+        Ok(_) => {
+            let ticks = tick.0.saturating_sub(session.began_at.0);
+            if ticks.is_multiple_of(settings.ticks_per_picture.max(1)) {
+                demand.ask();
+                session.has_picture = true;
+            }
+        }
+        Err(error) => {
+            if let Some(session) = agency.0.take() {
+                session.engine.kill();
+                print(&session.engine, &mut news);
+            }
+            end(&mut commands);
+            fail(&error, &mut agent, &mut news);
+        }
+    }
+}
+
+/// What came of an answer.
+enum Answer {
+    /// Another one is needed before the tick can begin.
+    None,
+    /// The tick can begin.
+    Orders,
+    /// The script is done.
+    Exit,
+}
+
+fn start(settings: &ScriptSettings, tick: SimTick) -> Result<Session, EngineError> {
+    let engine = settings.surroundings.find(&settings.engine)?;
+    let mut config = EngineConfig::new(engine);
+    if let Some(agent) = &settings.agent {
+        config.agent.clone_from(agent);
+    }
+    config.pair.clone_from(&settings.pair);
+    config.timeouts = settings.timeouts;
+    Ok(Session {
+        engine: EngineHandle::start(config)?,
+        stage: Stage::Start,
+        asked: Instant::now(),
+        called_at: tick,
+        began_at: tick,
+        has_picture: false,
+    })
+}
+
+impl Session {
+    fn ask(&mut self, stage: Stage, request: impl FnOnce(&EngineHandle)) {
+        request(&self.engine);
+        self.stage = stage;
+        self.asked = Instant::now();
+    }
+
+    /// Does what an answer calls for.
+    fn take(
+        &mut self,
+        reply: Reply,
+        tick: SimTick,
+        senses: &Senses,
+        agent: &mut Agent,
+        commands: &mut MessageWriter<SimCommand>,
+        news: &mut MessageWriter<AgentNews>,
+    ) -> Result<Answer, EngineError> {
+        match reply {
+            Reply::Started { description } => {
+                news.write(AgentNews::Started {
+                    engine: description,
+                });
+                self.ask(Stage::Init, |engine| engine.init(aux()));
+                Ok(Answer::None)
+            }
+            Reply::Init(reply) => {
+                commands.write_batch(commands_of_init(&reply));
+                self.called_at = tick;
+                self.began_at = tick;
+                self.stage = Stage::Idle;
+                *agent = Agent::Online {
+                    took: self.asked.elapsed(),
+                };
+                // The first call comes with the next tick, when the arms are where the init script wants them.
+                Ok(Answer::Orders)
+            }
+            Reply::Step(reply) if reply.exit => {
+                commands.write_batch(last_command(&reply.motor));
+                Ok(Answer::Exit)
+            }
+            Reply::Step(reply) => {
+                commands.write(command_of_motor(&reply.motor, senses.mode()));
+                self.stage = Stage::Idle;
+                *agent = Agent::Online { took: reply.took };
+                Ok(Answer::Orders)
+            }
+            Reply::Failed(error) => Err(error),
+        }
+    }
+}
+
+/// What remains of a script when it has ended: nothing.
+fn end(commands: &mut MessageWriter<SimCommand>) {
+    commands.write(SimCommand::ShowMarkers(Vec::new()));
+}
+
+fn fail(error: &EngineError, agent: &mut Agent, news: &mut MessageWriter<AgentNews>) {
+    *agent = Agent::Failed;
+    news.write(AgentNews::Failed {
+        reason: error.to_string(),
+    });
+}
+
+fn print(engine: &EngineHandle, news: &mut MessageWriter<AgentNews>) {
+    let lines = engine.drain_console().into_iter();
+    news.write_batch(lines.map(|line| AgentNews::Printed {
+        is_error: line.stream == Stream::Error,
+        line: line.text,
+    }));
+}
+
+/// After a standstill, time goes on, so that a tick is tried again.
+pub(crate) fn resume_time(standstill: Res<Standstill>, mut time: ResMut<Time<Virtual>>) {
+    if standstill.0 {
+        time.unpause();
+    }
+}
+
+/// At a standstill, the time that is left of this frame passes without ticks, and no more comes.
+pub(crate) fn drop_overstep(
+    standstill: Res<Standstill>,
+    mut fixed: ResMut<Time<Fixed>>,
+    mut time: ResMut<Time<Virtual>>,
+) {
+    if standstill.0 {
+        fixed.discard_overstep(Duration::MAX);
+        time.pause();
+    }
+}

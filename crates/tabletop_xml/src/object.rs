@@ -1,0 +1,305 @@
+//! The elements of objects: shapes, composites and their parts, descriptions.
+
+use bevy::math::Vec3;
+use tabletop_core::{ObjectSpec, Part, Shape};
+
+use crate::{
+    attributes::AttributeReader,
+    element::{DESCRIPTION, ElementReader},
+    hollow::check_hollow,
+    tree::Element,
+    value::{self, SIDES},
+};
+
+const SHAPES: [&str; 5] = ["block", "cylinder", "sphere", "box", "composite"];
+pub(crate) const SPANS: [&str; 3] = ["xspan", "yspan", "zspan"];
+
+/// Where a shape stands.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Role {
+    /// It is an object of its own.
+    Whole,
+    /// It is a part of a composite.
+    Part,
+}
+
+impl ElementReader<'_> {
+    /// Reads an object.
+    pub fn object(&mut self, element: &Element) -> Option<ObjectSpec> {
+        let descriptions = self.descriptions(element);
+        let parts = self.parts(element, Role::Whole);
+        let mut attributes = AttributeReader::of(element, self.faults);
+        let (id, pose) = (attributes.id(), attributes.pose());
+        let mass = attributes.mass("mass", 1.0);
+        let shape = shape(element, parts, &mut attributes);
+        attributes.finish(shape.map(|shape| ObjectSpec {
+            id,
+            pose,
+            mass,
+            shape,
+            descriptions,
+        }))
+    }
+
+    fn part(&mut self, element: &Element) -> Option<Part> {
+        let parts = self.parts(element, Role::Part);
+        let mut attributes = AttributeReader::of(element, self.faults);
+        let (id, pose) = (attributes.id(), attributes.pose());
+        attributes.forbid(
+            "mass",
+            "a part has no mass of its own",
+            "a mass of the outermost composite only",
+        );
+        let shape = shape(element, parts, &mut attributes);
+        attributes.finish(shape.map(|shape| Part { id, pose, shape }))
+    }
+
+    /// The parts of a composite; none for a simple shape, whose content is checked.
+    fn parts(&mut self, element: &Element, role: Role) -> Vec<Part> {
+        let is_composite = element.name == "composite";
+        let mut allowed = Vec::new();
+        if is_composite {
+            allowed.extend(SHAPES);
+        }
+        if role == Role::Whole {
+            allowed.push(DESCRIPTION);
+        }
+        let mut parts = Vec::new();
+        let mut is_empty = true;
+        for child in &element.children {
+            let is_description = child.name == DESCRIPTION;
+            is_empty &= is_description;
+            if self.is_allowed(child, element.name, &allowed) && !is_description {
+                parts.extend(self.part(child));
+            }
+        }
+        if is_composite && is_empty && !element.is_broken {
+            let expected = format_args!("at least one of {}", SHAPES.join(", "));
+            self.faults
+                .report(element.place(), "it has no parts", expected);
+        }
+        parts
+    }
+
+    /// Reads what describes an object.
+    pub fn descriptions(&mut self, element: &Element) -> Vec<(String, String)> {
+        let mut descriptions = Vec::new();
+        for child in &element.children {
+            if child.name == DESCRIPTION && self.is_of_the_language(child) {
+                self.forbid_children(child);
+                let mut attributes = AttributeReader::of(child, self.faults);
+                let description = (
+                    attributes.require("name", String::new(), "name", value::name),
+                    attributes.require("value", String::new(), "text", |text| Ok(text.to_owned())),
+                );
+                descriptions.extend(attributes.finish(Some(description)));
+            }
+        }
+        descriptions
+    }
+}
+
+/// The shape of an element that is one of [`SHAPES`]; absent for a composite of no parts.
+fn shape(element: &Element, parts: Vec<Part>, attributes: &mut AttributeReader) -> Option<Shape> {
+    attributes.ignore("pointable", false, value::boolean);
+    Some(match element.name {
+        "block" => Shape::Block {
+            span: attributes.spans(SPANS, Vec3::ONE),
+            color: attributes.color("color"),
+        },
+        "cylinder" => {
+            attributes.ignore("sides", 32, |text| value::count(text, &SIDES));
+            Shape::Cylinder {
+                radius: attributes.span("radius", 0.5),
+                yspan: attributes.span("yspan", 1.0),
+                color: attributes.color("color"),
+            }
+        }
+        "sphere" => Shape::Sphere {
+            radius: attributes.span("radius", 0.5),
+            color: attributes.color("color"),
+        },
+        "box" => {
+            let span = attributes.spans(SPANS, Vec3::ONE);
+            let thickness = attributes.span("thickness", 0.05);
+            check_hollow("thickness", span, thickness, attributes);
+            Shape::Box {
+                span,
+                thickness,
+                color: attributes.color("color"),
+            }
+        }
+        _ if parts.is_empty() => return None,
+        _ => Shape::Composite { parts },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::{Pose, Rgb, SceneItem};
+
+    use super::*;
+    use crate::test_support::{items_of, lines_of, scene_of};
+
+    fn only_object(content: &str) -> ObjectSpec {
+        match items_of(content).as_slice() {
+            [SceneItem::Object(object)] => object.clone(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn simple_shapes_have_the_defaults_of_the_report() {
+        for (name, shape) in [
+            (
+                "block",
+                Shape::Block {
+                    span: Vec3::ONE,
+                    color: Rgb::GRAY,
+                },
+            ),
+            (
+                "cylinder",
+                Shape::Cylinder {
+                    radius: 0.5,
+                    yspan: 1.0,
+                    color: Rgb::GRAY,
+                },
+            ),
+            (
+                "sphere",
+                Shape::Sphere {
+                    radius: 0.5,
+                    color: Rgb::GRAY,
+                },
+            ),
+            (
+                "box",
+                Shape::Box {
+                    span: Vec3::ONE,
+                    thickness: 0.05,
+                    color: Rgb::GRAY,
+                },
+            ),
+        ] {
+            let expected = ObjectSpec {
+                id: String::new(),
+                pose: Pose::at(Vec3::new(1.0, 2.0, 3.0)),
+                mass: 1.0,
+                shape,
+                descriptions: vec![],
+            };
+            assert_eq!(
+                only_object(&format!("<{name} location='(1,2,3)'/>")),
+                expected
+            );
+        }
+    }
+
+    #[test]
+    fn simple_shapes_have_the_attributes_of_the_report() {
+        let object = only_object(
+            "<block id='b_1' location='(-2,0,1)' rotation='(0,0,45)' mass='0' color='#00A57F' \
+             xspan='2' yspan='3' zspan='4' pointable='true'>\
+             <description name='use' value='a &amp; b'/><description name='shape' value=''/></block>",
+        );
+        assert_eq!(object.id, "b_1");
+        let pose = Pose::from_degrees(Vec3::new(-2.0, 0.0, 1.0), Vec3::new(0.0, 0.0, 45.0));
+        assert_eq!(object.pose, pose);
+        assert!(object.is_fixed());
+        let color = "#00a57f".parse().unwrap();
+        assert_eq!(
+            object.shape,
+            Shape::Block {
+                span: Vec3::new(2.0, 3.0, 4.0),
+                color
+            }
+        );
+        let descriptions = [("use", "a & b"), ("shape", "")].map(|(n, v)| (n.into(), v.into()));
+        assert_eq!(object.descriptions, descriptions);
+        let shape =
+            only_object("<cylinder location='(0,0,2)' yspan='7' radius='2' sides='6'/>").shape;
+        assert_eq!(
+            shape,
+            Shape::Cylinder {
+                radius: 2.0,
+                yspan: 7.0,
+                color: Rgb::GRAY
+            }
+        );
+        let shape = only_object("<box location='(0,0,2)' thickness='.2'/>").shape;
+        assert_eq!(
+            shape,
+            Shape::Box {
+                span: Vec3::ONE,
+                thickness: 0.2,
+                color: Rgb::GRAY
+            }
+        );
+    }
+
+    #[test]
+    fn composites_nest() {
+        let object = only_object(
+            "<composite location='(0,0,1)' mass='10'><composite id='head' location='(-1,0,0)'>\
+             <block id='x' location='(0,0,0)'/><block id='x' location='(0,1,0)'/></composite>\
+             <sphere location='(2.8,0,0)'/></composite>",
+        );
+        assert_eq!(object.mass, 10.0);
+        let parts = object.shape.simple_parts();
+        let places: Vec<_> = parts
+            .iter()
+            .map(|part| (part.id.as_str(), part.pose.location.x))
+            .collect();
+        assert_eq!(places, [("x", -1.0), ("x", -1.0), ("", 2.8)]);
+    }
+
+    #[test]
+    fn only_the_faulty_part_is_skipped() {
+        let content = "<composite location='(0,0,1)'><block location='(0,0,0)' mass='1'/>\
+                       <sphere location='(0,0,0)'/></composite>";
+        let shape = only_object_in_spite_of_faults(content).shape;
+        assert_eq!(shape.simple_parts().len(), 1);
+        assert_eq!(
+            lines_of(content),
+            [
+                "block, mass: a part has no mass of its own, expected a mass of the outermost composite only"
+            ]
+        );
+    }
+
+    fn only_object_in_spite_of_faults(content: &str) -> ObjectSpec {
+        match scene_of("", content).items.as_slice() {
+            [SceneItem::Object(object)] => object.clone(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_composite_needs_parts() {
+        for content in [
+            "<composite location='(0,0,1)'/>",
+            "<composite location='(0,0,1)'><description name='a' value='b'/></composite>",
+        ] {
+            assert_eq!(
+                lines_of(content),
+                [
+                    "composite: it has no parts, expected at least one of block, cylinder, sphere, box, composite"
+                ]
+            );
+            assert!(scene_of("", content).items.is_empty());
+        }
+        let content = "<composite location='(0,0,1)'><block/></composite>";
+        assert_eq!(lines_of(content).len(), 1);
+        assert!(scene_of("", content).items.is_empty());
+    }
+
+    #[test]
+    fn a_faulty_description_leaves_its_object() {
+        let content = "<block location='(0,0,1)'><description name='a b' value=''/>\
+                       <description name='c'/><description name='d' value=' e '/></block>";
+        let object = only_object_in_spite_of_faults(content);
+        assert_eq!(object.descriptions, [("d".to_owned(), " e ".to_owned())]);
+        assert_eq!(lines_of(content).len(), 2);
+    }
+}

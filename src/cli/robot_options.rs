@@ -1,0 +1,96 @@
+//! Which robot stands at the table, and which script drives it.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use tabletop::{
+    baxter::{BaxterPlugin, Description},
+    core::RobotMode,
+    kinematics::Model,
+    script::{EngineChoice, ScriptSettings},
+};
+
+use super::Failure;
+
+#[derive(Args, Clone)]
+pub(super) struct RobotOptions {
+    /// A robot description (URDF) in place of the Baxter that comes with the program: its arms must have the same joints
+    #[arg(long, value_name = "FILE")]
+    robot: Option<PathBuf>,
+    /// Move the arms by motors with limited torque, instead of exactly as told
+    #[arg(long)]
+    dynamic: bool,
+}
+
+impl RobotOptions {
+    /// The plugin of this robot.
+    pub fn plugin(&self) -> Result<BaxterPlugin, Failure> {
+        let description = match &self.robot {
+            Some(path) => Some(describe(path)?),
+            None => None,
+        };
+        Ok(BaxterPlugin {
+            description,
+            mode: match self.dynamic {
+                true => RobotMode::Dynamic,
+                false => RobotMode::Kinematic,
+            },
+        })
+    }
+}
+
+fn describe(path: &PathBuf) -> Result<Description, Failure> {
+    let at = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", path.display()));
+    let text = std::fs::read_to_string(path).map_err(|error| at(&error))?;
+    let model = Model::from_urdf(&text).map_err(|error| at(&error))?;
+    Description::new(model, Some(path.clone())).map_err(|error| at(&error))
+}
+
+#[derive(Args, Clone)]
+pub(super) struct EngineOptions {
+    /// What runs Matlab scripts: `matlab`, `octave`, `auto`, or the path of a program [default: auto, or TABLETOP_ENGINE]
+    #[arg(long, value_name = "ENGINE")]
+    engine: Option<String>,
+    /// Ticks from one picture that a script gets to the next, 60 a second [default: 15]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    picture_every: Option<u64>,
+    /// Let scripts sense with the head camera and the joints alone: no `sensor.objects`, `contacts` and `held`
+    #[arg(long)]
+    no_objects: bool,
+}
+
+impl EngineOptions {
+    /// The settings of the script bridge. `script` is what `--script` says: `matlab`, `octave` or `python`, and after a colon
+    /// the folder of the scripts or the Python file.
+    pub fn settings(&self, script: Option<&str>) -> ScriptSettings {
+        let mut settings = ScriptSettings::default();
+        let (language, agent) = script
+            .map(|script| script.split_once(':').map_or((script, None), |(l, a)| (l, Some(a))))
+            .unwrap_or(("matlab", None));
+        settings.agent = agent.map(PathBuf::from);
+        settings.engine = match (language, &self.engine) {
+            ("matlab", None) => EngineChoice::Auto,
+            ("matlab", Some(engine)) => parse(engine),
+            (language, _) => parse(language),
+        };
+        settings.objects = !self.no_objects;
+        if let Some(ticks) = self.picture_every {
+            settings.ticks_per_picture = ticks;
+        }
+        settings
+    }
+}
+
+fn parse(engine: &str) -> EngineChoice {
+    let Ok(choice) = engine.parse();
+    choice
+}
+
+/// Reads what `--script` says.
+pub(super) fn script(text: &str) -> Result<String, String> {
+    let language = text.split(':').next().unwrap_or_default();
+    match language {
+        "matlab" | "octave" | "python" => Ok(text.to_owned()),
+        _ => Err("expected matlab, octave or python, and after a colon the folder of the scripts or the Python file".into()),
+    }
+}

@@ -1,0 +1,37 @@
+//! Recordings of what the robot does.
+
+use tabletop::{
+    core::Drive,
+    prelude::*,
+    recorder::Channels,
+    replay::{Replay, first_difference},
+};
+
+use crate::demonstration::Demonstration;
+
+#[test]
+fn what_the_robot_did_before_and_in_a_recording_is_done_again() {
+    let mut demonstration = Demonstration::new("robot");
+    let load = || SimCommand::LoadTask("tablesetup/default.xml".into());
+    let drive = |joint, position| SimCommand::Drive(vec![(joint, Drive::Toward(position))]);
+    let hand = Hand::Any;
+    let object = "RedBlock".to_owned();
+    demonstration.act(&[
+        (vec![load()], 20),
+        (vec![SimCommand::ShowRobot(true)], 5),
+        (vec![drive(RobotJoint::HeadPan, 0.4)], 10),
+        (vec![load()], 10),
+        (vec![drive(RobotJoint::LeftS1, 0.3)], 20),
+        (vec![SimCommand::StartRecording], 10),
+        (vec![drive(RobotJoint::RightE1, 1.0)], 40),
+        (vec![SimCommand::Grasp { hand, object }], 30),
+        (vec![SimCommand::Release(hand)], 30),
+        (vec![SimCommand::FinishRecording], 1),
+    ]);
+    let replay = Replay::read(&demonstration.folder).unwrap();
+    let replayed = demonstration.folder.with_file_name("robot_replayed");
+    let _not_there = std::fs::remove_dir_all(&replayed);
+    replay.record(replayed.clone(), replay.camera(), Channels::default());
+    let difference = first_difference(&demonstration.folder, &replayed).unwrap();
+    assert_eq!(difference, None);
+}
