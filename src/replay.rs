@@ -13,11 +13,12 @@ use std::{
 
 use bevy::{app::PluginGroupBuilder, prelude::*};
 use serde::Deserialize as _;
+use tabletop_baxter::BaxterPlugin;
 use tabletop_core::{HeadCamera, SimTick, StepApp as _, TICKS_PER_SECOND};
 use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
 use tabletop_recorder::{Channels, RecorderError, RecorderPlugin, Session, TICKS_PER_FRAME};
 
-use crate::{TabletopSimPlugins, headless_app_with, settings::PHYSICS};
+use crate::{TabletopSimPlugins, headless_app_with, settings::{PHYSICS, ROBOT, RobotSettings}};
 
 /// Why a recording cannot be run again.
 #[derive(Debug, thiserror::Error)]
@@ -64,6 +65,7 @@ pub struct Replay {
     session: Session,
     begin: SimTick,
     physics: PhysicsSettings,
+    robot: BaxterPlugin,
 }
 
 impl Replay {
@@ -100,6 +102,13 @@ impl Replay {
                 .map_err(|error| fault("settings.physics", error.to_string()))?,
             None => PhysicsSettings::default(),
         };
+        let robot = match header.settings.get(ROBOT) {
+            Some(robot) => RobotSettings::deserialize(robot)
+                .map_err(|error| error.to_string())
+                .and_then(|robot| robot.plugin().map_err(|error| error.to_string()))
+                .map_err(|error| fault("settings.robot", error))?,
+            None => BaxterPlugin::default(),
+        };
         let Some(begin) = header.begin_tick.map(SimTick) else {
             return Err(ReplayError::NoBeginning { path });
         };
@@ -108,6 +117,7 @@ impl Replay {
             session,
             begin,
             physics,
+            robot,
         })
     }
 
@@ -128,9 +138,12 @@ impl Replay {
 
     /// The simulator with the settings with which it was recorded.
     pub fn plugins(&self) -> PluginGroupBuilder {
-        TabletopSimPlugins.build().set(PhysicsPlugin {
-            settings: self.physics,
-        })
+        TabletopSimPlugins
+            .build()
+            .set(PhysicsPlugin {
+                settings: self.physics,
+            })
+            .set(self.robot.clone())
     }
 
     /// Lets an app that has these [plugins](Self::plugins) replay it from its beginning.

@@ -1,15 +1,37 @@
 //! The settings that a recording needs to be replayed.
 
 use bevy::prelude::*;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use tabletop_core::SimSystems;
+use tabletop_baxter::{BaxterPlugin, Description, Source};
+use tabletop_core::{Robot, RobotMode, SimSystems};
+use tabletop_kinematics::ModelError;
 use tabletop_physics::PhysicsSettings;
 use tabletop_recorder::SessionSettings;
 
-/// Their name among the settings of a session log.
+/// Names of the settings in a session log.
 pub(crate) const PHYSICS: &str = "physics";
+pub(crate) const ROBOT: &str = "robot";
 
-/// Writes the [`PhysicsSettings`] into the headers of recordings.
+/// Which robot stood at the table.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct RobotSettings {
+    mode: RobotMode,
+    /// Its description, if it is not the one that comes with the program.
+    description: Option<Source>,
+}
+
+impl RobotSettings {
+    /// The plugin of this robot.
+    pub fn plugin(self) -> Result<BaxterPlugin, ModelError> {
+        Ok(BaxterPlugin {
+            description: self.description.map(Description::read).transpose()?,
+            mode: self.mode,
+        })
+    }
+}
+
+/// Writes the [`PhysicsSettings`] and the robot into the headers of recordings.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RecordedSettingsPlugin;
 
@@ -17,10 +39,13 @@ impl Plugin for RecordedSettingsPlugin {
     fn build(&self, app: &mut App) {
         app.add_systems(
             FixedUpdate,
-            note_physics
+            (
+                note_physics.run_if(resource_exists_and_changed::<PhysicsSettings>),
+                note_robot.run_if(resource_exists_and_changed::<Description>),
+            )
+                .chain()
                 .before(SimSystems::Load)
-                .run_if(resource_exists::<SessionSettings>)
-                .run_if(resource_exists_and_changed::<PhysicsSettings>),
+                .run_if(resource_exists::<SessionSettings>),
         );
     }
 }
@@ -29,5 +54,18 @@ fn note_physics(physics: Res<PhysicsSettings>, mut settings: ResMut<SessionSetti
     // Through a text, in which numbers have the digits of their 32 bits.
     let value: Value = serde_json::from_str(&serde_json::to_string(&*physics)?)?;
     settings.0.insert(PHYSICS.into(), value);
+    Ok(())
+}
+
+fn note_robot(
+    description: Res<Description>,
+    robot: Res<Robot>,
+    mut settings: ResMut<SessionSettings>,
+) -> Result {
+    let robot = RobotSettings {
+        mode: robot.mode,
+        description: description.source.clone(),
+    };
+    settings.0.insert(ROBOT.into(), serde_json::to_value(robot)?);
     Ok(())
 }

@@ -1,13 +1,12 @@
 //! Which robot stands at the table, and which script drives it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use tabletop::{
-    baxter::{BaxterPlugin, Description},
+    baxter::{BaxterPlugin, Description, Source},
     core::RobotMode,
-    kinematics::Model,
-    script::{EngineChoice, ScriptSettings},
+    script::{EngineChoice, ScriptSettings, Tell},
 };
 
 use super::Failure;
@@ -39,11 +38,14 @@ impl RobotOptions {
     }
 }
 
-fn describe(path: &PathBuf) -> Result<Description, Failure> {
+fn describe(path: &Path) -> Result<Description, Failure> {
     let at = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", path.display()));
-    let text = std::fs::read_to_string(path).map_err(|error| at(&error))?;
-    let model = Model::from_urdf(&text).map_err(|error| at(&error))?;
-    Description::new(model, Some(path.clone())).map_err(|error| at(&error))
+    let urdf = std::fs::read_to_string(path).map_err(|error| at(&error))?;
+    let source = Source {
+        path: path.to_owned(),
+        urdf,
+    };
+    Description::read(source).map_err(|error| at(&error))
 }
 
 #[derive(Args, Clone)]
@@ -73,7 +75,9 @@ impl EngineOptions {
             ("matlab", Some(engine)) => parse(engine),
             (language, _) => parse(language),
         };
-        settings.objects = !self.no_objects;
+        if self.no_objects {
+            settings.objects = Tell::Never;
+        }
         if let Some(ticks) = self.picture_every {
             settings.ticks_per_picture = ticks;
         }

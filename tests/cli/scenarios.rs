@@ -43,6 +43,11 @@ fn a_chain_breaks() {
 }
 
 #[test]
+fn the_robot_builds_a_tower() {
+    passes("robot_stack.ron");
+}
+
+#[test]
 fn every_shipped_scenario_has_its_test() {
     let files = fs::read_dir(shipped("scenarios", "")).unwrap();
     let mut names: Vec<_> = files
@@ -53,6 +58,7 @@ fn every_shipped_scenario_has_its_test() {
         "break_chain.ron",
         "build_letters.ron",
         "lidbox.ron",
+        "robot_stack.ron",
         "stack_two_blocks.ron",
     ];
     assert_eq!(names, tested);

@@ -87,7 +87,7 @@ pub(crate) fn advance(
     let was = positions(&robot);
     robot.move_to(&motion.positions);
     if let Some(pulls) = pulls {
-        motors.note(&pulls, &motion, &mut robot);
+        motors.note(&pulls, &mut motion, &mut robot);
         orders.end_tick(&motors.reached(&motion.positions));
     } else {
         orders.end_tick(&motion.positions);

@@ -19,8 +19,11 @@ use crate::{
     skeleton::{Skeleton, UNITS_PER_METER},
 };
 
-/// Share of a motor's torque with which a joint is slowed down where it is to be as fast as possible.
+/// Share of a motor's torque with which a joint is slowed down before its goal.
 const BRAKES: f64 = 0.5;
+
+/// Speed in rad/s below which a joint has arrived.
+const AT_REST: f64 = 0.02;
 
 /// Speed in rad/s below which a joint stands still, as gears do.
 const STILL: f64 = 1e-6;
@@ -48,6 +51,8 @@ struct Driven {
 
 /// A tick of an arm.
 pub(crate) struct Pull {
+    /// What the arm touches, as the masses have it.
+    touched: Vec<Entity>,
     masses: Masses,
     motors: [Motor; 7],
     step: Step,
@@ -75,9 +80,9 @@ impl Motors {
         motion: &mut Motion,
         orders: &Orders,
         gravity: f32,
-        mut touches: impl FnMut(&mut Motion, Arm) -> Vec<Touch>,
+        mut touches: impl FnMut(&mut Motion, Arm) -> Vec<(Entity, Touch)>,
     ) -> [Pull; 2] {
-        let touched = Arm::BOTH.map(|arm| touches(motion, arm));
+        let mut all_touches = Arm::BOTH.map(|arm| touches(motion, arm));
         let skeleton = motion.skeleton;
         skeleton.update(&mut motion.scratch, &motion.positions);
         let (model, frames) = (skeleton.model(), motion.scratch.frames());
@@ -94,7 +99,6 @@ impl Motors {
         let inertia = model.inertia_matrix(frames, &all_loads);
         let turning = model.inverse_dynamics(frames, &velocities, &model.zero(), DVec3::ZERO, &all_loads);
         let down = DVec3::NEG_Z * (f64::from(gravity) / UNITS_PER_METER);
-        let mut touched = touched.into_iter();
         Arm::BOTH.map(|arm| {
             let driven = &self.arms[arm as usize];
             let chain = skeleton.chain(arm).0;
@@ -110,6 +114,7 @@ impl Motors {
                 loads[arm as usize].iter().map(of_load).sum()
             });
             let motors = driven.motors(skeleton, arm, orders, &inertia, &weights);
+            let (touched, touches) = std::mem::take(&mut all_touches[arm as usize]).into_iter().unzip();
             let masses = Masses {
                 angles: driven.angles,
                 velocities: driven.velocities,
@@ -117,13 +122,14 @@ impl Motors {
                 bias: add(&chain.angles(&turning), &weights),
                 damping: joints.map(|joint| model.joint(joint).damping),
                 stops: RobotJoint::of_arm(arm).map(|joint| joint.limits().into()),
-                touches: touched.next().unwrap_or_default(),
+                touches,
             };
             let mut step = masses.step(&motors, f64::from(TICK_SECONDS));
             if step.velocities.iter().all(|velocity| velocity.abs() < STILL) {
                 step.velocities = [0.0; 7];
             }
             Pull {
+                touched,
                 masses,
                 motors,
                 step,
@@ -132,7 +138,7 @@ impl Motors {
     }
 
     /// Notes what has become of a tick: how far the arms have come, and with which torques.
-    pub fn note(&mut self, pulls: &[Pull; 2], motion: &Motion, robot: &mut Robot) {
+    pub fn note(&mut self, pulls: &[Pull; 2], motion: &mut Motion, robot: &mut Robot) {
         for (arm, pull) in Arm::BOTH.into_iter().zip(pulls) {
             let joints = RobotJoint::of_arm(arm);
             let angles = joints.map(|joint| motion.positions[joint.index()]);
@@ -145,6 +151,8 @@ impl Motors {
             for (joint, torque) in joints.into_iter().zip(torques) {
                 robot.joints[joint.index()].torque = torque;
             }
+            let held_up_by = &mut motion.held_up_by[arm as usize];
+            *held_up_by = held_up_by.or_else(|| pull.stalled_by());
             let places = from_fn(|i| match pull.motors[i].task {
                 Task::Follow { angle, .. } => angle.clamp(angles[i] - STRETCH, angles[i] + STRETCH),
                 Task::Pull(_) => angles[i],
@@ -163,12 +171,17 @@ impl Motors {
         driven.places = driven.angles;
     }
 
-    /// How far orders have been carried out: where the arms' motors pull to, and these positions of all else.
+    /// How far orders have been carried out: to where the motors pull joints that have come to rest, and these positions
+    /// of all others.
     pub fn reached(&self, positions: &[f64; 17]) -> [f64; 17] {
         let mut reached = *positions;
         for arm in Arm::BOTH {
-            for (joint, place) in RobotJoint::of_arm(arm).into_iter().zip(self.arms[arm as usize].places) {
-                reached[joint.index()] = place;
+            let driven = &self.arms[arm as usize];
+            for (i, joint) in RobotJoint::of_arm(arm).into_iter().enumerate() {
+                let is_near = (driven.angles[i] - driven.places[i]).abs() < STRETCH;
+                if is_near && driven.velocities[i].abs() < AT_REST {
+                    reached[joint.index()] = driven.places[i];
+                }
             }
         }
         reached
@@ -196,13 +209,10 @@ impl Driven {
                 Some(torque) => Task::Pull(torque),
                 None => {
                     let way = wants[i].position() - self.places[i];
-                    let fastest = match wants[i] {
-                        Want::Move(_) => speed,
-                        Want::Jump(_) => {
-                            let brakes = BRAKES * effort / inertia[i][i].max(f64::MIN_POSITIVE);
-                            speed.min((2.0 * brakes * way.abs()).sqrt())
-                        }
-                    };
+                    // As fast as it can still stop where it is to go.
+                    let brakes = BRAKES * effort / inertia[i][i].max(f64::MIN_POSITIVE);
+                    let left = orders.goal(joints[i]).map(|goal| (goal - self.places[i]).abs());
+                    let fastest = left.map_or(speed, |left| speed.min((2.0 * brakes * left).sqrt()));
                     let most = fastest * f64::from(TICK_SECONDS);
                     let step = way.clamp(-most, most);
                     Task::Follow {
@@ -229,6 +239,20 @@ impl Pull {
             let way = f64::from(TICK_SECONDS) * self.step.velocities[i];
             Want::Move(joints[i].clamp(self.masses.angles[i] + way))
         })
+    }
+
+    /// What the arm pushes with all its might without getting anywhere.
+    fn stalled_by(&self) -> Option<Entity> {
+        let Step { velocities, torques } = &self.step;
+        let is_still = velocities.iter().all(|velocity| velocity.abs() < AT_REST);
+        let mut pulls = self.motors.iter().zip(torques);
+        if !is_still || !pulls.any(|(motor, torque)| torque.abs() >= motor.effort) {
+            return None;
+        }
+        let mut touches = self.touched.iter().zip(&self.masses.touches);
+        touches
+            .find(|(_, touch)| touch.is_pushed(velocities))
+            .map(|(thing, _)| *thing)
     }
 
     /// Velocities and torques of an arm that came only to these angles, because something is in its way.

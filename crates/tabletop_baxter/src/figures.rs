@@ -18,8 +18,8 @@ const SCREEN: &str = "screen";
 #[derive(Resource, Default)]
 pub(crate) struct Figures {
     bodies: Vec<Option<Figure>>,
-    /// What is on the entities now: nothing, or the robot with this face.
-    shown: Option<Face>,
+    /// What is seen now: nothing, or this face on the robot whose first body is this one.
+    shown: Option<(Face, Entity)>,
 }
 
 /// Gives the bodies what they look like while the robot is shown, and its screen the face.
@@ -31,7 +31,8 @@ pub(crate) fn show_figures(
     mut figures: ResMut<Figures>,
     mut commands: Commands,
 ) {
-    let show = robot.is_shown.then_some(robot.face);
+    let first = parts.0.first().copied().filter(|_| robot.is_shown);
+    let show = first.map(|first| (robot.face, first));
     if figures.shown == show {
         return;
     }
@@ -46,10 +47,10 @@ pub(crate) fn show_figures(
             (None, _) => {
                 part.remove::<Figure>();
             }
-            (Some(face), _) if is_screen => {
+            (Some((face, _)), _) if is_screen => {
                 part.insert_if_some(screen(&description, face));
             }
-            (Some(_), None) => {
+            (Some((_, now)), before) if before.is_none_or(|(_, before)| before != now) => {
                 part.insert_if_some(figures.bodies[number].clone());
             }
             _ => {}
@@ -101,14 +102,14 @@ fn screen(description: &Description, face: Face) -> Option<Figure> {
     let link = description.model.link(link);
     match &link.visuals[..] {
         [visual] if is_ours(visual) => {
-            screen_with(face, visual, description.path.as_deref()).ok()
+            screen_with(face, visual, description.path()).ok()
         }
         _ => figure_of_link(description, link),
     }
 }
 
 fn seen(visual: &Shape, description: &Description) -> Result<Figure, LookError> {
-    figure_of(visual, description.path.as_deref())
+    figure_of(visual, description.path())
 }
 
 /// Whether a visual is one of the program's own shapes.

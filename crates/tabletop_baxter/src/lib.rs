@@ -46,4 +46,4 @@ mod touch;
 pub use grip::STEEPEST_GRIP;
 pub use orders::MANUAL_SPEED;
 pub use parts::RobotBody;
-pub use plugin::{BaxterPlugin, Description};
+pub use plugin::{BaxterPlugin, Description, Source};

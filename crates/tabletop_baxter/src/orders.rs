@@ -134,6 +134,16 @@ impl Orders {
         }
     }
 
+    /// Where a joint is on its way to.
+    pub fn goal(&self, joint: RobotJoint) -> Option<f64> {
+        let of_arm = || {
+            let arm = joint.arm()?;
+            let place = RobotJoint::of_arm(arm).iter().position(|it| *it == joint)?;
+            Some(self.reach[arm as usize]?[place])
+        };
+        self.toward[joint.index()].or(self.rush[joint.index()]).or_else(of_arm)
+    }
+
     /// Where a joint at `position` is to be after this tick, within its limits.
     pub fn want(&self, joint: RobotJoint, position: f64) -> Want {
         let step = match self.now[joint.index()] {

@@ -17,14 +17,14 @@ pub struct RobotBody {
     pub name: String,
 }
 
-/// The robot's bodies, by their numbers.
-#[derive(Resource, Clone, Debug)]
+/// The robot's bodies, by their numbers; none before it is shown for the first time.
+#[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct Parts(pub Vec<Entity>);
 
 /// Friction of the robot's surface. Two surfaces in contact have the product of theirs.
 const FRICTION: f32 = 1.0;
 
-/// Makes the bodies, hidden.
+/// Makes the bodies, disabled.
 pub(crate) fn spawn(world: &mut World) -> Result {
     let skeleton = world.resource::<Skeleton>().clone();
     let posture = skeleton.posture(&positions(world.resource::<Robot>()));

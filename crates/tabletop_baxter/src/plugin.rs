@@ -1,8 +1,9 @@
 //! What the plugin adds to an app.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use bevy::prelude::*;
+use serde::{Deserialize, Serialize};
 use tabletop_core::{
     ActuateSystems, CommandSystems, HeadCamera, Rewound, Robot, RobotJoint, RobotMode, SimSystems, Table,
 };
@@ -17,7 +18,7 @@ use crate::{
     grips::{self, Grips},
     meeting::Meetings,
     orders::{self, Orders},
-    parts,
+    parts::{self, Parts},
     skeleton::Skeleton,
 };
 
@@ -26,19 +27,37 @@ use crate::{
 pub struct Description {
     /// Its model.
     pub model: Model,
-    /// The file that it was read from, beside which its meshes are; `None` for the robot that comes with the program.
-    pub path: Option<PathBuf>,
+    /// Where it was read from; `None` for the robot that comes with the program.
+    pub source: Option<Source>,
+}
+
+/// Where a robot's description was read from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Source {
+    /// The file, beside which its meshes are.
+    pub path: PathBuf,
+    /// What it says.
+    pub urdf: String,
 }
 
 impl Description {
-    /// The robot of a model, read from this file.
+    /// The robot that a file describes.
     ///
     /// # Errors
     ///
-    /// The model lacks joints or links that the robot's arms need; the error names them.
-    pub fn new(model: Model, path: Option<PathBuf>) -> Result<Self, ModelError> {
+    /// The text is no URDF that can be used, or lacks joints or links that the robot's arms need; the error names them.
+    pub fn read(source: Source) -> Result<Self, ModelError> {
+        let model = Model::from_urdf(&source.urdf)?;
         Skeleton::new(model.clone())?;
-        Ok(Self { model, path })
+        Ok(Self {
+            model,
+            source: Some(source),
+        })
+    }
+
+    /// The file beside which its meshes are.
+    pub(crate) fn path(&self) -> Option<&Path> {
+        self.source.as_ref().map(|source| source.path.as_path())
     }
 
     /// The Baxter that comes with the program.
@@ -49,7 +68,7 @@ impl Description {
     pub fn baxter() -> Result<Self, ModelError> {
         Ok(Self {
             model: tabletop_kinematics::baxter()?,
-            path: None,
+            source: None,
         })
     }
 }
@@ -84,6 +103,7 @@ impl Plugin for BaxterPlugin {
             .insert_resource(description)
             .init_resource::<Figures>()
             .init_resource::<Orders>()
+            .init_resource::<Parts>()
             .init_resource::<Grips>()
             .init_resource::<Motors>()
             .init_resource::<HeadCamera>();
@@ -92,9 +112,10 @@ impl Plugin for BaxterPlugin {
         let mut rewound = world.resource_mut::<Rewound>();
         rewound.add::<Robot>();
         rewound.add::<Orders>();
+        rewound.add::<Parts>();
         rewound.add::<Grips>();
         rewound.add::<Motors>();
-        app.add_systems(Startup, (parts::spawn, publish).chain())
+        app.add_systems(Startup, publish)
             .add_systems(
                 FixedUpdate,
                 (

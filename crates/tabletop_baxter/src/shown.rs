@@ -6,7 +6,7 @@ use tabletop_core::{Arm, Robot, SimFact};
 
 use crate::{
     grips,
-    parts::{Parts, teleport},
+    parts::{Parts, spawn, teleport},
 };
 
 /// Puts the robot to the table, or takes it away; what its grippers hold is let go of before.
@@ -20,6 +20,11 @@ pub(crate) fn show(world: &mut World, show: bool) {
         }
     }
     world.resource_mut::<Robot>().is_shown = show;
+    if world.resource::<Parts>().0.is_empty()
+        && let Err(error) = spawn(world)
+    {
+        error!("the robot has no bodies: {error}");
+    }
     let parts = world.resource::<Parts>().clone();
     for part in parts.0 {
         let mut part = world.entity_mut(part);

@@ -32,7 +32,7 @@ pub(crate) fn touches(
     rapier: &RapierContextMut,
     gravity: f32,
     is_mine: impl Fn(Entity) -> bool,
-) -> Vec<Touch> {
+) -> Vec<(Entity, Touch)> {
     if motion.surroundings.free.is_empty() || !motion.is_shown {
         return Vec::new();
     }
@@ -69,12 +69,13 @@ pub(crate) fn touches(
             Place::Trunk | Place::Head => 0,
         };
         let resistance = resistance(rapier, thing, normal, &is_mine);
-        touches.push(Touch {
+        let touch = Touch {
             lever: lever(&axes[..carriers], to_robot, contact.point1, normal),
             mass: f64::from(body.mass()),
             speed: f64::from(speed + falls) / UNITS_PER_METER,
             resistance: f64::from(resistance) / UNITS_PER_METER,
-        });
+        };
+        touches.push((thing.object, touch));
     }
     touches
 }

@@ -1,7 +1,7 @@
 //! How many pictures a second one core draws.
 //!
 //! `cargo bench -p tabletop -p tabletop_camera --bench pictures` prints it for the two blocks of `default.xml` with ten more,
-//! for these with two arms of 2400 triangles over them, and for a table of balls and cylinders, plain and with smooth edges.
+//! for these with two arms of 2304 triangles over them, and for a table of balls and cylinders, plain and with smooth edges.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 
 use std::{f32::consts::TAU, sync::Arc, time::Instant};

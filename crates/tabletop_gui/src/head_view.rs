@@ -140,7 +140,9 @@ fn pixels(picture: &Picture, most: usize) -> ColorImage {
     let pixels = rows.flat_map(|row| row.iter().step_by(step));
     ColorImage::new(
         [width.div_ceil(step), height.div_ceil(step)],
-        pixels.map(|&[r, g, b]| Color32::from_rgb(r, g, b)).collect(),
+        pixels
+            .map(|&[r, g, b]| Color32::from_rgb(r, g, b))
+            .collect(),
     )
 }
 
@@ -165,7 +167,7 @@ mod tests {
     use super::*;
     use bevy::time::TimeUpdateStrategy;
     use egui::pos2;
-    use tabletop_core::{CorePlugin, PictureSystems};
+    use tabletop_core::{CorePlugin, SimSystems};
 
     #[test]
     fn the_inset_takes_two_fifths_of_the_width_in_the_lower_right_corner() {
@@ -212,9 +214,8 @@ mod tests {
         assert!(shown.is_none());
         picture.resize(2, 1);
         upload(&mut shown, &context, &picture);
-        let uploads = |context: &egui::Context| {
-            context.tex_manager().write().take_delta().set.len()
-        };
+        let uploads =
+            |context: &egui::Context| context.tex_manager().write().take_delta().set.len();
         uploads(&context);
         upload(&mut shown, &context, &picture);
         assert_eq!(uploads(&context), 0);
@@ -229,36 +230,25 @@ mod tests {
     #[test]
     fn the_picture_of_the_last_tick_of_a_frame_is_asked_for_while_it_is_shown() {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(3))
-            .init_resource::<HeadView>()
-            .init_resource::<PictureDemand>()
             .init_resource::<Taken>()
             .add_systems(
                 FixedUpdate,
-                (
-                    ask_for_picture
-                        .in_set(OrderSystems::User)
-                        .run_if(HeadView::is_on.and_then(is_last_tick_of_frame)),
-                    (|mut demand: ResMut<PictureDemand>, mut taken: ResMut<Taken>| {
-                        taken.0.push(demand.take());
-                    })
-                    .in_set(PictureSystems),
-                ),
-            )
-            .configure_sets(
-                FixedUpdate,
-                PictureSystems.in_set(tabletop_core::SimSystems::Sense),
+                (|mut demand: ResMut<PictureDemand>, mut taken: ResMut<Taken>| {
+                    taken.0.push(demand.take());
+                })
+                .in_set(SimSystems::Sense),
             );
+        app.finish();
+        app.cleanup();
         app.update();
         app.world_mut().resource_mut::<Taken>().0.clear();
         app.update();
         assert_eq!(app.world().resource::<Taken>().0, [false; 3]);
         app.world_mut().resource_mut::<HeadView>().toggle();
         app.update();
-        assert_eq!(
-            app.world().resource::<Taken>().0[3..],
-            [false, false, true]
-        );
+        let taken = &app.world().resource::<Taken>().0[3..];
+        assert_eq!(taken, [false, false, true]);
     }
 }

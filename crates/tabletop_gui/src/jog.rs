@@ -109,9 +109,11 @@ mod tests {
     fn keys_and_buttons_add_up_to_one_speed() {
         let mut jog = Jog::default();
         jog.keys.update(towards(LeftE1, 1), Directions::default());
-        jog.buttons.update(towards(LeftE1, 1), Directions::default());
+        jog.buttons
+            .update(towards(LeftE1, 1), Directions::default());
         assert_eq!(jog.drives(), [(LeftE1, Drive::Velocity(1.0))]);
-        jog.buttons.update(towards(LeftE1, -1), Directions::default());
+        jog.buttons
+            .update(towards(LeftE1, -1), Directions::default());
         assert_eq!(jog.drives(), []);
     }
 
@@ -119,7 +121,8 @@ mod tests {
     fn arms_move_as_mirror_images() {
         let mut jog = Jog::default();
         jog.keys.update(towards(RightE0, 1), Directions::default());
-        jog.buttons.update(towards(HeadPan, 1), Directions::default());
+        jog.buttons
+            .update(towards(HeadPan, 1), Directions::default());
         let drives = [
             (RightE0, Drive::Velocity(-1.0)),
             (HeadPan, Drive::Velocity(1.0)),
@@ -131,7 +134,8 @@ mod tests {
     fn what_went_down_and_up_between_two_ticks_counts_once() {
         let mut jog = Jog::default();
         jog.keys.update(Directions::default(), towards(LeftE1, -1));
-        jog.keys.update(Directions::default(), Directions::default());
+        jog.keys
+            .update(Directions::default(), Directions::default());
         assert_eq!(jog.drives(), [(LeftE1, Drive::Velocity(-1.0))]);
         let mut app = App::new();
         app.insert_resource(jog).add_systems(Update, forget_struck);

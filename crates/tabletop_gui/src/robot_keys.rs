@@ -1,9 +1,9 @@
 //! The robot's keys (report sections 5 and 5.1).
 
 use KeyCode::{
-    AltLeft, AltRight, Backslash, BracketLeft, BracketRight, ControlLeft, ControlRight, Digit0, Digit1, Digit2, Digit9,
-    Equal, KeyG, KeyH, KeyI, KeyJ, KeyK, KeyL, KeyO, KeyP, KeyR, KeyT, KeyU, KeyY, Minus, Quote, Semicolon, ShiftLeft,
-    ShiftRight,
+    AltLeft, AltRight, Backslash, BracketLeft, BracketRight, ControlLeft, ControlRight, Digit0,
+    Digit1, Digit2, Digit9, Equal, KeyG, KeyH, KeyI, KeyJ, KeyK, KeyL, KeyO, KeyP, KeyR, KeyT,
+    KeyU, KeyY, Minus, Quote, Semicolon, ShiftLeft, ShiftRight,
 };
 use RobotJoint::*;
 use bevy::prelude::*;
@@ -52,7 +52,8 @@ pub(crate) fn plugin(app: &mut App) {
                 show_or_hide.run_if(was_struck(KeyR)),
                 show_next_face.run_if(was_struck(Backslash)),
                 (|mut view: ResMut<HeadView>| view.toggle()).run_if(was_struck(Digit1)),
-                (|mut snapshots: ResMut<Snapshots>| snapshots.take_one()).run_if(was_struck(Digit2)),
+                (|mut snapshots: ResMut<Snapshots>| snapshots.take_one())
+                    .run_if(was_struck(Digit2)),
             )
                 .in_set(KeySystems)
                 .run_if(Paused::is_running),
@@ -112,8 +113,10 @@ fn directions(shift: bool, is_on: impl Fn(KeyCode) -> bool) -> Directions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use KeyCode::{Escape, KeyA, KeyB, KeyC, KeyD, KeyM, KeyN, KeyQ, KeyS, KeyW, KeyZ, Slash, Space};
     use crate::{jog, keys, test_world::TestWorld};
+    use KeyCode::{
+        Escape, KeyA, KeyB, KeyC, KeyD, KeyM, KeyN, KeyQ, KeyS, KeyW, KeyZ, Slash, Space,
+    };
     use bevy::time::TimeUpdateStrategy;
     use std::time::Duration;
     use tabletop_core::{Drive, Face};

@@ -17,7 +17,7 @@ use crate::{
 const TRACK_WIDTH: f32 = 196.0;
 
 /// Width of the table's columns for the arms, in points.
-const ARM_WIDTH: f32 = 118.0;
+const ARM_WIDTH: f32 = 112.0;
 
 /// So high that the list of joints needs no scroll bar, in points.
 const LIST_HEIGHT: f32 = 400.0;
@@ -161,7 +161,7 @@ impl RobotWindow<'_, '_> {
     fn state(&self, ui: &mut Ui) {
         let grid = egui::Grid::new("state")
             .striped(true)
-            .spacing(egui::vec2(8.0, 2.0))
+            .spacing(egui::vec2(12.0, 2.0))
             .max_col_width(ARM_WIDTH);
         grid.show(ui, |ui| {
             let row = |ui: &mut Ui, name: &str, cell: &dyn Fn(Arm) -> RichText| {
@@ -171,7 +171,7 @@ impl RobotWindow<'_, '_> {
                 }
                 ui.end_row();
             };
-            row(ui, "", &|arm| match arm {
+            row(ui, "rad, °", &|arm| match arm {
                 Arm::Left => RichText::new("Left").strong(),
                 Arm::Right => RichText::new("Right").strong(),
             });
@@ -181,7 +181,7 @@ impl RobotWindow<'_, '_> {
             }
             row(ui, "Gripper", &|arm| self.value(RobotJoint::gripper(arm)));
             row(ui, "Holds", &|arm| self.held_by(arm).into());
-            row(ui, "Stopped by", &|arm| {
+            row(ui, "Blocked", &|arm| {
                 let blocked_by = self.robot.arm(arm).blocked_by.as_deref();
                 blocked_by.unwrap_or(NOTHING).into()
             });

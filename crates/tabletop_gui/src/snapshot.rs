@@ -115,9 +115,8 @@ fn write_new(path: &Path, bytes: &[u8]) -> io::Result<PathBuf> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let numbered = (2..).map(|number: u32| path.with_file_name(format!("{stem}-{number}.png")));
     for path in iter::once(path.to_owned()).chain(numbered) {
-        let told = |error: io::Error| {
-            io::Error::new(error.kind(), format!("{}: {error}", path.display()))
-        };
+        let told =
+            |error: io::Error| io::Error::new(error.kind(), format!("{}: {error}", path.display()));
         match File::create_new(&path) {
             Ok(mut file) => {
                 file.write_all(bytes).map_err(|error| {
@@ -153,7 +152,11 @@ const fn date(days: u64) -> (u64, u64, u64) {
     let day = day - (365 * year + year / 4 - year / 100);
     let month = (5 * day + 2) / 153;
     let day = day - (153 * month + 2) / 5 + 1;
-    let (month, next) = if month < 10 { (month + 3, 0) } else { (month - 9, 1) };
+    let (month, next) = if month < 10 {
+        (month + 3, 0)
+    } else {
+        (month - 9, 1)
+    };
     (400 * cycle + year + next, month, day)
 }
 

@@ -11,7 +11,7 @@ use tabletop_engine::{EngineConfig, EngineError, EngineHandle, Reply, Stream};
 
 use crate::{
     act::{command_of_motor, commands_of_init, last_command},
-    sense::{Senses, aux},
+    sense::{Senses, Told, aux},
     settings::{ScriptSettings, Waiting},
 };
 
@@ -20,7 +20,32 @@ const ONE_LOOK: Duration = Duration::from_millis(500);
 
 /// The script that drives the robot, if there is one.
 #[derive(Resource, Default)]
-pub(crate) struct Agency(Option<Session>);
+pub(crate) struct Agency {
+    session: Option<Session>,
+    /// Engines that have been told to end. They get the time that they need.
+    ending: Vec<EngineHandle>,
+}
+
+impl Agency {
+    /// Lets the script go, its engine ended in this way.
+    fn dismiss(&mut self, end: impl FnOnce(&EngineHandle)) -> bool {
+        let Some(session) = self.session.take() else {
+            return false;
+        };
+        end(&session.engine);
+        self.ending.push(session.engine);
+        true
+    }
+
+    /// Passes on what engines that end still have to say, and forgets those that have ended.
+    fn see_off(&mut self, news: &mut MessageWriter<AgentNews>) {
+        self.ending.retain(|engine| {
+            let is_alive = engine.is_alive();
+            print(engine, news);
+            is_alive
+        });
+    }
+}
 
 /// A script with its engine.
 struct Session {
@@ -32,8 +57,10 @@ struct Session {
     called_at: SimTick,
     /// The tick in which the init script has run.
     began_at: SimTick,
-    /// Whether the last tick has drawn a picture for the script.
-    has_picture: bool,
+    /// What it gets to know.
+    told: Told,
+    /// The tick of a picture that the script is to get next.
+    picture: Option<SimTick>,
 }
 
 /// What is expected of the engine next.
@@ -65,18 +92,16 @@ pub(crate) fn call(
 ) {
     for order in orders.read() {
         match order {
-            AgentOrder::Start if agency.0.is_none() => match start(&settings, *tick) {
+            AgentOrder::Start if agency.session.is_none() => match start(&settings, *tick) {
                 Ok(session) => {
-                    agency.0 = Some(session);
+                    agency.session = Some(session);
                     *agent = Agent::Starting;
                 }
                 Err(error) => fail(&error, &mut agent, &mut news),
             },
             AgentOrder::Start => {}
             AgentOrder::Stop => {
-                if let Some(session) = agency.0.take() {
-                    session.engine.kill();
-                    print(&session.engine, &mut news);
+                if agency.dismiss(EngineHandle::kill) {
                     end(&mut commands);
                     *agent = Agent::Off;
                     news.write(AgentNews::Stopped);
@@ -85,7 +110,8 @@ pub(crate) fn call(
         }
     }
     standstill.set_if_neq(Standstill(false));
-    let Some(session) = &mut agency.0 else {
+    agency.see_off(&mut news);
+    let Some(session) = &mut agency.session else {
         return;
     };
     if paused.0 && session.stage == Stage::Idle {
@@ -93,10 +119,11 @@ pub(crate) fn call(
     }
     let answered = loop {
         if session.stage == Stage::Idle {
-            let is_fresh = std::mem::take(&mut session.has_picture);
+            let picture = session.picture.and_then(|tick| senses.picture_since(tick));
+            session.picture.take_if(|_| picture.is_some());
             let ticks = tick.0.saturating_sub(session.called_at.0).max(1);
             session.called_at = *tick;
-            let sensor = senses.sensor(ticks, is_fresh, &settings);
+            let sensor = senses.sensor(ticks, picture, session.told);
             session.ask(Stage::Step, |engine| engine.step(sensor));
         }
         let look = match (settings.waiting, session.stage) {
@@ -104,6 +131,7 @@ pub(crate) fn call(
             (Waiting::Frame(most), _) => most,
             (Waiting::Blocking, _) => ONE_LOOK,
         };
+        let was_alive = session.engine.is_alive();
         let reply = session.engine.recv_timeout(look);
         print(&session.engine, &mut news);
         match reply {
@@ -113,7 +141,7 @@ pub(crate) fn call(
                     answered => break answered,
                 }
             }
-            None if !session.engine.is_alive() => break Err(EngineError::Stopped),
+            None if !was_alive => break Err(EngineError::Stopped),
             None if settings.waiting == Waiting::Blocking => {}
             None => {
                 // The engine comes up while the simulation goes on; the script itself is waited for.
@@ -129,10 +157,7 @@ pub(crate) fn call(
     };
     match answered {
         Ok(Answer::Exit) => {
-            if let Some(session) = agency.0.take() {
-                session.engine.stop();
-                print(&session.engine, &mut news);
-            }
+            agency.dismiss(EngineHandle::stop);
             end(&mut commands);
             *agent = Agent::Off;
             news.write(AgentNews::Stopped);
@@ -141,14 +166,11 @@ pub(crate) fn call(
             let ticks = tick.0.saturating_sub(session.began_at.0);
             if ticks.is_multiple_of(settings.ticks_per_picture.max(1)) {
                 demand.ask();
-                session.has_picture = true;
+                session.picture = Some(*tick);
             }
         }
         Err(error) => {
-            if let Some(session) = agency.0.take() {
-                session.engine.kill();
-                print(&session.engine, &mut news);
-            }
+            agency.dismiss(EngineHandle::kill);
             end(&mut commands);
             fail(&error, &mut agent, &mut news);
         }
@@ -173,13 +195,15 @@ fn start(settings: &ScriptSettings, tick: SimTick) -> Result<Session, EngineErro
     }
     config.pair.clone_from(&settings.pair);
     config.timeouts = settings.timeouts;
+    let told = Told::to(&config.agent, settings);
     Ok(Session {
         engine: EngineHandle::start(config)?,
         stage: Stage::Start,
         asked: Instant::now(),
         called_at: tick,
         began_at: tick,
-        has_picture: false,
+        told,
+        picture: None,
     })
 }
 
@@ -252,23 +276,4 @@ fn print(engine: &EngineHandle, news: &mut MessageWriter<AgentNews>) {
         is_error: line.stream == Stream::Error,
         line: line.text,
     }));
-}
-
-/// After a standstill, time goes on, so that a tick is tried again.
-pub(crate) fn resume_time(standstill: Res<Standstill>, mut time: ResMut<Time<Virtual>>) {
-    if standstill.0 {
-        time.unpause();
-    }
-}
-
-/// At a standstill, the time that is left of this frame passes without ticks, and no more comes.
-pub(crate) fn drop_overstep(
-    standstill: Res<Standstill>,
-    mut fixed: ResMut<Time<Fixed>>,
-    mut time: ResMut<Time<Virtual>>,
-) {
-    if standstill.0 {
-        fixed.discard_overstep(Duration::MAX);
-        time.pause();
-    }
 }

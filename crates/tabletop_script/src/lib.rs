@@ -23,16 +23,19 @@
 
 mod act;
 mod agency;
+mod mentions;
 mod sense;
 mod settings;
+mod standstill;
 
-pub use settings::{ScriptSettings, Waiting};
+pub use settings::{ScriptSettings, Tell, Waiting};
 pub use tabletop_engine::{EngineChoice, Surroundings, Timeouts};
 
 use bevy::prelude::*;
 use tabletop_core::{HeadCamera, ObjectIndex, OrderSystems, PictureDemand, SensorImage};
 
-use agency::{Agency, call, drop_overstep, resume_time};
+use agency::{Agency, call};
+use standstill::{drop_overstep, keep_messages, resume_time};
 
 /// Adds the script bridge. Needs [`CorePlugin`](tabletop_core::CorePlugin).
 #[derive(Clone, Debug, Default)]
@@ -52,7 +55,10 @@ impl Plugin for ScriptPlugin {
             .add_systems(FixedUpdate, (call, drop_overstep).chain().in_set(OrderSystems::Script))
             .add_systems(
                 RunFixedMainLoop,
-                resume_time.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+                (
+                    resume_time.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+                    keep_messages.in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
+                ),
             );
     }
 }

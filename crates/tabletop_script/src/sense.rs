@@ -1,9 +1,11 @@
 //! What a script senses.
 
+use std::path::Path;
+
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
     Arm, ObjectIndex, ObjectSpec, Pose, Recording, Robot, RobotJoint, RobotMode, SensorImage,
-    TICK_SECONDS,
+    SimTick, TICK_SECONDS,
 };
 use tabletop_engine::{Aux, Picture, SensedContact, SensedObject, Sensor};
 
@@ -11,6 +13,24 @@ use crate::ScriptSettings;
 
 /// How far fingers' ends are from the end effector: across and along it, in units. They do not follow the opening.
 const FINGER_ENDS: Vec2 = Vec2::new(1.15, 0.75);
+
+/// What a script gets to know beside what all scripts do.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Told {
+    objects: bool,
+    trackers: bool,
+}
+
+impl Told {
+    /// What this agent is told.
+    pub fn to(agent: &Path, settings: &ScriptSettings) -> Self {
+        let objects = &["objects", "contacts", "held"];
+        Self {
+            objects: settings.objects.holds_for(agent, objects),
+            trackers: settings.trackers.holds_for(agent, &["trackerLoc"]),
+        }
+    }
+}
 
 /// What can be sensed.
 #[derive(SystemParam)]
@@ -37,9 +57,8 @@ impl Senses<'_, '_> {
         self.robot.mode
     }
 
-    /// What a callback script gets to know, so many ticks after it was called before. `is_fresh` tells whether there is a
-    /// picture that it has not seen.
-    pub fn sensor(&self, ticks: u64, is_fresh: bool, settings: &ScriptSettings) -> Sensor {
+    /// What a callback script gets to know, so many ticks after it was called before.
+    pub fn sensor(&self, ticks: u64, picture: Option<Picture>, told: Told) -> Sensor {
         let robot = &self.robot;
         let of_arms = |value: fn(&Robot, RobotJoint) -> f64| {
             Arm::BOTH.map(|arm| RobotJoint::of_arm(arm).map(|joint| value(robot, joint)))
@@ -50,19 +69,23 @@ impl Senses<'_, '_> {
             joint_angles: of_arms(|robot, joint| robot.joint(joint).position),
             end_eff_pos: Arm::BOTH.map(|arm| point(robot.arm(arm).end_effector.location)),
             gripper_opening: Arm::BOTH.map(|arm| robot.joint(RobotJoint::gripper(arm)).position),
-            picture: is_fresh.then(|| self.picture()).flatten(),
-            tracker_loc: settings.trackers.then(|| self.trackers()),
+            picture,
+            tracker_loc: told.trackers.then(|| self.trackers()),
             demo_cue: self.recording.0,
             head_angle: Some(robot.joint(RobotJoint::HeadPan).position),
-            objects: settings.objects.then(|| self.objects()),
-            contacts: settings.objects.then(|| self.contacts()),
-            held: settings.objects.then(|| self.held()),
+            objects: told.objects.then(|| self.objects()),
+            contacts: told.objects.then(|| self.contacts()),
+            held: told.objects.then(|| self.held()),
             joint_torques: dynamic.then(|| of_arms(|robot, joint| robot.joint(joint).torque)),
         }
     }
 
-    fn picture(&self) -> Option<Picture> {
+    /// The picture of a tick, or of a later one, if it has been taken.
+    pub fn picture_since(&self, tick: SimTick) -> Option<Picture> {
         let picture = &self.image.picture;
+        if self.image.tick < tick || picture.rgb.is_empty() {
+            return None;
+        }
         Picture::new(picture.width, picture.height, picture.rgb.clone())
     }
 

@@ -1,10 +1,15 @@
 //! What can be chosen about scripts.
 
-use std::{path::PathBuf, time::Duration};
+use std::{
+    path::{Path, PathBuf},
+    time::Duration,
+};
 
 use bevy::prelude::*;
 use tabletop_core::TICKS_PER_SECOND;
 use tabletop_engine::{EngineChoice, Surroundings, Timeouts};
+
+use crate::mentions::mention;
 
 /// Which scripts run in which engine, and how.
 #[derive(Resource, Clone, Debug)]
@@ -18,16 +23,40 @@ pub struct ScriptSettings {
     pub pair: Option<[String; 2]>,
     /// Ticks from one picture of the head camera to the next; 15 are the four a second of the original program.
     pub ticks_per_picture: u64,
-    /// Let scripts know of the objects, the contacts and what the grippers hold.
-    pub objects: bool,
-    /// Let scripts know where points of the arms are (`sensor.trackerLoc`).
-    pub trackers: bool,
+    /// Let scripts know of the objects, the contacts and what the grippers hold (`sensor.objects`, `contacts` and `held`).
+    pub objects: Tell,
+    /// Let scripts know where points of the arms are (`sensor.trackerLoc`). It costs Octave half a millisecond a tick.
+    pub trackers: Tell,
     /// How long to wait for the engine before it is ended.
     pub timeouts: Timeouts,
     /// How the simulation waits for the script.
     pub waiting: Waiting,
     /// Where engines are looked for.
     pub surroundings: Surroundings,
+}
+
+/// Whether scripts are told something that costs time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tell {
+    /// If its name is in a script: an `.m` file in the agent's folder or its `private`, `@` and `+` folders, or a `.py` file
+    /// beside the agent's. The files are read whenever the agent starts.
+    #[default]
+    Auto,
+    /// Always, as scripts need that take the names from elsewhere.
+    Always,
+    /// Never.
+    Never,
+}
+
+impl Tell {
+    /// Whether this agent is told what has these names.
+    pub(crate) fn holds_for(self, agent: &Path, names: &[&str]) -> bool {
+        match self {
+            Self::Auto => mention(agent, names),
+            Self::Always => true,
+            Self::Never => false,
+        }
+    }
 }
 
 /// How the simulation waits for the script.
@@ -46,8 +75,8 @@ impl Default for ScriptSettings {
             agent: None,
             pair: None,
             ticks_per_picture: u64::from(TICKS_PER_SECOND / 4),
-            objects: true,
-            trackers: true,
+            objects: Tell::Auto,
+            trackers: Tell::Auto,
             timeouts: Timeouts::default(),
             waiting: Waiting::Blocking,
             surroundings: Surroundings::system(),

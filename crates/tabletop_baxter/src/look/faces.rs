@@ -38,7 +38,7 @@ pub fn face(face: Face) -> Triangles {
         Face::Neutral | Face::Blank => {
             drawing.eyes(Vec2::new(0.026, 0.027), 0.0);
             drawing.brows(0.049, 0.35);
-            drawing.arc(Vec2::new(0.0, -0.018), 0.030, -FRAC_PI_2, 0.45);
+            drawing.arc(Vec2::new(0.0, -0.012), 0.036, -FRAC_PI_2, 0.5);
         }
         Face::Happy => {
             drawing.eyes(Vec2::new(0.027, 0.027), 0.003);

@@ -152,8 +152,6 @@ fn find(file: &str, urdf: Option<&Path>) -> Result<PathBuf, LookError> {
 
 #[cfg(test)]
 mod tests {
-    #![expect(clippy::unwrap_used, reason = "a test may panic")]
-
     use super::*;
 
     /// A folder of its own for each test, with files in it.
@@ -161,7 +159,8 @@ mod tests {
 
     impl Folder {
         fn with(name: &str, files: &[(&str, &str)]) -> Self {
-            let folder = std::env::temp_dir().join(format!("tabletop-{name}-{}", std::process::id()));
+            let folder =
+                std::env::temp_dir().join(format!("tabletop-{name}-{}", std::process::id()));
             for (path, text) in files {
                 let path = folder.join(path);
                 fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -210,7 +209,11 @@ mod tests {
             let surface = &*figure.fine;
             assert_eq!(surface.indices.len(), 1, "{file}");
             // From m to units, and mirrored.
-            let farthest = surface.positions.iter().copied().fold(Vec3::ZERO, Vec3::max);
+            let farthest = surface
+                .positions
+                .iter()
+                .copied()
+                .fold(Vec3::ZERO, Vec3::max);
             assert_eq!(farthest, Vec3::new(10.0, 20.0, 0.0), "{file}");
             assert_eq!(surface.normals, [Vec3::NEG_Z; 3], "{file}");
             assert_eq!(surface.colors, [Rgb::WHITE; 3], "{file}");
@@ -230,9 +233,17 @@ mod tests {
             let file = "package://arm_description/meshes/a.stl";
             assert!(folder.look(file, urdf).is_ok(), "{urdf}");
         }
-        assert!(folder.look("../meshes/a.stl", "arm_description/urdf/robot.urdf").is_err());
+        assert!(
+            folder
+                .look("../meshes/a.stl", "arm_description/urdf/robot.urdf")
+                .is_err()
+        );
         fs::create_dir(folder.0.join("arm_description/urdf")).unwrap();
-        assert!(folder.look("../meshes/a.stl", "arm_description/urdf/robot.urdf").is_ok());
+        assert!(
+            folder
+                .look("../meshes/a.stl", "arm_description/urdf/robot.urdf")
+                .is_ok()
+        );
     }
 
     #[test]

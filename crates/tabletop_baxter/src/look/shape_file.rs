@@ -96,8 +96,6 @@ impl ShapeFile {
 
 #[cfg(test)]
 mod tests {
-    #![expect(clippy::unwrap_used, reason = "a test may panic")]
-
     use super::*;
     use crate::look::parts::PARTS;
 

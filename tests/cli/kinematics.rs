@@ -1,13 +1,14 @@
 //! `tabletop robot`, as another program talks to it.
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::{
     io::Write as _,
     path::Path,
-    process::{Command, Stdio},
+    process::Stdio,
 };
 
 use serde_json::{Value, json};
+
+use crate::support::command;
 
 struct Answers {
     lines: Vec<Value>,
@@ -17,12 +18,7 @@ struct Answers {
 
 /// Runs `tabletop robot` with these lines on its standard input.
 fn robot(arguments: &[&str], input: &[u8]) -> Answers {
-    let mut program = Command::new(env!("CARGO_BIN_EXE_tabletop"))
-        .arg("robot")
-        .args(arguments)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .env_remove("DISPLAY")
-        .env_remove("WAYLAND_DISPLAY")
+    let mut program = command(&[&["robot"], arguments].concat())
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

@@ -1,0 +1,87 @@
+//! The robot on the command line.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::support::{place, scenario, stderr, stdout, tabletop};
+
+const MOVE: &str = "Robot(Show), Robot(Move([(LeftS1, -0.5), (HeadPan, -0.2)])), Robot(WaitUntilStill(5)),";
+
+/// How the robot is after these steps.
+fn robot_after(name: &str, steps: &str, options: &[&str]) -> Value {
+    let scenario = scenario(name, steps);
+    let arguments = [
+        &["run", scenario.to_str().unwrap(), "--final-robot", "-"],
+        options,
+    ];
+    let output = tabletop(&arguments.concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    serde_json::from_str(&stdout(&output)).unwrap()
+}
+
+fn position(robot: &Value, arm: &str) -> Vec<f64> {
+    let position = robot[arm]["end_effector"]["position"].as_array().unwrap();
+    position.iter().map(|x| x.as_f64().unwrap()).collect()
+}
+
+#[test]
+fn how_the_robot_is_in_the_end_is_written_as_json() {
+    let robot = robot_after("robot_moves.ron", MOVE, &[]);
+    assert_eq!(robot["left"]["angles"][1], -0.5);
+    assert_eq!(robot["head_pan"], -0.2);
+    assert_eq!(robot["shown"], true);
+    assert_eq!(robot["right"]["gripper_opening"], 2.0);
+    assert_eq!(robot["left"]["holds"], Value::Array(Vec::new()));
+}
+
+#[test]
+fn another_description_is_another_robot() {
+    let usual = robot_after("usual_robot.ron", MOVE, &[]);
+    let smile = robot_after(
+        "smile_robot.ron",
+        MOVE,
+        &["--robot", "assets/baxter/baxter_smile.urdf"],
+    );
+    let [usual, smile] = [usual, smile].map(|robot| position(&robot, "left"));
+    let apart = (0..3).map(|i| (usual[i] - smile[i]).powi(2)).sum::<f64>().sqrt();
+    assert!((0.05..0.3).contains(&apart), "{usual:?} and {smile:?}");
+}
+
+#[test]
+fn motors_come_to_the_same_place() {
+    let moved = robot_after("motors.ron", MOVE, &["--dynamic"]);
+    let angle = moved["left"]["angles"][1].as_f64().unwrap();
+    assert!((angle + 0.5).abs() < 0.01, "{angle}");
+}
+
+#[test]
+fn a_description_that_is_none_is_wrong_input() {
+    let file = place("no_robot.urdf");
+    for (text, words) in [
+        (None, "No such file"),
+        (Some("<robot name=\"r\"><link name=\"a\"/></robot>"), "left_s0"),
+        (Some("hello"), "no_robot.urdf"),
+    ] {
+        if let Some(text) = text {
+            fs::write(&file, text).unwrap();
+        }
+        let output = tabletop(&["run", "--robot", file.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(words), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn a_recording_with_another_robot_is_replayed_with_it() {
+    let steps = format!("Start, {MOVE} Grasp(\"RedBlock\"), Wait(0.5), Release, Wait(0.2), Finish,");
+    let scenario = scenario("smile_recorded.ron", &steps);
+    let folder = place("smile_recording");
+    let folder = folder.to_str().unwrap();
+    let robot = ["--robot", "assets/baxter/baxter_smile.urdf", "--dynamic"];
+    let run = ["run", scenario.to_str().unwrap(), "--record", folder];
+    let output = tabletop(&[&run[..], &robot].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let replayed = tabletop(&["replay", folder, "--verify"]);
+    assert_eq!(replayed.status.code(), Some(0), "{}", stderr(&replayed));
+}
