@@ -62,7 +62,7 @@ impl Demonstration {
         self.app.world().resource::<History>().undoable
     }
 
-    /// Every bit that tells the state of the objects.
+    /// Every bit that tells the state of the objects and the robot.
     pub fn bits(&self) -> Vec<(String, Vec<u32>)> {
         let world = self.app.world();
         let tick = world.resource::<SimTick>().0 as u32;
@@ -85,7 +85,15 @@ impl Demonstration {
             let id = world.get::<ObjectSpec>(object).unwrap().id.clone();
             (id, numbers.chain([u32::from(sleeps)]).collect())
         });
+        let robot = world.resource::<Robot>();
+        let joints = robot.joints.iter().flat_map(|joint| {
+            let bits = joint.position.to_bits();
+            [bits as u32, (bits >> 32) as u32]
+        });
+        let held = robot.arms.iter().map(|arm| arm.holds.len() as u32);
+        let robot = [u32::from(robot.is_shown)].into_iter().chain(joints);
         std::iter::once(("tick".into(), vec![tick]))
+            .chain([("robot".into(), robot.chain(held).collect())])
             .chain(objects)
             .collect()
     }

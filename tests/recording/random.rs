@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use tabletop::{
-    core::{ChainSpec, LidBoxSpec},
+    core::{ChainSpec, Drive, LidBoxSpec},
     prelude::*,
 };
 
@@ -136,11 +136,33 @@ fn hand_command(random: &mut Random) -> SimCommand {
     }
 }
 
+fn robot_command(random: &mut Random) -> SimCommand {
+    let joint = random.of(&RobotJoint::ALL);
+    let speed = f64::from(random.between(-3.0, 3.0));
+    let arm = random.of(&Arm::BOTH);
+    match random.below(8) {
+        0 => SimCommand::ShowRobot(random.below(4) != 0),
+        1 => SimCommand::Drive(vec![(joint, Drive::Velocity(speed))]),
+        2 => SimCommand::Drive(vec![(joint, Drive::Position(speed))]),
+        3 => SimCommand::Drive(vec![(RobotJoint::gripper(arm), Drive::Toward(0.0))]),
+        4 | 5 => SimCommand::ReachTo {
+            arm,
+            pose: Pose::at(Vec3::new(
+                random.between(-5.0, 5.0),
+                random.between(-5.0, -1.0),
+                random.between(0.9, 3.0),
+            )),
+        },
+        _ => SimCommand::Drive(vec![(joint, Drive::Toward(speed))]),
+    }
+}
+
 /// What is told at which tick.
 pub fn script(random: &mut Random, ticks: u64) -> Vec<Vec<SimCommand>> {
     (0..ticks)
         .map(|_| match random.below(6) {
             0 => vec![hand_command(random)],
+            1 if random.below(2) == 0 => vec![robot_command(random)],
             _ => Vec::new(),
         })
         .collect()

@@ -241,17 +241,16 @@ impl Pull {
         })
     }
 
-    /// What the arm pushes with all its might without getting anywhere.
+    /// What a motor pushes in vain with all its might.
     fn stalled_by(&self) -> Option<Entity> {
         let Step { velocities, torques } = &self.step;
-        let is_still = velocities.iter().all(|velocity| velocity.abs() < AT_REST);
         let mut pulls = self.motors.iter().zip(torques);
-        if !is_still || !pulls.any(|(motor, torque)| torque.abs() >= motor.effort) {
+        if !pulls.any(|(motor, torque)| torque.abs() >= motor.effort) {
             return None;
         }
         let mut touches = self.touched.iter().zip(&self.masses.touches);
         touches
-            .find(|(_, touch)| touch.is_pushed(velocities))
+            .find(|(_, touch)| touch.withstands(velocities))
             .map(|(thing, _)| *thing)
     }
 

@@ -59,6 +59,9 @@ const WALL: f64 = 1e6;
 /// Speed in m/s at which friction is at its full strength.
 const CREEP: f64 = 1e-4;
 
+/// Speed in m/s below which something pushed stands.
+const STANDSTILL: f64 = 0.005;
+
 /// Most momentum in N s that a touch can take by resistance.
 const IMMOVABLE: f64 = 1e3;
 
@@ -169,9 +172,10 @@ impl Masses {
 }
 
 impl Touch {
-    /// Whether an arm with these velocities pushes it.
-    pub fn is_pushed(&self, velocities: &Joints) -> bool {
-        self.push(dot(&self.lever, velocities)) > 0.0
+    /// Whether an arm with these velocities pushes it in vain.
+    pub fn withstands(&self, velocities: &Joints) -> bool {
+        let speed = dot(&self.lever, velocities);
+        self.push(speed) > 0.0 && speed < STANDSTILL
     }
 
     /// The momentum in N s that the arm loses to it if it comes with this speed in m/s.
