@@ -5,8 +5,7 @@ use std::collections::BTreeSet;
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*};
 use tabletop_core::{
-    Arm, Gripped, Held, ObjectSpec, Pose, Robot, RobotJoint, RobotMode, SimFact, Table,
-    robot_base,
+    Arm, Gripped, Held, ObjectSpec, Pose, Robot, RobotJoint, RobotMode, SimFact, Table, robot_base,
 };
 use tabletop_physics::{PhysicsSettings, convex_parts};
 
@@ -56,7 +55,10 @@ pub(crate) fn advance(
     let is_told = orders.are_given();
     if !is_dynamic && !is_told {
         if robot.joints.iter().any(|joint| joint.velocity != 0.0) {
-            robot.joints.iter_mut().for_each(|joint| joint.velocity = 0.0);
+            robot
+                .joints
+                .iter_mut()
+                .for_each(|joint| joint.velocity = 0.0);
         }
         return Ok(());
     }
@@ -128,7 +130,12 @@ pub(crate) fn advance(
         }
         transform.set_if_neq(pose.into());
     };
-    for (&part, pose) in known.parts.0.iter().zip(poses(&known.skeleton, &posture, motion.base)) {
+    for (&part, pose) in known
+        .parts
+        .0
+        .iter()
+        .zip(poses(&known.skeleton, &posture, motion.base))
+    {
         place(part, pose);
     }
     for arm in Arm::BOTH {
@@ -178,13 +185,7 @@ impl Known<'_, '_> {
                 .into_iter()
                 .map(|pose| pose.location),
         );
-        let surroundings = Surroundings::new(
-            rapier,
-            &near,
-            &self.bodies,
-            &held,
-            robot.is_shown,
-        );
+        let surroundings = Surroundings::new(rapier, &near, &self.bodies, &held, robot.is_shown);
         let carried = Arm::BOTH.map(|arm| {
             grips
                 .of(arm)
@@ -193,7 +194,10 @@ impl Known<'_, '_> {
                 .map(|grip| Carried {
                     object: grip.object,
                     pose: grip.pose,
-                    mass: self.objects.get(grip.object).map_or(0.0, |(spec, ..)| spec.mass.into()),
+                    mass: self
+                        .objects
+                        .get(grip.object)
+                        .map_or(0.0, |(spec, ..)| spec.mass.into()),
                     parts: parts_of(rapier, grip.object),
                 })
                 .collect()
@@ -262,7 +266,12 @@ impl Known<'_, '_> {
     /// The sleeping objects that the arms may touch in this tick: Rapier lets things move into sleeping ones for a tick.
     fn near_arms(&self, motion: &mut Motion) -> Vec<Entity> {
         let mut bounds: Vec<Aabb> = Vec::new();
-        if motion.surroundings.free.iter().any(|thing| thing.is_sleeping) {
+        if motion
+            .surroundings
+            .free
+            .iter()
+            .any(|thing| thing.is_sleeping)
+        {
             for arm in Arm::BOTH {
                 bounds.extend(motion.bounds(arm));
             }

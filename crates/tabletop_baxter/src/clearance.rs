@@ -45,7 +45,12 @@ pub(crate) struct Solid {
 
 impl Solid {
     /// The solids of something that goes from one pose to another.
-    pub fn moving(parts: &[Convex], owner: Owner, from: Pose, to: Pose) -> impl Iterator<Item = Self> {
+    pub fn moving(
+        parts: &[Convex],
+        owner: Owner,
+        from: Pose,
+        to: Pose,
+    ) -> impl Iterator<Item = Self> {
         parts.iter().map(move |part| {
             let to = to * part.pose;
             Self {
@@ -103,7 +108,9 @@ impl Solid {
     /// Where this solid is nearest to another one before they move, if that is no farther than `most`, in units.
     pub fn contact(&self, other: &Self, most: f32) -> Option<Contact> {
         let [here, there] = [self, other].map(|solid| to_rapier(solid.from));
-        contact(&here, &*self.shape, &there, &*other.shape, most).ok().flatten()
+        contact(&here, &*self.shape, &there, &*other.shape, most)
+            .ok()
+            .flatten()
     }
 
     /// The radius of a ball about the solid's origin that holds it.
@@ -219,7 +226,9 @@ mod tests {
         let push = |from: f32| {
             let [from, to] = [from, from - 0.1].map(|z| Pose::at(Vec3::Z * z));
             let solid = Solid::moving(&[block(0.0)], Owner::Body(0), from, to).next();
-            let approach = solid.unwrap().approach(&Solid::resting(block(0.0), Owner::Body(1)));
+            let approach = solid
+                .unwrap()
+                .approach(&Solid::resting(block(0.0), Owner::Body(1)));
             approach.map_or(1.0, Approach::part)
         };
         assert_eq!(push(1.5), 1.0);

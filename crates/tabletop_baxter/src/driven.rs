@@ -88,7 +88,9 @@ impl Motors {
         let (model, frames) = (skeleton.model(), motion.scratch.frames());
         let loads = Arm::BOTH.map(|arm| -> Vec<Load> {
             let carried = motion.carried[arm as usize].iter();
-            carried.map(|it| skeleton.load(arm, it.pose, it.mass)).collect()
+            carried
+                .map(|it| skeleton.load(arm, it.pose, it.mass))
+                .collect()
         });
         let all_loads = loads.concat();
         let mut velocities = model.zero();
@@ -97,7 +99,8 @@ impl Motors {
             chain.set_angles(&self.arms[arm as usize].velocities, &mut velocities);
         }
         let inertia = model.inertia_matrix(frames, &all_loads);
-        let turning = model.inverse_dynamics(frames, &velocities, &model.zero(), DVec3::ZERO, &all_loads);
+        let turning =
+            model.inverse_dynamics(frames, &velocities, &model.zero(), DVec3::ZERO, &all_loads);
         let down = DVec3::NEG_Z * (f64::from(gravity) / UNITS_PER_METER);
         Arm::BOTH.map(|arm| {
             let driven = &self.arms[arm as usize];
@@ -114,7 +117,9 @@ impl Motors {
                 loads[arm as usize].iter().map(of_load).sum()
             });
             let motors = driven.motors(skeleton, arm, orders, &inertia, &weights);
-            let (touched, touches) = std::mem::take(&mut all_touches[arm as usize]).into_iter().unzip();
+            let (touched, touches) = std::mem::take(&mut all_touches[arm as usize])
+                .into_iter()
+                .unzip();
             let masses = Masses {
                 angles: driven.angles,
                 velocities: driven.velocities,
@@ -125,7 +130,11 @@ impl Motors {
                 touches,
             };
             let mut step = masses.step(&motors, f64::from(TICK_SECONDS));
-            if step.velocities.iter().all(|velocity| velocity.abs() < STILL) {
+            if step
+                .velocities
+                .iter()
+                .all(|velocity| velocity.abs() < STILL)
+            {
                 step.velocities = [0.0; 7];
             }
             Pull {
@@ -143,7 +152,8 @@ impl Motors {
             let joints = RobotJoint::of_arm(arm);
             let angles = joints.map(|joint| motion.positions[joint.index()]);
             // Where something free is only just reached, an arm keeps its speed.
-            let is_free = motion.blocked_by[arm as usize].is_none() && !motion.is_squeezing[arm as usize];
+            let is_free =
+                motion.blocked_by[arm as usize].is_none() && !motion.is_squeezing[arm as usize];
             let (velocities, torques) = match is_free {
                 true => (pull.step.velocities, pull.step.torques),
                 false => pull.held_back(&angles),
@@ -203,20 +213,35 @@ impl Driven {
         from_fn(|i| {
             let joint = skeleton.model().joint(skeleton.chain(arm).0.joints()[i]);
             let usual = USUAL[usize::from(i > 3)];
-            let effort = if joint.effort > 0.0 { joint.effort } else { usual.0 };
-            let speed = if joint.velocity > 0.0 { joint.velocity } else { usual.1 };
+            let effort = if joint.effort > 0.0 {
+                joint.effort
+            } else {
+                usual.0
+            };
+            let speed = if joint.velocity > 0.0 {
+                joint.velocity
+            } else {
+                usual.1
+            };
             let task = match orders.torque(joints[i]) {
                 Some(torque) => Task::Pull(torque),
                 None => {
                     let way = wants[i].position() - self.places[i];
                     // As fast as it can still stop where it is to go.
                     let brakes = BRAKES * effort / inertia[i][i].max(f64::MIN_POSITIVE);
-                    let left = orders.goal(joints[i]).map(|goal| (goal - self.places[i]).abs());
-                    let fastest = left.map_or(speed, |left| speed.min((2.0 * brakes * left).sqrt()));
+                    let left = orders
+                        .goal(joints[i])
+                        .map(|goal| (goal - self.places[i]).abs());
+                    let fastest =
+                        left.map_or(speed, |left| speed.min((2.0 * brakes * left).sqrt()));
                     let most = fastest * f64::from(TICK_SECONDS);
                     let step = way.clamp(-most, most);
                     Task::Follow {
-                        angle: if step == way { wants[i].position() } else { self.places[i] + step },
+                        angle: if step == way {
+                            wants[i].position()
+                        } else {
+                            self.places[i] + step
+                        },
                         velocity: step / f64::from(TICK_SECONDS),
                         known: weights[i],
                     }
@@ -243,7 +268,10 @@ impl Pull {
 
     /// What a motor pushes in vain with all its might.
     fn stalled_by(&self) -> Option<Entity> {
-        let Step { velocities, torques } = &self.step;
+        let Step {
+            velocities,
+            torques,
+        } = &self.step;
         let mut pulls = self.motors.iter().zip(torques);
         if !pulls.any(|(motor, torque)| torque.abs() >= motor.effort) {
             return None;

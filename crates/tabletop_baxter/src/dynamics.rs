@@ -42,6 +42,30 @@ pub(crate) struct Touch {
     pub speed: f64,
     /// The momentum in N s that friction and what is behind it can take from it in a step.
     pub resistance: f64,
+    /// Friction between the two: the largest part of what the arm pushes with that can draw along the surface.
+    pub friction: f64,
+    /// Directions along the surface.
+    pub slides: Vec<Slide>,
+}
+
+/// A direction along the surface of something that an arm touches.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Slide {
+    /// How fast the arm goes this way per rad/s of each joint, in m.
+    pub lever: Joints,
+    /// How fast the thing goes this way, in m/s.
+    pub speed: f64,
+    /// The momentum in N s that what else it touches can give it against its motion in a step.
+    pub resistance: f64,
+}
+
+/// A slide with what can be drawn there.
+struct Draw<'a> {
+    slide: &'a Slide,
+    /// Mass of the thing, in kg.
+    mass: f64,
+    /// Largest momentum in N s.
+    most: f64,
 }
 
 /// What a step makes of an arm.
@@ -77,19 +101,12 @@ const HALVINGS: usize = 30;
 impl Masses {
     /// What `seconds` make of the arm.
     pub fn step(&self, motors: &[Motor; 7], seconds: f64) -> Step {
-        let mut velocities = self.velocities;
-        for _ in 0..MOST_ROUNDS {
-            let excess = self.excess(motors, &velocities, seconds);
-            if excess.iter().all(|excess| excess.abs() < NEGLIGIBLE) {
-                break;
-            }
-            let way = Factors::of(&self.slope(motors, &velocities, seconds)).solve(excess.map(|excess| -excess));
-            let next = self.go(motors, velocities, &way, dot(&excess, &way), seconds);
-            if next == velocities {
-                break;
-            }
-            velocities = next;
-        }
+        let smooth = self.settle(motors, self.velocities, &[], seconds);
+        let draws = self.draws(&smooth);
+        let velocities = match draws.is_empty() {
+            true => smooth,
+            false => self.settle(motors, smooth, &draws, seconds),
+        };
         let velocities = from_fn(|i| {
             let [least, largest] = self.bounds(i, seconds);
             let speed = motors[i].speed;
@@ -97,58 +114,104 @@ impl Masses {
         });
         Step {
             velocities,
-            torques: from_fn(|i| motors[i].torque(self.angles[i] + seconds * velocities[i], velocities[i])),
+            torques: from_fn(|i| {
+                motors[i].torque(self.angles[i] + seconds * velocities[i], velocities[i])
+            }),
         }
     }
 
-    /// Goes this way until it goes up again: the function slopes down by `-start` where the way starts.
-    fn go(&self, motors: &[Motor; 7], from: Joints, way: &Joints, start: f64, seconds: f64) -> Joints {
-        let at = |part: f64| -> Joints { from_fn(|i| from[i] + part * way[i]) };
-        let slope = |part: f64| dot(&self.excess(motors, &at(part), seconds), way);
-        let enough = 0.1 * start.abs();
-        if slope(1.0) <= enough {
-            return at(1.0);
-        }
-        let (mut least, mut most) = (0.0, 1.0);
-        for _ in 0..HALVINGS {
-            let middle = f64::midpoint(least, most);
-            let slope = slope(middle);
-            if slope.abs() <= enough {
-                return at(middle);
+    /// What can be drawn along by friction when the arm pushes as hard as it does with these velocities.
+    fn draws(&self, velocities: &Joints) -> Vec<Draw<'_>> {
+        let touches = self.touches.iter().map(|touch| {
+            let most = touch.friction * touch.push(dot(&touch.lever, velocities));
+            (touch, most)
+        });
+        let pushed = touches.filter(|(_, most)| *most > 0.0);
+        pushed
+            .flat_map(|(touch, most)| {
+                touch.slides.iter().map(move |slide| Draw {
+                    slide,
+                    mass: touch.mass,
+                    most,
+                })
+            })
+            .collect()
+    }
+
+    /// The velocities at the end of a step, looked for from these on.
+    fn settle(&self, motors: &[Motor; 7], from: Joints, draws: &[Draw], seconds: f64) -> Joints {
+        let excess = |velocities: &Joints| self.excess(motors, velocities, draws, seconds);
+        let mut velocities = from;
+        for _ in 0..MOST_ROUNDS {
+            let start = excess(&velocities);
+            if start.iter().all(|excess| excess.abs() < NEGLIGIBLE) {
+                break;
             }
-            if slope > 0.0 {
-                most = middle;
-            } else {
-                least = middle;
+            let slope = self.slope(motors, &velocities, draws, seconds);
+            let way = Factors::of(&slope).solve(start.map(|excess| -excess));
+            let next = go(velocities, &way, dot(&start, &way), excess);
+            if next == velocities {
+                break;
             }
+            velocities = next;
         }
-        at(least)
+        velocities
     }
 
     /// The angular momentum in N m s that would come from nowhere if the joints had these velocities at the end of a step.
-    fn excess(&self, motors: &[Motor; 7], velocities: &Joints, seconds: f64) -> Joints {
+    fn excess(
+        &self,
+        motors: &[Motor; 7],
+        velocities: &Joints,
+        draws: &[Draw],
+        seconds: f64,
+    ) -> Joints {
         let change: Joints = from_fn(|i| velocities[i] - self.velocities[i]);
-        let pushes = self.touches.iter().map(|touch| touch.push(dot(&touch.lever, velocities)));
-        let pushes: Vec<f64> = pushes.collect();
+        let mut pushed = [0.0; 7];
+        let pushes = self.touches.iter().map(|touch| {
+            let push = touch.push(dot(&touch.lever, velocities));
+            (push, &touch.lever)
+        });
+        let drawn = draws.iter().map(|draw| {
+            let lever = &draw.slide.lever;
+            (draw.push(dot(lever, velocities)), lever)
+        });
+        for (push, lever) in pushes.chain(drawn) {
+            for (pushed, lever) in pushed.iter_mut().zip(lever) {
+                *pushed += push * lever;
+            }
+        }
         from_fn(|i| {
             let velocity = velocities[i];
             let [least, largest] = self.bounds(i, seconds);
             let motor = motors[i].torque(self.angles[i] + seconds * velocity, velocity);
-            let pushed: f64 = pushes.iter().zip(&self.touches).map(|(push, touch)| push * touch.lever[i]).sum();
             dot(&self.inertia[i], &change)
                 + seconds * (self.bias[i] + self.damping[i] * velocity - motor)
                 + WALL * (velocity - velocity.min(largest).max(least))
-                + pushed
+                + pushed[i]
         })
     }
 
     /// How that changes with the velocities.
-    fn slope(&self, motors: &[Motor; 7], velocities: &Joints, seconds: f64) -> Matrix {
+    fn slope(
+        &self,
+        motors: &[Motor; 7],
+        velocities: &Joints,
+        draws: &[Draw],
+        seconds: f64,
+    ) -> Matrix {
         let mut slope = self.inertia;
-        for touch in &self.touches {
+        let pushed = self.touches.iter().map(|touch| {
             let mass = touch.felt_mass(dot(&touch.lever, velocities));
-            for (row, a) in slope.iter_mut().zip(touch.lever) {
-                for (entry, b) in row.iter_mut().zip(touch.lever) {
+            (mass, &touch.lever)
+        });
+        let drawn = draws.iter().map(|draw| {
+            let lever = &draw.slide.lever;
+            (draw.felt_mass(dot(lever, velocities)), lever)
+        });
+        for (mass, lever) in pushed.chain(drawn) {
+            for (row, a) in slope.iter_mut().zip(lever) {
+                for (entry, b) in row.iter_mut().zip(lever) {
                     *entry += mass * a * b;
                 }
             }
@@ -189,8 +252,61 @@ impl Touch {
         let moves = if speed > self.speed { self.mass } else { 0.0 };
         let from_rest = speed - self.speed.max(0.0);
         let sticks = from_rest > 0.0 && from_rest < CREEP;
-        moves + if sticks { self.resistance.min(IMMOVABLE) / CREEP } else { 0.0 }
+        moves
+            + if sticks {
+                self.resistance.min(IMMOVABLE) / CREEP
+            } else {
+                0.0
+            }
     }
+}
+
+impl Draw<'_> {
+    /// The momentum in N s that the arm loses if it goes along with this speed in m/s.
+    fn push(&self, speed: f64) -> f64 {
+        self.needed(speed).clamp(-self.most, self.most)
+    }
+
+    /// By how much that grows with the speed, in kg.
+    fn felt_mass(&self, speed: f64) -> f64 {
+        let sticks = speed.abs() < CREEP;
+        match self.needed(speed).abs() < self.most {
+            true if sticks => self.mass + self.slide.resistance.min(IMMOVABLE) / CREEP,
+            true => self.mass,
+            false => 0.0,
+        }
+    }
+
+    /// The momentum that it takes to give the thing this speed.
+    fn needed(&self, speed: f64) -> f64 {
+        let rubs = (speed / CREEP).clamp(-1.0, 1.0);
+        self.mass * (speed - self.slide.speed) + self.slide.resistance.min(IMMOVABLE) * rubs
+    }
+}
+
+/// Goes from somewhere this way until it goes up again: the convex function whose slopes `excess` has goes down by
+/// `-start` where the way starts.
+fn go(from: Joints, way: &Joints, start: f64, excess: impl Fn(&Joints) -> Joints) -> Joints {
+    let at = |part: f64| -> Joints { from_fn(|i| from[i] + part * way[i]) };
+    let slope = |part: f64| dot(&excess(&at(part)), way);
+    let enough = 0.1 * start.abs();
+    if slope(1.0) <= enough {
+        return at(1.0);
+    }
+    let (mut least, mut most) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let middle = f64::midpoint(least, most);
+        let slope = slope(middle);
+        if slope.abs() <= enough {
+            return at(middle);
+        }
+        if slope > 0.0 {
+            most = middle;
+        } else {
+            least = middle;
+        }
+    }
+    at(least)
 }
 
 #[cfg(test)]
@@ -248,7 +364,9 @@ mod tests {
         let mut crossings = Vec::new();
         for tick in 0..600 {
             let before = masses.angles[0];
-            masses.bias = masses.angles.map(|angle| 2.0 * 9.81 * 0.4 * f64::sin(angle));
+            masses.bias = masses
+                .angles
+                .map(|angle| 2.0 * 9.81 * 0.4 * f64::sin(angle));
             go(&mut masses, &motors(Task::Pull(0.0)), SECONDS);
             if before > 0.0 && masses.angles[0] <= 0.0 {
                 let part = before / (before - masses.angles[0]);
@@ -257,7 +375,10 @@ mod tests {
         }
         let period = (crossings.last().unwrap() - crossings[0]) / (crossings.len() - 1) as f64;
         let expected = TAU * (0.4_f64 / 9.81).sqrt() * (1.0 + 0.1 * 0.1 / 16.0);
-        assert!((period / expected - 1.0).abs() < 0.01, "{period} s instead of {expected} s");
+        assert!(
+            (period / expected - 1.0).abs() < 0.01,
+            "{period} s instead of {expected} s"
+        );
         assert!(masses.angles[0].abs() < 0.11, "it does not gain energy");
     }
 
@@ -270,7 +391,11 @@ mod tests {
             go(&mut masses, &motors(Task::Pull(0.0)), SECONDS);
         }
         let expected = (-0.7 * 2.0_f64).exp();
-        assert!((masses.velocities[3] / expected - 1.0).abs() < 0.02, "{:?}", masses.velocities);
+        assert!(
+            (masses.velocities[3] / expected - 1.0).abs() < 0.02,
+            "{:?}",
+            masses.velocities
+        );
     }
 
     #[test]
@@ -295,7 +420,11 @@ mod tests {
                 assert!(step.torques.iter().all(|torque| torque.abs() <= 50.0));
                 assert!(masses.angles[0] < 0.0052, "{inertia}: {:?}", masses.angles);
             }
-            assert!((masses.angles[0] - 0.005).abs() < 1e-6, "{inertia}: {:?}", masses.angles);
+            assert!(
+                (masses.angles[0] - 0.005).abs() < 1e-6,
+                "{inertia}: {:?}",
+                masses.angles
+            );
         }
     }
 
@@ -353,6 +482,8 @@ mod tests {
                 mass,
                 speed: 0.0,
                 resistance: mass * 0.5 * 9.81 * SECONDS,
+                friction: 0.0,
+                slides: Vec::new(),
             });
             masses.step(&motors(Task::Pull(50.0)), SECONDS).velocities[0]
         };
@@ -360,7 +491,11 @@ mod tests {
         assert!(push(0.02) > 0.98 * free, "{}", push(0.02));
         // An arm of 1 kg m² on a lever of 0.5 m is like 4 kg.
         let expected = (free * 4.0 - 2.0 * 0.5 * 9.81 * SECONDS / 0.5) / 6.0;
-        assert!((push(2.0) - expected).abs() < 1e-9, "{} instead of {expected}", push(2.0));
+        assert!(
+            (push(2.0) - expected).abs() < 1e-9,
+            "{} instead of {expected}",
+            push(2.0)
+        );
         assert!(push(2000.0).abs() < 1e-3, "{}", push(2000.0));
     }
 
@@ -374,6 +509,8 @@ mod tests {
             mass: 2.0,
             speed: -9.81 * SECONDS,
             resistance: 0.0,
+            friction: 0.0,
+            slides: Vec::new(),
         });
         let step = masses.step(&motors(Task::Pull(0.0)), SECONDS);
         let expected = -2.0 * 9.81 * 0.5 / (1.0 + 2.0 * 0.25);
@@ -386,19 +523,50 @@ mod tests {
     }
 
     #[test]
+    fn an_arm_does_not_slip_along_what_it_presses_on_until_friction_gives_way() {
+        let slide = |torque: f64| {
+            let mut masses = apart(1.0);
+            let lever = |joint: usize| from_fn(|i| if i == joint { 1.0 } else { 0.0 });
+            masses.touches.push(Touch {
+                lever: lever(0),
+                mass: 1.0,
+                speed: 0.0,
+                resistance: f64::INFINITY,
+                friction: 0.5,
+                slides: vec![Slide {
+                    lever: lever(1),
+                    speed: 0.0,
+                    resistance: f64::INFINITY,
+                }],
+            });
+            let mut motors = motors(Task::Pull(0.0));
+            motors[0].task = Task::Pull(20.0);
+            motors[1].task = Task::Pull(torque);
+            masses.step(&motors, SECONDS).velocities
+        };
+        assert!(slide(9.0)[1].abs() < 1e-4, "{:?}", slide(9.0));
+        assert!(
+            (slide(-16.0)[1] + 6.0 * SECONDS).abs() < 1e-4,
+            "{:?}",
+            slide(-16.0)
+        );
+    }
+
+    #[test]
     fn what_the_joints_do_is_found_in_any_state() {
         // A simple generator, so that the numbers are the same every time.
         let mut state = 1_u64;
         let mut number = move || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
             (state >> 40) as f64 / f64::from(1 << 24) * 2.0 - 1.0
         };
         for _ in 0..2000 {
             let root: Matrix = from_fn(|_| from_fn(|_| number()));
             let mut masses = apart(0.01);
-            masses.inertia = from_fn(|i| {
-                from_fn(|j| dot(&root[i], &root[j]) + if i == j { 0.01 } else { 0.0 })
-            });
+            masses.inertia =
+                from_fn(|i| from_fn(|j| dot(&root[i], &root[j]) + if i == j { 0.01 } else { 0.0 }));
             masses.angles = from_fn(|_| PI * number());
             masses.velocities = from_fn(|_| 1.5 * number());
             masses.bias = from_fn(|_| 30.0 * number());

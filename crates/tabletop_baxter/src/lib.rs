@@ -3,6 +3,9 @@
 //! It is told what to do by [`SimCommand`](tabletop_core::SimCommand)s and its state is in
 //! [`Robot`](tabletop_core::Robot). It starts hidden: it can neither be seen nor touched then, but its camera works.
 //!
+//! In kinematic mode its joints move exactly as told; in dynamic mode motors with limited torque move its masses
+//! ([`RobotMode`](tabletop_core::RobotMode)).
+//!
 //! ```
 //! use bevy::prelude::*;
 //! use tabletop_baxter::BaxterPlugin;

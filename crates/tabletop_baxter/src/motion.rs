@@ -87,7 +87,11 @@ impl Motion<'_> {
             return;
         }
         let jumps = wants.iter().any(|want| matches!(want, Want::Jump(_)));
-        if jumps && self.obstacle(arm, &self.positions.clone(), &there).is_none() {
+        if jumps
+            && self
+                .obstacle(arm, &self.positions.clone(), &there)
+                .is_none()
+        {
             self.positions = there;
             return;
         }
@@ -149,7 +153,8 @@ impl Motion<'_> {
             .clamp(1.0, MOST_STEPS);
         for step in 1..=steps as u32 {
             let ahead = f64::from(step) / f64::from(steps);
-            let Some(obstacle) = self.obstacle(arm, &self.positions.clone(), &between(ahead)) else {
+            let Some(obstacle) = self.obstacle(arm, &self.positions.clone(), &between(ahead))
+            else {
                 self.positions = between(ahead);
                 continue;
             };
@@ -193,7 +198,11 @@ impl Motion<'_> {
                 (part, most_pushed) = (can_go, is_pushed.then_some(thing.object));
             }
         }
-        let least = if most_pushed.is_some() { 0.0 } else { LEAST_PUSH };
+        let least = if most_pushed.is_some() {
+            0.0
+        } else {
+            LEAST_PUSH
+        };
         (f64::from(part).max(least), most_pushed)
     }
 
@@ -245,8 +254,7 @@ impl Motion<'_> {
 
     /// The number of a finger of an arm.
     fn finger(&self, arm: Arm) -> usize {
-        let is_finger =
-            |body: &Body| matches!(body.carrier, Carrier::Gripper(of, _) if of == arm);
+        let is_finger = |body: &Body| matches!(body.carrier, Carrier::Gripper(of, _) if of == arm);
         self.skeleton.bodies.iter().position(is_finger).unwrap_or(0)
     }
 
@@ -277,14 +285,18 @@ impl Motion<'_> {
         }
         self.skeleton.update(&mut self.scratch, &self.positions);
         for (number, body) in self.skeleton.bodies.iter().enumerate() {
-            if is_of(body, arm) || !solids.iter().any(|(a, _)| self.meetings.can_meet(*a, number)) {
+            if is_of(body, arm)
+                || !solids
+                    .iter()
+                    .any(|(a, _)| self.meetings.can_meet(*a, number))
+            {
                 continue;
             }
             let pose = self.skeleton.pose(body, &self.scratch, self.base);
             for other in Solid::moving(&body.parts, Owner::Body(number), pose, pose) {
-                let is_met = solids
-                    .iter()
-                    .any(|(a, solid)| self.meetings.can_meet(*a, number) && solid.collides_with(&other));
+                let is_met = solids.iter().any(|(a, solid)| {
+                    self.meetings.can_meet(*a, number) && solid.collides_with(&other)
+                });
                 if is_met {
                     return Some(other.owner);
                 }

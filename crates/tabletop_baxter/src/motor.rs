@@ -54,7 +54,11 @@ impl Motor {
             damping + seconds * stiffness
         } else {
             let is_limit_steep = most.abs() < self.effort || least.abs() < self.effort;
-            if is_limit_steep { 2.0 * self.effort / SLIP } else { 0.0 }
+            if is_limit_steep {
+                2.0 * self.effort / SLIP
+            } else {
+                0.0
+            }
         }
     }
 

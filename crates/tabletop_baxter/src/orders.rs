@@ -141,7 +141,9 @@ impl Orders {
             let place = RobotJoint::of_arm(arm).iter().position(|it| *it == joint)?;
             Some(self.reach[arm as usize]?[place])
         };
-        self.toward[joint.index()].or(self.rush[joint.index()]).or_else(of_arm)
+        self.toward[joint.index()]
+            .or(self.rush[joint.index()])
+            .or_else(of_arm)
     }
 
     /// Where a joint at `position` is to be after this tick, within its limits.
@@ -267,7 +269,9 @@ fn check(mode: RobotMode, joint: RobotJoint, drive: Drive) -> Result<(), String>
         | Drive::Torque(value) => value,
     };
     if !value.is_finite() {
-        return Err(format!("joint {joint} cannot be told {drive:?}: not a number"));
+        return Err(format!(
+            "joint {joint} cannot be told {drive:?}: not a number"
+        ));
     }
     match drive {
         Drive::Torque(_) if !has_motor(mode, joint) => Err(format!(
@@ -293,16 +297,28 @@ mod tests {
     #[test]
     fn a_velocity_holds_for_one_tick() {
         let mut orders = orders(E1, Drive::Velocity(-1.5));
-        assert_eq!(orders.want(E1, 1.0), Want::Move(1.0 - 1.5 * f64::from(TICK_SECONDS)));
+        assert_eq!(
+            orders.want(E1, 1.0),
+            Want::Move(1.0 - 1.5 * f64::from(TICK_SECONDS))
+        );
         orders.end_tick(&positions(&Robot::default()));
         assert_eq!(orders.want(E1, 1.0), Want::Move(1.0));
     }
 
     #[test]
     fn limits_are_kept() {
-        assert_eq!(orders(E1, Drive::Velocity(1e9)).want(E1, 1.0), Want::Move(2.618));
-        assert_eq!(orders(E1, Drive::Position(-7.0)).want(E1, 1.0), Want::Jump(-0.05));
-        assert_eq!(orders(E1, Drive::Toward(-7.0)).toward[E1.index()], Some(-0.05));
+        assert_eq!(
+            orders(E1, Drive::Velocity(1e9)).want(E1, 1.0),
+            Want::Move(2.618)
+        );
+        assert_eq!(
+            orders(E1, Drive::Position(-7.0)).want(E1, 1.0),
+            Want::Jump(-0.05)
+        );
+        assert_eq!(
+            orders(E1, Drive::Toward(-7.0)).toward[E1.index()],
+            Some(-0.05)
+        );
     }
 
     #[test]

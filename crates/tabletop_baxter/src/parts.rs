@@ -5,9 +5,9 @@ use bevy_rapier3d::{
     plugin::systems::{init_colliders, init_rigid_bodies},
     prelude::*,
 };
-use tabletop_core::{Pose, Rewinds, Robot, Table, robot_base};
+use tabletop_core::{CarriesHeadCamera, Pose, Rewinds, Robot, Table, robot_base};
 
-use crate::skeleton::{Body, Posture, Skeleton};
+use crate::skeleton::{Body, Place, Posture, Skeleton};
 
 /// A body of the robot: a link, or a finger of a gripper.
 #[derive(Component, Clone, Debug)]
@@ -22,7 +22,7 @@ pub struct RobotBody {
 pub(crate) struct Parts(pub Vec<Entity>);
 
 /// Friction of the robot's surface. Two surfaces in contact have the product of theirs.
-const FRICTION: f32 = 1.0;
+pub(crate) const FRICTION: f32 = 1.0;
 
 /// Makes the bodies, disabled.
 pub(crate) fn spawn(world: &mut World) -> Result {
@@ -39,6 +39,9 @@ pub(crate) fn spawn(world: &mut World) -> Result {
             place,
             GlobalTransform::from(place),
         ));
+        if body.place == Place::Head {
+            part.insert(CarriesHeadCamera);
+        }
         if let Some(collider) = collider(body) {
             part.insert((
                 RigidBody::KinematicPositionBased,

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 use tabletop_core::{
-    ActuateSystems, CommandSystems, HeadCamera, Rewound, Robot, RobotJoint, RobotMode, SimSystems, Table,
+    ActuateSystems, CommandSystems, HeadCamera, Rewound, Robot, RobotJoint, RobotMode, SimSystems,
+    Table,
 };
 use tabletop_kinematics::{Model, ModelError};
 use tabletop_physics::BodySystems;
@@ -84,7 +85,11 @@ pub struct BaxterPlugin {
 
 impl Plugin for BaxterPlugin {
     fn build(&self, app: &mut App) {
-        let description = match self.description.clone().map_or_else(Description::baxter, Ok) {
+        let description = match self
+            .description
+            .clone()
+            .map_or_else(Description::baxter, Ok)
+        {
             Ok(description) => description,
             Err(error) => {
                 error!("there is no robot: {error}");
@@ -131,7 +136,9 @@ impl Plugin for BaxterPlugin {
                         .chain()
                         .in_set(ActuateSystems::Robot),
                     feel::feel.in_set(SimSystems::Sense),
-                    show_figures.run_if(resource_changed::<Robot>).in_set(SimSystems::Propagate),
+                    show_figures
+                        .run_if(resource_changed::<Robot>)
+                        .in_set(SimSystems::Propagate),
                 ),
             )
             .add_observer(grips::note_lost);

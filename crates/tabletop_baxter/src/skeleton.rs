@@ -95,7 +95,10 @@ impl Skeleton {
                 _ => Some(model.find_joint(joint.name())?),
             };
         }
-        let end_effectors = [end_effector(&model, Arm::Left)?, end_effector(&model, Arm::Right)?];
+        let end_effectors = [
+            end_effector(&model, Arm::Left)?,
+            end_effector(&model, Arm::Right)?,
+        ];
         let chain = |arm: Arm| ArmChain::new(&model, model.root(), end_effectors[arm as usize].0);
         let origins = |arm: Arm| -> Result<_, ModelError> {
             let link = |name: &str| {
@@ -123,7 +126,10 @@ impl Skeleton {
 
     /// The chain from the torso to the link that carries an end effector, and the end effector's frame on that link.
     pub const fn chain(&self, arm: Arm) -> (&ArmChain, DAffine3) {
-        (&self.chains[arm as usize], self.end_effectors[arm as usize].1)
+        (
+            &self.chains[arm as usize],
+            self.end_effectors[arm as usize].1,
+        )
     }
 
     /// The joint of the model that a joint of the robot is.
@@ -298,11 +304,7 @@ fn convex(shape: &tabletop_kinematics::Shape) -> Option<Convex> {
         },
         Geometry::Cylinder { radius, length } => Convex {
             // Along z there, along y here.
-            pose: origin
-                * Pose::new(
-                    Vec3::ZERO,
-                    Quat::from_rotation_x(FRAC_PI_2),
-                ),
+            pose: origin * Pose::new(Vec3::ZERO, Quat::from_rotation_x(FRAC_PI_2)),
             shape: SharedShape::cylinder(*length as f32 * scale / 2.0, *radius as f32 * scale),
         },
         Geometry::Sphere { radius } => Convex {

@@ -9,14 +9,17 @@ use bevy::{
     math::{DAffine3, DVec3},
     prelude::*,
 };
-use bevy_rapier3d::{parry::bounding_volume::BoundingVolume, plugin::RapierContextMut, rapier::prelude as rapier};
+use bevy_rapier3d::{
+    parry::bounding_volume::BoundingVolume, plugin::RapierContextMut, rapier::prelude as rapier,
+};
 use tabletop_core::{Arm, JOINTS_PER_ARM, TICK_SECONDS};
 
 use crate::{
     clearance::TOUCHING,
-    dynamics::Touch,
+    dynamics::{Slide, Touch},
     matrix::Joints,
     motion::Motion,
+    parts::FRICTION,
     skeleton::{Place, UNITS_PER_METER, in_meters},
     surroundings::FreeThing,
 };
@@ -49,12 +52,17 @@ pub(crate) fn touches(
         // What comes is touched on its way.
         let reach = TOUCHING + body.linvel().length() * TICK_SECONDS;
         let bounds = thing.bounds.loosened(reach);
-        let near = solids.iter().filter(|(_, solid)| solid.bounds().intersects(&bounds));
+        let near = solids
+            .iter()
+            .filter(|(_, solid)| solid.bounds().intersects(&bounds));
         let contacts = near.flat_map(|(number, solid)| {
-            let contacts = thing.solids().filter_map(|thing| solid.contact(&thing, reach));
+            let contacts = thing
+                .solids()
+                .filter_map(|thing| solid.contact(&thing, reach));
             contacts.map(move |contact| (*number, contact))
         });
-        let Some((number, contact)) = contacts.min_by(|(_, a), (_, b)| a.dist.total_cmp(&b.dist)) else {
+        let Some((number, contact)) = contacts.min_by(|(_, a), (_, b)| a.dist.total_cmp(&b.dist))
+        else {
             continue;
         };
         let normal = contact.normal1;
@@ -68,12 +76,25 @@ pub(crate) fn touches(
             Place::Arm(_, joints) => joints.min(JOINTS_PER_ARM),
             Place::Trunk | Place::Head => 0,
         };
-        let resistance = resistance(rapier, thing, normal, &is_mine);
+        let lever = |direction| lever(&axes[..carriers], to_robot, contact.point1, direction);
+        let ahead = resistance(rapier, thing, normal, &is_mine);
+        let (along, across) = normal.any_orthonormal_pair();
+        let slides = [along, across].map(|direction| {
+            let speed = body.velocity_at_point(contact.point2).dot(direction);
+            let resistance = resistance(rapier, thing, direction, &is_mine);
+            Slide {
+                lever: lever(direction),
+                speed: f64::from(speed) / UNITS_PER_METER,
+                resistance: f64::from(resistance) / UNITS_PER_METER,
+            }
+        });
         let touch = Touch {
-            lever: lever(&axes[..carriers], to_robot, contact.point1, normal),
+            lever: lever(normal),
             mass: f64::from(body.mass()),
             speed: f64::from(speed + falls) / UNITS_PER_METER,
-            resistance: f64::from(resistance) / UNITS_PER_METER,
+            resistance: f64::from(ahead) / UNITS_PER_METER,
+            friction: friction(rapier, thing),
+            slides: slides.into(),
         };
         touches.push((thing.object, touch));
     }
@@ -85,9 +106,9 @@ fn lever(carriers: &[(DVec3, DVec3)], to_robot: DAffine3, point: Vec3, direction
     let point = to_robot.transform_point3(point.as_dvec3() / UNITS_PER_METER);
     let direction = to_robot.transform_vector3(direction.as_dvec3());
     from_fn(|i| {
-        carriers
-            .get(i)
-            .map_or(0.0, |(origin, axis)| axis.cross(point - *origin).dot(direction))
+        carriers.get(i).map_or(0.0, |(origin, axis)| {
+            axis.cross(point - *origin).dot(direction)
+        })
     })
 }
 
@@ -108,7 +129,9 @@ fn resistance(
             true => (pair.collider2, 1.0),
             false => (pair.collider1, -1.0),
         };
-        let [Some(own), Some(other)] = [handle, other].map(|handle| rapier.colliders.colliders.get(handle)) else {
+        let [Some(own), Some(other)] =
+            [handle, other].map(|handle| rapier.colliders.colliders.get(handle))
+        else {
             continue;
         };
         let other_body = other.parent().and_then(|body| {
@@ -130,6 +153,13 @@ fn resistance(
         }
     }
     total
+}
+
+/// Friction between a thing and the robot.
+fn friction(rapier: &RapierContextMut, thing: &FreeThing) -> f64 {
+    let collider = rapier.colliders.entity2collider().get(&thing.object);
+    let collider = collider.and_then(|handle| rapier.colliders.colliders.get(*handle));
+    collider.map_or(0.0, |collider| f64::from(collider.friction() * FRICTION))
 }
 
 fn body<'a>(rapier: &'a RapierContextMut, object: Entity) -> Option<&'a rapier::RigidBody> {

@@ -69,9 +69,17 @@ fn an_arm_stops_at_a_fixed_object_and_pushes_a_free_one() {
         let mut stage = Stage::new();
         stage.reach(Arm::Right, Vec3::new(2.0, -3.0, 0.9), 0.0);
         drive(&mut stage, RobotJoint::RightGripper, Drive::Position(0.2));
-        stage.put("thing", block(Vec3::ONE), mass, Pose::at(Vec3::new(4.0, -3.0, 0.5)));
+        stage.put(
+            "thing",
+            block(Vec3::ONE),
+            mass,
+            Pose::at(Vec3::new(4.0, -3.0, 0.5)),
+        );
         let pose = Pose::at(Vec3::new(5.0, -3.0, 0.9));
-        stage.tell(SimCommand::ReachTo { arm: Arm::Right, pose });
+        stage.tell(SimCommand::ReachTo {
+            arm: Arm::Right,
+            pose,
+        });
         let facts = stage.facts_of(200);
         let is_blocked = facts
             .iter()
@@ -88,11 +96,14 @@ fn the_arms_do_not_enter_each_other() {
     stage.reach(Arm::Right, Vec3::new(2.0, -3.0, 3.0), 0.0);
     stage.reach(Arm::Left, Vec3::new(-2.0, -3.0, 3.0), 0.0);
     let pose = Pose::at(Vec3::new(3.0, -3.0, 3.0));
-    stage.tell(SimCommand::ReachTo { arm: Arm::Left, pose });
-    let facts = stage.facts_of(300);
-    let is_blocked = facts.iter().any(|fact| {
-        matches!(fact, SimFact::ArmBlocked { arm: Arm::Left, by } if by.contains("right"))
+    stage.tell(SimCommand::ReachTo {
+        arm: Arm::Left,
+        pose,
     });
+    let facts = stage.facts_of(300);
+    let is_blocked = facts.iter().any(
+        |fact| matches!(fact, SimFact::ArmBlocked { arm: Arm::Left, by } if by.contains("right")),
+    );
     assert!(is_blocked, "{facts:?}");
 }
 
@@ -100,7 +111,12 @@ fn the_arms_do_not_enter_each_other() {
 fn a_held_object_is_never_inside_the_table() {
     let mut stage = Stage::new();
     stage.reach(Arm::Right, Vec3::new(3.0, -2.0, 1.7), 0.0);
-    stage.put("tall", block(Vec3::new(1.0, 1.0, 2.0)), 1.0, Pose::at(Vec3::new(3.0, -2.0, 1.0)));
+    stage.put(
+        "tall",
+        block(Vec3::new(1.0, 1.0, 2.0)),
+        1.0,
+        Pose::at(Vec3::new(3.0, -2.0, 1.0)),
+    );
     drive(&mut stage, RobotJoint::RightGripper, Drive::Toward(0.0));
     stage.app.step(120);
     assert_eq!(stage.robot().arm(Arm::Right).holds.len(), 1);
@@ -121,7 +137,10 @@ fn a_held_object_is_never_inside_the_table() {
 fn a_pose_out_of_reach_is_refused() {
     let mut stage = Stage::new();
     let pose = Pose::at(Vec3::new(30.0, 0.0, 1.0));
-    stage.tell(SimCommand::ReachTo { arm: Arm::Left, pose });
+    stage.tell(SimCommand::ReachTo {
+        arm: Arm::Left,
+        pose,
+    });
     let facts = stage.facts_of(1);
     assert!(
         matches!(&facts[..], [SimFact::Refused { reason }] if reason.contains("cannot reach")),
@@ -132,8 +151,17 @@ fn a_pose_out_of_reach_is_refused() {
 #[test]
 fn undo_takes_the_robot_back_too() {
     let mut stage = Stage::new();
-    stage.put("thing", block(Vec3::ONE), 1.0, Pose::at(Vec3::new(-3.0, 0.0, 0.5)));
-    stage.app.world_mut().resource_mut::<tabletop_core::Recording>().0 = true;
+    stage.put(
+        "thing",
+        block(Vec3::ONE),
+        1.0,
+        Pose::at(Vec3::new(-3.0, 0.0, 0.5)),
+    );
+    stage
+        .app
+        .world_mut()
+        .resource_mut::<tabletop_core::Recording>()
+        .0 = true;
     stage.app.step(1);
     let before = stage.robot().clone();
     stage.tell(SimCommand::Grasp {
@@ -146,7 +174,10 @@ fn undo_takes_the_robot_back_too() {
     stage.tell(SimCommand::Undo);
     stage.app.step(1);
     assert_eq!(stage.robot().joints, before.joints);
-    assert_eq!(stage.robot().arms[1].end_effector, before.arms[1].end_effector);
+    assert_eq!(
+        stage.robot().arms[1].end_effector,
+        before.arms[1].end_effector
+    );
 }
 
 fn any_drive() -> impl Strategy<Value = (RobotJoint, Drive)> {
@@ -186,7 +217,12 @@ fn what_it_does_is_the_same_every_time() {
     let run = || -> (Robot, Pose) {
         let mut stage = Stage::new();
         stage.reach(Arm::Right, Vec3::new(3.0, -2.0, 0.9), 0.0);
-        stage.put("thing", block(Vec3::ONE), 1.0, Pose::at(Vec3::new(3.2, -2.0, 0.5)));
+        stage.put(
+            "thing",
+            block(Vec3::ONE),
+            1.0,
+            Pose::at(Vec3::new(3.2, -2.0, 0.5)),
+        );
         drive(&mut stage, RobotJoint::RightGripper, Drive::Toward(0.0));
         stage.app.step(100);
         (stage.robot().clone(), stage.place("thing"))
@@ -200,13 +236,27 @@ fn what_it_does_is_the_same_every_time() {
 #[test]
 fn an_arm_that_presses_a_block_onto_the_table_stops() {
     let mut stage = Stage::new();
-    stage.put("thing", block(Vec3::ONE), 1.0, Pose::at(Vec3::new(3.0, -3.0, 0.5)));
+    stage.put(
+        "thing",
+        block(Vec3::ONE),
+        1.0,
+        Pose::at(Vec3::new(3.0, -3.0, 0.5)),
+    );
     drive(&mut stage, RobotJoint::RightGripper, Drive::Position(0.2));
     stage.reach(Arm::Right, Vec3::new(3.0, -3.0, 2.5), 0.0);
     let pose = Pose::at(Vec3::new(3.0, -3.0, 0.9));
-    stage.tell(SimCommand::ReachTo { arm: Arm::Right, pose });
+    stage.tell(SimCommand::ReachTo {
+        arm: Arm::Right,
+        pose,
+    });
     stage.app.step(140);
-    assert_eq!(stage.robot().arm(Arm::Right).blocked_by.as_deref(), Some("thing"));
+    assert_eq!(
+        stage.robot().arm(Arm::Right).blocked_by.as_deref(),
+        Some("thing")
+    );
     let place = stage.place("thing").location;
-    assert!((place - Vec3::new(3.0, -3.0, 0.5)).length() < 0.2, "{place}");
+    assert!(
+        (place - Vec3::new(3.0, -3.0, 0.5)).length() < 0.2,
+        "{place}"
+    );
 }

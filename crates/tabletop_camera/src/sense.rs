@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Figure, HeadCamera, Markers, ObjectIndex, ObjectSpec, PictureDemand, Primitive, SensorImage,
+    CarriesHeadCamera, Figure, HeadCamera, Markers, ObjectIndex, ObjectSpec, PictureDemand, Primitive, SensorImage,
     SimTick, Table,
 };
 
@@ -74,7 +74,7 @@ pub(crate) fn take_picture(
     index: Res<ObjectIndex>,
     tables: Query<(Entity, &Table)>,
     objects: Query<(&Transform, &Looks), With<ObjectSpec>>,
-    figures: Query<(Entity, &GlobalTransform, &FigureLooks)>,
+    figures: Query<(Entity, &GlobalTransform, &FigureLooks), Without<CarriesHeadCamera>>,
     markers: Res<Markers>,
     mut eye: ResMut<Eye>,
     mut image: ResMut<SensorImage>,

@@ -32,6 +32,10 @@ pub struct Figure {
     pub coarse: Arc<Triangles>,
 }
 
+/// Marks a figure that carries the head camera: it is not in the camera's pictures.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub struct CarriesHeadCamera;
+
 impl Triangles {
     /// Adds another surface.
     pub fn append(&mut self, other: &Self) {

@@ -40,7 +40,7 @@ mod user;
 pub use agent::{Agent, AgentNews, AgentOrder, Standstill};
 pub use clock::{ActuateSystems, CommandSystems, OrderSystems, Paused, SimSystems, SimTick, StepApp, TICK_SECONDS, TICKS_PER_SECOND, TickSystems};
 pub use color::{ColorError, NAMED_COLORS, Rgb};
-pub use figure::{Figure, Triangles};
+pub use figure::{CarriesHeadCamera, Figure, Triangles};
 pub use hand::{Hand, Hands, Held};
 pub use message::{SimCommand, SimFact};
 pub use number::Decimal;

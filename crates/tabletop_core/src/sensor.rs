@@ -96,7 +96,7 @@ pub struct SensorImage {
     /// The picture.
     pub picture: Picture,
     /// What the numbers in [`Picture::objects`] stand for: number 1 is the first entity, and so on. The table comes first,
-    /// if there is one, then the objects in the order of their creation.
+    /// if there is one, then the objects in the order of their creation, then the figures likewise.
     pub shown: Vec<Entity>,
 }
 

@@ -9,6 +9,8 @@ const PANEL_WIDTH: f32 = 320.0;
 /// A panel that the user can open and close.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Panel {
+    /// Speeds, and what the script does.
+    Status,
     /// The robot's joints, and what is known of it.
     Robot,
     /// Hands, rotations and recording.
@@ -17,11 +19,12 @@ pub enum Panel {
 
 impl Panel {
     /// The panels, in the order of their buttons.
-    pub const ALL: [Self; 2] = [Self::Robot, Self::DemonstrationTools];
+    pub const ALL: [Self; 3] = [Self::Status, Self::Robot, Self::DemonstrationTools];
 
     /// The text of its button.
     pub const fn label(self) -> &'static str {
         match self {
+            Self::Status => "Status",
             Self::Robot => "Robot",
             Self::DemonstrationTools => "Demo Tools",
         }
@@ -30,6 +33,7 @@ impl Panel {
     /// The text of its title bar.
     pub const fn title(self) -> &'static str {
         match self {
+            Self::Status => "Status",
             Self::Robot => "Robot",
             Self::DemonstrationTools => "Demonstration Tools",
         }
@@ -38,6 +42,7 @@ impl Panel {
     /// Where it appears first.
     const fn place(self) -> egui::Pos2 {
         match self {
+            Self::Status => egui::pos2(340.0, 176.0),
             Self::Robot => egui::pos2(8.0, 276.0),
             Self::DemonstrationTools => egui::pos2(8.0, 8.0),
         }

@@ -19,6 +19,7 @@
 //! | Shift + any of these joints | the other way |
 //! | `=`, `-` | opens, closes the right gripper |
 //! | 0, 9 | opens, closes the left gripper |
+//! | M | starts, stops the script that drives the robot |
 //!
 //! Panels are drawn over the picture of the [`UserCamera`].
 //!
@@ -48,8 +49,10 @@ mod pointer;
 mod robot_keys;
 mod robot_news;
 mod robot_window;
+mod script_control;
 mod slider;
 mod snapshot;
+mod status;
 mod style;
 #[cfg(test)]
 mod test_world;
@@ -94,6 +97,8 @@ impl Plugin for GuiPlugin {
             robot_keys::plugin,
             robot_news::plugin,
             robot_window::plugin,
+            script_control::plugin,
+            status::plugin,
             head_view::plugin,
             snapshot::plugin,
         ));

@@ -9,7 +9,7 @@ use crate::clipboard::Clipboard;
 /// Older notices are forgotten, so that a script that is refused a million times does not fill the memory.
 const MAX_NOTICES: usize = 200;
 
-/// The notices in the order in which they came, each once, until the user closes their window.
+/// The notices in the order in which they came, until the user closes their window.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
 pub struct Notices(Vec<String>);
 
@@ -19,10 +19,15 @@ impl Notices {
         if self.0.iter().any(|there| there == notice) {
             return;
         }
+        self.append(notice);
+    }
+
+    /// Adds a line after all others, as often as it comes.
+    pub fn append(&mut self, line: &str) {
         if self.0.len() == MAX_NOTICES {
             self.0.remove(0);
         }
-        self.0.push(notice.to_owned());
+        self.0.push(line.to_owned());
     }
 
     /// Adds a notice after all others, also if it was there already.
@@ -97,15 +102,17 @@ fn show_notices(
         .default_pos(egui::pos2(340.0, 8.0))
         .default_width(640.0)
         .default_height(160.0)
-        .vscroll(true)
         .show(context, |ui| {
             if ui.button("Copy").clicked() {
                 clipboard.copy(notices.text());
             }
-            for notice in notices.iter() {
-                ui.add(egui::Label::new(egui::RichText::new(notice).monospace()).selectable(true));
-            }
-            ui.take_available_space();
+            let lines = egui::ScrollArea::vertical().stick_to_bottom(true);
+            lines.auto_shrink(false).show(ui, |ui| {
+                for notice in notices.iter() {
+                    let text = egui::RichText::new(notice).monospace();
+                    ui.add(egui::Label::new(text).selectable(true));
+                }
+            });
         });
     if !is_open {
         notices.clear();

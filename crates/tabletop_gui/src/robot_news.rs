@@ -21,8 +21,6 @@ fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
 /// Says what the robot has done; nothing of what others have.
 fn words(fact: &SimFact) -> Option<String> {
     Some(match fact {
-        SimFact::RobotShown(true) => "the robot stands at the table".into(),
-        SimFact::RobotShown(false) => "the robot is hidden".into(),
         SimFact::GripMade { arm, id } => format!("the {arm} gripper holds {id}"),
         SimFact::GripRefused { arm, id, angle } => format!(
             "the {arm} gripper cannot hold {id}: its fingers touch it at θ = {:.1}°, which must be below \
@@ -74,8 +72,6 @@ mod tests {
                 },
                 "the left arm is stopped by table",
             ),
-            (SimFact::RobotShown(true), "the robot stands at the table"),
-            (SimFact::RobotShown(false), "the robot is hidden"),
         ] {
             assert_eq!(words(&fact).as_deref(), Some(expected));
         }

@@ -5,12 +5,13 @@ use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{self, Button, ComboBox, Label, RichText, Slider, Ui},
 };
-use tabletop_core::{Arm, Drive, Face, ObjectSpec, Robot, RobotJoint, SimCommand};
+use tabletop_core::{Agent, AgentOrder, Arm, Drive, Face, ObjectSpec, Robot, RobotJoint, SimCommand};
 
 use crate::{
     bar::{Panel, Panels},
     head_view::HeadView,
     jog::{Directions, Jog},
+    script_control::toggled,
 };
 
 /// Width of the track of the slider, in points.
@@ -51,6 +52,8 @@ struct RobotWindow<'w, 's> {
     jog: ResMut<'w, Jog>,
     selection: Local<'s, Selection>,
     commands: MessageWriter<'w, SimCommand>,
+    agent: Res<'w, Agent>,
+    orders: MessageWriter<'w, AgentOrder>,
 }
 
 fn show_window(mut contexts: EguiContexts, mut panels: ResMut<Panels>, mut window: RobotWindow) {
@@ -90,6 +93,9 @@ impl RobotWindow<'_, '_> {
             }
             if switch(ui, "Head View", self.head_view.is_shown()) {
                 self.head_view.toggle();
+            }
+            if switch(ui, "Matlab Control", self.agent.is_on()) {
+                self.orders.write(toggled(&self.agent));
             }
         });
     }
@@ -330,6 +336,8 @@ mod tests {
             world.init_resource::<HeadView>();
             world.init_resource::<Jog>();
             world.init_resource::<Messages<SimCommand>>();
+            world.init_resource::<Agent>();
+            world.init_resource::<Messages<AgentOrder>>();
             Self {
                 world,
                 context: egui::Context::default(),

@@ -38,9 +38,13 @@ impl Stage {
 
     fn with(robot: BaxterPlugin) -> Self {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default(), PhysicsPlugin::default()))
-            .add_plugins((ScenePlugin, DemonstratorPlugin, robot))
-            .start();
+        app.add_plugins((
+            MinimalPlugins,
+            CorePlugin::default(),
+            PhysicsPlugin::default(),
+        ))
+        .add_plugins((ScenePlugin, DemonstratorPlugin, robot))
+        .start();
         let mut stage = Self {
             app,
             facts: MessageCursor::default(),
@@ -63,7 +67,10 @@ impl Stage {
             shape,
             descriptions: Vec::new(),
         };
-        self.app.world_mut().spawn((Transform::from(pose), spec)).id()
+        self.app
+            .world_mut()
+            .spawn((Transform::from(pose), spec))
+            .id()
     }
 
     pub fn robot(&self) -> &Robot {

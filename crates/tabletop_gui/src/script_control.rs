@@ -1,0 +1,93 @@
+//! Starting and stopping the script that drives the robot (report section 5.2), and what it says.
+
+use bevy::prelude::*;
+use tabletop_core::{Agent, AgentNews, AgentOrder, KeySystems};
+
+use crate::notices::Notices;
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(Update, note_news).add_systems(
+        RunFixedMainLoop,
+        toggle
+            .run_if(|keys: Res<ButtonInput<KeyCode>>| keys.just_pressed(KeyCode::KeyM))
+            .in_set(KeySystems),
+    );
+}
+
+fn toggle(agent: Res<Agent>, mut orders: MessageWriter<AgentOrder>) {
+    orders.write(toggled(&agent));
+}
+
+/// The order that starts a script, or stops the one that runs.
+pub(crate) fn toggled(agent: &Agent) -> AgentOrder {
+    match agent.is_on() {
+        true => AgentOrder::Stop,
+        false => AgentOrder::Start,
+    }
+}
+
+fn note_news(mut news: MessageReader<AgentNews>, mut notices: ResMut<Notices>) {
+    for news in news.read() {
+        match news {
+            AgentNews::Started { engine } => notices.append(&format!("{engine} is online")),
+            AgentNews::Printed { line, .. } => notices.append(line),
+            AgentNews::Failed { reason } => {
+                reason.lines().for_each(|line| notices.append(line));
+            }
+            AgentNews::Stopped => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::time::TimeUpdateStrategy;
+    use tabletop_core::CorePlugin;
+
+    use super::*;
+    use crate::keys;
+
+    fn app() -> App {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), keys::plugin, plugin))
+            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
+            .init_resource::<ButtonInput<KeyCode>>()
+            .init_resource::<Notices>();
+        app
+    }
+
+    #[test]
+    fn the_key_starts_a_script_and_stops_the_one_that_runs() {
+        for (agent, expected) in [
+            (Agent::Off, AgentOrder::Start),
+            (Agent::Failed, AgentOrder::Start),
+            (Agent::Starting, AgentOrder::Stop),
+        ] {
+            let mut app = app();
+            app.insert_resource(agent);
+            let mut keys = app.world_mut().resource_mut::<ButtonInput<KeyCode>>();
+            keys.press(KeyCode::KeyM);
+            app.update();
+            let orders = app.world().resource::<Messages<AgentOrder>>();
+            let orders: Vec<_> = orders.iter_current_update_messages().copied().collect();
+            assert_eq!(orders, [expected]);
+        }
+    }
+
+    #[test]
+    fn what_a_script_prints_is_told_as_often_as_it_prints_it() {
+        let mut app = app();
+        let line = AgentNews::Printed {
+            line: "once more".into(),
+            is_error: false,
+        };
+        app.world_mut().write_message(line.clone());
+        app.world_mut().write_message(line);
+        app.world_mut().write_message(AgentNews::Failed {
+            reason: "undefined\n  at a.m:2".into(),
+        });
+        app.update();
+        let notices: Vec<_> = app.world().resource::<Notices>().iter().collect();
+        assert_eq!(notices, ["once more", "once more", "undefined", "  at a.m:2"]);
+    }
+}

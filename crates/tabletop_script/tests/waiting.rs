@@ -1,0 +1,163 @@
+//! With a window, frames go by while the simulation waits for a script, and nothing else changes.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+mod kit;
+
+use std::time::Duration;
+
+use kit::{Folder, Stage};
+use tabletop_core::{
+    Agent, AgentOrder, Drive, Face, RobotJoint, SimCommand, Standstill,
+};
+use tabletop_script::{ScriptSettings, Waiting};
+
+/// A script that takes its time.
+const SLOW: &str = "calls = calls + 1;\npause(0.3);\nmotor.jointVelocities = 0.1 * calls - sensor.jointAngles / 10;\n";
+
+fn framewise(folder: &Folder) -> ScriptSettings {
+    ScriptSettings {
+        waiting: Waiting::Frame(Duration::from_millis(2)),
+        ..folder.settings()
+    }
+}
+
+fn waits(stage: &Stage) -> bool {
+    matches!(stage.agent(), Agent::Waiting { .. })
+}
+
+fn waited(stage: &Stage) -> Duration {
+    match stage.agent() {
+        Agent::Waiting { since } => *since,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn frames_go_by_while_a_slow_script_is_waited_for_and_the_motion_is_the_same() {
+    let folder = Folder::pair("calls = 0;", SLOW);
+    let mut blocking = Stage::start(folder.settings());
+    blocking.ticks(6);
+    assert_eq!(blocking.track().len(), 6);
+
+    let mut stage = Stage::start(framewise(&folder));
+    stage.frames_until(|stage| stage.track().len() >= 6);
+    assert_eq!(&stage.track()[..6], blocking.track());
+
+    // Frames without ticks, in which the waiting grows.
+    stage.frames_until(waits);
+    let (tick, before) = (stage.tick(), waited(&stage));
+    let mut frames = 0;
+    while waits(&stage) && frames < 20 {
+        stage.frame();
+        frames += 1;
+    }
+    assert!(frames > 5, "{frames}");
+    assert!(stage.tick() <= tick + 1);
+    stage.frames_until(Stage::is_online);
+    stage.frames_until(waits);
+    let start = waited(&stage);
+    stage.frames_until(|stage| !waits(stage) || waited(stage) > start + Duration::from_millis(50));
+    assert!(waits(&stage), "the waiting did not grow from {start:?} ({before:?} before)");
+}
+
+#[test]
+fn nothing_that_is_told_meanwhile_gets_lost() {
+    let folder = Folder::pair("calls = 0;", SLOW);
+    let mut stage = Stage::start(framewise(&folder));
+    stage.frames_until(|stage| stage.track().len() >= 2);
+    for _ in 0..2 {
+        stage.frames_until(waits);
+        let tick = stage.tick();
+        let goal = 0.3 + tick as f64 / 1e3;
+        let drive = (RobotJoint::HeadPan, Drive::Position(goal));
+        stage.tell(SimCommand::Drive(vec![drive]));
+        stage.tell(SimCommand::ShowRobot(true));
+        stage.tell(SimCommand::ShowFace(Face::Happy));
+        for _ in 0..10 {
+            stage.frame();
+            std::thread::sleep(Duration::from_millis(3));
+        }
+        assert_eq!(stage.tick(), tick, "the script still sleeps");
+        assert!(stage.app.world().resource::<Standstill>().0);
+        stage.frames_until(|stage| stage.tick() > tick);
+        assert_eq!(stage.robot().joint(RobotJoint::HeadPan).position, goal);
+        assert!(stage.robot().is_shown);
+        assert_eq!(stage.robot().face, Face::Happy);
+    }
+}
+
+#[test]
+fn the_simulation_goes_on_while_the_engine_comes_up_and_can_be_stopped_then() {
+    let folder = Folder::pair("aux.drawMarkers = [1 2 3];", "");
+    let mut stage = Stage::start(framewise(&folder));
+    stage.frame();
+    stage.frame();
+    assert_eq!(stage.agent(), &Agent::Starting);
+    let tick = stage.tick();
+    stage.frame();
+    assert_eq!(stage.tick(), tick + 1);
+    stage.order(AgentOrder::Stop);
+    stage.frame();
+    assert!(stage.has_stopped());
+    assert_eq!(stage.agent(), &Agent::Off);
+    stage.order(AgentOrder::Start);
+    stage.frames_until(Stage::is_online);
+    assert_eq!(stage.failure(), None);
+    assert_eq!(stage.markers(), 1);
+}
+
+#[test]
+fn an_endless_loop_is_ended_by_a_stop() {
+    let folder = Folder::pair("aux.drawMarkers = [1 2 3];", "while true, end");
+    let mut stage = Stage::start(framewise(&folder));
+    stage.frames_until(|stage| waits(stage) && waited(stage) > Duration::from_millis(100));
+    let tick = stage.tick();
+    stage.order(AgentOrder::Stop);
+    stage.frames_until(Stage::has_stopped);
+    assert_eq!(stage.agent(), &Agent::Off);
+    stage.frames_until(|stage| stage.tick() > tick + 10);
+    assert_eq!(stage.markers(), 0);
+}
+
+#[test]
+fn an_endless_loop_is_ended_by_the_time_limit() {
+    let folder = Folder::pair("aux.drawMarkers = [1 2 3];", "while true, end");
+    let mut settings = framewise(&folder);
+    settings.timeouts.step = Duration::from_millis(300);
+    let mut stage = Stage::start(settings);
+    stage.frames_until(|stage| stage.failure().is_some());
+    let reason = stage.failure().unwrap();
+    assert!(reason.contains("no answer from the callback script within 0.3 s"), "{reason}");
+    let tick = stage.tick();
+    stage.frames_until(|stage| stage.tick() > tick + 10);
+    assert_eq!((stage.agent(), stage.markers()), (&Agent::Failed, 0));
+}
+
+#[test]
+fn an_endless_init_is_ended_by_a_stop() {
+    let folder = Folder::pair("while true, end", "");
+    let mut stage = Stage::start(framewise(&folder));
+    stage.frames_until(|stage| waits(stage) && waited(stage) > Duration::from_millis(50));
+    stage.order(AgentOrder::Stop);
+    stage.frames_until(Stage::has_stopped);
+}
+
+#[test]
+fn a_pause_can_be_made_while_a_script_is_waited_for() {
+    let folder = Folder::pair("calls = 0;", SLOW);
+    let mut stage = Stage::start(framewise(&folder));
+    stage.frames_until(|stage| waits(stage) && stage.track().len() >= 2);
+    stage.tell(SimCommand::SetPaused(true));
+    stage.frames_until(Stage::is_online);
+    for _ in 0..5 {
+        stage.frame();
+    }
+    let tick = stage.tick();
+    for _ in 0..20 {
+        stage.frame();
+        assert!(stage.is_online());
+    }
+    assert_eq!(stage.tick(), tick);
+    stage.tell(SimCommand::SetPaused(false));
+    stage.frames_until(|stage| stage.tick() > tick + 2);
+}
