@@ -110,7 +110,12 @@ impl Masses {
         let velocities = from_fn(|i| {
             let [least, largest] = self.bounds(i, seconds);
             let speed = motors[i].speed;
-            velocities[i].clamp(-speed, speed).min(largest).max(least)
+            let velocity = if velocities[i].is_finite() {
+                velocities[i]
+            } else {
+                0.0
+            };
+            velocity.clamp(-speed, speed).min(largest).max(least)
         });
         Step {
             velocities,

@@ -274,7 +274,7 @@ fn end_effector_on_wrist() -> DAffine3 {
 
 /// A frame of the model as a pose in units.
 fn in_units(frame: DAffine3) -> Pose {
-    let rotation = DQuat::from_mat3(&frame.matrix3.into()).normalize();
+    let rotation = DQuat::from_mat3(&frame.matrix3).normalize();
     Pose::new(
         (frame.translation * UNITS_PER_METER).as_vec3(),
         rotation.as_quat(),

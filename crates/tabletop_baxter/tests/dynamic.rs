@@ -480,7 +480,7 @@ fn any_drive() -> impl Strategy<Value = (RobotJoint, Drive)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(600))]
+    #![proptest_config(ProptestConfig::with_cases(40))]
 
     #[test]
     fn no_command_brings_a_joint_beyond_its_limits(

@@ -208,11 +208,11 @@ fn the_plan_takes_the_hand_from_one_place_to_the_other() {
     });
     assert!(ticks < 3000);
     assert!(
-        distance(closed_at.unwrap(), [5.0, -2.0, 0.9]) < 0.15,
+        distance(closed_at.unwrap(), [3.0, -3.0, 0.9]) < 0.15,
         "{closed_at:?}"
     );
     assert!(
-        distance(opened_at.unwrap(), [2.0, -3.0, 0.9]) < 0.15,
+        distance(opened_at.unwrap(), [0.0, -3.0, 1.93]) < 0.15,
         "{opened_at:?}"
     );
     assert!(robot.grippers[1] > 1.5);

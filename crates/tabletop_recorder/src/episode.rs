@@ -12,6 +12,7 @@ use crate::{
     event::Event,
     folder::{Folder, create_folder},
     frame::FrameClock,
+    joints::{self, Joints},
     log_file::LogFile,
     order::{in_order, is_about_recordings, turns_the_clock},
     picture::{write_depth, write_ids, write_png},
@@ -26,9 +27,12 @@ pub(crate) struct Episode {
     clock: FrameClock,
     session: LogFile,
     states: LogFile,
+    joints: LogFile,
     text: LogFile,
     segment: u32,
     objects: Vec<Tracked>,
+    /// The robot's joints at the end of the tick before.
+    last_joints: Option<Joints>,
     /// How many `create` lines were written.
     created: usize,
     channels: Channels,
@@ -63,6 +67,8 @@ struct Progress {
     text: u64,
     session: u64,
     states: u64,
+    joints: u64,
+    last_joints: Option<Joints>,
 }
 
 /// The moment before a segment began.
@@ -100,6 +106,8 @@ impl Episode {
         session.append(earlier)?;
         let mut states = LogFile::create(folder.states())?;
         states.append_records(&[states::header()])?;
+        let mut joints = LogFile::create(folder.joints())?;
+        joints.append_records(&[joints::header()])?;
         create_folder(&folder.pictures(0))?;
         let text = LogFile::create(folder.text(0))?;
         let objects = scene.objects.iter().map(|object| object.spec.clone());
@@ -110,9 +118,11 @@ impl Episode {
             head: session.len(),
             session,
             states,
+            joints,
             text,
             segment: 0,
             objects: Vec::new(),
+            last_joints: None,
             created: 0,
             channels,
             opening: Some(objects.collect()),
@@ -302,6 +312,8 @@ impl Episode {
             text: self.text.len(),
             session: self.session.len(),
             states: self.states.len(),
+            joints: self.joints.len(),
+            last_joints: self.last_joints,
         }
     }
 
@@ -318,6 +330,8 @@ impl Episode {
             .cut_to_file(start.before.session, away.session())?;
         self.states
             .cut_to_file(start.before.states, away.states())?;
+        self.joints
+            .cut_to_file(start.before.joints, away.joints())?;
         self.folder.move_segment(end.segment, &away)?;
         for command in &start.released {
             let line = command_line(start.tick.0, command).unwrap_or_default();
@@ -342,6 +356,8 @@ impl Episode {
         self.session.append_file(&away.session())?;
         self.states.cut(start.before.states)?;
         self.states.append_file(&away.states())?;
+        self.joints.cut(start.before.joints)?;
+        self.joints.append_file(&away.joints())?;
         away.move_segment(end.segment, &self.folder)?;
         away.remove()?;
         self.resume(end)?;
@@ -354,6 +370,7 @@ impl Episode {
         self.segment = progress.segment;
         self.objects = progress.objects;
         self.created = progress.created;
+        self.last_joints = progress.last_joints;
         Ok(())
     }
 
@@ -362,6 +379,7 @@ impl Episode {
         &mut self,
         tick: SimTick,
         state: impl Fn(&str) -> Option<State>,
+        joints: &Joints,
         image: Option<&SensorImage>,
         what: impl Fn(Entity) -> Shown<'w>,
     ) -> Result<(), RecorderError> {
@@ -389,7 +407,10 @@ impl Episode {
             self.write_image(frame, image, what)?;
         }
         self.text.append_records(&moves)?;
-        self.states.append_records(&rows)
+        self.states.append_records(&rows)?;
+        let rows = joints::rows(tick, self.last_joints.as_ref(), joints);
+        self.last_joints = Some(*joints);
+        self.joints.append_records(&rows)
     }
 
     fn write_image<'w>(

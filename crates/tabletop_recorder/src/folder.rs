@@ -38,6 +38,10 @@ impl Folder {
         self.0.join("states.csv")
     }
 
+    pub(crate) fn joints(&self) -> PathBuf {
+        self.0.join("joints.csv")
+    }
+
     pub(crate) fn text(&self, segment: u32) -> PathBuf {
         self.0.join(format!("{segment}.txt"))
     }

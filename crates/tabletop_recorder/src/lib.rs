@@ -32,6 +32,7 @@ mod error;
 mod event;
 mod folder;
 mod frame;
+mod joints;
 mod log_file;
 mod order;
 mod picture;

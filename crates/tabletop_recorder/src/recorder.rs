@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
     Hand, Hands, HeadCamera, Joint, JointSpec, ObjectIndex, ObjectSpec, Paused, PictureDemand,
-    Recording, SensorImage, SimCommand, SimFact, SimTick, TICKS_PER_SECOND, Table, Twist,
+    Recording, Robot, SensorImage, SimCommand, SimFact, SimTick, TICKS_PER_SECOND, Table, Twist,
 };
 
 use crate::{
@@ -86,6 +86,7 @@ pub(crate) struct Stage<'w, 's> {
     joints: Query<'w, 's, &'static Joint>,
     camera: Option<Res<'w, HeadCamera>>,
     settings: Res<'w, SessionSettings>,
+    robot: Res<'w, Robot>,
 }
 
 impl Stage<'_, '_> {
@@ -223,7 +224,8 @@ pub(crate) fn record(
             .as_deref()
             .filter(|image| image.tick == *tick && image.picture.width > 0);
         let state = |id: &str| stage.state(id);
-        result = episode.write_tick(*tick, state, image, |entity| stage.shown(entity));
+        let joints = &stage.robot.joints;
+        result = episode.write_tick(*tick, state, joints, image, |entity| stage.shown(entity));
     }
     let mut facts = facts.p1();
     recorder.stop_on_error(result, &mut recording, &mut facts);
