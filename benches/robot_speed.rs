@@ -51,10 +51,7 @@ struct Case {
 
 impl Case {
     fn new(name: &'static str, mode: RobotMode, is_shown: bool, moves: bool) -> Self {
-        let robot = BaxterPlugin {
-            mode,
-            ..default()
-        };
+        let robot = BaxterPlugin { mode, ..default() };
         let mut app = headless_app_with(TabletopSimPlugins.build().set(robot));
         let blocks = (0..10).map(|block| {
             SceneItem::Object(ObjectSpec {

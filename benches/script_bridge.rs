@@ -42,7 +42,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let bare = cases[0].percentile(50);
     for case in &mut cases {
         let (median, high) = (case.percentile(50), case.percentile(99));
-        println!("{:26}{median:9.3}{high:9.3}{:9.3}", case.name, median - bare);
+        println!(
+            "{:26}{median:9.3}{high:9.3}{:9.3}",
+            case.name,
+            median - bare
+        );
     }
     fs::remove_dir_all(folder)?;
     Ok(())
@@ -78,7 +82,8 @@ impl Case {
         let plugins = TabletopSimPlugins.build().set(ScriptPlugin { settings });
         let mut app = headless_app_with(plugins);
         let scene = read_task(Path::new("tablesetup/default.xml"))?.scene;
-        app.world_mut().write_message(SimCommand::SetScene(Box::new(scene)));
+        app.world_mut()
+            .write_message(SimCommand::SetScene(Box::new(scene)));
         app.world_mut().write_message(SimCommand::ShowRobot(true));
         if script.is_some() {
             app.world_mut().write_message(AgentOrder::Start);

@@ -18,7 +18,10 @@ use tabletop_core::{HeadCamera, SimTick, StepApp as _, TICKS_PER_SECOND};
 use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
 use tabletop_recorder::{Channels, RecorderError, RecorderPlugin, Session, TICKS_PER_FRAME};
 
-use crate::{TabletopSimPlugins, headless_app_with, settings::{PHYSICS, ROBOT, RobotSettings}};
+use crate::{
+    TabletopSimPlugins, headless_app_with,
+    settings::{PHYSICS, ROBOT, RobotSettings},
+};
 
 /// Why a recording cannot be run again.
 #[derive(Debug, thiserror::Error)]

@@ -63,7 +63,10 @@ pub fn write_robot(world: &World, mut out: impl Write) -> std::io::Result<()> {
     });
     let mut json = serde_json::Map::from_iter(arms);
     json.insert("shown".into(), json!(robot.is_shown));
-    json.insert("head_pan".into(), json!(robot.joint(RobotJoint::HeadPan).position));
+    json.insert(
+        "head_pan".into(),
+        json!(robot.joint(RobotJoint::HeadPan).position),
+    );
     serde_json::to_writer_pretty(&mut out, &json)?;
     writeln!(out)
 }

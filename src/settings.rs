@@ -66,6 +66,8 @@ fn note_robot(
         mode: robot.mode,
         description: description.source.clone(),
     };
-    settings.0.insert(ROBOT.into(), serde_json::to_value(robot)?);
+    settings
+        .0
+        .insert(ROBOT.into(), serde_json::to_value(robot)?);
     Ok(())
 }

@@ -41,7 +41,9 @@ fn succeeded(output: &Output) {
 
 /// A place for a test's files; what an earlier run has left there is gone.
 fn place(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("scripts").join(name);
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("scripts")
+        .join(name);
     let _not_there = fs::remove_dir_all(&path);
     fs::create_dir_all(&path).unwrap();
     path
@@ -62,7 +64,8 @@ fn copy_of_matlab(pair: &str) -> PathBuf {
 }
 
 fn name_pair(folder: &Path, pair: &str) {
-    let behavior = format!("function [i, c] = agentBehavior()\ni = @{pair}Init;\nc = @{pair}Callback;\nend\n");
+    let behavior =
+        format!("function [i, c] = agentBehavior()\ni = @{pair}Init;\nc = @{pair}Callback;\nend\n");
     fs::write(folder.join("agentBehavior.m"), behavior).unwrap();
 }
 
@@ -95,12 +98,15 @@ impl Stage {
         let plugins = TabletopSimPlugins.build().set(ScriptPlugin { settings });
         let mut app = headless_app_with((plugins, ScenarioPlugin));
         if let Some(name) = scenario {
-            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scripts").join(name);
+            let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+                .join("tests/scripts")
+                .join(name);
             let scenario = Scenario::read(path).unwrap();
             let read = |file: &Path| Ok(read_task(file).map_err(|error| error.to_string())?.scene);
             app.insert_resource(ScenarioRun::new(Program::new(&scenario, read, 0).unwrap()));
         } else {
-            app.world_mut().write_message(SimCommand::SetScene(Box::default()));
+            app.world_mut()
+                .write_message(SimCommand::SetScene(Box::default()));
         }
         app.world_mut().write_message(AgentOrder::Start);
         let mut stage = Self {
@@ -111,7 +117,10 @@ impl Stage {
         };
         stage.tick();
         let agent = stage.app.world().resource::<Agent>();
-        assert!(matches!(agent, Agent::Online { .. }), "these tests need GNU Octave (octave-cli): {agent:?}");
+        assert!(
+            matches!(agent, Agent::Online { .. }),
+            "these tests need GNU Octave (octave-cli): {agent:?}"
+        );
         stage
     }
 
@@ -129,7 +138,12 @@ impl Stage {
     }
 
     fn hand(&self) -> Vec3 {
-        self.app.world().resource::<Robot>().arm(Arm::Right).end_effector.location
+        self.app
+            .world()
+            .resource::<Robot>()
+            .arm(Arm::Right)
+            .end_effector
+            .location
     }
 
     /// How near the right hand gets to each marker until the script has exited.
@@ -156,15 +170,24 @@ impl Stage {
 
 /// What five seconds at 0.5 rad/s make of the angles of the init script. The first of the 300 ticks is that of the init script.
 fn turned(joint: RobotJoint) -> f64 {
-    let begin = if joint == RobotJoint::RightE0 { FRAC_PI_2 } else { 0.0 };
-    (0..299).fold(begin, |angle, _| joint.clamp(angle + 0.5 * f64::from(TICK_SECONDS)))
+    let begin = if joint == RobotJoint::RightE0 {
+        FRAC_PI_2
+    } else {
+        0.0
+    };
+    (0..299).fold(begin, |angle, _| {
+        joint.clamp(angle + 0.5 * f64::from(TICK_SECONDS))
+    })
 }
 
 fn assert_turned(output: &Output) {
     succeeded(output);
     let robot: Value = serde_json::from_slice(&output.stdout).unwrap();
     for (arm, name) in [(Arm::Left, "left"), (Arm::Right, "right")] {
-        for (joint, angle) in RobotJoint::of_arm(arm).into_iter().zip(angles(&robot, name)) {
+        for (joint, angle) in RobotJoint::of_arm(arm)
+            .into_iter()
+            .zip(angles(&robot, name))
+        {
             assert!((angle - turned(joint)).abs() < 1e-12, "{joint}: {angle}");
         }
         assert_eq!(robot[name]["gripper_opening"], 0.0);
@@ -174,11 +197,25 @@ fn assert_turned(output: &Output) {
 #[test]
 fn the_example_turns_every_joint_for_five_seconds() {
     for script in ["matlab", "octave", "octave:matlab"] {
-        let mut command = tabletop(&["run", "--script", script, "--seconds", "5", "--final-robot", "-"]);
+        let mut command = tabletop(&[
+            "run",
+            "--script",
+            script,
+            "--seconds",
+            "5",
+            "--final-robot",
+            "-",
+        ]);
         let output = command.env("TABLETOP_ENGINE", "octave").output().unwrap();
         assert_turned(&output);
         let printed = text(&output.stderr);
-        for name in ["tabletop: GNU Octave", "minJointAngles", "initJointAngles", "endEffPos", "gripperVelocities"] {
+        for name in [
+            "tabletop: GNU Octave",
+            "minJointAngles",
+            "initJointAngles",
+            "endEffPos",
+            "gripperVelocities",
+        ] {
             assert!(printed.contains(name), "{name}: {printed}");
         }
     }
@@ -187,7 +224,15 @@ fn the_example_turns_every_joint_for_five_seconds() {
 #[test]
 fn the_python_example_turns_every_joint_for_five_seconds() {
     for script in ["python", "python:python/example.py"] {
-        let mut command = tabletop(&["run", "--script", script, "--seconds", "5", "--final-robot", "-"]);
+        let mut command = tabletop(&[
+            "run",
+            "--script",
+            script,
+            "--seconds",
+            "5",
+            "--final-robot",
+            "-",
+        ]);
         let output = command.output().unwrap();
         assert_turned(&output);
         let printed = text(&output.stderr);
@@ -200,7 +245,10 @@ fn the_python_example_turns_every_joint_for_five_seconds() {
 fn the_reaching_hand_gets_to_every_marker() {
     let nearest = Stage::new("reach", None).nearest(|_| true);
     assert_eq!(nearest.len(), 4);
-    assert!(nearest.iter().all(|distance| *distance < 0.11), "{nearest:?}");
+    assert!(
+        nearest.iter().all(|distance| *distance < 0.11),
+        "{nearest:?}"
+    );
 }
 
 #[test]
@@ -208,12 +256,27 @@ fn the_babbling_arm_learns_to_reach_and_remembers() {
     let mut stage = Stage::new("babble", None);
     let nearest = stage.nearest(|stage| stage.printed.contains("units; error"));
     assert_eq!(nearest.len(), 4);
-    assert!(nearest.iter().all(|distance| *distance < 0.4), "{nearest:?}");
-    let line = stage.printed.lines().find(|line| line.contains("units; error")).unwrap();
-    let words = line.split_whitespace().filter_map(|word| word.parse::<f64>().ok());
+    assert!(
+        nearest.iter().all(|distance| *distance < 0.4),
+        "{nearest:?}"
+    );
+    let line = stage
+        .printed
+        .lines()
+        .find(|line| line.contains("units; error"))
+        .unwrap();
+    let words = line
+        .split_whitespace()
+        .filter_map(|word| word.parse::<f64>().ok());
     let errors: Vec<_> = words.filter(|number| *number < 1.0).collect();
     assert!(errors[1] < 0.7 * errors[0], "the error falls: {line}");
-    let folder = stage.app.world().resource::<ScriptSettings>().agent.clone().unwrap();
+    let folder = stage
+        .app
+        .world()
+        .resource::<ScriptSettings>()
+        .agent
+        .clone()
+        .unwrap();
     assert!(folder.join("babble.mat").exists());
 }
 
@@ -249,12 +312,23 @@ fn demonstrations_become_pictures() {
     while *stage.app.world().resource::<ScenarioRun>().outcome() == Outcome::Running {
         stage.tick();
     }
-    let folder = stage.app.world().resource::<ScriptSettings>().agent.clone().unwrap();
-    let mut pictures: Vec<_> = fs::read_dir(folder.join("pictures")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let folder = stage
+        .app
+        .world()
+        .resource::<ScriptSettings>()
+        .agent
+        .clone()
+        .unwrap();
+    let mut pictures: Vec<_> = fs::read_dir(folder.join("pictures"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
     pictures.sort();
     // Two seconds, four pictures a second.
     assert_eq!(pictures.len(), 8, "{pictures:?}");
-    let decoder = png::Decoder::new(std::io::BufReader::new(fs::File::open(&pictures[0]).unwrap()));
+    let decoder = png::Decoder::new(std::io::BufReader::new(
+        fs::File::open(&pictures[0]).unwrap(),
+    ));
     let mut reader = decoder.read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut pixels).unwrap();
@@ -269,7 +343,14 @@ fn pick(name: &str, script: &str) -> [PathBuf; 3] {
     let files = ["recording", "state.csv", "robot.json"].map(|name| folder.join(name));
     let [recording, state, robot] = files.each_ref().map(|path| path.to_str().unwrap());
     let mut command = tabletop(&["run", "tests/scripts/pick.ron", "--script", script]);
-    command.args(["--record", recording, "--final-state", state, "--final-robot", robot]);
+    command.args([
+        "--record",
+        recording,
+        "--final-state",
+        state,
+        "--final-robot",
+        robot,
+    ]);
     succeeded(&command.output().unwrap());
     files
 }
@@ -295,9 +376,23 @@ fn an_error_of_a_script_ends_the_run_with_its_place() {
     let folder = place("wrong");
     name_pair(&folder, "wrong");
     fs::write(folder.join("wrongInit.m"), "x = 1;").unwrap();
-    fs::write(folder.join("wrongCallback.m"), "y = 2;\nz = nobody_knows + y;\n").unwrap();
+    fs::write(
+        folder.join("wrongCallback.m"),
+        "y = 2;\nz = nobody_knows + y;\n",
+    )
+    .unwrap();
     let script = octave(&folder);
-    let output = tabletop(&["run", "--script", &script, "--seconds", "5", "--final-robot", "-"]).output().unwrap();
+    let output = tabletop(&[
+        "run",
+        "--script",
+        &script,
+        "--seconds",
+        "5",
+        "--final-robot",
+        "-",
+    ])
+    .output()
+    .unwrap();
     assert_eq!(output.status.code(), Some(1));
     let printed = text(&output.stderr);
     assert!(printed.contains("'nobody_knows' undefined"), "{printed}");
@@ -312,8 +407,14 @@ fn what_cannot_be_run_is_told() {
         (&["ruby:x.rb"][..], "expected matlab, octave or python"),
         (&["octave:no/such/folder"], "there is no "),
         (&["python:no_such.py"], "there is no "),
-        (&["matlab", "--engine", "no/such/octave"], "there is no program no/such/octave"),
-        (&["matlab", "--engine", "ruby"], "the engine \"ruby\" is not known"),
+        (
+            &["matlab", "--engine", "no/such/octave"],
+            "there is no program no/such/octave",
+        ),
+        (
+            &["matlab", "--engine", "ruby"],
+            "the engine \"ruby\" is not known",
+        ),
     ] {
         let mut command = tabletop(&["run", "--seconds", "1", "--script"]);
         let output = command.args(arguments).output().unwrap();

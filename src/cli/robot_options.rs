@@ -67,7 +67,11 @@ impl EngineOptions {
     pub fn settings(&self, script: Option<&str>) -> ScriptSettings {
         let mut settings = ScriptSettings::default();
         let (language, agent) = script
-            .map(|script| script.split_once(':').map_or((script, None), |(l, a)| (l, Some(a))))
+            .map(|script| {
+                script
+                    .split_once(':')
+                    .map_or((script, None), |(l, a)| (l, Some(a)))
+            })
             .unwrap_or(("matlab", None));
         settings.agent = agent.map(PathBuf::from);
         settings.engine = match (language, &self.engine) {

@@ -193,7 +193,10 @@ impl Script {
 
     /// Prints what the script prints, and notes its end.
     fn listen(&mut self, app: &App) {
-        for news in self.news.read(app.world().resource::<Messages<AgentNews>>()) {
+        for news in self
+            .news
+            .read(app.world().resource::<Messages<AgentNews>>())
+        {
             match news {
                 AgentNews::Started { engine } => eprintln!("tabletop: {engine}"),
                 AgentNews::Printed { line, .. } => eprintln!("{line}"),

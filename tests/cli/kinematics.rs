@@ -1,10 +1,6 @@
 //! `tabletop robot`, as another program talks to it.
 
-use std::{
-    io::Write as _,
-    path::Path,
-    process::Stdio,
-};
+use std::{io::Write as _, path::Path, process::Stdio};
 
 use serde_json::{Value, json};
 

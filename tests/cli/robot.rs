@@ -6,7 +6,8 @@ use serde_json::Value;
 
 use crate::support::{place, scenario, stderr, stdout, tabletop};
 
-const MOVE: &str = "Robot(Show), Robot(Move([(LeftS1, -0.5), (HeadPan, -0.2)])), Robot(WaitUntilStill(5)),";
+const MOVE: &str =
+    "Robot(Show), Robot(Move([(LeftS1, -0.5), (HeadPan, -0.2)])), Robot(WaitUntilStill(5)),";
 
 /// How the robot is after these steps.
 fn robot_after(name: &str, steps: &str, options: &[&str]) -> Value {
@@ -44,7 +45,10 @@ fn another_description_is_another_robot() {
         &["--robot", "assets/baxter/baxter_smile.urdf"],
     );
     let [usual, smile] = [usual, smile].map(|robot| position(&robot, "left"));
-    let apart = (0..3).map(|i| (usual[i] - smile[i]).powi(2)).sum::<f64>().sqrt();
+    let apart = (0..3)
+        .map(|i| (usual[i] - smile[i]).powi(2))
+        .sum::<f64>()
+        .sqrt();
     assert!((0.05..0.3).contains(&apart), "{usual:?} and {smile:?}");
 }
 
@@ -60,7 +64,10 @@ fn a_description_that_is_none_is_wrong_input() {
     let file = place("no_robot.urdf");
     for (text, words) in [
         (None, "No such file"),
-        (Some("<robot name=\"r\"><link name=\"a\"/></robot>"), "left_s0"),
+        (
+            Some("<robot name=\"r\"><link name=\"a\"/></robot>"),
+            "left_s0",
+        ),
         (Some("hello"), "no_robot.urdf"),
     ] {
         if let Some(text) = text {
@@ -74,7 +81,8 @@ fn a_description_that_is_none_is_wrong_input() {
 
 #[test]
 fn a_recording_with_another_robot_is_replayed_with_it() {
-    let steps = format!("Start, {MOVE} Grasp(\"RedBlock\"), Wait(0.5), Release, Wait(0.2), Finish,");
+    let steps =
+        format!("Start, {MOVE} Grasp(\"RedBlock\"), Wait(0.5), Release, Wait(0.2), Finish,");
     let scenario = scenario("smile_recorded.ron", &steps);
     let folder = place("smile_recording");
     let folder = folder.to_str().unwrap();

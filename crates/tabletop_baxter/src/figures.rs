@@ -91,7 +91,10 @@ fn figure_of_link(description: &Description, link: &Link) -> Option<Figure> {
     match visuals {
         Ok(visuals) => merged(visuals),
         Err(error) => {
-            warn!("link {} is shown by what it is touched by: {error}", link.name);
+            warn!(
+                "link {} is shown by what it is touched by: {error}",
+                link.name
+            );
             stand_in(&link.collisions)
         }
     }
@@ -101,9 +104,7 @@ fn screen(description: &Description, face: Face) -> Option<Figure> {
     let link = description.model.find_link(SCREEN).ok()?;
     let link = description.model.link(link);
     match &link.visuals[..] {
-        [visual] if is_ours(visual) => {
-            screen_with(face, visual, description.path()).ok()
-        }
+        [visual] if is_ours(visual) => screen_with(face, visual, description.path()).ok(),
         _ => figure_of_link(description, link),
     }
 }

@@ -144,12 +144,8 @@ mod tests {
 
     #[test]
     fn blocks_behind_each_other_add_up() {
-        let halves = [-0.5, 0.4].map(|x| {
-            candidate(
-                SharedShape::cuboid(0.25, 0.5, 0.5),
-                Pose::at(Vec3::X * x),
-            )
-        });
+        let halves = [-0.5, 0.4]
+            .map(|x| candidate(SharedShape::cuboid(0.25, 0.5, 0.5), Pose::at(Vec3::X * x)));
         let closing = close(Pose::IDENTITY, 2.0, &halves);
         assert!((closing.room - 1.0).abs() < 1e-4, "{closing:?}");
         assert!(closing.touched.is_empty());
@@ -157,12 +153,8 @@ mod tests {
 
     #[test]
     fn blocks_above_each_other_are_both_touched() {
-        let stacked = [-0.3, 0.3].map(|z| {
-            candidate(
-                SharedShape::cuboid(0.25, 0.25, 0.25),
-                Pose::at(Vec3::Z * z),
-            )
-        });
+        let stacked = [-0.3, 0.3]
+            .map(|z| candidate(SharedShape::cuboid(0.25, 0.25, 0.25), Pose::at(Vec3::Z * z)));
         let closing = close(Pose::IDENTITY, 0.5, &stacked);
         assert_eq!(closing.touched.len(), 2);
         assert_eq!(closing.room, 0.0);

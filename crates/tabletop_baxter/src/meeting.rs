@@ -40,7 +40,9 @@ impl Meetings {
             for b in 0..a {
                 let [place_a, place_b] = [a, b].map(|i| skeleton.bodies[i].place);
                 let can_meet = are_apart(place_a, place_b)
-                    && !postures.iter().any(|solids| overlap(&solids[a], &solids[b]));
+                    && !postures
+                        .iter()
+                        .any(|solids| overlap(&solids[a], &solids[b]));
                 meetings.can_meet[a * bodies + b] = can_meet;
                 meetings.can_meet[b * bodies + a] = can_meet;
             }
@@ -52,7 +54,9 @@ impl Meetings {
 /// Whether bodies are far enough from each other along the robot to meet.
 const fn are_apart(a: Place, b: Place) -> bool {
     match (a, b) {
-        (Place::Arm(a, i), Place::Arm(b, j)) if a as u8 == b as u8 => i.abs_diff(j) >= JOINTS_BETWEEN,
+        (Place::Arm(a, i), Place::Arm(b, j)) if a as u8 == b as u8 => {
+            i.abs_diff(j) >= JOINTS_BETWEEN
+        }
         (Place::Arm(..), Place::Arm(..)) => true,
         (Place::Arm(_, i), _) | (_, Place::Arm(_, i)) => i >= JOINTS_BETWEEN,
         _ => false,

@@ -125,8 +125,14 @@ mod tests {
         let (left, right) = (left.unwrap(), right.unwrap());
         assert!((left.distance - 0.7).abs() < 1e-4, "{left:?}");
         assert!((right.distance - 0.3).abs() < 1e-4, "{right:?}");
-        assert!((left.point - Vec3::new(-0.3, 0.0, 0.25)).length() < 0.03, "{left:?}");
-        assert!((right.point - Vec3::new(0.7, 0.0, 0.25)).length() < 0.03, "{right:?}");
+        assert!(
+            (left.point - Vec3::new(-0.3, 0.0, 0.25)).length() < 0.03,
+            "{left:?}"
+        );
+        assert!(
+            (right.point - Vec3::new(0.7, 0.0, 0.25)).length() < 0.03,
+            "{right:?}"
+        );
     }
 
     #[test]

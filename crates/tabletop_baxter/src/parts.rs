@@ -66,7 +66,13 @@ fn collider(body: &Body) -> Option<Collider> {
     let parts: Vec<_> = body
         .parts
         .iter()
-        .map(|part| (part.pose.location, part.pose.rotation, part.shape.clone().into()))
+        .map(|part| {
+            (
+                part.pose.location,
+                part.pose.rotation,
+                part.shape.clone().into(),
+            )
+        })
         .collect();
     (!parts.is_empty()).then(|| Collider::compound(parts))
 }
@@ -96,7 +102,8 @@ pub(crate) fn teleport(world: &mut World) -> Result {
             transform.set_if_neq(pose.into());
         }
     }
-    let mut contexts = world.query_filtered::<&mut RapierRigidBodySet, With<DefaultRapierContext>>();
+    let mut contexts =
+        world.query_filtered::<&mut RapierRigidBodySet, With<DefaultRapierContext>>();
     let mut bodies = contexts.single_mut(world)?;
     for (part, pose) in parts.0.iter().zip(poses) {
         put(&mut bodies, *part, pose);

@@ -10,9 +10,15 @@ use crate::{
 };
 
 /// The angles of an arm that bring its end effector to a pose in the table's frame, near to those that it has now.
-pub(crate) fn solve(world: &mut World, arm: Arm, pose: Pose) -> Result<[f64; JOINTS_PER_ARM], String> {
+pub(crate) fn solve(
+    world: &mut World,
+    arm: Arm,
+    pose: Pose,
+) -> Result<[f64; JOINTS_PER_ARM], String> {
     if !pose.location.is_finite() || !pose.rotation.is_finite() {
-        return Err(format!("the {arm} arm cannot reach for {pose:?}: not a pose"));
+        return Err(format!(
+            "the {arm} arm cannot reach for {pose:?}: not a pose"
+        ));
     }
     let base = base(world);
     let robot = world.resource::<Robot>();

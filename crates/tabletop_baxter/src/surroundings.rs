@@ -66,7 +66,10 @@ impl Surroundings {
                 continue;
             }
             let at = collider.position();
-            let parts = convex_parts(Pose::new(at.translation, at.rotation), collider.shared_shape());
+            let parts = convex_parts(
+                Pose::new(at.translation, at.rotation),
+                collider.shared_shape(),
+            );
             if body.is_dynamic() {
                 surroundings.free.push(FreeThing {
                     object,

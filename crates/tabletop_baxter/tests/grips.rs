@@ -17,13 +17,21 @@ const ARM: Arm = Arm::Right;
 fn gripper_around(shape: Shape, mass: f32, place: Vec3, degrees: Vec3) -> Stage {
     let mut stage = Stage::new();
     stage.reach(ARM, Vec3::new(3.0, -2.0, place.z.max(0.85)), 0.0);
-    stage.put("thing", shape, mass, Pose::from_degrees(Vec3::new(3.0, -2.0, 0.0) + place, degrees));
+    stage.put(
+        "thing",
+        shape,
+        mass,
+        Pose::from_degrees(Vec3::new(3.0, -2.0, 0.0) + place, degrees),
+    );
     stage.app.step(5);
     stage
 }
 
 fn close(stage: &mut Stage) -> Vec<SimFact> {
-    stage.tell(SimCommand::Drive(vec![(RobotJoint::gripper(ARM), Drive::Toward(0.0))]));
+    stage.tell(SimCommand::Drive(vec![(
+        RobotJoint::gripper(ARM),
+        Drive::Toward(0.0),
+    )]));
     stage.facts_of(150)
 }
 
@@ -62,9 +70,15 @@ fn a_block_is_held_lifted_carried_and_let_go_of() {
     let expected = moved * (hand.inverse() * place);
     assert!((stage.place("thing").location - expected.location).length() < 1e-3);
 
-    stage.tell(SimCommand::Drive(vec![(RobotJoint::gripper(ARM), Drive::Toward(2.0))]));
+    stage.tell(SimCommand::Drive(vec![(
+        RobotJoint::gripper(ARM),
+        Drive::Toward(2.0),
+    )]));
     let facts = grip_facts(stage.facts_of(120));
-    assert!(matches!(facts[..], [SimFact::GripReleased { .. }]), "{facts:?}");
+    assert!(
+        matches!(facts[..], [SimFact::GripReleased { .. }]),
+        "{facts:?}"
+    );
     assert!(stage.place("thing").location.z < 1.0);
 }
 
@@ -124,7 +138,12 @@ fn round_things_and_composites_are_held() {
     let things = [
         ("ball", ball, 0.5, Vec3::ZERO),
         ("lying cylinder", cylinder.clone(), 0.4, Vec3::ZERO),
-        ("cylinder along the opening", cylinder.clone(), 0.4, Vec3::Z * 90.0),
+        (
+            "cylinder along the opening",
+            cylinder.clone(),
+            0.4,
+            Vec3::Z * 90.0,
+        ),
         ("standing cylinder", cylinder, 0.5, Vec3::X * 90.0),
         ("composite", hammer, 0.3, Vec3::ZERO),
     ];
@@ -146,7 +165,10 @@ fn two_blocks_are_held_at_once_and_let_go_of_together() {
     let facts = grip_facts(close(&mut stage));
     assert_eq!(facts.len(), 2, "{facts:?}");
     assert_eq!(stage.robot().arm(ARM).holds.len(), 2);
-    stage.tell(SimCommand::Drive(vec![(RobotJoint::gripper(ARM), Drive::Velocity(1.0))]));
+    stage.tell(SimCommand::Drive(vec![(
+        RobotJoint::gripper(ARM),
+        Drive::Velocity(1.0),
+    )]));
     assert_eq!(grip_facts(stage.facts_of(2)).len(), 2);
     assert!(stage.robot().arm(ARM).holds.is_empty());
 }
@@ -168,7 +190,10 @@ fn a_hand_takes_an_object_out_of_a_gripper() {
         object: "thing".into(),
     });
     let facts = grip_facts(stage.facts_of(2));
-    assert!(matches!(facts[..], [SimFact::GripReleased { .. }]), "{facts:?}");
+    assert!(
+        matches!(facts[..], [SimFact::GripReleased { .. }]),
+        "{facts:?}"
+    );
     assert!(stage.robot().arm(ARM).holds.is_empty());
 }
 
@@ -225,7 +250,10 @@ fn a_lid_is_pulled_open_by_its_handle() {
     stage.reach(ARM, Vec3::new(before.x, -2.0, 3.6), 0.0);
     stage.reach(ARM, Vec3::new(before.x, -2.0, 2.65), 0.0);
     let facts = grip_facts(close(&mut stage));
-    assert!(matches!(&facts[..], [SimFact::GripMade { id, .. }] if *id == lid), "{facts:?}");
+    assert!(
+        matches!(&facts[..], [SimFact::GripMade { id, .. }] if *id == lid),
+        "{facts:?}"
+    );
     stage.reach(ARM, Vec3::new(before.x - 1.0, -2.0, 2.65), 0.0);
     stage.app.step(30);
     let pulled = before.x - stage.place(&lid).location.x;

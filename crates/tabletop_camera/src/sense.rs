@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use bevy::prelude::*;
 use tabletop_core::{
-    CarriesHeadCamera, Figure, HeadCamera, Markers, ObjectIndex, ObjectSpec, PictureDemand, Primitive, SensorImage,
-    SimTick, Table,
+    CarriesHeadCamera, Figure, HeadCamera, Markers, ObjectIndex, ObjectSpec, PictureDemand,
+    Primitive, SensorImage, SimTick, Table,
 };
 
 use crate::{Camera, DrawnFigure, DrawnSolid, Facets, Painter, Scene};

@@ -63,7 +63,10 @@ pub enum Agent {
 impl Agent {
     /// Whether a script drives the robot.
     pub const fn is_on(&self) -> bool {
-        matches!(self, Self::Starting | Self::Online { .. } | Self::Waiting { .. })
+        matches!(
+            self,
+            Self::Starting | Self::Online { .. } | Self::Waiting { .. }
+        )
     }
 }
 

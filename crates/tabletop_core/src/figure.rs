@@ -43,8 +43,12 @@ impl Triangles {
         self.positions.extend(&other.positions);
         self.normals.extend(&other.normals);
         self.colors.extend(&other.colors);
-        self.indices
-            .extend(other.indices.iter().map(|triangle| triangle.map(|i| i + first)));
+        self.indices.extend(
+            other
+                .indices
+                .iter()
+                .map(|triangle| triangle.map(|i| i + first)),
+        );
     }
 
     /// How far along a ray it meets the surface from outside; `None` if it does not. The surface stands at `body`.

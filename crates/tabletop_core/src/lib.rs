@@ -38,7 +38,10 @@ mod twist;
 mod user;
 
 pub use agent::{Agent, AgentNews, AgentOrder, Standstill};
-pub use clock::{ActuateSystems, CommandSystems, OrderSystems, Paused, SimSystems, SimTick, StepApp, TICK_SECONDS, TICKS_PER_SECOND, TickSystems};
+pub use clock::{
+    ActuateSystems, CommandSystems, OrderSystems, Paused, SimSystems, SimTick, StepApp,
+    TICK_SECONDS, TICKS_PER_SECOND, TickSystems,
+};
 pub use color::{ColorError, NAMED_COLORS, Rgb};
 pub use figure::{CarriesHeadCamera, Figure, Triangles};
 pub use hand::{Hand, Hands, Held};
@@ -49,8 +52,8 @@ pub use pose::{Pose, degrees_from_quat, quat_from_degrees};
 pub use recording::{History, Recording};
 pub use rewind::{Remembered, Rewinds, Rewound};
 pub use robot::{
-    Arm, ArmState, Drive, Face, Gripped, JOINTS_PER_ARM, JointState, Markers, Robot, RobotJoint, RobotMode,
-    WIDEST_GRIP, robot_base,
+    Arm, ArmState, Drive, Face, Gripped, JOINTS_PER_ARM, JointState, Markers, Robot, RobotJoint,
+    RobotMode, WIDEST_GRIP, robot_base,
 };
 pub use scene::{ChainSpec, Joint, JointKind, JointSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
 pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage};
@@ -64,8 +67,9 @@ use bevy::prelude::*;
 pub mod prelude {
     #[doc(hidden)]
     pub use crate::{
-        Arm, CorePlugin, Drive, Hand, Hands, ObjectIndex, ObjectSpec, Paused, Pose, Rgb, Robot, RobotJoint, SceneItem, SceneSpec,
-        Shape, SimCommand, SimFact, SimSystems, SimTick, StepApp, Table,
+        Arm, CorePlugin, Drive, Hand, Hands, ObjectIndex, ObjectSpec, Paused, Pose, Rgb, Robot,
+        RobotJoint, SceneItem, SceneSpec, Shape, SimCommand, SimFact, SimSystems, SimTick, StepApp,
+        Table,
     };
 }
 

@@ -160,7 +160,11 @@ mod tests {
     #[test]
     fn a_camera_looks_where_it_is_told_with_a_level_horizon() {
         let from = Vec3::new(1.0, -5.0, 4.0);
-        for at in [Vec3::ZERO, Vec3::new(1.0, -5.0, 0.0), Vec3::new(9.0, 1.0, 7.0)] {
+        for at in [
+            Vec3::ZERO,
+            Vec3::new(1.0, -5.0, 0.0),
+            Vec3::new(9.0, 1.0, 7.0),
+        ] {
             let pose = Pose::looking_at(from, at);
             assert!((pose.rotation * Vec3::NEG_Z - (at - from).normalize()).length() < 1e-5);
             assert!((pose.rotation * Vec3::X).z.abs() < 1e-5);

@@ -8,9 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::{Pose, TICK_SECONDS, Table};
 
 /// One of the robot's arms, as the robot sees them.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Arm {
     /// The left arm, at negative X.
     Left,
@@ -46,9 +44,7 @@ impl fmt::Display for Arm {
 }
 
 /// One of the robot's seventeen joints (report section 5, figure 10, table 1).
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[expect(missing_docs, reason = "the names are those of the report's figure 10")]
 pub enum RobotJoint {
     LeftS0,
@@ -404,7 +400,14 @@ mod tests {
         for (i, joint) in RobotJoint::ALL.into_iter().enumerate() {
             assert_eq!(joint.index(), i);
             let arm = joint.arm().map(Arm::name);
-            assert_eq!(arm, joint.name().split_once('_').map(|(arm, _)| arm).filter(|arm| *arm != "head"));
+            assert_eq!(
+                arm,
+                joint
+                    .name()
+                    .split_once('_')
+                    .map(|(arm, _)| arm)
+                    .filter(|arm| *arm != "head")
+            );
         }
         assert_eq!(RobotJoint::of_arm(Arm::Right)[6], RobotJoint::RightW2);
     }

@@ -49,7 +49,6 @@ struct EntityState {
     just_released: Option<JustReleased>,
 }
 
-
 /// Tells that a hand is about to act, and remembers the world before it if that can be undone.
 pub(crate) fn begin_segment(world: &mut World) {
     world.write_message(SimFact::SegmentBegun);

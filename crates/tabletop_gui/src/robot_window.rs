@@ -5,7 +5,9 @@ use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{self, Button, ComboBox, Label, RichText, Slider, Ui},
 };
-use tabletop_core::{Agent, AgentOrder, Arm, Drive, Face, ObjectSpec, Robot, RobotJoint, SimCommand};
+use tabletop_core::{
+    Agent, AgentOrder, Arm, Drive, Face, ObjectSpec, Robot, RobotJoint, SimCommand,
+};
 
 use crate::{
     bar::{Panel, Panels},

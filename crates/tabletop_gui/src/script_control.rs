@@ -88,6 +88,9 @@ mod tests {
         });
         app.update();
         let notices: Vec<_> = app.world().resource::<Notices>().iter().collect();
-        assert_eq!(notices, ["once more", "once more", "undefined", "  at a.m:2"]);
+        assert_eq!(
+            notices,
+            ["once more", "once more", "undefined", "  at a.m:2"]
+        );
     }
 }

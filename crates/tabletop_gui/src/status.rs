@@ -101,7 +101,10 @@ mod tests {
         for (agent, words) in [
             (Agent::Off, "offline"),
             (Agent::Online { took: ms(1) }, "online, 1.0 ms a call"),
-            (Agent::Waiting { since: ms(3210) }, "waiting for script 3.2 s"),
+            (
+                Agent::Waiting { since: ms(3210) },
+                "waiting for script 3.2 s",
+            ),
         ] {
             assert_eq!(matlab(&agent), words);
         }

@@ -3,9 +3,7 @@
 use bevy::prelude::*;
 use tabletop_core::{Hand, SimCommand, TICKS_PER_SECOND};
 
-use crate::{
-    RobotStep, ScenarioRun, Step, program::Action, robot::TICKS_TO_STILL, seen::Seen,
-};
+use crate::{RobotStep, ScenarioRun, Step, program::Action, robot::TICKS_TO_STILL, seen::Seen};
 
 /// What comes of a step in a tick.
 pub(crate) enum Progress {

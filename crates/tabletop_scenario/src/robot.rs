@@ -131,7 +131,10 @@ impl RobotStep {
             Self::WaitUntilStill(_) => return None,
             Self::Move(positions) => each(positions, Drive::Toward),
             Self::Set(positions) => each(positions, Drive::Position),
-            Self::Home => each(&RobotJoint::ALL.map(|joint| (joint, joint.home())), Drive::Toward),
+            Self::Home => each(
+                &RobotJoint::ALL.map(|joint| (joint, joint.home())),
+                Drive::Toward,
+            ),
             Self::Close(arm) => gripper(*arm, 0.0),
             Self::Open(arm) => gripper(*arm, WIDEST_GRIP),
         };
@@ -158,7 +161,9 @@ impl RobotCheck {
                 let found = robot.joint(*joint).position;
                 let is_there = (found - at).abs() <= *within;
                 is_there.then_some(()).ok_or_else(|| {
-                    format!("expected joint {joint} within {within} of {at}, found it at {found:.4}")
+                    format!(
+                        "expected joint {joint} within {within} of {at}, found it at {found:.4}"
+                    )
                 })
             }
             Self::EndEffector { arm, at, within } => {
@@ -172,14 +177,22 @@ impl RobotCheck {
             }
             Self::Holds { arm, object } => {
                 let held = held(seen, *arm);
-                held.contains(&object.as_str()).then_some(()).ok_or_else(|| {
-                    format!("expected `{object}` in the {arm} gripper, found {}", in_words(&held))
-                })
+                held.contains(&object.as_str())
+                    .then_some(())
+                    .ok_or_else(|| {
+                        format!(
+                            "expected `{object}` in the {arm} gripper, found {}",
+                            in_words(&held)
+                        )
+                    })
             }
             Self::HoldsNothing(arm) => {
                 let held = held(seen, *arm);
                 held.is_empty().then_some(()).ok_or_else(|| {
-                    format!("expected nothing in the {arm} gripper, found {}", in_words(&held))
+                    format!(
+                        "expected nothing in the {arm} gripper, found {}",
+                        in_words(&held)
+                    )
                 })
             }
             Self::BlockedBy { arm, by } => {
@@ -198,7 +211,10 @@ impl RobotCheck {
 /// The ids of what a gripper holds.
 fn held<'a>(seen: &'a Seen, arm: Arm) -> Vec<&'a str> {
     let holds = &seen.robot.arm(arm).holds;
-    let held = seen.objects.iter().filter(|object| holds.contains(&object.entity));
+    let held = seen
+        .objects
+        .iter()
+        .filter(|object| holds.contains(&object.entity));
     held.map(|object| object.spec.id.as_str()).collect()
 }
 

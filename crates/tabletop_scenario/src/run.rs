@@ -4,7 +4,8 @@ use bevy::prelude::*;
 use tabletop_core::{SimCommand, TICKS_PER_SECOND};
 
 use crate::{
-    Program, ScenarioError, act::Progress, program::ProgramStep, rest::Stillness, robot::is_still, seen::Seen,
+    Program, ScenarioError, act::Progress, program::ProgramStep, rest::Stillness, robot::is_still,
+    seen::Seen,
 };
 
 /// A scenario on its way. [`ScenarioPlugin`](crate::ScenarioPlugin) runs the one that is in the world.

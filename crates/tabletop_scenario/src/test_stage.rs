@@ -25,8 +25,8 @@ impl Stage {
     pub fn new(steps: &str) -> Self {
         let text = format!("(steps: [{steps}])");
         let load = |_: &Path| Ok(SceneSpec::default());
-        let program = Scenario::parse("s.ron", &text)
-            .and_then(|scenario| Program::new(&scenario, load, 0));
+        let program =
+            Scenario::parse("s.ron", &text).and_then(|scenario| Program::new(&scenario, load, 0));
         let program = match program {
             Ok(program) => program,
             Err(error) => panic!("{error}"),

@@ -7,7 +7,9 @@ use bevy::{
     },
     prelude::*,
 };
-use tabletop_core::{Gripped, Held, Joint, ObjectIndex, ObjectSpec, SceneSpec, SimCommand, SimFact, Table};
+use tabletop_core::{
+    Gripped, Held, Joint, ObjectIndex, ObjectSpec, SceneSpec, SimCommand, SimFact, Table,
+};
 use tabletop_physics::{Parked, remove_object, renew_if_empty};
 
 use crate::{IdAllocator, assemble};

@@ -9,7 +9,11 @@ pub(crate) fn commands_of_init(reply: &InitReply) -> Vec<SimCommand> {
     let points = reply.draw_markers.iter();
     let markers = points.map(|point| Vec3::from_array(point.map(|x| x as f32)));
     let mut commands = vec![SimCommand::ShowMarkers(markers.collect())];
-    commands.extend(reply.init_joint_angles.map(|angles| SimCommand::Drive(at_once(&angles))));
+    commands.extend(
+        reply
+            .init_joint_angles
+            .map(|angles| SimCommand::Drive(at_once(&angles))),
+    );
     commands
 }
 
@@ -71,7 +75,10 @@ mod tests {
         let drives = drives(command_of_motor(&motor(), RobotMode::Kinematic));
         assert_eq!(drives.len(), 16);
         assert_eq!(drives[13], (RobotJoint::RightW2, Drive::Velocity(2.0)));
-        assert_eq!(drives[15], (RobotJoint::RightGripper, Drive::Velocity(-1.0)));
+        assert_eq!(
+            drives[15],
+            (RobotJoint::RightGripper, Drive::Velocity(-1.0))
+        );
     }
 
     #[test]
@@ -97,6 +104,9 @@ mod tests {
             ..motor()
         };
         let drives = drives(command_of_motor(&turning, RobotMode::Kinematic));
-        assert_eq!(drives.last(), Some(&(RobotJoint::HeadPan, Drive::Velocity(0.1))));
+        assert_eq!(
+            drives.last(),
+            Some(&(RobotJoint::HeadPan, Drive::Velocity(0.1)))
+        );
     }
 }

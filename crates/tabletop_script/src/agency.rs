@@ -4,8 +4,7 @@ use std::time::{Duration, Instant};
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Agent, AgentNews, AgentOrder, Paused, PictureDemand, SimCommand, SimTick,
-    Standstill,
+    Agent, AgentNews, AgentOrder, Paused, PictureDemand, SimCommand, SimTick, Standstill,
 };
 use tabletop_engine::{EngineConfig, EngineError, EngineHandle, Reply, Stream};
 

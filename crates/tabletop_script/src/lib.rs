@@ -52,7 +52,10 @@ impl Plugin for ScriptPlugin {
             .init_resource::<ObjectIndex>()
             .init_resource::<PictureDemand>()
             .init_resource::<SensorImage>()
-            .add_systems(FixedUpdate, (call, drop_overstep).chain().in_set(OrderSystems::Script))
+            .add_systems(
+                FixedUpdate,
+                (call, drop_overstep).chain().in_set(OrderSystems::Script),
+            )
             .add_systems(
                 RunFixedMainLoop,
                 (

@@ -13,7 +13,8 @@ pub(crate) fn mention(agent: &Path, words: &[&str]) -> bool {
     let beside = agent.parent().filter(|folder| *folder != Path::new(""));
     match agent.is_dir() {
         true => scripts_in(agent, "m").any(|script| contains(&script, words)),
-        false => scripts_in(beside.unwrap_or(Path::new(".")), "py").any(|script| contains(&script, words)),
+        false => scripts_in(beside.unwrap_or(Path::new(".")), "py")
+            .any(|script| contains(&script, words)),
     }
 }
 
@@ -21,17 +22,19 @@ pub(crate) fn mention(agent: &Path, words: &[&str]) -> bool {
 fn scripts_in(folder: &Path, extension: &str) -> Box<dyn Iterator<Item = PathBuf>> {
     let extension = extension.to_owned();
     let entries = folder.read_dir().into_iter().flatten().flatten();
-    Box::new(entries.flat_map(move |entry| -> Box<dyn Iterator<Item = PathBuf>> {
-        let path = entry.path();
-        let name = entry.file_name();
-        let name = name.to_string_lossy();
-        let is_ours = name.starts_with(['@', '+']) || name == "private";
-        if is_ours && path.is_dir() {
-            return scripts_in(&path, &extension);
-        }
-        let is_script = path.extension().is_some_and(|other| *other == *extension);
-        Box::new(is_script.then_some(path).into_iter())
-    }))
+    Box::new(
+        entries.flat_map(move |entry| -> Box<dyn Iterator<Item = PathBuf>> {
+            let path = entry.path();
+            let name = entry.file_name();
+            let name = name.to_string_lossy();
+            let is_ours = name.starts_with(['@', '+']) || name == "private";
+            if is_ours && path.is_dir() {
+                return scripts_in(&path, &extension);
+            }
+            let is_script = path.extension().is_some_and(|other| *other == *extension);
+            Box::new(is_script.then_some(path).into_iter())
+        }),
+    )
 }
 
 fn contains(script: &Path, words: &[&str]) -> bool {

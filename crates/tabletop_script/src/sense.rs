@@ -114,7 +114,9 @@ impl Senses<'_, '_> {
             .map(|(spec, transform)| {
                 let pose = Pose::from(transform);
                 let descriptions = spec.all_descriptions();
-                let words = descriptions.iter().map(|(name, value)| format!("{name}={value}"));
+                let words = descriptions
+                    .iter()
+                    .map(|(name, value)| format!("{name}={value}"));
                 SensedObject {
                     id: spec.id.clone(),
                     position: point(pose.location),

@@ -28,7 +28,10 @@ pub(crate) fn drop_overstep(
 }
 
 /// At a standstill no tick reads messages, so none may be dropped.
-pub(crate) fn keep_messages(standstill: Res<Standstill>, registry: Option<ResMut<MessageRegistry>>) {
+pub(crate) fn keep_messages(
+    standstill: Res<Standstill>,
+    registry: Option<ResMut<MessageRegistry>>,
+) {
     let registry = registry.filter(|registry| {
         standstill.0 && matches!(registry.should_update, ShouldUpdateMessages::Ready)
     });

@@ -12,7 +12,8 @@ use tabletop_script::{EngineChoice, ScriptSettings};
 
 const INIT: &str = "aux.drawMarkers = [1 2 3];\ncalls = 0;\n";
 /// Three good calls come before what goes wrong in line 4.
-const GOOD: &str = "calls = calls + 1;\nmotor.jointVelocities(:) = 0.2;\nif calls < 4, return; end\n";
+const GOOD: &str =
+    "calls = calls + 1;\nmotor.jointVelocities(:) = 0.2;\nif calls < 4, return; end\n";
 
 /// Runs a script until it fails; returns why.
 fn failure(settings: ScriptSettings) -> String {
@@ -36,9 +37,21 @@ fn callback_failure(line: &str) -> String {
 #[test]
 fn errors_of_callbacks_are_told_with_file_and_line() {
     for (line, message, places) in [
-        ("helper(1)", "'undefined_thing' undefined", ["helper.m:2", "testCallback.m:4"]),
-        ("x = nobody_knows;", "'nobody_knows' undefined", ["testCallback.m:4"; 2]),
-        ("error('my:id', 'no %d', 7);", "no 7", ["testCallback.m:4"; 2]),
+        (
+            "helper(1)",
+            "'undefined_thing' undefined",
+            ["helper.m:2", "testCallback.m:4"],
+        ),
+        (
+            "x = nobody_knows;",
+            "'nobody_knows' undefined",
+            ["testCallback.m:4"; 2],
+        ),
+        (
+            "error('my:id', 'no %d', 7);",
+            "no 7",
+            ["testCallback.m:4"; 2],
+        ),
         ("[1 2 3] * [4 5 6];", "operator *", ["testCallback.m:4"; 2]),
     ] {
         let reason = callback_failure(line);
@@ -52,12 +65,30 @@ fn errors_of_callbacks_are_told_with_file_and_line() {
 #[test]
 fn what_the_motor_cannot_be_is_told() {
     for (line, message) in [
-        ("motor.jointVelocities = zeros(3, 7);", "motor.jointVelocities is 3x7 double; it must be 2x7"),
-        ("motor.gripperVelocities = [0 0];", "motor.gripperVelocities is 1x2 double; it must be 2x1"),
-        ("motor.jointVelocities(2, 3) = NaN;", "motor.jointVelocities(2,3) is NaN; it must be a finite number"),
-        ("motor.jointAngles = Inf(2, 7);", "motor.jointAngles(1,1) is Inf; it must be a finite number"),
-        ("motor.jointVelocities = 'fast';", "motor.jointVelocities is 1x4 char; it must be 2x7 double"),
-        ("motor.jointVelocity = zeros(2, 7);", "did you mean jointVelocities?"),
+        (
+            "motor.jointVelocities = zeros(3, 7);",
+            "motor.jointVelocities is 3x7 double; it must be 2x7",
+        ),
+        (
+            "motor.gripperVelocities = [0 0];",
+            "motor.gripperVelocities is 1x2 double; it must be 2x1",
+        ),
+        (
+            "motor.jointVelocities(2, 3) = NaN;",
+            "motor.jointVelocities(2,3) is NaN; it must be a finite number",
+        ),
+        (
+            "motor.jointAngles = Inf(2, 7);",
+            "motor.jointAngles(1,1) is Inf; it must be a finite number",
+        ),
+        (
+            "motor.jointVelocities = 'fast';",
+            "motor.jointVelocities is 1x4 char; it must be 2x7 double",
+        ),
+        (
+            "motor.jointVelocity = zeros(2, 7);",
+            "did you mean jointVelocities?",
+        ),
         ("motor = 3;", "motor is 1x1 double; it must be a struct"),
     ] {
         let reason = callback_failure(line);
@@ -68,7 +99,10 @@ fn what_the_motor_cannot_be_is_told() {
 #[test]
 fn endless_loops_crashes_and_exits_are_told_apart() {
     for (line, message) in [
-        ("while true, end", "no answer from the callback script within 2 s; the engine was ended"),
+        (
+            "while true, end",
+            "no answer from the callback script within 2 s; the engine was ended",
+        ),
         ("kill(getpid(), 9);", "the engine ended (signal: 9"),
         ("exit(3);", "the engine ended (exit status: 3)"),
     ] {
@@ -85,7 +119,11 @@ fn faults_before_the_first_call_are_told() {
     assert!(reason(&init).contains("testInit.m:2"), "{}", reason(&init));
 
     let syntax = Folder::pair(INIT, "x = 1;\ny = (2;\n");
-    assert!(reason(&syntax).contains("testCallback.m:2"), "{}", reason(&syntax));
+    assert!(
+        reason(&syntax).contains("testCallback.m:2"),
+        "{}",
+        reason(&syntax)
+    );
 
     let markers = Folder::pair("aux.drawMarkers = [1 2];", GOOD);
     assert!(reason(&markers).contains("aux.drawMarkers is 1x2 double; it must be Nx3"));
@@ -95,7 +133,11 @@ fn faults_before_the_first_call_are_told() {
 
     let nobody = Folder::pair(INIT, GOOD);
     fs::remove_file(nobody.0.join("testCallback.m")).unwrap();
-    assert!(reason(&nobody).contains("testCallback"), "{}", reason(&nobody));
+    assert!(
+        reason(&nobody).contains("testCallback"),
+        "{}",
+        reason(&nobody)
+    );
 
     let mut nowhere = nobody.settings();
     nowhere.agent = Some(nobody.0.join("no such folder"));
@@ -120,11 +162,26 @@ fn engines_that_are_none_do_not_keep_the_simulation() {
     let folder = Folder::pair(INIT, GOOD);
     for (text, message) in [
         ("exit 1", "the engine ended (exit status: 1)"),
-        ("exec >&- 2>&-; exec sleep 1000", "no answer from the engine's start within 1 s"),
-        ("exec sleep 1000", "no answer from the engine's start within 1 s"),
-        ("while read line; do echo \"$line\"; done", "no answer from the engine's start within 1 s"),
-        ("read a; read b; printf '\\001done 1\\n'; exec sleep 1000", "reply.bin"),
-        ("head -c 100000 /dev/urandom; kill -11 $$", "the engine ended (signal: 11"),
+        (
+            "exec >&- 2>&-; exec sleep 1000",
+            "no answer from the engine's start within 1 s",
+        ),
+        (
+            "exec sleep 1000",
+            "no answer from the engine's start within 1 s",
+        ),
+        (
+            "while read line; do echo \"$line\"; done",
+            "no answer from the engine's start within 1 s",
+        ),
+        (
+            "read a; read b; printf '\\001done 1\\n'; exec sleep 1000",
+            "reply.bin",
+        ),
+        (
+            "head -c 100000 /dev/urandom; kill -11 $$",
+            "the engine ended (signal: 11",
+        ),
     ] {
         let program = folder.0.join("no-octave");
         fs::write(&program, format!("#!/bin/sh\n{text}\n")).unwrap();

@@ -12,7 +12,8 @@ use tabletop_core::{
 
 const TICK: f64 = TICK_SECONDS as f64;
 const INIT: &str = "aux.drawMarkers = [1 2 3; 4 5 6];\ncalls = 0;\n";
-const MOVING: &str = "calls = calls + 1;\nmotor.jointVelocities(:) = 0.25;\nmotor.gripperVelocities = [-0.5; -1];\n";
+const MOVING: &str =
+    "calls = calls + 1;\nmotor.jointVelocities(:) = 0.25;\nmotor.gripperVelocities = [-0.5; -1];\n";
 
 fn angles(robot: &Robot) -> [[f64; 7]; 2] {
     Arm::BOTH.map(|arm| robot.angles(arm))
@@ -28,7 +29,11 @@ fn the_example_turns_every_joint_as_long_as_its_limits_allow() {
     stage.ticks(300);
     for (arm, angles) in Arm::BOTH.into_iter().zip(angles(stage.robot())) {
         for (joint, angle) in RobotJoint::of_arm(arm).into_iter().zip(angles) {
-            let mut expected = if joint == RobotJoint::RightE0 { FRAC_PI_2 } else { 0.0 };
+            let mut expected = if joint == RobotJoint::RightE0 {
+                FRAC_PI_2
+            } else {
+                0.0
+            };
             for _ in 0..300 {
                 expected = joint.clamp(expected + 0.5 * TICK);
             }
@@ -60,7 +65,10 @@ if phase > 2, aux.exit = 1; end
         stage.track().to_vec()
     };
     let scripts = run(Folder::pair(init, callback));
-    let functions = run(Folder::pair(&globals("testInit", init), &globals("testCallback", callback)));
+    let functions = run(Folder::pair(
+        &globals("testInit", init),
+        &globals("testCallback", callback),
+    ));
     assert_eq!(scripts.len(), 120);
     assert_eq!(scripts, functions);
     assert_ne!(scripts[5], scripts[100]);
@@ -68,7 +76,10 @@ if phase > 2, aux.exit = 1; end
 
 #[test]
 fn a_script_that_exits_leaves_nothing_behind() {
-    let folder = Folder::pair(INIT, &format!("{MOVING}if calls == 10, aux.exit = false; end\n"));
+    let folder = Folder::pair(
+        INIT,
+        &format!("{MOVING}if calls == 10, aux.exit = false; end\n"),
+    );
     let mut stage = Stage::start(folder.settings());
     stage.ticks_until(Stage::has_stopped);
     assert_eq!(stage.agent(), &Agent::Off);
@@ -80,7 +91,10 @@ fn a_script_that_exits_leaves_nothing_behind() {
 
 #[test]
 fn exit_in_init_lets_the_callback_run_once() {
-    let folder = Folder::pair("aux.exit = 1;", "disp('called'); motor.jointAngles = zeros(2, 7);");
+    let folder = Folder::pair(
+        "aux.exit = 1;",
+        "disp('called'); motor.jointAngles = zeros(2, 7);",
+    );
     let mut stage = Stage::start(folder.settings());
     stage.ticks_until(Stage::has_stopped);
     assert_eq!(stage.printed(), "called");
@@ -121,13 +135,21 @@ fn a_second_start_and_a_stop_of_nothing_do_nothing() {
     stage.ticks(1);
     stage.order(AgentOrder::Stop);
     stage.ticks(1);
-    let ends = stage.news.iter().filter(|news| **news == AgentNews::Stopped);
+    let ends = stage
+        .news
+        .iter()
+        .filter(|news| **news == AgentNews::Stopped);
     assert_eq!(ends.count(), 1);
 }
 
 #[test]
 fn while_paused_there_are_no_calls() {
-    let folder = Folder::pair(INIT, &format!("{MOVING}elapsed(calls) = sensor.timeElapsed;\nfresh(calls) = isfield(sensor, 'rgbVision');\nif calls == 20, disp([max(elapsed) * 60, find(fresh)]); end\n"));
+    let folder = Folder::pair(
+        INIT,
+        &format!(
+            "{MOVING}elapsed(calls) = sensor.timeElapsed;\nfresh(calls) = isfield(sensor, 'rgbVision');\nif calls == 20, disp([max(elapsed) * 60, find(fresh)]); end\n"
+        ),
+    );
     let mut stage = Stage::start(folder.settings());
     stage.ticks(15);
     // The pause comes in the tick whose picture the script is to get.
@@ -140,8 +162,14 @@ fn while_paused_there_are_no_calls() {
     stage.tell(SimCommand::SetPaused(false));
     stage.ticks(10);
     let printed = stage.printed();
-    let numbers: Vec<f64> = printed.split_whitespace().map(|word| word.parse().unwrap()).collect();
-    assert!((numbers[0] - 1.0).abs() < 1e-4, "a pause is no time: {printed}");
+    let numbers: Vec<f64> = printed
+        .split_whitespace()
+        .map(|word| word.parse().unwrap())
+        .collect();
+    assert!(
+        (numbers[0] - 1.0).abs() < 1e-4,
+        "a pause is no time: {printed}"
+    );
     assert_eq!(numbers[1..], [1.0, 16.0], "{printed}");
 }
 
@@ -156,7 +184,13 @@ fn without_an_engine_the_message_says_how_to_get_one() {
     stage.ticks(1);
     assert_eq!(stage.agent(), &Agent::Failed);
     let reason = stage.failure().unwrap();
-    assert!(reason.starts_with("MATLAB or GNU Octave runs scripts, but neither is there"), "{reason}");
-    assert!(reason.contains("install Octave, which is free, with"), "{reason}");
+    assert!(
+        reason.starts_with("MATLAB or GNU Octave runs scripts, but neither is there"),
+        "{reason}"
+    );
+    assert!(
+        reason.contains("install Octave, which is free, with"),
+        "{reason}"
+    );
     stage.assert_at_rest();
 }

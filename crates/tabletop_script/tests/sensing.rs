@@ -5,12 +5,11 @@ mod kit;
 
 use bevy::prelude::*;
 use kit::{Folder, Stage};
-use tabletop_core::{
-    Arm, ObjectSpec, Pose, Rgb, Shape, SimCommand,
-};
+use tabletop_core::{Arm, ObjectSpec, Pose, Rgb, Shape, SimCommand};
 use tabletop_script::{ScriptSettings, Tell};
 
-const NAMES: &str = "if ~exist('shown', 'var'), shown = fieldnames(sensor)'; disp(strjoin(sort(shown))); end\n";
+const NAMES: &str =
+    "if ~exist('shown', 'var'), shown = fieldnames(sensor)'; disp(strjoin(sort(shown))); end\n";
 const BARE: &str = "demoCue endEffPos gripperOpening headAngle jointAngles rgbVision timeElapsed";
 
 fn fields(settings: ScriptSettings) -> String {
@@ -24,7 +23,10 @@ fn fields(settings: ScriptSettings) -> String {
 fn scripts_get_what_they_mention() {
     let folder = Folder::pair("", NAMES);
     assert_eq!(fields(folder.settings()), BARE);
-    folder.write("helper.m", "function helper(sensor)\nsensor.trackerLoc('l-S1')\nend\n");
+    folder.write(
+        "helper.m",
+        "function helper(sensor)\nsensor.trackerLoc('l-S1')\nend\n",
+    );
     assert_eq!(fields(folder.settings()), format!("{BARE} trackerLoc"));
     folder.write("helper.m", "x = sensor.held.left;\n");
     let all = "contacts demoCue endEffPos gripperOpening headAngle held jointAngles objects rgbVision timeElapsed";
@@ -72,7 +74,10 @@ aux.exit = 1;
     stage.app.world_mut().spawn((Transform::from(pose), spec));
     stage.ticks_until(Stage::has_stopped);
     let printed = stage.printed();
-    let numbers: Vec<f32> = printed.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    let numbers: Vec<f32> = printed
+        .split_whitespace()
+        .filter_map(|word| word.parse().ok())
+        .collect();
     let robot = stage.robot();
     let arms = Arm::BOTH.map(|arm| robot.arm(arm).end_effector.location);
     let wrist = robot.arm(Arm::Right).joint_origins[2].to_array();
@@ -106,7 +111,9 @@ if n == 31, disp(sprintf('%d ', seen)); aux.exit = 1; end
         let mut stage = Stage::start(settings);
         stage.ticks_until(Stage::has_stopped);
         let printed = stage.printed();
-        let mut numbers = printed.split_whitespace().filter_map(|word| word.parse::<u32>().ok());
+        let mut numbers = printed
+            .split_whitespace()
+            .filter_map(|word| word.parse::<u32>().ok());
         let size: Vec<_> = numbers.by_ref().take(4).collect();
         assert_eq!(size, [150, 200, 3, 1], "{printed}");
         assert_eq!(numbers.collect::<Vec<_>>(), expected, "{printed}");
@@ -125,7 +132,13 @@ fn pictures_show_the_markers_and_not_the_past() {
     stage.tell(SimCommand::ShowRobot(false));
     stage.ticks_until(Stage::has_stopped);
     let printed = stage.printed();
-    let numbers: Vec<f32> = printed.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    let numbers: Vec<f32> = printed
+        .split_whitespace()
+        .filter_map(|word| word.parse().ok())
+        .collect();
     assert_eq!(numbers.len(), 6, "{printed}");
-    assert!(numbers[0] < 0.9 && numbers[0] < numbers[1], "a marker is blue-green: {printed}");
+    assert!(
+        numbers[0] < 0.9 && numbers[0] < numbers[1],
+        "a marker is blue-green: {printed}"
+    );
 }

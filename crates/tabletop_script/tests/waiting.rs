@@ -6,9 +6,7 @@ mod kit;
 use std::time::Duration;
 
 use kit::{Folder, Stage};
-use tabletop_core::{
-    Agent, AgentOrder, Drive, Face, RobotJoint, SimCommand, Standstill,
-};
+use tabletop_core::{Agent, AgentOrder, Drive, Face, RobotJoint, SimCommand, Standstill};
 use tabletop_script::{ScriptSettings, Waiting};
 
 /// A script that goes on when the file that it waits for is there.
@@ -137,7 +135,10 @@ fn an_endless_loop_is_ended_by_the_time_limit() {
     let mut stage = Stage::start(settings);
     stage.frames_until(|stage| stage.failure().is_some());
     let reason = stage.failure().unwrap();
-    assert!(reason.contains("no answer from the callback script within 0.3 s"), "{reason}");
+    assert!(
+        reason.contains("no answer from the callback script within 0.3 s"),
+        "{reason}"
+    );
     let tick = stage.tick();
     stage.frames_until(|stage| stage.tick() > tick + 10);
     assert_eq!((stage.agent(), stage.markers()), (&Agent::Failed, 0));

@@ -103,12 +103,23 @@ impl Stage {
     pub fn start(settings: ScriptSettings) -> Self {
         let in_frames = settings.waiting != Waiting::Blocking;
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default(), PhysicsPlugin::default()))
-            .add_plugins((ScenePlugin, DemonstratorPlugin, BaxterPlugin::default(), CameraPlugin))
-            .add_plugins(ScriptPlugin { settings })
-            .init_resource::<Track>()
-            .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(TICK_SECONDS)))
-            .add_systems(FixedUpdate, note.in_set(SimSystems::Record));
+        app.add_plugins((
+            MinimalPlugins,
+            CorePlugin::default(),
+            PhysicsPlugin::default(),
+        ))
+        .add_plugins((
+            ScenePlugin,
+            DemonstratorPlugin,
+            BaxterPlugin::default(),
+            CameraPlugin,
+        ))
+        .add_plugins(ScriptPlugin { settings })
+        .init_resource::<Track>()
+        .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(
+            TICK_SECONDS,
+        )))
+        .add_systems(FixedUpdate, note.in_set(SimSystems::Record));
         let mut stage = Self {
             app,
             cursor: MessageCursor::default(),
@@ -162,7 +173,12 @@ impl Stage {
         let start = Instant::now();
         let mut steps = 0;
         while !is_so(self) {
-            assert!(start.elapsed() < PATIENCE, "{:?} {:?}", self.agent(), self.news);
+            assert!(
+                start.elapsed() < PATIENCE,
+                "{:?} {:?}",
+                self.agent(),
+                self.news
+            );
             step(self);
             steps += 1;
         }
@@ -227,7 +243,12 @@ impl Stage {
         let tick = self.tick();
         self.ticks(5);
         assert_eq!(self.robot().joints.map(|joint| joint.position), before);
-        assert!(self.robot().joints.iter().all(|joint| joint.velocity == 0.0));
+        assert!(
+            self.robot()
+                .joints
+                .iter()
+                .all(|joint| joint.velocity == 0.0)
+        );
         assert_eq!(self.tick(), tick + 5);
     }
 }
