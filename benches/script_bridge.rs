@@ -1,9 +1,10 @@
 //! What a script costs in a tick without a window, beside its own time. Needs GNU Octave.
 //!
 //! `cargo bench --bench script_bridge` prints the median and the 99th percentile of the time of a tick of the whole simulator
-//! with the default task and the robot at the table: without a script, with one that does nothing, and with one that
-//! does nothing and gets a fresh picture in every tick; and how much more the medians are than without a script. All run in
-//! turns in one process, so that what else the machine does touches all of them.
+//! with the default task and the robot at the table: without a script; the same with a picture of the head camera in every
+//! tick; with a script that does nothing; and with one that does nothing and gets a fresh picture in every tick. And how
+//! much more the medians are than without a script. All run in turns in one process, so that what else the machine does
+//! touches all of them.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 
 use std::{
@@ -14,8 +15,9 @@ use std::{
     time::{Duration, Instant},
 };
 
+use bevy::prelude::*;
 use tabletop::{
-    core::{Agent, AgentOrder},
+    core::{Agent, AgentOrder, PictureDemand},
     prelude::*,
     script::{EngineChoice, ScriptPlugin, ScriptSettings},
     xml::read_task,
@@ -30,6 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let never = u64::MAX;
     let mut cases = [
         Case::new("without a script", None)?,
+        Case::new("a picture, no script", None)?.with_pictures(),
         Case::new("with an idle script", Some((&folder, never)))?,
         Case::new("and a picture every tick", Some((&folder, 1)))?,
     ];
@@ -98,6 +101,13 @@ impl Case {
             app,
             times: Vec::new(),
         })
+    }
+
+    /// Has the head camera take a picture in every tick, for nobody.
+    fn with_pictures(mut self) -> Self {
+        let ask = |demand: Res<PictureDemand>| demand.ask();
+        self.app.add_systems(FixedFirst, ask);
+        self
     }
 
     fn take_turn(&mut self) {

@@ -3,7 +3,7 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use clap::Args;
-use tabletop::{baxter::BaxterPlugin, replay::Replay, script::ScriptSettings};
+use tabletop::replay::Replay;
 
 use super::{
     Failure, Output,
@@ -54,7 +54,11 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
 /// Plays a recording.
 #[cfg(feature = "window")]
 pub(super) fn play(replay: Replay) -> Result<ExitCode, Failure> {
-    use tabletop::window::{self, Show, WindowOptions};
+    use tabletop::{
+        baxter::BaxterPlugin,
+        script::ScriptSettings,
+        window::{self, Show, WindowOptions},
+    };
 
     let options = WindowOptions {
         show: Show::Replay(Box::new(replay)),

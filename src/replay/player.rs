@@ -118,6 +118,8 @@ fn play(
 
 #[cfg(test)]
 mod tests {
+    use std::slice;
+
     use tabletop_core::{CorePlugin, Hand, StepApp as _};
 
     use super::*;
@@ -184,14 +186,17 @@ mod tests {
             (2, left.clone()),
         ])
         .play_in(&mut app);
-        assert_eq!(tick(&mut app, &[SimCommand::ClearTable]), [left.clone()]);
+        assert_eq!(
+            tick(&mut app, &[SimCommand::ClearTable]),
+            slice::from_ref(&left)
+        );
         assert_eq!(tick(&mut app, &[pause(true)]), [pause(true)]);
         assert_eq!(tick(&mut app, &[]), []);
         assert_eq!(tick(&mut app, &[pause(false)]), [pause(false), pause(true)]);
         assert_eq!(tick(&mut app, &[]), [pause(false), right.clone()]);
         assert_eq!(app.world().resource::<SimTick>().0, 2);
-        assert_eq!(tick(&mut app, &[right.clone()]), [left]);
-        assert_eq!(tick(&mut app, &[right.clone()]), [right]);
+        assert_eq!(tick(&mut app, slice::from_ref(&right)), [left]);
+        assert_eq!(tick(&mut app, slice::from_ref(&right)), [right]);
     }
 
     #[test]
