@@ -1,5 +1,7 @@
 //! What is seen of the robot in the world.
 
+use std::collections::BTreeSet;
+
 use bevy::{math::DAffine3, prelude::*};
 use tabletop_core::{Face, Figure, Robot};
 use tabletop_kinematics::{Geometry, Link, Shape};
@@ -71,33 +73,34 @@ impl InsertIfSome for EntityCommands<'_> {
     }
 }
 
+/// What the bodies look like. A mesh that cannot be read is told once, whatever shows it.
 fn figures_of(description: &Description, skeleton: &Skeleton) -> Vec<Option<Figure>> {
+    let mut told = BTreeSet::new();
     let bodies = skeleton.bodies.iter();
     bodies
         .map(|body| match body.carrier {
-            Carrier::Link(link) => figure_of_link(description, description.model.link(link)),
+            Carrier::Link(link) => {
+                let link = description.model.link(link);
+                figure_of_link(description, link).unwrap_or_else(|error| {
+                    if told.insert(error.to_string()) {
+                        warn!(
+                            "link {} is shown by what it is touched by: {error}",
+                            link.name
+                        );
+                    }
+                    stand_in(&link.collisions)
+                })
+            }
             Carrier::Gripper(..) => seen(&finger(), description).ok(),
         })
         .collect()
 }
 
-/// What a link looks like. A mesh that cannot be read is told once, and what the link is touched by stands in for it.
-fn figure_of_link(description: &Description, link: &Link) -> Option<Figure> {
-    let visuals: Result<Vec<_>, _> = link
-        .visuals
-        .iter()
-        .map(|visual| seen(visual, description))
-        .collect();
-    match visuals {
-        Ok(visuals) => merged(visuals),
-        Err(error) => {
-            warn!(
-                "link {} is shown by what it is touched by: {error}",
-                link.name
-            );
-            stand_in(&link.collisions)
-        }
-    }
+/// What a link looks like; nothing if nothing of it is seen.
+fn figure_of_link(description: &Description, link: &Link) -> Result<Option<Figure>, LookError> {
+    let visuals = link.visuals.iter();
+    let visuals: Result<Vec<_>, _> = visuals.map(|visual| seen(visual, description)).collect();
+    visuals.map(merged)
 }
 
 fn screen(description: &Description, face: Face) -> Option<Figure> {
@@ -105,7 +108,7 @@ fn screen(description: &Description, face: Face) -> Option<Figure> {
     let link = description.model.link(link);
     match &link.visuals[..] {
         [visual] if is_ours(visual) => screen_with(face, visual, description.path()).ok(),
-        _ => figure_of_link(description, link),
+        _ => figure_of_link(description, link).unwrap_or_else(|_| stand_in(&link.collisions)),
     }
 }
 

@@ -1,7 +1,7 @@
 function root = tabletop_get(file)
 % TABLETOP_GET  Read named arrays; dots in their names become nested structs.
 persistent known plan                              % the last header and what it means: it seldom changes
-fid = fopen(file, 'r', 'ieee-le');
+fid = fopen(file, 'r');
 if fid < 0, error('tabletop:file', 'cannot open %s', file); end
 bytes = fread(fid, [1 Inf], '*uint8');
 fclose(fid);
@@ -13,36 +13,44 @@ codes = plan.codes;
 starts = plan.starts;
 ends = plan.ends;
 dims = plan.dims;
-paths = plan.paths;
-root = struct();
-for k = 1:numel(codes)
+values = cell(1, numel(codes));
+for k = plan.numbers
+    values{k} = reshape(typecast(bytes(starts(k):ends(k)), 'double'), dims{k});
+end
+for k = plan.others
     data = bytes(starts(k):ends(k));
     switch codes(k)
-        case 0
-            value = reshape(typecast(data, 'double'), dims{k});
         case 1
-            value = reshape(data, dims{k});
+            values{k} = reshape(data, dims{k});
         case 2
-            value = tabletop_text(data);
+            values{k} = tabletop_text(data);
         case 3
-            value = reshape(data ~= 0, dims{k});
+            values{k} = reshape(data ~= 0, dims{k});
         case 4
-            value = reshape(double(data) / 255, dims{k});
+            values{k} = reshape(double(data) / 255, dims{k});
         case 5
-            value = named_points(data, prod(dims{k}));
+            values{k} = named_points(data, prod(dims{k}));
         case 6
-            value = texts(data, prod(dims{k}));
+            values{k} = texts(data, prod(dims{k}));
         otherwise                                  % 8: no numbers
-            value = zeros(dims{k});
+            values{k} = zeros(dims{k});
     end
+end
+root = plan.empty;
+if ~isempty(plan.name)
+    root.(plan.name) = cell2struct(values, plan.fields, 2);
+    return
+end
+paths = plan.paths;
+for k = 1:numel(codes)
     path = paths{k};
     switch numel(path)
         case 1
-            root.(path{1}) = value;
+            root.(path{1}) = values{k};
         case 2
-            root.(path{1}).(path{2}) = value;
+            root.(path{1}).(path{2}) = values{k};
         otherwise
-            root.(path{1}).(path{2}).(path{3}) = value;
+            root.(path{1}).(path{2}).(path{3}) = values{k};
     end
 end
 end
@@ -74,8 +82,18 @@ codes = head(1, :);
 if any(codes > 6), error('tabletop:class', 'there is an unknown class in %s', file); end
 codes(codes == 0 & head(3, :) == 0) = 8;
 plan = struct('codes', codes, 'starts', starts, 'ends', starts + head(3, :) - 1);
+plan.numbers = find(codes == 0);
+plan.others = find(codes ~= 0);
 plan.dims = dims;
 plan.paths = paths;
+plan.empty = struct();
+% Most often all are fields of one struct, which is made at once.
+plan.name = '';
+plan.fields = {};
+if all(cellfun('length', paths) == 2)
+    parts = vertcat(paths{:});
+    if all(strcmp(parts(:, 1), parts{1})), plan.name = parts{1}; plan.fields = parts(:, 2)'; end
+end
 end
 
 function list = texts(data, count)

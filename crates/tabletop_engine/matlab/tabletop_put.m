@@ -22,7 +22,7 @@ end
 text = [names{:}];
 start = [826365012; 1; count; numel(text); head(:)]';
 text = [uint8(text), zeros(1, mod(-numel(text), 8), 'uint8')];
-fid = fopen(file, 'w', 'ieee-le');
+fid = fopen(file, 'w');
 if fid < 0, error('tabletop:file', 'cannot write %s', file); end
 fwrite(fid, [typecast(uint32(start), 'uint8'), text, data{:}], 'uint8');
 fclose(fid);

@@ -148,7 +148,7 @@ pub(crate) fn command_line(tick: u64, command: &SimCommand) -> Option<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use bevy::math::Vec3;
-    use tabletop_core::Hand;
+    use tabletop_core::{Drive, Hand, RobotJoint};
 
     use super::*;
 
@@ -165,6 +165,20 @@ mod tests {
             SessionCommand { tick: 12, command }
         );
         assert_eq!(line.last(), Some(&b'\n'));
+    }
+
+    #[test]
+    fn orders_to_joints_read_back_to_the_bit() {
+        let mut bits = 0x3fcd_e5c8_0f3e_0d9b_u64;
+        for _ in 0..10_000 {
+            bits = bits.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
+            // Between 1/16 and 16: what joints are told.
+            let value = f64::from_bits(0x3fb0_0000_0000_0000 + bits % 0x0080_0000_0000_0000);
+            let command = SimCommand::Drive(vec![(RobotJoint::LeftS0, Drive::Velocity(value))]);
+            let line = command_line(1, &command).unwrap();
+            let read = serde_json::from_slice::<SessionCommand>(&line).unwrap();
+            assert_eq!(read.command, command);
+        }
     }
 
     #[test]

@@ -36,7 +36,8 @@ impl Stage {
         })
     }
 
-    fn with(robot: BaxterPlugin) -> Self {
+    /// An empty table with this robot at it.
+    pub fn with(robot: BaxterPlugin) -> Self {
         let mut app = App::new();
         app.add_plugins((
             MinimalPlugins,
