@@ -5,8 +5,12 @@
 //! [`SimCommand`](tabletop_core::SimCommand)s, so a recording of what they do runs again without them. What becomes of them
 //! is told by [`AgentNews`](tabletop_core::AgentNews) and stands in [`Agent`](tabletop_core::Agent).
 //!
-//! The simulation waits for the script, as long as it takes; what is drawn does not. Without a window a run is the same every
-//! time.
+//! The simulation waits for the script; what is drawn does not. At such a [`Standstill`](tabletop_core::Standstill) frames go by
+//! without ticks, and messages are kept for the next tick. Without a window ([`Waiting::Blocking`]) a run is the same every
+//! time, and what the script orders is the same either way.
+//!
+//! What takes time to tell is told to scripts that mention it ([`Tell`]). `docs/scripts.md` is written for those who write
+//! scripts.
 //!
 //! ```no_run
 //! use bevy::prelude::*;
