@@ -15,6 +15,9 @@ W2; lengths are in units of 10 cm, angles in rad.
     sensor.rgbVision         only if there is a fresh picture: rows x columns x 3, from 0 to 1; hasattr() tells
     sensor.trackerLoc        points on the arms: a dictionary from names to [x, y, z]
     sensor.demoCue           whether a demonstration is going on
+    sensor.headAngle         of the neck, positive to the robot's left
+    sensor.objects, sensor.contacts, sensor.held
+                             see docs/scripts.md; only if a file beside your script mentions one of them
     motor.jointVelocities    2x7, in rad/s; kept from call to call, like all of motor
     motor.gripperVelocities  2x1; [left, right] will do, in units/s
     motor.jointAngles        2x7, optional: angles that are taken at once
