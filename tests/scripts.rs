@@ -372,6 +372,38 @@ fn a_block_is_gripped_carried_and_put_on_another_the_same_every_time_and_without
 }
 
 #[test]
+fn with_motors_scripts_sense_and_order_torques() {
+    let folder = place("torques");
+    name_pair(&folder, "torques");
+    fs::write(folder.join("torquesInit.m"), "").unwrap();
+    let callback = "motor.jointTorques = sensor.jointTorques;\nmotor.jointTorques(2, 7) = 1;\n";
+    fs::write(folder.join("torquesCallback.m"), callback).unwrap();
+    let script = octave(&folder);
+    let run = [
+        "run",
+        "--script",
+        &script,
+        "--seconds",
+        "1",
+        "--final-robot",
+        "-",
+    ];
+    let output = tabletop(&run).arg("--dynamic").output().unwrap();
+    succeeded(&output);
+    let robot: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let [left, right] = ["left", "right"].map(|arm| angles(&robot, arm));
+    assert!(right[6] > 0.5, "the wrist has turned: {right:?}");
+    assert!(
+        (left[6] - RobotJoint::LeftW2.home()).abs() < 0.1,
+        "{left:?}"
+    );
+    // Where nothing is moved by forces, there are none to sense.
+    let output = tabletop(&run).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("torquesCallback.m:1"));
+}
+
+#[test]
 fn an_error_of_a_script_ends_the_run_with_its_place() {
     let folder = place("wrong");
     name_pair(&folder, "wrong");

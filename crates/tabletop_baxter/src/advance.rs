@@ -37,6 +37,14 @@ pub(crate) struct Known<'w, 's> {
     objects: Query<'w, 's, (&'static ObjectSpec, Has<Held>, Has<Gripped>)>,
 }
 
+/// What the robot moves.
+#[derive(SystemParam)]
+pub(crate) struct Moved<'w, 's> {
+    rapier: WriteRapierContext<'w, 's>,
+    transforms: Query<'w, 's, &'static mut Transform>,
+    sleeping: Query<'w, 's, &'static mut Sleeping>,
+}
+
 /// Moves the joints, the grippers and what they hold.
 pub(crate) fn advance(
     known: Known,
@@ -45,26 +53,18 @@ pub(crate) fn advance(
     mut motors: ResMut<Motors>,
     mut robot: ResMut<Robot>,
     mut grips: ResMut<Grips>,
-    mut rapier: WriteRapierContext,
-    mut transforms: Query<&mut Transform>,
-    mut sleeping: Query<&mut Sleeping>,
+    mut moved: Moved,
     mut facts: MessageWriter<SimFact>,
     mut commands: Commands,
 ) -> Result {
     let is_dynamic = robot.mode == RobotMode::Dynamic;
     let is_told = orders.are_given();
     if !is_dynamic && !is_told {
-        if robot.joints.iter().any(|joint| joint.velocity != 0.0) {
-            robot
-                .joints
-                .iter_mut()
-                .for_each(|joint| joint.velocity = 0.0);
-        }
+        stand_still(&mut robot);
         return Ok(());
     }
-    let mut rapier = rapier.single_mut()?;
+    let mut rapier = moved.rapier.single_mut()?;
     let mut motion = known.motion(&robot, &grips, &rapier);
-    motion.turn_head(&orders);
     let pulls = is_dynamic.then(|| {
         motors.look(&robot);
         motors.pull(&mut motion, &orders, settings.gravity, |motion, arm| {
@@ -73,6 +73,7 @@ pub(crate) fn advance(
             touches(motion, arm, &rapier, settings.gravity, is_mine)
         })
     });
+    motion.turn_head(&orders);
     let mut actions = Vec::new();
     for arm in Arm::BOTH {
         let wants = match &pulls {
@@ -80,73 +81,68 @@ pub(crate) fn advance(
             None => orders.want_arm(arm, robot.angles(arm)),
         };
         motion.move_arm(arm, wants);
-        let wide = motion.positions[RobotJoint::gripper(arm).index()];
+        let gripper = RobotJoint::gripper(arm).index();
+        let opening = motion.positions[gripper];
         let closing = motion.move_fingers(arm, &orders);
-        let opens = motion.positions[RobotJoint::gripper(arm).index()] > wide;
+        let opens = motion.positions[gripper] > opening;
         actions.extend(known.decide(arm, opens, closing, &mut grips));
     }
 
-    let was = positions(&robot);
+    let before = positions(&robot);
     robot.move_to(&motion.positions);
-    if let Some(pulls) = pulls {
-        motors.note(&pulls, &mut motion, &mut robot);
-        orders.end_tick(&motors.reached(&motion.positions));
-    } else {
-        orders.end_tick(&motion.positions);
+    match pulls {
+        Some(pulls) => {
+            motors.note(&pulls, &mut motion, &mut robot);
+            orders.end_tick(&motors.reached(&motion.positions));
+        }
+        None => orders.end_tick(&motion.positions),
     }
     for arm in Arm::BOTH {
-        let squeezed = orders.wait_for(arm, motion.held_up_by[arm as usize]);
-        let obstacle = motion.blocked_by[arm as usize].or(squeezed.map(Owner::Thing));
-        let blocked_by = obstacle.map(|owner| known.name(owner));
-        if let Some(by) = blocked_by.clone() {
+        let blocked_by = known.blocked_by(arm, &motion, &mut orders);
+        if let Some(by) = &blocked_by {
             orders.give_up(arm);
             motors.stay(arm);
-            if robot.arm(arm).blocked_by.as_ref() != Some(&by) {
+            if robot.arm(arm).blocked_by.as_ref() != Some(by) {
+                let by = by.clone();
                 facts.write(SimFact::ArmBlocked { arm, by });
             }
         }
         let has_moved = RobotJoint::of_arm(arm)
             .iter()
-            .any(|joint| motion.positions[joint.index()] != was[joint.index()]);
+            .any(|joint| motion.positions[joint.index()] != before[joint.index()]);
         if (is_told && has_moved) || blocked_by.is_some() {
             robot.arms[arm as usize].blocked_by = blocked_by;
         }
     }
     known.publish(&mut robot, &orders, motion.base);
 
-    let awake = known.near_arms(&mut motion);
-    for object in awake {
-        if let Ok(mut sleeping) = sleeping.get_mut(object) {
+    for object in known.near_arms(&mut motion) {
+        if let Ok(mut sleeping) = moved.sleeping.get_mut(object) {
             sleeping.sleeping = false;
         }
     }
-    let posture = known.skeleton.posture(&motion.positions);
-    let mut place = |entity, pose: Pose| {
-        let Ok(mut transform) = transforms.get_mut(entity) else {
-            return;
+    for (entity, pose) in known.places(&motion, &robot, &grips) {
+        let Ok(mut transform) = moved.transforms.get_mut(entity) else {
+            continue;
         };
         if transform.translation.distance(pose.location) > JUMP {
             put(&mut rapier.rigidbody_set, entity, pose);
         }
         transform.set_if_neq(pose.into());
-    };
-    for (&part, pose) in known
-        .parts
-        .0
-        .iter()
-        .zip(poses(&known.skeleton, &posture, motion.base))
-    {
-        place(part, pose);
-    }
-    for arm in Arm::BOTH {
-        for grip in grips.of(arm).iter().filter(|grip| !grip.is_jointed) {
-            place(grip.object, robot.arm(arm).end_effector * grip.pose);
-        }
     }
     for action in actions {
         action.carry_out(&mut commands, &mut facts);
     }
     Ok(())
+}
+
+/// Nothing moves.
+fn stand_still(robot: &mut ResMut<Robot>) {
+    if robot.joints.iter().any(|joint| joint.velocity != 0.0) {
+        for joint in &mut robot.joints {
+            joint.velocity = 0.0;
+        }
+    }
 }
 
 /// What a gripper does besides moving its fingers.
@@ -216,6 +212,26 @@ impl Known<'_, '_> {
             is_shown: robot.is_shown,
             scratch: posture,
         }
+    }
+
+    /// What an arm was stopped by in a tick, by name: what cannot be passed, or what it has squeezed for too long.
+    fn blocked_by(&self, arm: Arm, motion: &Motion, orders: &mut Orders) -> Option<String> {
+        let squeezed = orders.wait_for(arm, motion.held_up_by[arm as usize]);
+        let obstacle = motion.blocked_by[arm as usize].or(squeezed.map(Owner::Thing));
+        obstacle.map(|owner| self.name(owner))
+    }
+
+    /// Where the bodies are after a motion, and what the grippers hold rigidly.
+    fn places(&self, motion: &Motion, robot: &Robot, grips: &Grips) -> Vec<(Entity, Pose)> {
+        let posture = self.skeleton.posture(&motion.positions);
+        let poses = poses(&self.skeleton, &posture, motion.base);
+        let bodies = self.parts.0.iter().copied().zip(poses);
+        let held = Arm::BOTH.into_iter().flat_map(|arm| {
+            let end_effector = robot.arm(arm).end_effector;
+            let rigid = grips.of(arm).iter().filter(|grip| !grip.is_jointed);
+            rigid.map(move |grip| (grip.object, end_effector * grip.pose))
+        });
+        bodies.chain(held).collect()
     }
 
     /// What follows from a gripper's opening or closing.

@@ -55,12 +55,17 @@ impl Picture {
         let mut data = vec![0; self.rgb.len()];
         let (red, rest) = data.split_at_mut(width * height);
         let (green, blue) = rest.split_at_mut(width * height);
-        for (row, pixels) in self.rgb.chunks_exact((3 * width).max(1)).enumerate() {
-            for (column, pixel) in pixels.chunks_exact(3).enumerate() {
-                let place = column * height + row;
-                red[place] = pixel[0];
-                green[place] = pixel[1];
-                blue[place] = pixel[2];
+        // Column by column, as it is written: reading that way costs a third of writing all over the place.
+        let red = red.chunks_exact_mut(height.max(1));
+        let green = green.chunks_exact_mut(height.max(1));
+        let blue = blue.chunks_exact_mut(height.max(1));
+        for (column, ((red, green), blue)) in red.zip(green).zip(blue).enumerate() {
+            let rows = self.rgb.chunks_exact((3 * width).max(1));
+            let pixels = rows.map(|row| &row[3 * column..3 * column + 3]);
+            for (((red, green), blue), pixel) in red.iter_mut().zip(green).zip(blue).zip(pixels) {
+                *red = pixel[0];
+                *green = pixel[1];
+                *blue = pixel[2];
             }
         }
         Array {
