@@ -1,7 +1,7 @@
 //! What a script costs in a tick without a window, beside its own time. Needs GNU Octave.
 //!
 //! `cargo bench --bench script_bridge` prints the median and the 99th percentile of the time of a tick of the whole simulator
-//! with the default task and the robot at the table: without a script; the same with a picture of the head camera in every
+//! with the default task, without and with the robot at the table: without a script; the same with a picture of the head camera in every
 //! tick; with a script that does nothing; and with one that does nothing and gets a fresh picture in every tick. And how
 //! much more the medians are than without a script. All run in turns in one process, so that what else the machine does
 //! touches all of them.
@@ -30,26 +30,29 @@ const WARM_UP: u64 = 120;
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = idle_scripts()?;
     let never = u64::MAX;
-    let mut cases = [
-        Case::new("without a script", None)?,
-        Case::new("a picture, no script", None)?.with_pictures(),
-        Case::new("with an idle script", Some((&folder, never)))?,
-        Case::new("and a picture every tick", Some((&folder, 1)))?,
-    ];
-    for _ in 0..TURNS {
-        for case in &mut cases {
-            case.take_turn();
-        }
+    let mut groups = Vec::new();
+    for is_shown in [false, true] {
+        groups.push([
+            Case::new("without a script", is_shown, None)?,
+            Case::new("a picture, no script", is_shown, None)?.with_pictures(),
+            Case::new("with an idle script", is_shown, Some((&folder, never)))?,
+            Case::new("and a picture every tick", is_shown, Some((&folder, 1)))?,
+        ]);
     }
-    println!("{:26}{:>9}{:>9}{:>9}   ms", "a tick", "p50", "p99", "more");
-    let bare = cases[0].percentile(50);
-    for case in &mut cases {
-        let (median, high) = (case.percentile(50), case.percentile(99));
-        println!(
-            "{:26}{median:9.3}{high:9.3}{:9.3}",
-            case.name,
-            median - bare
-        );
+    for _ in 0..TURNS {
+        groups.iter_mut().flatten().for_each(Case::take_turn);
+    }
+    for (mut cases, robot) in groups.into_iter().zip(["robot hidden", "robot shown"]) {
+        println!("{robot:26}{:>9}{:>9}{:>9}   ms", "p50", "p99", "more");
+        let bare = cases[0].percentile(50);
+        for case in &mut cases {
+            let (median, high) = (case.percentile(50), case.percentile(99));
+            println!(
+                "{:26}{median:9.3}{high:9.3}{:9.3}",
+                case.name,
+                median - bare
+            );
+        }
     }
     fs::remove_dir_all(folder)?;
     Ok(())
@@ -74,7 +77,11 @@ struct Case {
 
 impl Case {
     /// A simulator, and the script's folder with the ticks from picture to picture.
-    fn new(name: &'static str, script: Option<(&Path, u64)>) -> Result<Self, Box<dyn Error>> {
+    fn new(
+        name: &'static str,
+        is_shown: bool,
+        script: Option<(&Path, u64)>,
+    ) -> Result<Self, Box<dyn Error>> {
         let mut settings = ScriptSettings::default();
         let Ok(octave) = "octave".parse::<EngineChoice>();
         settings.engine = octave;
@@ -87,7 +94,8 @@ impl Case {
         let scene = read_task(Path::new("tablesetup/default.xml"))?.scene;
         app.world_mut()
             .write_message(SimCommand::SetScene(Box::new(scene)));
-        app.world_mut().write_message(SimCommand::ShowRobot(true));
+        app.world_mut()
+            .write_message(SimCommand::ShowRobot(is_shown));
         if script.is_some() {
             app.world_mut().write_message(AgentOrder::Start);
         }

@@ -1,6 +1,9 @@
 //! Which robot stands at the table, and which script drives it.
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    time::Duration,
+};
 
 use clap::Args;
 use tabletop::{
@@ -56,6 +59,9 @@ pub(super) struct EngineOptions {
     /// Ticks from one picture that a script gets to the next, 60 a second [default: 15]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     picture_every: Option<u64>,
+    /// How long to wait for a call of a script before its engine is ended, in seconds [default: 30]
+    #[arg(long, value_name = "S", value_parser = patience)]
+    script_timeout: Option<Duration>,
     /// Let scripts sense with the head camera and the joints alone: no `sensor.objects`, `contacts` and `held`
     #[arg(long)]
     no_objects: bool,
@@ -82,6 +88,9 @@ impl EngineOptions {
         if self.no_objects {
             settings.objects = Tell::Never;
         }
+        if let Some(patience) = self.script_timeout {
+            settings.timeouts.step = patience;
+        }
         if let Some(ticks) = self.picture_every {
             settings.ticks_per_picture = ticks;
         }
@@ -92,6 +101,16 @@ impl EngineOptions {
 fn parse(engine: &str) -> EngineChoice {
     let Ok(choice) = engine.parse();
     choice
+}
+
+/// Reads a time of a hundredth of a second to a day.
+fn patience(text: &str) -> Result<Duration, String> {
+    const DAY: f64 = 24.0 * 3600.0;
+    text.parse()
+        .ok()
+        .filter(|seconds| (0.01..=DAY).contains(seconds))
+        .map(Duration::from_secs_f64)
+        .ok_or_else(|| format!("expected a number of seconds from 0.01 to {DAY}"))
 }
 
 /// Reads what `--script` says.

@@ -210,6 +210,7 @@ impl Known<'_, '_> {
             is_squeezing: [false; 2],
             holds: Arm::BOTH.map(|arm| !grips.of(arm).is_empty()),
             is_shown: robot.is_shown,
+            asked: Vec::new(),
             scratch: posture,
         }
     }

@@ -1,5 +1,7 @@
 //! How far the joints can go: where they are told to, as far as nothing is in the way (report section 5).
 
+use std::rc::Rc;
+
 use bevy::prelude::*;
 use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, RobotJoint};
@@ -41,6 +43,23 @@ pub(crate) struct Carried {
     pub parts: Vec<Convex>,
 }
 
+/// Where an arm is.
+pub(crate) struct ArmPoses {
+    /// Its bodies, with their numbers.
+    bodies: Vec<(usize, Pose)>,
+    end_effector: Pose,
+}
+
+/// Where an arm is at some positions of the joints.
+pub(crate) struct Asked {
+    arm: Arm,
+    positions: [f64; 17],
+    poses: Rc<ArmPoses>,
+}
+
+/// Answers that are remembered.
+const MOST_ASKED: usize = 4;
+
 /// The motion of a tick.
 pub(crate) struct Motion<'a> {
     /// The robot.
@@ -65,6 +84,8 @@ pub(crate) struct Motion<'a> {
     pub is_squeezing: [bool; 2],
     /// Whether it can meet anything.
     pub is_shown: bool,
+    /// The last answers to where an arm is.
+    pub asked: Vec<Asked>,
     /// A posture to compute with.
     pub scratch: Posture,
 }
@@ -126,8 +147,7 @@ impl Motion<'_> {
 
     /// Where an end effector is.
     pub fn end_effector(&mut self, arm: Arm) -> Pose {
-        self.skeleton.update(&mut self.scratch, &self.positions);
-        self.skeleton.end_effector(arm, &self.scratch, self.base)
+        self.poses(arm, &self.positions.clone()).end_effector
     }
 
     /// What may be between the fingers of a gripper.
@@ -210,42 +230,57 @@ impl Motion<'_> {
     fn way(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> f32 {
         let from = self.poses(arm, from);
         let to = self.poses(arm, to);
-        from.into_iter()
-            .zip(to)
+        from.bodies
+            .iter()
+            .zip(&to.bodies)
             .map(|((_, from), (_, to))| {
                 from.location.distance(to.location) + from.rotation.angle_between(to.rotation)
             })
             .fold(0.0, f32::max)
     }
 
-    /// Where the bodies of an arm are, with their numbers.
-    fn poses(&mut self, arm: Arm, positions: &[f64; 17]) -> Vec<(usize, Pose)> {
+    /// Where the bodies of an arm are. The last few answers are remembered: most are asked for several times.
+    fn poses(&mut self, arm: Arm, positions: &[f64; 17]) -> Rc<ArmPoses> {
+        let is_asked = |asked: &&Asked| asked.arm == arm && asked.positions == *positions;
+        if let Some(asked) = self.asked.iter().find(is_asked) {
+            return Rc::clone(&asked.poses);
+        }
         self.skeleton.update(&mut self.scratch, positions);
         let bodies = self.skeleton.bodies.iter().enumerate();
-        bodies
+        let bodies = bodies
             .filter(|(_, body)| is_of(body, arm))
             .map(|(number, body)| {
                 let pose = self.skeleton.pose(body, &self.scratch, self.base);
                 (number, pose)
-            })
-            .collect()
+            });
+        let poses = Rc::new(ArmPoses {
+            bodies: bodies.collect(),
+            end_effector: self.skeleton.end_effector(arm, &self.scratch, self.base),
+        });
+        if self.asked.len() == MOST_ASKED {
+            self.asked.remove(0);
+        }
+        self.asked.push(Asked {
+            arm,
+            positions: *positions,
+            poses: Rc::clone(&poses),
+        });
+        poses
     }
 
     /// The solids of an arm and of what it holds, each with the number of a body that meets what it meets.
     pub fn solids(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> Vec<(usize, Solid)> {
-        let from_poses = self.poses(arm, from);
-        let from_hand = self.skeleton.end_effector(arm, &self.scratch, self.base);
-        let to_poses = self.poses(arm, to);
-        let to_hand = self.skeleton.end_effector(arm, &self.scratch, self.base);
+        let from = self.poses(arm, from);
+        let to = self.poses(arm, to);
         let mut solids = Vec::new();
-        for ((number, from), (_, to)) in from_poses.into_iter().zip(to_poses) {
+        for (&(number, from), &(_, to)) in from.bodies.iter().zip(&to.bodies) {
             let parts = &self.skeleton.bodies[number].parts;
             let moving = Solid::moving(parts, Owner::Body(number), from, to);
             solids.extend(moving.map(|solid| (number, solid)));
         }
         let finger = self.finger(arm);
         for carried in &self.carried[arm as usize] {
-            let [from, to] = [from_hand, to_hand].map(|hand| hand * carried.pose);
+            let [from, to] = [&from, &to].map(|poses| poses.end_effector * carried.pose);
             let moving = Solid::moving(&carried.parts, Owner::Thing(carried.object), from, to);
             solids.extend(moving.map(|solid| (finger, solid)));
         }
