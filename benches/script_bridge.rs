@@ -1,10 +1,10 @@
 //! What a script costs in a tick without a window, beside its own time. Needs GNU Octave.
 //!
 //! `cargo bench --bench script_bridge` prints the median and the 99th percentile of the time of a tick of the whole simulator
-//! with the default task, without and with the robot at the table: without a script; the same with a picture of the head camera in every
-//! tick; with a script that does nothing; and with one that does nothing and gets a fresh picture in every tick. And how
-//! much more the medians are than without a script. All run in turns in one process, so that what else the machine does
-//! touches all of them.
+//! with the default task, without and with the robot at the table: without a script; the same with a picture of the head
+//! camera in every tick; with a script that does nothing; and with one that does nothing and gets a fresh picture in every
+//! tick. And how much more the medians are than without a script. All run in turns in one process, so that what else the
+//! machine does touches all of them.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 
 use std::{
