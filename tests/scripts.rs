@@ -168,14 +168,14 @@ impl Stage {
     }
 }
 
-/// What five seconds at 0.5 rad/s make of the angles of the init script. The first of the 300 ticks is that of the init script.
+/// What five seconds at 0.5 rad/s make of the angles of the init script. The tick of the init script comes before.
 fn turned(joint: RobotJoint) -> f64 {
     let begin = if joint == RobotJoint::RightE0 {
         FRAC_PI_2
     } else {
         0.0
     };
-    (0..299).fold(begin, |angle, _| {
+    (0..300).fold(begin, |angle, _| {
         joint.clamp(angle + 0.5 * f64::from(TICK_SECONDS))
     })
 }

@@ -212,7 +212,8 @@ impl Script {
             app.step(ticks);
             return Ok(());
         }
-        for _ in 0..ticks {
+        // The first tick is that of the init script.
+        for _ in 0..=ticks {
             app.step(1);
             self.listen(app);
             if self.end.is_some() {

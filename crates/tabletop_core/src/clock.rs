@@ -108,8 +108,8 @@ pub(crate) fn configure(app: &mut App) {
         .configure_sets(
             FixedUpdate,
             (
-                OrderSystems::Scenario,
-                OrderSystems::User,
+                OrderSystems::Scenario.run_if(Standstill::is_over),
+                OrderSystems::User.run_if(Standstill::is_over),
                 OrderSystems::Script,
                 TickSystems.run_if(Standstill::is_over),
             )

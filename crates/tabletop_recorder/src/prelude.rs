@@ -115,12 +115,12 @@ impl Prelude {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Hand, SceneSpec};
+    use tabletop_core::Hand;
 
     use super::*;
 
     fn scene() -> SimCommand {
-        SimCommand::SetScene(Box::new(SceneSpec::default()))
+        SimCommand::SetScene(Box::default())
     }
 
     fn told(prelude: &Prelude) -> Vec<String> {
