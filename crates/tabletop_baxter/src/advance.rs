@@ -136,6 +136,29 @@ pub(crate) fn advance(
     Ok(())
 }
 
+/// Puts the arms home that have come into the table or something else while the robot was hidden and met nothing.
+pub(crate) fn leave_obstacles(
+    known: Known,
+    grips: Res<Grips>,
+    mut robot: ResMut<Robot>,
+    mut rapier: WriteRapierContext,
+    mut facts: MessageWriter<SimFact>,
+) -> Result {
+    let rapier = rapier.single_mut()?;
+    let mut motion = known.motion(&robot, &grips, &rapier);
+    for arm in Arm::BOTH {
+        let Some(obstacle) = motion.is_inside(arm) else {
+            continue;
+        };
+        for joint in RobotJoint::of_arm(arm) {
+            robot.joints[joint.index()].position = joint.home();
+        }
+        let by = known.name(obstacle);
+        facts.write(SimFact::ArmBlocked { arm, by });
+    }
+    Ok(())
+}
+
 /// Nothing moves.
 fn stand_still(robot: &mut ResMut<Robot>) {
     if robot.joints.iter().any(|joint| joint.velocity != 0.0) {

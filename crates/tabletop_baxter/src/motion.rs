@@ -293,6 +293,20 @@ impl Motion<'_> {
         self.skeleton.bodies.iter().position(is_finger).unwrap_or(0)
     }
 
+    /// What an arm is inside of that it cannot pass.
+    pub fn is_inside(&mut self, arm: Arm) -> Option<Owner> {
+        let here = self.positions;
+        let solids = self.solids(arm, &here, &here);
+        let mut immovable = self.surroundings.immovable.iter();
+        immovable
+            .find(|obstacle| {
+                solids
+                    .iter()
+                    .any(|(_, solid)| solid.depth_in(obstacle) > 0.0)
+            })
+            .map(|obstacle| obstacle.owner)
+    }
+
     /// What is in the way of an arm between two positions.
     fn obstacle(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> Option<Owner> {
         if !self.is_shown {

@@ -157,7 +157,7 @@ fn stand_at_table(world: &mut World) -> Result {
 }
 
 /// Writes where the arms are.
-fn publish(
+pub(crate) fn publish(
     known: advance::Known,
     tables: Query<&Table>,
     orders: Res<Orders>,

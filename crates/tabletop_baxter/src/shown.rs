@@ -5,8 +5,10 @@ use bevy_rapier3d::prelude::*;
 use tabletop_core::{Arm, Robot, SimFact};
 
 use crate::{
+    advance::leave_obstacles,
     grips,
     parts::{Parts, spawn, teleport},
+    plugin::publish,
 };
 
 /// Puts the robot to the table, or takes it away; what its grippers hold is let go of before.
@@ -37,8 +39,18 @@ pub(crate) fn show(world: &mut World, show: bool) {
             part.insert(RigidBodyDisabled);
         }
     }
-    if let Err(error) = teleport(world) {
+    if let Err(error) = place(world, show) {
         error!("cannot place the robot: {error}");
     }
     world.write_message(SimFact::RobotShown(show));
+}
+
+/// Puts the bodies where the joints have them.
+fn place(world: &mut World, show: bool) -> Result {
+    if show {
+        let () = world.run_system_cached(leave_obstacles)?;
+    }
+    teleport(world)?;
+    world.run_system_cached(publish)?;
+    Ok(())
 }

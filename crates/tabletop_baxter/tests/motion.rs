@@ -6,7 +6,7 @@ mod kit;
 use std::f32::consts::PI;
 
 use bevy::prelude::*;
-use kit::{Stage, block};
+use kit::{Stage, block, inside_the_table};
 use proptest::prelude::*;
 use tabletop_core::{
     Arm, Drive, HeadCamera, Pose, Robot, RobotJoint, SimCommand, SimFact, StepApp, TICK_SECONDS,
@@ -39,6 +39,32 @@ fn the_neck_turns_the_camera_and_the_hidden_robot_moves() {
     stage.app.step(1);
     assert_eq!(stage.app.world().resource::<HeadCamera>().pan, 0.5);
     assert_eq!(stage.robot().joint(RobotJoint::RightW2).position, 1.0);
+}
+
+#[test]
+fn an_arm_that_went_into_the_table_while_hidden_is_home_when_shown() {
+    let mut stage = Stage::new();
+    stage.tell(SimCommand::ShowRobot(false));
+    let down = [
+        (RobotJoint::LeftS1, 1.0),
+        (RobotJoint::LeftE1, 0.0),
+        (RobotJoint::RightW2, 0.5),
+    ];
+    let down = down.map(|(joint, at)| (joint, Drive::Position(at)));
+    stage.tell(SimCommand::Drive(down.into()));
+    stage.app.step(2);
+    assert!(!inside_the_table(&mut stage).is_empty());
+    stage.tell(SimCommand::ShowRobot(true));
+    let facts = stage.facts_of(2);
+    let blocked = |fact: &SimFact| matches!(fact, SimFact::ArmBlocked { arm: Arm::Left, .. });
+    assert!(facts.iter().any(blocked), "{facts:?}");
+    assert!(inside_the_table(&mut stage).is_empty());
+    let robot = stage.robot();
+    assert_eq!(
+        robot.joint(RobotJoint::LeftE1).position,
+        RobotJoint::LeftE1.home()
+    );
+    assert_eq!(robot.joint(RobotJoint::RightW2).position, 0.5);
 }
 
 #[test]
@@ -194,19 +220,21 @@ proptest! {
 
     #[test]
     fn no_command_brings_a_joint_out_of_its_limits_or_a_link_into_the_table(
-        drives in proptest::collection::vec(proptest::collection::vec(any_drive(), 1..6), 1..60),
-        is_shown: bool,
+        acts in proptest::collection::vec(
+            (proptest::bool::weighted(0.8), proptest::collection::vec(any_drive(), 1..6)),
+            1..60,
+        ),
     ) {
         let mut stage = Stage::new();
-        stage.tell(SimCommand::ShowRobot(is_shown));
-        for drives in drives {
+        for (is_shown, drives) in acts {
+            stage.tell(SimCommand::ShowRobot(is_shown));
             stage.tell(SimCommand::Drive(drives));
             stage.app.step(3);
             for joint in RobotJoint::ALL {
                 let position = stage.robot().joint(joint).position;
                 prop_assert_eq!(joint.clamp(position), position, "{}", joint);
             }
-            let inside = kit::inside_the_table(&mut stage);
+            let inside = inside_the_table(&mut stage);
             prop_assert!(inside.is_empty() || !is_shown, "{:?}", inside);
         }
     }
