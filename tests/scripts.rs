@@ -194,18 +194,15 @@ fn assert_turned(output: &Output) {
     }
 }
 
+fn five_seconds_of(script: &str) -> Command {
+    let run = ["run", "--script", script, "--seconds", "5"];
+    tabletop(&[&run[..], &["--final-robot", "-"]].concat())
+}
+
 #[test]
 fn the_example_turns_every_joint_for_five_seconds() {
     for script in ["matlab", "octave", "octave:matlab"] {
-        let mut command = tabletop(&[
-            "run",
-            "--script",
-            script,
-            "--seconds",
-            "5",
-            "--final-robot",
-            "-",
-        ]);
+        let mut command = five_seconds_of(script);
         let output = command.env("TABLETOP_ENGINE", "octave").output().unwrap();
         assert_turned(&output);
         let printed = text(&output.stderr);
@@ -224,15 +221,7 @@ fn the_example_turns_every_joint_for_five_seconds() {
 #[test]
 fn the_python_example_turns_every_joint_for_five_seconds() {
     for script in ["python", "python:python/example.py"] {
-        let mut command = tabletop(&[
-            "run",
-            "--script",
-            script,
-            "--seconds",
-            "5",
-            "--final-robot",
-            "-",
-        ]);
+        let mut command = five_seconds_of(script);
         let output = command.output().unwrap();
         assert_turned(&output);
         let printed = text(&output.stderr);

@@ -194,8 +194,7 @@ impl Action {
 impl Known<'_, '_> {
     /// The tick's motion, before anything has moved.
     fn motion<'a>(&'a self, robot: &Robot, grips: &Grips, rapier: &RapierContextMut) -> Motion<'a> {
-        let table = self.tables.iter().next().copied().unwrap_or_default();
-        let base = robot_base(&table);
+        let base = self.base();
         let positions = positions(robot);
         let posture = self.skeleton.posture(&positions);
         let held: BTreeSet<_> = grips.all().collect();
@@ -236,6 +235,11 @@ impl Known<'_, '_> {
             asked: Vec::new(),
             scratch: posture,
         }
+    }
+
+    /// Where the torso's frame stands, in front of the present table.
+    pub fn base(&self) -> Pose {
+        robot_base(&self.tables.iter().next().copied().unwrap_or_default())
     }
 
     /// What an arm was stopped by in a tick, by name: what cannot be passed, or what it has squeezed for too long.

@@ -9,7 +9,7 @@ use bevy_rapier3d::{
     rapier::prelude as rapier,
 };
 use tabletop_core::Pose;
-use tabletop_physics::Convex;
+use tabletop_physics::{Convex, to_rapier};
 
 /// Distance, in units, that is kept from what is in the way.
 const MARGIN: f32 = 0.01;
@@ -185,10 +185,6 @@ pub(crate) fn part_left(depth: f32) -> f32 {
 /// Whether two boxes are no farther apart than the margin.
 pub(crate) fn are_near(a: &Aabb, b: &Aabb) -> bool {
     a.mins.cmple(b.maxs + MARGIN).all() && a.maxs.cmpge(b.mins - MARGIN).all()
-}
-
-fn to_rapier(pose: Pose) -> rapier::Pose {
-    rapier::Pose::from_parts(pose.location, pose.rotation)
 }
 
 #[cfg(test)]

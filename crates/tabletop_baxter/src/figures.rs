@@ -45,32 +45,23 @@ pub(crate) fn show_figures(
         let is_screen = matches!(skeleton.bodies[number].carrier, Carrier::Link(link)
             if description.model.link(link).name == SCREEN);
         let mut part = commands.entity(part);
-        match (show, figures.shown) {
-            (None, _) => {
-                part.remove::<Figure>();
-            }
-            (Some((face, _)), _) if is_screen => {
-                part.insert_if_some(screen(&description, face));
-            }
-            (Some((_, now)), before) if before.is_none_or(|(_, before)| before != now) => {
-                part.insert_if_some(figures.bodies[number].clone());
-            }
-            _ => {}
+        let Some((face, first)) = show else {
+            part.remove::<Figure>();
+            continue;
+        };
+        let is_new = figures.shown.is_none_or(|(_, before)| before != first);
+        let figure = if is_screen {
+            screen(&description, face)
+        } else if is_new {
+            figures.bodies[number].clone()
+        } else {
+            None
+        };
+        if let Some(figure) = figure {
+            part.insert(figure);
         }
     }
     figures.shown = show;
-}
-
-trait InsertIfSome {
-    fn insert_if_some(&mut self, figure: Option<Figure>);
-}
-
-impl InsertIfSome for EntityCommands<'_> {
-    fn insert_if_some(&mut self, figure: Option<Figure>) {
-        if let Some(figure) = figure {
-            self.insert(figure);
-        }
-    }
 }
 
 /// What the bodies look like. A mesh that cannot be read is told once, whatever shows it.

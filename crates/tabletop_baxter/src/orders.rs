@@ -2,8 +2,8 @@
 
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
-    Arm, Drive, Face, JOINTS_PER_ARM, Markers, Paused, Robot, RobotJoint, RobotMode, SimCommand,
-    SimFact, TICK_SECONDS,
+    Arm, Drive, JOINTS_PER_ARM, Markers, Paused, Robot, RobotJoint, RobotMode, SimCommand, SimFact,
+    TICK_SECONDS,
 };
 
 use crate::{reach, shown};
@@ -232,7 +232,7 @@ fn carry_out(world: &mut World, command: SimCommand) -> Result<(), String> {
             let angles = reach::solve(world, arm, pose)?;
             world.resource_mut::<Orders>().send(arm, angles);
         }
-        SimCommand::ShowFace(face) => show_face(world, face),
+        SimCommand::ShowFace(face) => world.resource_mut::<Robot>().face = face,
         SimCommand::ShowMarkers(points) => {
             if let Some(point) = points.iter().find(|point| !point.is_finite()) {
                 return Err(format!("a marker cannot stand at {point}"));
@@ -242,10 +242,6 @@ fn carry_out(world: &mut World, command: SimCommand) -> Result<(), String> {
         _ => {}
     }
     Ok(())
-}
-
-fn show_face(world: &mut World, face: Face) {
-    world.resource_mut::<Robot>().face = face;
 }
 
 fn refuse_while_paused(world: &World) -> Result<(), String> {

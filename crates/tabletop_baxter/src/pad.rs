@@ -1,9 +1,9 @@
 //! Where a finger touches what is between the fingers.
 
 use bevy::prelude::*;
-use bevy_rapier3d::{parry::query::Ray, rapier::prelude as rapier};
+use bevy_rapier3d::parry::query::Ray;
 use tabletop_core::Pose;
-use tabletop_physics::Convex;
+use tabletop_physics::{Convex, to_rapier};
 
 /// Half the extents of the inner face of a finger across and along the finger, in units.
 const HALF_FACE: Vec2 = Vec2::new(0.2, 0.75);
@@ -62,7 +62,7 @@ impl Pad {
             let nearest = body
                 .iter()
                 .filter_map(|part| {
-                    let place = rapier::Pose::from_parts(part.pose.location, part.pose.rotation);
+                    let place = to_rapier(part.pose);
                     part.shape.cast_ray(&place, &ray, reach + DEPTH, true)
                 })
                 .min_by(f32::total_cmp)?;
@@ -107,6 +107,8 @@ fn place_of(feeler: Feeler) -> Vec3 {
 
 #[cfg(test)]
 mod tests {
+    use bevy_rapier3d::rapier::prelude as rapier;
+
     use super::*;
 
     fn block(span: Vec3, pose: Pose) -> [Convex; 1] {

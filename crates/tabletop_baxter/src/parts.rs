@@ -6,6 +6,7 @@ use bevy_rapier3d::{
     prelude::*,
 };
 use tabletop_core::{CarriesHeadCamera, Pose, Rewinds, Robot, Table, robot_base};
+use tabletop_physics::to_rapier;
 
 use crate::skeleton::{Body, Place, Posture, Skeleton};
 
@@ -28,10 +29,10 @@ pub(crate) const FRICTION: f32 = 1.0;
 pub(crate) fn spawn(world: &mut World) -> Result {
     let skeleton = world.resource::<Skeleton>().clone();
     let posture = skeleton.posture(&positions(world.resource::<Robot>()));
-    let base = base(world);
+    let poses = poses(&skeleton, &posture, base(world));
     let mut parts = Vec::new();
-    for body in &skeleton.bodies {
-        let place = Transform::from(skeleton.pose(body, &posture, base));
+    for (body, pose) in skeleton.bodies.iter().zip(poses) {
+        let place = Transform::from(pose);
         let mut part = world.spawn((
             RobotBody {
                 name: body.name.clone(),
@@ -56,7 +57,7 @@ pub(crate) fn spawn(world: &mut World) -> Result {
         parts.push(part.id());
     }
     world.insert_resource(Parts(parts));
-    // Now, before objects can come: the order of bodies decides the last bits of their motion.
+    // Now, before other newcomers: the order of bodies decides the last bits of their motion.
     world.run_system_cached(init_rigid_bodies)?;
     world.run_system_cached(init_colliders)?;
     Ok(())
@@ -115,7 +116,7 @@ pub(crate) fn teleport(world: &mut World) -> Result {
 pub(crate) fn put(bodies: &mut RapierRigidBodySet, part: Entity, pose: Pose) {
     let handle = bodies.entity2body().get(&part).copied();
     if let Some(body) = handle.and_then(|handle| bodies.bodies.get_mut(handle)) {
-        let pose = bevy_rapier3d::rapier::prelude::Pose::from_parts(pose.location, pose.rotation);
+        let pose = to_rapier(pose);
         body.set_position(pose, true);
         body.set_next_kinematic_position(pose);
     }

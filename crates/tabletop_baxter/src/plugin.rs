@@ -149,22 +149,16 @@ fn table_has_come(tables: Query<(), Added<Table>>) -> bool {
     !tables.is_empty()
 }
 
-/// Puts the robot in front of a new table.
-fn stand_at_table(world: &mut World) -> Result {
+/// Puts the robot in front of the table, as its joints have it.
+pub(crate) fn stand_at_table(world: &mut World) -> Result {
     parts::teleport(world)?;
     world.run_system_cached(publish)?;
     Ok(())
 }
 
 /// Writes where the arms are.
-pub(crate) fn publish(
-    known: advance::Known,
-    tables: Query<&Table>,
-    orders: Res<Orders>,
-    mut robot: ResMut<Robot>,
-) {
-    let table = tables.iter().next().copied().unwrap_or_default();
-    let base = tabletop_core::robot_base(&table);
+fn publish(known: advance::Known, orders: Res<Orders>, mut robot: ResMut<Robot>) {
+    let base = known.base();
     known.publish(&mut robot, &orders, base);
 }
 

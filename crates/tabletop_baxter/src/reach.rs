@@ -1,12 +1,12 @@
 //! Bringing an end effector to a pose.
 
 use bevy::prelude::*;
-use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, Robot, RobotJoint};
+use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, Robot};
 use tabletop_kinematics::Target;
 
 use crate::{
     parts::base,
-    skeleton::{Skeleton, in_meters},
+    skeleton::{Skeleton, UNITS_PER_METER, in_meters},
 };
 
 /// The angles of an arm that bring its end effector to a pose in the table's frame, near to those that it has now.
@@ -23,9 +23,6 @@ pub(crate) fn solve(
     let base = base(world);
     let robot = world.resource::<Robot>();
     let (chain, end_effector) = world.resource::<Skeleton>().chain(arm);
-    let chain = chain
-        .clone()
-        .with_limits(RobotJoint::of_arm(arm).map(|joint| joint.limits().into()));
     let target = in_meters(base.inverse() * pose) * end_effector.inverse();
     chain
         .solve(&Target::Pose(target), &robot.angles(arm))
@@ -33,7 +30,7 @@ pub(crate) fn solve(
             format!(
                 "the {arm} arm cannot reach {:.3}: it comes no nearer than {:.3} units and {:.1}°",
                 pose.location,
-                unreachable.miss.position * crate::skeleton::UNITS_PER_METER,
+                unreachable.miss.position * UNITS_PER_METER,
                 unreachable.miss.rotation.to_degrees()
             )
         })

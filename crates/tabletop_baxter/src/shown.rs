@@ -7,8 +7,8 @@ use tabletop_core::{Arm, Robot, SimFact};
 use crate::{
     advance::leave_obstacles,
     grips,
-    parts::{Parts, spawn, teleport},
-    plugin::publish,
+    parts::{Parts, spawn},
+    plugin::stand_at_table,
 };
 
 /// Puts the robot to the table, or takes it away; what its grippers hold is let go of before.
@@ -45,12 +45,10 @@ pub(crate) fn show(world: &mut World, show: bool) {
     world.write_message(SimFact::RobotShown(show));
 }
 
-/// Puts the bodies where the joints have them.
+/// Puts the bodies where the joints have them, if they can be there.
 fn place(world: &mut World, show: bool) -> Result {
     if show {
         let () = world.run_system_cached(leave_obstacles)?;
     }
-    teleport(world)?;
-    world.run_system_cached(publish)?;
-    Ok(())
+    stand_at_table(world)
 }

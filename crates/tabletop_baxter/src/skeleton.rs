@@ -99,7 +99,11 @@ impl Skeleton {
             end_effector(&model, Arm::Left)?,
             end_effector(&model, Arm::Right)?,
         ];
-        let chain = |arm: Arm| ArmChain::new(&model, model.root(), end_effectors[arm as usize].0);
+        let chain = |arm: Arm| -> Result<_, ModelError> {
+            let limits = RobotJoint::of_arm(arm).map(|joint| joint.limits().into());
+            let chain = ArmChain::new(&model, model.root(), end_effectors[arm as usize].0)?;
+            Ok(chain.with_limits(limits))
+        };
         let origins = |arm: Arm| -> Result<_, ModelError> {
             let link = |name: &str| {
                 let joint = model.find_joint(&format!("{arm}_{name}"))?;
@@ -124,7 +128,7 @@ impl Skeleton {
         &self.model
     }
 
-    /// The chain from the torso to the link that carries an end effector, and the end effector's frame on that link.
+    /// The chain, with the limits of table 1, from the torso to the link that carries an end effector, and the end effector's frame on that link.
     pub const fn chain(&self, arm: Arm) -> (&ArmChain, DAffine3) {
         (
             &self.chains[arm as usize],

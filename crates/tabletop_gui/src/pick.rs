@@ -50,26 +50,9 @@ fn distance_along(ray: Ray3d, solids: &[Primitive], body: Pose) -> Option<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_world::block;
     use bevy::ecs::system::RunSystemOnce;
-    use tabletop_core::{Rgb, Shape, Triangles};
-
-    fn block(world: &mut World, id: &str, location: Vec3) -> Entity {
-        let spec = ObjectSpec {
-            id: id.into(),
-            pose: Pose::at(location),
-            mass: 1.0,
-            shape: Shape::Block {
-                span: Vec3::splat(2.0),
-                color: Rgb::GRAY,
-            },
-            descriptions: Vec::new(),
-        };
-        let object = world
-            .spawn((spec, Transform::from_translation(location)))
-            .id();
-        world.resource_mut::<ObjectIndex>().insert(id, object);
-        object
-    }
+    use tabletop_core::{Rgb, Triangles};
 
     fn picked(world: &mut World, origin: Vec3, direction: Vec3) -> Option<Entity> {
         let ray = Ray3d::new(origin, Dir3::new(direction).unwrap());

@@ -39,21 +39,7 @@ impl TestWorld {
 
     /// Puts a block of edge 2 somewhere.
     pub fn block(&mut self, id: &str, location: Vec3) -> Entity {
-        let spec = ObjectSpec {
-            id: id.into(),
-            pose: Pose::at(location),
-            mass: 1.0,
-            shape: Shape::Block {
-                span: Vec3::splat(2.0),
-                color: Rgb::GRAY,
-            },
-            descriptions: Vec::new(),
-        };
-        let place = Transform::from_translation(location);
-        let world = self.app.world_mut();
-        let object = world.spawn((spec, place)).id();
-        world.resource_mut::<ObjectIndex>().insert(id, object);
-        object
+        block(self.app.world_mut(), id, location)
     }
 
     /// Puts a block into the selected hand.
@@ -124,4 +110,22 @@ impl TestWorld {
         let messages = self.app.world().resource::<Messages<SimCommand>>();
         messages.iter_current_update_messages().cloned().collect()
     }
+}
+
+/// Puts a block of edge 2 somewhere in a world.
+pub fn block(world: &mut World, id: &str, location: Vec3) -> Entity {
+    let spec = ObjectSpec {
+        id: id.into(),
+        pose: Pose::at(location),
+        mass: 1.0,
+        shape: Shape::Block {
+            span: Vec3::splat(2.0),
+            color: Rgb::GRAY,
+        },
+        descriptions: Vec::new(),
+    };
+    let place = Transform::from_translation(location);
+    let object = world.spawn((spec, place)).id();
+    world.resource_mut::<ObjectIndex>().insert(id, object);
+    object
 }

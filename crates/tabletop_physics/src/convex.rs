@@ -67,6 +67,7 @@ pub fn nearest<'a>(
     })
 }
 
-fn to_rapier(pose: Pose) -> rapier::Pose {
+/// A pose as Rapier has it.
+pub fn to_rapier(pose: Pose) -> rapier::Pose {
     rapier::Pose::from_parts(pose.location, pose.rotation)
 }

@@ -41,7 +41,7 @@ mod transforms;
 mod twist;
 
 pub use body::collider;
-pub use convex::{Convex, Nearest, convex_parts, nearest};
+pub use convex::{Convex, Nearest, convex_parts, nearest, to_rapier};
 pub use holding::{JustReleased, drawn, hold, let_fall, let_go};
 pub use mass::mass_properties;
 pub use newcomers::BodySystems;

@@ -104,7 +104,7 @@ fn take_due_steps(
         table: tables.iter().next().copied(),
         selected: hands.selected,
         paused: paused.0,
-        robot: robot.clone(),
+        robot: &robot,
     };
     commands.write_batch(run.tick(&seen, refusals.first().copied()));
 }

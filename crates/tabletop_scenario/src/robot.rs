@@ -155,7 +155,7 @@ pub(crate) fn is_still(robot: &Robot) -> bool {
 impl RobotCheck {
     /// Compares with what is seen; an error says what was expected and what was found.
     pub(crate) fn judge(&self, seen: &Seen) -> Result<(), String> {
-        let robot = &seen.robot;
+        let robot = seen.robot;
         match self {
             Self::Joint { joint, at, within } => {
                 let found = robot.joint(*joint).position;

@@ -67,7 +67,7 @@ impl ScenarioRun {
             return None;
         }
         self.stillness.observe(seen);
-        self.robot_still = match is_still(&seen.robot) {
+        self.robot_still = match is_still(seen.robot) {
             true => self.robot_still + 1,
             false => 0,
         };

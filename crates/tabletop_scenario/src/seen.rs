@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use tabletop_core::{Hand, ObjectSpec, Pose, Robot, Table};
 
 /// The world as a scenario sees it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Seen<'a> {
     /// The objects in the order of their creation.
     pub objects: Vec<SeenObject<'a>>,
@@ -15,7 +15,7 @@ pub(crate) struct Seen<'a> {
     /// Whether the simulation stands still.
     pub paused: bool,
     /// The robot.
-    pub robot: Robot,
+    pub robot: &'a Robot,
 }
 
 /// An object as a scenario sees it.

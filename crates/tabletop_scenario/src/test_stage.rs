@@ -69,7 +69,7 @@ impl Stage {
             table: Some(Table::default()),
             selected: self.selected,
             paused: self.paused,
-            robot: self.robot.clone(),
+            robot: &self.robot,
         };
         self.run.tick(&seen, refusal)
     }
