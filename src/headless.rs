@@ -8,7 +8,8 @@ use tabletop_core::StepApp as _;
 
 use crate::TabletopSimPlugins;
 
-/// A started simulator without window, ready to be [stepped](tabletop_core::StepApp::step). It uses one thread.
+/// A started simulator without window, ready to be [stepped](tabletop_core::StepApp::step). It runs on one thread; a
+/// second one helps to draw pictures.
 pub fn headless_app() -> App {
     headless_app_with(TabletopSimPlugins)
 }

@@ -3,7 +3,7 @@
 use std::ops::{Add, Mul, Range};
 
 use bevy::{
-    math::{Vec2, Vec3},
+    math::{Mat3, Vec2, Vec3},
     prelude::Quat,
 };
 use tabletop_core::{HeadCamera, Pose, Table};
@@ -115,9 +115,21 @@ impl View {
 
     /// Where a point, given relative to the eye, is seen.
     pub fn pixel_of(&self, point: Vec3) -> Option<Vec2> {
-        let local = self.axes.inverse() * point;
-        let depth = -local.z;
-        (depth >= NEAR).then(|| self.center + Vec2::new(local.x, -local.y) / (depth * self.pixel))
+        self.pixel_of_local(self.axes.inverse() * point)
+    }
+
+    /// Where points are seen that are given in the frame of a body.
+    pub fn pixels_of(&self, body: Pose) -> impl Fn(Vec3) -> Option<Vec2> {
+        let to_camera = self.axes.inverse();
+        let axes = Mat3::from_quat(to_camera * body.rotation);
+        let origin = to_camera * (body.location - self.eye);
+        move |point| self.pixel_of_local(axes * point + origin)
+    }
+
+    /// Where a point, given in the frame of the camera, is seen.
+    fn pixel_of_local(&self, point: Vec3) -> Option<Vec2> {
+        let depth = -point.z;
+        (depth >= NEAR).then(|| self.center + Vec2::new(point.x, -point.y) / (depth * self.pixel))
     }
 
     /// Where the convex hull of these points, given relative to the eye, may be seen.

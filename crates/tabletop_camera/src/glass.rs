@@ -1,7 +1,7 @@
 //! Balls that one can see through: they are blended into a picture of all that one cannot see through.
 
 use bevy::math::{Vec3, Vec4};
-use tabletop_core::{Markers, Picture, Pose, Solid};
+use tabletop_core::{Markers, Pose, Solid};
 
 use crate::{
     camera::View,
@@ -17,6 +17,11 @@ use crate::{
 pub(crate) struct Glass {
     /// The balls, the farthest first.
     balls: Vec<Ball>,
+}
+
+/// The memory that it takes to blend them into a row.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Blend {
     samples: SampleRow,
     /// Sum of the colours of the samples in each pixel of a row, and how many these are.
     sums: Vec<Vec4>,
@@ -42,30 +47,28 @@ impl Glass {
             .sort_by(|one, other| other.distance.total_cmp(&one.distance));
     }
 
-    /// Blends the balls into a row of a picture: where they are nearer than all else in these samples.
+    /// Blends the balls into the colours of a row: where they are nearer than all else in these samples.
     pub fn blend(
-        &mut self,
+        &self,
         view: &View,
         row: u32,
-        others: &[(Offset, &SampleRow)],
-        picture: &mut Picture,
+        offsets: &[Offset],
+        others: &[SampleRow],
+        memory: &mut Blend,
+        rgb: &mut [u8],
     ) {
-        let Self {
-            balls,
-            samples,
-            sums,
-        } = self;
-        let first = row as usize * view.width as usize;
-        for ball in balls
+        let Blend { samples, sums } = memory;
+        for ball in self
+            .balls
             .iter()
             .filter(|ball| ball.round.window.rows.contains(&row))
         {
             let columns = &ball.round.window.columns;
             sums.clear();
             sums.resize(columns.len(), Vec4::ZERO);
-            for (offset, other) in others {
+            for (&offset, other) in offsets.iter().zip(others) {
                 samples.clear(view.width);
-                ball.round.draw(row, *offset, samples);
+                ball.round.draw(row, offset, samples);
                 for (column, sum) in columns.clone().zip(sums.iter_mut()) {
                     let nearness = samples.nearness[column as usize];
                     if nearness > other.nearness[column as usize] {
@@ -78,8 +81,8 @@ impl Glass {
             let weight = Markers::OPACITY / others.len() as f32;
             for (column, sum) in columns.clone().zip(sums.iter()) {
                 if sum.w > 0.0 {
-                    let start = 3 * (first + column as usize);
-                    let pixel = &mut picture.rgb[start..start + 3];
+                    let start = 3 * column as usize;
+                    let pixel = &mut rgb[start..start + 3];
                     let behind = Vec3::from_slice(&[pixel[0], pixel[1], pixel[2]].map(f32::from));
                     let mixed = behind * (1.0 - weight * sum.w) + sum.truncate() * weight;
                     pixel.copy_from_slice(&bytes(mixed));

@@ -1,7 +1,7 @@
 //! The robot's eye: what its head camera sees, as a picture with depth and object numbers, with or without a window.
 //!
-//! Everything is worked out on one thread of the processor from IEEE arithmetic, so the same scene gives the same bytes on
-//! every run. Objects are no meshes: faces are found row by row from the planes through the eye and their edges, cylinders
+//! Everything is worked out on the processor from IEEE arithmetic, each row by itself, so the same scene gives the same bytes
+//! on every run, however many threads draw. Objects are no meshes: faces are found row by row from the planes through the eye and their edges, cylinders
 //! and balls by meeting each ray with the exact surface, and only what is seen in the end is lit. (The rasteriser crate `euc`
 //! 0.5 draws the same blocks at a seventh of the speed.) Figures are triangles, lit at their corners.
 //! [`Painter`] draws any [`Scene`] for any [`Camera`]; it knows no ECS:
@@ -42,6 +42,7 @@
 //! assert_eq!(image.shown_at(99, 74), Some(table));
 //! ```
 
+mod band;
 mod camera;
 mod face;
 mod facets;

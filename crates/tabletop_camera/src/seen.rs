@@ -28,8 +28,8 @@ pub(crate) struct Seen {
     coming_up: ComingUp,
     /// So many patches there are.
     patches: u32,
-    /// The vertices of a figure, as far as they have been looked at.
-    corners: Vec<Option<Corner>>,
+    /// Where in the picture the vertices of a figure are.
+    pixels: Vec<Option<Vec2>>,
 }
 
 /// What may be seen in a row, as indices.
@@ -49,13 +49,11 @@ struct ComingUp {
     starts: Vec<u32>,
 }
 
-/// A vertex of a figure as it is seen.
+/// A corner of a triangle as it is seen.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
     /// Where it is relative to the eye.
     place: Vec3,
-    /// Where in the picture it is; `None` behind the eye.
-    pixel: Option<Vec2>,
     /// The factor of its colour.
     light: f32,
 }
@@ -145,21 +143,23 @@ impl Seen {
     fn add_figure(&mut self, drawn: &DrawnFigure, view: &View, window: &Window) {
         let facets = &*drawn.facets;
         let axes = Mat3::from_quat(drawn.pose.rotation);
-        let corner = |vertex| Corner::of(vertex, drawn.pose.location, &axes, view);
-        self.corners.clear();
-        self.corners.resize(facets.vertices.len(), None);
+        let pixel_of = view.pixels_of(drawn.pose);
+        let positions = facets.vertices.iter().map(|vertex| vertex.position);
+        self.pixels.clear();
+        self.pixels.extend(positions.map(pixel_of));
         let eye = drawn.pose.inverse() * view.eye;
         for facet in &facets.triangles {
             if facet.normal.dot(eye) - facet.height < EDGE_ON {
                 continue;
             }
-            let corners = facet.corners.map(|i| {
-                let i = i as usize;
-                *self.corners[i].get_or_insert_with(|| corner(&facets.vertices[i]))
-            });
-            let Some(rows) = rows_of(&corners, view, window) else {
+            let pixels = facet.corners.map(|i| self.pixels[i as usize]);
+            let Some(rows) = rows_of(pixels, view, window) else {
                 continue;
             };
+            let corners = facet.corners.map(|i| {
+                let vertex = &facets.vertices[i as usize];
+                Corner::of(vertex, drawn.pose.location, &axes, view)
+            });
             let places = corners.map(|corner| corner.place);
             let normal = axes * facet.normal;
             let surface = self.surfaces.len() as u32;
@@ -180,7 +180,13 @@ impl Seen {
         self.patches - 1
     }
 
-    /// Finds what may be seen in a row. Rows are taken one after the other, from the first one on.
+    /// Finds which triangles come up above a row, so that it can be taken next.
+    pub fn find_above(&self, row: u32, in_row: &mut InRow) {
+        in_row.triangles.clear();
+        in_row.triangles.extend(self.coming_up.above_row(row));
+    }
+
+    /// Finds what may be seen in a row. Rows are taken one after the other.
     pub fn find_in_row(&self, row: u32, in_row: &mut InRow) {
         let InRow {
             faces,
@@ -193,9 +199,6 @@ impl Seen {
         rounds.extend(
             (0..self.rounds.len()).filter(|&round| self.rounds[round].window.rows.contains(&row)),
         );
-        if row == 0 {
-            triangles.clear();
-        }
         triangles.retain(|&triangle| row < self.triangles[triangle as usize].rows.end);
         triangles.extend(self.coming_up.in_row(row));
     }
@@ -255,10 +258,13 @@ impl ComingUp {
         starts[0] = 0;
     }
 
-    fn in_row(&self, row: u32) -> impl Iterator<Item = u32> {
+    fn in_row(&self, row: u32) -> &[u32] {
         let row = row as usize;
-        let range = self.starts[row] as usize..self.starts[row + 1] as usize;
-        self.order[range].iter().copied()
+        &self.order[self.starts[row] as usize..self.starts[row + 1] as usize]
+    }
+
+    fn above_row(&self, row: u32) -> &[u32] {
+        &self.order[..self.starts[row as usize] as usize]
     }
 }
 
@@ -269,17 +275,16 @@ impl Corner {
         let to_lamp = LAMP - point;
         Self {
             place,
-            pixel: view.pixel_of(place),
             light: light((*axes * vertex.normal).dot(to_lamp), to_lamp),
         }
     }
 }
 
 /// The rows in which a triangle with these corners may be seen; `None` if no sample lies in it.
-fn rows_of(corners: &[Corner; 3], view: &View, window: &Window) -> Option<Range<u32>> {
+fn rows_of(corners: [Option<Vec2>; 3], view: &View, window: &Window) -> Option<Range<u32>> {
     /// The outermost samples of a pixel, and a bit for rounding.
     const REACH: f32 = 0.375 + 0.01;
-    let [Some(a), Some(b), Some(c)] = corners.map(|corner| corner.pixel) else {
+    let [Some(a), Some(b), Some(c)] = corners else {
         return (!window.rows.is_empty()).then(|| window.rows.clone());
     };
     let (least, most) = (a.min(b).min(c) - REACH, a.max(b).max(c) + REACH);

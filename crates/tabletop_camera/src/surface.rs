@@ -99,35 +99,35 @@ impl Surface {
                     pixel.copy_from_slice(&shown);
                 }
             }
-            Form::Flat { below_lamp } => self.paint_lit(column, depths, rgb, |x, depth| {
+            Form::Flat { below_lamp } => self.paint_lit::<16>(column, depths, rgb, |x, depth| {
                 light(below_lamp, to_lamp(x, depth))
             }),
             Form::Round(curve) => {
                 let own_ray = curve.rays.on_row(row, Offset::CENTER);
-                self.paint_lit(column, depths, rgb, |x, depth| {
+                self.paint_lit::<16>(column, depths, rgb, |x, depth| {
                     let to_lamp = to_lamp(x, depth);
                     light(curve.normal(own_ray.at(x), depth).dot(to_lamp), to_lamp)
                 });
             }
             Form::Shaded(light_by_depth) => {
                 let light_by_depth = light_by_depth.on_row(row, Offset::CENTER);
-                self.paint_lit(column, depths, rgb, |x, depth| {
+                // Triangles are small.
+                self.paint_lit::<4>(column, depths, rgb, |x, depth| {
                     (light_by_depth.at(x) * depth).max(AMBIENT)
                 });
             }
         }
     }
 
-    /// Works on several pixels at a time, in steps that are so simple that the compiler does several at once.
+    /// Works on so many pixels at a time, in steps that are so simple that the compiler does several at once.
     #[inline]
-    fn paint_lit(
+    fn paint_lit<const STEP: usize>(
         &self,
         column: usize,
         depths: &[f32],
         rgb: &mut [u8],
         light_at: impl Fn(f32, f32) -> f32,
     ) {
-        const STEP: usize = 16;
         let color = self.color.to_array();
         let steps = depths.chunks(STEP).zip(rgb.chunks_mut(3 * STEP));
         for (column, (depths, rgb)) in (column as i32..).step_by(STEP).zip(steps) {
