@@ -78,16 +78,12 @@ fn simulator(blocks: usize) -> App {
     let items = locations(blocks)
         .enumerate()
         .map(|(block, location)| {
-            SceneItem::Object(ObjectSpec {
-                id: format!("block{block}"),
-                pose: Pose::at(location),
-                mass: 1.0,
-                shape: Shape::Block {
-                    span: Vec3::ONE,
-                    color: Rgb::GRAY,
-                },
-                descriptions: Vec::new(),
-            })
+            let shape = Shape::Block {
+                span: Vec3::ONE,
+                color: Rgb::GRAY,
+            };
+            let id = format!("block{block}");
+            SceneItem::Object(ObjectSpec::new(id, Pose::at(location), 1.0, shape))
         })
         .collect();
     let scene = SceneSpec { items, ..default() };

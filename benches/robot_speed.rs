@@ -54,16 +54,12 @@ impl Case {
         let robot = BaxterPlugin { mode, ..default() };
         let mut app = headless_app_with(TabletopSimPlugins.build().set(robot));
         let blocks = (0..10).map(|block| {
-            SceneItem::Object(ObjectSpec {
-                id: format!("block{block}"),
-                pose: Pose::at(Vec3::new(block as f32 * 1.5 - 7.0, 4.0, 0.5)),
-                mass: 1.0,
-                shape: Shape::Block {
-                    span: Vec3::ONE,
-                    color: Rgb::GRAY,
-                },
-                descriptions: Vec::new(),
-            })
+            let pose = Pose::at(Vec3::new(block as f32 * 1.5 - 7.0, 4.0, 0.5));
+            let shape = Shape::Block {
+                span: Vec3::ONE,
+                color: Rgb::GRAY,
+            };
+            SceneItem::Object(ObjectSpec::new(format!("block{block}"), pose, 1.0, shape))
         });
         let scene = SceneSpec {
             items: blocks.collect(),

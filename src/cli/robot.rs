@@ -1,20 +1,15 @@
 //! `tabletop robot`: the robot's kinematics for other programs, a line of JSON for a line of JSON.
 
-use std::{
-    fmt,
-    io::{BufRead as _, Write as _},
-    path::PathBuf,
-    process::ExitCode,
-};
+use std::{fmt, io::BufRead as _, path::PathBuf, process::ExitCode};
 
 use bevy::math::{DAffine3, DQuat, DVec3};
 use clap::{Args, Subcommand};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Value, json};
-use tabletop::core::{Arm, JOINTS_PER_ARM, RobotJoint, Table, robot_base};
+use tabletop::core::{Arm, JOINTS_PER_ARM, RobotJoint, Table, UNITS_PER_METER, robot_base};
 use tabletop_kinematics::{ArmChain, Model, ModelError, Target, Unreachable, baxter};
 
-use super::{Failure, WRONG_INPUT};
+use super::{Failure, Output, WRONG_INPUT};
 
 #[derive(Args)]
 pub(super) struct RobotArgs {
@@ -32,9 +27,6 @@ enum Question {
     /// Which joint angles bring a hand somewhere, for poses from standard input
     Ik,
 }
-
-/// Units of the table's frame in a metre.
-const UNITS_PER_METER: f64 = 10.0;
 
 /// Answers every line of standard input.
 pub(super) fn robot(args: &RobotArgs) -> Result<ExitCode, Failure> {
@@ -60,8 +52,7 @@ pub(super) fn robot(args: &RobotArgs) -> Result<ExitCode, Failure> {
                 json!({ "error": error.to_string() })
             }
         });
-        writeln!(std::io::stdout().lock(), "{answer}")
-            .map_err(|error| Failure::run(format!("standard output: {error}")))?;
+        Output::Stdout.write(format!("{answer}\n").as_bytes())?;
     }
     Ok(match unreadable {
         true => ExitCode::from(WRONG_INPUT),

@@ -1,9 +1,11 @@
-//! The command line, as a user types it.
+//! The program and the examples of scripts, as a user runs them.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+mod examples;
 mod kinematics;
 mod replay;
 mod robot;
 mod scenarios;
+mod scripts;
 mod support;
 mod task_files;

@@ -18,7 +18,8 @@ pub fn command(arguments: &[&str]) -> Command {
         .args(arguments)
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .env_remove("DISPLAY")
-        .env_remove("WAYLAND_DISPLAY");
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("TABLETOP_ENGINE");
     command
 }
 
@@ -40,7 +41,7 @@ pub fn place(name: &str) -> PathBuf {
     path
 }
 
-/// A file that is shipped, by its name in this folder of the package.
+/// A file of the package, by its name in this folder.
 pub fn shipped(folder: &str, name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join(folder)

@@ -33,13 +33,7 @@ const IDS: [&str; 13] = [
 ];
 
 fn object(id: &str, location: (f32, f32, f32), mass: f32, shape: Shape) -> SceneItem {
-    SceneItem::Object(ObjectSpec {
-        id: id.into(),
-        pose: Pose::at(location.into()),
-        mass,
-        shape,
-        descriptions: Vec::new(),
-    })
+    SceneItem::Object(ObjectSpec::new(id, Pose::at(location.into()), mass, shape))
 }
 
 /// A table with something of everything on it, much of it falling.

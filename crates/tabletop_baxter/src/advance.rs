@@ -12,7 +12,7 @@ use tabletop_physics::{PhysicsSettings, convex_parts};
 use crate::{
     clearance::{Owner, are_near},
     driven::Motors,
-    grip::{Closing, STEEPEST_GRIP},
+    grip::{Closing, STEEPEST_GRIP, Touched},
     grips::{self, Grips},
     meeting::Meetings,
     motion::{Carried, Motion, reach},
@@ -170,7 +170,7 @@ fn stand_still(robot: &mut ResMut<Robot>) {
 
 /// What a gripper does besides moving its fingers.
 enum Action {
-    Take(Arm, Entity),
+    Take(Arm, Touched),
     Release(Arm),
     Refuse { arm: Arm, id: String, angle: f32 },
 }
@@ -178,8 +178,8 @@ enum Action {
 impl Action {
     fn carry_out(self, commands: &mut Commands, facts: &mut MessageWriter<SimFact>) {
         match self {
-            Self::Take(arm, object) => {
-                commands.queue(move |world: &mut World| grips::take(world, arm, object));
+            Self::Take(arm, touched) => {
+                commands.queue(move |world: &mut World| grips::take(world, arm, touched));
             }
             Self::Release(arm) => {
                 commands.queue(move |world: &mut World| grips::release(world, arm));
@@ -270,12 +270,13 @@ impl Known<'_, '_> {
             return holds.then_some(Action::Release(arm)).into_iter().collect();
         }
         let mut actions = Vec::new();
-        for (object, angle) in closing.touched {
+        for touched in closing.touched {
+            let Touched { object, angle, .. } = touched;
             if !grips::can_take(object, &self.objects) {
                 continue;
             }
             if angle < STEEPEST_GRIP {
-                actions.push(Action::Take(arm, object));
+                actions.push(Action::Take(arm, touched));
             } else if !grips.refused[arm as usize].contains(&object) {
                 grips.refused[arm as usize].push(object);
                 let id = self.name(Owner::Thing(object));

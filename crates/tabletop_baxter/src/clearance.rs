@@ -12,7 +12,7 @@ use tabletop_core::Pose;
 use tabletop_physics::{Convex, to_rapier};
 
 /// Distance, in units, that is kept from what is in the way.
-const MARGIN: f32 = 0.01;
+pub(crate) const MARGIN: f32 = 0.01;
 
 /// Changes of distance, in units, that are no approach.
 const APPROACH: f32 = 1e-5;

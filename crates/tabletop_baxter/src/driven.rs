@@ -7,7 +7,7 @@
 use std::array::from_fn;
 
 use bevy::{math::DVec3, prelude::*};
-use tabletop_core::{Arm, JOINTS_PER_ARM, Robot, RobotJoint, TICK_SECONDS};
+use tabletop_core::{Arm, JOINTS_PER_ARM, Robot, RobotJoint, TICK_SECONDS, UNITS_PER_METER};
 use tabletop_kinematics::Load;
 
 use crate::{
@@ -16,7 +16,7 @@ use crate::{
     motion::Motion,
     motor::{Motor, STRETCH, Task},
     orders::{Orders, Want},
-    skeleton::{Skeleton, UNITS_PER_METER},
+    skeleton::Skeleton,
 };
 
 /// Share of a motor's torque with which a joint is slowed down before its goal.

@@ -1,68 +1,87 @@
-//! What the fingers touch.
+//! What the robot feels: what its grippers hold, and what its bodies touch.
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Arm, ObjectIndex, Robot};
+use tabletop_core::{Arm, ObjectIndex, Robot, RobotContact, Table};
 
 use crate::{
+    contact::{Contact, Thing, with_near, with_pressed},
     grips::Grips,
     parts::Parts,
     skeleton::{Carrier, Skeleton},
 };
 
-/// Distance, in units, at which something is touched.
-const TOUCHING: f32 = 0.01;
-
-/// Notes what the grippers hold and what each finger touches; what a gripper holds, both of its fingers touch.
+/// Notes what the grippers hold and what the robot touches.
 pub(crate) fn feel(
     skeleton: Res<Skeleton>,
     parts: Res<Parts>,
     grips: Res<Grips>,
+    tables: Query<Entity, With<Table>>,
     index: Res<ObjectIndex>,
     rapier: ReadRapierContext,
     mut robot: ResMut<Robot>,
 ) -> Result {
-    let rapier = rapier.single()?;
-    let mut touches: [[Vec<Entity>; 2]; 2] = default();
-    for (body, &part) in skeleton.bodies.iter().zip(&parts.0) {
-        let Carrier::Gripper(arm, side) = body.carrier else {
-            continue;
-        };
-        let touched = &mut touches[arm as usize][usize::from(side > 0)];
-        if robot.is_shown {
-            touched.extend(touched_by(&rapier, part));
-        }
-        touched.extend(grips.of(arm).iter().map(|grip| grip.object));
-    }
     for arm in Arm::BOTH {
         let holds = grips.of(arm).iter().map(|grip| grip.object);
         if !robot.arm(arm).holds.iter().copied().eq(holds.clone()) {
             robot.arms[arm as usize].holds = holds.collect();
         }
-        let touches = std::mem::take(&mut touches[arm as usize]).map(|touched| {
-            // In the order of their creation.
-            let objects = index.iter();
-            objects.filter(|object| touched.contains(object)).collect()
-        });
-        if robot.arm(arm).touches != touches {
-            robot.arms[arm as usize].touches = touches;
+    }
+    let mut contacts = Vec::new();
+    if robot.is_shown {
+        let rapier = rapier.single()?;
+        let order: Vec<_> = tables.iter().chain(index.iter()).collect();
+        let things = order.iter().filter_map(|&it| Thing::new(&rapier, it));
+        let things: Vec<_> = things.collect();
+        for (body, part) in skeleton.bodies.iter().zip(&parts.0) {
+            let Some(&part) = rapier.colliders.entity2collider().get(part) else {
+                continue;
+            };
+            let touched = with_gripped(body.carrier, &grips, &robot)
+                .chain(with_pressed(&rapier, part))
+                .chain(with_near(&rapier, part, &things));
+            let touched = once_in_order(touched, &order);
+            contacts.extend(touched.map(|contact| RobotContact {
+                body: body.id.clone(),
+                thing: contact.thing,
+                point: contact.point,
+                impulse: contact.impulse,
+            }));
         }
+    }
+    if robot.contacts != contacts {
+        robot.contacts = contacts;
     }
     Ok(())
 }
 
-/// What touches a finger.
-fn touched_by(rapier: &RapierContext, finger: Entity) -> Vec<Entity> {
-    rapier
-        .simulation
-        .contact_pairs_with(rapier.colliders, rapier.rigidbody_set, finger)
-        .filter(|pair| {
-            pair.manifolds()
-                .any(|manifold| manifold.points().any(|point| point.dist() < TOUCHING))
+/// What a finger touches because its gripper holds it.
+fn with_gripped(carrier: Carrier, grips: &Grips, robot: &Robot) -> impl Iterator<Item = Contact> {
+    let finger = match carrier {
+        Carrier::Gripper(arm, side) => Some((arm, usize::from(side > 0))),
+        Carrier::Link(_) => None,
+    };
+    finger.into_iter().flat_map(move |(arm, finger)| {
+        grips.of(arm).iter().map(move |grip| Contact {
+            thing: grip.object,
+            point: robot.arm(arm).end_effector * grip.points[finger],
+            impulse: 0.0,
         })
-        .filter_map(|pair| match (pair.collider1(), pair.collider2()) {
-            (Some(a), other) if a == finger => other,
-            (other, _) => other,
+    })
+}
+
+/// The first contact with each thing, in this order of the things.
+fn once_in_order(
+    contacts: impl Iterator<Item = Contact>,
+    order: &[Entity],
+) -> impl Iterator<Item = Contact> {
+    let mut placed: Vec<_> = contacts
+        .filter_map(|contact| {
+            let place = order.iter().position(|&thing| thing == contact.thing)?;
+            Some((place, contact))
         })
-        .collect()
+        .collect();
+    placed.sort_by_key(|(place, _)| *place);
+    placed.dedup_by_key(|(place, _)| *place);
+    placed.into_iter().map(|(_, contact)| contact)
 }

@@ -27,8 +27,19 @@ pub(crate) struct Candidate {
 pub(crate) struct Closing {
     /// By how much the opening can still shrink until something is in the way, in units.
     pub room: f32,
-    /// The objects that both fingers touch, with the angle θ of each.
-    pub touched: Vec<(Entity, f32)>,
+    /// The objects that both fingers touch.
+    pub touched: Vec<Touched>,
+}
+
+/// An object that both fingers touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Touched {
+    /// The object.
+    pub object: Entity,
+    /// The angle θ.
+    pub angle: f32,
+    /// Where the left and the right finger touch it, in the table's frame.
+    pub points: [Vec3; 2],
 }
 
 /// What happens to a gripper that closes.
@@ -46,8 +57,11 @@ pub(crate) fn close(end_effector: Pose, opening: f32, between: &[Candidate]) -> 
         let gap = left.distance + right.distance;
         closing.room = closing.room.min(gap.max(0.0));
         if gap <= TOUCHING {
-            let theta = angle(left, right, end_effector);
-            closing.touched.push((candidate.object, theta));
+            closing.touched.push(Touched {
+                object: candidate.object,
+                angle: angle(left, right, end_effector),
+                points: [left.point, right.point],
+            });
         }
         add_thickness(&mut thickness, pads, candidate, opening);
     }
@@ -102,7 +116,7 @@ mod tests {
         let free = close(Pose::IDENTITY, 2.0, &candidates);
         let closed = close(Pose::IDENTITY, 2.0 - free.room, &candidates);
         assert!(closed.room < 1e-3, "{closed:?}");
-        closed.touched[0].1
+        closed.touched[0].angle
     }
 
     fn turned(degrees: Vec3) -> Pose {

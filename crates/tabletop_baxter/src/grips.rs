@@ -5,6 +5,8 @@ use bevy_rapier3d::prelude::{GravityScale, Velocity};
 use tabletop_core::{Arm, Gripped, Held, Joint, ObjectSpec, Pose, Robot, SimFact};
 use tabletop_physics::{JustReleased, drawn, hold, let_go};
 
+use crate::grip::Touched;
+
 /// What the grippers hold, and how.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct Grips {
@@ -20,6 +22,8 @@ pub(crate) struct Grip {
     pub object: Entity,
     /// Its pose in the end effector's frame.
     pub pose: Pose,
+    /// Where the left and the right finger touch it, in the end effector's frame.
+    pub points: [Vec3; 2],
     /// Whether joints hold it, too: then it is drawn along as far as they let it.
     pub is_jointed: bool,
 }
@@ -36,8 +40,9 @@ impl Grips {
     }
 }
 
-/// Takes an object into a gripper.
-pub(crate) fn take(world: &mut World, arm: Arm, object: Entity) {
+/// Takes an object into a gripper whose fingers touch it.
+pub(crate) fn take(world: &mut World, arm: Arm, touched: Touched) {
+    let object = touched.object;
     let end_effector = world.resource::<Robot>().arm(arm).end_effector;
     let Some(here) = world.get::<Transform>(object).map(Pose::from) else {
         return;
@@ -52,6 +57,7 @@ pub(crate) fn take(world: &mut World, arm: Arm, object: Entity) {
     world.resource_mut::<Grips>().held[arm as usize].push(Grip {
         object,
         pose: end_effector.inverse() * here,
+        points: touched.points.map(|point| end_effector.inverse() * point),
         is_jointed,
     });
     let mut body = world.entity_mut(object);

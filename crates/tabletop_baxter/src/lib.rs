@@ -25,6 +25,7 @@
 
 mod advance;
 mod clearance;
+mod contact;
 mod driven;
 mod dynamics;
 mod feel;

@@ -43,18 +43,12 @@ pub(crate) struct Carried {
     pub parts: Vec<Convex>,
 }
 
-/// Where an arm is.
-pub(crate) struct ArmPoses {
-    /// Its bodies, with their numbers.
-    bodies: Vec<(usize, Pose)>,
-    end_effector: Pose,
-}
-
-/// Where an arm is at some positions of the joints.
-pub(crate) struct Asked {
-    arm: Arm,
+/// Where the robot is at some positions of the joints.
+pub(crate) struct Poses {
     positions: [f64; 17],
-    poses: Rc<ArmPoses>,
+    /// Its bodies.
+    bodies: Vec<Pose>,
+    end_effectors: [Pose; 2],
 }
 
 /// Answers that are remembered.
@@ -84,8 +78,8 @@ pub(crate) struct Motion<'a> {
     pub is_squeezing: [bool; 2],
     /// Whether it can meet anything.
     pub is_shown: bool,
-    /// The last answers to where an arm is.
-    pub asked: Vec<Asked>,
+    /// The last answers to where it is.
+    pub asked: Vec<Rc<Poses>>,
     /// A posture to compute with.
     pub scratch: Posture,
 }
@@ -147,7 +141,7 @@ impl Motion<'_> {
 
     /// Where an end effector is.
     pub fn end_effector(&mut self, arm: Arm) -> Pose {
-        self.poses(arm, &self.positions.clone()).end_effector
+        self.poses(&self.positions.clone()).end_effectors[arm as usize]
     }
 
     /// What may be between the fingers of a gripper.
@@ -228,59 +222,60 @@ impl Motion<'_> {
 
     /// About how far the bodies of an arm go between two positions, in units.
     fn way(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> f32 {
-        let from = self.poses(arm, from);
-        let to = self.poses(arm, to);
-        from.bodies
-            .iter()
-            .zip(&to.bodies)
-            .map(|((_, from), (_, to))| {
+        let [from, to] = [from, to].map(|positions| self.poses(positions));
+        self.bodies_of(arm)
+            .map(|number| (from.bodies[number], to.bodies[number]))
+            .map(|(from, to)| {
                 from.location.distance(to.location) + from.rotation.angle_between(to.rotation)
             })
             .fold(0.0, f32::max)
     }
 
-    /// Where the bodies of an arm are. The last few answers are remembered: most are asked for several times.
-    fn poses(&mut self, arm: Arm, positions: &[f64; 17]) -> Rc<ArmPoses> {
-        let is_asked = |asked: &&Asked| asked.arm == arm && asked.positions == *positions;
-        if let Some(asked) = self.asked.iter().find(is_asked) {
-            return Rc::clone(&asked.poses);
+    /// The numbers of the bodies of an arm.
+    fn bodies_of(&self, arm: Arm) -> impl Iterator<Item = usize> {
+        let bodies = self.skeleton.bodies.iter().enumerate();
+        bodies
+            .filter(move |(_, body)| is_of(body, arm))
+            .map(|(number, _)| number)
+    }
+
+    /// Where the robot is. The last few answers are remembered: most are asked for several times.
+    fn poses(&mut self, positions: &[f64; 17]) -> Rc<Poses> {
+        let is_asked = |poses: &&Rc<Poses>| poses.positions == *positions;
+        if let Some(poses) = self.asked.iter().find(is_asked) {
+            return Rc::clone(poses);
         }
         self.skeleton.update(&mut self.scratch, positions);
-        let bodies = self.skeleton.bodies.iter().enumerate();
-        let bodies = bodies
-            .filter(|(_, body)| is_of(body, arm))
-            .map(|(number, body)| {
-                let pose = self.skeleton.pose(body, &self.scratch, self.base);
-                (number, pose)
-            });
-        let poses = Rc::new(ArmPoses {
-            bodies: bodies.collect(),
-            end_effector: self.skeleton.end_effector(arm, &self.scratch, self.base),
+        let bodies = self.skeleton.bodies.iter();
+        let poses = Rc::new(Poses {
+            positions: *positions,
+            bodies: bodies
+                .map(|body| self.skeleton.pose(body, &self.scratch, self.base))
+                .collect(),
+            end_effectors: Arm::BOTH
+                .map(|arm| self.skeleton.end_effector(arm, &self.scratch, self.base)),
         });
         if self.asked.len() == MOST_ASKED {
             self.asked.remove(0);
         }
-        self.asked.push(Asked {
-            arm,
-            positions: *positions,
-            poses: Rc::clone(&poses),
-        });
+        self.asked.push(Rc::clone(&poses));
         poses
     }
 
     /// The solids of an arm and of what it holds, each with the number of a body that meets what it meets.
     pub fn solids(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> Vec<(usize, Solid)> {
-        let from = self.poses(arm, from);
-        let to = self.poses(arm, to);
+        let [from, to] = [from, to].map(|positions| self.poses(positions));
         let mut solids = Vec::new();
-        for (&(number, from), &(_, to)) in from.bodies.iter().zip(&to.bodies) {
+        for number in self.bodies_of(arm) {
             let parts = &self.skeleton.bodies[number].parts;
+            let [from, to] = [&from, &to].map(|poses| poses.bodies[number]);
             let moving = Solid::moving(parts, Owner::Body(number), from, to);
             solids.extend(moving.map(|solid| (number, solid)));
         }
         let finger = self.finger(arm);
         for carried in &self.carried[arm as usize] {
-            let [from, to] = [&from, &to].map(|poses| poses.end_effector * carried.pose);
+            let [from, to] =
+                [&from, &to].map(|poses| poses.end_effectors[arm as usize] * carried.pose);
             let moving = Solid::moving(&carried.parts, Owner::Thing(carried.object), from, to);
             solids.extend(moving.map(|solid| (finger, solid)));
         }
@@ -332,7 +327,7 @@ impl Motion<'_> {
                 return Some(other.owner);
             }
         }
-        self.skeleton.update(&mut self.scratch, &self.positions);
+        let here = self.poses(&self.positions.clone());
         for (number, body) in self.skeleton.bodies.iter().enumerate() {
             if is_of(body, arm)
                 || !solids
@@ -341,7 +336,7 @@ impl Motion<'_> {
             {
                 continue;
             }
-            let pose = self.skeleton.pose(body, &self.scratch, self.base);
+            let pose = here.bodies[number];
             for other in Solid::moving(&body.parts, Owner::Body(number), pose, pose) {
                 let is_met = solids.iter().any(|(a, solid)| {
                     self.meetings.can_meet(*a, number) && solid.collides_with(&other)

@@ -1,12 +1,12 @@
 //! Bringing an end effector to a pose.
 
 use bevy::prelude::*;
-use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, Robot};
+use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, Robot, UNITS_PER_METER};
 use tabletop_kinematics::Target;
 
 use crate::{
     parts::base,
-    skeleton::{Skeleton, UNITS_PER_METER, in_meters},
+    skeleton::{Skeleton, in_meters},
 };
 
 /// The angles of an arm that bring its end effector to a pose in the table's frame, near to those that it has now.

@@ -7,14 +7,11 @@ use bevy::{
     prelude::*,
 };
 use bevy_rapier3d::rapier::prelude::SharedShape;
-use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, RobotJoint};
+use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, RobotJoint, UNITS_PER_METER};
 use tabletop_kinematics::{
     ArmChain, Frames, Geometry, JointId, JointValues, LinkId, Load, Model, ModelError,
 };
 use tabletop_physics::Convex;
-
-/// Units in a metre.
-pub(crate) const UNITS_PER_METER: f64 = 10.0;
 
 /// Extents of a finger across, along the opening and along the finger, in units: x, y, z of the end effector's frame.
 pub(crate) const FINGER: Vec3 = Vec3::new(0.3, 0.4, 1.5);
@@ -28,6 +25,8 @@ const END_EFFECTOR_ON_WRIST: f64 = 0.19535;
 /// A rigid part of the robot.
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
+    /// The link's name in the description; for fingers `left-gripper-right-finger`.
+    pub id: String,
     /// What it is called.
     pub name: String,
     /// What carries it.
@@ -145,6 +144,7 @@ impl Skeleton {
         let links = (0..self.model.links().len()).filter_map(|i| self.link_body(i));
         let fingers = Arm::BOTH.into_iter().flat_map(|arm| {
             [("left", -1), ("right", 1)].map(|(name, side)| Body {
+                id: format!("{arm}-gripper-{name}-finger"),
                 name: format!("{name} finger of the {arm} gripper"),
                 carrier: Carrier::Gripper(arm, side),
                 place: Place::Arm(arm, JOINTS_PER_ARM + 1),
@@ -166,6 +166,7 @@ impl Skeleton {
         }
         let id = self.model.find_link(&link.name).ok()?;
         Some(Body {
+            id: link.name.clone(),
             name: link.name.replace('_', " "),
             carrier: Carrier::Link(id),
             place: self.place(id),

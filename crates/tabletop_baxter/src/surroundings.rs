@@ -3,12 +3,14 @@
 use std::collections::BTreeSet;
 
 use bevy::prelude::*;
-use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*, rapier::prelude as rapier};
-use tabletop_core::Pose;
-use tabletop_physics::{Convex, convex_parts};
+use bevy_rapier3d::{
+    parry::bounding_volume::{Aabb, BoundingVolume},
+    prelude::*,
+};
+use tabletop_physics::{Convex, nearby};
 
 use crate::{
-    clearance::{Owner, Solid, are_near},
+    clearance::{MARGIN, Owner, Solid, are_near},
     parts::RobotBody,
 };
 
@@ -56,26 +58,19 @@ impl Surroundings {
         if !is_shown {
             return surroundings;
         }
-        for (_, collider) in rapier.colliders.colliders.iter() {
-            let bounds = collider.compute_aabb();
-            let Some((object, body)) = body_of(rapier, collider) else {
-                continue;
-            };
-            let is_mine = is_robot.contains(object) || held.contains(&object);
-            if !are_near(&bounds, near) || is_mine || !body.is_enabled() {
+        let near = near.loosened(MARGIN);
+        for thing in nearby(&rapier.colliders, &rapier.rigidbody_set, near) {
+            let object = thing.entity;
+            if is_robot.contains(object) || held.contains(&object) {
                 continue;
             }
-            let at = collider.position();
-            let parts = convex_parts(
-                Pose::new(at.translation, at.rotation),
-                collider.shared_shape(),
-            );
-            if body.is_dynamic() {
+            let parts = thing.parts();
+            if thing.body.is_dynamic() {
                 surroundings.free.push(FreeThing {
                     object,
                     parts,
-                    bounds,
-                    is_sleeping: body.is_sleeping(),
+                    bounds: thing.bounds,
+                    is_sleeping: thing.body.is_sleeping(),
                 });
             } else {
                 let solids = parts
@@ -121,13 +116,4 @@ fn depth_between(one: &FreeThing, other: &FreeThing) -> f32 {
     one.solids()
         .flat_map(|one| other.solids().map(move |other| one.depth_in(&other)))
         .fold(0.0, f32::max)
-}
-
-fn body_of<'a>(
-    rapier: &'a RapierContextMut,
-    collider: &rapier::Collider,
-) -> Option<(Entity, &'a rapier::RigidBody)> {
-    let parent = collider.parent()?;
-    let entity = rapier.rigidbody_set.rigid_body_entity(parent)?;
-    Some((entity, rapier.rigidbody_set.bodies.get(parent)?))
 }

@@ -12,7 +12,7 @@ use bevy::{
 use bevy_rapier3d::{
     parry::bounding_volume::BoundingVolume, plugin::RapierContextMut, rapier::prelude as rapier,
 };
-use tabletop_core::{Arm, JOINTS_PER_ARM, TICK_SECONDS};
+use tabletop_core::{Arm, JOINTS_PER_ARM, TICK_SECONDS, UNITS_PER_METER};
 
 use crate::{
     clearance::TOUCHING,
@@ -20,7 +20,7 @@ use crate::{
     matrix::Joints,
     motion::Motion,
     parts::FRICTION,
-    skeleton::{Place, UNITS_PER_METER, in_meters},
+    skeleton::{Place, in_meters},
     surroundings::FreeThing,
 };
 

@@ -4,89 +4,18 @@
 mod kit;
 
 use bevy::prelude::*;
-use kit::{Stage, block};
+use kit::{
+    Stage, block,
+    motors::{ARM, SECOND, check_limits, drive, go, off},
+};
 use proptest::prelude::*;
 use tabletop_core::{
-    Arm, Drive, JOINTS_PER_ARM, Pose, Recording, Robot, RobotJoint, SimCommand, SimFact, StepApp,
+    Arm, Drive, Hand, JOINTS_PER_ARM, Pose, Recording, RobotJoint, SimCommand, StepApp,
     TICK_SECONDS,
 };
 use tabletop_kinematics::baxter;
 
-const ARM: Arm = Arm::Right;
-
 const SECONDS: f64 = TICK_SECONDS as f64;
-
-/// Ticks of a second.
-const SECOND: u64 = 60;
-
-fn drive(stage: &mut Stage, drives: &[(RobotJoint, Drive)]) {
-    stage.tell(SimCommand::Drive(drives.to_vec()));
-}
-
-/// Sends an arm to angles, and waits until it is there.
-fn go(stage: &mut Stage, arm: Arm, angles: [f64; JOINTS_PER_ARM]) {
-    let joints = RobotJoint::of_arm(arm);
-    let mut drives: Vec<_> = joints.into_iter().zip(angles.map(Drive::Toward)).collect();
-    // Up first, out of the way of the table.
-    let down = drives.remove(1);
-    for drives in [vec![(joints[1], Drive::Toward(-1.2))], drives, vec![down]] {
-        drive(stage, &drives);
-        stage.app.step(1);
-        for _ in 0..400 {
-            if !stage.robot().arm(arm).is_moving {
-                break;
-            }
-            stage.app.step(1);
-        }
-    }
-    stage.app.step(30);
-    let off = worst(stage, arm, angles);
-    assert!(
-        off < 0.1,
-        "{off}° off: {:?}",
-        stage.robot().arm(arm).blocked_by
-    );
-}
-
-/// How far the arm's joints are from these angles at most, in degrees.
-fn worst(stage: &Stage, arm: Arm, angles: [f64; JOINTS_PER_ARM]) -> f64 {
-    let is = stage.robot().angles(arm);
-    is.iter()
-        .zip(angles)
-        .map(|(is, angle)| (is - angle).abs().to_degrees())
-        .fold(0.0, f64::max)
-}
-
-/// Largest torques of the motors, in N m.
-fn effort(joint: RobotJoint) -> f64 {
-    if joint.index() % JOINTS_PER_ARM < 4 {
-        50.0
-    } else {
-        15.0
-    }
-}
-
-/// Checks what holds in every tick.
-fn check_limits(robot: &Robot) {
-    for joint in RobotJoint::of_arm(Arm::Left)
-        .into_iter()
-        .chain(RobotJoint::of_arm(Arm::Right))
-    {
-        let state = robot.joint(joint);
-        let speed = if joint.index() % JOINTS_PER_ARM < 4 {
-            1.5
-        } else {
-            4.0
-        };
-        assert!(state.torque.abs() <= effort(joint), "{joint}: {state:?}");
-        assert!(state.velocity.abs() <= speed + 1e-6, "{joint}: {state:?}");
-        assert_eq!(
-            joint.clamp(state.position),
-            state.position,
-            "{joint}: {state:?}"
-        );
-    }
-}
 
 /// Straight out to the side of the table, level, over nothing but the table.
 const STRAIGHT: [f64; JOINTS_PER_ARM] = [0.0, -0.25, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -132,7 +61,7 @@ fn a_pose_is_held_with_two_kilograms_at_full_stretch() {
     for _ in 0..10 * SECOND {
         stage.app.step(1);
         check_limits(stage.robot());
-        let off = worst(&stage, ARM, STRAIGHT);
+        let off = off(&stage, ARM, STRAIGHT);
         assert!(off < 0.1, "{off}°");
     }
 }
@@ -156,7 +85,7 @@ fn a_weight_that_nobody_told_of_is_held_too() {
     for _ in 0..10 * SECOND {
         stage.app.step(1);
         check_limits(stage.robot());
-        worst_off = worst_off.max(worst(&stage, ARM, STRAIGHT));
+        worst_off = worst_off.max(off(&stage, ARM, STRAIGHT));
     }
     let torque = stage.robot().joint(RobotJoint::RightS1).torque.abs();
     assert!(
@@ -165,40 +94,6 @@ fn a_weight_that_nobody_told_of_is_held_too() {
         stage.place("weight")
     );
     assert!(worst_off < 0.5, "{worst_off}°");
-}
-
-#[test]
-fn a_swing_into_a_fixed_block_stops_there_within_the_efforts() {
-    let mut stage = Stage::dynamic();
-    stage.reach(ARM, Vec3::new(6.0, -1.5, 1.2), 0.0);
-    stage.put(
-        "wall",
-        block(Vec3::new(1.0, 6.0, 4.0)),
-        0.0,
-        Pose::at(Vec3::new(0.0, -3.0, 2.0)),
-    );
-    stage.app.step(1);
-    let (mut fastest, mut strongest) = (0.0_f32, 0.0_f64);
-    let mut facts = Vec::new();
-    let mut before = stage.robot().arm(ARM).end_effector.location;
-    for _ in 0..2 * SECOND {
-        drive(&mut stage, &[(RobotJoint::RightS0, Drive::Velocity(1.5))]);
-        facts.extend(stage.facts_of(1));
-        check_limits(stage.robot());
-        let hand = stage.robot().arm(ARM).end_effector;
-        fastest = fastest.max((hand.location - before).length() / TICK_SECONDS);
-        before = hand.location;
-        strongest = strongest.max(stage.robot().joint(RobotJoint::RightS0).torque.abs());
-        let left_finger = hand * Vec3::new(-1.3, 0.0, 0.0);
-        assert!(left_finger.x > 0.5, "{left_finger} is in the wall");
-    }
-    assert!(fastest > 10.0, "{fastest} units/s");
-    assert!(strongest > 40.0, "it pressed: {strongest} N m");
-    let blocked = SimFact::ArmBlocked {
-        arm: ARM,
-        by: "wall".into(),
-    };
-    assert_eq!(facts, [blocked]);
 }
 
 #[test]
@@ -299,121 +194,9 @@ fn a_position_is_reached_as_fast_as_the_motors_can() {
         let past = stage.robot().joint(RobotJoint::RightS0).position - goal[0];
         assert!(past < 0.01, "tick {tick}: {past} rad past the goal");
     }
-    let off = worst(&stage, ARM, goal);
+    let off = off(&stage, ARM, goal);
     assert!(off < 0.1, "{off}°: {:?}", stage.robot().angles(ARM));
     assert!(!stage.robot().arm(ARM).is_moving);
-}
-
-/// What came of pushing a block along the table for a second.
-struct Pushed {
-    /// How far the hand has come, in units.
-    hand: f32,
-    /// How far the block has come.
-    block: f32,
-    /// Largest share of its effort that a motor has pulled with while touching it.
-    strongest: f64,
-    facts: Vec<SimFact>,
-    robot: Robot,
-}
-
-fn push(mass: f32, is_there: bool) -> Pushed {
-    let mut stage = Stage::dynamic();
-    stage.reach(ARM, Vec3::new(2.0, -3.0, 0.9), 0.0);
-    drive(
-        &mut stage,
-        &[(RobotJoint::gripper(ARM), Drive::Toward(0.2))],
-    );
-    stage.app.step(120);
-    let x = if is_there { 4.0 } else { -4.0 };
-    stage.put(
-        "thing",
-        block(Vec3::ONE),
-        mass,
-        Pose::at(Vec3::new(x, -3.0, 0.5)),
-    );
-    stage.facts_of(30);
-    let pose = Pose::at(Vec3::new(7.0, -3.0, 0.9));
-    stage.tell(SimCommand::ReachTo { arm: ARM, pose });
-    let mut strongest = 0.0_f64;
-    let mut facts = Vec::new();
-    for tick in 0..SECOND {
-        facts.extend(stage.facts_of(1));
-        check_limits(stage.robot());
-        if tick > 10 {
-            let shares = RobotJoint::of_arm(ARM)
-                .map(|joint| stage.robot().joint(joint).torque.abs() / effort(joint));
-            strongest = shares.into_iter().fold(strongest, f64::max);
-        }
-    }
-    Pushed {
-        hand: stage.robot().arm(ARM).end_effector.location.x - 2.0,
-        block: stage.place("thing").location.x - x,
-        strongest,
-        facts,
-        robot: stage.robot().clone(),
-    }
-}
-
-#[test]
-fn a_light_block_is_pushed_and_a_heavy_one_stalls_the_arm() {
-    let free = push(0.2, false).hand;
-    let light = push(0.2, true);
-    assert!(light.block > 2.5, "the light block came {}", light.block);
-    assert!(
-        light.hand > 0.97 * free,
-        "the hand came {} instead of {free}",
-        light.hand
-    );
-    let middle = push(5.0, true);
-    assert!(
-        middle.block > 1.0 && middle.hand < free,
-        "{} {}",
-        middle.block,
-        middle.hand
-    );
-    let heavy = push(50.0, true);
-    assert!(heavy.block < 0.01, "the heavy block came {}", heavy.block);
-    assert!(heavy.hand < 2.0, "the hand came {}", heavy.hand);
-    assert_eq!(heavy.strongest, 1.0);
-    let blocked = SimFact::ArmBlocked {
-        arm: ARM,
-        by: "thing".into(),
-    };
-    assert_eq!(heavy.facts, [blocked]);
-}
-
-#[test]
-fn an_arm_that_presses_a_block_onto_the_table_stops() {
-    let mut stage = Stage::dynamic();
-    stage.put(
-        "thing",
-        block(Vec3::ONE),
-        1.0,
-        Pose::at(Vec3::new(3.0, -3.0, 0.5)),
-    );
-    drive(
-        &mut stage,
-        &[(RobotJoint::RightGripper, Drive::Toward(0.2))],
-    );
-    stage.reach(ARM, Vec3::new(3.0, -3.0, 2.5), 0.0);
-    stage.app.step(60);
-    let pose = Pose::at(Vec3::new(3.0, -3.0, 0.9));
-    stage.tell(SimCommand::ReachTo { arm: ARM, pose });
-    for _ in 0..3 * SECOND {
-        stage.app.step(1);
-        check_limits(stage.robot());
-    }
-    assert_eq!(stage.robot().arm(ARM).blocked_by.as_deref(), Some("thing"));
-    let hand = stage.robot().arm(ARM).end_effector.location;
-    assert!(
-        hand.truncate().distance(Vec2::new(3.0, -3.0)) < 0.3,
-        "it does not slip: {hand}"
-    );
-    let place = stage.place("thing").location;
-    assert!(
-        (place - Vec3::new(3.0, -3.0, 0.5)).length() < 0.2,
-        "{place}"
-    );
 }
 
 /// Kinetic energy of an arm, in J.
@@ -509,15 +292,6 @@ proptest! {
 }
 
 #[test]
-fn what_it_does_is_the_same_every_time() {
-    let run = || {
-        let pushed = push(1.0, true);
-        (pushed.robot.joints, pushed.block)
-    };
-    assert_eq!(run(), run());
-}
-
-#[test]
 fn undo_takes_the_motors_back_too() {
     let mut stage = Stage::dynamic();
     stage.put(
@@ -531,7 +305,7 @@ fn undo_takes_the_motors_back_too() {
     stage.app.step(30);
     let joints = stage.robot().joints;
     stage.tell(SimCommand::Grasp {
-        hand: tabletop_core::Hand::Left,
+        hand: Hand::Left,
         object: "thing".into(),
     });
     stage.app.step(30);

@@ -216,7 +216,8 @@ fn a_held_object_stays_when_the_table_is_cleared() {
     stage.app.step(5);
     assert_eq!(stage.robot().arm(ARM).holds.len(), 1);
     let robot = stage.app.world().resource::<Robot>().clone();
-    assert_eq!(robot.arm(ARM).touches[0], robot.arm(ARM).holds);
+    let touched: Vec<_> = robot.contacts.iter().map(|contact| contact.thing).collect();
+    assert_eq!(touched, [robot.arm(ARM).holds[0]; 2]);
 }
 
 #[test]
@@ -256,6 +257,10 @@ fn a_lid_is_pulled_open_by_its_handle() {
     );
     stage.reach(ARM, Vec3::new(before.x - 1.0, -2.0, 2.65), 0.0);
     stage.app.step(30);
+    for contact in &stage.robot().contacts {
+        assert_eq!(contact.impulse, 0.0, "a grip is no force: {contact:?}");
+    }
+    assert_eq!(stage.robot().contacts.len(), 2);
     let pulled = before.x - stage.place(&lid).location.x;
     assert!((0.9..1.1).contains(&pulled), "{pulled}");
     let rose = stage.place(&lid).location.z - before.z;

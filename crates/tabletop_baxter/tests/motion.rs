@@ -9,7 +9,8 @@ use bevy::prelude::*;
 use kit::{Stage, block, inside_the_table};
 use proptest::prelude::*;
 use tabletop_core::{
-    Arm, Drive, HeadCamera, Pose, Robot, RobotJoint, SimCommand, SimFact, StepApp, TICK_SECONDS,
+    Arm, Drive, Hand, HeadCamera, Pose, Robot, RobotJoint, SimCommand, SimFact, StepApp,
+    TICK_SECONDS,
 };
 
 fn drive(stage: &mut Stage, joint: RobotJoint, drive: Drive) {
@@ -39,6 +40,26 @@ fn the_neck_turns_the_camera_and_the_hidden_robot_moves() {
     stage.app.step(1);
     assert_eq!(stage.app.world().resource::<HeadCamera>().pan, 0.5);
     assert_eq!(stage.robot().joint(RobotJoint::RightW2).position, 1.0);
+}
+
+#[test]
+fn hands_pass_through_where_the_hidden_robot_was() {
+    let mut stage = Stage::new();
+    let place = Vec3::new(3.0, -2.0, 4.5);
+    stage.reach(Arm::Right, place - Vec3::Z * 2.5, 0.0);
+    let start = Pose::at(Vec3::new(3.0, 3.0, 0.5));
+    stage.put("thing", block(Vec3::ONE), 1.0, start);
+    stage.tell(SimCommand::ShowRobot(false));
+    stage.app.step(5);
+    let hand = Hand::Left;
+    let object = "thing".into();
+    stage.tell(SimCommand::Grasp { hand, object });
+    for location in [start.location + Vec3::Z * 1.5, place] {
+        stage.tell(SimCommand::MoveTo { hand, location });
+        stage.app.step(60);
+    }
+    let there = stage.place("thing").location;
+    assert!(there.distance(place) < 1e-4, "{there}");
 }
 
 #[test]

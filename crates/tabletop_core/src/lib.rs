@@ -48,12 +48,12 @@ pub use hand::{Hand, Hands, Held};
 pub use message::{SimCommand, SimFact};
 pub use number::Decimal;
 pub use object::{ObjectIndex, ObjectSpec};
-pub use pose::{Pose, degrees_from_quat, quat_from_degrees};
+pub use pose::{Pose, UNITS_PER_METER, degrees_from_quat, quat_from_degrees};
 pub use recording::{History, Recording};
 pub use rewind::{Remembered, Rewinds, Rewound};
 pub use robot::{
-    Arm, ArmState, Drive, Face, Gripped, JOINTS_PER_ARM, JointState, Markers, Robot, RobotJoint,
-    RobotMode, WIDEST_GRIP, robot_base,
+    Arm, ArmState, Drive, Face, Gripped, JOINTS_PER_ARM, JointState, Markers, Robot, RobotContact,
+    RobotJoint, RobotMode, WIDEST_GRIP, robot_base,
 };
 pub use scene::{ChainSpec, Joint, JointKind, JointSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
 pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage};

@@ -28,6 +28,17 @@ pub struct ObjectSpec {
 }
 
 impl ObjectSpec {
+    /// An object without descriptions; `mass` in kg.
+    pub fn new(id: impl Into<String>, pose: Pose, mass: f32, shape: Shape) -> Self {
+        Self {
+            id: id.into(),
+            pose,
+            mass,
+            shape,
+            descriptions: Vec::new(),
+        }
+    }
+
     /// Whether nothing moves it.
     pub fn is_fixed(&self) -> bool {
         self.mass == 0.0

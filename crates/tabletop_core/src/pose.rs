@@ -8,6 +8,9 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
+/// Units of length in a metre.
+pub const UNITS_PER_METER: f64 = 10.0;
+
 /// A rigid motion: rotate, then translate. Lengths in units of 10 cm.
 ///
 /// `a_from_b * b_from_c == a_from_c`; `pose * point` takes a point of the body's own frame to the frame the pose is given in.

@@ -292,12 +292,25 @@ pub struct ArmState {
     pub joint_origins: [Vec3; 3],
     /// The objects that the gripper holds, in the order in which it took them.
     pub holds: Vec<Entity>,
-    /// The objects that the left and the right finger touch, in the order of their creation.
-    pub touches: [Vec<Entity>; 2],
     /// What the arm is stopped by; `None` if nothing is in its way.
     pub blocked_by: Option<String>,
     /// Whether it is on its way to a position that it was told to go to.
     pub is_moving: bool,
+}
+
+/// A thing that a body of the robot touches.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RobotContact {
+    /// The body: the link's name in the robot's description, or a finger (`left-gripper-right-finger`).
+    pub body: String,
+    /// The object, or the table.
+    pub thing: Entity,
+    /// Where on the thing's surface, in the table's frame: the centre of the pressure, the middle of the area that a finger
+    /// holds, or, where neither presses nor holds, the nearest point.
+    pub point: Vec3,
+    /// How hard they pressed each other in the last tick, along the normals, in kg units/s; 0 for what the robot holds and
+    /// for what only stops it.
+    pub impulse: f32,
 }
 
 /// The state of the robot after the last tick. Only the robot's own plugin writes it.
@@ -313,6 +326,8 @@ pub struct Robot {
     pub joints: [JointState; 17],
     /// Its arms, left and right.
     pub arms: [ArmState; 2],
+    /// What its bodies touch: body by body, of each the table first, then the objects in the order of their creation.
+    pub contacts: Vec<RobotContact>,
 }
 
 impl Default for Robot {
@@ -326,6 +341,7 @@ impl Default for Robot {
                 ..default()
             }),
             arms: default(),
+            contacts: Vec::new(),
         }
     }
 }

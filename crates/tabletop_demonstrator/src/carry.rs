@@ -1,9 +1,9 @@
 //! Moving what hands hold.
 
 use bevy::prelude::*;
-use bevy_rapier3d::{prelude::*, rapier::prelude as rapier};
+use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*, rapier::prelude as rapier};
 use tabletop_core::{Hand, Hands, Pose, TICK_SECONDS};
-use tabletop_physics::{Convex, convex_parts, drawn, nearest};
+use tabletop_physics::{Convex, convex_parts, drawn, nearby, nearest};
 
 use crate::{
     grasp::{Carry, CarryTarget},
@@ -116,32 +116,26 @@ impl Near {
     fn new(rapier: &RapierContext, carried: &rapier::Collider, here: Pose, next: Pose) -> Self {
         let bounds = carried.shape().compute_local_bounding_sphere();
         let reach = bounds.center().length() + bounds.radius() + 0.1;
-        let low = here.location.min(next.location) - reach;
-        let high = here.location.max(next.location) + reach;
+        let way = Aabb::new(
+            here.location.min(next.location) - reach,
+            here.location.max(next.location) + reach,
+        );
         let mut near = Self {
             immovable: Vec::new(),
             free: Vec::new(),
             sleeping: Vec::new(),
         };
-        for (_, other) in rapier.colliders.colliders.iter() {
-            let bounds = other.compute_aabb();
-            let is_near = bounds.mins.cmple(high).all() && bounds.maxs.cmpge(low).all();
-            if !is_near || other.is_sensor() || other.parent() == carried.parent() {
+        for other in nearby(rapier.colliders, rapier.rigidbody_set, way) {
+            if other.collider.parent() == carried.parent() {
                 continue;
             }
-            let at = Pose::new(other.position().translation, other.position().rotation);
-            let parts = convex_parts(at, other.shared_shape());
-            let parent = other.parent();
-            match parent.and_then(|parent| rapier.rigidbody_set.bodies.get(parent)) {
-                Some(body) if body.is_dynamic() => {
-                    near.free.extend(parts);
-                    if body.is_sleeping() {
-                        let entity = parent
-                            .and_then(|parent| rapier.rigidbody_set.rigid_body_entity(parent));
-                        near.sleeping.extend(entity);
-                    }
-                }
-                _ => near.immovable.extend(parts),
+            if !other.body.is_dynamic() {
+                near.immovable.extend(other.parts());
+                continue;
+            }
+            near.free.extend(other.parts());
+            if other.body.is_sleeping() {
+                near.sleeping.push(other.entity);
             }
         }
         near

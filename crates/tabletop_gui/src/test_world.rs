@@ -114,16 +114,11 @@ impl TestWorld {
 
 /// Puts a block of edge 2 somewhere in a world.
 pub fn block(world: &mut World, id: &str, location: Vec3) -> Entity {
-    let spec = ObjectSpec {
-        id: id.into(),
-        pose: Pose::at(location),
-        mass: 1.0,
-        shape: Shape::Block {
-            span: Vec3::splat(2.0),
-            color: Rgb::GRAY,
-        },
-        descriptions: Vec::new(),
+    let shape = Shape::Block {
+        span: Vec3::splat(2.0),
+        color: Rgb::GRAY,
     };
+    let spec = ObjectSpec::new(id, Pose::at(location), 1.0, shape);
     let place = Transform::from_translation(location);
     let object = world.spawn((spec, place)).id();
     world.resource_mut::<ObjectIndex>().insert(id, object);

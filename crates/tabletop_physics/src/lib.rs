@@ -33,6 +33,7 @@ mod convex;
 mod holding;
 mod joint;
 mod mass;
+mod nearby;
 mod newcomers;
 mod parking;
 mod settings;
@@ -44,6 +45,7 @@ pub use body::collider;
 pub use convex::{Convex, Nearest, convex_parts, nearest, to_rapier};
 pub use holding::{JustReleased, drawn, hold, let_fall, let_go};
 pub use mass::mass_properties;
+pub use nearby::{Nearby, nearby};
 pub use newcomers::BodySystems;
 pub use parking::{KeepRemoved, Parked, remove_object};
 pub use settings::PhysicsSettings;
@@ -55,10 +57,10 @@ use bevy_rapier3d::{
     prelude::*,
     rapier::dynamics::{IntegrationParameters, SpringCoefficients},
 };
-use tabletop_core::{SimSystems, TICK_SECONDS};
+use tabletop_core::{SimSystems, TICK_SECONDS, UNITS_PER_METER};
 
 /// Units in a metre, to which Rapier scales its tolerances.
-const UNITS_PER_METER: f32 = 10.0;
+const LENGTH_UNIT: f32 = UNITS_PER_METER as f32;
 
 /// Adds Rapier and gives objects, table and joints their bodies. Needs [`CorePlugin`](tabletop_core::CorePlugin).
 #[derive(Clone, Copy, Debug, Default)]
@@ -89,7 +91,7 @@ impl Plugin for PhysicsPlugin {
                             integration_parameters: integration_parameters(),
                             rapier_configuration: RapierConfiguration {
                                 gravity: Vec3::NEG_Z * self.settings.gravity,
-                                ..RapierConfiguration::new(UNITS_PER_METER)
+                                ..RapierConfiguration::new(LENGTH_UNIT)
                             },
                         },
                     )
@@ -154,7 +156,7 @@ pub fn integration_parameters() -> IntegrationParameters {
     };
     IntegrationParameters {
         dt: TICK_SECONDS,
-        length_unit: UNITS_PER_METER,
+        length_unit: LENGTH_UNIT,
         num_solver_iterations: 36,
         contact_softness: stiff_contacts,
         static_contact_softness: stiff_contacts,

@@ -31,16 +31,11 @@ impl Stage {
             Ok(program) => program,
             Err(error) => panic!("{error}"),
         };
-        let block = |id: &str| ObjectSpec {
-            id: id.into(),
-            pose: Pose::IDENTITY,
-            mass: 1.0,
-            shape: Shape::Block {
-                span: Vec3::ONE,
-                color: Rgb::GRAY,
-            },
-            descriptions: Vec::new(),
+        let shape = Shape::Block {
+            span: Vec3::ONE,
+            color: Rgb::GRAY,
         };
+        let block = |id: &str| ObjectSpec::new(id, Pose::IDENTITY, 1.0, shape.clone());
         Self {
             run: ScenarioRun::new(program),
             specs: vec![block("low"), block("high")],

@@ -18,13 +18,8 @@ pub(crate) fn build(spec: &ChainSpec, ids: &mut IdAllocator, assembly: &mut Asse
     let half_link = Vec3::Y * spec.link_span.y / 2.0;
     let mut add = |suffix: &str, pose, mass, shape| {
         let id = ids.unique(&format!("{id}-{suffix}"));
-        assembly.objects.push(ObjectSpec {
-            id: id.clone(),
-            pose,
-            mass,
-            shape,
-            descriptions: Vec::new(),
-        });
+        let object = ObjectSpec::new(&id, pose, mass, shape);
+        assembly.objects.push(object);
         id
     };
     let end_cube = Shape::Block {

@@ -6,8 +6,8 @@
 //! is told by [`AgentNews`](tabletop_core::AgentNews) and stands in [`Agent`](tabletop_core::Agent).
 //!
 //! The simulation waits for the script; what is drawn does not. At such a [`Standstill`](tabletop_core::Standstill) frames go by
-//! without ticks, and messages are kept for the next tick. Without a window ([`Waiting::Blocking`]) a run is the same every
-//! time, and what the script orders is the same either way.
+//! without ticks, each looks for the answer once, and messages are kept for the next tick. Without a window
+//! ([`Waiting::Blocking`]) a run is the same every time, and what the script orders is the same either way.
 //!
 //! What takes time to tell is told to scripts that mention it ([`Tell`]). `docs/scripts.md` is written for those who write
 //! scripts.
@@ -33,13 +33,15 @@ mod settings;
 mod standstill;
 
 pub use settings::{ScriptSettings, Tell, Waiting};
-pub use tabletop_engine::{EngineChoice, Surroundings, Timeouts};
+pub use tabletop_engine::{ENGINE_VARIABLE, EngineChoice, EngineKind, Surroundings, Timeouts};
 
 use bevy::prelude::*;
-use tabletop_core::{HeadCamera, ObjectIndex, OrderSystems, PictureDemand, SensorImage};
+use tabletop_core::{
+    HeadCamera, ObjectIndex, OrderSystems, PictureDemand, SensorImage, Standstill,
+};
 
 use agency::{Agency, call};
-use standstill::{drop_overstep, keep_messages, resume_time};
+use standstill::{drop_overstep, keep_messages, try_again};
 
 /// Adds the script bridge. Needs [`CorePlugin`](tabletop_core::CorePlugin).
 #[derive(Clone, Debug, Default)]
@@ -58,14 +60,20 @@ impl Plugin for ScriptPlugin {
             .init_resource::<SensorImage>()
             .add_systems(
                 FixedUpdate,
-                (call, drop_overstep).chain().in_set(OrderSystems::Script),
+                (
+                    // A frame that begins at a standstill has no other tick even if the answer has come.
+                    drop_overstep.run_if(not(Standstill::is_over)),
+                    call,
+                    drop_overstep.run_if(not(Standstill::is_over)),
+                )
+                    .chain()
+                    .in_set(OrderSystems::Script),
             )
             .add_systems(
                 RunFixedMainLoop,
-                (
-                    resume_time.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
-                    keep_messages.in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
-                ),
+                (try_again, keep_messages)
+                    .run_if(not(Standstill::is_over))
+                    .in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
             );
     }
 }

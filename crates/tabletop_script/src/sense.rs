@@ -5,7 +5,7 @@ use std::path::Path;
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
     Arm, ObjectIndex, ObjectSpec, Pose, Recording, Robot, RobotJoint, RobotMode, SensorImage,
-    SimTick, TICK_SECONDS,
+    SimTick, TICK_SECONDS, Table,
 };
 use tabletop_engine::{Aux, Picture, SensedContact, SensedObject, Sensor};
 
@@ -39,6 +39,7 @@ pub(crate) struct Senses<'w, 's> {
     image: Res<'w, SensorImage>,
     index: Res<'w, ObjectIndex>,
     objects: Query<'w, 's, (&'static ObjectSpec, &'static Transform)>,
+    tables: Query<'w, 's, (), With<Table>>,
     recording: Res<'w, Recording>,
 }
 
@@ -128,23 +129,25 @@ impl Senses<'_, '_> {
             .collect()
     }
 
-    /// What the fingers touch: the finger of an arm, and the object.
     fn contacts(&self) -> Vec<SensedContact> {
-        let mut contacts = Vec::new();
-        for arm in Arm::BOTH {
-            let state = self.robot.arm(arm);
-            for (finger, touched) in ["left", "right"].into_iter().zip(&state.touches) {
-                contacts.extend(touched.iter().filter_map(|&object| {
-                    let (spec, _) = self.objects.get(object).ok()?;
-                    Some(SensedContact {
-                        ids: [format!("{arm}-gripper-{finger}-finger"), spec.id.clone()],
-                        point: point(state.end_effector.location),
-                        impulse: 0.0,
-                    })
-                }));
-            }
-        }
+        let contacts = self.robot.contacts.iter();
         contacts
+            .filter_map(|contact| {
+                Some(SensedContact {
+                    ids: [contact.body.clone(), self.name(contact.thing)?],
+                    point: point(contact.point),
+                    impulse: f64::from(contact.impulse),
+                })
+            })
+            .collect()
+    }
+
+    /// What an object or the table is called.
+    fn name(&self, thing: Entity) -> Option<String> {
+        match self.objects.get(thing) {
+            Ok((spec, _)) => Some(spec.id.clone()),
+            Err(_) => self.tables.contains(thing).then(|| "table".into()),
+        }
     }
 
     fn held(&self) -> [Vec<String>; 2] {

@@ -1,4 +1,6 @@
-//! While the simulation waits for the script, frames go by without ticks.
+//! While the simulation waits for the script, frames go by without ticks, and each tries the one that is due.
+//!
+//! Whatever time passes until then is not made up for.
 
 use std::time::Duration;
 
@@ -6,35 +8,22 @@ use bevy::{
     ecs::message::{MessageRegistry, ShouldUpdateMessages},
     prelude::*,
 };
-use tabletop_core::Standstill;
 
-/// After a standstill, time goes on, so that a tick is tried again.
-pub(crate) fn resume_time(standstill: Res<Standstill>, mut time: ResMut<Time<Virtual>>) {
-    if standstill.0 {
-        time.unpause();
-    }
+/// The frame has no tick but the one that is being tried.
+pub(crate) fn drop_overstep(mut time: ResMut<Time<Fixed>>) {
+    time.discard_overstep(Duration::MAX);
 }
 
-/// At a standstill, the time that is left of this frame passes without ticks, and no more comes.
-pub(crate) fn drop_overstep(
-    standstill: Res<Standstill>,
-    mut fixed: ResMut<Time<Fixed>>,
-    mut time: ResMut<Time<Virtual>>,
-) {
-    if standstill.0 {
-        fixed.discard_overstep(Duration::MAX);
-        time.pause();
-    }
+/// The tick that could not begin is due again in the next frame.
+pub(crate) fn try_again(mut time: ResMut<Time<Fixed>>) {
+    let tick = time.timestep();
+    time.accumulate_overstep(tick);
 }
 
-/// At a standstill no tick reads messages, so none may be dropped.
-pub(crate) fn keep_messages(
-    standstill: Res<Standstill>,
-    registry: Option<ResMut<MessageRegistry>>,
-) {
-    let registry = registry.filter(|registry| {
-        standstill.0 && matches!(registry.should_update, ShouldUpdateMessages::Ready)
-    });
+/// No tick has read messages, so none may be dropped.
+pub(crate) fn keep_messages(registry: Option<ResMut<MessageRegistry>>) {
+    let registry =
+        registry.filter(|registry| matches!(registry.should_update, ShouldUpdateMessages::Ready));
     if let Some(mut registry) = registry {
         registry.should_update = ShouldUpdateMessages::Waiting;
     }

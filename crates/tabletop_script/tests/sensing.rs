@@ -96,6 +96,62 @@ aux.exit = 1;
 }
 
 #[test]
+fn contacts_are_what_the_robot_touches() {
+    // The left arm goes down to the table, on the right one lies a plate.
+    let folder = Folder::pair(
+        "n = 0;",
+        "n = n + 1;
+motor.jointVelocities(1, [2 4]) = [1 -1];
+if n == 90
+  c = sensor.contacts;
+  for i = 1:numel(c.first)
+    disp(sprintf('%s %s %.9g %.9g %.9g %.9g', c.first{i}, c.second{i}, c.point(i, :), c.impulse(i)));
+  end
+  aux.exit = 1;
+end
+",
+    );
+    let mut stage = Stage::start(folder.settings());
+    stage.tell(SimCommand::ShowRobot(true));
+    let pose = Pose::at(Vec3::new(4.4, -5.58, 6.65));
+    let spec = ObjectSpec {
+        id: "plate".into(),
+        pose,
+        mass: 2.0,
+        shape: Shape::Block {
+            span: Vec3::new(1.0, 1.0, 0.2),
+            color: Rgb::GRAY,
+        },
+        descriptions: Vec::new(),
+    };
+    stage.app.world_mut().spawn((Transform::from(pose), spec));
+    let mut touched = Vec::new();
+    while !stage.has_stopped() {
+        touched = stage.robot().contacts.clone();
+        stage.ticks(1);
+    }
+    assert_eq!(stage.failure(), None);
+    let printed = stage.printed();
+    let lines: Vec<Vec<_>> = printed
+        .lines()
+        .map(|line| line.split_whitespace().collect())
+        .collect();
+    assert_eq!(lines.len(), touched.len(), "{printed}");
+    for (line, contact) in lines.iter().zip(&touched) {
+        assert_eq!(line[0], contact.body);
+        let numbers: Vec<f32> = line[2..].iter().map(|word| word.parse().unwrap()).collect();
+        let Vec3 { x, y, z } = contact.point;
+        assert_eq!(numbers, [x, y, z, contact.impulse]);
+    }
+    let pairs: Vec<_> = lines.iter().map(|line| [line[0], line[1]]).collect();
+    let expected = [
+        ["right_upper_forearm", "plate"],
+        ["left-gripper-left-finger", "table"],
+    ];
+    assert_eq!(pairs, expected);
+}
+
+#[test]
 fn pictures_come_as_often_as_they_are_wanted() {
     let counting = "n = n + 1;
 if isfield(sensor, 'rgbVision')

@@ -5,8 +5,11 @@ mod kit;
 
 use std::time::Duration;
 
+use bevy::{prelude::*, time::TimeUpdateStrategy};
 use kit::{Folder, Stage};
-use tabletop_core::{Agent, AgentOrder, Drive, Face, RobotJoint, SimCommand, Standstill};
+use tabletop_core::{
+    Agent, AgentOrder, Drive, Face, RobotJoint, SimCommand, Standstill, TICK_SECONDS,
+};
 use tabletop_script::{ScriptSettings, Waiting};
 
 /// A script that goes on when the file that it waits for is there.
@@ -55,8 +58,6 @@ fn the_waiting_is_told_and_no_tick_passes() {
         stage.frames_until(waits);
         let mut since = waited(&stage);
         for _ in 0..5 {
-            // A look at the answer is taken in every other frame.
-            stage.frame();
             stage.frame();
             assert!(waited(&stage) > since);
             since = waited(&stage);
@@ -67,6 +68,57 @@ fn the_waiting_is_told_and_no_tick_passes() {
         tick += 1;
         assert_eq!(stage.tick(), tick);
     }
+}
+
+/// How often it was tried to begin a tick.
+#[derive(Resource, Default)]
+struct Tries(u32);
+
+impl Tries {
+    fn count(mut tries: ResMut<Self>) {
+        tries.0 += 1;
+    }
+
+    fn of(stage: &Stage) -> u32 {
+        stage.app.world().resource::<Self>().0
+    }
+}
+
+#[test]
+fn each_frame_looks_for_the_answer_once_and_no_waiting_is_made_up_for() {
+    let folder = Folder::pair("calls = 0;", GATED);
+    let mut stage = Stage::start(framewise(&folder));
+    stage
+        .app
+        .init_resource::<Tries>()
+        .add_systems(FixedFirst, Tries::count);
+    stage.frames_until(Stage::is_online);
+    for (call, ticks_a_frame) in [(1, 0.3), (2, 1.0), (3, 3.5)] {
+        let frame = Duration::from_secs_f32(ticks_a_frame * TICK_SECONDS);
+        stage
+            .app
+            .insert_resource(TimeUpdateStrategy::ManualDuration(frame));
+        stage.frames_until(waits);
+        let tick = stage.tick();
+        let (tries, virtual_time) = (Tries::of(&stage), time_in_window(&stage));
+        for frames in 1..=20 {
+            stage.frame();
+            assert_eq!(Tries::of(&stage), tries + frames, "{ticks_a_frame}");
+            assert_eq!(time_in_window(&stage), virtual_time + frame * frames);
+        }
+        assert_eq!(stage.tick(), tick);
+
+        folder.write(&format!("go{call}"), "");
+        stage.frames_until(|stage| !waits(stage));
+        assert_eq!(stage.tick(), tick + 1, "{ticks_a_frame}");
+        let overstep = stage.app.world().resource::<Time<Fixed>>().overstep();
+        assert_eq!(overstep, Duration::ZERO);
+    }
+}
+
+/// What moves in the window by itself, like its camera, goes by this time.
+fn time_in_window(stage: &Stage) -> Duration {
+    stage.app.world().resource::<Time<Virtual>>().elapsed()
 }
 
 #[test]

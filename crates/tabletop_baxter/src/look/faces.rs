@@ -3,9 +3,7 @@
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 use bevy::math::{Vec2, Vec3, ops};
-use tabletop_core::{Face, Rgb, Triangles};
-
-use super::hull::UNITS_PER_METER;
+use tabletop_core::{Face, Rgb, Triangles, UNITS_PER_METER};
 
 /// Size of the picture in m: the display is 1024 x 600 pixels.
 const PICTURE: Vec2 = Vec2::new(0.216, 0.127);
@@ -77,7 +75,7 @@ impl Drawing {
         for corner in corners {
             let out = IN_FRONT + f32::from(layer) * LAYER;
             let point = Vec3::new(out, corner.x, corner.y);
-            self.surface.positions.push(point * UNITS_PER_METER);
+            self.surface.positions.push(point * UNITS_PER_METER as f32);
             self.surface.normals.push(Vec3::X);
             self.surface.colors.push(color);
         }

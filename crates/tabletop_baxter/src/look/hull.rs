@@ -3,10 +3,7 @@
 use std::collections::HashMap;
 
 use bevy::math::Vec3;
-use tabletop_core::{Rgb, Triangles};
-
-/// Units in a metre.
-pub(super) const UNITS_PER_METER: f32 = 10.0;
+use tabletop_core::{Rgb, Triangles, UNITS_PER_METER};
 
 /// Faces that meet at a smaller angle are parts of one smooth surface: the cosine of 50°.
 const SMOOTH_COSINE: f32 = 0.643;
@@ -183,7 +180,7 @@ impl Hull {
                 if *vertex == u32::MAX {
                     *vertex = surface.positions.len() as u32;
                     let point = self.points[triangle[side] as usize];
-                    surface.positions.push(point * UNITS_PER_METER);
+                    surface.positions.push(point * UNITS_PER_METER as f32);
                     surface.normals.push(Vec3::ZERO);
                     surface.colors.push(color);
                 }

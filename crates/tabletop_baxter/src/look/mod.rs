@@ -25,10 +25,8 @@ pub use faces::face;
 use std::{path::Path, sync::Arc};
 
 use bevy::math::{Affine3A, DAffine3, Vec3};
-use tabletop_core::{Face, Figure, Rgb, Triangles};
+use tabletop_core::{Face, Figure, Rgb, Triangles, UNITS_PER_METER};
 use tabletop_kinematics::{Geometry, Shape};
-
-use hull::UNITS_PER_METER;
 
 /// What a visual of a link looks like, in the frame of the link, in units. `urdf` is the file of the description, from
 /// which the meshes that it names are found; without it only Baxter's own are known (`package://tabletop/...`).
@@ -91,8 +89,10 @@ fn placed(mut figure: Figure, visual: &Shape) -> Figure {
         matrix3,
         translation,
     } = visual.origin;
-    let to_link =
-        Affine3A::from_mat3_translation(matrix3.as_mat3(), translation.as_vec3() * UNITS_PER_METER);
+    let to_link = Affine3A::from_mat3_translation(
+        matrix3.as_mat3(),
+        translation.as_vec3() * UNITS_PER_METER as f32,
+    );
     if to_link != Affine3A::IDENTITY {
         for surface in [&mut figure.fine, &mut figure.coarse] {
             let surface = Arc::make_mut(surface);

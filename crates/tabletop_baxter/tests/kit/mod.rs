@@ -1,6 +1,8 @@
 //! A table with a robot, for tests.
 #![allow(dead_code, reason = "not every test needs everything")]
 
+pub mod motors;
+
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use bevy_rapier3d::{parry, prelude::Collider, rapier::prelude as rapier};
 use tabletop_baxter::{BaxterPlugin, RobotBody};
@@ -61,13 +63,7 @@ impl Stage {
     }
 
     pub fn put(&mut self, id: &str, shape: Shape, mass: f32, pose: Pose) -> Entity {
-        let spec = ObjectSpec {
-            id: id.into(),
-            pose,
-            mass,
-            shape,
-            descriptions: Vec::new(),
-        };
+        let spec = ObjectSpec::new(id, pose, mass, shape);
         self.app
             .world_mut()
             .spawn((Transform::from(pose), spec))

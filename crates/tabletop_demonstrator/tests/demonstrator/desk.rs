@@ -90,13 +90,7 @@ impl Desk {
 }
 
 pub fn object(id: &str, location: (f32, f32, f32), mass: f32, shape: Shape) -> SceneItem {
-    SceneItem::Object(ObjectSpec {
-        id: id.into(),
-        pose: Pose::at(location.into()),
-        mass,
-        shape,
-        descriptions: Vec::new(),
-    })
+    SceneItem::Object(ObjectSpec::new(id, Pose::at(location.into()), mass, shape))
 }
 
 pub fn block(span: impl Into<Vec3>) -> Shape {

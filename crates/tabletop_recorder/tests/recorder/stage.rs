@@ -143,16 +143,11 @@ pub fn app_into(folder: PathBuf) -> App {
 }
 
 pub fn block(id: &str) -> ObjectSpec {
-    ObjectSpec {
-        id: id.into(),
-        pose: Pose::IDENTITY,
-        mass: 1.0,
-        shape: Shape::Block {
-            span: Vec3::ONE,
-            color: Rgb::new(1.0, 0.0, 0.0),
-        },
-        descriptions: Vec::new(),
-    }
+    let shape = Shape::Block {
+        span: Vec3::ONE,
+        color: Rgb::new(1.0, 0.0, 0.0),
+    };
+    ObjectSpec::new(id, Pose::IDENTITY, 1.0, shape)
 }
 
 pub fn scene(ids: &[&str]) -> SimCommand {

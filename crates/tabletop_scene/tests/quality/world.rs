@@ -99,13 +99,8 @@ pub fn turned(
     mass: f32,
     shape: Shape,
 ) -> SceneItem {
-    SceneItem::Object(ObjectSpec {
-        id: id.into(),
-        pose: Pose::new(location.into(), quat_from_degrees(degrees)),
-        mass,
-        shape,
-        descriptions: Vec::new(),
-    })
+    let pose = Pose::from_degrees(location.into(), degrees);
+    SceneItem::Object(ObjectSpec::new(id, pose, mass, shape))
 }
 
 pub fn block(span: impl Into<Vec3>) -> Shape {

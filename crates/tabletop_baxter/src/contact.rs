@@ -1,0 +1,118 @@
+//! Where bodies of the robot touch things, and how hard.
+
+use bevy::prelude::*;
+use bevy_rapier3d::{
+    parry::{
+        bounding_volume::{Aabb, BoundingVolume},
+        query::contact,
+        utils::PoseOpt,
+    },
+    prelude::RapierContext,
+    rapier::prelude::{Collider, ColliderHandle, ContactPair},
+};
+
+use crate::clearance::MARGIN;
+
+/// Distance, in units, at which something is touched: an arm stops at the margin before what it cannot push, or a little earlier.
+const REACHED: f32 = 1.5 * MARGIN;
+
+/// How a thing is touched.
+pub(crate) struct Contact {
+    /// An object or the table.
+    pub thing: Entity,
+    /// Where on its surface, in the table's frame.
+    pub point: Vec3,
+    /// How hard in the last tick, in kg units/s.
+    pub impulse: f32,
+}
+
+/// What a body pressed in the last tick, as the physics engine has it.
+pub(crate) fn with_pressed<'a>(
+    rapier: &'a RapierContext,
+    body: ColliderHandle,
+) -> impl Iterator<Item = Contact> + 'a {
+    let pairs = rapier.simulation.narrow_phase.contact_pairs_with(body);
+    pairs.filter_map(move |pair| {
+        let is_first = pair.collider2 == body;
+        let thing = match is_first {
+            true => pair.collider1,
+            false => pair.collider2,
+        };
+        let at = rapier.colliders.colliders.get(thing)?.position();
+        let (centre, impulse) = pressure(pair, is_first)?;
+        Some(Contact {
+            thing: rapier.colliders.collider_entity(thing)?,
+            point: *at * centre,
+            impulse,
+        })
+    })
+}
+
+/// The centre of the pressure on the first or the second collider of a pair, in its frame, and the impulse along the normals.
+fn pressure(pair: &ContactPair, on_first: bool) -> Option<(Vec3, f32)> {
+    let (mut moment, mut impulse) = (Vec3::ZERO, 0.0);
+    for manifold in pair.solver_manifolds() {
+        // Only what the solver has looked at in this tick: other points keep impulses of earlier ones.
+        let solved = manifold.data.solver_contacts.iter();
+        let numbers = solved.flat_map(|solved| solved.contact_indices());
+        for point in numbers.filter_map(|number| manifold.points.get(number as usize)) {
+            let place = match on_first {
+                true => manifold.subshape_pos1().transform_point(point.local_p1),
+                false => manifold.subshape_pos2().transform_point(point.local_p2),
+            };
+            moment += place * point.data.impulse;
+            impulse += point.data.impulse;
+        }
+    }
+    (impulse > 0.0).then(|| (moment / impulse, impulse))
+}
+
+/// A thing that bodies may come near to.
+pub(crate) struct Thing<'a> {
+    entity: Entity,
+    collider: &'a Collider,
+    /// The box around all that touches it.
+    bounds: Aabb,
+}
+
+impl<'a> Thing<'a> {
+    /// An object or the table.
+    pub fn new(rapier: &'a RapierContext, entity: Entity) -> Option<Self> {
+        let handle = *rapier.colliders.entity2collider().get(&entity)?;
+        let collider = rapier.colliders.colliders.get(handle)?;
+        Some(Self {
+            entity,
+            collider,
+            bounds: collider.compute_aabb().loosened(REACHED),
+        })
+    }
+}
+
+/// What a body has reached of these things: where they are nearest, and not how hard.
+pub(crate) fn with_near<'a>(
+    rapier: &'a RapierContext,
+    body: ColliderHandle,
+    things: &'a [Thing],
+) -> impl Iterator<Item = Contact> + 'a {
+    let body = rapier.colliders.colliders.get(body);
+    let body = body.map(|body| (body, body.compute_aabb()));
+    body.into_iter().flat_map(move |(body, bounds)| {
+        let near = things
+            .iter()
+            .filter(move |it| it.bounds.intersects(&bounds));
+        near.filter_map(|thing| {
+            let nearest = contact(
+                body.position(),
+                body.shape(),
+                thing.collider.position(),
+                thing.collider.shape(),
+                REACHED,
+            );
+            Some(Contact {
+                thing: thing.entity,
+                point: nearest.ok().flatten()?.point2,
+                impulse: 0.0,
+            })
+        })
+    })
+}

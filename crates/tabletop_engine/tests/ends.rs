@@ -1,0 +1,155 @@
+//! Engines that hang, crash or are stopped: each end is told as what it is, in time.
+
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+mod common;
+
+use std::time::{Duration, Instant};
+
+use common::{Folder, Session, TRIGGERS, octave};
+use tabletop_engine::{EngineError, EngineHandle, Reply, Sensor, Trigger};
+
+#[test]
+fn an_endless_loop_ends_in_time() {
+    for trigger in TRIGGERS {
+        let folder = Folder::pair("", "while true, end");
+        let mut config = octave(&folder.0, trigger);
+        config.timeouts.step = Duration::from_millis(300);
+        let session = Session::start(config).unwrap();
+        session.init().unwrap();
+        let start = Instant::now();
+        let error = session.step(&Sensor::default()).unwrap_err();
+        assert!(
+            matches!(
+                error,
+                EngineError::Timeout {
+                    what: "the callback script",
+                    ..
+                }
+            ),
+            "{error}"
+        );
+        assert!(error.is_fatal());
+        assert!((Duration::from_millis(300)..Duration::from_secs(5)).contains(&start.elapsed()));
+        assert!(
+            session
+                .engine
+                .recv_timeout(Duration::from_secs(5))
+                .is_none(),
+            "nothing comes after the end"
+        );
+    }
+}
+
+#[test]
+fn a_running_script_can_be_stopped_from_any_thread() {
+    for trigger in TRIGGERS {
+        for kill in [EngineHandle::stop, EngineHandle::kill] {
+            let folder = Folder::pair("", "while true, end");
+            let session = Session::octave(&folder.0, trigger);
+            session.init().unwrap();
+            session.engine.step(Sensor::default());
+            assert!(
+                session
+                    .engine
+                    .recv_timeout(Duration::from_millis(100))
+                    .is_none(),
+                "the caller does not wait"
+            );
+            let other = session.engine.clone();
+            std::thread::spawn(move || kill(&other)).join().unwrap();
+            let start = Instant::now();
+            let reply = session.engine.recv_timeout(Duration::from_secs(10));
+            assert!(
+                matches!(reply, Some(Reply::Failed(EngineError::Stopped))),
+                "{reply:?}"
+            );
+            assert!(start.elapsed() < Duration::from_secs(3));
+        }
+    }
+}
+
+#[test]
+fn an_engine_can_be_killed_before_it_has_started() {
+    let folder = Folder::pair("", "");
+    let engine = EngineHandle::start(octave(&folder.0, Trigger::Stdin)).unwrap();
+    engine.kill();
+    let reply = engine.recv_timeout(Duration::from_secs(10));
+    assert!(
+        matches!(reply, Some(Reply::Failed(EngineError::Stopped))),
+        "{reply:?}"
+    );
+}
+
+/// Runs a pair until it has failed in the callback.
+fn callback_fault(init: &str, callback: &str, trigger: Trigger) -> EngineError {
+    let folder = Folder::pair(init, callback);
+    let session = Session::octave(&folder.0, trigger);
+    session.init().unwrap();
+    session.step(&Sensor::default()).unwrap_err()
+}
+
+#[test]
+fn a_crash_is_told_from_an_error() {
+    for trigger in TRIGGERS {
+        let error = callback_fault("", "fprintf(stderr, 'last words\\n'); exit(3)", trigger);
+        let EngineError::Died { status, stderr } = &error else {
+            panic!("{error}");
+        };
+        assert!(
+            status.contains('3') && stderr.contains("last words"),
+            "{error}"
+        );
+        let error = callback_fault("", "kill(getpid(), 11);", trigger);
+        assert!(
+            matches!(&error, EngineError::Died { status, .. } if status.contains("11") || status.contains("139")),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn an_idle_engine_that_ends_is_noticed() {
+    for trigger in TRIGGERS {
+        let folder = Folder::pair(
+            "pid = getpid(); system(sprintf('(sleep 0.3; kill -9 %d) >/dev/null 2>&1 &', pid));",
+            "",
+        );
+        let session = Session::octave(&folder.0, trigger);
+        session.init().unwrap();
+        let reply = session.engine.recv_timeout(Duration::from_secs(20));
+        assert!(
+            matches!(reply, Some(Reply::Failed(EngineError::Died { .. }))),
+            "{reply:?}"
+        );
+    }
+}
+
+#[test]
+fn an_engine_that_cannot_start_says_why() {
+    let folder = Folder::pair("", "");
+    let mut config = octave(&folder.0, Trigger::Stdin);
+    config.working_dir = folder.0.join("nosuch");
+    let error = Session::start(config).err().unwrap();
+    assert!(error.to_string().contains("no directory"), "{error}");
+    let mut config = octave(&folder.0, Trigger::Stdin);
+    config.engine.program = "/bin/false".into();
+    let error = Session::start(config).err().unwrap();
+    assert!(matches!(error, EngineError::Died { .. }), "{error}");
+}
+
+#[test]
+#[cfg(unix)]
+fn an_engine_that_answers_nonsense_is_told() {
+    use std::{fs, os::unix::fs::PermissionsExt as _};
+
+    let script = "#!/bin/sh\nread -r first\nread -r call\nfolder=$(echo \"$call\" | cut -d \"'\" -f 4)\n\
+                  printf 'TTA1\\1\\0\\0\\0\\377\\377\\377\\377' > \"$folder/reply.bin\"\nprintf '\\001done 1\\n'\nsleep 1000\n";
+    let folder = Folder::new(&[("octave-cli", script)]);
+    let program = folder.0.join("octave-cli");
+    fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
+    let mut config = octave(&folder.0, Trigger::Stdin);
+    config.engine.program = program;
+    let error = Session::start(config).err().unwrap();
+    assert!(matches!(error, EngineError::Protocol(_)), "{error}");
+}

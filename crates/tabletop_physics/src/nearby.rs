@@ -1,0 +1,54 @@
+//! What is near bodies that are moved without the physics engine.
+
+use bevy::prelude::*;
+use bevy_rapier3d::{
+    parry::bounding_volume::{Aabb, BoundingVolume},
+    prelude::*,
+    rapier::prelude as rapier,
+};
+use tabletop_core::Pose;
+
+use crate::convex::{Convex, convex_parts};
+
+/// A body that reaches into a box.
+pub struct Nearby<'a> {
+    /// What the body is of.
+    pub entity: Entity,
+    /// The body.
+    pub body: &'a rapier::RigidBody,
+    /// Its collider.
+    pub collider: &'a rapier::Collider,
+    /// The box around it.
+    pub bounds: Aabb,
+}
+
+impl Nearby<'_> {
+    /// Its convex parts, in the table's frame.
+    pub fn parts(&self) -> Vec<Convex> {
+        let at = self.collider.position();
+        convex_parts(
+            Pose::new(at.translation, at.rotation),
+            self.collider.shared_shape(),
+        )
+    }
+}
+
+/// The bodies that reach into a box, in Rapier's order. Disabled ones are nowhere.
+pub fn nearby<'a>(
+    colliders: &'a RapierContextColliders,
+    bodies: &'a RapierRigidBodySet,
+    near: Aabb,
+) -> impl Iterator<Item = Nearby<'a>> {
+    let colliders = colliders.colliders.iter();
+    colliders.filter_map(move |(_, collider)| {
+        let bounds = collider.compute_aabb();
+        let parent = collider.parent().filter(|_| bounds.intersects(&near))?;
+        let body = bodies.bodies.get(parent).filter(|body| body.is_enabled())?;
+        Some(Nearby {
+            entity: bodies.rigid_body_entity(parent)?,
+            body,
+            collider,
+            bounds,
+        })
+    })
+}

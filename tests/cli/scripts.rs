@@ -1,0 +1,393 @@
+//! Scripts that drive the robot, in a real Octave and a real Python.
+
+use std::{
+    f64::consts::FRAC_PI_2,
+    fs,
+    io::{BufRead as _, BufReader},
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+};
+
+use serde_json::Value;
+use tabletop::{
+    core::{RobotJoint, TICK_SECONDS},
+    prelude::*,
+};
+
+use crate::support::{command, place, scenario, stderr, tabletop};
+
+fn succeeded(output: &Output) {
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
+}
+
+/// An empty folder for scripts and what comes of them.
+fn folder(name: &str) -> PathBuf {
+    let folder = place(&format!("scripts-{name}"));
+    fs::create_dir(&folder).unwrap();
+    folder
+}
+
+/// A copy of the folder matlab, whose agentBehavior.m names this pair.
+pub fn copy_of_matlab(pair: &str) -> PathBuf {
+    let folder = folder(pair);
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("matlab");
+    for entry in fs::read_dir(source).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "m") {
+            fs::copy(&path, folder.join(path.file_name().unwrap())).unwrap();
+        }
+    }
+    name_pair(&folder, pair);
+    folder
+}
+
+fn name_pair(folder: &Path, pair: &str) {
+    let behavior =
+        format!("function [i, c] = agentBehavior()\ni = @{pair}Init;\nc = @{pair}Callback;\nend\n");
+    fs::write(folder.join("agentBehavior.m"), behavior).unwrap();
+}
+
+/// `--script` for a Python script of these two functions, in an empty folder.
+fn python(name: &str, init: &str, callback: &str) -> String {
+    let file = folder(name).join("robot.py");
+    let text = format!(
+        "import os, time\ndef init(aux):\n    {init}\ndef callback(sensor, motor, aux):\n    {callback}\n"
+    );
+    fs::write(&file, text).unwrap();
+    format!("python:{}", file.display())
+}
+
+/// `--script` for the scripts of a folder in Octave.
+fn octave(folder: &Path) -> String {
+    format!("octave:{}", folder.display())
+}
+
+fn angles(robot: &Value, arm: &str) -> Vec<f64> {
+    let angles = robot[arm]["angles"].as_array().unwrap();
+    angles.iter().map(|angle| angle.as_f64().unwrap()).collect()
+}
+
+/// What five seconds at 0.5 rad/s make of the angles of the init script. The tick of the init script comes before.
+fn turned(joint: RobotJoint) -> f64 {
+    let begin = if joint == RobotJoint::RightE0 {
+        FRAC_PI_2
+    } else {
+        0.0
+    };
+    (0..300).fold(begin, |angle, _| {
+        joint.clamp(angle + 0.5 * f64::from(TICK_SECONDS))
+    })
+}
+
+fn assert_turned(output: &Output) {
+    succeeded(output);
+    let robot: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for (arm, name) in [(Arm::Left, "left"), (Arm::Right, "right")] {
+        for (joint, angle) in RobotJoint::of_arm(arm)
+            .into_iter()
+            .zip(angles(&robot, name))
+        {
+            assert!((angle - turned(joint)).abs() < 1e-12, "{joint}: {angle}");
+        }
+        assert_eq!(robot[name]["gripper_opening"], 0.0);
+    }
+}
+
+fn five_seconds_of(script: &str) -> Command {
+    let run = ["run", "--script", script, "--seconds", "5"];
+    command(&[&run[..], &["--final-robot", "-"]].concat())
+}
+
+#[test]
+fn the_example_turns_every_joint_for_five_seconds() {
+    for script in ["matlab", "octave", "octave:matlab"] {
+        let mut run = five_seconds_of(script);
+        let output = run.env("TABLETOP_ENGINE", "octave").output().unwrap();
+        assert_turned(&output);
+        let printed = stderr(&output);
+        for name in [
+            "tabletop: GNU Octave",
+            "minJointAngles",
+            "initJointAngles",
+            "endEffPos",
+            "gripperVelocities",
+        ] {
+            assert!(printed.contains(name), "{name}: {printed}");
+        }
+    }
+}
+
+#[test]
+fn the_python_example_turns_every_joint_for_five_seconds() {
+    for script in ["python", "python:python/example.py"] {
+        let mut run = five_seconds_of(script);
+        let output = run.output().unwrap();
+        assert_turned(&output);
+        let printed = stderr(&output);
+        assert!(printed.contains("tabletop: Python 3"), "{printed}");
+        assert!(printed.contains("jointAngles"), "{printed}");
+    }
+}
+
+/// Files of a run of the pick-and-place example.
+fn pick(name: &str, script: &str) -> [PathBuf; 3] {
+    let folder = folder(name);
+    let files = ["recording", "state.csv", "robot.json"].map(|name| folder.join(name));
+    let [recording, state, robot] = files.each_ref().map(|path| path.to_str().unwrap());
+    let mut run = command(&["run", "tests/scripts/pick.ron", "--script", script]);
+    run.args([
+        "--record",
+        recording,
+        "--final-state",
+        state,
+        "--final-robot",
+        robot,
+    ]);
+    succeeded(&run.output().unwrap());
+    files
+}
+
+#[test]
+fn a_block_is_gripped_carried_and_put_on_another_the_same_every_time_and_without_the_script() {
+    let script = octave(&copy_of_matlab("pick"));
+    let [recording, first @ ..] = pick("first", &script);
+    let [_, second @ ..] = pick("second", &script);
+    for (first, second) in first.iter().zip(&second) {
+        assert_eq!(fs::read(first).unwrap(), fs::read(second).unwrap());
+    }
+    // What was recorded runs again where there is no engine.
+    let output = command(&["replay", recording.to_str().unwrap(), "--verify"])
+        .env("PATH", "")
+        .output()
+        .unwrap();
+    succeeded(&output);
+}
+
+#[test]
+fn with_motors_scripts_sense_and_order_torques() {
+    let folder = folder("torques");
+    name_pair(&folder, "torques");
+    fs::write(folder.join("torquesInit.m"), "").unwrap();
+    let callback = "motor.jointTorques = sensor.jointTorques;\nmotor.jointTorques(2, 7) = 1;\n";
+    fs::write(folder.join("torquesCallback.m"), callback).unwrap();
+    let script = octave(&folder);
+    let run = [
+        "run",
+        "--script",
+        &script,
+        "--seconds",
+        "1",
+        "--final-robot",
+        "-",
+    ];
+    let output = command(&run).arg("--dynamic").output().unwrap();
+    succeeded(&output);
+    let robot: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let [left, right] = ["left", "right"].map(|arm| angles(&robot, arm));
+    assert!(right[6] > 0.5, "the wrist has turned: {right:?}");
+    assert!(
+        (left[6] - RobotJoint::LeftW2.home()).abs() < 0.1,
+        "{left:?}"
+    );
+    // Where nothing is moved by forces, there are none to sense.
+    let output = command(&run).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("torquesCallback.m:1"));
+}
+
+#[test]
+fn an_error_of_a_script_ends_the_run_with_its_place() {
+    let folder = folder("wrong");
+    name_pair(&folder, "wrong");
+    fs::write(folder.join("wrongInit.m"), "x = 1;").unwrap();
+    fs::write(
+        folder.join("wrongCallback.m"),
+        "y = 2;\nz = nobody_knows + y;\n",
+    )
+    .unwrap();
+    let script = octave(&folder);
+    let output = command(&[
+        "run",
+        "--script",
+        &script,
+        "--seconds",
+        "5",
+        "--final-robot",
+        "-",
+    ])
+    .output()
+    .unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let printed = stderr(&output);
+    assert!(printed.contains("'nobody_knows' undefined"), "{printed}");
+    assert!(printed.contains("wrongCallback.m:2"), "{printed}");
+    let robot: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(angles(&robot, "left")[0], RobotJoint::LeftS0.home());
+}
+
+#[test]
+fn what_cannot_be_run_is_told() {
+    for (arguments, message) in [
+        (&["ruby:x.rb"][..], "expected matlab, octave or python"),
+        (&["octave:no/such/folder"], "there is no "),
+        (&["python:no_such.py"], "there is no "),
+        (
+            &["matlab", "--engine", "no/such/octave"],
+            "there is no program no/such/octave",
+        ),
+        (
+            &["matlab", "--engine", "ruby"],
+            "the engine \"ruby\" is not known",
+        ),
+        (
+            &["python", "--engine", "octave"],
+            "--script python cannot run in GNU Octave, which --engine names; leave it out, or say --engine python",
+        ),
+        (
+            &["matlab", "--engine", "python"],
+            "--script matlab cannot run in Python, which --engine names",
+        ),
+    ] {
+        let mut run = command(&["run", "--seconds", "1", "--script"]);
+        let output = run.args(arguments).output().unwrap();
+        assert_ne!(output.status.code(), Some(0), "{arguments:?}");
+        let printed = stderr(&output);
+        assert!(printed.contains(message), "{arguments:?}: {printed}");
+    }
+}
+
+#[test]
+fn the_named_engine_runs_the_script() {
+    let script = python("named-engine", "print(os.environ['NAMED'])", "pass");
+    let program = folder("my-python").join("python-of-mine");
+    fs::write(&program, "#!/bin/sh\nNAMED=mine exec python3 \"$@\"\n").unwrap();
+    let made = Command::new("chmod").arg("+x").arg(&program).status();
+    assert!(made.unwrap().success());
+    let run = || command(&["run", "--seconds", "0.1", "--script", &script]);
+    let by_option = run().arg("--engine").arg(&program).output().unwrap();
+    let by_variable = run().env("TABLETOP_ENGINE", &program).output().unwrap();
+    for output in [by_option, by_variable] {
+        succeeded(&output);
+        assert!(stderr(&output).contains("\nmine\n"), "{}", stderr(&output));
+    }
+    let another = run().env("TABLETOP_ENGINE", "octave").output().unwrap();
+    assert_eq!(another.status.code(), Some(2));
+    assert!(stderr(&another).contains("GNU Octave, which TABLETOP_ENGINE names"));
+}
+
+#[test]
+fn a_script_that_fails_beside_a_scenario_is_told_once_when_it_does() {
+    let script = python("beside", "pass", "raise ValueError('my bug')");
+    for (name, steps, end) in [
+        ("beside_done.ron", "Wait(0.2)", ""),
+        (
+            "beside_failed.ron",
+            "Wait(0.2), Expect(Robot(Joint(joint: HeadPan, at: 1)))",
+            "beside_failed.ron:2:",
+        ),
+    ] {
+        let scenario = scenario(name, steps);
+        let output = tabletop(&["run", scenario.to_str().unwrap(), "--script", &script]);
+        let printed = stderr(&output);
+        assert_eq!(output.status.code(), Some(1), "{printed}");
+        assert_eq!(
+            printed
+                .matches("tabletop: ValueError: my bug\n  at ")
+                .count(),
+            1
+        );
+        let after = printed.split("my bug").nth(1).unwrap();
+        assert!(after.contains(end), "{printed}");
+    }
+}
+
+#[test]
+fn what_is_printed_is_shown_while_the_script_runs() {
+    let go = folder("progress").join("go");
+    let wait = format!("print('halfway')\n    while not os.path.exists({go:?}): time.sleep(0.01)");
+    let script = python("progress-script", &wait, "aux.exit = 1");
+    let mut run = command(&["run", "--script", &script])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(run.stderr.take().unwrap()).lines();
+    assert!(
+        lines
+            .next()
+            .unwrap()
+            .unwrap()
+            .starts_with("tabletop: Python 3")
+    );
+    assert_eq!(lines.next().unwrap().unwrap(), "halfway");
+    fs::write(go, "").unwrap();
+    assert_eq!(lines.count(), 0);
+    assert!(run.wait().unwrap().success());
+}
+
+#[test]
+fn the_time_limit_is_for_init_as_well() {
+    let script = python("endless", "while True: pass", "pass");
+    let output = tabletop(&["run", "--script", &script, "--script-timeout", "0.5"]);
+    assert_eq!(output.status.code(), Some(1));
+    let reason = "no answer from the init script within 0.5 s";
+    assert!(stderr(&output).contains(reason), "{}", stderr(&output));
+}
+
+#[test]
+fn markers_nobody_can_see_are_the_scripts_fault_and_not_the_scenarios() {
+    let script = python(
+        "far",
+        "aux.drawMarkers = [[1, 2, 3], [0, -1e39, 0]]",
+        "pass",
+    );
+    let scenario = scenario("far.ron", "Wait(0.2)");
+    let reason = "aux.drawMarkers(2,2) is -1e39; it must be";
+    for beside in [None, scenario.to_str()] {
+        let run = ["run", "--seconds", "1", "--script", &script];
+        let output = command(&run).args(beside).output().unwrap();
+        assert_eq!(output.status.code(), Some(1));
+        let printed = stderr(&output);
+        assert!(printed.contains(reason), "{printed}");
+        assert!(!printed.contains("far.ron"), "{printed}");
+    }
+}
+
+#[test]
+fn a_scenario_may_pause_while_a_script_runs() {
+    let script = python("paused", "pass", "motor.jointAngles = [[0] * 7] * 2");
+    let scenario = scenario(
+        "paused.ron",
+        "Wait(0.1), Pause(true), Wait(0.1), Pause(false)",
+    );
+    succeeded(&tabletop(&[
+        "run",
+        scenario.to_str().unwrap(),
+        "--script",
+        &script,
+    ]));
+}
+
+#[test]
+fn a_run_that_nobody_listens_to_ends_quietly() {
+    let script = python("chatty", "pass", "print('on and on')");
+    let mut run = command(&["run", "--seconds", "10000", "--script", &script])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(run.stderr.take().unwrap()).lines();
+    assert!(lines.next().unwrap().is_ok());
+    drop(lines);
+    assert_eq!(run.wait().unwrap().code(), Some(1));
+}
+
+#[test]
+fn torques_that_nothing_obeys_are_noted_once() {
+    let script = python("no-motors", "pass", "motor.jointTorques = [[0] * 7] * 2");
+    let run = ["run", "--seconds", "0.1", "--script", &script];
+    let output = tabletop(&run);
+    succeeded(&output);
+    let note = "motor.jointTorques has no effect without --dynamic";
+    assert_eq!(stderr(&output).matches(note).count(), 1);
+    let output = command(&run).arg("--dynamic").output().unwrap();
+    assert!(!stderr(&output).contains(note));
+}
