@@ -167,7 +167,7 @@ impl Motion<'_> {
             .clamp(1.0, MOST_STEPS);
         for step in 1..=steps as u32 {
             let ahead = f64::from(step) / f64::from(steps);
-            let Some(obstacle) = self.obstacle(arm, &self.positions.clone(), &between(ahead))
+            let Some(mut obstacle) = self.obstacle(arm, &self.positions.clone(), &between(ahead))
             else {
                 self.positions = between(ahead);
                 continue;
@@ -177,7 +177,7 @@ impl Motion<'_> {
                 let middle = (free + blocked) / 2.0;
                 match self.obstacle(arm, &self.positions.clone(), &between(middle)) {
                     None => free = middle,
-                    Some(_) => blocked = middle,
+                    Some(nearer) => (blocked, obstacle) = (middle, nearer),
                 }
             }
             self.positions = between(free);

@@ -138,6 +138,27 @@ fn an_arm_stops_at_a_fixed_object_and_pushes_a_free_one() {
 }
 
 #[test]
+fn an_arm_names_the_nearest_of_the_things_in_its_way() {
+    for shift in 0..6_u8 {
+        let mut stage = Stage::new();
+        stage.reach(Arm::Right, Vec3::new(2.0, -3.0, 0.9), 0.0);
+        let wall = block(Vec3::new(1.0, 4.0, 1.0));
+        let near = Vec3::new(4.0 + 0.03 * f32::from(shift), -3.0, 0.5);
+        for (id, behind) in [("far", 0.05), ("near", 0.0)] {
+            let place = Pose::at(near + Vec3::X * behind);
+            stage.put(id, wall.clone(), 0.0, place);
+        }
+        stage.app.step(1);
+        let s0 = RobotJoint::RightS0;
+        let turned = stage.robot().joint(s0).position - 0.5;
+        drive(&mut stage, s0, Drive::Position(turned));
+        stage.app.step(1);
+        let by = stage.robot().arm(Arm::Right).blocked_by.as_deref();
+        assert_eq!(by, Some("near"), "shifted by {shift}");
+    }
+}
+
+#[test]
 fn the_arms_do_not_enter_each_other() {
     let mut stage = Stage::new();
     stage.reach(Arm::Right, Vec3::new(2.0, -3.0, 3.0), 0.0);
