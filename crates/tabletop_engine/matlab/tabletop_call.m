@@ -13,6 +13,9 @@ try
             [names, values] = tabletop_step(folder);
     end
 catch err
+    driver = [folder 'driver' filesep];
+    addpath(driver);                               % the script may have taken it from the path
+    tabletop_path(driver);
     names = {'error.id', 'error.message', 'error.stack'};
     values = {err.identifier, err.message, tabletop_where(err.stack)};
 end

@@ -2,14 +2,14 @@ function [names, values] = tabletop_hello(display)
 % TABLETOP_HELLO  Prepare the engine and say which one it is.
 if exist('OCTAVE_VERSION', 'builtin')
     engine = ['GNU Octave ' OCTAVE_VERSION];
-    % Octave reads its own commands where a script would read answers.
-    before = warning('off', 'Octave:shadowed-function');
-    driver = fileparts(mfilename('fullpath'));
-    addpath(fullfile(driver, 'octave'));
-    % Where Octave has no means to draw, what draws does nothing.
-    if isempty(available_graphics_toolkits()), addpath(fullfile(driver, 'undrawn')); end
-    warning(before);
-    struct_levels_to_print(0);                     % sizes instead of pages of numbers, as in MATLAB
+    struct_levels_to_print(0);                     % sizes instead of pages of numbers
+    % Nobody can answer a debugger.
+    debug_on_error(false);
+    debug_on_warning(false);
+    % An engine that is killed leaves no file behind.
+    crash_dumps_octave_core(false);
+    sighup_dumps_octave_core(false);
+    sigterm_dumps_octave_core(false);
 else
     engine = ['MATLAB ' version];
 end

@@ -25,7 +25,7 @@ while quiet < 30
         tabletop_call(ops{words(2)}, folder, last, words(3), 1);
     else
         if idle < 0.01, nap = 0.0002; elseif idle < 5, nap = 0.001; else nap = 0.01; end
-        pause(nap);
+        builtin('pause', nap);
         idle = idle + nap;
         quiet = quiet + nap;
     end

@@ -5,7 +5,7 @@ head = zeros(12, count);
 data = cell(1, count);
 for k = 1:count
     value = values{k};
-    if isa(value, 'double') && isreal(value) && ~issparse(value) && ~isempty(value) && numel(value) < 1e5
+    if isa(value, 'double') && isreal(value) && ~issparse(value) && ~isempty(value) && numel(value) <= 3e5
         class_code = 0;
         bytes = typecast(value(:)', 'uint8');
         extent = numel(bytes);
@@ -29,7 +29,8 @@ fclose(fid);
 end
 
 function [class_code, bytes] = elements(value)
-if numel(value) >= 1e5                             % nobody wants that much: its size and class will do
+if ischar(value), value = value(1:min(end, 3e5)); end
+if numel(value) > 3e5                              % nobody wants that much: its size and class will do
     class_code = 7;
     bytes = uint8(class(value));
 elseif isnumeric(value) && isreal(value)

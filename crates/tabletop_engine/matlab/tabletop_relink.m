@@ -1,22 +1,42 @@
 function tabletop_relink
 % TABLETOP_RELINK  Undo what "clear" in a script has done: sensor, motor and aux of the base workspace
 %   are the shared globals again, and callbackFunc is there.
-linked = 'isglobal(''sensor'') && isglobal(''motor'') && isglobal(''aux'') && exist(''callbackFunc'', ''var'')';
+%   By BUILTIN, because the scripts may have variables of any name.
+linked = ['builtin(''isglobal'', ''sensor'') && builtin(''isglobal'', ''motor'') && ' ...
+    'builtin(''isglobal'', ''aux'') && builtin(''exist'', ''callbackFunc'', ''var'')'];
 if evalin('base', linked), return; end
 kept = tabletop_keep();
 names = {'motor', 'aux'};
 for k = 1:2
     name = names{k};
-    if evalin('base', ['exist(''' name ''', ''var'')'])
+    if evalin('base', ['builtin(''exist'', ''' name ''', ''var'')'])
         value = evalin('base', name);              % set after "clear"
     else
         value = tabletop_global(name);             % set before "clear"
         if ~isstruct(value), value = kept.(name); end  % "clear all"
     end
+    if k == 1, value = tabletop_complete(value, kept.motor); end
     tabletop_global(name, value);
 end
 evalin('base', 'clear sensor motor aux; global sensor motor aux');
-if ~evalin('base', 'exist(''callbackFunc'', ''var'')')
+if ~evalin('base', 'builtin(''exist'', ''callbackFunc'', ''var'')')
     assignin('base', 'callbackFunc', kept.callbackFunc);
+end
+end
+
+function motor = tabletop_complete(motor, template)
+% A motor that was begun anew, as if that had been done in the TEMPLATE: what it lacks is at rest.
+if ~isstruct(motor) || numel(motor) ~= 1, return; end
+names = fieldnames(template);
+for k = 1:numel(names)
+    whole = template.(names{k});
+    if isfield(motor, names{k})
+        part = motor.(names{k});
+        [rows, columns] = size(part);
+        larger = rows > size(whole, 1) || columns > size(whole, 2);
+        if isempty(part) || ~isnumeric(part) || ndims(part) > 2 || larger, continue; end
+        whole(1:rows, 1:columns) = part;
+    end
+    motor.(names{k}) = whole;
 end
 end

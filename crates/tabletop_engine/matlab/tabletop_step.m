@@ -2,8 +2,7 @@ function [names, values] = tabletop_step(folder)
 % TABLETOP_STEP  Set sensor, run the callback script.  The reply holds motor, and exit if it is there.
 request = tabletop_get([folder 'request.bin']);
 tabletop_global('sensor', request.sensor);
-evalin('base', 'callbackFunc();');
-tabletop_relink;
+tabletop_run('callbackFunc', folder);
 [names, values] = tabletop_fields('motor', tabletop_global('motor'));
 aux = tabletop_global('aux');
 if isfield(aux, 'exit')

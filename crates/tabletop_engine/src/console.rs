@@ -6,14 +6,45 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How many lines wait to be fetched, at most.
-const MAX_WAITING: usize = 1000;
-/// How many lines are taken in a second, at most.
-const MAX_PER_SECOND: u32 = 200;
-/// How long a line may be, in bytes.
-const MAX_LINE: usize = 2000;
 /// How much of the standard error is kept for the case that the engine dies.
 const LAST_WORDS: usize = 20;
+/// How long it takes until it is said again that lines were left out.
+const NOTE_INTERVAL: Duration = Duration::from_secs(1);
+
+/// How much is kept of what a script prints.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Output {
+    /// As much as a person can look at: 200 lines a second.
+    #[default]
+    Readable,
+    /// All, up to 64 MiB that nobody has fetched.
+    Whole,
+}
+
+impl Output {
+    fn lines_per_second(self) -> u32 {
+        match self {
+            Self::Readable => 200,
+            Self::Whole => u32::MAX,
+        }
+    }
+
+    /// How many bytes wait to be fetched, at most.
+    fn waiting(self) -> usize {
+        match self {
+            Self::Readable => 1 << 20,
+            Self::Whole => 64 << 20,
+        }
+    }
+
+    /// How long a line may be, in bytes.
+    fn line(self) -> usize {
+        match self {
+            Self::Readable => 2000,
+            Self::Whole => 1 << 20,
+        }
+    }
+}
 
 /// A line that an engine has printed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,87 +62,130 @@ pub enum Stream {
     Out,
     /// The standard error: warnings.
     Error,
-    /// A remark of this program: that lines were left out.
+    /// A remark of this program.
     Note,
 }
 
 /// Lines on their way from an engine to whoever shows them.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Console(Arc<Mutex<Lines>>);
+#[derive(Clone, Debug)]
+pub(crate) struct Console {
+    output: Output,
+    lines: Arc<Mutex<Lines>>,
+}
 
 #[derive(Debug, Default)]
 struct Lines {
     waiting: VecDeque<ConsoleLine>,
+    waiting_bytes: usize,
+    /// The last lines of the standard error that nobody has fetched.
     last_words: VecDeque<String>,
     left_out: u64,
+    noted: Option<Instant>,
     second: Option<Instant>,
     in_second: u32,
 }
 
 impl Console {
+    pub(crate) fn new(output: Output) -> Self {
+        Self {
+            output,
+            lines: Arc::default(),
+        }
+    }
+
+    /// A splitter for the lines that this takes.
+    pub(crate) fn splitter(&self) -> Splitter {
+        Splitter {
+            line: Vec::new(),
+            limit: 2 * self.output.line(),
+        }
+    }
+
     /// Takes a line, or counts it as left out.
     pub(crate) fn push(&self, stream: Stream, bytes: &[u8]) {
-        let mut lines = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let now = Instant::now();
-        let same = |start: Instant| now.duration_since(start) < Duration::from_secs(1);
-        if !lines.second.is_some_and(same) {
-            lines.second = Some(now);
-            lines.in_second = 0;
-        }
-        lines.in_second += 1;
-        let full = lines.in_second > MAX_PER_SECOND || lines.waiting.len() >= MAX_WAITING;
-        if full && stream == Stream::Out {
-            lines.left_out += 1;
-            return;
-        }
-        let text = clean(bytes);
-        if stream == Stream::Error {
-            if lines.last_words.len() >= LAST_WORDS {
-                lines.last_words.pop_front();
-            }
-            lines.last_words.push_back(text.clone());
-        }
-        if full {
-            lines.left_out += 1;
-            return;
-        }
-        lines.note_gap();
-        lines.waiting.push_back(ConsoleLine { stream, text });
+        self.with(|lines| lines.push(self.output, stream, bytes));
     }
 
     /// All lines that wait.
     pub(crate) fn drain(&self) -> Vec<ConsoleLine> {
-        let mut lines = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        lines.note_gap();
-        lines.waiting.drain(..).collect()
+        self.with(|lines| {
+            lines.note_gap(NOTE_INTERVAL);
+            lines.waiting_bytes = 0;
+            lines.last_words.clear();
+            lines.waiting.drain(..).collect()
+        })
     }
 
-    /// The last lines of the standard error.
-    pub(crate) fn last_words(&self) -> String {
-        let lines = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        lines
-            .last_words
-            .iter()
-            .map(String::as_str)
-            .collect::<Vec<_>>()
-            .join("\n")
+    /// Nothing more comes of one of the outputs.
+    pub(crate) fn finish(&self) {
+        self.with(|lines| lines.note_gap(Duration::ZERO));
+    }
+
+    /// The last lines of the standard error that nobody has fetched. Nobody will.
+    pub(crate) fn take_last_words(&self) -> String {
+        self.with(|lines| {
+            let words: Vec<_> = lines.last_words.drain(..).collect();
+            let told =
+                |line: &ConsoleLine| line.stream == Stream::Error && words.contains(&line.text);
+            lines.waiting.retain(|line| !told(line));
+            words.join("\n")
+        })
+    }
+
+    fn with<T>(&self, act: impl FnOnce(&mut Lines) -> T) -> T {
+        act(&mut self.lines.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
 impl Lines {
-    fn note_gap(&mut self) {
-        if self.left_out > 0 {
-            let text = format!("({} more lines were left out)", self.left_out);
-            let stream = Stream::Note;
-            self.waiting.push_back(ConsoleLine { stream, text });
-            self.left_out = 0;
+    fn push(&mut self, output: Output, stream: Stream, bytes: &[u8]) {
+        let over = |start: Instant| start.elapsed() >= Duration::from_secs(1);
+        if self.second.is_none_or(over) {
+            self.second = Some(Instant::now());
+            self.in_second = 0;
         }
+        self.in_second = self.in_second.saturating_add(1);
+        let full =
+            self.in_second > output.lines_per_second() || self.waiting_bytes >= output.waiting();
+        if full && stream == Stream::Out {
+            self.left_out += 1;
+            return;
+        }
+        let text = clean(bytes, output.line());
+        if stream == Stream::Error {
+            if self.last_words.len() >= LAST_WORDS {
+                self.last_words.pop_front();
+            }
+            self.last_words.push_back(text.clone());
+        }
+        if full {
+            self.left_out += 1;
+            return;
+        }
+        self.note_gap(NOTE_INTERVAL);
+        self.waiting_bytes += text.len() + size_of::<ConsoleLine>();
+        self.waiting.push_back(ConsoleLine { stream, text });
+    }
+
+    /// Says how many lines were left out, if that was not said just now.
+    fn note_gap(&mut self, interval: Duration) {
+        if self.left_out == 0 || self.noted.is_some_and(|noted| noted.elapsed() < interval) {
+            return;
+        }
+        let text = match self.left_out {
+            1 => "(1 more line was left out)".to_owned(),
+            count => format!("({count} more lines were left out)"),
+        };
+        let stream = Stream::Note;
+        self.waiting.push_back(ConsoleLine { stream, text });
+        self.noted = Some(Instant::now());
+        self.left_out = 0;
     }
 }
 
 /// A line that can be shown: no control characters, no terminal sequences, not too long.
-fn clean(bytes: &[u8]) -> String {
-    let shown = bytes.get(..MAX_LINE).unwrap_or(bytes);
+fn clean(bytes: &[u8], limit: usize) -> String {
+    let shown = bytes.get(..limit).unwrap_or(bytes);
     let text = String::from_utf8_lossy(shown);
     let mut cleaned = String::with_capacity(text.len());
     let mut letters = text.chars().peekable();
@@ -136,9 +210,11 @@ fn clean(bytes: &[u8]) -> String {
 }
 
 /// Splits what an engine prints into lines. A control character 1 begins a line of its own that is for the program.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Splitter {
     line: Vec<u8>,
+    /// How long a line may be, in bytes.
+    limit: usize,
 }
 
 /// A line for a person or for the program.
@@ -172,7 +248,7 @@ impl Splitter {
     }
 
     fn add(&mut self, bytes: &[u8]) {
-        let room = (2 * MAX_LINE).saturating_sub(self.line.len());
+        let room = self.limit.saturating_sub(self.line.len());
         self.line
             .extend_from_slice(bytes.get(..room).unwrap_or(bytes));
     }
@@ -200,7 +276,7 @@ mod tests {
     use super::*;
 
     fn pieces(chunks: &[&[u8]]) -> Vec<String> {
-        let mut splitter = Splitter::default();
+        let mut splitter = Console::new(Output::Readable).splitter();
         let mut all = Vec::new();
         let mut each = |piece: Piece| match piece {
             Piece::Text(text) => all.push(String::from_utf8_lossy(text).into_owned()),
@@ -225,25 +301,74 @@ mod tests {
         );
     }
 
+    fn notes(lines: &[ConsoleLine]) -> Vec<&str> {
+        let notes = lines.iter().filter(|line| line.stream == Stream::Note);
+        notes.map(|line| line.text.as_str()).collect()
+    }
+
     #[test]
-    fn a_flood_is_bounded() {
-        let console = Console::default();
-        for _ in 0..100_000 {
-            console.push(Stream::Out, b"keyboard> ");
+    fn a_flood_is_bounded_and_told_once_a_second() {
+        let console = Console::new(Output::Readable);
+        let mut lines = Vec::new();
+        for _ in 0..100 {
+            for _ in 0..1000 {
+                console.push(Stream::Out, b"keyboard> ");
+            }
+            lines.extend(console.drain());
         }
-        let lines = console.drain();
-        assert!(lines.len() <= MAX_PER_SECOND as usize + 1);
-        assert_eq!(lines.last().unwrap().stream, Stream::Note);
-        let mut splitter = Splitter::default();
+        assert!(
+            lines.len() < 100_000 && notes(&lines).len() < 100,
+            "{}",
+            lines.len()
+        );
+        console.push(Stream::Out, b"one more");
+        console.finish();
+        lines.extend(console.drain());
+        let told = notes(&lines).into_iter().map(|note| {
+            let count = note.trim_start_matches('(').split(' ').next();
+            count.unwrap().parse::<usize>().unwrap()
+        });
+        let told: usize = told.sum();
+        assert_eq!(lines.len() - notes(&lines).len() + told, 100_001);
+        let mut splitter = console.splitter();
         for _ in 0..1000 {
             splitter.feed(&[b'x'; 1000], |_| {});
         }
-        assert!(splitter.line.len() <= 2 * MAX_LINE);
+        assert!(splitter.line.len() <= 4000);
+    }
+
+    #[test]
+    fn one_line_is_no_lines() {
+        let console = Console::new(Output::Readable);
+        for _ in 0..201 {
+            console.push(Stream::Out, b"x");
+        }
+        assert_eq!(notes(&console.drain()), ["(1 more line was left out)"]);
+    }
+
+    #[test]
+    fn all_is_kept_where_all_is_wanted() {
+        let console = Console::new(Output::Whole);
+        for _ in 0..100_000 {
+            console.push(Stream::Out, &[b'x'; 300]);
+        }
+        assert_eq!(console.drain().len(), 100_000);
+    }
+
+    #[test]
+    fn last_words_are_told_once() {
+        let console = Console::new(Output::Readable);
+        console.push(Stream::Error, b"shown");
+        assert_eq!(console.drain().len(), 1);
+        console.push(Stream::Error, b"unseen");
+        console.push(Stream::Out, b"result");
+        assert_eq!(console.take_last_words(), "unseen");
+        assert_eq!(console.drain().len(), 1);
     }
 
     #[test]
     fn terminal_sequences_are_not_shown() {
-        assert_eq!(clean(b"\x1b[H\x1b[2Ja\tb\x07"), "a    b");
-        assert!(clean(&[b'x'; 5000]).ends_with('…'));
+        assert_eq!(clean(b"\x1b[H\x1b[2Ja\tb\x07", 2000), "a    b");
+        assert!(clean(&[b'x'; 5000], 2000).ends_with('…'));
     }
 }

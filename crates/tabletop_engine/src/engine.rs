@@ -13,7 +13,7 @@ use std::{
 
 use crate::{
     agent::{Aux, InitReply},
-    console::{Console, ConsoleLine},
+    console::{Console, ConsoleLine, Output},
     error::EngineError,
     find::{EngineKind, FoundEngine},
     motor::Motor,
@@ -70,6 +70,8 @@ pub struct EngineConfig {
     pub timeouts: Timeouts,
     /// Whether there is a display that figures can appear on.
     pub display: bool,
+    /// How much is kept of what the script prints.
+    pub output: Output,
 }
 
 impl EngineConfig {
@@ -91,6 +93,7 @@ impl EngineConfig {
             working_dir: ".".into(),
             timeouts: Timeouts::default(),
             display: !unix || set("DISPLAY") || set("WAYLAND_DISPLAY"),
+            output: Output::default(),
         }
     }
 }
@@ -143,7 +146,7 @@ impl EngineHandle {
     pub fn start(config: EngineConfig) -> Result<Self, EngineError> {
         let (inbox, signals) = mpsc::channel();
         let (outbox, replies) = mpsc::channel();
-        let console = Console::default();
+        let console = Console::new(config.output);
         let killer = Killer::default();
         let worker = Worker {
             config,
@@ -210,7 +213,7 @@ impl EngineHandle {
         replies.recv_timeout(limit).ok()
     }
 
-    /// What the script has printed since the last call: a bounded number of lines.
+    /// What the script has printed since the last call, as far as [`EngineConfig::output`] lets it be kept.
     pub fn drain_console(&self) -> Vec<ConsoleLine> {
         self.0.console.drain()
     }

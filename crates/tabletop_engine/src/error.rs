@@ -30,8 +30,13 @@ pub enum EngineError {
     #[error("{0}")]
     Script(ScriptError),
     /// The script set a variable to what cannot be used.
-    #[error("{0}")]
-    Misuse(#[from] Misuse),
+    #[error("{misuse}{}", in_script(.script.as_ref()))]
+    Misuse {
+        /// What cannot be used.
+        misuse: Misuse,
+        /// The script, if it is known.
+        script: Option<PathBuf>,
+    },
     /// There was no answer in time. The engine has been ended.
     #[error("no answer from {what} within {} s; the engine was ended", .limit.as_secs_f64())]
     Timeout {
@@ -45,7 +50,7 @@ pub enum EngineError {
     Died {
         /// How it ended, as the system says it.
         status: String,
-        /// The last lines that it wrote to its standard error.
+        /// The last lines that it wrote to its standard error, as far as nobody has fetched them from the console.
         stderr: String,
     },
     /// The engine answered what is no answer.
@@ -59,7 +64,7 @@ pub enum EngineError {
 impl EngineError {
     /// Whether the engine is gone, so that only a new one can go on.
     pub fn is_fatal(&self) -> bool {
-        !matches!(self, Self::Script(_) | Self::Misuse(_))
+        !matches!(self, Self::Script(_) | Self::Misuse { .. })
     }
 
     pub(crate) fn file(path: impl Into<PathBuf>, error: &io::Error) -> Self {
@@ -68,6 +73,21 @@ impl EngineError {
             reason: error.to_string(),
         }
     }
+}
+
+impl From<Misuse> for EngineError {
+    fn from(misuse: Misuse) -> Self {
+        Self::Misuse {
+            misuse,
+            script: None,
+        }
+    }
+}
+
+fn in_script(script: Option<&PathBuf>) -> String {
+    script.map_or(String::new(), |script| {
+        format!("\n  at {}", script.display())
+    })
 }
 
 fn last_words(stderr: &str) -> String {
@@ -89,18 +109,25 @@ pub struct ScriptError {
     pub stack: Vec<Place>,
 }
 
+/// How much of a message is shown, in letters.
+const MAX_MESSAGE: usize = 4000;
+
 /// A line of a script.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
     /// The script.
     pub file: PathBuf,
-    /// The line, from 1.
+    /// The line, from 1; 0 if the engine does not know.
     pub line: u32,
 }
 
 impl fmt::Display for Place {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        write!(formatter, "{}:{}", self.file.display(), self.line)
+        write!(formatter, "{}", self.file.display())?;
+        match self.line {
+            0 => Ok(()),
+            line => write!(formatter, ":{line}"),
+        }
     }
 }
 
@@ -108,6 +135,14 @@ impl ScriptError {
     /// Where the error happened, as far as the engine says.
     pub fn place(&self) -> Option<&Place> {
         self.stack.first()
+    }
+
+    /// An error that is in no line of a script.
+    pub(crate) fn plain(message: String) -> Self {
+        Self {
+            message,
+            ..Self::default()
+        }
     }
 
     /// An error from what a driver sends: the stack as lines of "line file".
@@ -119,9 +154,16 @@ impl ScriptError {
             .collect();
         Self {
             id: id.to_owned(),
-            message: message.trim_end().to_owned(),
+            message: cut(message.trim_end()),
             stack,
         }
+    }
+}
+
+fn cut(message: &str) -> String {
+    match message.char_indices().nth(MAX_MESSAGE) {
+        Some((end, _)) => format!("{}…", &message[..end]),
+        None => message.to_owned(),
     }
 }
 
@@ -171,10 +213,7 @@ mod tests {
     #[test]
     fn places_are_found_in_frames_and_messages() {
         let error = ScriptError::new("a:b", "no\n", "2 /x y/helper.m\n-1 /x/top.m\n");
-        assert_eq!(
-            error.to_string(),
-            "no\n  at /x y/helper.m:2\n  at /x/top.m:0"
-        );
+        assert_eq!(error.to_string(), "no\n  at /x y/helper.m:2\n  at /x/top.m");
         let octave = "parse error near line 3 of file /x/bad.m\n\n  syntax error\n";
         assert_eq!(
             ScriptError::new("", octave, "")
@@ -186,5 +225,7 @@ mod tests {
         let matlab = "Error: File: C:\\x\\bad.m Line: 12 Column: 5\nUnexpected operator.";
         assert_eq!(ScriptError::new("", matlab, "").place().unwrap().line, 12);
         assert_eq!(ScriptError::new("", "near line", "x\n\n7").place(), None);
+        let long = ScriptError::new("", &"ü".repeat(9000), "").message;
+        assert_eq!(long.chars().count(), MAX_MESSAGE + 1);
     }
 }

@@ -1,7 +1,7 @@
 //! How each engine is started.
 
 use std::{
-    path::{MAIN_SEPARATOR, Path},
+    path::{MAIN_SEPARATOR, Path, absolute},
     process::Command,
 };
 
@@ -17,8 +17,8 @@ pub(crate) fn command(config: &EngineConfig, session: &Session) -> Result<Comman
     command.current_dir(&config.working_dir);
     let poll = || {
         format!(
-            "addpath({}); tabletop_poll({}); exit",
-            quoted(&session.driver()),
+            "{} tabletop_poll({}); exit",
+            preparation(config, session),
             quoted(session.folder())
         )
     };
@@ -54,6 +54,17 @@ pub(crate) fn command(config: &EngineConfig, session: &Session) -> Result<Comman
         (EngineKind::Python, Trigger::Poll) => return Err("Python does not poll".into()),
     }
     Ok(command)
+}
+
+/// What MATLAB and Octave are told first. The user's own startup file may have gone to another folder, and where it waits for
+/// keys it takes some of the spaces.
+pub(crate) fn preparation(config: &EngineConfig, session: &Session) -> String {
+    let home = absolute(&config.working_dir).unwrap_or_else(|_| config.working_dir.clone());
+    format!(
+        "        addpath({}); cd({});",
+        quoted(&session.driver()),
+        quoted(&home)
+    )
 }
 
 /// A folder as a Matlab text, with a separator at its end.

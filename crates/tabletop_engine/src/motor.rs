@@ -22,12 +22,14 @@ pub struct Motor {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Misuse {
     /// A variable is missing or is no struct.
-    #[error("{name} is {found}; it must be a struct")]
+    #[error("{name} is {found}; it must be {expected}")]
     NoStruct {
         /// The variable.
         name: String,
         /// Size and class of what is there.
         found: String,
+        /// What should be there.
+        expected: &'static str,
     },
     /// A field has another size or class.
     #[error("{field} is {found}; it must be {expected}")]
@@ -100,6 +102,10 @@ pub(crate) fn no_struct(name: &str, array: &Array) -> Misuse {
     Misuse::NoStruct {
         name: name.to_owned(),
         found: array.describe(),
+        expected: match array.data.class() {
+            "struct" => "a struct of size 1x1",
+            _ => "a struct",
+        },
     }
 }
 
@@ -146,7 +152,8 @@ fn number(field: &str, array: &Array) -> Result<f64, Misuse> {
 
 /// Points in space, one in each row.
 pub(crate) fn points(field: &str, array: &Array) -> Result<Vec<[f64; 3]>, Misuse> {
-    let expected = "Nx3 double";
+    // The driver sends no more.
+    let expected = "Nx3 double, N at most 100000";
     let rows = match array.dims[..] {
         [_, 0] | [0, _] => 0,
         [rows, 3] => rows,

@@ -3,7 +3,8 @@
 use std::{io::Read, sync::mpsc::Sender};
 
 use crate::{
-    console::{Console, Piece, Splitter, Stream},
+    console::{Console, Piece, Stream},
+    frames::Frames,
     worker::Signal,
 };
 
@@ -14,8 +15,12 @@ pub(crate) fn read_output(
     console: &Console,
     inbox: &Sender<Signal>,
 ) {
-    let mut splitter = Splitter::default();
+    let mut splitter = console.splitter();
+    let mut frames = Frames::default();
     let mut each = |piece: Piece| match piece {
+        Piece::Text(text) if stream == Stream::Error => {
+            frames.feed(text, |line| console.push(stream, line));
+        }
         Piece::Text(text) => console.push(stream, text),
         Piece::Mark(mark) => {
             let seq = str::from_utf8(mark)
@@ -33,5 +38,6 @@ pub(crate) fn read_output(
         splitter.feed(buffer.get(..count).unwrap_or_default(), &mut each);
     }
     splitter.finish(each);
+    console.finish();
     drop(inbox.send(Signal::Closed));
 }

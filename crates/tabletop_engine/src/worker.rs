@@ -17,11 +17,13 @@ use crate::{
     engine::{EngineConfig, Reply, StepReply, Trigger},
     error::{EngineError, ScriptError},
     find::EngineKind,
-    launch::{command, quoted},
+    hint::hint,
+    launch::{command, preparation, quoted},
     motor::Motor,
     output::read_output,
     process::{Killer, Process},
     protocol::{Array, Arrays},
+    scripts::{self, Encoding},
     sensor::Sensor,
     session::Session,
     trigger::{Op, TriggerFile},
@@ -87,6 +89,8 @@ struct Running {
     seq: u32,
     open_outputs: u32,
     last_drawn: Option<Instant>,
+    /// The script that is called back, if the engine has said which it is.
+    callback: Option<PathBuf>,
 }
 
 impl Running {
@@ -123,6 +127,7 @@ impl Running {
             seq: 0,
             open_outputs: 0,
             last_drawn: None,
+            callback: None,
             worker,
         };
         running.read_outputs()?;
@@ -150,7 +155,7 @@ impl Running {
         if self.worker.config.engine.kind == EngineKind::Octave
             && self.worker.config.trigger == Trigger::Stdin
         {
-            let line = format!("addpath({});", quoted(&self.session.driver()));
+            let line = preparation(&self.worker.config, &self.session);
             self.process.write_line(&line).map_err(|_| self.death())?;
         }
         let limit = self.worker.config.timeouts.start;
@@ -211,9 +216,8 @@ impl Running {
     fn init(&mut self, aux: &Aux) -> Result<InitReply, EngineError> {
         let config = &self.worker.config;
         let agent = self.agent();
-        if !agent.exists() {
-            let message = format!("there is no {}", agent.display());
-            return Err(EngineError::Script(ScriptError::new("", &message, "")));
+        if let Some(fault) = self.fault(&agent) {
+            return Err(EngineError::Script(ScriptError::plain(fault)));
         }
         let folder = match config.engine.kind {
             EngineKind::Python => config.agent.parent().unwrap_or(Path::new(".")),
@@ -229,9 +233,25 @@ impl Running {
             arrays.put("agent.init", Array::text(init.as_str()));
             arrays.put("agent.callback", Array::text(callback.as_str()));
         }
+        if config.engine.kind == EngineKind::Octave {
+            let encoding = Encoding::of(&agent);
+            if let Some(note) = encoding.note() {
+                self.worker.console.push(Stream::Note, note.as_bytes());
+            }
+            if let Encoding::Windows(_) = encoding {
+                arrays.put("agent.encoding", Array::text("windows-1252"));
+            }
+        }
         self.session.write_request(&arrays)?;
         let limit = config.timeouts.init;
         let reply = self.call(Op::Init, "the init script", limit)?;
+        self.callback = match self.worker.config.engine.kind {
+            EngineKind::Python => Some(agent),
+            EngineKind::Matlab | EngineKind::Octave => reply
+                .get("agent.callback")
+                .and_then(Array::as_text)
+                .map(|file| self.of_original(file).into()),
+        };
         Ok(InitReply::read(&reply)?)
     }
 
@@ -240,8 +260,12 @@ impl Running {
         self.session.write_request(&sensor.arrays())?;
         let limit = self.worker.config.timeouts.step;
         let reply = self.call(Op::Step, "the callback script", limit)?;
+        let motor = Motor::read(&reply).map_err(|misuse| EngineError::Misuse {
+            misuse,
+            script: self.callback.clone(),
+        })?;
         Ok(StepReply {
-            motor: Motor::read(&reply)?,
+            motor,
             exit: reply.get("aux.exit").is_some(),
             took: start.elapsed(),
         })
@@ -256,15 +280,38 @@ impl Running {
         if reply.get("error.message").is_none() {
             return Ok(reply);
         }
-        // Octave may run repaired copies of scripts; the user knows the originals.
-        let copies = self.session.folder().join("repaired");
-        let originals = self.agent();
         let text = |name| {
-            let text = reply.get(name).and_then(Array::as_text).unwrap_or_default();
-            text.replace(&*copies.to_string_lossy(), &originals.to_string_lossy())
+            let text = reply.get(name).and_then(Array::as_text);
+            self.of_original(text.unwrap_or_default())
         };
         let [id, message, stack] = ["error.id", "error.message", "error.stack"].map(text);
-        Err(EngineError::Script(ScriptError::new(&id, &message, &stack)))
+        let mut error = ScriptError::new(&id, &message, &stack);
+        if let Some(hint) = hint(&error.message, matches!(op, Op::Init)) {
+            error.message = format!("{}: {hint}", error.message);
+        }
+        Err(EngineError::Script(error))
+    }
+
+    /// Why the scripts cannot be run, as far as that can be seen from here.
+    fn fault(&self, agent: &Path) -> Option<String> {
+        let config = &self.worker.config;
+        if config.agent.as_os_str().is_empty() {
+            return Some("the name of the scripts' folder is empty".to_owned());
+        }
+        match config.engine.kind {
+            EngineKind::Python => {
+                (!agent.exists()).then(|| format!("there is no {}", agent.display()))
+            }
+            EngineKind::Matlab | EngineKind::Octave => {
+                scripts::fault(agent, config.pair.is_none(), &config.working_dir)
+            }
+        }
+    }
+
+    /// What an engine says, with the user's scripts in place of repaired copies that it may run.
+    fn of_original(&self, text: &str) -> String {
+        let copies = self.session.folder().join("repaired");
+        text.replace(&*copies.to_string_lossy(), &self.agent().to_string_lossy())
     }
 
     /// Where the scripts are.
@@ -358,7 +405,7 @@ impl Running {
             Some(status) => self.died(status),
             None => EngineError::Died {
                 status: "it closed its input".into(),
-                stderr: self.worker.console.last_words(),
+                stderr: self.worker.console.take_last_words(),
             },
         }
     }
@@ -375,7 +422,7 @@ impl Running {
         }
         EngineError::Died {
             status: status.to_string(),
-            stderr: self.worker.console.last_words(),
+            stderr: self.worker.console.take_last_words(),
         }
     }
 

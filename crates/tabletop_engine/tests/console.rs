@@ -2,8 +2,10 @@
 
 mod common;
 
-use common::{Folder, Session, TRIGGERS};
-use tabletop_engine::{Sensor, Stream, Trigger};
+use std::{fs, thread, time::Duration};
+
+use common::{Folder, Session, TRIGGERS, octave};
+use tabletop_engine::{Output, Picture, Sensor, Stream, Trigger};
 
 #[test]
 fn what_scripts_print_arrives_apart_from_replies() {
@@ -19,7 +21,7 @@ fn what_scripts_print_arrives_apart_from_replies() {
         session.step(&Sensor::default()).unwrap();
         let printed = session.printed("timeElapsed");
         assert!(
-            printed.contains("no end of line") && printed.contains("timeElapsed: 1x1 scalar"),
+            printed.contains("no end of line") && printed.contains("timeElapsed: 0\n"),
             "{printed}"
         );
     }
@@ -39,4 +41,137 @@ fn a_flood_of_output_neither_blocks_nor_piles_up() {
             .iter()
             .any(|line| line.stream == Stream::Note && line.text.contains("left out"))
     );
+}
+
+#[test]
+fn all_that_is_printed_can_be_had() {
+    let folder = Folder::pair(
+        "n = 0;",
+        "n = n + 1; printf('tick %d\\n', n); disp(repmat('x', 1, 9000));",
+    );
+    let mut config = octave(&folder.0, Trigger::Stdin);
+    config.output = Output::Whole;
+    let session = Session::start(config).unwrap();
+    session.init().unwrap();
+    for _ in 0..1200 {
+        session.step(&Sensor::default()).unwrap();
+    }
+    session.engine.stop();
+    while session.engine.is_alive() {
+        thread::sleep(Duration::from_millis(10));
+    }
+    let mut lines = session.engine.drain_console();
+    lines.retain(|line| !line.text.is_empty());
+    assert_eq!(lines.len(), 2400);
+    assert_eq!(lines[2398].text, "tick 1200");
+    assert_eq!(lines[2399].text.len(), 9000);
+}
+
+#[test]
+fn a_flood_is_told_now_and_then() {
+    let folder = Folder::pair("", "for k = 1:1000, printf('line %d\\n', k); end");
+    let session = Session::octave(&folder.0, Trigger::Stdin);
+    session.init().unwrap();
+    let mut lines = Vec::new();
+    for _ in 0..20 {
+        session.step(&Sensor::default()).unwrap();
+        lines.extend(session.engine.drain_console());
+    }
+    let notes = lines
+        .iter()
+        .filter(|line| line.stream == Stream::Note)
+        .count();
+    assert!(
+        (1..15).contains(&notes) && lines.len() < 4000,
+        "{notes} {}",
+        lines.len()
+    );
+}
+
+#[test]
+fn a_struct_shows_what_it_holds() {
+    let folder = Folder::pair(
+        "s.number = 0.25; s.name = 'it is'; s.yes = true; s.all = zeros(2, 7); s.inner.x = 1; s.list = {1, 2}; s.go = @sin;\n\
+         s, inner = s.inner\nmany(3).x = 1\nstruct()\ntext = disp(s.inner); disp(s.inner); nested = {s}",
+        "sensor",
+    );
+    for trigger in TRIGGERS {
+        let session = Session::octave(&folder.0, trigger);
+        session.init().unwrap();
+        let printed = session.printed("nested");
+        for line in [
+            "s =\n",
+            "    number: 0.2500\n",
+            "    name: 'it is'\n",
+            "    yes: 1\n",
+            "    all: [2x7 double]\n",
+            "    inner: [1x1 struct]\n",
+            "    list: [1x2 cell]\n",
+            "    go: @sin\n",
+            "inner =\n    x: 1\n",
+            "many =\n    1x3 struct array with fields:\n    x\n",
+        ] {
+            assert!(printed.contains(line), "{line}: {printed}");
+        }
+        let sensor = Sensor {
+            picture: Picture::new(200, 150, vec![9; 90_000]),
+            tracker_loc: Some(vec![("l-S1".into(), [1.0, 2.0, 3.0])]),
+            ..Sensor::default()
+        };
+        session.step(&sensor).unwrap();
+        let printed = session.printed("trackerLoc");
+        assert!(
+            printed.contains("rgbVision: [150x200x3 double]\n"),
+            "{printed}"
+        );
+        assert!(
+            printed.contains("trackerLoc: [1x1 containers.Map]\n"),
+            "{printed}"
+        );
+        assert!(printed.lines().count() < 20, "{printed}");
+    }
+}
+
+#[test]
+fn what_was_shown_is_not_said_again() {
+    for trigger in TRIGGERS {
+        let folder = Folder::pair(
+            "fprintf(stderr, 'a warning\\n');",
+            "fprintf(stderr, 'unseen\\n'); exit(3)",
+        );
+        let session = Session::octave(&folder.0, trigger);
+        session.init().unwrap();
+        assert!(session.printed("a warning").contains("a warning"));
+        let error = session.step(&Sensor::default()).unwrap_err().to_string();
+        assert!(
+            error.contains("unseen") && !error.contains("a warning"),
+            "{error}"
+        );
+        let rest = session.engine.drain_console();
+        assert!(
+            rest.iter().all(|line| !line.text.contains("unseen")),
+            "{rest:?}"
+        );
+    }
+}
+
+#[test]
+fn warnings_name_no_line_of_the_driver() {
+    for trigger in TRIGGERS {
+        let folder = Folder::pair("warning('from init');", "helper;");
+        fs::write(
+            folder.0.join("helper.m"),
+            "function helper()\nwarning('deeper');\nend\n",
+        )
+        .unwrap();
+        let session = Session::octave(&folder.0, trigger);
+        session.init().unwrap();
+        session.step(&Sensor::default()).unwrap();
+        let printed = session.printed("testCallback at line 1");
+        assert!(
+            printed.contains("from init") && printed.contains("helper at line 2"),
+            "{printed}"
+        );
+        assert!(!printed.contains("tabletop_"), "{printed}");
+    }
 }

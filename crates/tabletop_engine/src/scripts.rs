@@ -1,0 +1,97 @@
+//! The folder of scripts for MATLAB and Octave: what is wrong with it, before an engine looks at it.
+
+use std::{
+    fs,
+    path::{Path, PathBuf, absolute},
+};
+
+/// Why the scripts of a folder cannot be run, or would not be. `whole`: with agentBehavior.m.
+pub(crate) fn fault(folder: &Path, whole: bool, working_dir: &Path) -> Option<String> {
+    let shown = folder.display();
+    if !folder.exists() {
+        return Some(format!("there is no {shown}"));
+    }
+    if !folder.is_dir() {
+        return Some(format!("{shown} is a file; name its folder"));
+    }
+    let separator = if cfg!(windows) { ';' } else { ':' };
+    if folder.to_string_lossy().contains(separator) {
+        return Some(format!(
+            "{shown} cannot be on Matlab's path, because its name holds '{separator}'; rename it"
+        ));
+    }
+    let behavior = |extension| folder.join("agentBehavior").with_extension(extension);
+    if whole && !["m", "p"].map(behavior).iter().any(|file| file.is_file()) {
+        return Some(format!("there is no agentBehavior.m in {shown}"));
+    }
+    let working_dir = absolute(working_dir).ok()?;
+    let (shadow, script) = files(folder).into_iter().find_map(|script| {
+        let shadow = working_dir.join(script.file_name()?);
+        let other = shadow.is_file() && shadow.canonicalize().ok() != script.canonicalize().ok();
+        other.then_some((shadow, script))
+    })?;
+    Some(format!(
+        "{} would run in place of {}, because the current directory goes first; rename one, or start the program elsewhere",
+        shadow.display(),
+        script.display()
+    ))
+}
+
+/// How the scripts of a folder are written.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum Encoding {
+    /// In UTF-8.
+    Utf8,
+    /// As Windows wrote them, this one at least.
+    Windows(PathBuf),
+    /// This one as Windows wrote it, others in UTF-8.
+    Mixed(PathBuf),
+}
+
+impl Encoding {
+    /// Reads the scripts and sees.
+    pub(crate) fn of(folder: &Path) -> Self {
+        let mut foreign = None;
+        let mut has_utf8 = false;
+        for file in files(folder) {
+            let text = fs::read(&file).unwrap_or_default();
+            if text.is_ascii() {
+                continue;
+            }
+            match str::from_utf8(&text) {
+                Ok(_) => has_utf8 = true,
+                Err(_) => drop(foreign.get_or_insert(file)),
+            }
+        }
+        match foreign {
+            None => Self::Utf8,
+            Some(file) if has_utf8 => Self::Mixed(file),
+            Some(file) => Self::Windows(file),
+        }
+    }
+
+    /// What the user should know.
+    pub(crate) fn note(&self) -> Option<String> {
+        match self {
+            Self::Utf8 => None,
+            Self::Windows(file) => Some(format!(
+                "{} is not UTF-8; the scripts of this folder are read as Windows-1252",
+                file.display()
+            )),
+            Self::Mixed(file) => Some(format!(
+                "{} is not UTF-8 as others of its folder; save it as UTF-8",
+                file.display()
+            )),
+        }
+    }
+}
+
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut files: Vec<_> = entries
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "m"))
+        .collect();
+    files.sort();
+    files
+}

@@ -1,0 +1,97 @@
+//! Scripts that clear what the driver needs.
+
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+mod common;
+
+use common::{Folder, Session, TRIGGERS};
+use tabletop_engine::{Motor, Sensor, Trigger};
+
+fn motors(init: &str, callback: &str, trigger: Trigger) -> [Motor; 2] {
+    let folder = Folder::pair(init, callback);
+    std::fs::write(folder.0.join("helper.m"), "motor.headVelocity = 2;").unwrap();
+    let session = Session::octave(&folder.0, trigger);
+    session.init().unwrap();
+    [(); 2].map(|()| {
+        let result = session.step(&Sensor::default());
+        result
+            .unwrap_or_else(|error| panic!("{init} {callback}: {error}"))
+            .motor
+    })
+}
+
+#[test]
+fn whatever_becomes_of_the_path_the_script_runs_on() {
+    for trigger in TRIGGERS {
+        for change in [
+            "restoredefaultpath;",
+            "path('');",
+            "for p = strsplit(path, pathsep), if any(strfind(p{1}, 'driver')), rmpath(p{1}); end, end;",
+        ] {
+            let [_, motor] = motors(change, "helper; pause(0);", trigger);
+            assert_eq!(motor.head_velocity, Some(2.0));
+            let callback = format!("motor.headVelocity = 3; {change}");
+            let [_, motor] = motors("", &callback, trigger);
+            assert_eq!(motor.head_velocity, Some(3.0));
+            let folder = Folder::pair("", &format!("{change} error('mine');"));
+            let session = Session::octave(&folder.0, trigger);
+            for _ in 0..2 {
+                session.init().unwrap();
+                let error = common::script_error(session.step(&Sensor::default()));
+                assert_eq!(error.message, "mine");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_motor_that_was_cleared_is_at_rest() {
+    for trigger in TRIGGERS {
+        for clear in [
+            "clear all;",
+            "clear global;",
+            "clear motor;",
+            "clear;",
+            "clear -all; close all; clc;",
+        ] {
+            let callback = format!(
+                "{clear} motor.jointVelocities(2, 1) = 0.5; motor.gripperVelocities(1) = 1;"
+            );
+            let mut expected = Motor {
+                gripper_velocities: [1.0, 0.0],
+                ..Motor::default()
+            };
+            expected.joint_velocities[1][0] = 0.5;
+            assert_eq!(
+                motors("", &callback, trigger),
+                [expected.clone(), expected],
+                "{clear}"
+            );
+        }
+    }
+}
+
+#[test]
+fn variables_may_have_any_name() {
+    for name in [
+        "exist",
+        "isglobal",
+        "evalin",
+        "isfield",
+        "tabletop_relink",
+        "path",
+        "sensor_",
+        "clear",
+    ] {
+        let callback = "motor = struct('headVelocity', 2);";
+        let [_, motor] = motors(&format!("{name} = 1;"), callback, Trigger::Stdin);
+        assert_eq!(motor.head_velocity, Some(2.0), "{name}");
+    }
+    let init = "exist = 1; isglobal = 2;";
+    let [_, motor] = motors(
+        init,
+        "clear motor; motor.headVelocity = exist + isglobal;",
+        Trigger::Stdin,
+    );
+    assert_eq!(motor.head_velocity, Some(3.0));
+}

@@ -1,0 +1,31 @@
+//! Scripts that draw, where there is nothing to draw on.
+
+mod common;
+
+use common::{Folder, Session, octave};
+use tabletop_engine::Trigger;
+
+#[test]
+fn what_draws_does_nothing_without_a_display() {
+    let calls = [
+        "h = waitbar(0, 'wait'); waitbar(0.5, h); close(h); close all",
+        "figure(3); set(gcf, 'name', 'mine'); p = get(gcf, 'position');",
+        "surfc(peaks); meshc(peaks); pcolor(peaks); contourf(peaks); [c, h] = contour3(peaks); surface(peaks);",
+        "pie([1 2]); polar(1:3, 1:3); quiver3(1, 1, 1, 1, 1, 1); comet(1:3, 1:3); plotyy(1:2, 1:2, 1:2, 1:2);",
+        "fplot(@sin, [0 1]); light('position', [1 1 1]); camlight; hggroup; uicontrol('style', 'pushbutton');",
+        "f = getframe(gcf); assert(isempty(f.cdata)); linkaxes([1 2]); trisurf([1 2 3], [0 1 0], [0 0 1], [0 0 0]);",
+        "sphere; cylinder; hist(rand(1, 9)); histogram(1:2); bar3(1); annotation('line'); daspect([1 1 1]); rose(1:3);",
+        "ax = subplot(2, 1, 1); plot(ax, 1:3); hold on; axis equal; colormap(gray); colorbar; shading interp; zlim([0 1]);",
+        "h = plot(1:3); set(h, 'xdata', 1:3); drawnow; title('x'); legend('a'); if ishandle(h), delete(h); end",
+        "if ~ishold, hold on; end, delete(findobj('type', 'line')); isempty(findall(0));",
+        "[n, x] = hist([1 2 3]); assert(numel(n) == 10); [x, y, z] = sphere(4); assert(rows(x) == 5);",
+    ];
+    for call in calls {
+        let folder = Folder::pair(call, "");
+        let mut config = octave(&folder.0, Trigger::Stdin);
+        config.display = false;
+        let session = Session::start(config).unwrap();
+        let result = session.init();
+        assert!(result.is_ok(), "{call}: {}", result.unwrap_err());
+    }
+}

@@ -1,0 +1,123 @@
+//! What is said about faults, so that they can be mended.
+
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+mod common;
+
+use std::fs;
+
+use common::{Folder, Session, TRIGGERS, octave, script_error};
+use tabletop_engine::{EngineError, Sensor, Trigger};
+
+fn message(init: &str, callback: &str) -> String {
+    let folder = Folder::pair(init, callback);
+    let session = Session::octave(&folder.0, Trigger::Stdin);
+    let result = session
+        .init()
+        .and_then(|_| session.step(&Sensor::default()));
+    result.unwrap_err().to_string()
+}
+
+#[test]
+fn what_is_not_always_sensed_is_explained() {
+    for (callback, hint) in [
+        (
+            "x = sensor.rgbVision;",
+            "structure has no member 'rgbVision': sensor.rgbVision is there only when there is a new picture",
+        ),
+        ("sensor.rgbVision(1, 2, 3)", "--picture-every 1"),
+        ("x = sensor.trackerLoc('l-S1');", "a comment will do"),
+        ("x = sensor.objects.id;", "--no-objects"),
+        ("x = sensor.jointTorques;", "--dynamic"),
+    ] {
+        let message = message("", callback);
+        assert!(
+            message.contains(hint) && message.contains("testCallback.m:1"),
+            "{message}"
+        );
+    }
+    assert!(message("x = sensor.jointAngles;", "").contains("sensor is empty in the init script"));
+    assert!(!message("", "x = sensor.nosuch;").contains("there only"));
+}
+
+#[test]
+fn long_messages_are_cut() {
+    for length in [5000, 200_000, 400_000] {
+        let message = message("", &format!("error(repmat('x', 1, {length}));"));
+        assert!(
+            message.starts_with("xxx") && message.len() < 5000,
+            "{}",
+            message.len()
+        );
+        assert!(message.contains('…') && message.contains("testCallback.m:1"));
+    }
+}
+
+#[test]
+fn the_limits_of_sizes_are_named() {
+    let folder = Folder::pair("aux.drawMarkers = ones(40000, 3);", "");
+    let session = Session::octave(&folder.0, Trigger::Stdin);
+    assert_eq!(session.init().unwrap().draw_markers.len(), 40_000);
+    let message = message("aux.drawMarkers = ones(200000, 3);", "");
+    assert!(
+        message.starts_with(
+            "aux.drawMarkers is 200000x3 double; it must be Nx3 double, N at most 100000"
+        ),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_list_of_motors_is_told_from_one() {
+    let message = message("", "motor(2).jointVelocities = 1;");
+    assert!(
+        message.starts_with("motor is 1x2 struct; it must be a struct of size 1x1"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_misused_motor_is_told_with_its_script() {
+    let callback = "if true, motor.headVelocity = [1 2]; break, end";
+    let folder = Folder::pair("", callback);
+    let session = Session::octave(&folder.0, Trigger::Stdin);
+    session.init().unwrap();
+    let message = session.step(&Sensor::default()).unwrap_err().to_string();
+    let script = folder.0.join("testCallback.m");
+    assert!(
+        message.ends_with(&format!("must be 1x1\n  at {}", script.display())),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_line_that_is_not_known_is_not_made_up() {
+    let folder = Folder::pair("", "recurse");
+    fs::write(
+        folder.0.join("recurse.m"),
+        "function recurse()\nrecurse();\nend\n",
+    )
+    .unwrap();
+    let session = Session::octave(&folder.0, Trigger::Stdin);
+    session.init().unwrap();
+    let error = script_error(session.step(&Sensor::default())).to_string();
+    assert!(!error.contains(":0"), "{error}");
+}
+
+#[test]
+#[cfg(unix)]
+fn a_killed_engine_leaves_nothing_behind() {
+    for trigger in TRIGGERS {
+        for signal in [1, 15] {
+            let folder = Folder::pair("", &format!("x = 1; kill(getpid(), {signal}); pause(5);"));
+            let current = Folder::new(&[]);
+            let mut config = octave(&folder.0, trigger);
+            config.working_dir.clone_from(&current.0);
+            let session = Session::start(config).unwrap();
+            session.init().unwrap();
+            let error = session.step(&Sensor::default()).unwrap_err();
+            assert!(matches!(error, EngineError::Died { .. }), "{error}");
+            assert_eq!(fs::read_dir(&current.0).unwrap().count(), 0);
+        }
+    }
+}
