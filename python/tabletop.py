@@ -17,7 +17,7 @@ W2; lengths are in units of 10 cm, angles in rad.
     sensor.demoCue           whether a demonstration is going on
     sensor.headAngle         of the neck, positive to the robot's left
     sensor.objects, sensor.contacts, sensor.held
-                             see docs/scripts.md; only if a file beside your script mentions one of them
+                             see docs/scripts.md; only if your script, or a file beside or below it, mentions one of them
     motor.jointVelocities    2x7, in rad/s; kept from call to call, like all of motor
     motor.gripperVelocities  2x1; [left, right] will do, in units/s
     motor.jointAngles        2x7, optional: angles that are taken at once
@@ -34,10 +34,15 @@ docs/script-protocol.md describes what goes on below. Python 3.8 and later; noth
 """
 
 import importlib.util
+import inspect
+import math
+import numbers
 import os
+import re
 import struct
 import sys
 import traceback
+from collections.abc import Sequence
 from types import SimpleNamespace
 
 try:
@@ -47,7 +52,10 @@ except ImportError:
 
 MAGIC, VERSION = 0x31415454, 1
 DOUBLE, BYTES, TEXT, LOGICAL, PICTURE, MAP, TEXTS, OTHER = range(8)
+MOST_DIMENSIONS = 8
 VELOCITIES = {"jointVelocities": (2, 7), "gripperVelocities": (2, 1)}
+SCRIPT = "__tabletop_script__"  # the script's name as a module: no file of a user has it
+PLACES = 10  # how many lines of the script an error names at most
 
 
 class Picture:
@@ -131,7 +139,7 @@ def encode(arrays):
     records, names, payloads = b"", b"", b""
     for key, value in arrays.items():
         code, dims, data = _elements(value)
-        name = key.encode("ascii", "replace")
+        name = re.sub("[^A-Za-z0-9_.]", "_", key)[:256].encode("ascii")
         records += struct.pack("<12I", code, len(name), len(data), len(dims), *dims, *[0] * (8 - len(dims)))
         names += name
         payloads += data + bytes(-len(data) % 8)
@@ -144,19 +152,52 @@ def _elements(value):
         return TEXT, (1, len(value)), value.encode("utf-8", "replace")
     if isinstance(value, bool):
         return LOGICAL, (1, 1), bytes([value])
+    value = _lists(value)
+    extents = _extents(value)
+    if extents is None:
+        lengths = [len(row) if isinstance(row, list) else 1 for row in value]
+        kind = "ragged list with rows of %d to %d elements" % (min(lengths), max(lengths))
+        return OTHER, (len(value), 1), kind.encode("utf-8")
+    elements = _columns(value, extents)
+    dims = extents + (1,) * (2 - len(extents))
+    strange = [type(element).__name__ for element in elements if not isinstance(element, numbers.Real)]
+    if strange:
+        return OTHER, dims, strange[0].encode("utf-8", "replace")
+    return DOUBLE, dims, struct.pack("<%dd" % len(elements), *map(_double, elements))
+
+
+def _lists(value, depth=0):
+    """Arrays and sequences as nested lists."""
     if hasattr(value, "tolist"):
         value = value.tolist()
-    if isinstance(value, (int, float)):
-        return DOUBLE, (1, 1), struct.pack("<d", value)
+    if depth == MOST_DIMENSIONS or isinstance(value, (str, bytes)) or not isinstance(value, Sequence):
+        return value
+    return [_lists(element, depth + 1) for element in value]
+
+
+def _extents(value, depth=0):
+    """The extents of nested lists; None if they are ragged."""
+    if depth == MOST_DIMENSIONS or not isinstance(value, list):
+        return ()
+    inner = {_extents(element, depth + 1) for element in value} or {()}
+    if len(inner) > 1 or None in inner:
+        return None
+    return (len(value),) + inner.pop()
+
+
+def _columns(value, extents):
+    """The elements of nested lists, the first index running fastest."""
+    if not extents:
+        return [value]
+    rows = [_columns(row, extents[1:]) for row in value]
+    return [element for column in zip(*rows) for element in column]
+
+
+def _double(number):
     try:
-        rows = [list(row) if hasattr(row, "__iter__") else [row] for row in value]
-        columns = max((len(row) for row in rows), default=0)
-        numbers = [float(row[column]) for column in range(columns) for row in rows]
-        if any(len(row) != columns for row in rows):
-            raise ValueError
-    except (TypeError, ValueError, IndexError):
-        return OTHER, (1, 1), type(value).__name__.encode("utf-8", "replace")
-    return DOUBLE, (len(rows), columns), struct.pack("<%dd" % len(numbers), *numbers)
+        return float(number)
+    except OverflowError:
+        return math.inf if number > 0 else -math.inf
 
 
 def _zeros(rows, columns):
@@ -179,24 +220,65 @@ def _structs(arrays):
     return root
 
 
+class Unfit(Exception):
+    """Why a script cannot be used, and the function at fault if there is one."""
+
+    def __init__(self, message, function=None):
+        super().__init__(message)
+        self.code = getattr(inspect.unwrap(function), "__code__", None)
+
+
 def _load(file):
+    if os.path.isdir(file):
+        raise Unfit("%s is a folder; name the Python file in it" % file)
+    spec = importlib.util.spec_from_file_location(SCRIPT, file)
+    if spec is None:
+        raise Unfit("%s is no Python script: its name does not end in .py" % file)
     sys.path.insert(0, os.path.dirname(file))
-    spec = importlib.util.spec_from_file_location("agent", file)
-    if spec is None or not os.path.isfile(file):
-        raise FileNotFoundError("there is no Python script " + file)
     module = importlib.util.module_from_spec(spec)
-    sys.modules["agent"] = module
+    sys.modules[SCRIPT] = module
     spec.loader.exec_module(module)
+    _expect(module, "init", "aux")
+    _expect(module, "callback", "sensor", "motor", "aux")
     return module
 
 
+def _expect(module, name, *arguments):
+    """Has the script such a function?"""
+    expected = "%s(%s)" % (name, ", ".join(arguments))
+    function = getattr(module, name, None)
+    if not callable(function):
+        raise Unfit("%s has no function %s" % (module.__file__, expected))
+    signature = inspect.signature(function)
+    try:
+        signature.bind(*arguments)
+    except TypeError:
+        raise Unfit("%s%s must be %s" % (name, signature, expected), function) from None
+
+
+def _fault(error):
+    """An error as a reply."""
+    if isinstance(error, Unfit):
+        message = str(error)
+    else:
+        message = "".join(traceback.format_exception_only(type(error), error)).strip()
+    places = _where(error)
+    if len(places) > PLACES:
+        places[PLACES:] = [(0, "…")]
+    stack = "".join("%d %s\n" % place for place in places)
+    return {"error.id": type(error).__name__, "error.message": message, "error.stack": stack}
+
+
 def _where(error):
-    """The script's part of the traceback, innermost first, one "line file" a line."""
-    frames = [(frame.lineno, frame.filename) for frame in traceback.extract_tb(error.__traceback__)]
-    frames = [frame for frame in frames if frame[1] != __file__ and not frame[1].startswith("<frozen")]
+    """The script's part of the traceback as lines and files, innermost first."""
+    frames = traceback.walk_tb(error.__traceback__)
+    places = [(line, frame.f_code.co_filename) for frame, line in frames]
+    places = [place for place in places if place[1] != __file__ and not place[1].startswith("<frozen")]
     if isinstance(error, SyntaxError) and error.filename:
-        frames.append((error.lineno or 0, error.filename))
-    return "".join("%d %s\n" % frame for frame in reversed(frames))
+        places.append((error.lineno or 0, error.filename))
+    if isinstance(error, Unfit) and error.code:
+        places.append((error.code.co_firstlineno, error.code.co_filename))
+    return places[::-1]
 
 
 class _Agent:
@@ -234,19 +316,24 @@ class _Agent:
 
 def main(folder):
     """Serves the simulator until it closes the standard input."""
-    commands, sys.stdin = sys.stdin, open(os.devnull)
+    # Whatever the script, or what it starts, does to the standard streams, these are ours.
+    commands, marks = os.fdopen(os.dup(0)), os.fdopen(os.dup(1), "w")
+    nothing = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(nothing, 0)
+    os.close(nothing)
     agent = _Agent(folder)
     for line in commands:
         op, seq = line.split()
         try:
-            reply = agent.run(op)
-        except Exception as error:
-            message = "".join(traceback.format_exception_only(type(error), error)).strip()
-            reply = {"error.id": type(error).__name__, "error.message": message, "error.stack": _where(error)}
+            reply = encode(agent.run(op))
+        except SystemExit:
+            raise
+        except BaseException as error:
+            reply = encode(_fault(error))
         with open(os.path.join(folder, "reply.bin"), "wb") as file:
-            file.write(encode(reply))
-        sys.stdout.write("\x01done %s\n" % seq)
-        sys.stdout.flush()
+            file.write(reply)
+        marks.write("\x01done %s\n" % seq)
+        marks.flush()
 
 
 if __name__ == "__main__":

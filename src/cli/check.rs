@@ -5,7 +5,7 @@ use std::{path::PathBuf, process::ExitCode};
 use clap::Args;
 use tabletop::{report, xml::read_task};
 
-use super::{Failure, Output, WRONG_INPUT};
+use super::{Failure, Output, WRONG_INPUT, terminal::say};
 
 #[derive(Args)]
 pub(super) struct CheckArgs {
@@ -23,13 +23,13 @@ pub(super) fn check(args: &CheckArgs) -> Result<ExitCode, Failure> {
         let task = match read_task(file) {
             Ok(task) => task,
             Err(error) => {
-                eprintln!("{error}");
+                say(error);
                 sound = false;
                 continue;
             }
         };
         for fault in &task.faults {
-            eprintln!("{fault}");
+            say(fault);
         }
         sound &= task.faults.is_empty();
         if args.dump {

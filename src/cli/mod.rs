@@ -1,19 +1,23 @@
 //! What the program is told on the command line, and its exit codes: 0 done, 1 the run failed, 2 wrong usage or input.
-#![expect(
-    clippy::print_stderr,
-    reason = "the command line is where a person looks for what is wrong"
-)]
 
 mod check;
 mod replay;
 mod robot;
 mod robot_options;
 mod run;
+mod terminal;
 mod window;
 
-use std::{fmt, path::PathBuf, process::ExitCode};
+use std::{
+    fmt,
+    io::{self, ErrorKind, Write as _},
+    path::PathBuf,
+    process::ExitCode,
+};
 
 use clap::{Parser, Subcommand};
+
+use terminal::say;
 
 /// A virtual demonstrator environment for robot imitation learning.
 ///
@@ -48,7 +52,8 @@ const WRONG_INPUT: u8 = 2;
 /// Why the program ends before it is done.
 #[derive(Debug)]
 struct Failure {
-    message: String,
+    /// What is wrong, if nobody has said it yet.
+    message: Option<String>,
     code: u8,
 }
 
@@ -56,7 +61,7 @@ impl Failure {
     /// The user's input is at fault.
     fn input(error: impl fmt::Display) -> Self {
         Self {
-            message: error.to_string(),
+            message: Some(error.to_string()),
             code: WRONG_INPUT,
         }
     }
@@ -64,7 +69,15 @@ impl Failure {
     /// The run failed.
     fn run(error: impl fmt::Display) -> Self {
         Self {
-            message: error.to_string(),
+            message: Some(error.to_string()),
+            code: 1,
+        }
+    }
+
+    /// The run failed, and there is nothing more to say.
+    fn silent() -> Self {
+        Self {
+            message: None,
             code: 1,
         }
     }
@@ -81,7 +94,9 @@ pub fn main() -> ExitCode {
         None => window::open(cli.window),
     };
     result.unwrap_or_else(|failure| {
-        eprintln!("tabletop: {}", failure.message);
+        if let Some(message) = failure.message {
+            say(format_args!("tabletop: {message}"));
+        }
         ExitCode::from(failure.code)
     })
 }
@@ -107,12 +122,12 @@ impl Output {
     fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         match self {
             Self::Stdout => {
-                use std::io::Write as _;
-                let mut stdout = std::io::stdout().lock();
-                stdout
-                    .write_all(bytes)
-                    .and_then(|()| stdout.flush())
-                    .map_err(|error| Failure::run(format!("standard output: {error}")))
+                let mut stdout = io::stdout().lock();
+                let written = stdout.write_all(bytes).and_then(|()| stdout.flush());
+                written.map_err(|error| match error.kind() {
+                    ErrorKind::BrokenPipe => Failure::silent(),
+                    _ => Failure::run(format!("standard output: {error}")),
+                })
             }
             Self::File(path) => std::fs::write(path, bytes)
                 .map_err(|error| Failure::run(format!("{}: {error}", path.display()))),

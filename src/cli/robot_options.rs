@@ -9,7 +9,7 @@ use clap::Args;
 use tabletop::{
     baxter::{BaxterPlugin, Description, Source},
     core::RobotMode,
-    script::{EngineChoice, ScriptSettings, Tell},
+    script::{ENGINE_VARIABLE, EngineChoice, EngineKind, ScriptSettings, Surroundings, Tell},
 };
 
 use super::Failure;
@@ -53,13 +53,14 @@ fn describe(path: &Path) -> Result<Description, Failure> {
 
 #[derive(Args, Clone)]
 pub(super) struct EngineOptions {
-    /// What runs Matlab scripts: `matlab`, `octave`, `auto`, or the path of a program [default: auto, or TABLETOP_ENGINE]
+    /// What runs the scripts: `matlab`, `octave`, `python`, `auto`, or the path of a program [default: auto, or TABLETOP_ENGINE]
     #[arg(long, value_name = "ENGINE")]
     engine: Option<String>,
     /// Ticks from one picture that a script gets to the next, 60 a second [default: 15]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     picture_every: Option<u64>,
-    /// How long to wait for a call of a script before its engine is ended, in seconds [default: 30]
+    /// How long to wait for init, and for each call of the callback, before the engine is ended, in seconds [default: 120 and
+    /// 30]
     #[arg(long, value_name = "S", value_parser = patience)]
     script_timeout: Option<Duration>,
     /// Let scripts sense with the head camera and the joints alone: no `sensor.objects`, `contacts` and `held`
@@ -70,31 +71,63 @@ pub(super) struct EngineOptions {
 impl EngineOptions {
     /// The settings of the script bridge. `script` is what `--script` says: `matlab`, `octave` or `python`, and after a colon
     /// the folder of the scripts or the Python file.
-    pub fn settings(&self, script: Option<&str>) -> ScriptSettings {
+    pub fn settings(&self, script: Option<&str>) -> Result<ScriptSettings, Failure> {
         let mut settings = ScriptSettings::default();
-        let (language, agent) = script
-            .map(|script| {
-                script
-                    .split_once(':')
-                    .map_or((script, None), |(l, a)| (l, Some(a)))
-            })
-            .unwrap_or(("matlab", None));
-        settings.agent = agent.map(PathBuf::from);
-        settings.engine = match (language, &self.engine) {
-            ("matlab", None) => EngineChoice::Auto,
-            ("matlab", Some(engine)) => parse(engine),
-            (language, _) => parse(language),
+        settings.engine = match script {
+            Some(script) => {
+                let (language, agent) = split(script);
+                settings.agent = agent.map(PathBuf::from);
+                self.engine_for(language, &settings.surroundings)?
+            }
+            None => parse(self.engine.as_deref().unwrap_or_default()),
         };
         if self.no_objects {
             settings.objects = Tell::Never;
         }
         if let Some(patience) = self.script_timeout {
+            settings.timeouts.init = patience;
             settings.timeouts.step = patience;
         }
         if let Some(ticks) = self.picture_every {
             settings.ticks_per_picture = ticks;
         }
-        settings
+        Ok(settings)
+    }
+
+    /// The engine that is named, if it runs scripts in this language; else any that does.
+    fn engine_for(&self, language: &str, there: &Surroundings) -> Result<EngineChoice, Failure> {
+        let Some((choice, by)) = self.named_engine(there) else {
+            return Ok(match language {
+                "matlab" => EngineChoice::Auto,
+                language => parse(language),
+            });
+        };
+        let kind = there.find(&choice).map_err(Failure::input)?.kind;
+        let fits = match language {
+            "python" => kind == EngineKind::Python,
+            "octave" => kind == EngineKind::Octave,
+            _ => kind != EngineKind::Python,
+        };
+        match fits {
+            true => Ok(choice),
+            false => Err(Failure::input(format!(
+                "--script {language} cannot run in {kind}, which {by} names; leave it out, or say --engine {language}"
+            ))),
+        }
+    }
+
+    /// The engine that is named, and what names it.
+    fn named_engine(&self, there: &Surroundings) -> Option<(EngineChoice, &'static str)> {
+        let names = [
+            (&self.engine, "--engine"),
+            (&there.variable, ENGINE_VARIABLE),
+        ];
+        names
+            .into_iter()
+            .find_map(|(name, by)| match parse(name.as_deref()?) {
+                EngineChoice::Auto => None,
+                choice => Some((choice, by)),
+            })
     }
 }
 
@@ -113,10 +146,17 @@ fn patience(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| format!("expected a number of seconds from 0.01 to {DAY}"))
 }
 
+/// The language, and the path after the colon.
+fn split(script: &str) -> (&str, Option<&str>) {
+    match script.split_once(':') {
+        Some((language, path)) => (language, Some(path)),
+        None => (script, None),
+    }
+}
+
 /// Reads what `--script` says.
 pub(super) fn script(text: &str) -> Result<String, String> {
-    let language = text.split(':').next().unwrap_or_default();
-    match language {
+    match split(text).0 {
         "matlab" | "octave" | "python" => Ok(text.to_owned()),
         _ => Err("expected matlab, octave or python, and after a colon the folder of the scripts or the Python file".into()),
     }

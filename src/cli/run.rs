@@ -22,6 +22,7 @@ use tabletop_scenario::{Outcome, Program, Scenario, ScenarioPlugin, ScenarioRun}
 use super::{
     Failure, Output, WRONG_INPUT,
     robot_options::{EngineOptions, RobotOptions, script},
+    terminal::{is_unheard, say},
 };
 
 #[derive(Args)]
@@ -105,7 +106,7 @@ pub(super) fn simulate(
 fn put_on_table(setup: &Path, plugins: PluginGroupBuilder) -> Result<(App, ExitCode), Failure> {
     let task = read_task(setup).map_err(Failure::input)?;
     for fault in &task.faults {
-        eprintln!("{fault}");
+        say(fault);
     }
     let mut app = headless_app_with(plugins);
     app.world_mut()
@@ -134,7 +135,9 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     let mut script = Script::start(&mut app, args);
     let outcome = loop {
         app.step(1);
-        script.listen(&app);
+        if let Err(unheard) = script.listen(&app) {
+            break Err(unheard);
+        }
         match app.world().resource::<ScenarioRun>().outcome() {
             Outcome::Running => {}
             Outcome::Done => break Ok(ExitCode::SUCCESS),
@@ -147,7 +150,8 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
 
 /// The simulator with the robot and the engine that were asked for.
 fn plugins(args: &RunArgs) -> Result<PluginGroupBuilder, Failure> {
-    let settings = args.engine.settings(args.script.as_deref());
+    let mut settings = args.engine.settings(args.script.as_deref())?;
+    settings.overhear = Some(report);
     Ok(TabletopSimPlugins
         .build()
         .set(args.robot.plugin()?)
@@ -191,18 +195,21 @@ impl Script {
         }
     }
 
-    /// Prints what the script prints, and notes its end.
-    fn listen(&mut self, app: &App) {
+    /// Notes its end. The run ends if nobody hears what is said.
+    fn listen(&mut self, app: &App) -> Result<(), Failure> {
         for news in self
             .news
             .read(app.world().resource::<Messages<AgentNews>>())
         {
             match news {
-                AgentNews::Started { engine } => eprintln!("tabletop: {engine}"),
-                AgentNews::Printed { line, .. } => eprintln!("{line}"),
                 AgentNews::Stopped => self.end = Some(Ok(())),
-                AgentNews::Failed { reason } => self.end = Some(Err(Failure::run(reason))),
+                AgentNews::Failed { .. } => self.end = Some(Err(Failure::silent())),
+                AgentNews::Started { .. } | AgentNews::Printed { .. } => {}
             }
+        }
+        match is_unheard() {
+            true => Err(Failure::silent()),
+            false => Ok(()),
         }
     }
 
@@ -215,7 +222,7 @@ impl Script {
         // The first tick is that of the init script.
         for _ in 0..=ticks {
             app.step(1);
-            self.listen(app);
+            self.listen(app)?;
             if self.end.is_some() {
                 break;
             }
@@ -225,6 +232,16 @@ impl Script {
 
     fn result(self) -> Result<(), Failure> {
         self.end.unwrap_or(Ok(()))
+    }
+}
+
+/// Says what becomes of the script when it does.
+fn report(news: &AgentNews) {
+    match news {
+        AgentNews::Started { engine } => say(format_args!("tabletop: {engine}")),
+        AgentNews::Printed { line, .. } => say(line),
+        AgentNews::Failed { reason } => say(format_args!("tabletop: {reason}")),
+        AgentNews::Stopped => {}
     }
 }
 

@@ -9,6 +9,7 @@ use super::{
     Failure, Output,
     robot_options::{EngineOptions, RobotOptions, script},
     run,
+    terminal::say,
 };
 
 #[derive(Args)]
@@ -39,14 +40,14 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
     let options = WindowOptions {
         show: Show::Task(args.setup.clone()),
         robot: args.robot.plugin()?,
-        scripts: args.engine.settings(args.script.as_deref()),
+        scripts: args.engine.settings(args.script.as_deref())?,
         screenshot: args.screenshot.map(|path| ScreenshotAt {
             path,
             seconds: args.after as f32,
         }),
     };
     window::run(options).map(exit_code).or_else(|no_window| {
-        eprintln!("tabletop: {no_window}");
+        say(format_args!("tabletop: {no_window}"));
         run_instead(args.setup)
     })
 }
@@ -82,7 +83,7 @@ const NO_WINDOW: &str = "this program was built without a window (feature `windo
 
 #[cfg(not(feature = "window"))]
 pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
-    eprintln!("tabletop: {NO_WINDOW}");
+    say(format_args!("tabletop: {NO_WINDOW}"));
     run_instead(args.setup)
 }
 
@@ -93,9 +94,9 @@ pub(super) fn play(_: Replay) -> Result<ExitCode, Failure> {
 
 /// What the window would have shown after ten seconds, as a table.
 fn run_instead(setup: PathBuf) -> Result<ExitCode, Failure> {
-    eprintln!(
+    say(format_args!(
         "tabletop: running {} for 10 s without a window",
         setup.display()
-    );
+    ));
     run::simulate(&setup, 10.0, &Output::Stdout)
 }

@@ -9,7 +9,7 @@ use bevy::{
     prelude::*,
 };
 
-use crate::Standstill;
+use crate::{SimCommand, Standstill};
 
 /// Ticks per second of simulated time.
 pub const TICKS_PER_SECOND: u32 = 60;
@@ -80,6 +80,15 @@ pub struct SimTick(pub u64);
 pub struct Paused(pub bool);
 
 impl Paused {
+    /// Whether the tick that begins is one of a pause, which may have been asked for just now: for systems that give orders.
+    pub fn will_be(mut commands: MessageReader<SimCommand>, paused: Res<Self>) -> bool {
+        let asked_for = commands.read().filter_map(|command| match command {
+            SimCommand::SetPaused(pause) => Some(*pause),
+            _ => None,
+        });
+        asked_for.last().unwrap_or(paused.0)
+    }
+
     /// Run condition: the simulation is running.
     pub fn is_running(paused: Res<Self>) -> bool {
         !paused.0
@@ -187,7 +196,7 @@ impl StepApp for App {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{CorePlugin, SimCommand};
+    use crate::CorePlugin;
 
     #[test]
     fn a_pause_stops_the_clock_and_not_the_commands() {

@@ -125,7 +125,27 @@ fn faults_are_told_with_their_place() {
         ),
         (
             "motor.jointVelocities = [[0] * 7, [0]]",
-            "motor.jointVelocities is 1x1 list; it must be 2x7 double",
+            "motor.jointVelocities is 2x1 ragged list with rows of 1 to 7 elements; it must be 2x7 double",
+        ),
+        (
+            "motor.jointVelocities = [[1j] * 7] * 2",
+            "motor.jointVelocities is 2x7 complex; it must be 2x7 double",
+        ),
+        (
+            "motor.jointVelocities = [[(1, 2)] * 7] * 2",
+            "motor.jointVelocities is 2x7x2 double; it must be 2x7",
+        ),
+        (
+            "v = [0]; v.append(v); motor.gripperVelocities = v",
+            "motor.gripperVelocities is 2x1 ragged list",
+        ),
+        (
+            "motor.headVelocity = -10**400",
+            "motor.headVelocity(1,1) is -Inf; it must be a finite number",
+        ),
+        (
+            "setattr(motor, 'größe', 1)",
+            "motor.gr__e is no field that the robot knows",
         ),
         (
             "motor.headVelocity = None",
@@ -140,6 +160,7 @@ fn faults_are_told_with_their_place() {
             "motor.spin is no field that the robot knows",
         ),
         ("input()", "EOFError"),
+        ("raise KeyboardInterrupt", "KeyboardInterrupt\n  at "),
     ] {
         let script =
             format!("def init(aux): pass\ndef callback(sensor, motor, aux):\n    {callback}\n");
@@ -155,16 +176,15 @@ fn faults_are_told_with_their_place() {
 
 #[test]
 fn hangs_exits_and_missing_files_are_told() {
-    let folder = Folder::new(&[("robot.py", "def init(aux):\n    while True: pass\n")]);
+    let script = |init: &str| {
+        format!("import sys\ndef init(aux):\n    {init}\ndef callback(sensor, motor, aux): pass\n")
+    };
+    let folder = Folder::new(&[("robot.py", &script("while True: pass"))]);
     let mut config = config(folder.0.join("robot.py"));
     config.timeouts.init = Duration::from_millis(300);
     let session = Session::start(config.clone()).unwrap();
     assert!(matches!(session.init(), Err(EngineError::Timeout { .. })));
-    fs::write(
-        folder.0.join("robot.py"),
-        "import sys\ndef init(aux):\n    sys.exit(3)\n",
-    )
-    .unwrap();
+    fs::write(folder.0.join("robot.py"), script("sys.exit(3)")).unwrap();
     let session = Session::start(config.clone()).unwrap();
     let error = session.init().unwrap_err();
     assert!(
@@ -179,4 +199,98 @@ fn hangs_exits_and_missing_files_are_told() {
     let (_folder, session) = start(exit);
     assert_eq!(session.init().unwrap().init_joint_angles, None);
     assert!(session.step(&Sensor::default()).unwrap().exit);
+}
+
+#[test]
+fn what_is_no_script_is_told() {
+    let callback = "def callback(sensor, motor, aux): pass\n";
+    for (name, text, message) in [
+        (
+            "a.py",
+            "def init(aux): pass\n".to_owned(),
+            "{} has no function callback(sensor, motor, aux)",
+        ),
+        (
+            "b.py",
+            format!("init = 3\n{callback}"),
+            "{} has no function init(aux)",
+        ),
+        (
+            "c.py",
+            format!("\ndef init(): pass\n{callback}"),
+            "init() must be init(aux)\n  at {}:2",
+        ),
+        (
+            "d.py",
+            "def init(*all): pass\ndef callback(sensor, motor): pass\n".to_owned(),
+            "callback(sensor, motor) must be callback(sensor, motor, aux)\n  at {}:2",
+        ),
+        (
+            "e.txt",
+            callback.to_owned(),
+            "{} is no Python script: its name does not end in .py",
+        ),
+        (
+            "",
+            String::new(),
+            "{} is a folder; name the Python file in it",
+        ),
+    ] {
+        let folder = Folder::new(&[]);
+        let file = folder.0.join(name);
+        if !name.is_empty() {
+            fs::write(&file, text).unwrap();
+        }
+        let session = Session::start(config(file.clone())).unwrap();
+        let error = session.init().unwrap_err();
+        let message = message.replace("{}", &file.display().to_string());
+        assert_eq!((error.to_string(), error.is_fatal()), (message, false));
+    }
+}
+
+#[test]
+fn endless_recursion_names_a_few_places() {
+    let (_folder, session) = start(
+        "def init(aux): pass\ndef deeper(): deeper()\ndef callback(sensor, motor, aux): deeper()\n",
+    );
+    session.init().unwrap();
+    let error = script_error(session.step(&Sensor::default()));
+    assert!(error.message.starts_with("RecursionError: "));
+    assert_eq!(error.stack.len(), 11);
+    assert!(error.to_string().ends_with("robot.py:2\n  at …"), "{error}");
+}
+
+#[test]
+fn the_standard_streams_are_the_scripts_own() {
+    let (folder, session) = start(
+        "import os, subprocess, sys\n\
+         def init(aux):\n\
+         \x20   sys.stdout = open(aux.path + 'log.txt', 'w')\n\
+         \x20   os.dup2(sys.stdout.fileno(), 1)\n\
+         def callback(sensor, motor, aux):\n\
+         \x20   print('logged', flush=True)\n\
+         \x20   subprocess.run(['cat'], check=True)\n\
+         \x20   os.close(0)\n",
+    );
+    session.init().unwrap();
+    session.step(&Sensor::default()).unwrap();
+    let log = fs::read_to_string(folder.0.join("log.txt")).unwrap();
+    assert_eq!(log, "logged\n");
+}
+
+#[test]
+fn files_beside_the_script_may_have_any_name() {
+    let folder = Folder::new(&[
+        ("agent.py", "speed = 0.5\n"),
+        (
+            "robot.py",
+            "import agent\n\
+             def init(aux): pass\n\
+             def callback(sensor, motor, aux): motor.headVelocity = agent.speed\n",
+        ),
+    ]);
+    let session = Session::start(config(folder.0.join("robot.py"))).unwrap();
+    session.init().unwrap();
+    let motor = session.step(&Sensor::default()).unwrap().motor;
+    assert_eq!(motor.head_velocity, Some(0.5));
 }

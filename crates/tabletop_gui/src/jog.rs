@@ -63,19 +63,10 @@ pub(crate) fn plugin(app: &mut App) {
         (
             give_orders
                 .in_set(OrderSystems::User)
-                .run_if(not(will_stand_still)),
+                .run_if(not(Paused::will_be)),
             forget_struck.in_set(SimSystems::Load),
         ),
     );
-}
-
-/// Whether the tick that begins is one of a pause, which may have been asked for just now.
-fn will_stand_still(mut commands: MessageReader<SimCommand>, paused: Res<Paused>) -> bool {
-    let asked_for = commands.read().filter_map(|command| match command {
-        SimCommand::SetPaused(pause) => Some(*pause),
-        _ => None,
-    });
-    asked_for.last().unwrap_or(paused.0)
 }
 
 fn give_orders(jog: Res<Jog>, mut commands: MessageWriter<SimCommand>) {

@@ -2,19 +2,43 @@
 
 use bevy::prelude::*;
 use tabletop_core::{Arm, Drive, RobotJoint, RobotMode, SimCommand};
-use tabletop_engine::{InitReply, Motor};
+use tabletop_engine::{EngineError, InitReply, Motor, ScriptError};
+
+/// Markers beyond are too far away to be drawn anywhere.
+const FARTHEST: f64 = 1e6;
 
 /// The commands for what an init script wants.
-pub(crate) fn commands_of_init(reply: &InitReply) -> Vec<SimCommand> {
-    let points = reply.draw_markers.iter();
-    let markers = points.map(|point| Vec3::from_array(point.map(|x| x as f32)));
-    let mut commands = vec![SimCommand::ShowMarkers(markers.collect())];
+///
+/// # Errors
+/// A marker is too far away.
+pub(crate) fn commands_of_init(reply: &InitReply) -> Result<Vec<SimCommand>, EngineError> {
+    let mut commands = vec![SimCommand::ShowMarkers(markers(&reply.draw_markers)?)];
     commands.extend(
         reply
             .init_joint_angles
             .map(|angles| SimCommand::Drive(at_once(&angles))),
     );
-    commands
+    Ok(commands)
+}
+
+fn markers(points: &[[f64; 3]]) -> Result<Vec<Vec3>, EngineError> {
+    let far = |point: &[f64; 3]| point.iter().position(|x| x.abs() > FARTHEST);
+    let mut rows = points.iter().enumerate();
+    match rows.find_map(|(row, point)| Some((row, far(point)?))) {
+        None => Ok(points
+            .iter()
+            .map(|point| Vec3::from_array(point.map(|x| x as f32)))
+            .collect()),
+        Some((row, column)) => Err(EngineError::Script(ScriptError {
+            message: format!(
+                "aux.drawMarkers({},{}) is {:e}; it must be between -{FARTHEST:e} and {FARTHEST:e}",
+                row + 1,
+                column + 1,
+                points[row][column]
+            ),
+            ..ScriptError::default()
+        })),
+    }
 }
 
 /// The command for what a callback script orders for a tick.
@@ -78,6 +102,24 @@ mod tests {
         assert_eq!(
             drives[15],
             (RobotJoint::RightGripper, Drive::Velocity(-1.0))
+        );
+    }
+
+    #[test]
+    fn markers_out_of_reach_are_the_scripts_fault() {
+        let fault = |draw_markers: Vec<[f64; 3]>| {
+            let reply = InitReply {
+                draw_markers,
+                ..InitReply::default()
+            };
+            commands_of_init(&reply)
+                .err()
+                .map(|error| error.to_string())
+        };
+        assert_eq!(fault(vec![[1.0, 2.0, 3.0]]), None);
+        assert_eq!(
+            fault(vec![[0.0; 3], [0.0, -1e39, 0.0]]).unwrap(),
+            "aux.drawMarkers(2,2) is -1e39; it must be between -1e6 and 1e6"
         );
     }
 

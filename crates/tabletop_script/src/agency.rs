@@ -4,18 +4,20 @@ use std::time::{Duration, Instant};
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Agent, AgentNews, AgentOrder, Paused, PictureDemand, SimCommand, SimTick, Standstill,
+    Agent, AgentNews, AgentOrder, PictureDemand, RobotMode, SimCommand, SimTick, Standstill,
 };
-use tabletop_engine::{EngineConfig, EngineError, EngineHandle, Reply, Stream};
+use tabletop_engine::{EngineConfig, EngineError, EngineHandle, Output, Reply};
 
 use crate::{
     act::{command_of_motor, commands_of_init, last_command},
+    news::News,
     sense::{Senses, Told, aux},
     settings::{ScriptSettings, Waiting},
 };
 
-/// Longest time that one look for an answer takes while the simulation waits for the script anyway.
-const ONE_LOOK: Duration = Duration::from_millis(500);
+/// Longest time that one look for an answer takes while the simulation waits for the script anyway, and that what the script
+/// prints meanwhile waits to be told.
+const ONE_LOOK: Duration = Duration::from_millis(100);
 
 /// The script that drives the robot, if there is one.
 #[derive(Resource, Default)]
@@ -37,10 +39,10 @@ impl Agency {
     }
 
     /// Passes on what engines that end still have to say, and forgets those that have ended.
-    fn see_off(&mut self, news: &mut MessageWriter<AgentNews>) {
+    fn see_off(&mut self, news: &mut News) {
         self.ending.retain(|engine| {
             let is_alive = engine.is_alive();
-            print(engine, news);
+            news.print(engine);
             is_alive
         });
     }
@@ -60,6 +62,8 @@ struct Session {
     told: Told,
     /// The tick of a picture that the script is to get next.
     picture: Option<SimTick>,
+    /// Whether it has been said that nothing obeys its torques.
+    torques_noted: bool,
 }
 
 /// What is expected of the engine next.
@@ -67,6 +71,8 @@ struct Session {
 enum Stage {
     /// That it comes up.
     Start,
+    /// Nothing: the init script is due.
+    Ready,
     /// That the init script has run.
     Init,
     /// Nothing: the callback script is due.
@@ -77,17 +83,17 @@ enum Stage {
 
 /// Starts and stops the script as told, calls it for the tick that begins, and lets the simulation wait until it has answered.
 pub(crate) fn call(
+    In(will_be_paused): In<bool>,
     mut orders: MessageReader<AgentOrder>,
     mut agency: ResMut<Agency>,
     settings: Res<ScriptSettings>,
-    paused: Res<Paused>,
     tick: Res<SimTick>,
     senses: Senses,
     demand: Res<PictureDemand>,
     mut agent: ResMut<Agent>,
     mut standstill: ResMut<Standstill>,
     mut commands: MessageWriter<SimCommand>,
-    mut news: MessageWriter<AgentNews>,
+    mut news: News,
 ) {
     for order in orders.read() {
         match order {
@@ -103,7 +109,7 @@ pub(crate) fn call(
                 if agency.dismiss(EngineHandle::kill) {
                     end(&mut commands);
                     *agent = Agent::Off;
-                    news.write(AgentNews::Stopped);
+                    news.tell(AgentNews::Stopped);
                 }
             }
         }
@@ -113,10 +119,13 @@ pub(crate) fn call(
     let Some(session) = &mut agency.session else {
         return;
     };
-    if paused.0 && session.stage == Stage::Idle {
-        return;
-    }
     let answered = loop {
+        if will_be_paused && matches!(session.stage, Stage::Ready | Stage::Idle) {
+            return;
+        }
+        if session.stage == Stage::Ready {
+            session.ask(Stage::Init, |engine| engine.init(aux()));
+        }
         if session.stage == Stage::Idle {
             let picture = session.picture.and_then(|tick| senses.picture_since(tick));
             session.picture.take_if(|_| picture.is_some());
@@ -132,7 +141,7 @@ pub(crate) fn call(
         };
         let was_alive = session.engine.is_alive();
         let reply = session.engine.recv_timeout(look);
-        print(&session.engine, &mut news);
+        news.print(&session.engine);
         match reply {
             Some(reply) => {
                 match session.take(reply, *tick, &senses, &mut agent, &mut commands, &mut news) {
@@ -159,7 +168,7 @@ pub(crate) fn call(
             agency.dismiss(EngineHandle::stop);
             end(&mut commands);
             *agent = Agent::Off;
-            news.write(AgentNews::Stopped);
+            news.tell(AgentNews::Stopped);
         }
         Ok(_) => {
             let ticks = tick.0.saturating_sub(session.began_at.0);
@@ -194,6 +203,9 @@ fn start(settings: &ScriptSettings, tick: SimTick) -> Result<Session, EngineErro
     }
     config.pair.clone_from(&settings.pair);
     config.timeouts = settings.timeouts;
+    if settings.waiting == Waiting::Blocking {
+        config.output = Output::Whole;
+    }
     let told = Told::to(&config.agent, settings);
     Ok(Session {
         engine: EngineHandle::start(config)?,
@@ -203,6 +215,7 @@ fn start(settings: &ScriptSettings, tick: SimTick) -> Result<Session, EngineErro
         began_at: tick,
         told,
         picture: None,
+        torques_noted: false,
     })
 }
 
@@ -221,18 +234,18 @@ impl Session {
         senses: &Senses,
         agent: &mut Agent,
         commands: &mut MessageWriter<SimCommand>,
-        news: &mut MessageWriter<AgentNews>,
+        news: &mut News,
     ) -> Result<Answer, EngineError> {
         match reply {
             Reply::Started { description } => {
-                news.write(AgentNews::Started {
+                news.tell(AgentNews::Started {
                     engine: description,
                 });
-                self.ask(Stage::Init, |engine| engine.init(aux()));
+                self.stage = Stage::Ready;
                 Ok(Answer::None)
             }
             Reply::Init(reply) => {
-                commands.write_batch(commands_of_init(&reply));
+                commands.write_batch(commands_of_init(&reply)?);
                 self.called_at = tick;
                 self.began_at = tick;
                 self.stage = Stage::Idle;
@@ -247,7 +260,13 @@ impl Session {
                 Ok(Answer::Exit)
             }
             Reply::Step(reply) => {
-                commands.write(command_of_motor(&reply.motor, senses.mode()));
+                let mode = senses.mode();
+                let unheeded = reply.motor.joint_torques.is_some() && mode != RobotMode::Dynamic;
+                if unheeded && !self.torques_noted {
+                    self.torques_noted = true;
+                    news.note("motor.jointTorques has no effect without --dynamic");
+                }
+                commands.write(command_of_motor(&reply.motor, mode));
                 self.stage = Stage::Idle;
                 *agent = Agent::Online { took: reply.took };
                 Ok(Answer::Orders)
@@ -262,17 +281,9 @@ fn end(commands: &mut MessageWriter<SimCommand>) {
     commands.write(SimCommand::ShowMarkers(Vec::new()));
 }
 
-fn fail(error: &EngineError, agent: &mut Agent, news: &mut MessageWriter<AgentNews>) {
+fn fail(error: &EngineError, agent: &mut Agent, news: &mut News) {
     *agent = Agent::Failed;
-    news.write(AgentNews::Failed {
+    news.tell(AgentNews::Failed {
         reason: error.to_string(),
     });
-}
-
-fn print(engine: &EngineHandle, news: &mut MessageWriter<AgentNews>) {
-    let lines = engine.drain_console().into_iter();
-    news.write_batch(lines.map(|line| AgentNews::Printed {
-        is_error: line.stream == Stream::Error,
-        line: line.text,
-    }));
 }

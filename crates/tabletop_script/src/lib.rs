@@ -5,7 +5,7 @@
 //! [`SimCommand`](tabletop_core::SimCommand)s, so a recording of what they do runs again without them. What becomes of them
 //! is told by [`AgentNews`](tabletop_core::AgentNews) and stands in [`Agent`](tabletop_core::Agent).
 //!
-//! The simulation waits for the script; what is drawn does not. At such a [`Standstill`](tabletop_core::Standstill) frames go by
+//! The simulation waits for the script; what is drawn does not. At such a [`Standstill`] frames go by
 //! without ticks, each looks for the answer once, and messages are kept for the next tick. Without a window
 //! ([`Waiting::Blocking`]) a run is the same every time, and what the script orders is the same either way.
 //!
@@ -28,6 +28,7 @@
 mod act;
 mod agency;
 mod mentions;
+mod news;
 mod sense;
 mod settings;
 mod standstill;
@@ -37,7 +38,7 @@ pub use tabletop_engine::{ENGINE_VARIABLE, EngineChoice, EngineKind, Surrounding
 
 use bevy::prelude::*;
 use tabletop_core::{
-    HeadCamera, ObjectIndex, OrderSystems, PictureDemand, SensorImage, Standstill,
+    HeadCamera, ObjectIndex, OrderSystems, Paused, PictureDemand, SensorImage, Standstill,
 };
 
 use agency::{Agency, call};
@@ -63,7 +64,7 @@ impl Plugin for ScriptPlugin {
                 (
                     // A frame that begins at a standstill has no other tick even if the answer has come.
                     drop_overstep.run_if(not(Standstill::is_over)),
-                    call,
+                    Paused::will_be.pipe(call),
                     drop_overstep.run_if(not(Standstill::is_over)),
                 )
                     .chain()

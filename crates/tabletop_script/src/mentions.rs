@@ -7,34 +7,41 @@ use std::{
 
 /// Larger files are data.
 const LARGEST_SCRIPT: u64 = 1 << 20;
+/// Folders in folders are looked into this far down.
+const DEEPEST: usize = 3;
+/// So many entries of the folders at each depth are looked at, at most.
+const MOST_ENTRIES: usize = 10_000;
+/// So many scripts are read, at most, the outermost first.
+const MOST_SCRIPTS: usize = 1000;
 
 /// Whether one of the scripts around an agent (a folder of `agentBehavior.m`, or a Python file) contains one of these words.
 pub(crate) fn mention(agent: &Path, words: &[&str]) -> bool {
     let beside = agent.parent().filter(|folder| *folder != Path::new(""));
-    match agent.is_dir() {
-        true => scripts_in(agent, "m").any(|script| contains(&script, words)),
-        false => scripts_in(beside.unwrap_or(Path::new(".")), "py")
-            .any(|script| contains(&script, words)),
-    }
+    let scripts = match agent.is_dir() {
+        true => scripts_in(agent, "m"),
+        false => scripts_in(beside.unwrap_or(Path::new(".")), "py"),
+    };
+    scripts.iter().any(|script| contains(script, words))
 }
 
-/// The scripts in a folder, and in those below it that Matlab looks into by itself: of classes, packages and private functions.
-fn scripts_in(folder: &Path, extension: &str) -> Box<dyn Iterator<Item = PathBuf>> {
-    let extension = extension.to_owned();
-    let entries = folder.read_dir().into_iter().flatten().flatten();
-    Box::new(
-        entries.flat_map(move |entry| -> Box<dyn Iterator<Item = PathBuf>> {
-            let path = entry.path();
-            let name = entry.file_name();
-            let name = name.to_string_lossy();
-            let is_ours = name.starts_with(['@', '+']) || name == "private";
-            if is_ours && path.is_dir() {
-                return scripts_in(&path, &extension);
-            }
-            let is_script = path.extension().is_some_and(|other| *other == *extension);
-            Box::new(is_script.then_some(path).into_iter())
-        }),
-    )
+/// The scripts in a folder and in those below it that are not hidden.
+fn scripts_in(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let mut scripts = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    for _ in 0..=DEEPEST {
+        let (below, mut files): (Vec<_>, Vec<_>) = folders
+            .iter()
+            .flat_map(|folder| folder.read_dir().into_iter().flatten().flatten())
+            .filter(|entry| !entry.file_name().as_encoded_bytes().starts_with(b"."))
+            .map(|entry| entry.path())
+            .take(MOST_ENTRIES)
+            .partition(|path| path.is_dir());
+        files.retain(|file| file.extension().is_some_and(|other| other == extension));
+        scripts.append(&mut files);
+        folders = below;
+    }
+    scripts.truncate(MOST_SCRIPTS);
+    scripts
 }
 
 fn contains(script: &Path, words: &[&str]) -> bool {
@@ -53,17 +60,20 @@ mod tests {
     #[test]
     fn words_are_found_in_scripts_and_nowhere_else() {
         let folder = std::env::temp_dir().join(format!("tabletop-mentions-{}", std::process::id()));
-        fs::create_dir_all(folder.join("private")).unwrap();
+        fs::create_dir_all(folder.join("lib/private/a/b")).unwrap();
         let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
         write("a.m", "x = sensor.trackerLoc('l-S1');");
         write("b.m", "withheld = heldBack;");
         write("notes.txt", "contacts");
-        write("private/c.m", "s = 'objects';");
+        write("lib/private/c.m", "s = 'objects';");
+        write("lib/helper.py", "sensor.contacts");
+        write("lib/private/a/b/deep.m", "sensor.held");
         write("robot.py", "print(sensor.held)");
         assert!(mention(&folder, &["trackerLoc"]));
         assert!(mention(&folder, &["objects", "contacts"]));
         assert!(!mention(&folder, &["held", "contacts"]));
         assert!(mention(&folder.join("robot.py"), &["held"]));
+        assert!(mention(&folder.join("robot.py"), &["contacts"]));
         assert!(!mention(&folder.join("robot.py"), &["trackerLoc"]));
         assert!(!mention(Path::new("no such folder"), &["held"]));
         fs::remove_dir_all(folder).unwrap();

@@ -6,7 +6,7 @@ use std::{
 };
 
 use bevy::prelude::*;
-use tabletop_core::TICKS_PER_SECOND;
+use tabletop_core::{AgentNews, TICKS_PER_SECOND};
 use tabletop_engine::{EngineChoice, Surroundings, Timeouts};
 
 use crate::mentions::mention;
@@ -33,13 +33,15 @@ pub struct ScriptSettings {
     pub waiting: Waiting,
     /// Where engines are looked for.
     pub surroundings: Surroundings,
+    /// Gets the script's news as they come, also in the middle of a tick that waits for the script.
+    pub overhear: Option<fn(&AgentNews)>,
 }
 
 /// Whether scripts are told something that costs time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tell {
-    /// If its name is in a script: an `.m` file in the agent's folder or its `private`, `@` and `+` folders, or a `.py` file
-    /// beside the agent's. The files are read whenever the agent starts.
+    /// If its name is in a script: an `.m` file in the agent's folder, or a `.py` file beside the agent's, or one up to three
+    /// folders below. The files are read whenever the agent starts.
     #[default]
     Auto,
     /// Always, as scripts need that take the names from elsewhere.
@@ -80,6 +82,7 @@ impl Default for ScriptSettings {
             timeouts: Timeouts::default(),
             waiting: Waiting::Blocking,
             surroundings: Surroundings::system(),
+            overhear: None,
         }
     }
 }

@@ -174,6 +174,18 @@ fn while_paused_there_are_no_calls() {
 }
 
 #[test]
+fn a_script_that_is_started_in_a_pause_begins_after_it() {
+    let folder = Folder::pair("aux.initJointAngles = 0.25 * ones(2, 7);", "");
+    let mut stage = Stage::start(folder.settings());
+    stage.tell(SimCommand::SetPaused(true));
+    stage.ticks(3);
+    assert_eq!(stage.agent(), &Agent::Starting);
+    stage.tell(SimCommand::SetPaused(false));
+    stage.ticks(1);
+    assert_eq!(stage.robot().joint(RobotJoint::LeftS0).position, 0.25);
+}
+
+#[test]
 fn without_an_engine_the_message_says_how_to_get_one() {
     let mut settings = Folder::pair("", "").settings();
     settings.engine = Default::default();
