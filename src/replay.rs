@@ -11,10 +11,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use bevy::{app::PluginGroupBuilder, prelude::*};
+use bevy::{app::PluginGroupBuilder, ecs::message::MessageCursor, prelude::*};
 use serde::Deserialize as _;
 use tabletop_baxter::BaxterPlugin;
-use tabletop_core::{HeadCamera, SimTick, StepApp as _, TICKS_PER_SECOND};
+use tabletop_core::{HeadCamera, SimFact, SimTick, StepApp as _, TICKS_PER_SECOND};
 use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
 use tabletop_recorder::{Channels, RecorderError, RecorderPlugin, Session, TICKS_PER_FRAME};
 
@@ -51,6 +51,9 @@ pub enum ReplayError {
         /// The version of the program that made the recording.
         program: String,
     },
+    /// The recording of the replay could not begin or go on.
+    #[error("{0}")]
+    Record(String),
     /// A file of one of the recordings cannot be read.
     #[error("{}: {source}", path.display())]
     Io {
@@ -161,7 +164,15 @@ impl Replay {
     }
 
     /// Replays it without a window and records that into another folder, with pictures as this camera sees it.
-    pub fn record(&self, into: PathBuf, camera: HeadCamera, channels: Channels) {
+    ///
+    /// # Errors
+    /// [`ReplayError::Record`], as with a full disk.
+    pub fn record(
+        &self,
+        into: PathBuf,
+        camera: HeadCamera,
+        channels: Channels,
+    ) -> Result<(), ReplayError> {
         let recorder = RecorderPlugin {
             folder: into,
             header: self.session.header.settings.clone(),
@@ -170,8 +181,15 @@ impl Replay {
         let mut app = headless_app_with(self.plugins().set(recorder));
         self.play(Player::recording(&self.session), &mut app);
         app.insert_resource(camera);
+        let mut facts = MessageCursor::default();
         while !app.world().resource::<Player>().is_over() {
             app.step(1);
+            for fact in facts.read(app.world().resource::<Messages<SimFact>>()) {
+                if let SimFact::RecordingFailed { reason, .. } = fact {
+                    return Err(ReplayError::Record(reason.clone()));
+                }
+            }
         }
+        Ok(())
     }
 }

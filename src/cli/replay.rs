@@ -10,7 +10,7 @@ use tabletop::{
     replay::{Replay, first_difference},
 };
 
-use super::{Failure, window};
+use super::{Failure, terminal::show_warnings, window};
 
 #[derive(Args)]
 pub(super) struct ReplayArgs {
@@ -90,13 +90,14 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     if args.window {
         return window::play(replay);
     }
+    show_warnings();
     let temporary = std::env::temp_dir().join(format!("tabletop-replay-{}", std::process::id()));
     let out = args.out.as_ref().unwrap_or(&temporary);
-    args.pictures.record(&replay, out.clone())?;
-    let difference = match args.verify {
+    let recorded = args.pictures.record(&replay, out.clone());
+    let difference = recorded.and_then(|()| match args.verify {
         true => first_difference(&args.recording, out).map_err(Failure::input),
         false => Ok(None),
-    };
+    });
     // It is not there if the recording of the replay is to be kept.
     let _ = fs::remove_dir_all(&temporary);
     let Some(difference) = difference? else {
@@ -131,7 +132,6 @@ impl PictureArgs {
             depth: self.depth,
             ids: self.ids,
         };
-        replay.record(into, camera, channels);
-        Ok(())
+        replay.record(into, camera, channels).map_err(Failure::run)
     }
 }

@@ -22,7 +22,7 @@ use tabletop_scenario::{Outcome, Program, Scenario, ScenarioPlugin, ScenarioRun}
 use super::{
     Failure, Output, WRONG_INPUT,
     robot_options::{EngineOptions, RobotOptions, script},
-    terminal::{is_unheard, say},
+    terminal::{is_unheard, say, show_warnings},
 };
 
 #[derive(Args)]
@@ -74,6 +74,7 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
 }
 
 pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
+    show_warnings();
     let seconds = args.seconds;
     match &args.scenario {
         Some(scenario) => perform(scenario, args),

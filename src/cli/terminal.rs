@@ -2,8 +2,13 @@
 
 use std::{
     fmt,
-    io::{self, ErrorKind, Write as _},
+    io::{self, ErrorKind, IsTerminal as _, Write as _},
     sync::atomic::{AtomicBool, Ordering},
+};
+
+use bevy::{
+    log::{Level, LogPlugin, tracing_subscriber::fmt::Layer},
+    prelude::*,
 };
 
 /// Whether the other end of standard error was closed, as `head` does.
@@ -20,4 +25,24 @@ pub(super) fn say(line: impl fmt::Display) {
 /// Whether nobody hears any more what is said.
 pub(super) fn is_unheard() -> bool {
     IS_CLOSED.load(Ordering::Relaxed)
+}
+
+/// Has the warnings of a simulation without a window said on standard error.
+pub(super) fn show_warnings() {
+    App::empty().add_plugins(LogPlugin {
+        level: Level::WARN,
+        // That a recording has failed is said by the command that wanted it.
+        filter: "tabletop_recorder::recorder=off".into(),
+        fmt_layer: |_| {
+            Some(Box::new(
+                Layer::default()
+                    .without_time()
+                    .with_target(false)
+                    .with_ansi(io::stderr().is_terminal())
+                    .with_writer(io::stderr)
+                    .log_internal_errors(false),
+            ))
+        },
+        ..default()
+    });
 }

@@ -5,6 +5,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+#[cfg(unix)]
+use crate::support::small_files;
 use crate::support::{place, scenario, shipped, stderr, tabletop};
 
 /// A recording of a scenario, in a folder of this name.
@@ -34,6 +36,19 @@ fn every_shipped_scenario_replays_to_the_same_bytes() {
         assert!(folder.join("0/0.png").exists(), "{scenario} has no picture");
         replays_to_the_same_bytes(&folder);
     }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_replay_that_cannot_be_written_is_told() {
+    let folder = recording("stack_two_blocks", "replay-small-files");
+    let copy = place("replay-small-files-copy");
+    let [folder, copy] = [&folder, &copy].map(|path| path.to_str().unwrap());
+    let output = small_files(&["replay", folder, "--out", copy]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = stderr(&output);
+    let words = format!("the recording has ended: cannot write {copy}");
+    assert!(said.contains(&words) && said.lines().count() == 1, "{said}");
 }
 
 #[test]

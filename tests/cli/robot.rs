@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::support::{place, scenario, stderr, stdout, tabletop};
+use crate::support::{place, scenario, shipped, stderr, stdout, tabletop};
 
 const MOVE: &str =
     "Robot(Show), Robot(Move([(LeftS1, -0.5), (HeadPan, -0.2)])), Robot(WaitUntilStill(5)),";
@@ -77,6 +77,22 @@ fn a_description_that_is_none_is_wrong_input() {
         assert_eq!(output.status.code(), Some(2));
         assert!(stderr(&output).contains(words), "{}", stderr(&output));
     }
+}
+
+#[test]
+fn a_mesh_that_is_not_there_is_told_once() {
+    let robot = place("no_mesh.urdf");
+    let shipped = fs::read_to_string(shipped("assets", "baxter/baxter.urdf")).unwrap();
+    let missing = shipped.replace("package://tabletop/wrist.shape.json", "missing.stl");
+    fs::write(&robot, missing).unwrap();
+    let path = scenario("no_mesh.ron", "Robot(Show), Start, Wait(0.5), Finish,");
+    let folder = place("no_mesh");
+    let [path, robot, folder] = [&path, &robot, &folder].map(|path| path.to_str().unwrap());
+    let output = tabletop(&["run", path, "--robot", robot, "--record", folder]);
+    assert_eq!(output.status.code(), Some(0));
+    let said = stderr(&output);
+    let words = "WARN link left_wrist is shown by what it is touched by: missing.stl";
+    assert!(said.contains(words) && said.lines().count() == 1, "{said}");
 }
 
 #[test]

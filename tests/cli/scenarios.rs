@@ -9,6 +9,8 @@ use bevy::{
 use tabletop::{TabletopSimPlugins, core::StepApp as _, headless_app_with};
 use tabletop_scenario::ScenarioPlugin;
 
+#[cfg(unix)]
+use crate::support::small_files;
 use crate::support::{command, place, scenario, shipped, stderr, stdout, tabletop};
 
 fn run(scenario: &Path, arguments: &[&str]) -> Output {
@@ -208,6 +210,23 @@ fn a_scenario_is_recorded() {
     let events = fs::read_to_string(folder.join("1.txt")).unwrap();
     assert!(events.contains("RedBlock"), "{events}");
     assert!(fs::read_dir(folder.join("1")).unwrap().count() > 5);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_recording_that_cannot_go_on_ends_the_scenario() {
+    let folder = place("scenario-small-files");
+    let path = shipped("scenarios", "stack_two_blocks.ron");
+    let [path, folder] = [&path, &folder].map(|path| path.to_str().unwrap());
+    let output = small_files(&["run", path, "--record", folder]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = stderr(&output);
+    let words = format!(": the recording has ended: cannot write {folder}");
+    assert!(
+        said.contains("two_blocks.ron:") && said.contains(&words),
+        "{said}"
+    );
+    assert_eq!(said.lines().count(), 1, "{said}");
 }
 
 #[test]

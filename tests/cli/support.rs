@@ -23,6 +23,19 @@ pub fn command(arguments: &[&str]) -> Command {
     command
 }
 
+/// Runs the program where no file can have more than a few KiB, as if the disk were full.
+#[cfg(unix)]
+pub fn small_files(arguments: &[&str]) -> Output {
+    let program = command(arguments);
+    let mut shell = Command::new("sh");
+    shell
+        .args(["-c", r#"trap "" XFSZ; ulimit -f 16; exec "$0" "$@""#])
+        .arg(program.get_program())
+        .args(program.get_args())
+        .current_dir(env!("CARGO_MANIFEST_DIR"));
+    shell.output().unwrap()
+}
+
 pub fn stdout(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }

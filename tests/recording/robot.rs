@@ -31,7 +31,9 @@ fn what_the_robot_did_before_and_in_a_recording_is_done_again() {
     let replay = Replay::read(&demonstration.folder).unwrap();
     let replayed = demonstration.folder.with_file_name("robot_replayed");
     let _not_there = std::fs::remove_dir_all(&replayed);
-    replay.record(replayed.clone(), replay.camera(), Channels::default());
+    replay
+        .record(replayed.clone(), replay.camera(), Channels::default())
+        .unwrap();
     let difference = first_difference(&demonstration.folder, &replayed).unwrap();
     assert_eq!(difference, None);
 }

@@ -40,6 +40,8 @@ fn a_replay_has_the_settings_and_the_camera_of_its_recording() {
     let replay = Replay::read(&moon.folder).unwrap();
     let replayed = moon.folder.with_file_name("moon_replayed");
     let _not_there = std::fs::remove_dir_all(&replayed);
-    replay.record(replayed.clone(), replay.camera(), Channels::default());
+    replay
+        .record(replayed.clone(), replay.camera(), Channels::default())
+        .unwrap();
     assert_eq!(first_difference(&moon.folder, &replayed).unwrap(), None);
 }

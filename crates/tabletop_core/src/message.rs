@@ -150,10 +150,17 @@ pub enum SimFact {
         /// Its folder.
         folder: PathBuf,
     },
-    /// A recording has ended.
+    /// A recording has ended as it should.
     RecordingFinished {
         /// Its folder.
         folder: PathBuf,
+    },
+    /// A recording could not begin or go on. What was written of it before stays.
+    RecordingFailed {
+        /// Its folder.
+        folder: PathBuf,
+        /// What went wrong, and what can be done.
+        reason: String,
     },
     /// The world is again as it was before the last segment of the recording began; the tick has gone back with it.
     Undone,

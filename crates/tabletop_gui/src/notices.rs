@@ -73,7 +73,9 @@ fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
             SimFact::TaskLoaded { faults, .. } => {
                 faults.iter().for_each(|fault| notices.add(fault));
             }
-            SimFact::Refused { reason } => notices.add(reason),
+            SimFact::Refused { reason } | SimFact::RecordingFailed { reason, .. } => {
+                notices.add(reason);
+            }
             _ => {}
         }
     }

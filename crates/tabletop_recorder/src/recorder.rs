@@ -164,8 +164,10 @@ pub(crate) fn take_commands(
                     facts.write(started);
                 }
                 Err(error) => {
-                    error!("{error}");
-                    facts.write(refused(format!("no recording was started: {error}")));
+                    facts.write(failed(
+                        recorder.folder.clone(),
+                        format!("no recording was started: {error}"),
+                    ));
                 }
             },
             SimCommand::FinishRecording if recorder.episode.is_none() => {
@@ -243,9 +245,10 @@ impl Recorder {
         facts: &mut MessageWriter<SimFact>,
     ) {
         if let Err(error) = result {
-            error!("the recording has ended: {error}");
-            facts.write(refused(format!("the recording has ended: {error}")));
-            self.end(None, recording, facts);
+            let reason = format!("the recording has ended: {error}");
+            if let Some(folder) = self.end(None, recording) {
+                facts.write(failed(folder, reason));
+            }
         }
     }
 
@@ -262,26 +265,29 @@ impl Recorder {
         let commands = episode.commands();
         let result = episode.finish(tick).and(commands);
         match result {
-            Ok(commands) => self.end(Some(&commands), recording, facts),
+            Ok(commands) => {
+                if let Some(folder) = self.end(Some(&commands), recording) {
+                    facts.write(SimFact::RecordingFinished { folder });
+                }
+            }
             Err(error) => self.stop_on_error(Err(error), recording, facts),
         }
     }
 
-    /// Ends the recording, of which these are the lines of its commands.
-    fn end(
-        &mut self,
-        commands: Option<&[u8]>,
-        recording: &mut Recording,
-        facts: &mut MessageWriter<SimFact>,
-    ) {
+    /// Ends the recording, of which these are the lines of its commands. Returns its folder.
+    fn end(&mut self, commands: Option<&[u8]>, recording: &mut Recording) -> Option<PathBuf> {
         self.is_finishing = false;
         self.prelude.append_recorded(commands);
-        if let Some(episode) = self.episode.take() {
-            let folder = episode.folder().to_owned();
-            recording.0 = false;
-            facts.write(SimFact::RecordingFinished { folder });
-        }
+        let episode = self.episode.take()?;
+        recording.0 = false;
+        Some(episode.folder().to_owned())
     }
+}
+
+/// Nobody may miss that a demonstration is not recorded: it is logged, too.
+fn failed(folder: PathBuf, reason: String) -> SimFact {
+    error!("{reason}");
+    SimFact::RecordingFailed { folder, reason }
 }
 
 pub(crate) fn refused(reason: String) -> SimFact {

@@ -83,13 +83,14 @@ fn take_due_steps(
     paused: Res<Paused>,
     robot: Res<Robot>,
 ) {
-    let refusals: Vec<&str> = facts
-        .read()
-        .filter_map(|fact| match fact {
-            SimFact::Refused { reason } => Some(reason.as_str()),
-            _ => None,
-        })
-        .collect();
+    let mut refusal = None;
+    for fact in facts.read() {
+        match fact {
+            SimFact::RecordingFailed { reason, .. } => run.give_up(reason.clone()),
+            SimFact::Refused { reason } if refusal.is_none() => refusal = Some(reason.as_str()),
+            _ => {}
+        }
+    }
     let objects = index.iter().filter_map(|entity| {
         let (spec, transform) = objects.get(entity).ok()?;
         Some(SeenObject {
@@ -106,5 +107,5 @@ fn take_due_steps(
         paused: paused.0,
         robot: &robot,
     };
-    commands.write_batch(run.tick(&seen, refusals.first().copied()));
+    commands.write_batch(run.tick(&seen, refusal));
 }

@@ -106,6 +106,16 @@ impl ScenarioRun {
         }
     }
 
+    /// Fails for what concerns all its steps.
+    pub(crate) fn give_up(&mut self, reason: String) {
+        if let (Outcome::Running, Some(last)) =
+            (&self.outcome, self.program.steps.len().checked_sub(1))
+        {
+            let step = self.commanded.take().unwrap_or(self.next);
+            self.fail(step.min(last), reason);
+        }
+    }
+
     fn go_on(&mut self) {
         self.robot_still = 0;
         self.next += 1;
@@ -157,6 +167,19 @@ mod tests {
             ]
         );
         assert_eq!(*stage.run.outcome(), Outcome::Done);
+    }
+
+    #[test]
+    fn what_concerns_the_whole_scenario_fails_at_the_step_that_is_due() {
+        let mut stage = Stage::new("Wait(9), Clear");
+        stage.tick();
+        stage.run.give_up("the disk is full".into());
+        assert_eq!(stage.tick(), None);
+        assert_eq!(stage.failure(), "s.ron:1:10: Wait(9): the disk is full");
+        let mut nothing = Stage::new("");
+        nothing.run.give_up("the disk is full".into());
+        nothing.tick();
+        assert_eq!(*nothing.run.outcome(), Outcome::Done);
     }
 
     #[test]

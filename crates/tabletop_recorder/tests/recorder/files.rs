@@ -413,12 +413,14 @@ fn the_next_recording_leaves_the_last_one_alone() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_made_is_refused() {
+fn a_recording_whose_folder_cannot_be_made_fails() {
     let mut app = app_into("/dev/null/demo".into());
     run(&mut app, &[(0, SimCommand::StartRecording)]);
-    let [SimFact::Refused { reason }] = &heard(&mut app)[..] else {
-        panic!("it was not refused");
+    let facts = heard(&mut app);
+    let [SimFact::RecordingFailed { folder, reason }] = &facts[..] else {
+        panic!("{facts:?}");
     };
+    assert_eq!(*folder, *"/dev/null/demo");
     assert!(reason.contains("/dev/null/demo"), "{reason}");
     assert!(!app.world().resource::<Recording>().0);
     app.step(20);

@@ -8,6 +8,7 @@ use std::{
     process::Command,
 };
 
+use bevy::prelude::App;
 use tabletop_core::{Hand, Recording, SimCommand, SimFact, StepApp as _};
 use tabletop_recorder::Session;
 
@@ -49,14 +50,17 @@ fn fill(disk: &Path, bytes: usize) {
     let _full = fs::write(disk.join("filler"), vec![0; bytes]);
 }
 
-fn refusals(facts: &[SimFact]) -> Vec<&str> {
-    facts
-        .iter()
-        .filter_map(|fact| match fact {
-            SimFact::Refused { reason } => Some(reason.as_str()),
-            _ => None,
-        })
-        .collect()
+/// What is told of the one recording that failed.
+fn failure(app: &mut App) -> (PathBuf, String) {
+    let mut facts = heard(app);
+    let place = |fact: &SimFact| matches!(fact, SimFact::RecordingFailed { .. });
+    let failure = facts.iter().position(place).map(|at| facts.remove(at));
+    let ends = |fact: &SimFact| place(fact) || matches!(fact, SimFact::RecordingFinished { .. });
+    assert!(!facts.iter().any(ends), "{facts:?}");
+    match failure {
+        Some(SimFact::RecordingFailed { folder, reason }) => (folder, reason),
+        _ => panic!("{facts:?}"),
+    }
 }
 
 const IDS: [&str; 6] = ["a", "bb", "ccc", "dddd", "eeeee", "ffffff"];
@@ -89,14 +93,10 @@ fn what_was_recorded_before_the_disk_was_full_is_complete() {
         }
         app.step(20);
 
-        let facts = heard(&mut app);
-        let [reason] = refusals(&facts)[..] else {
-            panic!("{facts:?}");
-        };
+        let (folder, reason) = failure(&mut app);
+        assert_eq!(folder, demo);
         assert!(reason.contains("No space left"), "{reason}");
         assert!(reason.contains("free some space"), "{reason}");
-        let folder = demo.clone();
-        assert!(facts.contains(&SimFact::RecordingFinished { folder }));
         check_recording(&demo, ticks - 1);
     }
 }
@@ -154,8 +154,9 @@ fn no_recording_starts_on_a_full_disk() {
         &mut app,
         &[(0, scene(&IDS)), (0, SimCommand::StartRecording)],
     );
-    let facts = heard(&mut app);
-    assert_eq!(refusals(&facts).len(), 1, "{facts:?}");
+    let (folder, reason) = failure(&mut app);
+    assert_eq!(folder, disk.0.join("demo"));
+    assert!(reason.starts_with("no recording was started"), "{reason}");
     assert!(!app.world().resource::<Recording>().0);
 
     fs::remove_file(disk.0.join("filler")).unwrap();
