@@ -14,9 +14,11 @@ use std::{
 use bevy::{app::PluginGroupBuilder, ecs::message::MessageCursor, prelude::*};
 use serde::Deserialize as _;
 use tabletop_baxter::BaxterPlugin;
-use tabletop_core::{HeadCamera, SimFact, SimTick, StepApp as _, TICKS_PER_SECOND};
+use tabletop_core::{HeadCamera, SimCommand, SimFact, SimTick, StepApp as _, TICKS_PER_SECOND};
 use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
-use tabletop_recorder::{Channels, RecorderError, RecorderPlugin, Session, TICKS_PER_FRAME};
+use tabletop_recorder::{
+    Channels, RecorderError, RecorderPlugin, Session, SessionCommand, TICKS_PER_FRAME,
+};
 
 use crate::{
     TabletopSimPlugins, headless_app_with,
@@ -69,6 +71,7 @@ pub enum ReplayError {
 pub struct Replay {
     folder: PathBuf,
     session: Session,
+    cut_off_at: Option<SimTick>,
     begin: SimTick,
     physics: PhysicsSettings,
     robot: BaxterPlugin,
@@ -83,7 +86,7 @@ impl Replay {
     pub fn read(folder: impl Into<PathBuf>) -> Result<Self, ReplayError> {
         let folder = folder.into();
         let path = folder.join("session.jsonl");
-        let session = Session::read(&path)?;
+        let mut session = Session::read(&path)?;
         let header = &session.header;
         let fault = |name, problem| ReplayError::Settings {
             path: path.clone(),
@@ -118,9 +121,20 @@ impl Replay {
         let Some(begin) = header.begin_tick.map(SimTick) else {
             return Err(ReplayError::NoBeginning { path });
         };
+        let cut_off_at = match session.is_finished() {
+            true => None,
+            false => Some(session.last_tick(&folder)?),
+        };
+        session
+            .commands
+            .extend(cut_off_at.map(|tick| SessionCommand {
+                tick: tick.0,
+                command: SimCommand::FinishRecording,
+            }));
         Ok(Self {
             folder,
             session,
+            cut_off_at,
             begin,
             physics,
             robot,
@@ -130,6 +144,24 @@ impl Replay {
     /// The recording's folder.
     pub fn folder(&self) -> &Path {
         &self.folder
+    }
+
+    /// The tick in which the recording was cut off, if it was: the program was killed, or its disk was full. It is replayed
+    /// that far.
+    pub fn cut_off_at(&self) -> Option<SimTick> {
+        self.cut_off_at
+    }
+
+    /// The first file in which the recording of a replay differs from this one, and how. Of what was cut off, nothing is
+    /// compared.
+    ///
+    /// # Errors
+    /// A folder or file cannot be read.
+    pub fn first_difference(&self, replayed: &Path) -> Result<Option<String>, ReplayError> {
+        match self.cut_off_at {
+            None => first_difference(&self.folder, replayed),
+            Some(_) => difference::first_before_cut(&self.folder, replayed),
+        }
     }
 
     /// Version of the program that made the recording.

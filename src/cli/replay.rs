@@ -4,13 +4,13 @@ use std::{fs, path::PathBuf, process::ExitCode};
 
 use bevy::math::Vec3;
 use clap::Args;
-use tabletop::{
-    core::Pose,
-    recorder::Channels,
-    replay::{Replay, first_difference},
-};
+use tabletop::{core::Pose, recorder::Channels, replay::Replay};
 
-use super::{Failure, terminal::show_warnings, window};
+use super::{
+    Failure,
+    terminal::{say, show_warnings},
+    window,
+};
 
 #[derive(Args)]
 pub(super) struct ReplayArgs {
@@ -87,6 +87,13 @@ fn angle_of_view(text: &str) -> Result<f32, String> {
 
 pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let replay = Replay::read(&args.recording).map_err(Failure::input)?;
+    if let Some(tick) = replay.cut_off_at() {
+        let folder = args.recording.display();
+        say(format_args!(
+            "tabletop: {folder} was cut off in tick {}, and is replayed that far",
+            tick.0
+        ));
+    }
     if args.window {
         return window::play(replay);
     }
@@ -95,7 +102,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let out = args.out.as_ref().unwrap_or(&temporary);
     let recorded = args.pictures.record(&replay, out.clone());
     let difference = recorded.and_then(|()| match args.verify {
-        true => first_difference(&args.recording, out).map_err(Failure::input),
+        true => replay.first_difference(out).map_err(Failure::input),
         false => Ok(None),
     });
     // It is not there if the recording of the replay is to be kept.

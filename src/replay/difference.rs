@@ -20,7 +20,7 @@ pub fn first_difference(recorded: &Path, replayed: &Path) -> Result<Option<Strin
         let name = file.display();
         let (before, after) = (recorded.join(&file), replayed.join(&file));
         let difference = match (before.exists(), after.exists()) {
-            (true, false) => format!("{name}: was recorded, and is not there in the replay"),
+            (true, false) => format!("{name}: {NOT_REPLAYED}"),
             (false, true) => format!("{name}: was not recorded, and is there in the replay"),
             _ => {
                 let (before, after) = (read(&before)?, read(&after)?);
@@ -33,6 +33,48 @@ pub fn first_difference(recorded: &Path, replayed: &Path) -> Result<Option<Strin
         return Ok(Some(difference));
     }
     Ok(None)
+}
+
+/// [`first_difference`] for a recording that was cut off: its files are beginnings, and the last ones are not there.
+pub(super) fn first_before_cut(
+    recorded: &Path,
+    replayed: &Path,
+) -> Result<Option<String>, ReplayError> {
+    for file in files_in(recorded)? {
+        if is_for_the_program_alone(&file) {
+            continue;
+        }
+        let name = file.display();
+        if !replayed.join(&file).exists() {
+            return Ok(Some(format!("{name}: {NOT_REPLAYED}")));
+        }
+        let (before, after) = (read(&recorded.join(&file))?, read(&replayed.join(&file))?);
+        let whole = match file.extension().is_some_and(|extension| extension == "png") {
+            true => &before[..],
+            false => whole_lines(&before),
+        };
+        if !after.starts_with(whole) {
+            let difference = first_difference_of(whole, &after);
+            return Ok(Some(format!("{name}: {difference}")));
+        }
+    }
+    Ok(None)
+}
+
+const NOT_REPLAYED: &str = "was recorded, and is not there in the replay";
+
+/// Whether it is a picture that was not finished, or was undone.
+fn is_for_the_program_alone(file: &Path) -> bool {
+    file.starts_with(".undone")
+        || file
+            .extension()
+            .is_some_and(|extension| extension == "part")
+}
+
+/// What is in a file up to its last line end: the kernel may cut a write in two when it kills.
+fn whole_lines(text: &[u8]) -> &[u8] {
+    let end = text.iter().rposition(|&byte| byte == b'\n');
+    end.and_then(|end| text.get(..=end)).unwrap_or_default()
 }
 
 /// Where two files differ: line and texts, or for pictures that they do.

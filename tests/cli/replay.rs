@@ -7,7 +7,7 @@ use std::{
 
 #[cfg(unix)]
 use crate::support::small_files;
-use crate::support::{place, scenario, shipped, stderr, tabletop};
+use crate::support::{command, place, scenario, shipped, stderr, tabletop};
 
 /// A recording of a scenario, in a folder of this name.
 fn record(scenario: &Path, name: &str) -> PathBuf {
@@ -49,6 +49,30 @@ fn a_replay_that_cannot_be_written_is_told() {
     let said = stderr(&output);
     let words = format!("the recording has ended: cannot write {copy}");
     assert!(said.contains(&words) && said.lines().count() == 1, "{said}");
+}
+
+#[test]
+fn a_recording_that_was_cut_off_replays_as_far_as_it_goes() {
+    let steps =
+        "Grasp(\"RedBlock\"), MoveBy((0, 0, 3)), Wait(0.2), Release, Wait(0.3),".repeat(300);
+    let scenario = scenario("cut.ron", &format!("Start, {steps} Finish,"));
+    for bytes in [2_000, 20_000, 50_000, 100_000] {
+        let folder = place("cut");
+        let [scenario, into] = [&scenario, &folder].map(|path| path.to_str().unwrap());
+        let arguments = ["run", scenario, "--record", into, "--seconds", "600"];
+        let mut running = command(&arguments).spawn().unwrap();
+        let states = folder.join("states.csv");
+        while fs::metadata(&states).map_or(0, |file| file.len()) < bytes {
+            assert_eq!(running.try_wait().unwrap(), None, "it ended too early");
+        }
+        running.kill().unwrap();
+        running.wait().unwrap();
+
+        let output = tabletop(&["replay", into, "--verify"]);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(0), "{bytes}: {said}");
+        assert!(said.contains("was cut off in tick"), "{said}");
+    }
 }
 
 #[test]

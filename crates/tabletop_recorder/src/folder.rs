@@ -26,6 +26,10 @@ impl Folder {
         Ok(Self(path.to_owned()))
     }
 
+    pub(crate) fn existing(path: &Path) -> Self {
+        Self(path.to_owned())
+    }
+
     pub(crate) fn path(&self) -> &Path {
         &self.0
     }

@@ -26,6 +26,15 @@ impl FrameClock {
         self.elapsed(tick).is_multiple_of(TICKS_PER_FRAME)
     }
 
+    /// The tick at whose end a frame is taken.
+    pub(crate) fn tick(self, frame: u64) -> SimTick {
+        SimTick(
+            self.start
+                .0
+                .saturating_add(frame.saturating_mul(TICKS_PER_FRAME)),
+        )
+    }
+
     fn elapsed(self, tick: SimTick) -> u64 {
         tick.0.saturating_sub(self.start.0)
     }
@@ -47,6 +56,7 @@ mod tests {
         for (number, tick) in frames.into_iter().enumerate() {
             assert_eq!(tick.0, start + 15 * number as u64);
             assert_eq!(clock.frame(tick), number as u64);
+            assert_eq!(clock.tick(number as u64), tick);
         }
     }
 

@@ -30,6 +30,7 @@ mod change;
 mod episode;
 mod error;
 mod event;
+mod extent;
 mod folder;
 mod frame;
 mod joints;

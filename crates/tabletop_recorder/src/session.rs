@@ -92,13 +92,13 @@ impl Session {
         let text = fs::read_to_string(&path).map_err(RecorderError::read(&path))?;
         let whole = text.rfind('\n').map_or("", |end| &text[..end]);
         let mut lines = (1..).zip(whole.split('\n'));
-        let mut next = || lines.next().unwrap_or_default();
-        let header: SessionHeader = parse(&path, next())?;
+        let mut line = |number| lines.next().unwrap_or((number, ""));
+        let header: SessionHeader = parse(&path, line(1))?;
         if header.format != FORMAT {
             let found = header.format;
             return Err(RecorderError::Format { path, found });
         }
-        let scene = parse(&path, next())?;
+        let scene = parse(&path, line(2))?;
         let mut earlier = lines
             .map(|line| parse(&path, line))
             .collect::<Result<Vec<_>, _>>()?;
@@ -226,8 +226,12 @@ mod tests {
             error.starts_with(&format!("{}:5: ", path.display())),
             "{error}"
         );
-        fs::write(&path, "").unwrap();
-        assert!(Session::read(&path).is_err());
+        for (text, line) in [(&[][..], 1), (&session_line(&header).unwrap(), 2)] {
+            fs::write(&path, text).unwrap();
+            let error = Session::read(&path).unwrap_err().to_string();
+            let place = format!("{}:{line}: ", path.display());
+            assert!(error.starts_with(&place), "{error}");
+        }
 
         let header = SessionHeader {
             format: FORMAT + 1,

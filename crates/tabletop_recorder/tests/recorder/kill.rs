@@ -109,6 +109,9 @@ fn check_recording(demo: &Path, last: u64) {
     // Tick 0 has two: the scene is set before the recording is started.
     assert!(ticks.len() as u64 > last, "{last} {}", ticks.len());
     assert!(ticks.is_sorted());
+    assert!(!session.is_finished());
+    let end = session.last_tick(demo).unwrap().0;
+    assert!((last..=last + 1).contains(&end), "{end}, {last}");
 
     let mut frames = Vec::new();
     for segment in 0.. {
