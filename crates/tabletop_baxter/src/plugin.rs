@@ -96,13 +96,16 @@ impl Plugin for BaxterPlugin {
                 return;
             }
         };
-        let skeleton = match Skeleton::new(description.model.clone()) {
+        let mut skeleton = match Skeleton::new(description.model.clone()) {
             Ok(skeleton) => skeleton,
             Err(error) => {
                 error!("there is no robot: {error}");
                 return;
             }
         };
+        for (link, error) in skeleton.add_meshes(description.path()) {
+            warn!("link {link} is not touched where this mesh would be: {error}");
+        }
         app.insert_resource(Meetings::new(&skeleton))
             .insert_resource(skeleton)
             .insert_resource(description)

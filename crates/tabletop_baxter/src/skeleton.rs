@@ -1,6 +1,9 @@
 //! The robot as the simulator moves it: which bodies it consists of, and where they are.
 
-use std::f32::consts::{FRAC_PI_2, PI};
+use std::{
+    f32::consts::{FRAC_PI_2, PI},
+    path::Path,
+};
 
 use bevy::{
     math::{DAffine3, DMat3, DQuat, DVec3},
@@ -9,9 +12,11 @@ use bevy::{
 use bevy_rapier3d::rapier::prelude::SharedShape;
 use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, RobotJoint, UNITS_PER_METER};
 use tabletop_kinematics::{
-    ArmChain, Frames, Geometry, JointId, JointValues, LinkId, Load, Model, ModelError,
+    ArmChain, Frames, Geometry, JointId, JointValues, LinkId, Load, Model, ModelError, Shape,
 };
 use tabletop_physics::Convex;
+
+use crate::look::{LookError, figure_of};
 
 /// Extents of a finger across, along the opening and along the finger, in units: x, y, z of the end effector's frame.
 pub(crate) const FINGER: Vec3 = Vec3::new(0.3, 0.4, 1.5);
@@ -120,6 +125,26 @@ impl Skeleton {
         };
         skeleton.bodies = skeleton.find_bodies();
         Ok(skeleton)
+    }
+
+    /// Adds the convex hulls of the meshes by which links are touched, as coarse as the head camera sees them. `urdf` is the
+    /// file of the description. Returns what could not be added, and the links that lack it.
+    pub fn add_meshes(&mut self, urdf: Option<&Path>) -> Vec<(String, LookError)> {
+        let mut lacking = Vec::new();
+        for body in &mut self.bodies {
+            let Carrier::Link(link) = body.carrier else {
+                continue;
+            };
+            for collision in &self.model.link(link).collisions {
+                if let Geometry::Mesh { file, .. } = &collision.geometry {
+                    match hull_of(collision, file, urdf) {
+                        Ok(hull) => body.parts.push(hull),
+                        Err(error) => lacking.push((body.id.clone(), error)),
+                    }
+                }
+            }
+        }
+        lacking
     }
 
     /// The model.
@@ -298,8 +323,19 @@ fn cuboid(span: Vec3) -> SharedShape {
     SharedShape::cuboid(span.x / 2.0, span.y / 2.0, span.z / 2.0)
 }
 
-/// The solid of a link's collision geometry, in the link's frame.
-fn convex(shape: &tabletop_kinematics::Shape) -> Option<Convex> {
+/// The convex hull of a mesh, in the frame of the link that is touched by it.
+fn hull_of(mesh: &Shape, file: &str, urdf: Option<&Path>) -> Result<Convex, LookError> {
+    let points = &figure_of(mesh, urdf)?.coarse.positions;
+    let hull = SharedShape::convex_hull(points);
+    let shape = hull.ok_or_else(|| LookError::Empty { path: file.into() })?;
+    Ok(Convex {
+        pose: Pose::IDENTITY,
+        shape,
+    })
+}
+
+/// The solid of a link's collision geometry, in the link's frame; of a mesh, [`hull_of`] knows it.
+fn convex(shape: &Shape) -> Option<Convex> {
     let origin = in_units(shape.origin);
     let scale = UNITS_PER_METER as f32;
     Some(match &shape.geometry {

@@ -4,6 +4,7 @@
 mod kit;
 
 use bevy::prelude::*;
+use bevy_rapier3d::{prelude::Collider, rapier::prelude::SharedShape};
 use kit::Stage;
 use tabletop_baxter::{BaxterPlugin, Description, RobotBody, Source};
 use tabletop_core::{Face, Figure, SimCommand, StepApp};
@@ -33,6 +34,62 @@ fn the_robot_is_seen_while_it_is_shown() {
     stage.tell(SimCommand::ShowRobot(true));
     stage.app.step(1);
     assert_eq!(seen(&mut stage), shown);
+}
+
+/// An STL file of a corner of a cube, 0.2 m along its edges.
+fn tetrahedron() -> String {
+    let corners = ["0 0 0", "0.2 0 0", "0 0.2 0", "0 0 0.2"];
+    let facet = |[a, b, c]: [usize; 3]| {
+        let [a, b, c] = [a, b, c].map(|i| format!("vertex {}\n", corners[i]));
+        format!("facet normal 0 0 1\nouter loop\n{a}{b}{c}endloop\nendfacet\n")
+    };
+    let facets = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map(facet);
+    format!("solid a\n{}endsolid a\n", facets.concat())
+}
+
+#[test]
+fn a_link_is_touched_by_the_hulls_of_its_meshes() {
+    let folder = std::env::temp_dir().join(format!("tabletop-touched-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let box_of_torso = "<box size=\"0.31 0.3 0.23\"/>";
+    let with_mesh = |mesh: &str| {
+        let urdf = include_str!("../../../assets/baxter/baxter.urdf");
+        assert!(urdf.contains(box_of_torso));
+        let mesh = format!("<mesh filename=\"{mesh}\"/>");
+        let source = Source {
+            path: folder.join("my.urdf"),
+            urdf: urdf.replacen(box_of_torso, &mesh, 1),
+        };
+        let mut stage = Stage::with(BaxterPlugin {
+            description: Some(Description::read(source).unwrap()),
+            ..default()
+        });
+        let world = stage.app.world_mut();
+        let mut bodies = world.query::<(&RobotBody, &Collider)>();
+        let (_, torso) = bodies
+            .iter(world)
+            .find(|(body, _)| body.name == "torso")
+            .unwrap();
+        let extents = |shape: &SharedShape| shape.compute_local_aabb().extents();
+        let parts = torso.raw.as_compound().unwrap().shapes();
+        parts
+            .iter()
+            .map(|(_, part)| extents(part))
+            .collect::<Vec<_>>()
+    };
+    std::fs::write(folder.join("whole.stl"), tetrahedron()).unwrap();
+    let with_hull = with_mesh("whole.stl");
+    let without = with_mesh("missing.stl");
+    assert_eq!(without.len() + 1, with_hull.len());
+    let hull = with_hull.iter().filter(|hull| !without.contains(hull));
+    let [hull] = hull.collect::<Vec<_>>()[..] else {
+        panic!("{with_hull:?}");
+    };
+    assert!(
+        (hull - Vec3::splat(2.0)).abs().max_element() < 1e-4,
+        "{hull}"
+    );
+    std::fs::remove_dir_all(folder).unwrap();
 }
 
 #[test]
