@@ -61,8 +61,8 @@ mod turns;
 pub use bar::{Panel, Panels};
 pub use notices::Notices;
 
-use bevy::prelude::*;
-use bevy_egui::{EguiGlobalSettings, EguiPlugin, PrimaryEguiContext};
+use bevy::{asset::AssetEventSystems, prelude::*};
+use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPostUpdateSet, PrimaryEguiContext};
 use tabletop_core::UserCamera;
 
 /// Adds keys and panels. Needs Bevy's renderer and [`CorePlugin`](tabletop_core::CorePlugin).
@@ -79,6 +79,11 @@ impl Plugin for GuiPlugin {
             // The few textures of the panels do not need it, and not every graphics driver has it.
             bindless_mode_array_size: None,
         })
+        // Else a texture that has changed, such as new letters, is seen a frame late, and what is new is not seen until then.
+        .configure_sets(
+            PostUpdate,
+            EguiPostUpdateSet::PostProcessOutput.before(AssetEventSystems),
+        )
         .add_observer(draw_panels_over)
         .add_plugins((
             style::plugin,
