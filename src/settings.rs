@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tabletop_baxter::{BaxterPlugin, Description, Source};
-use tabletop_core::{Robot, RobotMode, SimSystems};
+use tabletop_core::{Robot, RobotMode, SimSystems, TickSystems};
 use tabletop_kinematics::ModelError;
 use tabletop_physics::PhysicsSettings;
 use tabletop_recorder::SessionSettings;
@@ -44,6 +44,7 @@ impl Plugin for RecordedSettingsPlugin {
                 note_robot.run_if(resource_exists_and_changed::<Description>),
             )
                 .chain()
+                .in_set(TickSystems)
                 .before(SimSystems::Load)
                 .run_if(resource_exists::<SessionSettings>),
         );

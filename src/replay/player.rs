@@ -3,7 +3,9 @@
 use std::collections::VecDeque;
 
 use bevy::{ecs::message::MessageCursor, prelude::*};
-use tabletop_core::{Paused, SimCommand, SimFact, SimSystems, SimTick};
+use tabletop_core::{
+    AgentOrder, OrderSystems, Paused, SimCommand, SimFact, SimSystems, SimTick, TickSystems,
+};
 use tabletop_recorder::{Session, SessionCommand};
 
 /// Gives the commands of a recording at their ticks, and stays in the world as a resource.
@@ -46,8 +48,13 @@ impl Player {
 
     /// Lets it play in an app.
     pub(crate) fn play_in(self, app: &mut App) {
-        app.insert_resource(self)
-            .add_systems(FixedUpdate, play.before(SimSystems::Load));
+        app.insert_resource(self).add_systems(
+            FixedUpdate,
+            (
+                keep_scripts_out.before(OrderSystems::Script),
+                play.in_set(TickSystems).before(SimSystems::Load),
+            ),
+        );
     }
 
     /// Whether all its commands were given.
@@ -78,6 +85,18 @@ impl Player {
             due.extend(next.filter(|next| self.records || *next != SimCommand::FinishRecording));
         }
         due
+    }
+}
+
+fn keep_scripts_out(
+    player: Res<Player>,
+    mut orders: ResMut<Messages<AgentOrder>>,
+    mut facts: MessageWriter<SimFact>,
+) {
+    if !player.is_over() && orders.drain().any(|order| order == AgentOrder::Start) {
+        facts.write(SimFact::Refused {
+            reason: "a recording is replayed; scripts can run when it is over".into(),
+        });
     }
 }
 
@@ -197,6 +216,30 @@ mod tests {
         assert_eq!(app.world().resource::<SimTick>().0, 2);
         assert_eq!(tick(&mut app, slice::from_ref(&right)), [left]);
         assert_eq!(tick(&mut app, slice::from_ref(&right)), [right]);
+    }
+
+    #[test]
+    fn scripts_start_when_it_is_over() {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .start();
+        player(&[(1, SimCommand::ClearTable)]).play_in(&mut app);
+        for (orders, refusals) in [(0, 1), (0, 1), (1, 0)] {
+            app.world_mut().write_message(AgentOrder::Start);
+            app.step(1);
+            let count = app
+                .world_mut()
+                .resource_mut::<Messages<AgentOrder>>()
+                .drain()
+                .count();
+            assert_eq!(count, orders);
+            let refused = app
+                .world_mut()
+                .resource_mut::<Messages<SimFact>>()
+                .drain()
+                .count();
+            assert_eq!(refused, refusals);
+        }
     }
 
     #[test]

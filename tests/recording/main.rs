@@ -5,4 +5,5 @@ mod demonstration;
 mod random;
 mod robot;
 mod settings;
+mod slow_script;
 mod undo;

@@ -17,7 +17,7 @@ pub const TICKS_PER_SECOND: u32 = 60;
 /// Length of a tick in seconds.
 pub const TICK_SECONDS: f32 = 1.0 / TICKS_PER_SECOND as f32;
 
-/// Everything of a tick. Does not run at a [`Standstill`].
+/// Everything of a tick: whatever is in [`FixedUpdate`] and in none of the [`OrderSystems`]. Does not run at a [`Standstill`].
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TickSystems;
 
@@ -81,12 +81,18 @@ pub struct Paused(pub bool);
 
 impl Paused {
     /// Whether the tick that begins is one of a pause, which may have been asked for just now: for systems that give orders.
-    pub fn will_be(mut commands: MessageReader<SimCommand>, paused: Res<Self>) -> bool {
-        let asked_for = commands.read().filter_map(|command| match command {
+    pub fn will_be(
+        mut commands: MessageReader<SimCommand>,
+        mut asked_for: Local<Option<bool>>,
+        paused: Res<Self>,
+    ) -> bool {
+        let pauses = commands.read().filter_map(|command| match command {
             SimCommand::SetPaused(pause) => Some(*pause),
             _ => None,
         });
-        asked_for.last().unwrap_or(paused.0)
+        // At a standstill, what was asked for in an earlier frame is still to be done.
+        *asked_for = pauses.last().or(*asked_for).filter(|ask| *ask != paused.0);
+        asked_for.unwrap_or(paused.0)
     }
 
     /// Run condition: the simulation is running.

@@ -56,7 +56,7 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 use serde_json::{Map, Value};
-use tabletop_core::{Paused, SimSystems};
+use tabletop_core::{Paused, SimSystems, TickSystems};
 
 use crate::recorder::{Recorder, ask_for_picture, record, take_commands};
 
@@ -113,7 +113,8 @@ impl Plugin for RecorderPlugin {
                         .after(SimSystems::Propagate)
                         .before(SimSystems::Sense),
                     record.after(SimSystems::Sense).before(SimSystems::Record),
-                ),
+                )
+                    .in_set(TickSystems),
             );
     }
 }

@@ -1,7 +1,7 @@
 //! Demonstrations that are not recorded.
 
 use bevy::prelude::*;
-use tabletop_core::{Recording, SimCommand, SimFact, SimSystems};
+use tabletop_core::{Recording, SimCommand, SimFact, SimSystems, TickSystems};
 
 use crate::recorder::{IS_RUNNING, NONE_IS_RUNNING, refused};
 
@@ -21,7 +21,8 @@ impl Plugin for RehearsalPlugin {
             (
                 start.after(SimSystems::Load).before(SimSystems::Ingest),
                 finish.after(SimSystems::Sense).before(SimSystems::Record),
-            ),
+            )
+                .in_set(TickSystems),
         );
     }
 }

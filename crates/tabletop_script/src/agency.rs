@@ -60,6 +60,8 @@ struct Session {
     began_at: SimTick,
     /// What it gets to know.
     told: Told,
+    /// An answer that came in a pause, after which it counts.
+    answer: Option<Reply>,
     /// The tick of a picture that the script is to get next.
     picture: Option<SimTick>,
     /// Whether it has been said that nothing obeys its torques.
@@ -134,15 +136,23 @@ pub(crate) fn call(
             let sensor = senses.sensor(ticks, picture, session.told);
             session.ask(Stage::Step, |engine| engine.step(sensor));
         }
-        let look = match (settings.waiting, session.stage) {
-            (Waiting::Frame(_), Stage::Start) => Duration::ZERO,
-            (Waiting::Frame(most), _) => most,
-            (Waiting::Blocking, _) => ONE_LOOK,
+        let look = match settings.waiting {
+            Waiting::Blocking => ONE_LOOK,
+            Waiting::Frame(_) if will_be_paused || session.stage == Stage::Start => Duration::ZERO,
+            Waiting::Frame(most) => most,
         };
         let was_alive = session.engine.is_alive();
-        let reply = session.engine.recv_timeout(look);
+        let reply = session.answer.take();
+        let reply = reply.or_else(|| session.engine.recv_timeout(look));
         news.print(&session.engine);
         match reply {
+            Some(reply @ (Reply::Init(_) | Reply::Step(_))) if will_be_paused => {
+                if let Agent::Waiting { since } = *agent {
+                    *agent = Agent::Online { took: since };
+                }
+                session.answer = Some(reply);
+                return;
+            }
             Some(reply) => {
                 match session.take(reply, *tick, &senses, &mut agent, &mut commands, &mut news) {
                     Ok(Answer::None) => {}
@@ -153,8 +163,8 @@ pub(crate) fn call(
             None if settings.waiting == Waiting::Blocking => {}
             None => {
                 // The engine comes up while the simulation goes on; the script itself is waited for.
-                standstill.set_if_neq(Standstill(session.stage != Stage::Start));
                 if session.stage != Stage::Start {
+                    standstill.set_if_neq(Standstill(!will_be_paused));
                     *agent = Agent::Waiting {
                         since: session.asked.elapsed(),
                     };
@@ -214,6 +224,7 @@ fn start(settings: &ScriptSettings, tick: SimTick) -> Result<Session, EngineErro
         called_at: tick,
         began_at: tick,
         told,
+        answer: None,
         picture: None,
         torques_noted: false,
     })

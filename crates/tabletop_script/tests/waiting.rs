@@ -222,5 +222,23 @@ fn a_pause_can_be_made_while_a_script_is_waited_for() {
     }
     assert_eq!(stage.tick(), tick);
     stage.tell(SimCommand::SetPaused(false));
-    stage.frames_until(|stage| stage.tick() > tick + 2);
+    stage.frames_until(|stage| stage.track().len() >= 6);
+
+    let mut blocking = Stage::start(folder.settings());
+    blocking.ticks(6);
+    assert_eq!(&stage.track()[..6], blocking.track());
+}
+
+#[test]
+fn in_a_pause_nothing_waits_for_a_script() {
+    let folder = Folder::pair("calls = 0;", GATED);
+    let mut stage = Stage::start(framewise(&folder));
+    stage.frames_until(waits);
+    stage.tell(SimCommand::SetPaused(true));
+    stage.tell(SimCommand::ShowFace(Face::Asleep));
+    stage.frame();
+    assert_eq!(stage.robot().face, Face::Asleep);
+    assert!(waits(&stage) && !stage.app.world().resource::<Standstill>().0);
+    stage.order(AgentOrder::Stop);
+    stage.frames_until(Stage::has_stopped);
 }
