@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use tabletop_core::SimTick;
-use tabletop_gui::Notices;
+use tabletop_gui::{Notices, Tone};
 
 use crate::replay::{Player, Replay};
 
@@ -16,7 +16,7 @@ pub(super) fn play(replay: &Replay, app: &mut App) {
         "the replay of {} is over; you can go on from here",
         replay.folder().display()
     );
-    let announce = move |mut notices: ResMut<Notices>| notices.add(&over);
+    let announce = move |mut notices: ResMut<Notices>| notices.add(Tone::News, &over);
     app.add_systems(
         Update,
         (

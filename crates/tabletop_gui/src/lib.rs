@@ -59,7 +59,7 @@ mod test_world;
 mod turns;
 
 pub use bar::{Panel, Panels};
-pub use notices::Notices;
+pub use notices::{Notices, Tone};
 
 use bevy::{asset::AssetEventSystems, prelude::*};
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPostUpdateSet, PrimaryEguiContext};

@@ -9,54 +9,73 @@ use crate::clipboard::Clipboard;
 /// Older notices are forgotten, so that a script that is refused a million times does not fill the memory.
 const MAX_NOTICES: usize = 200;
 
+/// How the colours tell notices apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// Something has happened.
+    News,
+    /// Somebody warns.
+    Warning,
+    /// Something is wrong.
+    Fault,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Notice {
+    tone: Tone,
+    text: String,
+}
+
 /// The notices in the order in which they came, until the user closes their window.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
-pub struct Notices(Vec<String>);
+pub struct Notices {
+    notices: Vec<Notice>,
+    /// Whether the newest fault has not been shown yet.
+    is_unseen: bool,
+}
 
 impl Notices {
     /// Adds a notice unless it is there already.
-    pub fn add(&mut self, notice: &str) {
-        if self.0.iter().any(|there| there == notice) {
-            return;
+    pub fn add(&mut self, tone: Tone, text: &str) {
+        if !self.iter().any(|there| there == text) {
+            self.append(tone, text);
         }
-        self.append(notice);
     }
 
-    /// Adds a line after all others, as often as it comes.
-    pub fn append(&mut self, line: &str) {
-        if self.0.len() == MAX_NOTICES {
-            self.0.remove(0);
+    /// Adds a notice after all others, as often as it comes.
+    pub fn append(&mut self, tone: Tone, text: &str) {
+        if self.notices.len() == MAX_NOTICES {
+            self.notices.remove(0);
         }
-        self.0.push(line.to_owned());
+        let text = text.to_owned();
+        self.notices.push(Notice { tone, text });
+        self.is_unseen |= tone == Tone::Fault;
     }
 
     /// Adds a notice after all others, also if it was there already.
-    pub fn renew(&mut self, notice: &str) {
-        self.0.retain(|there| there != notice);
-        self.add(notice);
+    pub fn renew(&mut self, tone: Tone, text: &str) {
+        self.notices.retain(|there| there.text != text);
+        self.append(tone, text);
     }
 
     /// The notices, oldest first.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &str> {
-        self.0.iter().map(String::as_str)
+        self.notices.iter().map(|notice| notice.text.as_str())
     }
 
     /// Whether there is nothing to be said.
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.notices.is_empty()
     }
 
-    /// All of them, a line each.
+    /// All of them, one below the other.
     pub fn text(&self) -> String {
-        self.0
-            .iter()
-            .flat_map(|notice| [notice.as_str(), "\n"])
-            .collect()
+        self.iter().flat_map(|text| [text, "\n"]).collect()
     }
 
     /// Forgets them all.
     pub fn clear(&mut self) {
-        self.0.clear();
+        self.notices.clear();
     }
 }
 
@@ -71,10 +90,12 @@ fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
     for fact in facts.read() {
         match fact {
             SimFact::TaskLoaded { faults, .. } => {
-                faults.iter().for_each(|fault| notices.add(fault));
+                faults
+                    .iter()
+                    .for_each(|fault| notices.add(Tone::Fault, fault));
             }
             SimFact::Refused { reason } | SimFact::RecordingFailed { reason, .. } => {
-                notices.add(reason);
+                notices.add(Tone::Fault, reason);
             }
             _ => {}
         }
@@ -83,7 +104,7 @@ fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
 
 fn note_clipboard(clipboard: Res<Clipboard>, mut notices: ResMut<Notices>) {
     if let Some(problem) = clipboard.take_problem() {
-        notices.add(&problem);
+        notices.add(Tone::Fault, &problem);
     }
 }
 
@@ -108,16 +129,36 @@ fn show_notices(
             if ui.button("Copy").clicked() {
                 clipboard.copy(notices.text());
             }
+            ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
             let lines = egui::ScrollArea::vertical().stick_to_bottom(true);
             lines.auto_shrink(false).show(ui, |ui| {
-                for notice in notices.iter() {
-                    let text = egui::RichText::new(notice).monospace();
-                    ui.add(egui::Label::new(text).selectable(true));
+                let mut newest_fault = None;
+                for Notice { tone, text } in &notices.notices {
+                    let text = egui::RichText::new(text).monospace().color(color(*tone));
+                    let label = ui.add(egui::Label::new(text).selectable(true));
+                    newest_fault = Some(label)
+                        .filter(|_| *tone == Tone::Fault)
+                        .or(newest_fault);
+                }
+                // Of a long fault, what is said first is to be seen.
+                if let Some(fault) = newest_fault.filter(|_| notices.is_unseen) {
+                    fault.scroll_to_me(Some(egui::Align::TOP));
                 }
             });
         });
     if !is_open {
         notices.clear();
+    }
+    if notices.is_unseen {
+        notices.is_unseen = false;
+    }
+}
+
+const fn color(tone: Tone) -> egui::Color32 {
+    match tone {
+        Tone::News => egui::Color32::LIGHT_GRAY,
+        Tone::Warning => egui::Color32::from_rgb(255, 200, 90),
+        Tone::Fault => egui::Color32::from_rgb(255, 130, 120),
     }
 }
 
@@ -160,7 +201,7 @@ mod tests {
     fn the_oldest_notices_are_forgotten() {
         let mut notices = Notices::default();
         for number in 0..=MAX_NOTICES {
-            notices.add(&number.to_string());
+            notices.add(Tone::News, &number.to_string());
         }
         assert_eq!(notices.iter().len(), MAX_NOTICES);
         assert_eq!(notices.iter().next(), Some("1"));

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use tabletop_core::SimFact;
 
-use crate::notices::Notices;
+use crate::notices::{Notices, Tone};
 
 /// The angle of the report's figure 11 has to be below this, in degrees.
 const LARGEST_GRIP_ANGLE: f32 = 180.0 / 16.0;
@@ -14,7 +14,7 @@ pub(crate) fn plugin(app: &mut App) {
 
 fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
     for words in facts.read().filter_map(words) {
-        notices.renew(&words);
+        notices.renew(Tone::News, &words);
     }
 }
 
@@ -28,6 +28,9 @@ fn words(fact: &SimFact) -> Option<String> {
             angle.to_degrees()
         ),
         SimFact::GripReleased { arm, id } => format!("the {arm} gripper holds {id} no longer"),
+        SimFact::ArmBlocked { arm, by } if by == "table" => {
+            format!("the {arm} arm is stopped by the table")
+        }
         SimFact::ArmBlocked { arm, by } => format!("the {arm} arm is stopped by {by}"),
         _ => return None,
     })
@@ -70,7 +73,7 @@ mod tests {
                     arm: Arm::Left,
                     by: "table".into(),
                 },
-                "the left arm is stopped by table",
+                "the left arm is stopped by the table",
             ),
         ] {
             assert_eq!(words(&fact).as_deref(), Some(expected));

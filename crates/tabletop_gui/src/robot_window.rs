@@ -22,6 +22,9 @@ const TRACK_WIDTH: f32 = 196.0;
 /// Width of the table's columns for the arms, in points.
 const ARM_WIDTH: f32 = 112.0;
 
+/// Why joints cannot be moved by hand.
+const SCRIPT_MOVES: &str = "a script moves the arms";
+
 /// So high that the list of joints needs no scroll bar, in points.
 const LIST_HEIGHT: f32 = 400.0;
 
@@ -102,6 +105,11 @@ impl RobotWindow<'_, '_> {
         });
     }
 
+    /// Whether the user can move the selected joint: a script moves the arms.
+    fn is_free(&self) -> bool {
+        !self.agent.is_on() || self.selection.joint == RobotJoint::HeadPan
+    }
+
     /// Selects a joint, and moves it while a button is held down.
     fn joint(&mut self, ui: &mut Ui) -> Pressed {
         let mut pressed = Pressed::default();
@@ -122,7 +130,9 @@ impl RobotWindow<'_, '_> {
             }
             for (text, direction) in [("−", -1), ("+", 1)] {
                 let button = Button::new(RichText::new(text).strong().monospace());
-                let response = ui.add(button.min_size(egui::vec2(32.0, 0.0)));
+                let button = button.min_size(egui::vec2(32.0, 0.0));
+                let response = ui.add_enabled(self.is_free(), button);
+                let response = response.on_disabled_hover_text(SCRIPT_MOVES);
                 let is_held = response.is_pointer_button_down_on();
                 let has_gone_down = ui.input(|input| input.pointer.primary_pressed());
                 let joint = joint.index();
@@ -134,7 +144,8 @@ impl RobotWindow<'_, '_> {
                     pressed.struck[joint] = direction;
                 }
             }
-            if ui.button("Home").clicked() {
+            let home = ui.add_enabled(!self.agent.is_on(), Button::new("Home"));
+            if home.on_disabled_hover_text(SCRIPT_MOVES).clicked() {
                 let home = RobotJoint::ALL.map(|joint| (joint, Drive::Toward(joint.home())));
                 self.commands.write(SimCommand::Drive(home.into()));
                 self.selection.goal = None;
@@ -155,7 +166,8 @@ impl RobotWindow<'_, '_> {
             .custom_formatter(|value, _| number(value, 3))
             .suffix(unit(joint))
             .update_while_editing(false);
-        let slider = ui.add(slider);
+        let slider = ui.add_enabled(self.is_free(), slider);
+        let slider = slider.on_disabled_hover_text(SCRIPT_MOVES);
         if value != shown {
             self.selection.goal = Some(value);
             let drive = Drive::Toward(value);

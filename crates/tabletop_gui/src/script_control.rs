@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use tabletop_core::{Agent, AgentNews, AgentOrder, KeySystems};
 
-use crate::notices::Notices;
+use crate::notices::{Notices, Tone};
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(Update, note_news).add_systems(
@@ -29,12 +29,15 @@ pub(crate) fn toggled(agent: &Agent) -> AgentOrder {
 fn note_news(mut news: MessageReader<AgentNews>, mut notices: ResMut<Notices>) {
     for news in news.read() {
         match news {
-            AgentNews::Started { engine } => notices.append(&format!("{engine} is online")),
-            AgentNews::Printed { line, .. } => notices.append(line),
-            AgentNews::Failed { reason } => {
-                reason.lines().for_each(|line| notices.append(line));
+            AgentNews::Started { engine } => {
+                notices.append(Tone::News, &format!("{engine} is online"));
             }
-            AgentNews::Stopped => {}
+            AgentNews::Printed { line, is_error } => {
+                let tone = if *is_error { Tone::Warning } else { Tone::News };
+                notices.append(tone, line);
+            }
+            AgentNews::Failed { reason } => notices.append(Tone::Fault, reason),
+            AgentNews::Stopped => notices.append(Tone::News, "the script has ended"),
         }
     }
 }
@@ -88,9 +91,6 @@ mod tests {
         });
         app.update();
         let notices: Vec<_> = app.world().resource::<Notices>().iter().collect();
-        assert_eq!(
-            notices,
-            ["once more", "once more", "undefined", "  at a.m:2"]
-        );
+        assert_eq!(notices, ["once more", "once more", "undefined\n  at a.m:2"]);
     }
 }

@@ -14,7 +14,7 @@ use bevy::{
 };
 use tabletop_core::{OrderSystems, Picture, PictureDemand, SensorImage, SimSystems, SimTick};
 
-use crate::notices::Notices;
+use crate::notices::{Notices, Tone};
 
 /// The pictures that are to be saved and those that are being saved.
 #[derive(Resource, Debug, Default)]
@@ -87,7 +87,7 @@ fn tell(mut snapshots: ResMut<Snapshots>, mut notices: ResMut<Notices>) {
     snapshots.writing.retain_mut(|task| {
         let words = check_ready(task);
         if let Some(words) = &words {
-            notices.add(words);
+            notices.add(Tone::News, words);
         }
         words.is_none()
     });
