@@ -128,7 +128,9 @@ pub fn inside_the_table(stage: &mut Stage) -> Vec<String> {
         .filter(|(body, ..)| body.name.contains("left") || body.name.contains("right"))
         .filter(|(_, place, collider)| {
             let at = rapier::Pose::from_parts(place.translation, place.rotation);
-            parry::query::intersection_test(&at, &*collider.raw, &table_at, &*table).unwrap()
+            // An intersection test takes some that are a hair apart for touching.
+            let contact = parry::query::contact(&at, &*collider.raw, &table_at, &*table, 0.0);
+            contact.unwrap().is_some_and(|contact| contact.dist < 0.0)
         })
         .map(|(body, ..)| body.name.clone())
         .collect()
