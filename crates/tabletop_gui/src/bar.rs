@@ -43,7 +43,7 @@ impl Panel {
     const fn place(self) -> egui::Pos2 {
         match self {
             Self::Status => egui::pos2(340.0, 176.0),
-            Self::Robot => egui::pos2(8.0, 276.0),
+            Self::Robot => egui::pos2(8.0, 286.0),
             Self::DemonstrationTools => egui::pos2(8.0, 8.0),
         }
     }
