@@ -30,7 +30,7 @@ fn note_news(mut news: MessageReader<AgentNews>, mut notices: ResMut<Notices>) {
     for news in news.read() {
         match news {
             AgentNews::Started { engine } => notices.append(&format!("{engine} is online")),
-            AgentNews::Printed { line, .. } => notices.append(line),
+            AgentNews::Printed { line, .. } | AgentNews::Noted { line } => notices.append(line),
             AgentNews::Failed { reason } => {
                 reason.lines().for_each(|line| notices.append(line));
             }
