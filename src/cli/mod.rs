@@ -135,7 +135,7 @@ impl Output {
                 true => fs::remove_file(path),
                 false => Ok(()),
             })
-            .map_err(|error| Failure::input(format!("{}: {error}", path.display())))
+            .map_err(|error| Failure::run(format!("{}: {error}", path.display())))
     }
 
     /// Writes all of it, or says where it could not be written.
