@@ -61,7 +61,7 @@ pub enum Misuse {
 impl Misuse {
     /// The same, with indices as the scripts of this engine write them.
     #[must_use]
-    pub(crate) fn as_written_for(mut self, kind: EngineKind) -> Self {
+    pub(crate) fn written_for(mut self, kind: EngineKind) -> Self {
         if let Self::NotFinite { element, .. } | Self::TooFar { element, .. } = &mut self {
             element.is_python = kind == EngineKind::Python;
         }

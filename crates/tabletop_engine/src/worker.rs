@@ -277,7 +277,7 @@ impl Running {
     /// What a script has set that cannot be used.
     fn misuse(&self, misuse: Misuse, script: Option<PathBuf>) -> EngineError {
         EngineError::Misuse {
-            misuse: misuse.as_written_for(self.worker.config.engine.kind),
+            misuse: misuse.written_for(self.worker.config.engine.kind),
             script,
         }
     }
