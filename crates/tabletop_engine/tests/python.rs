@@ -192,6 +192,26 @@ fn what_led_to_an_error_is_told() {
     );
 }
 
+#[cfg(unix)]
+#[test]
+fn an_interrupt_is_answered_with_its_place_also_in_the_background() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let script = of_callback("os.kill(os.getpid(), 2); sum(range(10**7))");
+    // A shell has what it starts in the background ignore interrupts.
+    let shell = "#!/bin/sh\ntrap '' INT\nexec python3 \"$@\"\n";
+    let folder = Folder::new(&[("robot.py", &script), ("python-behind", shell)]);
+    let mut config = config(folder.0.join("robot.py"));
+    config.engine.program = folder.0.join("python-behind");
+    fs::set_permissions(&config.engine.program, fs::Permissions::from_mode(0o755)).unwrap();
+    let session = Session::start(config).unwrap();
+    session.init().unwrap();
+    let error = script_error(session.step(&Sensor::default()));
+    assert_eq!(
+        (error.message.as_str(), error.place().unwrap().line),
+        ("KeyboardInterrupt", 4)
+    );
+}
+
 #[test]
 fn processes_of_a_script_know_its_functions() {
     let (_folder, session) = start(
