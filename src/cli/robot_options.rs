@@ -123,25 +123,28 @@ impl EngineOptions {
                 language => parse(language),
             });
         };
-        let kind = match choice {
-            EngineChoice::Kind(kind) => kind,
-            _ => {
-                let found = there.find(&choice);
-                found
-                    .map_err(|error| Failure::input(format!("{by}: {error}")))?
-                    .kind
-            }
-        };
-        let (fits, advice) = match language {
-            "python" => (kind == EngineKind::Python, "python"),
-            "octave" => (kind == EngineKind::Octave, "octave"),
-            _ => (kind != EngineKind::Python, "matlab or --engine octave"),
-        };
-        match fits {
-            true => Ok(choice),
-            false => Err(Failure::input(format!(
+        let misfit = |kind| {
+            let advice = match language {
+                "matlab" => "matlab or --engine octave",
+                language => language,
+            };
+            Failure::input(format!(
                 "--script {language} cannot run in {kind}, which {by} names; say --engine {advice}"
-            ))),
+            ))
+        };
+        // One that is not there does not fit either: to install it would be no help.
+        if let EngineChoice::Kind(kind) = choice
+            && !runs(kind, language)
+        {
+            return Err(misfit(kind));
+        }
+        let found = there.find(&choice);
+        let kind = found
+            .map_err(|error| Failure::input(format!("{by}: {error}")))?
+            .kind;
+        match runs(kind, language) {
+            true => Ok(choice),
+            false => Err(misfit(kind)),
         }
     }
 
@@ -157,6 +160,15 @@ impl EngineOptions {
                 EngineChoice::Auto => None,
                 choice => Some((choice, by)),
             })
+    }
+}
+
+/// Whether scripts in this language run in this kind of engine.
+fn runs(kind: EngineKind, language: &str) -> bool {
+    match language {
+        "python" => kind == EngineKind::Python,
+        "octave" => kind == EngineKind::Octave,
+        _ => matches!(kind, EngineKind::Matlab | EngineKind::Octave),
     }
 }
 

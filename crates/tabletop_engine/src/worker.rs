@@ -248,14 +248,15 @@ impl Running {
         self.session.write_request(&arrays)?;
         let limit = config.timeouts.init;
         let reply = self.call(Op::Init, "the init script", limit)?;
-        let [init, callback] =
-            ["agent.init", "agent.callback"].map(|name| match self.worker.config.engine.kind {
-                EngineKind::Python | EngineKind::Driver => Some(agent.clone()),
-                EngineKind::Matlab | EngineKind::Octave => reply
-                    .get(name)
-                    .and_then(Array::as_text)
-                    .map(|file| self.of_original(file).into()),
-            });
+        let [init, callback] = match self.worker.config.engine.kind {
+            EngineKind::Python | EngineKind::Driver => [Some(agent.clone()), Some(agent)],
+            EngineKind::Matlab | EngineKind::Octave => {
+                ["agent.init", "agent.callback"].map(|name| {
+                    let file = reply.get(name).and_then(Array::as_text)?;
+                    (!file.is_empty()).then(|| PathBuf::from(self.of_original(file)))
+                })
+            }
+        };
         self.callback = callback;
         InitReply::read(&reply).map_err(|misuse| self.misuse(misuse, init))
     }
