@@ -24,6 +24,6 @@ def callback(sensor, motor, aux):
     if time == 0:
         print("sensed:", ", ".join(sorted(vars(sensor))))
     direction = 1 if time % (2 * TURN) < TURN else -1
-    motor.jointVelocities = [[direction * SPEED] * 7] * 2
+    motor.jointVelocities = [[direction * SPEED] * aux.numJoints for _ in range(aux.numLimbs)]
     motor.gripperVelocities = [-direction * GRIPPER_SPEED] * 2
     time += sensor.timeElapsed

@@ -13,17 +13,24 @@ W2; lengths are in units of 10 cm, angles in rad.
     sensor.endEffPos         2x3
     sensor.gripperOpening    1x2
     sensor.rgbVision         only if there is a fresh picture: rows x columns x 3, from 0 to 1; hasattr() tells
-    sensor.trackerLoc        points on the arms: a dictionary from names to [x, y, z]
     sensor.demoCue           whether a demonstration is going on
     sensor.headAngle         of the neck, positive to the robot's left
+    sensor.jointTorques      2x7, in N m; only with --dynamic
+    sensor.trackerLoc        points on the arms: a dictionary from names to [x, y, z]; only if your script, or a file beside or
+                             below it, mentions it
     sensor.objects, sensor.contacts, sensor.held
-                             see docs/scripts.md; only if your script, or a file beside or below it, mentions one of them
+                             see docs/scripts.md; only if one of them is mentioned there. sensor.objects.mass and
+                             sensor.contacts.impulse are lists of N numbers, also where the others have one row
     motor.jointVelocities    2x7, in rad/s; kept from call to call, like all of motor
     motor.gripperVelocities  2x1; [left, right] will do, in units/s
     motor.jointAngles        2x7, optional: angles that are taken at once
+    motor.jointTorques       2x7, optional, in N m, in place of the velocities; only with --dynamic
     motor.headVelocity       optional, in rad/s
     aux.path                 the folder of your script, with a slash
-    aux.numLimbs, aux.numJoints, aux.minJointAngles, aux.maxJointAngles
+    aux.numLimbs, aux.numJoints
+                             2 and 7
+    aux.minJointAngles, aux.maxJointAngles
+                             2x7
     aux.initJointAngles      2x7, optional, set by init
     aux.drawMarkers          Nx3, optional, set by init: where markers are shown
     aux.exit                 set it, to anything, and the script is done
@@ -33,12 +40,14 @@ With numpy, matrices are its arrays. Without, they are lists of rows, and a pict
 docs/script-protocol.md describes what goes on below. Python 3.8 and later; nothing else is needed.
 """
 
+import difflib
 import importlib.util
 import inspect
 import math
 import numbers
 import os
 import re
+import signal
 import struct
 import sys
 import traceback
@@ -53,9 +62,13 @@ except ImportError:
 MAGIC, VERSION = 0x31415454, 1
 DOUBLE, BYTES, TEXT, LOGICAL, PICTURE, MAP, TEXTS, OTHER = range(8)
 MOST_DIMENSIONS = 8
+COUNTS = {"aux.numLimbs", "aux.numJoints"}
+COLUMNS = {"sensor.objects.mass", "sensor.contacts.impulse"}  # a number for each, also where there is only one
+WANTED = ("drawMarkers", "initJointAngles", "exit")  # what a script sets in aux
 VELOCITIES = {"jointVelocities": (2, 7), "gripperVelocities": (2, 1)}
 SCRIPT = "__tabletop_script__"  # the script's name as a module: no file of a user has it
-PLACES = 10  # how many lines of the script an error names at most
+FILE = "TABLETOP_SCRIPT"  # the variable that tells its file to the processes that it starts
+PLACES = 10  # how many lines of the script, and how many causes, an error names at most
 
 
 class Picture:
@@ -85,10 +98,18 @@ def decode(data):
     for place in range(count):
         code, name, size, dims, *extents = struct.unpack_from("<12I", data, 16 + 48 * place)
         key = data[start:start + name].decode("ascii")
-        arrays[key] = _value(code, tuple(extents[:dims]), data[first:first + size])
+        arrays[key] = _field(key, code, tuple(extents[:dims]), data[first:first + size])
         start += name
         first += -(-size // 8) * 8
     return arrays
+
+
+def _field(name, code, dims, data):
+    """A value, with what its name says of it beside its class and size."""
+    if name in COLUMNS:
+        dims = dims[:1]
+    value = _value(code, dims, data)
+    return int(value) if name in COUNTS else value
 
 
 def _value(code, dims, data):
@@ -98,12 +119,11 @@ def _value(code, dims, data):
     if code == DOUBLE:
         return _matrix(struct.unpack("<%dd" % count, data), dims)
     if code == BYTES:
-        return _matrix(data, dims)
+        return _matrix(list(data), dims)
     if code == TEXT:
         return data.decode("utf-8", "replace")
     if code == LOGICAL:
-        flags = [byte != 0 for byte in data]
-        return flags[0] if count == 1 else _matrix(flags, dims)
+        return _matrix([byte != 0 for byte in data], dims)
     if code == PICTURE:
         if numpy is None:
             return Picture(dims, data)
@@ -126,10 +146,12 @@ def _texts(count, data):
 
 
 def _matrix(values, dims):
-    if len(values) == 1:
+    if dims == (1, 1):
         return values[0]
     if numpy is not None:
         return numpy.array(values).reshape(dims, order="F")
+    if len(dims) == 1:
+        return list(values)
     rows = dims[0]
     return [list(values[row::rows]) for row in range(rows)]
 
@@ -150,8 +172,6 @@ def encode(arrays):
 def _elements(value):
     if isinstance(value, str):
         return TEXT, (1, len(value)), value.encode("utf-8", "replace")
-    if isinstance(value, bool):
-        return LOGICAL, (1, 1), bytes([value])
     value = _lists(value)
     extents = _extents(value)
     if extents is None:
@@ -229,17 +249,21 @@ class Unfit(Exception):
 
 
 def _load(file):
-    if os.path.isdir(file):
-        raise Unfit("%s is a folder; name the Python file in it" % file)
+    sys.path.insert(0, os.path.dirname(file))
+    os.environ[FILE] = file
+    module = _import(file)
+    _expect(module, "init", "aux")
+    _expect(module, "callback", "sensor", "motor", "aux")
+    return module
+
+
+def _import(file):
     spec = importlib.util.spec_from_file_location(SCRIPT, file)
     if spec is None:
         raise Unfit("%s is no Python script: its name does not end in .py" % file)
-    sys.path.insert(0, os.path.dirname(file))
     module = importlib.util.module_from_spec(spec)
     sys.modules[SCRIPT] = module
     spec.loader.exec_module(module)
-    _expect(module, "init", "aux")
-    _expect(module, "callback", "sensor", "motor", "aux")
     return module
 
 
@@ -254,28 +278,70 @@ def _expect(module, name, *arguments):
         signature.bind(*arguments)
     except TypeError:
         raise Unfit("%s%s must be %s" % (name, signature, expected), function) from None
+    if inspect.iscoroutinefunction(function) or inspect.isasyncgenfunction(function):
+        raise Unfit("%s is async, so that a call does nothing; write def without async" % name, function)
+    if inspect.isgeneratorfunction(function):
+        raise Unfit("%s holds a yield, so that a call does nothing; write it without" % name, function)
+
+
+def _warn_of_typos(aux, known):
+    """Says which fields that a script has given to aux look like others that mean something."""
+    for name in sorted(set(vars(aux)) - known - set(WANTED)):
+        meant = difflib.get_close_matches(name, WANTED, 1, 0.85)
+        if meant:
+            print("tabletop: aux.%s means nothing (did you mean %s?)" % (name, meant[0]), file=sys.stderr)
 
 
 def _fault(error):
     """An error as a reply."""
-    if isinstance(error, Unfit):
-        message = str(error)
-    else:
-        message = "".join(traceback.format_exception_only(type(error), error)).strip()
     places = _where(error)
     if len(places) > PLACES:
         places[PLACES:] = [(0, "…")]
     stack = "".join("%d %s\n" % place for place in places)
-    return {"error.id": type(error).__name__, "error.message": message, "error.stack": stack}
+    return {"error.id": type(error).__name__, "error.message": "\n".join(_reasons(error)), "error.stack": stack}
+
+
+def _reasons(error):
+    """What an error says, and a line for each that led to it."""
+    reasons = [_words(error)]
+    while len(reasons) < PLACES:
+        link = "because of"
+        origin = error.__cause__
+        if origin is None and not error.__suppress_context__:
+            link = "while handling"
+            origin = error.__context__
+        if origin is None:
+            break
+        place = "".join(" (%s:%d)" % (file, line) for line, file in _where(origin)[:1])
+        reasons.append("%s %s%s" % (link, _words(origin), place))
+        error = origin
+    return reasons
+
+
+def _words(error):
+    if isinstance(error, Unfit):
+        return str(error)
+    if isinstance(error, SyntaxError):
+        return "%s: %s" % (type(error).__name__, error.msg)
+    words = "".join(traceback.format_exception_only(type(error), error)).strip()
+    if isinstance(error, SystemExit):
+        return words + "; to end the script, set aux.exit"
+    return words
 
 
 def _where(error):
     """The script's part of the traceback as lines and files, innermost first."""
-    frames = traceback.walk_tb(error.__traceback__)
-    places = [(line, frame.f_code.co_filename) for frame, line in frames]
-    places = [place for place in places if place[1] != __file__ and not place[1].startswith("<frozen")]
+    places, read = [], None
+    for frame, line in traceback.walk_tb(error.__traceback__):
+        file = frame.f_code.co_filename
+        if file != __file__ and not file.startswith("<frozen"):
+            places.append((line, file))
+        elif frame.f_code.co_name == "source_to_code":
+            read = frame.f_locals.get("path")
     if isinstance(error, SyntaxError) and error.filename:
         places.append((error.lineno or 0, error.filename))
+    elif read:
+        places.append((0, read))
     if isinstance(error, Unfit) and error.code:
         places.append((error.code.co_firstlineno, error.code.co_filename))
     return places[::-1]
@@ -300,11 +366,12 @@ class _Agent:
     def init(self):
         request = self.request()
         self.aux = request.aux
+        known = set(vars(self.aux))
         self.module = _load(request.agent.folder)
         self.module.init(self.aux)
+        _warn_of_typos(self.aux, known)
         self.motor = SimpleNamespace(**{name: _zeros(*size) for name, size in VELOCITIES.items()})
-        wanted = ("drawMarkers", "initJointAngles", "exit")
-        return {"aux." + name: value for name, value in vars(self.aux).items() if name in wanted}
+        return {"aux." + name: value for name, value in vars(self.aux).items() if name in WANTED}
 
     def step(self):
         self.module.callback(self.request().sensor, self.motor, self.aux)
@@ -316,6 +383,8 @@ class _Agent:
 
 def main(folder):
     """Serves the simulator until it closes the standard input."""
+    # The simulator interrupts a script that takes too long. Where it runs in the background, this would have no effect.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     # Whatever the script, or what it starts, does to the standard streams, these are ours.
     commands, marks = os.fdopen(os.dup(0)), os.fdopen(os.dup(1), "w")
     nothing = os.open(os.devnull, os.O_RDONLY)
@@ -326,8 +395,6 @@ def main(folder):
         op, seq = line.split()
         try:
             reply = encode(agent.run(op))
-        except SystemExit:
-            raise
         except BaseException as error:
             reply = encode(_fault(error))
         with open(os.path.join(folder, "reply.bin"), "wb") as file:
@@ -338,3 +405,5 @@ def main(folder):
 
 if __name__ == "__main__":
     main(sys.argv[1])
+elif __name__ == "__mp_main__":  # in a process that the script has started with multiprocessing
+    _import(os.environ[FILE])

@@ -9,7 +9,7 @@ mod terminal;
 mod window;
 
 use std::{
-    fmt,
+    fmt, fs,
     io::{self, ErrorKind, Write as _},
     path::PathBuf,
     process::ExitCode,
@@ -118,6 +118,26 @@ impl From<std::ffi::OsString> for Output {
 }
 
 impl Output {
+    /// Whether it can be written. This leaves no trace.
+    fn check(&self) -> Result<(), Failure> {
+        let Self::File(path) = self else {
+            return Ok(());
+        };
+        // A pipe that is opened and closed has told its reader that all has come.
+        if path.exists() && !path.is_file() && !path.is_dir() {
+            return Ok(());
+        }
+        let is_new = !path.exists();
+        let mut options = fs::OpenOptions::new();
+        let opened = options.append(true).create(true).open(path);
+        opened
+            .and_then(|_| match is_new {
+                true => fs::remove_file(path),
+                false => Ok(()),
+            })
+            .map_err(|error| Failure::run(format!("{}: {error}", path.display())))
+    }
+
     /// Writes all of it, or says where it could not be written.
     fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         match self {
@@ -129,7 +149,7 @@ impl Output {
                     _ => Failure::run(format!("standard output: {error}")),
                 })
             }
-            Self::File(path) => std::fs::write(path, bytes)
+            Self::File(path) => fs::write(path, bytes)
                 .map_err(|error| Failure::run(format!("{}: {error}", path.display()))),
         }
     }

@@ -9,7 +9,10 @@ use clap::Args;
 use tabletop::{
     baxter::{BaxterPlugin, Description, Source},
     core::RobotMode,
-    script::{ENGINE_VARIABLE, EngineChoice, EngineKind, ScriptSettings, Surroundings, Tell},
+    script::{
+        ENGINE_VARIABLE, EngineChoice, EngineConfig, EngineKind, FoundEngine, ScriptSettings,
+        Surroundings, Tell,
+    },
 };
 
 use super::Failure;
@@ -51,17 +54,21 @@ fn describe(path: &Path) -> Result<Description, Failure> {
     Description::read(source).map_err(|error| at(&error))
 }
 
+/// The language of scripts that a user's own driver runs.
+const OTHER: &str = "other";
+
 #[derive(Args, Clone)]
 pub(super) struct EngineOptions {
-    /// What runs the scripts: `matlab`, `octave`, `python`, `auto`, or the path of a program [default: auto, or TABLETOP_ENGINE]
+    /// What runs the scripts: `matlab`, `octave`, `python`, `auto`, or the path of a program [default: auto, or TABLETOP_ENGINE].
+    /// With `--script other`, the driver
     #[arg(long, value_name = "ENGINE")]
     engine: Option<String>,
     /// Ticks from one picture that a script gets to the next, 60 a second [default: 15]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", value_parser = ticks, allow_negative_numbers = true)]
     picture_every: Option<u64>,
     /// How long to wait for init, and for each call of the callback, before the engine is ended, in seconds [default: 120 and
     /// 30]
-    #[arg(long, value_name = "S", value_parser = patience)]
+    #[arg(long, value_name = "S", value_parser = patience, allow_negative_numbers = true)]
     script_timeout: Option<Duration>,
     /// Let scripts sense with the head camera and the joints alone: no `sensor.objects`, `contacts` and `held`
     #[arg(long)]
@@ -69,18 +76,26 @@ pub(super) struct EngineOptions {
 }
 
 impl EngineOptions {
-    /// The settings of the script bridge. `script` is what `--script` says: `matlab`, `octave` or `python`, and after a colon
-    /// the folder of the scripts or the Python file.
+    /// The settings of the script bridge. `script` is what `--script` says: a language, and after a colon where the scripts are.
+    ///
+    /// # Errors
+    /// The engine that is wanted is not there, or does not run this language.
     pub fn settings(&self, script: Option<&str>) -> Result<ScriptSettings, Failure> {
         let mut settings = ScriptSettings::default();
-        settings.engine = match script {
-            Some(script) => {
-                let (language, agent) = split(script);
-                settings.agent = agent.map(PathBuf::from);
-                self.engine_for(language, &settings.surroundings)?
+        if let Some(script) = script {
+            let (language, agent) = split(script);
+            settings.agent = agent.map(PathBuf::from);
+            settings.engine = self.engine_for(language, &settings.surroundings)?;
+            if language == OTHER {
+                settings.objects = Tell::Always;
+                settings.trackers = Tell::Always;
             }
-            None => parse(self.engine.as_deref().unwrap_or_default()),
-        };
+        } else if let Some(engine) = &self.engine {
+            settings.engine = parse(engine);
+        }
+        if script.is_some() || self.engine.is_some() {
+            found(&settings)?;
+        }
         if self.no_objects {
             settings.objects = Tell::Never;
         }
@@ -96,23 +111,40 @@ impl EngineOptions {
 
     /// The engine that is named, if it runs scripts in this language; else any that does.
     fn engine_for(&self, language: &str, there: &Surroundings) -> Result<EngineChoice, Failure> {
+        if language == OTHER {
+            let driver = self.engine.as_ref().map(PathBuf::from);
+            return driver.map(EngineChoice::Driver).ok_or_else(|| {
+                Failure::input("--script other needs --engine and the driver, a program that runs such scripts (docs/script-protocol.md)")
+            });
+        }
         let Some((choice, by)) = self.named_engine(there) else {
             return Ok(match language {
                 "matlab" => EngineChoice::Auto,
                 language => parse(language),
             });
         };
-        let kind = there.find(&choice).map_err(Failure::input)?.kind;
-        let fits = match language {
-            "python" => kind == EngineKind::Python,
-            "octave" => kind == EngineKind::Octave,
-            _ => kind != EngineKind::Python,
+        let misfit = |kind| {
+            let advice = match language {
+                "matlab" => "matlab or --engine octave",
+                language => language,
+            };
+            Failure::input(format!(
+                "--script {language} cannot run in {kind}, which {by} names; say --engine {advice}"
+            ))
         };
-        match fits {
+        // One that is not there does not fit either: to install it would be no help.
+        if let EngineChoice::Kind(kind) = choice
+            && !runs(kind, language)
+        {
+            return Err(misfit(kind));
+        }
+        let found = there.find(&choice);
+        let kind = found
+            .map_err(|error| Failure::input(format!("{by}: {error}")))?
+            .kind;
+        match runs(kind, language) {
             true => Ok(choice),
-            false => Err(Failure::input(format!(
-                "--script {language} cannot run in {kind}, which {by} names; leave it out, or say --engine {language}"
-            ))),
+            false => Err(misfit(kind)),
         }
     }
 
@@ -131,9 +163,42 @@ impl EngineOptions {
     }
 }
 
+/// Whether scripts in this language run in this kind of engine.
+fn runs(kind: EngineKind, language: &str) -> bool {
+    match language {
+        "python" => kind == EngineKind::Python,
+        "octave" => kind == EngineKind::Octave,
+        _ => matches!(kind, EngineKind::Matlab | EngineKind::Octave),
+    }
+}
+
+/// Whether there are scripts where these settings say, as far as that can be seen before the engine starts.
+pub(super) fn check_scripts(settings: &ScriptSettings) -> Result<(), Failure> {
+    let mut config = EngineConfig::new(found(settings)?);
+    if let Some(agent) = &settings.agent {
+        config.agent.clone_from(agent);
+    }
+    match config.fault() {
+        None => Ok(()),
+        Some(fault) => Err(Failure::input(fault)),
+    }
+}
+
+/// The engine of these settings.
+fn found(settings: &ScriptSettings) -> Result<FoundEngine, Failure> {
+    let found = settings.surroundings.find(&settings.engine);
+    found.map_err(Failure::input)
+}
+
 fn parse(engine: &str) -> EngineChoice {
     let Ok(choice) = engine.parse();
     choice
+}
+
+/// Reads a number of ticks, at least one.
+fn ticks(text: &str) -> Result<u64, String> {
+    let ticks = text.parse().ok().filter(|ticks| *ticks > 0);
+    ticks.ok_or_else(|| "expected a whole number of ticks, 1 or more".to_owned())
 }
 
 /// Reads a time of a hundredth of a second to a day.
@@ -156,8 +221,9 @@ fn split(script: &str) -> (&str, Option<&str>) {
 
 /// Reads what `--script` says.
 pub(super) fn script(text: &str) -> Result<String, String> {
-    match split(text).0 {
-        "matlab" | "octave" | "python" => Ok(text.to_owned()),
-        _ => Err("expected matlab, octave or python, and after a colon the folder of the scripts or the Python file".into()),
+    match split(text) {
+        ("matlab" | "octave" | "python", _) | (OTHER, Some(_)) => Ok(text.to_owned()),
+        (OTHER, None) => Err("expected a colon and the path of the script after other".into()),
+        _ => Err("expected matlab, octave, python or other, and after a colon the folder of the scripts or the file".into()),
     }
 }

@@ -21,11 +21,12 @@ use tabletop_scenario::{Outcome, Program, Scenario, ScenarioPlugin, ScenarioRun}
 
 use super::{
     Failure, Output, WRONG_INPUT,
-    robot_options::{EngineOptions, RobotOptions, script},
+    robot_options::{EngineOptions, RobotOptions, check_scripts, script},
     terminal::{is_unheard, say, show_warnings},
 };
 
 #[derive(Args)]
+#[command(mut_group("EngineOptions", |options| options.requires("script")))]
 pub(super) struct RunArgs {
     /// A scenario (see docs/scenarios.md): exit code 1 if one of its steps fails
     #[arg(value_name = "SCENARIO")]
@@ -34,7 +35,7 @@ pub(super) struct RunArgs {
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
     /// How long to simulate, in seconds of simulated time; for a scenario the most that it may take [default: 10, or 600]
-    #[arg(long, value_name = "S", value_parser = seconds)]
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// Decides where a scenario places objects at random
     #[arg(
@@ -55,7 +56,8 @@ pub(super) struct RunArgs {
     #[arg(long, value_name = "FILE|-")]
     final_robot: Option<Output>,
     /// Let a script drive the robot: `matlab` (the scripts that matlab/agentBehavior.m names), `matlab:FOLDER`, `octave:FOLDER`,
-    /// or `python:FILE`. Without a scenario, the run ends with the script
+    /// `python:FILE`, or `other:FILE`, which the driver runs that `--engine` names. Without a scenario, the run ends with the
+    /// script
     #[arg(long, value_name = "LANGUAGE[:PATH]", value_parser = script)]
     script: Option<String>,
     #[command(flatten)]
@@ -75,6 +77,7 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
 
 pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
     show_warnings();
+    args.check_ends()?;
     let seconds = args.seconds;
     match &args.scenario {
         Some(scenario) => perform(scenario, args),
@@ -152,6 +155,9 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
 /// The simulator with the robot and the engine that were asked for.
 fn plugins(args: &RunArgs) -> Result<PluginGroupBuilder, Failure> {
     let mut settings = args.engine.settings(args.script.as_deref())?;
+    if args.script.is_some() {
+        check_scripts(&settings)?;
+    }
     settings.overhear = Some(report);
     Ok(TabletopSimPlugins
         .build()
@@ -205,7 +211,8 @@ impl Script {
             match news {
                 AgentNews::Stopped => self.end = Some(Ok(())),
                 AgentNews::Failed { .. } => self.end = Some(Err(Failure::silent())),
-                AgentNews::Started { .. } | AgentNews::Printed { .. } => {}
+                AgentNews::Started { .. } | AgentNews::Printed { .. } | AgentNews::Noted { .. } => {
+                }
             }
         }
         match is_unheard() {
@@ -241,12 +248,19 @@ fn report(news: &AgentNews) {
     match news {
         AgentNews::Started { engine } => say(format_args!("tabletop: {engine}")),
         AgentNews::Printed { line, .. } => say(line),
+        AgentNews::Noted { line } => say(format_args!("tabletop: {line}")),
         AgentNews::Failed { reason } => say(format_args!("tabletop: {reason}")),
         AgentNews::Stopped => {}
     }
 }
 
 impl RunArgs {
+    /// Whether what is asked for at the end of a run can be written then.
+    fn check_ends(&self) -> Result<(), Failure> {
+        let mut outputs = self.final_state.iter().chain(&self.final_robot);
+        outputs.try_for_each(Output::check)
+    }
+
     /// Writes what was asked for at the end of a run.
     fn write_ends(&self, app: &App) -> Result<(), Failure> {
         if let Some(output) = &self.final_state {

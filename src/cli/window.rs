@@ -21,10 +21,10 @@ pub(super) struct WindowArgs {
     #[arg(long, value_name = "FILE")]
     screenshot: Option<PathBuf>,
     /// When to take the picture, in seconds of simulated time
-    #[arg(long, value_name = "S", default_value = "1", value_parser = run::seconds, requires = "screenshot")]
+    #[arg(long, value_name = "S", default_value = "1", value_parser = run::seconds, allow_negative_numbers = true, requires = "screenshot")]
     after: f64,
     /// The scripts that the key M starts: `matlab` (those that matlab/agentBehavior.m names), `matlab:FOLDER`, `octave:FOLDER`,
-    /// or `python:FILE`
+    /// `python:FILE`, or `other:FILE`, which the driver runs that `--engine` names
     #[arg(long, value_name = "LANGUAGE[:PATH]", value_parser = script)]
     script: Option<String>,
     #[command(flatten)]

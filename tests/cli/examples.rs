@@ -64,7 +64,7 @@ impl Stage {
                 AgentNews::Printed { line, .. } => self.printed += &format!("{line}\n"),
                 AgentNews::Failed { reason } => panic!("{reason}"),
                 AgentNews::Stopped => self.is_over = true,
-                AgentNews::Started { .. } => {}
+                AgentNews::Started { .. } | AgentNews::Noted { .. } => {}
             }
         }
     }

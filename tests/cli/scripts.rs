@@ -226,34 +226,135 @@ fn an_error_of_a_script_ends_the_run_with_its_place() {
 }
 
 #[test]
-fn what_cannot_be_run_is_told() {
+fn what_cannot_be_run_is_told_before_anything_starts() {
+    let file = folder("file-for-folder").join("robot.py");
+    fs::write(&file, "").unwrap();
+    let matlab_file = format!("octave:{}", file.display());
+    let python_folder = format!("python:{}", file.parent().unwrap().display());
     for (arguments, message) in [
-        (&["ruby:x.rb"][..], "expected matlab, octave or python"),
-        (&["octave:no/such/folder"], "there is no "),
+        (&["octave:no/such/folder"][..], "there is no "),
         (&["python:no_such.py"], "there is no "),
+        (&["python:"], "the name of the Python file is empty"),
+        (&["octave:"], "the name of the scripts' folder is empty"),
+        (&[&matlab_file], "robot.py is a file; name its folder"),
+        (&[&python_folder], "is a folder; name the Python file in it"),
         (
             &["matlab", "--engine", "no/such/octave"],
-            "there is no program no/such/octave",
+            "--engine: there is no program no/such/octave",
         ),
         (
-            &["matlab", "--engine", "ruby"],
-            "the engine \"ruby\" is not known",
+            &["matlab", "--engine", "ruby-9"],
+            "--engine: there is no program \"ruby-9\" on PATH",
+        ),
+        (
+            &["matlab", "--engine", "tests/scripts/driver.pl"],
+            "driver.pl is a program, but its name does not tell which engine it is",
         ),
         (
             &["python", "--engine", "octave"],
-            "--script python cannot run in GNU Octave, which --engine names; leave it out, or say --engine python",
+            "--script python cannot run in GNU Octave, which --engine names; say --engine python",
         ),
         (
             &["matlab", "--engine", "python"],
-            "--script matlab cannot run in Python, which --engine names",
+            "--script matlab cannot run in Python, which --engine names; say --engine matlab or --engine octave",
+        ),
+        (
+            &["other:tests/scripts/driver.pl"],
+            "--script other needs --engine",
+        ),
+        (
+            &["other:no.pl", "--engine", "tests/scripts/driver.pl"],
+            "there is no ",
         ),
     ] {
         let mut run = command(&["run", "--seconds", "1", "--script"]);
         let output = run.args(arguments).output().unwrap();
-        assert_ne!(output.status.code(), Some(0), "{arguments:?}");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         let printed = stderr(&output);
         assert!(printed.contains(message), "{arguments:?}: {printed}");
+        assert_eq!(printed.lines().count(), 1, "{arguments:?}: {printed}");
     }
+}
+
+#[test]
+fn wrong_options_are_told() {
+    let script = python("options", "pass", "pass");
+    for (arguments, message) in [
+        (
+            &["run", "--script", "ruby:x.rb"][..],
+            "expected matlab, octave, python or other",
+        ),
+        (
+            &["run", "--script", "other"],
+            "the path of the script after other",
+        ),
+        (&["run", "--engine", "octave"], "--script"),
+        (&["run", "--no-objects"], "--script"),
+        (&["run", "--picture-every", "2"], "--script"),
+        (&["run", "--script-timeout", "2"], "--script"),
+        (&["run", "--seconds", "-1"], "expected a number of seconds"),
+        (
+            &["run", "--script", &script, "--script-timeout", "-1"],
+            "expected a number of seconds",
+        ),
+        (
+            &["run", "--script", &script, "--picture-every", "-1"],
+            "expected a whole number of ticks",
+        ),
+        (
+            &["--engine", "/nonexistent"],
+            "there is no program /nonexistent",
+        ),
+    ] {
+        let output = tabletop(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let printed = stderr(&output);
+        assert!(printed.contains(message), "{arguments:?}: {printed}");
+        assert!(!printed.contains("Python 3"), "{arguments:?}: {printed}");
+    }
+}
+
+#[test]
+fn where_nothing_can_be_written_nothing_is_run() {
+    let script = python("unwritable", "pass", "pass");
+    for output in ["--final-robot", "--final-state"] {
+        let run = ["run", "--script", &script, output, "no/such/folder/end"];
+        let output = tabletop(&run);
+        assert_eq!(output.status.code(), Some(1));
+        let printed = stderr(&output);
+        assert!(
+            printed.starts_with("tabletop: no/such/folder/end: ") && printed.lines().count() == 1,
+            "{printed}"
+        );
+    }
+    let end = place("never-written");
+    let output = command(&["run", "--setup", "no.xml", "--final-state"])
+        .arg(&end)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(!end.exists());
+}
+
+#[test]
+fn a_driver_of_ones_own_runs_scripts_in_other_languages() {
+    let driver = "tests/scripts/driver.pl";
+    let script = format!("other:{driver}");
+    let output = tabletop(&[
+        "run",
+        "--script",
+        &script,
+        "--engine",
+        driver,
+        "--seconds",
+        "1",
+        "--final-robot",
+        "-",
+    ]);
+    succeeded(&output);
+    let robot: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let pan = robot["head_pan"].as_f64().unwrap();
+    assert!((pan - 0.5).abs() < 1e-6, "{pan}");
 }
 
 #[test]
@@ -273,6 +374,12 @@ fn the_named_engine_runs_the_script() {
     let another = run().env("TABLETOP_ENGINE", "octave").output().unwrap();
     assert_eq!(another.status.code(), Some(2));
     assert!(stderr(&another).contains("GNU Octave, which TABLETOP_ENGINE names"));
+    let missing = run().env("TABLETOP_ENGINE", "matlab").output().unwrap();
+    let advice = "MATLAB, which TABLETOP_ENGINE names; say --engine python";
+    assert!(stderr(&missing).contains(advice), "{}", stderr(&missing));
+    let wrong = run().env("TABLETOP_ENGINE", "/no/python").output().unwrap();
+    let reason = "tabletop: TABLETOP_ENGINE: there is no program /no/python\n";
+    assert_eq!(stderr(&wrong), reason);
 }
 
 #[test]
@@ -341,7 +448,7 @@ fn markers_nobody_can_see_are_the_scripts_fault_and_not_the_scenarios() {
         "pass",
     );
     let scenario = scenario("far.ron", "Wait(0.2)");
-    let reason = "aux.drawMarkers(2,2) is -1e39; it must be";
+    let reason = "aux.drawMarkers[1][1] is -1e39; it must be";
     for beside in [None, scenario.to_str()] {
         let run = ["run", "--seconds", "1", "--script", &script];
         let output = command(&run).args(beside).output().unwrap();
@@ -381,12 +488,21 @@ fn a_run_that_nobody_listens_to_ends_quietly() {
 }
 
 #[test]
+fn angles_that_no_joint_has_are_noted() {
+    let script = python("too-far", "aux.initJointAngles = [[99] * 7] * 2", "pass");
+    let output = tabletop(&["run", "--seconds", "0.1", "--script", &script]);
+    succeeded(&output);
+    let note = "tabletop: aux.initJointAngles wants left_s0 at 99; it is moved to";
+    assert!(stderr(&output).contains(note), "{}", stderr(&output));
+}
+
+#[test]
 fn torques_that_nothing_obeys_are_noted_once() {
     let script = python("no-motors", "pass", "motor.jointTorques = [[0] * 7] * 2");
     let run = ["run", "--seconds", "0.1", "--script", &script];
     let output = tabletop(&run);
     succeeded(&output);
-    let note = "motor.jointTorques has no effect without --dynamic";
+    let note = "tabletop: motor.jointTorques has no effect without --dynamic";
     assert_eq!(stderr(&output).matches(note).count(), 1);
     let output = command(&run).arg("--dynamic").output().unwrap();
     assert!(!stderr(&output).contains(note));

@@ -29,6 +29,11 @@ pub enum AgentNews {
         /// Whether it was written as a warning or an error.
         is_error: bool,
     },
+    /// The program remarks this about the script.
+    Noted {
+        /// The line.
+        line: String,
+    },
     /// The script has ended, by itself or because it was told to.
     Stopped,
     /// The script or its engine has failed, and is stopped.

@@ -22,10 +22,13 @@ tabletop_run('initFunc', folder);
 tabletop_global('motor', template);
 aux = tabletop_global('aux');
 [names, values] = tabletop_fields('aux', aux, {'drawMarkers', 'initJointAngles', 'exit'});
-about = functions(callbackFunc);
-if strcmp(about.type, 'simple')
-    names{end + 1} = 'agent.callback';
-    values{end + 1} = which(about.function);
+scripts = {'agent.init', initFunc; 'agent.callback', callbackFunc};
+for k = 1:2
+    about = functions(scripts{k, 2});
+    if strcmp(about.type, 'simple')
+        names{end + 1} = scripts{k, 1};
+        values{end + 1} = which(about.function);
+    end
 end
 if isstruct(aux) && numel(aux) == 1
     given = fieldnames(request.aux);

@@ -1,7 +1,8 @@
 //! What scripts and the program tell each other about the robot: the script's `aux` variable (report section 5.2).
 
 use crate::{
-    motor::{Misuse, joints, no_struct, points},
+    misuse::Misuse,
+    motor::{joints, no_struct, points},
     protocol::{Array, Arrays},
 };
 

@@ -67,6 +67,7 @@ pub(crate) fn files(kind: EngineKind) -> Vec<(String, String)> {
     let driver = match kind {
         EngineKind::Matlab | EngineKind::Octave => MATLAB,
         EngineKind::Python => PYTHON,
+        EngineKind::Driver => &[],
     };
     let mut files: Vec<_> = driver
         .iter()

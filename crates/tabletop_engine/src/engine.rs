@@ -27,7 +27,7 @@ use crate::{
 pub enum Trigger {
     /// By a line on its standard input. Fast; not possible with MATLAB everywhere.
     Stdin,
-    /// By a file that it looks at again and again. Not for Python.
+    /// By a file that it looks at again and again. Not for Python and users' drivers.
     Poll,
 }
 
@@ -60,7 +60,7 @@ pub struct EngineConfig {
     /// How it learns of requests.
     pub trigger: Trigger,
     /// The folder that holds agentBehavior.m and the scripts that it names (MATLAB, Octave), or the file with the functions
-    /// `init` and `callback` (Python). A relative path is one from the working directory.
+    /// `init` and `callback` (Python), or whatever a user's driver runs. A relative path is one from the working directory.
     pub agent: PathBuf,
     /// The names of an init and a callback script to run instead of those that agentBehavior.m names.
     pub pair: Option<[String; 2]>,
@@ -82,10 +82,11 @@ impl EngineConfig {
         Self {
             trigger: match engine.kind {
                 EngineKind::Matlab => Trigger::Poll,
-                EngineKind::Octave | EngineKind::Python => Trigger::Stdin,
+                EngineKind::Octave | EngineKind::Python | EngineKind::Driver => Trigger::Stdin,
             },
             agent: match engine.kind {
                 EngineKind::Python => "python/example.py".into(),
+                EngineKind::Driver => PathBuf::new(),
                 EngineKind::Matlab | EngineKind::Octave => "matlab".into(),
             },
             engine,

@@ -2,7 +2,7 @@
 
 use std::{fmt, io, path::PathBuf, time::Duration};
 
-use crate::{motor::Misuse, protocol::ProtocolError};
+use crate::{misuse::Misuse, protocol::ProtocolError};
 
 /// Why an engine did not do what it was asked to.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -71,15 +71,6 @@ impl EngineError {
         Self::File {
             path: path.into(),
             reason: error.to_string(),
-        }
-    }
-}
-
-impl From<Misuse> for EngineError {
-    fn from(misuse: Misuse) -> Self {
-        Self::Misuse {
-            misuse,
-            script: None,
         }
     }
 }

@@ -9,7 +9,7 @@ use std::{
 
 use crate::error::EngineError;
 
-/// The variable that names the engine where nobody else does: "matlab", "octave" or a program's path.
+/// The variable that names the engine where nobody else does: "matlab", "octave", "python" or a program's path.
 pub const ENGINE_VARIABLE: &str = "TABLETOP_ENGINE";
 
 /// A kind of engine.
@@ -21,6 +21,8 @@ pub enum EngineKind {
     Octave,
     /// Python 3.
     Python,
+    /// A user's own program for scripts in another language.
+    Driver,
 }
 
 impl fmt::Display for EngineKind {
@@ -29,6 +31,7 @@ impl fmt::Display for EngineKind {
             Self::Matlab => "MATLAB",
             Self::Octave => "GNU Octave",
             Self::Python => "Python",
+            Self::Driver => "a driver",
         })
     }
 }
@@ -42,6 +45,7 @@ impl EngineKind {
             (Self::Octave, _) => &["octave-cli", "octave"],
             (Self::Python, Platform::Windows) => &["python3.exe", "python.exe"],
             (Self::Python, _) => &["python3"],
+            (Self::Driver, _) => &[],
         }
     }
 
@@ -68,7 +72,7 @@ impl EngineKind {
             ],
             (Self::Python, Platform::MacOs) => &["opt/homebrew/bin", "usr/local/bin", "usr/bin"],
             (Self::Python, Platform::Linux) => &["usr/bin", "usr/local/bin"],
-            (Self::Python, Platform::Windows) => &[],
+            (Self::Python, Platform::Windows) | (Self::Driver, _) => &[],
         }
     }
 }
@@ -83,6 +87,8 @@ pub enum EngineChoice {
     Kind(EngineKind),
     /// A program, or the folder in which it is.
     Program(PathBuf),
+    /// A user's driver (see docs/script-protocol.md).
+    Driver(PathBuf),
 }
 
 impl FromStr for EngineChoice {
@@ -165,12 +171,18 @@ impl Surroundings {
                 .find_kind(*kind)
                 .ok_or_else(|| self.not_found(&[*kind])),
             EngineChoice::Program(program) => self.find_program(program),
+            EngineChoice::Driver(program) => Ok(FoundEngine {
+                kind: EngineKind::Driver,
+                program: self.program(program)?,
+            }),
             EngineChoice::Auto => match &self.variable {
                 Some(variable) if !matches!(variable.as_str(), "" | "auto") => {
                     let Ok(choice) = variable.parse::<EngineChoice>();
                     match choice {
                         EngineChoice::Auto => self.first(),
-                        named => self.find(&named),
+                        named => self.find(&named).map_err(|error| {
+                            EngineError::NotFound(format!("{ENGINE_VARIABLE}: {error}"))
+                        }),
                     }
                 }
                 _ => self.first(),
@@ -215,44 +227,55 @@ impl Surroundings {
             });
             return found.ok_or_else(|| {
                 EngineError::NotFound(format!(
-                    "there is neither MATLAB nor Octave in {}",
+                    "there is no MATLAB, Octave or Python in {}",
                     program.display()
                 ))
             });
         }
+        let found = self.program(program)?;
         let name = program
             .file_name()
             .unwrap_or_default()
             .to_string_lossy()
             .to_ascii_lowercase();
-        let kind = kinds.into_iter().find(|kind| match kind {
-            EngineKind::Matlab => name.contains("matlab"),
-            EngineKind::Octave => name.contains("octave"),
-            EngineKind::Python => name.contains("python"),
+        let kind = kinds.into_iter().find(|kind| {
+            name.contains(match kind {
+                EngineKind::Matlab => "matlab",
+                EngineKind::Octave => "octave",
+                EngineKind::Python => "python",
+                EngineKind::Driver => return false,
+            })
         });
-        let Some(kind) = kind else {
-            let message = format!(
-                "the engine \"{}\" is not known; write \"matlab\", \"octave\" or the path of a program whose name says which it is",
+        match kind {
+            Some(kind) => Ok(FoundEngine {
+                kind,
+                program: found,
+            }),
+            None => Err(EngineError::NotFound(format!(
+                "{} is a program, but its name does not tell which engine it is: it must contain matlab, octave or python",
                 program.display()
-            );
-            return Err(EngineError::NotFound(message));
+            ))),
+        }
+    }
+
+    /// A program by its path, or by its name on PATH.
+    fn program(&self, program: &Path) -> Result<PathBuf, EngineError> {
+        let shown = program.display();
+        let is_bare = program.components().count() == 1;
+        let mut on_path = self.path.iter().map(|folder| folder.join(program));
+        let found = match is_bare {
+            true => on_path.find(|program| is_program(program)),
+            false => is_program(program).then(|| program.to_owned()),
         };
-        // A bare name is looked for as a shell would.
-        let bare = program.components().count() == 1;
-        let on_path = self
-            .path
-            .iter()
-            .map(|folder| folder.join(program))
-            .find(|program| is_program(program));
-        let found = if bare {
-            on_path
-        } else {
-            is_program(program).then(|| program.to_owned())
-        };
-        let program = found.ok_or_else(|| {
-            EngineError::NotFound(format!("there is no program {}", program.display()))
-        })?;
-        Ok(FoundEngine { kind, program })
+        found.ok_or_else(|| {
+            EngineError::NotFound(if is_bare {
+                format!("there is no program \"{shown}\" on PATH; an engine is auto, matlab, octave, python or the path of a program")
+            } else if program.exists() {
+                format!("{shown} cannot be run")
+            } else {
+                format!("there is no program {shown}")
+            })
+        })
     }
 
     fn not_found(&self, kinds: &[EngineKind]) -> EngineError {
@@ -445,6 +468,22 @@ mod tests {
     }
 
     #[test]
+    fn a_driver_may_have_any_name_and_an_engine_must_say_which_it_is() {
+        let disk = Disk::new("driver", &["path/lua", "mine/lua"]);
+        let mut surroundings = disk.surroundings(Platform::Linux);
+        let driver = |path: PathBuf| {
+            disk.relative(surroundings.find(&EngineChoice::Driver(path)))
+                .unwrap()
+        };
+        assert_eq!(driver("lua".into()), "a driver: path/lua");
+        assert_eq!(driver(disk.0.join("mine/lua")), "a driver: mine/lua");
+        surroundings.variable = Some("lua".into());
+        let fault = surroundings.find(&EngineChoice::Auto).unwrap_err();
+        let message = "TABLETOP_ENGINE: lua is a program, but its name does not tell which engine";
+        assert!(fault.to_string().starts_with(message), "{fault}");
+    }
+
+    #[test]
     fn what_is_missing_is_said_with_a_remedy() {
         let disk = Disk::new("missing", &[]);
         let fault = disk.find(Platform::Linux, "auto").unwrap_err();
@@ -463,9 +502,9 @@ mod tests {
                 .contains("winget")
         );
         assert!(
-            disk.find(Platform::Linux, "/x/scilab")
+            disk.find(Platform::Linux, "scilab")
                 .unwrap_err()
-                .contains("not known")
+                .contains("no program \"scilab\" on PATH; an engine is auto")
         );
         assert!(
             disk.find(Platform::Linux, "/x/octave")

@@ -48,10 +48,15 @@ pub(crate) fn command(config: &EngineConfig, session: &Session) -> Result<Comman
             ]);
             command.arg(session.folder());
         }
+        (EngineKind::Driver, Trigger::Stdin) => {
+            command.arg(session.folder());
+        }
         (EngineKind::Matlab, Trigger::Stdin) => {
             return Err("MATLAB cannot be driven by its standard input".into());
         }
-        (EngineKind::Python, Trigger::Poll) => return Err("Python does not poll".into()),
+        (EngineKind::Python | EngineKind::Driver, Trigger::Poll) => {
+            return Err(format!("{} does not poll", config.engine.kind));
+        }
     }
     Ok(command)
 }

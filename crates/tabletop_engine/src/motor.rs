@@ -1,6 +1,9 @@
 //! What the robot shall do: the script's `motor` variable (report section 5.2), checked before anybody uses it.
 
-use crate::protocol::{Array, Arrays, Data};
+use crate::{
+    misuse::{Element, FARTHEST, Misuse},
+    protocol::{Array, Arrays, Data},
+};
 
 /// What a script orders for one tick. Rows and pairs are in the order left, right; joints in the order S0, S1, E0, E1, W0, W1,
 /// W2.
@@ -16,53 +19,6 @@ pub struct Motor {
     pub joint_torques: Option<[[f64; 7]; 2]>,
     /// How fast the head turns, in rad/s, positive to the robot's left.
     pub head_velocity: Option<f64>,
-}
-
-/// Why a variable that a script has set cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Misuse {
-    /// A variable is missing or is no struct.
-    #[error("{name} is {found}; it must be {expected}")]
-    NoStruct {
-        /// The variable.
-        name: String,
-        /// Size and class of what is there.
-        found: String,
-        /// What should be there.
-        expected: &'static str,
-    },
-    /// A field has another size or class.
-    #[error("{field} is {found}; it must be {expected}")]
-    Size {
-        /// The field, with its variable.
-        field: String,
-        /// Size and class of what is there.
-        found: String,
-        /// What should be there.
-        expected: &'static str,
-    },
-    /// A number is not one.
-    #[error("{field} is {found}; it must be a finite number")]
-    NotFinite {
-        /// The element, with its indices.
-        field: String,
-        /// NaN, Inf or -Inf.
-        found: &'static str,
-    },
-    /// There is a field that nobody knows.
-    #[error("{field} is no field that the robot knows; known are {known}{}", suggest(.suggestion))]
-    Unknown {
-        /// The field, with its variable.
-        field: String,
-        /// All that may be there.
-        known: String,
-        /// The one that may have been meant.
-        suggestion: Option<&'static str>,
-    },
-}
-
-fn suggest(suggestion: &Option<&str>) -> String {
-    suggestion.map_or(String::new(), |name| format!(" (did you mean {name}?)"))
 }
 
 const FIELDS: [&str; 5] = [
@@ -165,6 +121,12 @@ pub(crate) fn points(field: &str, array: &Array) -> Result<Vec<[f64; 3]>, Misuse
         vec![rows, 3]
     };
     let numbers = numbers(field, array, &dims, expected)?;
+    if let Some(place) = numbers.iter().position(|number| number.abs() > FARTHEST) {
+        return Err(Misuse::TooFar {
+            element: Element::new(field, &dims, place),
+            found: numbers.get(place).copied().unwrap_or_default(),
+        });
+    }
     let rows = rows as usize;
     Ok((0..rows)
         .map(|row| {
@@ -193,10 +155,9 @@ fn numbers<'a>(
     let Some(place) = numbers.iter().position(|number| !number.is_finite()) else {
         return Ok(numbers);
     };
-    let rows = dims.first().map_or(1, |rows| *rows as usize).max(1);
     let number = numbers.get(place).copied().unwrap_or(f64::NAN);
     Err(Misuse::NotFinite {
-        field: format!("{field}({},{})", place % rows + 1, place / rows + 1),
+        element: Element::new(field, dims, place),
         found: match number {
             _ if number.is_nan() => "NaN",
             _ if number > 0.0 => "Inf",
@@ -291,6 +252,12 @@ mod tests {
         assert_eq!(
             fault.to_string(),
             "aux.drawMarkers is 1x2 double; it must be Nx3"
+        );
+        let far = [[0.0; 3], [0.0, -1e39, 0.0]];
+        let fault = points("aux.drawMarkers", &Array::matrix(&far)).unwrap_err();
+        assert_eq!(
+            fault.to_string(),
+            "aux.drawMarkers(2,2) is -1e39; it must be between -1e6 and 1e6"
         );
     }
 }

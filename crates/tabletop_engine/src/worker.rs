@@ -3,7 +3,7 @@
 use std::{
     collections::VecDeque,
     io,
-    path::{Path, PathBuf, absolute},
+    path::{Path, PathBuf},
     process::ExitStatus,
     sync::mpsc::{Receiver, RecvTimeoutError, Sender},
     thread,
@@ -19,11 +19,12 @@ use crate::{
     find::EngineKind,
     hint::hint,
     launch::{command, preparation, quoted},
+    misuse::Misuse,
     motor::Motor,
     output::read_output,
     process::{Killer, Process},
     protocol::{Array, Arrays},
-    scripts::{self, Encoding},
+    scripts::Encoding,
     sensor::Sensor,
     session::Session,
     trigger::{Op, TriggerFile},
@@ -215,13 +216,15 @@ impl Running {
 
     fn init(&mut self, aux: &Aux) -> Result<InitReply, EngineError> {
         let config = &self.worker.config;
-        let agent = self.agent();
-        if let Some(fault) = self.fault(&agent) {
+        let agent = config.agent_path();
+        if let Some(fault) = config.fault() {
             return Err(EngineError::Script(ScriptError::plain(fault)));
         }
         let folder = match config.engine.kind {
-            EngineKind::Python => config.agent.parent().unwrap_or(Path::new(".")),
-            EngineKind::Matlab | EngineKind::Octave => &config.agent,
+            EngineKind::Python | EngineKind::Driver if !agent.is_dir() => {
+                config.agent.parent().unwrap_or(Path::new("."))
+            }
+            _ => &config.agent,
         };
         let mut path = folder.to_string_lossy().into_owned();
         if !path.is_empty() && !path.ends_with(['/', '\\']) {
@@ -245,14 +248,17 @@ impl Running {
         self.session.write_request(&arrays)?;
         let limit = config.timeouts.init;
         let reply = self.call(Op::Init, "the init script", limit)?;
-        self.callback = match self.worker.config.engine.kind {
-            EngineKind::Python => Some(agent),
-            EngineKind::Matlab | EngineKind::Octave => reply
-                .get("agent.callback")
-                .and_then(Array::as_text)
-                .map(|file| self.of_original(file).into()),
+        let [init, callback] = match self.worker.config.engine.kind {
+            EngineKind::Python | EngineKind::Driver => [Some(agent.clone()), Some(agent)],
+            EngineKind::Matlab | EngineKind::Octave => {
+                ["agent.init", "agent.callback"].map(|name| {
+                    let file = reply.get(name).and_then(Array::as_text)?;
+                    (!file.is_empty()).then(|| PathBuf::from(self.of_original(file)))
+                })
+            }
         };
-        Ok(InitReply::read(&reply)?)
+        self.callback = callback;
+        InitReply::read(&reply).map_err(|misuse| self.misuse(misuse, init))
     }
 
     fn step(&mut self, sensor: &Sensor) -> Result<StepReply, EngineError> {
@@ -260,15 +266,21 @@ impl Running {
         self.session.write_request(&sensor.arrays())?;
         let limit = self.worker.config.timeouts.step;
         let reply = self.call(Op::Step, "the callback script", limit)?;
-        let motor = Motor::read(&reply).map_err(|misuse| EngineError::Misuse {
-            misuse,
-            script: self.callback.clone(),
-        })?;
+        let motor =
+            Motor::read(&reply).map_err(|misuse| self.misuse(misuse, self.callback.clone()))?;
         Ok(StepReply {
             motor,
             exit: reply.get("aux.exit").is_some(),
             took: start.elapsed(),
         })
+    }
+
+    /// What a script has set that cannot be used.
+    fn misuse(&self, misuse: Misuse, script: Option<PathBuf>) -> EngineError {
+        EngineError::Misuse {
+            misuse: misuse.written_for(self.worker.config.engine.kind),
+            script,
+        }
     }
 
     /// Has the engine do something and reads its answer.
@@ -292,33 +304,13 @@ impl Running {
         Err(EngineError::Script(error))
     }
 
-    /// Why the scripts cannot be run, as far as that can be seen from here.
-    fn fault(&self, agent: &Path) -> Option<String> {
-        let config = &self.worker.config;
-        if config.agent.as_os_str().is_empty() {
-            return Some("the name of the scripts' folder is empty".to_owned());
-        }
-        match config.engine.kind {
-            EngineKind::Python => {
-                (!agent.exists()).then(|| format!("there is no {}", agent.display()))
-            }
-            EngineKind::Matlab | EngineKind::Octave => {
-                scripts::fault(agent, config.pair.is_none(), &config.working_dir)
-            }
-        }
-    }
-
     /// What an engine says, with the user's scripts in place of repaired copies that it may run.
     fn of_original(&self, text: &str) -> String {
         let copies = self.session.folder().join("repaired");
-        text.replace(&*copies.to_string_lossy(), &self.agent().to_string_lossy())
-    }
-
-    /// Where the scripts are.
-    fn agent(&self) -> PathBuf {
-        let config = &self.worker.config;
-        let agent = config.working_dir.join(&config.agent);
-        absolute(&agent).unwrap_or(agent)
+        text.replace(
+            &*copies.to_string_lossy(),
+            &self.worker.config.agent_path().to_string_lossy(),
+        )
     }
 
     fn trigger(&mut self, op: Op) -> Result<(), EngineError> {
@@ -341,7 +333,7 @@ impl Running {
         }
         let (name, draw) = (op.name(), u8::from(draw));
         let line = match config.engine.kind {
-            EngineKind::Python => format!("{name} {seq}"),
+            EngineKind::Python | EngineKind::Driver => format!("{name} {seq}"),
             EngineKind::Matlab | EngineKind::Octave => {
                 format!(
                     "tabletop_call('{name}', {}, {seq}, {draw}, 0);",

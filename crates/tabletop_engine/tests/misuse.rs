@@ -179,7 +179,11 @@ fn a_misused_aux_is_told() {
     ] {
         let folder = Folder::pair(script, "");
         let session = Session::octave(&folder.0, Trigger::Stdin);
-        assert_eq!(session.init().unwrap_err().to_string(), message);
+        let place = folder.0.join("testInit.m");
+        assert_eq!(
+            session.init().unwrap_err().to_string(),
+            format!("{message}\n  at {}", place.display())
+        );
     }
 }
 

@@ -8,8 +8,8 @@ use std::{fs, path::PathBuf, time::Duration};
 
 use common::{Folder, Session, script_error};
 use tabletop_engine::{
-    EngineChoice, EngineConfig, EngineError, EngineKind, Picture, SensedObject, Sensor,
-    Surroundings,
+    EngineChoice, EngineConfig, EngineError, EngineKind, Picture, SensedContact, SensedObject,
+    Sensor, Surroundings,
 };
 
 fn config(file: PathBuf) -> EngineConfig {
@@ -96,6 +96,151 @@ fn everything_that_is_sensed_arrives() {
     );
 }
 
+/// A script with an init that does nothing, and a callback of this line.
+fn of_callback(line: &str) -> String {
+    format!("import os, sys\ndef init(aux): pass\ndef callback(sensor, motor, aux):\n    {line}\n")
+}
+
+#[test]
+fn columns_are_lists_of_any_length_and_counts_are_whole() {
+    let (_folder, session) = start(
+        "def init(aux): assert list(range(aux.numLimbs)) == [0, 1] and aux.numJoints == 7\n\
+         def callback(sensor, motor, aux):\n\
+         \x20   assert list(sensor.objects.mass) == [2.0] * len(sensor.objects.id), sensor.objects.mass\n\
+         \x20   assert list(sensor.contacts.impulse) == [0.5] * len(sensor.contacts.first), sensor.contacts.impulse\n\
+         \x20   assert len(sensor.objects.position) == len(sensor.objects.id)\n",
+    );
+    session.init().unwrap();
+    let object = SensedObject {
+        mass: 2.0,
+        ..SensedObject::default()
+    };
+    let contact = SensedContact {
+        impulse: 0.5,
+        ..SensedContact::default()
+    };
+    for count in 0..4 {
+        let sensor = Sensor {
+            objects: Some(vec![object.clone(); count]),
+            contacts: Some(vec![contact.clone(); count]),
+            ..Sensor::default()
+        };
+        session.step(&sensor).unwrap();
+    }
+}
+
+#[test]
+fn truth_values_are_numbers() {
+    let (_folder, session) = start(&of_callback(
+        "motor.headVelocity = True; motor.gripperVelocities = [True, False]",
+    ));
+    session.init().unwrap();
+    let motor = session.step(&Sensor::default()).unwrap().motor;
+    assert_eq!(motor.head_velocity, Some(1.0));
+    assert_eq!(motor.gripper_velocities, [1.0, 0.0]);
+}
+
+#[test]
+fn a_file_that_python_cannot_read_is_named_once() {
+    let folder = Folder::new(&[("robot.py", ""), ("helper.py", "x = (\n")]);
+    let robot = folder.0.join("robot.py");
+    let session = Session::start(config(robot.clone())).unwrap();
+    let functions = of_callback("pass");
+    for (text, places) in [
+        (format!("{functions}x = = 3\n"), &["robot.py:5"][..]),
+        (format!("{functions}zero = '\0'\n"), &["robot.py"]),
+        (
+            format!("import helper\n{functions}"),
+            &["helper.py:1", "robot.py:1"],
+        ),
+    ] {
+        fs::write(&robot, text).unwrap();
+        let error = script_error(session.init());
+        assert!(!error.message.contains('\n'), "{}", error.message);
+        let found: Vec<_> = error.stack.iter().map(ToString::to_string).collect();
+        let places = places.iter().map(|place| folder.0.join(place));
+        let places: Vec<_> = places.map(|place| place.display().to_string()).collect();
+        assert_eq!(found, places);
+    }
+}
+
+#[test]
+fn what_led_to_an_error_is_told() {
+    let (folder, session) = start(
+        "def init(aux): pass\n\
+         def callback(sensor, motor, aux):\n\
+         \x20   try: {}['hand']\n\
+         \x20   except KeyError as error: raise RuntimeError('no plan') from error\n",
+    );
+    session.init().unwrap();
+    let robot = folder.0.join("robot.py").display().to_string();
+    let told = |link: &str, error: &str| {
+        format!("{error}\n{link} KeyError: 'hand' ({robot}:3)\n  at {robot}:4")
+    };
+    let error = session.step(&Sensor::default()).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        told("because of", "RuntimeError: no plan")
+    );
+    let text = fs::read_to_string(&robot).unwrap();
+    fs::write(&robot, text.replace(" from error", "")).unwrap();
+    session.init().unwrap();
+    let error = session.step(&Sensor::default()).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        told("while handling", "RuntimeError: no plan")
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_is_answered_with_its_place_also_in_the_background() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let script = of_callback("os.kill(os.getpid(), 2); sum(range(10**7))");
+    // A shell has what it starts in the background ignore interrupts.
+    let shell = "#!/bin/sh\ntrap '' INT\nexec python3 \"$@\"\n";
+    let folder = Folder::new(&[("robot.py", &script), ("python-behind", shell)]);
+    let mut config = config(folder.0.join("robot.py"));
+    config.engine.program = folder.0.join("python-behind");
+    fs::set_permissions(&config.engine.program, fs::Permissions::from_mode(0o755)).unwrap();
+    let session = Session::start(config).unwrap();
+    session.init().unwrap();
+    let error = script_error(session.step(&Sensor::default()));
+    assert_eq!(
+        (error.message.as_str(), error.place().unwrap().line),
+        ("KeyboardInterrupt", 4)
+    );
+}
+
+#[test]
+fn processes_of_a_script_know_its_functions() {
+    let (_folder, session) = start(
+        "import multiprocessing\n\
+         def square(x): return x * x\n\
+         def init(aux):\n\
+         \x20   with multiprocessing.get_context('spawn').Pool(2) as pool:\n\
+         \x20       assert pool.map(square, [1, 2, 3]) == [1, 4, 9]\n\
+         def callback(sensor, motor, aux): pass\n",
+    );
+    session.init().unwrap();
+}
+
+#[test]
+fn a_misused_aux_names_the_script_and_a_typo_is_noted() {
+    let script =
+        |line: &str| format!("def init(aux): {line}\ndef callback(sensor, motor, aux): pass\n");
+    let (folder, session) = start(&script("aux.drawMarkers = [[1, 2, 3], [0, -1e39, 0]]"));
+    let message = format!(
+        "aux.drawMarkers[1][1] is -1e39; it must be between -1e6 and 1e6\n  at {}",
+        folder.0.join("robot.py").display()
+    );
+    assert_eq!(session.init().unwrap_err().to_string(), message);
+    let (_folder, session) = start(&script("aux.drawMarker = [[1, 2, 3]]; aux.plan = []"));
+    session.init().unwrap();
+    let note = "tabletop: aux.drawMarker means nothing (did you mean drawMarkers?)\n";
+    assert_eq!(session.printed("drawMarkers"), note);
+}
+
 #[test]
 fn faults_are_told_with_their_place() {
     let (folder, session) = start(
@@ -141,7 +286,7 @@ fn faults_are_told_with_their_place() {
         ),
         (
             "motor.headVelocity = -10**400",
-            "motor.headVelocity(1,1) is -Inf; it must be a finite number",
+            "motor.headVelocity is -Inf; it must be a finite number",
         ),
         (
             "setattr(motor, 'größe', 1)",
@@ -153,7 +298,15 @@ fn faults_are_told_with_their_place() {
         ),
         (
             "motor.headVelocity = float('nan')",
-            "motor.headVelocity(1,1) is NaN; it must be a finite number",
+            "motor.headVelocity is NaN; it must be a finite number",
+        ),
+        (
+            "motor.jointVelocities[1][2] = float('nan')",
+            "motor.jointVelocities[1][2] is NaN; it must be a finite number\n  at ",
+        ),
+        (
+            "motor.gripperVelocities = [0, float('inf')]",
+            "motor.gripperVelocities[1] is Inf; it must be a finite number",
         ),
         (
             "motor.spin = 1",
@@ -161,10 +314,12 @@ fn faults_are_told_with_their_place() {
         ),
         ("input()", "EOFError"),
         ("raise KeyboardInterrupt", "KeyboardInterrupt\n  at "),
+        (
+            "sys.exit('bye')",
+            "SystemExit: bye; to end the script, set aux.exit\n  at ",
+        ),
     ] {
-        let script =
-            format!("def init(aux): pass\ndef callback(sensor, motor, aux):\n    {callback}\n");
-        fs::write(folder.0.join("robot.py"), script).unwrap();
+        fs::write(folder.0.join("robot.py"), of_callback(callback)).unwrap();
         session.init().unwrap();
         let error = session.step(&Sensor::default()).unwrap_err();
         assert!(
@@ -177,14 +332,14 @@ fn faults_are_told_with_their_place() {
 #[test]
 fn hangs_exits_and_missing_files_are_told() {
     let script = |init: &str| {
-        format!("import sys\ndef init(aux):\n    {init}\ndef callback(sensor, motor, aux): pass\n")
+        format!("import os\ndef init(aux):\n    {init}\ndef callback(sensor, motor, aux): pass\n")
     };
     let folder = Folder::new(&[("robot.py", &script("while True: pass"))]);
     let mut config = config(folder.0.join("robot.py"));
     config.timeouts.init = Duration::from_millis(300);
     let session = Session::start(config.clone()).unwrap();
     assert!(matches!(session.init(), Err(EngineError::Timeout { .. })));
-    fs::write(folder.0.join("robot.py"), script("sys.exit(3)")).unwrap();
+    fs::write(folder.0.join("robot.py"), script("os._exit(3)")).unwrap();
     let session = Session::start(config.clone()).unwrap();
     let error = session.init().unwrap_err();
     assert!(
@@ -224,6 +379,16 @@ fn what_is_no_script_is_told() {
             "d.py",
             "def init(*all): pass\ndef callback(sensor, motor): pass\n".to_owned(),
             "callback(sensor, motor) must be callback(sensor, motor, aux)\n  at {}:2",
+        ),
+        (
+            "async.py",
+            "def init(aux): pass\nasync def callback(sensor, motor, aux): pass\n".to_owned(),
+            "callback is async, so that a call does nothing; write def without async\n  at {}:2",
+        ),
+        (
+            "generator.py",
+            format!("def init(aux): yield\n{callback}"),
+            "init holds a yield, so that a call does nothing; write it without\n  at {}:1",
         ),
         (
             "e.txt",

@@ -36,6 +36,7 @@ fn note_news(mut news: MessageReader<AgentNews>, mut notices: ResMut<Notices>) {
                 let tone = if *is_error { Tone::Warning } else { Tone::News };
                 notices.append(tone, line);
             }
+            AgentNews::Noted { line } => notices.append(Tone::Warning, line),
             AgentNews::Failed { reason } => notices.append(Tone::Fault, reason),
             AgentNews::Stopped => notices.append(Tone::News, "the script has ended"),
         }

@@ -2,43 +2,33 @@
 
 use bevy::prelude::*;
 use tabletop_core::{Arm, Drive, RobotJoint, RobotMode, SimCommand};
-use tabletop_engine::{EngineError, InitReply, Motor, ScriptError};
-
-/// Markers beyond are too far away to be drawn anywhere.
-const FARTHEST: f64 = 1e6;
+use tabletop_engine::{InitReply, Motor};
 
 /// The commands for what an init script wants.
-///
-/// # Errors
-/// A marker is too far away.
-pub(crate) fn commands_of_init(reply: &InitReply) -> Result<Vec<SimCommand>, EngineError> {
-    let mut commands = vec![SimCommand::ShowMarkers(markers(&reply.draw_markers)?)];
+pub(crate) fn commands_of_init(reply: &InitReply) -> Vec<SimCommand> {
+    let markers = reply.draw_markers.iter();
+    let markers = markers.map(|point| Vec3::from_array(point.map(|x| x as f32)));
+    let mut commands = vec![SimCommand::ShowMarkers(markers.collect())];
     commands.extend(
         reply
             .init_joint_angles
             .map(|angles| SimCommand::Drive(at_once(&angles))),
     );
-    Ok(commands)
+    commands
 }
 
-fn markers(points: &[[f64; 3]]) -> Result<Vec<Vec3>, EngineError> {
-    let far = |point: &[f64; 3]| point.iter().position(|x| x.abs() > FARTHEST);
-    let mut rows = points.iter().enumerate();
-    match rows.find_map(|(row, point)| Some((row, far(point)?))) {
-        None => Ok(points
-            .iter()
-            .map(|point| Vec3::from_array(point.map(|x| x as f32)))
-            .collect()),
-        Some((row, column)) => Err(EngineError::Script(ScriptError {
-            message: format!(
-                "aux.drawMarkers({},{}) is {:e}; it must be between -{FARTHEST:e} and {FARTHEST:e}",
-                row + 1,
-                column + 1,
-                points[row][column]
-            ),
-            ..ScriptError::default()
-        })),
-    }
+/// The first angle of an init script that a joint cannot have.
+pub(crate) fn unreachable(reply: &InitReply) -> Option<String> {
+    let angles = reply.init_joint_angles.as_ref()?;
+    let mut joints = each_joint(angles, |angle| angle).into_iter();
+    let (joint, angle) = joints.find(|&(joint, angle)| {
+        let (least, largest) = joint.limits();
+        !(least..=largest).contains(&angle)
+    })?;
+    let (least, largest) = joint.limits();
+    Some(format!(
+        "aux.initJointAngles wants {joint} at {angle}; it is moved to the nearest of its angles, {least} to {largest}"
+    ))
 }
 
 /// The command for what a callback script orders for a tick.
@@ -67,10 +57,10 @@ fn at_once(angles: &[[f64; 7]; 2]) -> Vec<(RobotJoint, Drive)> {
     each_joint(angles, Drive::Position)
 }
 
-fn each_joint(values: &[[f64; 7]; 2], drive: impl Fn(f64) -> Drive) -> Vec<(RobotJoint, Drive)> {
+fn each_joint<T>(values: &[[f64; 7]; 2], each: impl Fn(f64) -> T) -> Vec<(RobotJoint, T)> {
     let arms = Arm::BOTH.into_iter().zip(values);
     arms.flat_map(|(arm, values)| RobotJoint::of_arm(arm).into_iter().zip(values))
-        .map(|(joint, value)| (joint, drive(*value)))
+        .map(|(joint, value)| (joint, each(*value)))
         .collect()
 }
 
@@ -106,21 +96,18 @@ mod tests {
     }
 
     #[test]
-    fn markers_out_of_reach_are_the_scripts_fault() {
-        let fault = |draw_markers: Vec<[f64; 3]>| {
-            let reply = InitReply {
-                draw_markers,
+    fn an_angle_out_of_reach_is_noted() {
+        let mut angles = [[0.0; 7]; 2];
+        let note = |angles| {
+            unreachable(&InitReply {
+                init_joint_angles: Some(angles),
                 ..InitReply::default()
-            };
-            commands_of_init(&reply)
-                .err()
-                .map(|error| error.to_string())
+            })
         };
-        assert_eq!(fault(vec![[1.0, 2.0, 3.0]]), None);
-        assert_eq!(
-            fault(vec![[0.0; 3], [0.0, -1e39, 0.0]]).unwrap(),
-            "aux.drawMarkers(2,2) is -1e39; it must be between -1e6 and 1e6"
-        );
+        assert_eq!(note(angles), None);
+        angles[1][0] = 99.0;
+        let note = note(angles).unwrap();
+        assert!(note.contains("at 99; it is moved to"), "{note}");
     }
 
     #[test]

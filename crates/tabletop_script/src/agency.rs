@@ -9,7 +9,7 @@ use tabletop_core::{
 use tabletop_engine::{EngineConfig, EngineError, EngineHandle, Output, Reply};
 
 use crate::{
-    act::{command_of_motor, commands_of_init, last_command},
+    act::{command_of_motor, commands_of_init, last_command, unreachable},
     news::News,
     sense::{Senses, Told, aux},
     settings::{ScriptSettings, Waiting},
@@ -256,7 +256,10 @@ impl Session {
                 Ok(Answer::None)
             }
             Reply::Init(reply) => {
-                commands.write_batch(commands_of_init(&reply)?);
+                commands.write_batch(commands_of_init(&reply));
+                if let Some(note) = unreachable(&reply) {
+                    news.note(&note);
+                }
                 self.called_at = tick;
                 self.began_at = tick;
                 self.stage = Stage::Idle;

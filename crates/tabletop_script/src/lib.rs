@@ -34,7 +34,9 @@ mod settings;
 mod standstill;
 
 pub use settings::{ScriptSettings, Tell, Waiting};
-pub use tabletop_engine::{ENGINE_VARIABLE, EngineChoice, EngineKind, Surroundings, Timeouts};
+pub use tabletop_engine::{
+    ENGINE_VARIABLE, EngineChoice, EngineConfig, EngineKind, FoundEngine, Surroundings, Timeouts,
+};
 
 use bevy::prelude::*;
 use tabletop_core::{

@@ -24,17 +24,19 @@ impl News<'_> {
     /// Tells what the engine has printed since the last time.
     pub fn print(&mut self, engine: &EngineHandle) {
         for line in engine.drain_console() {
-            self.tell(AgentNews::Printed {
-                is_error: line.stream == Stream::Error,
-                line: line.text,
+            self.tell(match line.stream {
+                Stream::Note => AgentNews::Noted { line: line.text },
+                Stream::Out | Stream::Error => AgentNews::Printed {
+                    line: line.text,
+                    is_error: line.stream == Stream::Error,
+                },
             });
         }
     }
 
     /// Tells what the user should know.
     pub fn note(&mut self, line: &str) {
-        self.tell(AgentNews::Printed {
-            is_error: false,
+        self.tell(AgentNews::Noted {
             line: line.to_owned(),
         });
     }

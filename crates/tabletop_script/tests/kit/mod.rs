@@ -214,10 +214,10 @@ impl Stage {
         &self.app.world().resource::<Track>().0
     }
 
-    /// What the script has printed.
+    /// What the script has printed, and what was noted about it.
     pub fn printed(&self) -> String {
         let lines = self.news.iter().filter_map(|news| match news {
-            AgentNews::Printed { line, .. } => Some(line.as_str()),
+            AgentNews::Printed { line, .. } | AgentNews::Noted { line } => Some(line.as_str()),
             _ => None,
         });
         lines.collect::<Vec<_>>().join("\n")

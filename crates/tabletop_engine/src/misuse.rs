@@ -1,0 +1,111 @@
+//! What is wrong with a variable that a script has set.
+
+use std::fmt;
+
+use crate::find::EngineKind;
+
+/// The largest coordinate that a marker may have, in units.
+pub(crate) const FARTHEST: f64 = 1e6;
+
+/// Why a variable that a script has set cannot be used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Misuse {
+    /// A variable is missing or is no struct.
+    #[error("{name} is {found}; it must be {expected}")]
+    NoStruct {
+        /// The variable.
+        name: String,
+        /// Size and class of what is there.
+        found: String,
+        /// What should be there.
+        expected: &'static str,
+    },
+    /// A field has another size or class.
+    #[error("{field} is {found}; it must be {expected}")]
+    Size {
+        /// The field, with its variable.
+        field: String,
+        /// Size and class of what is there.
+        found: String,
+        /// What should be there.
+        expected: &'static str,
+    },
+    /// A number is not one.
+    #[error("{element} is {found}; it must be a finite number")]
+    NotFinite {
+        /// Which one.
+        element: Element,
+        /// NaN, Inf or -Inf.
+        found: &'static str,
+    },
+    /// A marker is too far away to be drawn anywhere.
+    #[error("{element} is {found:e}; it must be between -{FARTHEST:e} and {FARTHEST:e}")]
+    TooFar {
+        /// Which coordinate of which marker.
+        element: Element,
+        /// What it is.
+        found: f64,
+    },
+    /// There is a field that nobody knows.
+    #[error("{field} is no field that the robot knows; known are {known}{}", suggest(.suggestion))]
+    Unknown {
+        /// The field, with its variable.
+        field: String,
+        /// All that may be there.
+        known: String,
+        /// The one that may have been meant.
+        suggestion: Option<&'static str>,
+    },
+}
+
+impl Misuse {
+    /// The same, with indices as the scripts of this engine write them.
+    #[must_use]
+    pub(crate) fn written_for(mut self, kind: EngineKind) -> Self {
+        if let Self::NotFinite { element, .. } | Self::TooFar { element, .. } = &mut self {
+            element.is_python = kind == EngineKind::Python;
+        }
+        self
+    }
+}
+
+/// An element of a matrix.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Element {
+    field: String,
+    rows: usize,
+    columns: usize,
+    /// Where it is, column by column.
+    place: usize,
+    is_python: bool,
+}
+
+impl Element {
+    pub(crate) fn new(field: &str, dims: &[u32], place: usize) -> Self {
+        let extent = |dim: usize| dims.get(dim).map_or(1, |extent| *extent as usize).max(1);
+        Self {
+            field: field.to_owned(),
+            rows: extent(0),
+            columns: extent(1),
+            place,
+            is_python: false,
+        }
+    }
+}
+
+impl fmt::Display for Element {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        let Self { field, .. } = self;
+        let (row, column) = (self.place % self.rows, self.place / self.rows);
+        match (self.is_python, self.rows, self.columns) {
+            (false, ..) => write!(formatter, "{field}({},{})", row + 1, column + 1),
+            (true, 1, 1) => formatter.write_str(field),
+            (true, _, 1) => write!(formatter, "{field}[{row}]"),
+            (true, ..) => write!(formatter, "{field}[{row}][{column}]"),
+        }
+    }
+}
+
+fn suggest(suggestion: &Option<&str>) -> String {
+    suggestion.map_or(String::new(), |name| format!(" (did you mean {name}?)"))
+}
