@@ -251,10 +251,20 @@ impl Running {
         let reply = self.call(Op::Init, "the init script", limit)?;
         self.callback = match self.worker.config.engine.kind {
             EngineKind::Python => Some(agent),
-            EngineKind::Matlab | EngineKind::Octave => reply
-                .get("agent.callback")
-                .and_then(Array::as_text)
-                .map(|file| self.of_original(file).into()),
+            EngineKind::Matlab | EngineKind::Octave => {
+                let [init, callback] = ["agent.init", "agent.callback"].map(|name| {
+                    let file = reply.get(name).and_then(Array::as_text)?;
+                    (!file.is_empty()).then(|| PathBuf::from(self.of_original(file)))
+                });
+                for note in [&init, &callback]
+                    .into_iter()
+                    .flatten()
+                    .filter_map(|file| scripts::note(file))
+                {
+                    self.worker.console.push(Stream::Note, note.as_bytes());
+                }
+                callback
+            }
         };
         Ok(InitReply::read(&reply)?)
     }
@@ -290,8 +300,13 @@ impl Running {
         };
         let [id, message, stack] = ["error.id", "error.message", "error.stack"].map(text);
         let mut error = ScriptError::new(&id, &message, &stack);
-        if let Some(hint) = hint(&error.message, matches!(op, Op::Init)) {
-            error.message = format!("{}: {hint}", error.message);
+        if let Some(hint) = hint(&error, matches!(op, Op::Init)) {
+            let link = if error.message.contains('\n') {
+                "\n"
+            } else {
+                ": "
+            };
+            error.message = format!("{}{link}{hint}", error.message);
         }
         Err(EngineError::Script(error))
     }
@@ -316,6 +331,7 @@ impl Running {
     fn of_original(&self, text: &str) -> String {
         let copies = self.session.folder().join("repaired");
         text.replace(&*copies.to_string_lossy(), &self.agent().to_string_lossy())
+            .replace(".m.sourced", ".m")
     }
 
     /// Where the scripts are.
