@@ -50,6 +50,9 @@ pub(crate) fn hint(error: &ScriptError, in_init: bool) -> Option<&'static str> {
             "agentBehavior calls the script; to name it, write an @ before it, as in init = @myInit",
         );
     }
+    if message.contains("function for @") && message.ends_with(".m") {
+        return Some("a handle is named without .m, as in init = @myInit");
+    }
     if SHARED.iter().any(|name| is_undefined(name, message)) {
         return Some("a function must say \"global sensor motor aux\"");
     }
@@ -115,6 +118,8 @@ mod tests {
         assert_eq!(hint("'rgbVision' undefined", false), None);
         let script = "invalid call to script /x/agentBehavior.m";
         assert!(hint(script, true).unwrap().contains("function"));
+        let file = "invalid function handle, unable to find function for @myInit.m";
+        assert!(hint(file, true).unwrap().contains("without .m"));
         let matlab = "Unrecognized function or variable 'aux'.";
         assert!(hint(matlab, true).unwrap().contains("global"));
         assert_eq!(hint("'auxiliary' undefined", true), None);

@@ -240,7 +240,7 @@ impl Running {
         if config.engine.kind == EngineKind::Octave {
             let encoding = Encoding::of(&agent);
             if let Some(note) = encoding.note() {
-                self.worker.console.push(Stream::Note, note.as_bytes());
+                self.note(&note);
             }
             if let Encoding::Windows(_) = encoding {
                 arrays.put("agent.encoding", Array::text("windows-1252"));
@@ -252,17 +252,14 @@ impl Running {
         self.callback = match self.worker.config.engine.kind {
             EngineKind::Python => Some(agent),
             EngineKind::Matlab | EngineKind::Octave => {
-                let [init, callback] = ["agent.init", "agent.callback"].map(|name| {
+                let script = |name| {
                     let file = reply.get(name).and_then(Array::as_text)?;
                     (!file.is_empty()).then(|| PathBuf::from(self.of_original(file)))
-                });
-                for note in [&init, &callback]
-                    .into_iter()
-                    .flatten()
-                    .filter_map(|file| scripts::note(file))
-                {
-                    self.worker.console.push(Stream::Note, note.as_bytes());
-                }
+                };
+                let [init, callback] = ["agent.init", "agent.callback"].map(script);
+                let ran = [&init, &callback].into_iter().flatten();
+                ran.filter_map(|file| scripts::note(file))
+                    .for_each(|note| self.note(&note));
                 callback
             }
         };
@@ -301,10 +298,9 @@ impl Running {
         let [id, message, stack] = ["error.id", "error.message", "error.stack"].map(text);
         let mut error = ScriptError::new(&id, &message, &stack);
         if let Some(hint) = hint(&error, matches!(op, Op::Init)) {
-            let link = if error.message.contains('\n') {
-                "\n"
-            } else {
-                ": "
+            let link = match error.message.contains('\n') {
+                true => "\n",
+                false => ": ",
             };
             error.message = format!("{}{link}{hint}", error.message);
         }
@@ -332,6 +328,11 @@ impl Running {
         let copies = self.session.folder().join("repaired");
         text.replace(&*copies.to_string_lossy(), &self.agent().to_string_lossy())
             .replace(".m.sourced", ".m")
+    }
+
+    /// Tells the user something beside what the script prints.
+    fn note(&self, note: &str) {
+        self.worker.console.push(Stream::Note, note.as_bytes());
     }
 
     /// Where the scripts are.
@@ -467,7 +468,7 @@ impl Running {
             "the script's engine was cut off, because it did not end within {} s; what it had not written to files is lost",
             limit.as_secs()
         );
-        self.worker.console.push(Stream::Note, note.as_bytes());
+        self.note(&note);
     }
 
     /// Waits until the engine has ended, for at most `limit`, or less if it is told to stop in less. That is returned.

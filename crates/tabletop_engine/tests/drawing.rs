@@ -1,7 +1,5 @@
 //! Scripts that draw, where there is nothing to draw on.
 
-#![expect(clippy::unwrap_used, reason = "a test may panic")]
-
 mod common;
 
 use common::{Folder, Session, octave};
