@@ -65,7 +65,7 @@ const UNANSWERED: [(&str, &str); 5] = [
 const UNDEBUGGED: &str = "dbstop debug_on_error debug_on_interrupt debug_on_warning";
 
 /// What draws, in Octave. Where there is nothing to draw with, it does nothing.
-const UNDRAWN: &str = "annotation area axes bar3 bar3h box camlight camlookat camorbit campos camroll camtarget camup camva camzoom cla \
+const UNDRAWN: &str = "ancestor annotation area axes bar3 bar3h box camlight camlookat camorbit campos camroll camtarget camup camva camzoom cla \
     clabel clf close colorbar comet comet3 compass copyobj daspect datetick delaxes drawnow errorbar ezcontour ezcontourf \
     ezmesh ezmeshc ezplot ezplot3 ezpolar ezsurf ezsurfc feather figure fill fill3 fplot gca gcf grid gtext hggroup hgload \
     hgtransform hidden histogram hold image imagesc imshow legend light lightangle lighting line linkaxes linkprop loglog \
@@ -78,6 +78,9 @@ const UNDRAWN: &str = "annotation area axes bar3 bar3h box camlight camlookat ca
 
 /// The limits of what is not drawn.
 const LIMITS: &str = "caxis clim xlim ylim zlim";
+
+/// What looks for what was drawn.
+const SOUGHT: &str = "allchild findall findobj";
 
 /// What can compute what it would draw.
 const COMPUTED: &str = "bar barh contour contour3 contourf stairs";
@@ -100,9 +103,10 @@ pub(crate) fn files(kind: EngineKind) -> Vec<(String, String)> {
         files.extend(UNANSWERED.map(|(name, deed)| (octave(name), unanswered(name, deed))));
         let undebugged = UNDEBUGGED.split_whitespace();
         files.extend(undebugged.map(|name| (octave(name), undebuggable(name))));
-        let kinds: [(_, fn(&str) -> String); 4] = [
+        let kinds: [(_, fn(&str) -> String); 5] = [
             (UNDRAWN, undrawn),
             (LIMITS, limits),
+            (SOUGHT, nothing_found),
             (COMPUTED, computed),
             (PRINTED, unprinted),
         ];
@@ -150,6 +154,11 @@ fn limits(name: &str) -> String {
     format!(
         "function varargout = {name}(varargin)\nif nargin == 0 || nargout > 0, varargout = {{[0 1]}}; end\nend\n"
     )
+}
+
+/// A function that takes anything and finds nothing.
+fn nothing_found(name: &str) -> String {
+    format!("function found = {name}(varargin)\nfound = zeros(0, 1);\nend\n")
 }
 
 /// A function that draws nothing, but lets Octave's own compute what that would compute instead of drawing.

@@ -22,6 +22,7 @@ fn what_draws_does_nothing_without_a_display() {
         "F = getframe; imwrite(F.cdata, [aux.path 'f.png']); delete([aux.path 'f.png']); M(3) = getframe; movie(M);",
         "[x, y] = stairs([1 2 3]); assert(y', [1 1 2 2 3]); [x, y] = bar([1 2]); assert(size(colormap), [64 3]);",
         "c = contour(peaks); assert(rows(c), 2); f = figure(2); if ~ishandle(f), error('gone'); end, close(f);",
+        "s = get(gca); p = get(gcf, 'Position'); assert(numel(p), 4); f = ancestor(gca, 'figure'); findobj(gcf, 'Type', 'line');",
         "[n, x] = hist([1 2 3]); assert(numel(n) == 10); [x, y, z] = sphere(4); assert(rows(x) == 5);",
     ];
     for call in calls {

@@ -1,10 +1,15 @@
 function value = get(h, varargin)
 % GET  Of the root what it has, of what was not drawn what is plausible.
-if isempty(h) || isequal(h, 0) || nargin < 2
-    value = builtin('get', h(h == 0), varargin{:});
-    return
+value = struct();
+if isempty(h) || isequal(h, 0)
+    value = builtin('get', h, varargin{:});
+elseif nargin > 1
+    value = plausible(lower(varargin{1}));
 end
-switch lower(varargin{1})
+end
+
+function value = plausible(property)
+switch property
     case {'position', 'outerposition', 'innerposition'}
         value = [0 0 560 420];
     case {'xlim', 'ylim', 'zlim', 'clim', 'alim'}
