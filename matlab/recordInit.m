@@ -2,5 +2,5 @@
 
 recordFolder = [aux.path 'pictures/'];
 if ~exist(recordFolder, 'dir'), mkdir(aux.path, 'pictures'); end
-delete([recordFolder '*.png']);
+if ~isempty(dir([recordFolder '*.png'])), delete([recordFolder '*.png']); end
 recorded = 0;

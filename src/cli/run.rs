@@ -14,7 +14,7 @@ use tabletop::{
     headless_app_with,
     recorder::{RecorderPlugin, RehearsalPlugin},
     report,
-    script::ScriptPlugin,
+    script::{ScriptPlugin, see_off},
     xml::read_task,
 };
 use tabletop_scenario::{Outcome, Program, Scenario, ScenarioPlugin, ScenarioRun};
@@ -148,6 +148,7 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
             Outcome::Failed(error) => break Err(Failure::run(error)),
         }
     };
+    see_off(app.world_mut());
     args.write_ends(&app)?;
     outcome.and_then(|done| script.result().and(Ok(done)))
 }
@@ -235,6 +236,7 @@ impl Script {
                 break;
             }
         }
+        see_off(app.world_mut());
         self.result()
     }
 

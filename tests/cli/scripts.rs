@@ -432,6 +432,32 @@ fn what_is_printed_is_shown_while_the_script_runs() {
 }
 
 #[test]
+fn what_is_printed_at_the_end_is_shown_and_files_are_whole() {
+    let folder = copy_of_matlab("last");
+    fs::write(
+        folder.join("lastInit.m"),
+        "log = fopen([aux.path 'log.txt'], 'w'); n = 0; farewell = onCleanup(@() disp('farewell'));",
+    )
+    .unwrap();
+    let calls = "n = n + 1; fprintf(log, 'x');";
+    for end in [
+        "",
+        "if n == 30, aux.exit = 1; end",
+        "if n == 30, error('no'), end",
+    ] {
+        fs::write(folder.join("lastCallback.m"), format!("{calls} {end}")).unwrap();
+        let output = tabletop(&["run", "--seconds", "0.5", "--script", &octave(&folder)]);
+        assert!(
+            stderr(&output).contains("farewell\n"),
+            "{}",
+            stderr(&output)
+        );
+        let log = fs::read_to_string(folder.join("log.txt")).unwrap();
+        assert_eq!(log.len(), 30, "{end}");
+    }
+}
+
+#[test]
 fn the_time_limit_is_for_init_as_well() {
     let script = python("endless", "while True: pass", "pass");
     let output = tabletop(&["run", "--script", &script, "--script-timeout", "0.5"]);

@@ -16,8 +16,10 @@ catch err
     driver = [folder 'driver' filesep];
     addpath(driver);                               % the script may have taken it from the path
     tabletop_path(driver);
+    message = err.message;
+    if isempty(message), message = 'error without a message'; end
     names = {'error.id', 'error.message', 'error.stack'};
-    values = {err.identifier, err.message, tabletop_where(err.stack)};
+    values = {err.identifier, message, tabletop_where(err.stack)};
 end
 tabletop_put([folder 'reply.bin'], names, values);
 if polled
@@ -45,4 +47,6 @@ for k = 1:numel(stack)
     if strncmp(stack(k).file, driver, numel(driver)), continue; end
     where = [where sprintf('%d %s\n', stack(k).line, stack(k).file)]; %#ok<AGROW>
 end
+kept = tabletop_keep();
+if isempty(where) && isfield(kept, 'running') && ~isempty(kept.running), where = ['-1 ' kept.running]; end
 end

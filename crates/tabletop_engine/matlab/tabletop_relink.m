@@ -3,8 +3,13 @@ function tabletop_relink
 %   are the shared globals again, and callbackFunc is there.
 %   By BUILTIN, because the scripts may have variables of any name.
 linked = ['builtin(''isglobal'', ''sensor'') && builtin(''isglobal'', ''motor'') && ' ...
-    'builtin(''isglobal'', ''aux'') && builtin(''exist'', ''callbackFunc'', ''var'')'];
-if evalin('base', linked), return; end
+    'builtin(''isglobal'', ''aux'') && builtin(''exist'', ''callbackFunc'', ''var'') && ' ...
+    'builtin(''isa'', callbackFunc, ''function_handle'')'];
+try                                                % an expression would set "ans"
+    evalin('base', ['if ~(' linked '), builtin(''error'', ''unlinked''); end']);
+    return
+catch
+end
 kept = tabletop_keep();
 names = {'motor', 'aux'};
 for k = 1:2
@@ -21,6 +26,11 @@ end
 evalin('base', 'clear sensor motor aux; global sensor motor aux');
 if ~evalin('base', 'builtin(''exist'', ''callbackFunc'', ''var'')')
     assignin('base', 'callbackFunc', kept.callbackFunc);
+end
+callback = evalin('base', 'callbackFunc');
+if ~isa(callback, 'function_handle')
+    error('tabletop:agent', 'callbackFunc is %dx%d %s; it is the handle of the callback script, choose another name', ...
+        size(callback, 1), size(callback, 2), class(callback));
 end
 end
 

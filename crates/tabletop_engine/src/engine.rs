@@ -126,6 +126,11 @@ pub struct StepReply {
     pub took: Duration,
 }
 
+/// How long an engine that is not needed any more may take to end by itself.
+const FAREWELL: Duration = Duration::from_secs(10);
+/// The same while somebody waits for it.
+const SHORT_FAREWELL: Duration = Duration::from_secs(2);
+
 /// An engine that runs, or is about to. Clones are the same engine; with the last of them it ends.
 #[derive(Clone, Debug)]
 pub struct EngineHandle(Arc<Shared>);
@@ -183,9 +188,10 @@ impl EngineHandle {
         self.send(Signal::Step(Box::new(sensor)));
     }
 
-    /// Ends the engine: politely if it waits for a request, at once if it runs a script. This does not wait.
+    /// Ends the engine: it gets time to end by itself, in which it closes the script's files. A script that runs is interrupted.
+    /// This does not wait.
     pub fn stop(&self) {
-        self.send(Signal::Stop);
+        self.send(Signal::Stop(FAREWELL));
     }
 
     /// Ends the engine and all that it has started, at once.
@@ -235,7 +241,7 @@ impl EngineHandle {
 
 impl Drop for Shared {
     fn drop(&mut self) {
-        drop(self.inbox.send(Signal::Stop));
+        drop(self.inbox.send(Signal::Stop(SHORT_FAREWELL)));
         if let Some(thread) = self.thread.take() {
             drop(thread.join());
         }

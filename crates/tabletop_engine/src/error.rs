@@ -38,7 +38,11 @@ pub enum EngineError {
         script: Option<PathBuf>,
     },
     /// There was no answer in time. The engine has been ended.
-    #[error("no answer from {what} within {} s; the engine was ended", .limit.as_secs_f64())]
+    #[error(
+        "no answer from {what} within {} s; the engine was ended{}",
+        .limit.as_secs_f64(),
+        way_to_wait(what)
+    )]
     Timeout {
         /// What did not answer: the engine's start, the init script or the callback script.
         what: &'static str,
@@ -46,7 +50,7 @@ pub enum EngineError {
         limit: Duration,
     },
     /// The engine ended by itself: it crashed, or the script called `exit`.
-    #[error("the engine ended ({status}){}", last_words(.stderr))]
+    #[error("the engine ended ({status}){}{}", last_words(.stderr), way_to_end(status))]
     Died {
         /// How it ended, as the system says it.
         status: String,
@@ -86,6 +90,22 @@ fn last_words(stderr: &str) -> String {
         String::new()
     } else {
         format!(": {}", stderr.trim())
+    }
+}
+
+/// How to wait longer, if that can be chosen.
+fn way_to_wait(what: &str) -> &'static str {
+    match what.ends_with("script") {
+        true => " (--script-timeout says how long to wait)",
+        false => "",
+    }
+}
+
+/// What to do instead of ending the engine, if that may have been meant.
+fn way_to_end(status: &str) -> &'static str {
+    match status {
+        "exit status: 0" | "exit code: 0" => "; set aux.exit = true to end the script",
+        _ => "",
     }
 }
 

@@ -1,5 +1,7 @@
 //! What is to be done about errors that many scripts meet.
 
+use crate::error::ScriptError;
+
 /// What a message says that a struct lacks, and when it is there.
 const FIELDS: [(&str, &str); 6] = [
     (
@@ -22,6 +24,9 @@ const FIELDS: [(&str, &str); 6] = [
 const TOLD_TOGETHER: &str = "sensor.objects, contacts and held are there only if one of these words stands in a file of the scripts' \
     folder, and not with --no-objects";
 
+/// The variables of the base workspace that the scripts share with the simulator.
+const SHARED: [&str; 3] = ["sensor", "motor", "aux"];
+
 /// What is there in every call of the callback.
 const ALWAYS: [&str; 6] = [
     "timeElapsed",
@@ -33,12 +38,51 @@ const ALWAYS: [&str; 6] = [
 ];
 
 /// What to do about an error, if that is known.
-pub(crate) fn hint(message: &str, in_init: bool) -> Option<&'static str> {
+pub(crate) fn hint(error: &ScriptError, in_init: bool) -> Option<&'static str> {
+    let message = error.message.as_str();
     if message.contains("agentBehavior") && message.to_lowercase().contains("script") {
         return Some(
             "agentBehavior.m must begin with \"function [init, callback] = agentBehavior()\"",
         );
     }
+    if is_call_in_agent_behavior(error) {
+        return Some(
+            "agentBehavior calls the script; to name it, write an @ before it, as in init = @myInit",
+        );
+    }
+    if message.contains("function for @") && message.ends_with(".m") {
+        return Some("a handle is named without .m, as in init = @myInit");
+    }
+    if SHARED.iter().any(|name| is_undefined(name, message)) {
+        return Some("a function must say \"global sensor motor aux\"");
+    }
+    if message.contains("break must appear") {
+        return Some("Octave knows no \"break\" outside a loop; write \"return\"");
+    }
+    missing_field(message, in_init)
+}
+
+/// Whether agentBehavior has called a script or function instead of naming it.
+fn is_call_in_agent_behavior(error: &ScriptError) -> bool {
+    let message = error.message.to_lowercase();
+    let in_agent_behavior = error
+        .stack
+        .iter()
+        .take(2)
+        .any(|place| place.file.file_stem() == Some("agentBehavior".as_ref()));
+    let calls = ["script", "too many output", "value on the right hand side"];
+    in_agent_behavior && calls.iter().any(|call| message.contains(call))
+}
+
+/// Whether there is no such variable, as Octave or MATLAB say it.
+fn is_undefined(name: &str, message: &str) -> bool {
+    let quoted = format!("'{name}'");
+    message.starts_with(&format!("{quoted} undefined"))
+        || message.contains(&format!("function or variable {quoted}"))
+}
+
+/// What to do about a field that is not there.
+fn missing_field(message: &str, in_init: bool) -> Option<&'static str> {
     let missing = ["member", "field", "attribute"]
         .iter()
         .any(|word| message.contains(word));
@@ -62,6 +106,7 @@ mod tests {
 
     #[test]
     fn only_what_is_lacking_is_explained() {
+        let hint = |message, in_init| hint(&ScriptError::new("", message, ""), in_init);
         let octave = "structure has no member 'rgbVision'";
         assert!(hint(octave, false).unwrap().contains("--picture-every 1"));
         assert!(hint(octave, true).unwrap().contains("init"));
@@ -73,5 +118,10 @@ mod tests {
         assert_eq!(hint("'rgbVision' undefined", false), None);
         let script = "invalid call to script /x/agentBehavior.m";
         assert!(hint(script, true).unwrap().contains("function"));
+        let file = "invalid function handle, unable to find function for @myInit.m";
+        assert!(hint(file, true).unwrap().contains("without .m"));
+        let matlab = "Unrecognized function or variable 'aux'.";
+        assert!(hint(matlab, true).unwrap().contains("global"));
+        assert_eq!(hint("'auxiliary' undefined", true), None);
     }
 }

@@ -62,11 +62,11 @@ pub(crate) fn command(config: &EngineConfig, session: &Session) -> Result<Comman
 }
 
 /// What MATLAB and Octave are told first. The user's own startup file may have gone to another folder, and where it waits for
-/// keys it takes some of the spaces.
+/// keys it takes some of the spaces. What the driver shadows is nobody's business.
 pub(crate) fn preparation(config: &EngineConfig, session: &Session) -> String {
     let home = absolute(&config.working_dir).unwrap_or_else(|_| config.working_dir.clone());
     format!(
-        "        addpath({}); cd({});",
+        "        warning('off', 'Octave:shadowed-function'); addpath({}); cd({});",
         quoted(&session.driver()),
         quoted(&home)
     )

@@ -31,6 +31,14 @@ impl Killer {
             kill_group(pid);
         }
     }
+
+    /// Lets the process and all that it has started leave what they are doing, as Ctrl-C would, where there is such a thing.
+    pub(crate) fn interrupt(&self) {
+        let target = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(pid) = target.pid {
+            interrupt_group(pid);
+        }
+    }
 }
 
 /// A running engine.
@@ -44,7 +52,7 @@ pub(crate) struct Process {
 }
 
 impl Process {
-    /// Starts a command in a group of its own. When this program ends in any way, the group is killed and `folder` removed.
+    /// Starts a command in a group of its own. When this program ends in any way, the group soon does as well, and `folder` goes.
     ///
     /// # Errors
     /// The system refuses, or the killer has been used already ([`io::ErrorKind::Interrupted`]).
@@ -152,18 +160,36 @@ fn own_group(command: &mut Command) {
 
 #[cfg(unix)]
 fn kill_group(pid: u32) {
-    use nix::{sys::signal, unistd::Pid};
+    signal_group(pid, nix::sys::signal::Signal::SIGKILL);
+}
+
+#[cfg(unix)]
+fn interrupt_group(pid: u32) {
+    signal_group(pid, nix::sys::signal::Signal::SIGINT);
+}
+
+#[cfg(unix)]
+fn signal_group(pid: u32, signal: nix::sys::signal::Signal) {
+    use nix::{sys::signal::killpg, unistd::Pid};
     if let Ok(group) = i32::try_from(pid) {
         // It fails if nothing of the group is left, which is what is wanted.
-        let _ = signal::killpg(Pid::from_raw(group), signal::Signal::SIGKILL);
+        let _ = killpg(Pid::from_raw(group), signal);
     }
 }
 
-/// A shell that reads from a pipe to which nobody ever writes. The pipe ends when this program does, however it does.
+/// A shell that reads from a pipe to which nobody ever writes. The pipe ends when this program does, however it does. An engine
+/// without a request then ends by itself; one that runs a script is interrupted first, and killed in the end.
 #[cfg(unix)]
 fn watch(pid: u32, folder: &Path) -> io::Result<Option<Child>> {
     let mut command = Command::new("/bin/sh");
-    let script = "while read -r line; do :; done; kill -9 -\"$1\"; rm -rf -- \"$2\"";
+    let script = r#"
+        wait_for_it() { for tenth in 1 2 3 4 5 6 7 8 9 10; do kill -0 "$1" || break; sleep 0.1; done; }
+        while read -r line; do :; done
+        wait_for_it "$1"
+        kill -INT -"$1" && wait_for_it "$1"
+        kill -9 -"$1"
+        rm -rf -- "$2"
+    "#;
     command
         .args(["-c", script, "tabletop-watchdog"])
         .arg(pid.to_string())
@@ -190,6 +216,9 @@ fn kill_group(pid: u32) {
     // It fails if the process is gone, which is what is wanted.
     drop(command.status());
 }
+
+#[cfg(not(unix))]
+fn interrupt_group(_pid: u32) {}
 
 /// Here an engine sees by the missing heartbeat or the end of its input that this program is gone.
 #[cfg(not(unix))]

@@ -37,6 +37,35 @@ pub(crate) fn fault(folder: &Path, whole: bool, working_dir: &Path) -> Option<St
     ))
 }
 
+/// What the user should know of a script that has run.
+pub(crate) fn note(script: &Path) -> Option<String> {
+    let text = fs::read(script).ok()?;
+    let text = String::from_utf8_lossy(&text);
+    (is_function(&text) && !text.contains("global")).then(|| {
+        format!(
+            "{} is a function without \"global sensor motor aux\", so what it calls by these names are its own variables",
+            script.display()
+        )
+    })
+}
+
+/// Whether a file's first word that is no comment is "function".
+fn is_function(text: &str) -> bool {
+    let mut in_comment = false;
+    for line in text.lines().map(str::trim) {
+        match line {
+            "%{" | "#{" => in_comment = true,
+            "%}" | "#}" => in_comment = false,
+            _ if in_comment || line.is_empty() || line.starts_with(['%', '#']) => {}
+            _ => {
+                return line.split(|letter: char| !letter.is_alphanumeric()).next()
+                    == Some("function");
+            }
+        }
+    }
+    false
+}
+
 /// How the scripts of a folder are written.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Encoding {
@@ -94,4 +123,18 @@ fn files(folder: &Path) -> Vec<PathBuf> {
         .collect();
     files.sort();
     files
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_function_is_told_from_a_script() {
+        assert!(is_function("% a\n%{\nx = 1;\n%}\n\n  function f\n"));
+        assert!(is_function("function[a]=f"));
+        assert!(!is_function("x = 1;\nfunction f"));
+        assert!(!is_function("functional = 1;"));
+        assert!(!is_function("% only words"));
+    }
 }

@@ -13,6 +13,9 @@ use crate::{
     protocol::{Arrays, MAX_FILE_BYTES, ProtocolError},
 };
 
+/// A place with less room than this, in bytes, is full.
+const LEAST_ROOM: usize = 1 << 20;
+
 /// A private folder that is removed in the end.
 #[derive(Debug)]
 pub(crate) struct Session {
@@ -22,20 +25,32 @@ pub(crate) struct Session {
 impl Session {
     /// Makes the folder, with the driver's files in "driver".
     pub(crate) fn new(driver: &[(String, String)]) -> Result<Self, EngineError> {
-        let mut result = Err(io::Error::from(io::ErrorKind::NotFound));
-        let mut tried = env::temp_dir();
-        for base in bases() {
-            tried = base.join(format!(
-                "tabletop-{:016x}",
-                RandomState::new().build_hasher().finish()
-            ));
-            result = make_private(&tried);
+        Self::in_one_of(bases(), driver)
+    }
+
+    /// Makes it in the first place that lets it and has the room.
+    fn in_one_of(
+        bases: impl Iterator<Item = PathBuf>,
+        driver: &[(String, String)],
+    ) -> Result<Self, EngineError> {
+        let mut result = Err(EngineError::file(
+            env::temp_dir(),
+            &io::ErrorKind::NotFound.into(),
+        ));
+        for base in bases {
+            result = Self::in_place(&base, driver);
             if result.is_ok() {
                 break;
             }
         }
-        result.map_err(|error| EngineError::file(&tried, &error))?;
-        let session = Self { folder: tried };
+        result
+    }
+
+    fn in_place(base: &Path, driver: &[(String, String)]) -> Result<Self, EngineError> {
+        let number = RandomState::new().build_hasher().finish();
+        let folder = base.join(format!("tabletop-{number:016x}"));
+        make_private(&folder).map_err(|error| EngineError::file(&folder, &error))?;
+        let session = Self { folder };
         for (name, text) in driver {
             let path = session.driver().join(name);
             let parent = path.parent().unwrap_or(&session.folder);
@@ -43,6 +58,10 @@ impl Session {
                 .and_then(|()| fs::write(&path, text))
                 .map_err(|error| EngineError::file(&path, &error))?;
         }
+        // What a call needs, at least.
+        let request = session.folder.join("request.bin");
+        fs::write(&request, [0; LEAST_ROOM])
+            .map_err(|error| EngineError::file(&request, &error))?;
         Ok(session)
     }
 
@@ -136,5 +155,15 @@ mod tests {
         }
         drop(session);
         assert!(!folder.exists());
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_place_that_does_not_take_it_is_passed_over() {
+        let bases = [PathBuf::from("/proc"), env::temp_dir()];
+        let session = Session::in_one_of(bases.into_iter(), &[]).unwrap();
+        assert!(session.folder().starts_with(env::temp_dir()));
+        let nowhere = Session::in_one_of([PathBuf::from("/proc")].into_iter(), &[]);
+        assert!(nowhere.unwrap_err().to_string().contains("/proc"));
     }
 }

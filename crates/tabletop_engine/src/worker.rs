@@ -24,7 +24,7 @@ use crate::{
     output::read_output,
     process::{Killer, Process},
     protocol::{Array, Arrays},
-    scripts::Encoding,
+    scripts::{self, Encoding},
     sensor::Sensor,
     session::Session,
     trigger::{Op, TriggerFile},
@@ -34,7 +34,7 @@ use crate::{
 const HEARTBEAT: Duration = Duration::from_secs(1);
 /// How often an engine that runs a script is looked after.
 const LOOK_AFTER: Duration = Duration::from_millis(50);
-/// How long an engine may take to end by itself.
+/// How long an engine that does not listen or was interrupted may take to end by itself.
 const GRACE: Duration = Duration::from_secs(1);
 /// How long the last output of an engine that has ended is waited for.
 const LAST_OUTPUT: Duration = Duration::from_millis(300);
@@ -48,8 +48,8 @@ pub(crate) enum Signal {
     Init(Box<Aux>),
     /// Run the callback script.
     Step(Box<Sensor>),
-    /// End.
-    Stop,
+    /// End, within this time.
+    Stop(Duration),
     /// The engine has printed that a request is done.
     Done(u32),
     /// One of the engine's outputs has ended.
@@ -183,10 +183,11 @@ impl Running {
                 Ok(Signal::Step(sensor)) => {
                     self.step(&sensor).map(|reply| Reply::Step(Box::new(reply)))
                 }
-                Ok(Signal::Stop) | Err(RecvTimeoutError::Disconnected) => {
-                    self.end();
+                Ok(Signal::Stop(limit)) => {
+                    self.end(limit);
                     return EngineError::Stopped;
                 }
+                Err(RecvTimeoutError::Disconnected) => return EngineError::Stopped,
                 Ok(Signal::Done(_)) => continue,
                 Ok(Signal::Closed) => {
                     self.open_outputs = self.open_outputs.saturating_sub(1);
@@ -208,7 +209,10 @@ impl Running {
             };
             match reply {
                 Ok(reply) => drop(self.worker.outbox.send(reply)),
-                Err(error) if error.is_fatal() => return error,
+                Err(error) if error.is_fatal() => {
+                    self.end(GRACE);
+                    return error;
+                }
                 Err(error) => drop(self.worker.outbox.send(Reply::Failed(error))),
             }
         }
@@ -239,7 +243,7 @@ impl Running {
         if config.engine.kind == EngineKind::Octave {
             let encoding = Encoding::of(&agent);
             if let Some(note) = encoding.note() {
-                self.worker.console.push(Stream::Note, note.as_bytes());
+                self.note(&note);
             }
             if let Encoding::Windows(_) = encoding {
                 arrays.put("agent.encoding", Array::text("windows-1252"));
@@ -251,10 +255,13 @@ impl Running {
         let [init, callback] = match self.worker.config.engine.kind {
             EngineKind::Python | EngineKind::Driver => [Some(agent.clone()), Some(agent)],
             EngineKind::Matlab | EngineKind::Octave => {
-                ["agent.init", "agent.callback"].map(|name| {
+                let scripts = ["agent.init", "agent.callback"].map(|name| {
                     let file = reply.get(name).and_then(Array::as_text)?;
                     (!file.is_empty()).then(|| PathBuf::from(self.of_original(file)))
-                })
+                });
+                let notes = scripts.iter().flatten().filter_map(|file| scripts::note(file));
+                notes.for_each(|note| self.note(&note));
+                scripts
             }
         };
         self.callback = callback;
@@ -298,8 +305,12 @@ impl Running {
         };
         let [id, message, stack] = ["error.id", "error.message", "error.stack"].map(text);
         let mut error = ScriptError::new(&id, &message, &stack);
-        if let Some(hint) = hint(&error.message, matches!(op, Op::Init)) {
-            error.message = format!("{}: {hint}", error.message);
+        if let Some(hint) = hint(&error, matches!(op, Op::Init)) {
+            let link = match error.message.contains('\n') {
+                true => "\n",
+                false => ": ",
+            };
+            error.message = format!("{}{link}{hint}", error.message);
         }
         Err(EngineError::Script(error))
     }
@@ -307,10 +318,14 @@ impl Running {
     /// What an engine says, with the user's scripts in place of repaired copies that it may run.
     fn of_original(&self, text: &str) -> String {
         let copies = self.session.folder().join("repaired");
-        text.replace(
-            &*copies.to_string_lossy(),
-            &self.worker.config.agent_path().to_string_lossy(),
-        )
+        let agent = self.worker.config.agent_path();
+        text.replace(&*copies.to_string_lossy(), &agent.to_string_lossy())
+            .replace(".m.sourced", ".m")
+    }
+
+    /// Tells the user something beside what the script prints.
+    fn note(&self, note: &str) {
+        self.worker.console.push(Stream::Note, note.as_bytes());
     }
 
     fn trigger(&mut self, op: Op) -> Result<(), EngineError> {
@@ -351,7 +366,7 @@ impl Running {
         loop {
             let waited = start.elapsed();
             if waited >= limit {
-                self.worker.killer.kill();
+                self.worker.killer.interrupt();
                 return Err(EngineError::Timeout { what, limit });
             }
             let pause = match self.trigger_file {
@@ -362,8 +377,8 @@ impl Running {
             match self.worker.inbox.recv_timeout(pause.min(limit - waited)) {
                 Ok(Signal::Done(seq)) if seq == self.seq => return Ok(()),
                 Ok(Signal::Done(_)) => {}
-                Ok(Signal::Stop) | Err(RecvTimeoutError::Disconnected) => {
-                    self.worker.killer.kill();
+                Ok(Signal::Stop(_)) | Err(RecvTimeoutError::Disconnected) => {
+                    self.worker.killer.interrupt();
                     return Err(EngineError::Stopped);
                 }
                 Ok(Signal::Closed) => {
@@ -403,6 +418,15 @@ impl Running {
     }
 
     fn died(&mut self, status: ExitStatus) -> EngineError {
+        self.hear_out();
+        EngineError::Died {
+            status: status.to_string(),
+            stderr: self.worker.console.take_last_words(),
+        }
+    }
+
+    /// Waits for the last output of an engine that has ended.
+    fn hear_out(&mut self) {
         let start = Instant::now();
         while self.open_outputs > 0 {
             let rest = LAST_OUTPUT.saturating_sub(start.elapsed());
@@ -412,19 +436,39 @@ impl Running {
                 Err(_) => break,
             }
         }
-        EngineError::Died {
-            status: status.to_string(),
-            stderr: self.worker.console.take_last_words(),
-        }
     }
 
     /// Lets the engine end by itself, so that it closes the script's files. Dropping it does the rest.
-    fn end(&mut self) {
+    fn end(&mut self, limit: Duration) {
         self.seq = self.seq.wrapping_add(1).max(1);
         if let Some(file) = &mut self.trigger_file {
             drop(file.request(self.seq, Op::End, false));
         }
         self.process.close_input();
-        self.process.wait(GRACE);
+        let limit = self.wait_for_end(limit);
+        if self.process.ended().is_some() {
+            self.hear_out();
+            return;
+        }
+        let note = format!(
+            "the script's engine was cut off, because it did not end within {} s; what it had not written to files is lost",
+            limit.as_secs()
+        );
+        self.note(&note);
+    }
+
+    /// Waits until the engine has ended, for at most `limit`, or less if it is told to stop in less. That is returned.
+    fn wait_for_end(&mut self, mut limit: Duration) -> Duration {
+        let start = Instant::now();
+        while start.elapsed() < limit && self.process.wait(LOOK_AFTER).is_none() {
+            for signal in self.worker.inbox.try_iter() {
+                match signal {
+                    Signal::Stop(sooner) => limit = limit.min(sooner),
+                    Signal::Closed => self.open_outputs = self.open_outputs.saturating_sub(1),
+                    Signal::Init(_) | Signal::Step(_) | Signal::Done(_) => {}
+                }
+            }
+        }
+        limit
     }
 }

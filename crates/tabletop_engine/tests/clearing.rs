@@ -4,6 +4,8 @@
 
 mod common;
 
+use std::path::Path;
+
 use common::{Folder, Session, TRIGGERS};
 use tabletop_engine::{Motor, Sensor, Trigger};
 
@@ -94,4 +96,45 @@ fn variables_may_have_any_name() {
         Trigger::Stdin,
     );
     assert_eq!(motor.head_velocity, Some(3.0));
+}
+
+#[test]
+fn another_copy_of_the_driver_does_no_harm() {
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("matlab");
+    let add = format!("clear all; addpath(genpath('{}'));", repository.display());
+    for trigger in TRIGGERS {
+        let [_, motor] = motors(&add, "clear all; motor.headVelocity = 3;", trigger);
+        assert_eq!(motor.head_velocity, Some(3.0));
+        let [_, motor] = motors("", &format!("{add} motor.headVelocity = 3;"), trigger);
+        assert_eq!(motor.head_velocity, Some(3.0));
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn the_path_is_not_saved() {
+    let home = Folder::new(&[]);
+    let folder = Folder::pair(
+        &format!(
+            "setenv('HOME', '{}'); savepath; savepath; disp ready",
+            home.0.display()
+        ),
+        "",
+    );
+    for trigger in TRIGGERS {
+        let session = Session::octave(&folder.0, trigger);
+        session.init().unwrap();
+        let printed = session.printed("ready");
+        assert_eq!(printed.matches("no effect").count(), 1, "{printed}");
+        assert_eq!(std::fs::read_dir(&home.0).unwrap().count(), 0);
+    }
+}
+
+#[test]
+fn the_last_answer_is_kept() {
+    for trigger in TRIGGERS {
+        let [first, second] = motors("3 + 4;", "motor.headVelocity = ans; ans + 1;", trigger);
+        assert_eq!(first.head_velocity, Some(7.0));
+        assert_eq!(second.head_velocity, Some(8.0));
+    }
 }

@@ -91,7 +91,7 @@ fn a_flood_is_told_now_and_then() {
 #[test]
 fn a_struct_shows_what_it_holds() {
     let folder = Folder::pair(
-        "s.number = 0.25; s.name = 'it is'; s.yes = true; s.all = zeros(2, 7); s.inner.x = 1; s.list = {1, 2}; s.go = @sin;\n\
+        "s.number = 0.25; s.row = [2 0.5]; s.long = 1:14; s.thin = sparse(3); s.name = 'it is'; s.yes = true; s.all = zeros(2, 7); s.inner.x = 1; s.list = {1, 2}; s.go = @sin;\n\
          s, inner = s.inner\nmany(3).x = 1\nstruct()\ntext = disp(s.inner); disp(s.inner); nested = {s}",
         "sensor",
     );
@@ -102,6 +102,9 @@ fn a_struct_shows_what_it_holds() {
         for line in [
             "s =\n",
             "    number: 0.2500\n",
+            "    row: [2 0.5]\n",
+            "    long: [1x14 double]\n",
+            "    thin: 3\n",
             "    name: 'it is'\n",
             "    yes: 1\n",
             "    all: [2x7 double]\n",
@@ -173,5 +176,65 @@ fn warnings_name_no_line_of_the_driver() {
             "{printed}"
         );
         assert!(!printed.contains("tabletop_"), "{printed}");
+    }
+}
+
+#[test]
+fn a_struct_in_a_cell_keeps_its_values() {
+    let folder = Folder::pair("s.a = 17; t = {s}, disp end", "");
+    let session = Session::octave(&folder.0, Trigger::Stdin);
+    session.init().unwrap();
+    let printed = session.printed("end");
+    assert!(printed.contains("a = 17"), "{printed}");
+}
+
+#[test]
+fn nothing_is_said_of_what_the_driver_does() {
+    let folder = Folder::pair(
+        "try, norm(1, 2, 3, 4), catch, end\nx = debug_on_error();\npath(path, tempdir); p = path; path(p);\ndisp ready",
+        "",
+    );
+    let session = Session::octave(&folder.0, Trigger::Stdin);
+    session.init().unwrap();
+    assert_eq!(session.printed("ready"), "ready\n");
+}
+
+#[test]
+fn what_a_script_shadows_is_told() {
+    let folder = Folder::pair("disp ready", "");
+    fs::write(folder.0.join("cumsum.m"), "function cumsum, end").unwrap();
+    let session = Session::octave(&folder.0, Trigger::Stdin);
+    session.init().unwrap();
+    let printed = session.printed("ready");
+    assert!(printed.contains("cumsum.m shadows"), "{printed}");
+}
+
+#[test]
+fn a_line_without_an_end_is_not_lost() {
+    let folder = Folder::pair("", "fprintf(2, 'dots'); error('no');");
+    let session = Session::octave(&folder.0, Trigger::Stdin);
+    session.init().unwrap();
+    session.step(&Sensor::default()).unwrap_err();
+    session.engine.stop();
+    assert!(session.printed("dots").contains("dots"));
+}
+
+#[test]
+fn a_function_that_shares_no_variables_is_noted() {
+    let own = "% mine\n\nfunction testCallback\nmotor.headVelocity = 1;\n";
+    for (callback, notes) in [
+        (own, 1),
+        ("function testCallback\nglobal motor\n", 0),
+        ("x = 1;", 0),
+    ] {
+        let folder = Folder::pair("disp ready", callback);
+        let session = Session::octave(&folder.0, Trigger::Stdin);
+        session.init().unwrap();
+        let printed = session.printed("ready");
+        assert_eq!(
+            printed.matches("without \"global").count(),
+            notes,
+            "{printed}"
+        );
     }
 }

@@ -234,4 +234,6 @@ fn demonstrations_become_pictures() {
         .collect();
     names.sort();
     assert_eq!(names, ["00001.png", "00002.png", "00003.png"]);
+    let printed = session.printed("pictures go to");
+    assert!(!printed.contains("warning"), "{printed}");
 }

@@ -4,7 +4,7 @@ mod common;
 
 use std::fs;
 
-use common::{Folder, Session, TRIGGERS};
+use common::{Folder, Session, TRIGGERS, octave, script_error};
 use tabletop_engine::Sensor;
 
 #[test]
@@ -41,5 +41,57 @@ fn scripts_that_the_pair_calls_may_be_left_as_well() {
         session.init().unwrap();
         let motor = session.step(&Sensor::default()).unwrap().motor;
         assert_eq!(motor.head_velocity, Some(2.0));
+    }
+}
+
+#[test]
+fn a_script_that_may_be_left_is_still_in_its_folder() {
+    let callback = "inside; disp(mfilename('fullpath')); disp(mfilename(\"fullpathext\"));\n\
+                    run([aux.path 'part.m']); source([aux.path 'part.m']); motor.headVelocity = n;\nif true, break, end\n";
+    let folder = Folder::pair("n = 0;", callback);
+    fs::create_dir(folder.0.join("private")).unwrap();
+    fs::write(
+        folder.0.join("private/inside.m"),
+        "function inside, disp('inside'); end",
+    )
+    .unwrap();
+    fs::write(
+        folder.0.join("part.m"),
+        "n = n + 1;\nif true, break, end\nn = 100;\n",
+    )
+    .unwrap();
+    for trigger in TRIGGERS {
+        let session = Session::octave(&folder.0, trigger);
+        session.init().unwrap();
+        let motor = session.step(&Sensor::default()).unwrap().motor;
+        assert_eq!(motor.head_velocity, Some(2.0));
+        let script = folder.0.join("testCallback").display().to_string();
+        let printed = session.printed(&format!("{script}.m\n"));
+        let expected = format!("inside\n{script}\n{script}.m\n");
+        assert!(printed.contains(&expected), "{printed}");
+    }
+    fs::write(folder.0.join("part.m"), "error('no');\nif true, break, end").unwrap();
+    let session = Session::octave(&folder.0, TRIGGERS[0]);
+    session.init().unwrap();
+    let error = script_error(session.step(&Sensor::default())).to_string();
+    let place = format!("no\n  at {}:1\n", folder.0.join("part.m").display());
+    assert!(error.starts_with(&place), "{error}");
+}
+
+#[test]
+fn what_is_left_where_it_cannot_be_is_told_with_what_to_write() {
+    let elsewhere = Folder::pair("addpath([aux.path 'lib']);", "part");
+    fs::create_dir(elsewhere.0.join("lib")).unwrap();
+    fs::write(elsewhere.0.join("lib/part.m"), "if true, break, end").unwrap();
+    let current = Folder::pair("", "if true, break, end");
+    for (folder, working_dir) in [(&elsewhere, "."), (&current, current.0.to_str().unwrap())] {
+        let mut config = octave(&folder.0, TRIGGERS[0]);
+        config.working_dir = working_dir.into();
+        let session = Session::start(config).unwrap();
+        let result = session
+            .init()
+            .and_then(|_| session.step(&Sensor::default()));
+        let error = script_error(result).to_string();
+        assert!(error.contains("write \"return\""), "{error}");
     }
 }

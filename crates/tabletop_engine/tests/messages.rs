@@ -121,3 +121,52 @@ fn a_killed_engine_leaves_nothing_behind() {
         }
     }
 }
+
+#[test]
+fn an_error_without_a_place_is_in_the_script_that_ran() {
+    let errors = [
+        ("str2func(3)", "FCN_NAME"),
+        (
+            "rethrow(struct('message', '', 'identifier', 'a:b'))",
+            "error without a message",
+        ),
+    ];
+    for (fault, told) in errors {
+        let folder = Folder::pair("", fault);
+        let session = Session::octave(&folder.0, Trigger::Stdin);
+        session.init().unwrap();
+        let error = script_error(session.step(&Sensor::default())).to_string();
+        let place = format!("\n  at {}", folder.0.join("testCallback.m").display());
+        assert!(error.contains(told) && error.ends_with(&place), "{error}");
+        fs::write(folder.0.join("testInit.m"), fault).unwrap();
+        let error = script_error(session.init()).to_string();
+        let place = format!("\n  at {}", folder.0.join("testInit.m").display());
+        assert!(error.ends_with(&place), "{error}");
+        let behavior = format!("function [i, c] = agentBehavior()\n{fault}\nend");
+        fs::write(folder.0.join("agentBehavior.m"), behavior).unwrap();
+        let error = script_error(session.init()).to_string();
+        assert!(error.contains("agentBehavior.m"), "{error}");
+    }
+}
+
+#[test]
+fn what_to_do_is_said() {
+    for (init, told) in [
+        (
+            "function testInit, disp(aux.path)",
+            "global sensor motor aux",
+        ),
+        ("exit", "aux.exit = true"),
+    ] {
+        let folder = Folder::pair(init, "");
+        let session = Session::octave(&folder.0, Trigger::Stdin);
+        let error = session.init().unwrap_err().to_string();
+        assert!(error.contains(told), "{error}");
+    }
+    let folder = Folder::pair("x = 1;", "");
+    let forgotten = "function [i, c] = agentBehavior()\ni = testInit;\nc = @testCallback;\nend";
+    fs::write(folder.0.join("agentBehavior.m"), forgotten).unwrap();
+    let session = Session::octave(&folder.0, Trigger::Stdin);
+    let error = script_error(session.init()).to_string();
+    assert!(error.contains("write an @"), "{error}");
+}

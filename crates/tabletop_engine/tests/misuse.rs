@@ -200,3 +200,21 @@ fn exit_is_told_whatever_its_value() {
         assert!(session.step(&Sensor::default()).unwrap().exit);
     }
 }
+
+#[test]
+fn a_callback_that_is_overwritten_is_told() {
+    let folder = Folder::pair("", "callbackFunc = 5;");
+    let session = Session::octave(&folder.0, Trigger::Stdin);
+    session.init().unwrap();
+    let error = session.step(&Sensor::default()).unwrap_err().to_string();
+    assert!(error.starts_with("callbackFunc is 1x1 double"), "{error}");
+}
+
+#[test]
+fn complex_numbers_that_are_real_are_taken() {
+    let folder = Folder::pair("", "motor.jointVelocities = complex(ones(2, 7), 0);");
+    let session = Session::octave(&folder.0, Trigger::Stdin);
+    session.init().unwrap();
+    let motor = session.step(&Sensor::default()).unwrap().motor;
+    assert_eq!(motor.joint_velocities, [[1.0; 7]; 2]);
+}

@@ -24,8 +24,10 @@ fn pair(folder: &Path, hang: bool) -> Folder {
     let note = folder.join("processes");
     let init = format!(
         "[~, child] = system('sleep 1000 >/dev/null 2>&1 & echo $!');\nsession = fileparts(fileparts(which('tabletop_call')));\n\
-         fid = fopen('{0}.part', 'w'); fprintf(fid, '%d %s %s', getpid(), strtrim(child), session); fclose(fid); rename('{0}.part', '{0}');",
-        note.display()
+         fid = fopen('{0}.part', 'w'); fprintf(fid, '%d %s %s', getpid(), strtrim(child), session); fclose(fid); rename('{0}.part', '{0}');\n\
+         log = fopen('{1}', 'w'); fputs(log, 'written');",
+        note.display(),
+        folder.join("log").display()
     );
     Folder::pair(&init, if hang { "while true, end" } else { "" })
 }
@@ -113,6 +115,8 @@ fn with_a_killed_program_all_is_gone() {
         program.kill().unwrap();
         program.wait().unwrap();
         assert!(all_gone(&note, Duration::from_secs(10)), "{trigger:?}");
+        let log = fs::read_to_string(folder.0.join("log")).unwrap();
+        assert_eq!(log, "written", "{trigger:?}");
     }
 }
 

@@ -1,6 +1,9 @@
 //! The life of a script: start, a call a tick, end.
 
-use std::time::{Duration, Instant};
+use std::{
+    thread,
+    time::{Duration, Instant},
+};
 
 use bevy::prelude::*;
 use tabletop_core::{
@@ -18,6 +21,8 @@ use crate::{
 /// Longest time that one look for an answer takes while the simulation waits for the script anyway, and that what the script
 /// prints meanwhile waits to be told.
 const ONE_LOOK: Duration = Duration::from_millis(100);
+/// How often it is looked whether an engine that is waited for has ended.
+const ONE_LOOK_AT_END: Duration = Duration::from_millis(5);
 
 /// The script that drives the robot, if there is one.
 #[derive(Resource, Default)]
@@ -28,12 +33,12 @@ pub(crate) struct Agency {
 }
 
 impl Agency {
-    /// Lets the script go, its engine ended in this way.
-    fn dismiss(&mut self, end: impl FnOnce(&EngineHandle)) -> bool {
+    /// Lets the script go, if there is one.
+    fn dismiss(&mut self) -> bool {
         let Some(session) = self.session.take() else {
             return false;
         };
-        end(&session.engine);
+        session.engine.stop();
         self.ending.push(session.engine);
         true
     }
@@ -45,6 +50,15 @@ impl Agency {
             news.print(engine);
             is_alive
         });
+    }
+}
+
+/// Ends the script, and waits until its engine has ended. What it still prints is told.
+pub(crate) fn see_off(mut agency: ResMut<Agency>, mut news: News) {
+    agency.dismiss();
+    while !agency.ending.is_empty() {
+        agency.see_off(&mut news);
+        thread::sleep(ONE_LOOK_AT_END);
     }
 }
 
@@ -108,7 +122,7 @@ pub(crate) fn call(
             },
             AgentOrder::Start => {}
             AgentOrder::Stop => {
-                if agency.dismiss(EngineHandle::kill) {
+                if agency.dismiss() {
                     end(&mut commands);
                     *agent = Agent::Off;
                     news.tell(AgentNews::Stopped);
@@ -175,7 +189,7 @@ pub(crate) fn call(
     };
     match answered {
         Ok(Answer::Exit) => {
-            agency.dismiss(EngineHandle::stop);
+            agency.dismiss();
             end(&mut commands);
             *agent = Agent::Off;
             news.tell(AgentNews::Stopped);
@@ -188,7 +202,7 @@ pub(crate) fn call(
             }
         }
         Err(error) => {
-            agency.dismiss(EngineHandle::kill);
+            agency.dismiss();
             end(&mut commands);
             fail(&error, &mut agent, &mut news);
         }

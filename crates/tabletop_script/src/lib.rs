@@ -38,13 +38,19 @@ pub use tabletop_engine::{
     ENGINE_VARIABLE, EngineChoice, EngineConfig, EngineKind, FoundEngine, Surroundings, Timeouts,
 };
 
-use bevy::prelude::*;
+use bevy::{ecs::system::RunSystemOnce as _, prelude::*};
 use tabletop_core::{
     HeadCamera, ObjectIndex, OrderSystems, Paused, PictureDemand, SensorImage, Standstill,
 };
 
 use agency::{Agency, call};
 use standstill::{drop_overstep, keep_messages, try_again};
+
+/// Ends the script, if there is one, and waits until its engine has ended. What it still prints is told.
+pub fn see_off(world: &mut World) {
+    // Without the plugin there is no script.
+    drop(world.run_system_once(agency::see_off));
+}
 
 /// Adds the script bridge. Needs [`CorePlugin`](tabletop_core::CorePlugin).
 #[derive(Clone, Debug, Default)]

@@ -1,11 +1,15 @@
 function tabletop_repair(scripts, folder)
 % TABLETOP_REPAIR  MATLAB leaves a script at a "break" outside a loop; Octave refuses to read such a script.
 %   Copies of those in the folder SCRIPTS, with "return" there, are found first from now on.
+if is_same_file(pwd(), scripts), return; end       % where the originals are found before all copies
 copies = [folder 'repaired'];
 if ~isfolder(copies), mkdir(copies); end
-for old = dir(fullfile(copies, '*.m'))', unlink(fullfile(copies, old.name)); end
+for old = dir(fullfile(copies, '*.*'))', unlink(fullfile(copies, old.name)); end
+original = canonicalize_file_name(scripts);
+write(fullfile(copies, 'original'), original);
+share_private(original, copies);
 addpath(copies);
-dir_encoding(copies, dir_encoding(canonicalize_file_name(scripts)));
+dir_encoding(copies, dir_encoding(original));
 for file = dir(fullfile(scripts, '*.m'))'
     text = fileread(fullfile(scripts, file.name));
     if isempty(strfind(text, 'break')), continue; end
@@ -13,15 +17,40 @@ for file = dir(fullfile(scripts, '*.m'))'
     do
         [text, number] = repaired(text, name);
         if number > 0
-            fid = fopen(fullfile(copies, file.name), 'w');
-            fputs(fid, text);
-            fclose(fid);
+            copy = at_home(text, fullfile(original, name));
+            write(fullfile(copies, file.name), copy);
+            % Octave would look for a file of that name first, which SOURCE does not want.
+            write(fullfile(copies, [file.name '.sourced']), copy);
             rehash;
             note = "%s:%d: Octave knows no \"break\" outside a loop; \"return\" is used instead\n";
             printf(note, file.name, number);
         end
     until number == 0
 end
+end
+
+function share_private(original, copies)
+% What is private to the scripts is private to their copies.
+theirs = fullfile(original, 'private');
+ours = fullfile(copies, 'private');
+if ~isfolder(theirs) || isfolder(ours), return; end
+if symlink(theirs, ours) ~= 0, copyfile(theirs, ours); end
+end
+
+function text = at_home(text, script)
+% The TEXT of a copy, which says that it is the SCRIPT itself.
+script = strrep(script, "'", "''");
+for quote = {"'", '"'}
+    call = @(what) ['mfilename(' quote{1} what quote{1} ')'];
+    text = strrep(text, call('fullpath'), ["'" script "'"]);
+    text = strrep(text, call('fullpathext'), ["'" script ".m'"]);
+end
+end
+
+function write(file, text)
+fid = fopen(file, 'w');
+fputs(fid, text);
+fclose(fid);
 end
 
 function [text, number] = repaired(text, name)
@@ -38,6 +67,7 @@ catch err
     lines = ostrsplit(text, "\n");
     line = lines{number};
     places = strfind(line, 'break');
+    if isempty(places), number = 0; return; end
     last_letter = numel(found{2}) + 1 - numel('>>> ');
     [~, nearest] = min(abs(places + numel('break') - 1 - last_letter));
     place = places(nearest);

@@ -1,4 +1,4 @@
 function frame = getframe(varargin)
-% GETFRAME  A picture of nothing.
-frame = struct('cdata', zeros(0, 0, 3, 'uint8'), 'colormap', []);
+% GETFRAME  A black picture.
+frame = struct('cdata', zeros(420, 560, 3, 'uint8'), 'colormap', []);
 end

@@ -15,7 +15,10 @@ function text = summary(value)
 if ischar(value) && rows(value) < 2 && columns(value) < 200
     text = ["'" value "'"];
 elseif isscalar(value) && (isnumeric(value) || islogical(value) || is_function_handle(value))
+    if issparse(value), value = full(value); end
     text = strtrim(disp(value));
+elseif isrow(value) && (isnumeric(value) || islogical(value)) && numel(value) <= 10 && ~isempty(value)
+    text = mat2str(double(value), 5);
 else
     text = ['[' extent(value) ']'];
 end

@@ -2,7 +2,6 @@ function [names, values] = tabletop_hello(display)
 % TABLETOP_HELLO  Prepare the engine and say which one it is.
 if exist('OCTAVE_VERSION', 'builtin')
     engine = ['GNU Octave ' OCTAVE_VERSION];
-    struct_levels_to_print(0);                     % sizes instead of pages of numbers
     % Nobody can answer a debugger.
     debug_on_error(false);
     debug_on_warning(false);

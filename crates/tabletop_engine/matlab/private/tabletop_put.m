@@ -29,6 +29,7 @@ fclose(fid);
 end
 
 function [class_code, bytes] = elements(value)
+if isnumeric(value) && ~isreal(value) && ~any(imag(value(:))), value = real(value); end
 if ischar(value), value = value(1:min(end, 3e5)); end
 if numel(value) > 3e5                              % nobody wants that much: its size and class will do
     class_code = 7;

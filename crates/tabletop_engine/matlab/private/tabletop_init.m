@@ -4,8 +4,12 @@ evalin('base', 'clear all; close all; clc;');
 request = tabletop_get([folder 'request.bin']);
 agent = request.agent;
 template = struct('jointVelocities', zeros(2, 7), 'gripperVelocities', zeros(2, 1));
-tabletop_path([folder 'driver' filesep]);
+driver = [folder 'driver' filesep];
+tabletop_path(driver);
+% What the scripts shadow is told; what the driver shadows is not.
+warning('on', 'Octave:shadowed-function');
 addpath(agent.folder);
+warning('off', 'Octave:shadowed-function');
 if isfield(agent, 'encoding'), dir_encoding(canonicalize_file_name(agent.folder), agent.encoding); end
 rehash;
 tabletop_global('sensor', struct());
@@ -13,23 +17,24 @@ tabletop_global('motor', struct());
 tabletop_global('aux', request.aux);
 evalin('base', 'global sensor motor aux');
 if exist('OCTAVE_VERSION', 'builtin'), tabletop_repair(agent.folder, folder); end
+tabletop_keep(struct('running', fullfile(agent.folder, 'agentBehavior.m')));
 [initFunc, callbackFunc] = tabletop_pair(agent);
 assignin('base', 'initFunc', initFunc);
 assignin('base', 'callbackFunc', callbackFunc);
 kept = struct('aux', request.aux, 'motor', template, 'callbackFunc', callbackFunc, 'folder', agent.folder);
+kept.running = tabletop_file(initFunc);
 tabletop_keep(kept);
 tabletop_run('initFunc', folder);
+addpath(driver);                                   % before what init has put there
+names = {'agent.init', 'agent.callback'};
+values = {kept.running, tabletop_file(callbackFunc)};
+kept.running = values{2};
+tabletop_keep(kept);
 tabletop_global('motor', template);
 aux = tabletop_global('aux');
-[names, values] = tabletop_fields('aux', aux, {'drawMarkers', 'initJointAngles', 'exit'});
-scripts = {'agent.init', initFunc; 'agent.callback', callbackFunc};
-for k = 1:2
-    about = functions(scripts{k, 2});
-    if strcmp(about.type, 'simple')
-        names{end + 1} = scripts{k, 1};
-        values{end + 1} = which(about.function);
-    end
-end
+[aux_names, aux_values] = tabletop_fields('aux', aux, {'drawMarkers', 'initJointAngles', 'exit'});
+names = [names, aux_names];
+values = [values, aux_values];
 if isstruct(aux) && numel(aux) == 1
     given = fieldnames(request.aux);
     for k = 1:numel(given)

@@ -4,9 +4,7 @@ octave = exist('OCTAVE_VERSION', 'builtin');
 if octave && ~exist('fileparts', 'file'), restoredefaultpath; end
 addpath(driver);
 if ~octave, return; end
-before = warning('off', 'Octave:shadowed-function');
 addpath([driver 'octave']);
 % Where Octave has no means to draw, what draws does nothing.
 if isempty(available_graphics_toolkits()), addpath([driver 'undrawn']); end
-warning(before);
 end

@@ -1,0 +1,4 @@
+function yes = isgraphics(h, varargin)
+% ISGRAPHICS  Of numbers, yes: what draws gives 1 for what it has not drawn.
+yes = repmat(isnumeric(h), size(h));
+end

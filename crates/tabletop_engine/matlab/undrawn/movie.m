@@ -1,0 +1,3 @@
+function movie(varargin)
+% MOVIE  Nothing.
+end
