@@ -39,15 +39,18 @@ pub enum EngineError {
     },
     /// There was no answer in time. The engine has been ended.
     #[error(
-        "no answer from {what} within {} s; the engine was ended{}",
+        "no answer from {what} within {} s; the engine was ended{}{}",
         .limit.as_secs_f64(),
-        way_to_wait(what)
+        way_to_wait(what),
+        places(.stack)
     )]
     Timeout {
         /// What did not answer: the engine's start, the init script or the callback script.
         what: &'static str,
         /// How long it was waited for.
         limit: Duration,
+        /// Where the script was then, innermost first, if the engine can say it.
+        stack: Vec<Place>,
     },
     /// The engine ended by itself: it crashed, or the script called `exit`.
     #[error("the engine ended ({status}){}{}", last_words(.stderr), way_to_end(status))]
@@ -180,12 +183,15 @@ fn cut(message: &str) -> String {
 
 impl fmt::Display for ScriptError {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        formatter.write_str(&self.message)?;
-        for place in &self.stack {
-            write!(formatter, "\n  at {place}")?;
-        }
-        Ok(())
+        write!(formatter, "{}{}", self.message, places(&self.stack))
     }
+}
+
+fn places(stack: &[Place]) -> String {
+    stack
+        .iter()
+        .map(|place| format!("\n  at {place}"))
+        .collect()
 }
 
 fn place_of_frame(frame: &str) -> Option<Place> {

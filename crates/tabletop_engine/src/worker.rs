@@ -15,7 +15,7 @@ use crate::{
     console::{Console, Stream},
     driver,
     engine::{EngineConfig, Reply, StepReply, Trigger},
-    error::{EngineError, ScriptError},
+    error::{EngineError, Place, ScriptError},
     find::EngineKind,
     hint::hint,
     launch::{command, preparation, quoted},
@@ -259,7 +259,10 @@ impl Running {
                     let file = reply.get(name).and_then(Array::as_text)?;
                     (!file.is_empty()).then(|| PathBuf::from(self.of_original(file)))
                 });
-                let notes = scripts.iter().flatten().filter_map(|file| scripts::note(file));
+                let notes = scripts
+                    .iter()
+                    .flatten()
+                    .filter_map(|file| scripts::note(file));
                 notes.for_each(|note| self.note(&note));
                 scripts
             }
@@ -296,15 +299,9 @@ impl Running {
         self.trigger(op)?;
         self.wait(what, limit)?;
         let reply = self.session.read_reply()?;
-        if reply.get("error.message").is_none() {
+        let Some(mut error) = self.script_error(&reply) else {
             return Ok(reply);
-        }
-        let text = |name| {
-            let text = reply.get(name).and_then(Array::as_text);
-            self.of_original(text.unwrap_or_default())
         };
-        let [id, message, stack] = ["error.id", "error.message", "error.stack"].map(text);
-        let mut error = ScriptError::new(&id, &message, &stack);
         if let Some(hint) = hint(&error, matches!(op, Op::Init)) {
             let link = match error.message.contains('\n') {
                 true => "\n",
@@ -313,6 +310,17 @@ impl Running {
             error.message = format!("{}{link}{hint}", error.message);
         }
         Err(EngineError::Script(error))
+    }
+
+    /// The error that a reply tells.
+    fn script_error(&self, reply: &Arrays) -> Option<ScriptError> {
+        reply.get("error.message")?;
+        let text = |name| {
+            let text = reply.get(name).and_then(Array::as_text);
+            self.of_original(text.unwrap_or_default())
+        };
+        let [id, message, stack] = ["error.id", "error.message", "error.stack"].map(text);
+        Some(ScriptError::new(&id, &message, &stack))
     }
 
     /// What an engine says, with the user's scripts in place of repaired copies that it may run.
@@ -367,7 +375,8 @@ impl Running {
             let waited = start.elapsed();
             if waited >= limit {
                 self.worker.killer.interrupt();
-                return Err(EngineError::Timeout { what, limit });
+                let stack = self.interrupted_at();
+                return Err(EngineError::Timeout { what, limit, stack });
             }
             let pause = match self.trigger_file {
                 None => LOOK_AFTER,
@@ -404,6 +413,26 @@ impl Running {
                 }
             }
         }
+    }
+
+    /// Where the script was when it was interrupted. Python tells; Octave and MATLAB have left it all when they hear again.
+    fn interrupted_at(&mut self) -> Vec<Place> {
+        if self.worker.config.engine.kind != EngineKind::Python {
+            return Vec::new();
+        }
+        let start = Instant::now();
+        loop {
+            let rest = GRACE.saturating_sub(start.elapsed());
+            match self.worker.inbox.recv_timeout(rest) {
+                Ok(Signal::Done(seq)) if seq == self.seq => break,
+                Ok(Signal::Closed) => self.open_outputs = self.open_outputs.saturating_sub(1),
+                Ok(_) => {}
+                Err(_) => return Vec::new(),
+            }
+        }
+        let reply = self.session.read_reply().ok();
+        let error = reply.and_then(|reply| self.script_error(&reply));
+        error.map_or_else(Vec::new, |error| error.stack)
     }
 
     /// The engine does not listen any more: why.

@@ -338,7 +338,9 @@ fn hangs_exits_and_missing_files_are_told() {
     let mut config = config(folder.0.join("robot.py"));
     config.timeouts.init = Duration::from_millis(300);
     let session = Session::start(config.clone()).unwrap();
-    assert!(matches!(session.init(), Err(EngineError::Timeout { .. })));
+    let error = session.init().unwrap_err();
+    assert!(matches!(error, EngineError::Timeout { .. }), "{error}");
+    assert!(error.to_string().ends_with("robot.py:3"), "{error}");
     fs::write(folder.0.join("robot.py"), script("os._exit(3)")).unwrap();
     let session = Session::start(config.clone()).unwrap();
     let error = session.init().unwrap_err();
