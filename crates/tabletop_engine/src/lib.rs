@@ -62,6 +62,7 @@ mod readiness;
 mod scripts;
 mod sensor;
 mod session;
+mod stand_ins;
 mod trigger;
 mod worker;
 
