@@ -1,10 +1,11 @@
 //! The thread on which an engine lives.
 
+mod ending;
+
 use std::{
     collections::VecDeque,
     io,
     path::{Path, PathBuf},
-    process::ExitStatus,
     sync::mpsc::{Receiver, RecvTimeoutError, Sender},
     thread,
     time::{Duration, Instant},
@@ -15,7 +16,7 @@ use crate::{
     console::{Console, Stream},
     driver,
     engine::{EngineConfig, Reply, StepReply, Trigger},
-    error::{EngineError, Place, ScriptError},
+    error::{EngineError, ScriptError},
     find::EngineKind,
     hint::hint,
     launch::{command, preparation, quoted},
@@ -36,8 +37,6 @@ const HEARTBEAT: Duration = Duration::from_secs(1);
 const LOOK_AFTER: Duration = Duration::from_millis(50);
 /// How long an engine that does not listen or was interrupted may take to end by itself.
 const GRACE: Duration = Duration::from_secs(1);
-/// How long the last output of an engine that has ended is waited for.
-const LAST_OUTPUT: Duration = Duration::from_millis(300);
 /// Figures are brought up to date at most this often.
 const DRAW_INTERVAL: Duration = Duration::from_millis(200);
 
@@ -413,91 +412,5 @@ impl Running {
                 }
             }
         }
-    }
-
-    /// Where the script was when it was interrupted. Python tells; Octave and MATLAB have left it all when they hear again.
-    fn interrupted_at(&mut self) -> Vec<Place> {
-        if self.worker.config.engine.kind != EngineKind::Python {
-            return Vec::new();
-        }
-        let start = Instant::now();
-        loop {
-            let rest = GRACE.saturating_sub(start.elapsed());
-            match self.worker.inbox.recv_timeout(rest) {
-                Ok(Signal::Done(seq)) if seq == self.seq => break,
-                Ok(Signal::Closed) => self.open_outputs = self.open_outputs.saturating_sub(1),
-                Ok(_) => {}
-                Err(_) => return Vec::new(),
-            }
-        }
-        let reply = self.session.read_reply().ok();
-        let error = reply.and_then(|reply| self.script_error(&reply));
-        error.map_or_else(Vec::new, |error| error.stack)
-    }
-
-    /// The engine does not listen any more: why.
-    fn death(&mut self) -> EngineError {
-        match self.process.wait(GRACE) {
-            Some(status) => self.died(status),
-            None => EngineError::Died {
-                status: "it closed its input".into(),
-                stderr: self.worker.console.take_last_words(),
-            },
-        }
-    }
-
-    fn died(&mut self, status: ExitStatus) -> EngineError {
-        self.hear_out();
-        EngineError::Died {
-            status: status.to_string(),
-            stderr: self.worker.console.take_last_words(),
-        }
-    }
-
-    /// Waits for the last output of an engine that has ended.
-    fn hear_out(&mut self) {
-        let start = Instant::now();
-        while self.open_outputs > 0 {
-            let rest = LAST_OUTPUT.saturating_sub(start.elapsed());
-            match self.worker.inbox.recv_timeout(rest) {
-                Ok(Signal::Closed) => self.open_outputs -= 1,
-                Ok(_) => {}
-                Err(_) => break,
-            }
-        }
-    }
-
-    /// Lets the engine end by itself, so that it closes the script's files. Dropping it does the rest.
-    fn end(&mut self, limit: Duration) {
-        self.seq = self.seq.wrapping_add(1).max(1);
-        if let Some(file) = &mut self.trigger_file {
-            drop(file.request(self.seq, Op::End, false));
-        }
-        self.process.close_input();
-        let limit = self.wait_for_end(limit);
-        if self.process.ended().is_some() {
-            self.hear_out();
-            return;
-        }
-        let note = format!(
-            "the script's engine was cut off, because it did not end within {} s; what it had not written to files is lost",
-            limit.as_secs()
-        );
-        self.note(&note);
-    }
-
-    /// Waits until the engine has ended, for at most `limit`, or less if it is told to stop in less. That is returned.
-    fn wait_for_end(&mut self, mut limit: Duration) -> Duration {
-        let start = Instant::now();
-        while start.elapsed() < limit && self.process.wait(LOOK_AFTER).is_none() {
-            for signal in self.worker.inbox.try_iter() {
-                match signal {
-                    Signal::Stop(sooner) => limit = limit.min(sooner),
-                    Signal::Closed => self.open_outputs = self.open_outputs.saturating_sub(1),
-                    Signal::Init(_) | Signal::Step(_) | Signal::Done(_) => {}
-                }
-            }
-        }
-        limit
     }
 }
