@@ -2,7 +2,6 @@
 
 use std::{
     process::ExitStatus,
-    sync::mpsc::RecvTimeoutError,
     time::{Duration, Instant},
 };
 
