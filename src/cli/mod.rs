@@ -5,6 +5,7 @@ mod replay;
 mod robot;
 mod robot_options;
 mod run;
+mod script;
 mod terminal;
 mod window;
 

@@ -2,17 +2,27 @@
 
 use std::{fs, path::PathBuf, process::ExitCode};
 
-use bevy::math::Vec3;
+use bevy::{math::Vec3, prelude::*};
 use clap::Args;
-use tabletop::{core::Pose, recorder::Channels, replay::Replay};
+use tabletop::{
+    core::{Pose, SimTick, StepApp as _},
+    headless_app_with,
+    recorder::{Channels, RecorderPlugin},
+    replay::{Player, Replay},
+    script::ScriptPlugin,
+};
 
 use super::{
     Failure,
+    robot_options::{EngineOptions, script},
+    run::{seconds, ticks},
+    script::{Script, headless_settings},
     terminal::{say, show_warnings},
     window,
 };
 
 #[derive(Args)]
+#[command(mut_group("EngineOptions", |options| options.requires("script")))]
 pub(super) struct ReplayArgs {
     /// The recording
     #[arg(value_name = "DIR")]
@@ -28,6 +38,14 @@ pub(super) struct ReplayArgs {
     out: Option<PathBuf>,
     #[command(flatten)]
     pictures: PictureArgs,
+    /// Let a script watch, as `tabletop run --script` lets it act; in the window the key M starts it
+    #[arg(long, value_name = "LANGUAGE[:PATH]", value_parser = script, conflicts_with_all = ["verify", "out"])]
+    script: Option<String>,
+    /// How long the script then acts, in seconds of simulated time [default: 0]
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true, requires = "script", conflicts_with = "window")]
+    seconds: Option<f64>,
+    #[command(flatten)]
+    engine: EngineOptions,
 }
 
 /// What the pictures of a replay are to be instead of the recorded ones.
@@ -95,9 +113,13 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
         ));
     }
     if args.window {
-        return window::play(replay);
+        let settings = args.engine.settings(args.script.as_deref())?;
+        return window::play(replay, settings);
     }
     show_warnings();
+    if let Some(script) = &args.script {
+        return watch(&replay, script, args);
+    }
     let temporary = std::env::temp_dir().join(format!("tabletop-replay-{}", std::process::id()));
     let out = args.out.as_ref().unwrap_or(&temporary);
     let recorded = args.pictures.record(&replay, out.clone());
@@ -117,6 +139,22 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     Err(Failure::run(format!(
         "the replay differs: {difference}{version}"
     )))
+}
+
+/// Lets a script watch, and then act.
+fn watch(replay: &Replay, script: &str, args: &ReplayArgs) -> Result<ExitCode, Failure> {
+    let settings = headless_settings(&args.engine, Some(script))?;
+    let plugins = replay.plugins().disable::<RecorderPlugin>();
+    let mut app = headless_app_with(plugins.set(ScriptPlugin { settings }));
+    replay.play_in(&mut app);
+    let start = app.world().resource::<Player>().start();
+    while *app.world().resource::<SimTick>() < start {
+        app.step(1);
+    }
+    let mut script = Script::start(&mut app, true);
+    script.run_while(&mut app, |app| !app.world().resource::<Player>().is_over())?;
+    let acted = script.run(&mut app, ticks(args.seconds.unwrap_or(0.0)));
+    acted.and(Ok(ExitCode::SUCCESS))
 }
 
 impl PictureArgs {

@@ -5,12 +5,12 @@ use std::{
     process::ExitCode,
 };
 
-use bevy::{app::PluginGroupBuilder, ecs::message::MessageCursor, prelude::*};
+use bevy::{app::PluginGroupBuilder, prelude::*};
 use clap::Args;
 use serde_json::json;
 use tabletop::{
     TabletopSimPlugins,
-    core::{AgentNews, AgentOrder, SceneSpec, SimCommand, StepApp as _, TICKS_PER_SECOND},
+    core::{SceneSpec, SimCommand, StepApp as _, TICKS_PER_SECOND},
     headless_app_with,
     recorder::{RecorderPlugin, RehearsalPlugin},
     report,
@@ -21,8 +21,9 @@ use tabletop_scenario::{Outcome, Program, Scenario, ScenarioPlugin, ScenarioRun}
 
 use super::{
     Failure, Output, WRONG_INPUT,
-    robot_options::{EngineOptions, RobotOptions, check_scripts, script},
-    terminal::{is_unheard, say, show_warnings},
+    robot_options::{EngineOptions, RobotOptions, script},
+    script::{Script, headless_settings},
+    terminal::{say, show_warnings},
 };
 
 #[derive(Args)]
@@ -85,7 +86,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
             let setup = args.setup.as_deref();
             let setup = setup.unwrap_or(Path::new(super::DEFAULT_SETUP));
             let (mut app, result) = put_on_table(setup, plugins(args)?)?;
-            let script = Script::start(&mut app, args);
+            let script = Script::start(&mut app, args.script.is_some());
             let script = script.run(&mut app, ticks(seconds.unwrap_or(10.0)));
             args.write_ends(&app)?;
             script.and(Ok(result))
@@ -136,7 +137,7 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
 
     let mut app = headless_app_with((recording(plugins(args)?, args), ScenarioPlugin));
     app.insert_resource(ScenarioRun::new(program));
-    let mut script = Script::start(&mut app, args);
+    let mut script = Script::start(&mut app, args.script.is_some());
     let outcome = loop {
         app.step(1);
         if let Err(unheard) = script.listen(&app) {
@@ -155,11 +156,7 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
 
 /// The simulator with the robot and the engine that were asked for.
 fn plugins(args: &RunArgs) -> Result<PluginGroupBuilder, Failure> {
-    let mut settings = args.engine.settings(args.script.as_deref())?;
-    if args.script.is_some() {
-        check_scripts(&settings)?;
-    }
-    settings.overhear = Some(report);
+    let settings = headless_settings(&args.engine, args.script.as_deref())?;
     Ok(TabletopSimPlugins
         .build()
         .set(args.robot.plugin()?)
@@ -180,80 +177,6 @@ fn recording(plugins: PluginGroupBuilder, args: &RunArgs) -> PluginGroupBuilder 
         header: settings.into_iter().collect(),
         ..default()
     })
-}
-
-/// The script that drives the robot, if one was asked for.
-struct Script {
-    is_wanted: bool,
-    news: MessageCursor<AgentNews>,
-    /// How it has ended, if it has.
-    end: Option<Result<(), Failure>>,
-}
-
-impl Script {
-    fn start(app: &mut App, args: &RunArgs) -> Self {
-        let is_wanted = args.script.is_some();
-        if is_wanted {
-            app.world_mut().write_message(AgentOrder::Start);
-        }
-        Self {
-            is_wanted,
-            news: MessageCursor::default(),
-            end: None,
-        }
-    }
-
-    /// Notes its end. The run ends if nobody hears what is said.
-    fn listen(&mut self, app: &App) -> Result<(), Failure> {
-        for news in self
-            .news
-            .read(app.world().resource::<Messages<AgentNews>>())
-        {
-            match news {
-                AgentNews::Stopped => self.end = Some(Ok(())),
-                AgentNews::Failed { .. } => self.end = Some(Err(Failure::silent())),
-                AgentNews::Started { .. } | AgentNews::Printed { .. } | AgentNews::Noted { .. } => {
-                }
-            }
-        }
-        match is_unheard() {
-            true => Err(Failure::silent()),
-            false => Ok(()),
-        }
-    }
-
-    /// Simulates so many ticks, or until the script has ended.
-    fn run(mut self, app: &mut App, ticks: u64) -> Result<(), Failure> {
-        if !self.is_wanted {
-            app.step(ticks);
-            return Ok(());
-        }
-        // The first tick is that of the init script.
-        for _ in 0..=ticks {
-            app.step(1);
-            self.listen(app)?;
-            if self.end.is_some() {
-                break;
-            }
-        }
-        see_off(app.world_mut());
-        self.result()
-    }
-
-    fn result(self) -> Result<(), Failure> {
-        self.end.unwrap_or(Ok(()))
-    }
-}
-
-/// Says what becomes of the script when it does.
-fn report(news: &AgentNews) {
-    match news {
-        AgentNews::Started { engine } => say(format_args!("tabletop: {engine}")),
-        AgentNews::Printed { line, .. } => say(line),
-        AgentNews::Noted { line } => say(format_args!("tabletop: {line}")),
-        AgentNews::Failed { reason } => say(format_args!("tabletop: {reason}")),
-        AgentNews::Stopped => {}
-    }
 }
 
 impl RunArgs {
@@ -287,7 +210,7 @@ fn read_faultless_task(file: &Path) -> Result<SceneSpec, String> {
     }
 }
 
-fn ticks(seconds: f64) -> u64 {
+pub(super) fn ticks(seconds: f64) -> u64 {
     (seconds * f64::from(TICKS_PER_SECOND)).round() as u64
 }
 

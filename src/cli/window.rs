@@ -3,7 +3,7 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use clap::Args;
-use tabletop::replay::Replay;
+use tabletop::{replay::Replay, script::ScriptSettings};
 
 use super::{
     Failure, Output,
@@ -54,17 +54,16 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
 
 /// Plays a recording.
 #[cfg(feature = "window")]
-pub(super) fn play(replay: Replay) -> Result<ExitCode, Failure> {
+pub(super) fn play(replay: Replay, scripts: ScriptSettings) -> Result<ExitCode, Failure> {
     use tabletop::{
         baxter::BaxterPlugin,
-        script::ScriptSettings,
         window::{self, Show, WindowOptions},
     };
 
     let options = WindowOptions {
         show: Show::Replay(Box::new(replay)),
         robot: BaxterPlugin::default(),
-        scripts: ScriptSettings::default(),
+        scripts,
         screenshot: None,
     };
     window::run(options).map(exit_code).map_err(Failure::run)
@@ -88,7 +87,7 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
 }
 
 #[cfg(not(feature = "window"))]
-pub(super) fn play(_: Replay) -> Result<ExitCode, Failure> {
+pub(super) fn play(_: Replay, _: ScriptSettings) -> Result<ExitCode, Failure> {
     Err(Failure::run(NO_WINDOW))
 }
 

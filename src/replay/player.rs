@@ -4,14 +4,14 @@ use std::collections::VecDeque;
 
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop_core::{
-    AgentOrder, OrderSystems, Paused, SimCommand, SimFact, SimSystems, SimTick, TickSystems,
+    Agent, AgentNews, Paused, Replaying, SimCommand, SimFact, SimSystems, SimTick, TickSystems,
 };
 use tabletop_recorder::{Session, SessionCommand};
 
 /// Gives the commands of a recording at their ticks, and stays in the world as a resource.
 ///
-/// Until it [is over](Self::is_over), only the recording acts: of all other commands only pauses are carried out, and the
-/// recording waits for their end.
+/// Until it [is over](Self::is_over), only the recording acts: of all other commands only pauses are carried out, for whose
+/// end the recording waits, and markers are shown. A script can watch meanwhile.
 #[derive(Resource, Clone, Debug)]
 pub struct Player {
     commands: VecDeque<SessionCommand>,
@@ -21,7 +21,12 @@ pub struct Player {
     has_paused: bool,
     /// Whether a recording is to be made of it.
     records: bool,
+    /// Whether it has been said that a script watches.
+    is_watched: bool,
 }
+
+const WATCHES: &str =
+    "a recording is replayed: the script watches, and moves the robot when it is over";
 
 impl Player {
     pub(crate) fn new(session: &Session) -> Self {
@@ -31,6 +36,7 @@ impl Player {
             start: SimTick(session.header.start_tick),
             has_paused: false,
             records: false,
+            is_watched: false,
         }
     }
 
@@ -50,10 +56,7 @@ impl Player {
     pub(crate) fn play_in(self, app: &mut App) {
         app.insert_resource(self).add_systems(
             FixedUpdate,
-            (
-                keep_scripts_out.before(OrderSystems::Script),
-                play.in_set(TickSystems).before(SimSystems::Load),
-            ),
+            play.in_set(TickSystems).before(SimSystems::Load),
         );
     }
 
@@ -88,26 +91,19 @@ impl Player {
     }
 }
 
-fn keep_scripts_out(
-    player: Res<Player>,
-    mut orders: ResMut<Messages<AgentOrder>>,
-    mut facts: MessageWriter<SimFact>,
-) {
-    if !player.is_over() && orders.drain().any(|order| order == AgentOrder::Start) {
-        facts.write(SimFact::Refused {
-            reason: "a recording is replayed; scripts can run when it is over".into(),
-        });
-    }
-}
-
 fn play(
     mut player: ResMut<Player>,
     mut commands: ResMut<Messages<SimCommand>>,
     mut seen: Local<MessageCursor<SimCommand>>,
     mut facts: MessageWriter<SimFact>,
+    mut news: MessageWriter<AgentNews>,
+    mut replaying: ResMut<Replaying>,
+    agent: Res<Agent>,
     tick: Res<SimTick>,
     paused: Res<Paused>,
 ) {
+    let is_replaying = !player.is_over() && *tick >= player.start;
+    replaying.set_if_neq(Replaying(is_replaying));
     if player.is_over() {
         return;
     }
@@ -120,6 +116,13 @@ fn play(
                 kept.push(command.clone());
             }
             SimCommand::SelectHand(_) => {}
+            SimCommand::ShowMarkers(_) => kept.push(command.clone()),
+            SimCommand::Drive(_) if agent.is_on() => {
+                if !std::mem::replace(&mut player.is_watched, true) {
+                    let line = WATCHES.into();
+                    news.write(AgentNews::Noted { line });
+                }
+            }
             _ => {
                 facts.write(SimFact::Refused {
                     reason: "a recording is replayed; only it can act until it is over".into(),
@@ -137,7 +140,7 @@ fn play(
 
 #[cfg(test)]
 mod tests {
-    use std::slice;
+    use std::{slice, time::Duration};
 
     use tabletop_core::{CorePlugin, Hand, StepApp as _};
 
@@ -152,6 +155,7 @@ mod tests {
             start: SimTick(0),
             has_paused: false,
             records: false,
+            is_watched: false,
         }
     }
 
@@ -182,18 +186,19 @@ mod tests {
     #[derive(Resource, Default)]
     struct CarriedOut(Vec<SimCommand>);
 
+    fn note_carried_out(
+        mut commands: MessageReader<SimCommand>,
+        mut carried_out: ResMut<CarriedOut>,
+    ) {
+        carried_out.0.extend(commands.read().cloned());
+    }
+
     #[test]
     fn only_the_recording_acts_and_the_user_can_hold_it_up() {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default()))
             .init_resource::<CarriedOut>()
-            .add_systems(
-                FixedUpdate,
-                (|mut commands: MessageReader<SimCommand>, mut carried_out: ResMut<CarriedOut>| {
-                    carried_out.0.extend(commands.read().cloned());
-                })
-                .in_set(SimSystems::Ingest),
-            )
+            .add_systems(FixedUpdate, note_carried_out.in_set(SimSystems::Ingest))
             .start();
         let [left, right] = [Hand::Left, Hand::Right].map(SimCommand::Release);
         let pause = SimCommand::SetPaused;
@@ -219,27 +224,45 @@ mod tests {
     }
 
     #[test]
-    fn scripts_start_when_it_is_over() {
+    fn a_script_watches_and_then_acts() {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .init_resource::<CarriedOut>()
+            .add_systems(FixedUpdate, note_carried_out.in_set(SimSystems::Ingest))
             .start();
-        player(&[(1, SimCommand::ClearTable)]).play_in(&mut app);
-        for (orders, refusals) in [(0, 1), (0, 1), (1, 0)] {
-            app.world_mut().write_message(AgentOrder::Start);
-            app.step(1);
-            let count = app
-                .world_mut()
-                .resource_mut::<Messages<AgentOrder>>()
-                .drain()
-                .count();
-            assert_eq!(count, orders);
-            let refused = app
-                .world_mut()
-                .resource_mut::<Messages<SimFact>>()
-                .drain()
-                .count();
-            assert_eq!(refused, refusals);
+        let left = SimCommand::Release(Hand::Left);
+        let mut player = player(&[(0, SimCommand::ClearTable), (2, left.clone())]);
+        player.start = SimTick(1);
+        player.play_in(&mut app);
+        app.insert_resource(Agent::Online {
+            took: Duration::ZERO,
+        });
+        let drive = SimCommand::Drive(Vec::new());
+        let markers = SimCommand::ShowMarkers(vec![Vec3::Z]);
+        let orders = [drive.clone(), markers.clone()];
+        let mut news = Vec::new();
+        for (carried_out, is_replaying) in [
+            ([SimCommand::ClearTable, markers.clone()].to_vec(), false),
+            (vec![markers.clone()], true),
+            ([markers.clone(), left].to_vec(), true),
+            (orders.to_vec(), false),
+        ] {
+            let mut found = tick(&mut app, &orders);
+            news.extend(
+                app.world_mut()
+                    .resource_mut::<Messages<AgentNews>>()
+                    .drain(),
+            );
+            found.sort_by_key(|command| carried_out.iter().position(|other| other == command));
+            assert_eq!(found, carried_out);
+            assert_eq!(app.world().resource::<Replaying>().0, is_replaying);
         }
+        assert_eq!(
+            news,
+            [AgentNews::Noted {
+                line: WATCHES.into()
+            }]
+        );
     }
 
     #[test]

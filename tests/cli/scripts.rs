@@ -14,7 +14,7 @@ use tabletop::{
     prelude::*,
 };
 
-use crate::support::{command, place, scenario, stderr, tabletop};
+use crate::support::{command, place, scenario, shipped, stderr, tabletop};
 
 fn succeeded(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
@@ -96,6 +96,40 @@ fn assert_turned(output: &Output) {
 fn five_seconds_of(script: &str) -> Command {
     let run = ["run", "--script", script, "--seconds", "5"];
     command(&[&run[..], &["--final-robot", "-"]].concat())
+}
+
+#[test]
+fn a_script_watches_a_replay_and_then_acts() {
+    let demo = place("watched");
+    let scenario = shipped("scenarios", "stack_two_blocks.ron");
+    let [demo, scenario] = [&demo, &scenario].map(|path| path.to_str().unwrap());
+    let recorded = tabletop(&["run", scenario, "--record", demo]);
+    assert_eq!(recorded.status.code(), Some(0), "{}", stderr(&recorded));
+    let script = place("watcher.py");
+    let text = "seen = acted = 0
+def init(aux): pass
+def callback(sensor, motor, aux):
+    global seen, acted
+    motor.jointVelocities = [[0.1] * 7] * 2
+    if sensor.demoCue:
+        seen += 1
+        assert acted == 0
+        start = sensor.jointAngles[0][0]
+        assert abs(start - 0.25) < 1e-9, start
+    else:
+        acted += 1
+        if acted == 30:
+            print('saw', seen, 'ticks, moved by', round(float(sensor.jointAngles[0][0]) - 0.25, 3))
+";
+    fs::write(&script, text).unwrap();
+    let script = format!("python:{}", script.to_str().unwrap());
+    let output = tabletop(&["replay", demo, "--script", &script, "--seconds", "1"]);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(
+        said.contains("saw ") && said.contains("moved by 0.0"),
+        "{said}"
+    );
 }
 
 #[test]

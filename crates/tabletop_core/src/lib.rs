@@ -49,7 +49,7 @@ pub use message::{SimCommand, SimFact};
 pub use number::Decimal;
 pub use object::{ObjectIndex, ObjectSpec};
 pub use pose::{Pose, UNITS_PER_METER, degrees_from_quat, quat_from_degrees};
-pub use recording::{History, Recording};
+pub use recording::{History, Recording, Replaying};
 pub use rewind::{Remembered, Rewinds, Rewound};
 pub use robot::{
     Arm, ArmState, Drive, Face, Gripped, JOINTS_PER_ARM, JointState, Markers, Robot, RobotContact,
@@ -100,6 +100,7 @@ impl Plugin for CorePlugin {
             .init_resource::<History>()
             .init_resource::<Markers>()
             .init_resource::<Recording>()
+            .init_resource::<Replaying>()
             .init_resource::<Rewound>()
             .init_resource::<Robot>()
             .init_resource::<ObjectIndex>()

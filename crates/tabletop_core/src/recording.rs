@@ -6,6 +6,10 @@ use bevy::prelude::*;
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Recording(pub bool);
 
+/// Whether a recording is being replayed. Whoever replays it sets it.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Replaying(pub bool);
+
 /// How far the demonstration can be undone and redone. Whoever keeps the snapshots of the world sets it.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct History {

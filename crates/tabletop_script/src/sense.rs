@@ -4,8 +4,8 @@ use std::path::Path;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
-    Arm, ObjectIndex, ObjectSpec, Pose, Recording, Robot, RobotJoint, RobotMode, SensorImage,
-    SimTick, TICK_SECONDS, Table,
+    Arm, ObjectIndex, ObjectSpec, Pose, Recording, Replaying, Robot, RobotJoint, RobotMode,
+    SensorImage, SimTick, TICK_SECONDS, Table,
 };
 use tabletop_engine::{Aux, Picture, SensedContact, SensedObject, Sensor};
 
@@ -41,6 +41,7 @@ pub(crate) struct Senses<'w, 's> {
     objects: Query<'w, 's, (&'static ObjectSpec, &'static Transform)>,
     tables: Query<'w, 's, (), With<Table>>,
     recording: Res<'w, Recording>,
+    replaying: Res<'w, Replaying>,
 }
 
 /// What an init script gets to know.
@@ -72,7 +73,7 @@ impl Senses<'_, '_> {
             gripper_opening: Arm::BOTH.map(|arm| robot.joint(RobotJoint::gripper(arm)).position),
             picture,
             tracker_loc: told.trackers.then(|| self.trackers()),
-            demo_cue: self.recording.0,
+            demo_cue: self.recording.0 || self.replaying.0,
             head_angle: Some(robot.joint(RobotJoint::HeadPan).position),
             objects: told.objects.then(|| self.objects()),
             contacts: told.objects.then(|| self.contacts()),
