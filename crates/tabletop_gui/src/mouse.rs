@@ -65,10 +65,13 @@ fn press(
     mut press: ResMut<Press>,
     mut commands: MessageWriter<SimCommand>,
 ) {
-    if !buttons.just_pressed(MouseButton::Left) || wanted.wants_any_pointer_input() {
+    if !buttons.just_pressed(MouseButton::Left)
+        || wanted.wants_any_pointer_input()
+        || pointer.is_over_panel
+    {
         return;
     }
-    let Some(ray) = pointer.0 else {
+    let Some(ray) = pointer.ray else {
         return;
     };
     let picked = pickable.object_along(ray);
@@ -96,7 +99,7 @@ fn drag(
     mut press: ResMut<Press>,
     mut commands: MessageWriter<SimCommand>,
 ) {
-    let (Press::Drag(drag), Some(ray)) = (*press, pointer.0) else {
+    let (Press::Drag(drag), Some(ray)) = (*press, pointer.ray) else {
         return;
     };
     let side = DragPlane::side(&tables.iter().next().copied().unwrap_or_default());
@@ -135,7 +138,8 @@ fn come_up(
     }
     if let Press::Click(object) = *press
         && !wanted.wants_any_pointer_input()
-        && pointer.0.and_then(|ray| pickable.object_along(ray)) == Some(object)
+        && !pointer.is_over_panel
+        && pointer.ray.and_then(|ray| pickable.object_along(ray)) == Some(object)
         && let Ok(spec) = specs.get(object)
     {
         commands.write(SimCommand::Grasp {
@@ -199,6 +203,16 @@ mod tests {
             assert_eq!(test.press(), [SimCommand::Release(Hand::Any)]);
             assert_eq!(test.come_up(), []);
         }
+    }
+
+    #[test]
+    fn a_press_on_a_panel_is_the_panels() {
+        let mut test = TestWorld::new(plugin);
+        test.hold("red", Vec3::Z);
+        test.point_at(ABOVE_TABLE);
+        test.point_at_panel();
+        assert_eq!(test.press(), []);
+        assert_eq!(test.come_up(), []);
     }
 
     #[test]

@@ -1,13 +1,19 @@
 //! Where the mouse points.
 
 use bevy::{prelude::*, window::PrimaryWindow};
+use bevy_egui::{EguiContext, PrimaryEguiContext, egui};
 use tabletop_core::UserCamera;
 
 use crate::mouse::MouseSystems;
 
-/// The line of sight through the mouse cursor, from the user's camera; none while the cursor is outside the window.
+/// Where the mouse cursor is; nowhere while it is outside the window.
 #[derive(Resource, Clone, Copy, Debug, Default)]
-pub(crate) struct Pointer(pub Option<Ray3d>);
+pub(crate) struct Pointer {
+    /// The line of sight through it, from the user's camera.
+    pub ray: Option<Ray3d>,
+    /// Whether it is over a panel. What egui says of that is a frame old, and the cursor may have come since.
+    pub is_over_panel: bool,
+}
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(RunFixedMainLoop, aim.before(MouseSystems));
@@ -17,9 +23,19 @@ fn aim(
     mut pointer: ResMut<Pointer>,
     windows: Query<&Window, With<PrimaryWindow>>,
     cameras: Query<(&Camera, &GlobalTransform), With<UserCamera>>,
+    mut panels: Query<&mut EguiContext, With<PrimaryEguiContext>>,
 ) {
     let cursor = windows.iter().next().and_then(Window::cursor_position);
-    pointer.0 = cursor
+    pointer.ray = cursor
         .zip(cameras.iter().next())
         .and_then(|(cursor, (camera, place))| camera.viewport_to_world(place, cursor).ok());
+    pointer.is_over_panel =
+        cursor
+            .zip(panels.iter_mut().next())
+            .is_some_and(|(cursor, mut panels)| {
+                let at = egui::pos2(cursor.x, cursor.y);
+                let layer = panels.get_mut().layer_id_at(at);
+                // The background is everywhere; the view is seen through it.
+                layer.is_some_and(|layer| layer.order != egui::Order::Background)
+            });
 }

@@ -63,15 +63,23 @@ impl TestWorld {
     }
 
     pub fn look_along(&mut self, ray: Ray3d) {
-        self.app.insert_resource(Pointer(Some(ray)));
+        self.app.insert_resource(Pointer {
+            ray: Some(ray),
+            is_over_panel: false,
+        });
     }
 
     pub fn point_at(&mut self, point: Vec3) {
         self.look_along(towards(point));
     }
 
+    /// There is a panel before what is pointed at.
+    pub fn point_at_panel(&mut self) {
+        self.app.world_mut().resource_mut::<Pointer>().is_over_panel = true;
+    }
+
     pub fn point_nowhere(&mut self) {
-        self.app.insert_resource(Pointer(None));
+        self.app.insert_resource(Pointer::default());
     }
 
     /// A frame in which the button goes down, and what is asked for in it.
