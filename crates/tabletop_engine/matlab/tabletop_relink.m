@@ -4,22 +4,25 @@ function tabletop_relink
 %   By BUILTIN, because the scripts may have variables of any name.
 linked = ['builtin(''isglobal'', ''sensor'') && builtin(''isglobal'', ''motor'') && ' ...
     'builtin(''isglobal'', ''aux'') && builtin(''exist'', ''callbackFunc'', ''var'') && ' ...
-    'builtin(''isa'', callbackFunc, ''function_handle'')'];
+    'builtin(''isa'', callbackFunc, ''function_handle'') && builtin(''isstruct'', sensor)'];
 try                                                % an expression would set "ans"
     evalin('base', ['if ~(' linked '), builtin(''error'', ''unlinked''); end']);
     return
 catch
 end
 kept = tabletop_keep();
+all_cleared = ~isstruct(tabletop_global('sensor'));
 names = {'motor', 'aux'};
 for k = 1:2
     name = names{k};
     if evalin('base', ['builtin(''exist'', ''' name ''', ''var'')'])
         value = evalin('base', name);              % set after "clear"
+        is_lost = all_cleared && isempty(value);   % "clear all; global motor"
     else
         value = tabletop_global(name);             % set before "clear"
-        if ~isstruct(value), value = kept.(name); end  % "clear all"
+        is_lost = ~isstruct(value);                % "clear all"
     end
+    if is_lost, value = kept.(name); end
     if k == 1, value = tabletop_complete(value, kept.motor); end
     tabletop_global(name, value);
 end

@@ -1,6 +1,9 @@
 //! What is to be done about errors that many scripts meet.
 
-use crate::error::ScriptError;
+use crate::{
+    error::ScriptError,
+    scripts::{SHARED, is_function_file},
+};
 
 /// What a message says that a struct lacks, and when it is there.
 const FIELDS: [(&str, &str); 6] = [
@@ -23,9 +26,6 @@ const FIELDS: [(&str, &str); 6] = [
 
 const TOLD_TOGETHER: &str = "sensor.objects, contacts and held are there only if one of these words stands in a file of the scripts' \
     folder, and not with --no-objects";
-
-/// The variables of the base workspace that the scripts share with the simulator.
-const SHARED: [&str; 3] = ["sensor", "motor", "aux"];
 
 /// What is there in every call of the callback.
 const ALWAYS: [&str; 6] = [
@@ -54,7 +54,13 @@ pub(crate) fn hint(error: &ScriptError, in_init: bool) -> Option<&'static str> {
         return Some("a handle is named without .m, as in init = @myInit");
     }
     if SHARED.iter().any(|name| is_undefined(name, message)) {
-        return Some("a function must say \"global sensor motor aux\"");
+        let place = error.place();
+        return Some(
+            match place.is_some_and(|place| !is_function_file(&place.file)) {
+                true => "it was cleared here; it comes back in the next call",
+                false => "a function must say \"global sensor motor aux\"",
+            },
+        );
     }
     if message.contains("break must appear") {
         return Some("Octave knows no \"break\" outside a loop; write \"return\"");

@@ -23,11 +23,14 @@ pub(crate) fn read_output(
         }
         Piece::Text(text) => console.push(stream, text),
         Piece::Mark(mark) => {
-            let seq = str::from_utf8(mark)
+            let seq = mark.strip_prefix(b"done ").unwrap_or_default();
+            let seq = str::from_utf8(seq)
                 .ok()
-                .and_then(|mark| mark.strip_prefix("done "));
-            if let Some(seq) = seq.and_then(|seq| seq.trim().parse().ok()) {
+                .and_then(|seq| seq.trim().parse().ok());
+            if let Some(seq) = seq {
                 drop(inbox.send(Signal::Done(seq)));
+            } else if let Some(note) = mark.strip_prefix(b"note ") {
+                console.push(Stream::Note, note);
             }
         }
     };

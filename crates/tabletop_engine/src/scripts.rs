@@ -5,6 +5,9 @@ use std::{
     path::{Path, PathBuf, absolute},
 };
 
+/// The variables of the base workspace that the scripts share with the simulator.
+pub(crate) const SHARED: [&str; 3] = ["sensor", "motor", "aux"];
+
 /// Why the scripts of a folder cannot be run, or would not be. `whole`: with agentBehavior.m.
 pub(crate) fn fault(folder: &Path, whole: bool, working_dir: &Path) -> Option<String> {
     let shown = folder.display();
@@ -41,12 +44,31 @@ pub(crate) fn fault(folder: &Path, whole: bool, working_dir: &Path) -> Option<St
 pub(crate) fn note(script: &Path) -> Option<String> {
     let text = fs::read(script).ok()?;
     let text = String::from_utf8_lossy(&text);
-    (is_function(&text) && !text.contains("global")).then(|| {
+    (is_function(&text) && !reaches_shared(&text)).then(|| {
         format!(
             "{} is a function without \"global sensor motor aux\", so what it calls by these names are its own variables",
             script.display()
         )
     })
+}
+
+/// Whether a function declares one of the variables that it shares with the simulator, or acts in the base workspace.
+fn reaches_shared(text: &str) -> bool {
+    let mut words = text.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
+    words.any(|word| matches!(word, "evalin" | "assignin"))
+        || text
+            .lines()
+            .filter_map(|line| line.trim().strip_prefix("global "))
+            .any(|names| {
+                let mut names =
+                    names.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
+                names.any(|name| SHARED.contains(&name))
+            })
+}
+
+/// Whether a script is a function.
+pub(crate) fn is_function_file(script: &Path) -> bool {
+    fs::read(script).is_ok_and(|text| is_function(&String::from_utf8_lossy(&text)))
 }
 
 /// Whether a file's first word that is no comment is "function".

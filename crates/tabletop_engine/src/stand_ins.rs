@@ -33,25 +33,29 @@ const SOUGHT: &str = "allchild findall findobj";
 /// What can compute what it would draw.
 const COMPUTED: &str = "bar barh contour contour3 contourf stairs";
 
+/// What would ask for a file in a window.
+const CHOSEN: &str = "uigetdir uigetfile uiputfile";
+
 /// What would make a file of a drawing.
 const PRINTED: &str = "hgsave print saveas savefig";
 
 /// Names and texts.
 pub(crate) fn files() -> impl Iterator<Item = (String, String)> {
-    let unanswered = UNANSWERED.map(|(name, deed)| ("octave", name, unanswered(name, deed)));
-    let kinds: [(_, _, fn(&str) -> String); 6] = [
+    let refusing = UNANSWERED.map(|(name, deed)| ("octave", name, unanswered(name, deed)));
+    let kinds: [(_, _, fn(&str) -> String); 7] = [
         ("octave", UNDEBUGGED, undebuggable),
         ("undrawn", UNDRAWN, undrawn),
         ("undrawn", LIMITS, limits),
         ("undrawn", SOUGHT, nothing_found),
         ("undrawn", COMPUTED, computed),
         ("undrawn", PRINTED, unprinted),
+        ("undrawn", CHOSEN, |name| unanswered(name, "choose")),
     ];
     let others = kinds.into_iter().flat_map(|(folder, names, text)| {
         let names = names.split_whitespace();
         names.map(move |name| (folder, name, text(name)))
     });
-    let all = unanswered.into_iter().chain(others);
+    let all = refusing.into_iter().chain(others);
     all.map(|(folder, name, text)| (format!("{folder}/{name}.m"), text))
 }
 

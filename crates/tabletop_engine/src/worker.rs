@@ -4,7 +4,7 @@ mod ending;
 
 use std::{
     collections::VecDeque,
-    io,
+    fs, io,
     path::{Path, PathBuf},
     sync::mpsc::{Receiver, RecvTimeoutError, Sender},
     thread,
@@ -326,8 +326,13 @@ impl Running {
     fn of_original(&self, text: &str) -> String {
         let copies = self.session.folder().join("repaired");
         let agent = self.worker.config.agent_path();
-        text.replace(&*copies.to_string_lossy(), &agent.to_string_lossy())
-            .replace(".m.sourced", ".m")
+        let mut original = text.to_owned();
+        for copy in fs::read_dir(&copies).into_iter().flatten().flatten() {
+            let name = copy.file_name();
+            let (copy, script) = (copies.join(&name), agent.join(&name));
+            original = original.replace(&*copy.to_string_lossy(), &script.to_string_lossy());
+        }
+        original.replace(".m.sourced", ".m")
     }
 
     /// Tells the user something beside what the script prints.
@@ -373,8 +378,7 @@ impl Running {
         loop {
             let waited = start.elapsed();
             if waited >= limit {
-                self.worker.killer.interrupt();
-                let stack = self.interrupted_at();
+                let stack = self.interrupt();
                 return Err(EngineError::Timeout { what, limit, stack });
             }
             let pause = match self.trigger_file {
@@ -386,7 +390,7 @@ impl Running {
                 Ok(Signal::Done(seq)) if seq == self.seq => return Ok(()),
                 Ok(Signal::Done(_)) => {}
                 Ok(Signal::Stop(_)) | Err(RecvTimeoutError::Disconnected) => {
-                    self.worker.killer.interrupt();
+                    self.interrupt();
                     return Err(EngineError::Stopped);
                 }
                 Ok(Signal::Closed) => {

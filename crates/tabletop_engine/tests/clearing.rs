@@ -74,6 +74,22 @@ fn a_motor_that_was_cleared_is_at_rest() {
 }
 
 #[test]
+fn what_was_cleared_may_be_declared_again() {
+    for trigger in TRIGGERS {
+        for declare in ["sensor motor aux", "motor", "aux"] {
+            let heading = format!("clear all; close all; clc; global {declare};");
+            let callback = "motor.headVelocity = 2;";
+            let [_, motor] = motors(&heading, callback, trigger);
+            assert_eq!(motor.head_velocity, Some(2.0));
+            let [_, motor] = motors("", &heading, trigger);
+            assert_eq!(motor, Motor::default());
+            let [_, motor] = motors("", &format!("{heading} {callback}"), trigger);
+            assert_eq!(motor.head_velocity, Some(2.0), "{declare}");
+        }
+    }
+}
+
+#[test]
 fn variables_may_have_any_name() {
     for name in [
         "exist",

@@ -36,6 +36,19 @@ fn what_draws_does_nothing_without_a_display() {
 }
 
 #[test]
+fn nobody_chooses_files() {
+    let folder = Folder::pair(
+        "",
+        "try, uigetfile('*.mat'), catch err, disp(err.message), end",
+    );
+    let session = Session::octave(&folder.0, Trigger::Stdin);
+    session.init().unwrap();
+    session.step(&Sensor::default()).unwrap();
+    let printed = session.printed("nobody can choose");
+    assert!(printed.contains("nobody can choose"), "{printed}");
+}
+
+#[test]
 fn that_no_file_is_made_is_said_once() {
     let folder = Folder::pair("", "print('-dpng', 'x.png'); disp done");
     let mut config = octave(&folder.0, Trigger::Stdin);

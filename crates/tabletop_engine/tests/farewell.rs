@@ -56,6 +56,20 @@ fn after_an_error_or_a_call_that_takes_too_long() {
 }
 
 #[test]
+fn after_a_loop_of_programs_that_get_the_interrupts() {
+    for fault in [
+        "while true, system('true'); end",
+        "while true, system('sleep 0.1'); end",
+    ] {
+        let (folder, session) = called(fault, Trigger::Stdin);
+        let lines = last_lines(&session);
+        let told = |line: &ConsoleLine| line.text == "farewell";
+        assert!(lines.iter().any(told), "{fault}: {lines:?}");
+        assert_eq!(log(&folder.0), "written", "{fault}");
+    }
+}
+
+#[test]
 fn when_a_running_call_is_stopped() {
     let (folder, session) = called("", Trigger::Stdin);
     fs::write(

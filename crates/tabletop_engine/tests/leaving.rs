@@ -5,7 +5,7 @@ mod common;
 use std::fs;
 
 use common::{Folder, Session, TRIGGERS, octave, script_error};
-use tabletop_engine::Sensor;
+use tabletop_engine::{Sensor, Stream};
 
 #[test]
 fn only_the_word_that_leaves_is_replaced() {
@@ -46,7 +46,8 @@ fn scripts_that_the_pair_calls_may_be_left_as_well() {
 
 #[test]
 fn a_script_that_may_be_left_is_still_in_its_folder() {
-    let callback = "inside; disp(mfilename('fullpath')); disp(mfilename(\"fullpathext\"));\n\
+    let callback = "inside; disp(mfilename ('fullpath')); disp(mfilename(\"fullpathext\"));\n\
+                    disp(mfilename); disp(which('testCallback')); which testCallback\n\
                     run([aux.path 'part.m']); source([aux.path 'part.m']); motor.headVelocity = n;\nif true, break, end\n";
     let folder = Folder::pair("n = 0;", callback);
     fs::create_dir(folder.0.join("private")).unwrap();
@@ -57,7 +58,7 @@ fn a_script_that_may_be_left_is_still_in_its_folder() {
     .unwrap();
     fs::write(
         folder.0.join("part.m"),
-        "n = n + 1;\nif true, break, end\nn = 100;\n",
+        "n = n + 1; disp(mfilename);\nif true, break, end\nn = 100;\n",
     )
     .unwrap();
     for trigger in TRIGGERS {
@@ -66,8 +67,11 @@ fn a_script_that_may_be_left_is_still_in_its_folder() {
         let motor = session.step(&Sensor::default()).unwrap().motor;
         assert_eq!(motor.head_velocity, Some(2.0));
         let script = folder.0.join("testCallback").display().to_string();
-        let printed = session.printed(&format!("{script}.m\n"));
-        let expected = format!("inside\n{script}\n{script}.m\n");
+        let printed = session.printed("part\npart\n");
+        let expected = format!(
+            "inside\n{script}\n{script}.m\ntestCallback\n{script}.m\n\
+             'testCallback' is a script from the file {script}.m\npart\npart\n"
+        );
         assert!(printed.contains(&expected), "{printed}");
     }
     fs::write(folder.0.join("part.m"), "error('no');\nif true, break, end").unwrap();
@@ -76,6 +80,19 @@ fn a_script_that_may_be_left_is_still_in_its_folder() {
     let error = script_error(session.step(&Sensor::default())).to_string();
     let place = format!("no\n  at {}:1\n", folder.0.join("part.m").display());
     assert!(error.starts_with(&place), "{error}");
+}
+
+#[test]
+fn the_program_says_what_it_has_changed() {
+    let folder = Folder::pair("if true, break, end", "");
+    let session = Session::octave(&folder.0, TRIGGERS[0]);
+    session.init().unwrap();
+    let notes: Vec<_> = session.engine.drain_console();
+    let [note] = &notes[..] else {
+        panic!("{notes:?}");
+    };
+    assert_eq!(note.stream, Stream::Note);
+    assert!(note.text.starts_with("testInit.m:1: "), "{}", note.text);
 }
 
 #[test]

@@ -150,6 +150,46 @@ fn an_error_without_a_place_is_in_the_script_that_ran() {
 }
 
 #[test]
+fn what_a_callback_has_cleared_or_spoilt_is_told() {
+    let cleared = message("", "clear all\ndisp(sensor.timeElapsed)");
+    assert!(cleared.contains("comes back in the next call"), "{cleared}");
+    let spoilt = message("", "aux = 3;");
+    assert!(
+        spoilt.starts_with("aux is 1x1 double; it must be a struct"),
+        "{spoilt}"
+    );
+}
+
+#[test]
+fn functions_of_their_own_variables_are_noted() {
+    for (callback, is_noted) in [
+        (
+            "function testCallback\nglobal count\nmotor.headVelocity = 1;",
+            true,
+        ),
+        (
+            "function testCallback\nmotor.headVelocity = global_count;",
+            true,
+        ),
+        (
+            "function testCallback\n  global motor\nmotor.headVelocity = 1;",
+            false,
+        ),
+        ("function testCallback\nassignin('base', 'x', 1);", false),
+        ("global_count = 1;", false),
+    ] {
+        let folder = Folder::pair("", callback);
+        let session = Session::octave(&folder.0, Trigger::Stdin);
+        session.init().unwrap();
+        let notes = session.engine.drain_console();
+        let noted = notes
+            .iter()
+            .any(|line| line.text.contains("its own variables"));
+        assert_eq!(noted, is_noted, "{callback}");
+    }
+}
+
+#[test]
 fn what_to_do_is_said() {
     for (init, told) in [
         (

@@ -17,12 +17,11 @@ for file = dir(fullfile(scripts, '*.m'))'
     do
         [text, number] = repaired(text, name);
         if number > 0
-            copy = at_home(text, fullfile(original, name));
-            write(fullfile(copies, file.name), copy);
+            write(fullfile(copies, file.name), text);
             % Octave would look for a file of that name first, which SOURCE does not want.
-            write(fullfile(copies, [file.name '.sourced']), copy);
+            write(fullfile(copies, [file.name '.sourced']), text);
             rehash;
-            note = "%s:%d: Octave knows no \"break\" outside a loop; \"return\" is used instead\n";
+            note = "\001note %s:%d: Octave knows no \"break\" outside a loop; \"return\" is used instead\n";
             printf(note, file.name, number);
         end
     until number == 0
@@ -35,16 +34,6 @@ theirs = fullfile(original, 'private');
 ours = fullfile(copies, 'private');
 if ~isfolder(theirs) || isfolder(ours), return; end
 if symlink(theirs, ours) ~= 0, copyfile(theirs, ours); end
-end
-
-function text = at_home(text, script)
-% The TEXT of a copy, which says that it is the SCRIPT itself.
-script = strrep(script, "'", "''");
-for quote = {"'", '"'}
-    call = @(what) ['mfilename(' quote{1} what quote{1} ')'];
-    text = strrep(text, call('fullpath'), ["'" script "'"]);
-    text = strrep(text, call('fullpathext'), ["'" script ".m'"]);
-end
 end
 
 function write(file, text)

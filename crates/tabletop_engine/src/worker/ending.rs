@@ -2,11 +2,13 @@
 
 use std::{
     process::ExitStatus,
+    sync::mpsc::RecvTimeoutError,
     time::{Duration, Instant},
 };
 
 use super::{GRACE, LOOK_AFTER, Running, Signal};
 use crate::{
+    engine::Trigger,
     error::{EngineError, Place},
     find::EngineKind,
     trigger::Op,
@@ -14,26 +16,51 @@ use crate::{
 
 /// How long the last output of an engine that has ended is waited for.
 const LAST_OUTPUT: Duration = Duration::from_millis(300);
+/// Time from one interrupt of a script to the next.
+const INTERRUPTS: Duration = Duration::from_millis(200);
 
 impl Running {
-    /// Where the script was when it was interrupted. Python tells; Octave and MATLAB have left it all when they hear again.
-    pub(super) fn interrupted_at(&mut self) -> Vec<Place> {
-        if self.worker.config.engine.kind != EngineKind::Python {
-            return Vec::new();
+    /// Lets the engine leave the script, if it does within a while. Python tells where that was; Octave and MATLAB have left it all
+    /// when they hear again.
+    pub(super) fn interrupt(&mut self) -> Vec<Place> {
+        self.worker.killer.interrupt();
+        let config = &self.worker.config;
+        match (config.engine.kind, config.trigger) {
+            (EngineKind::Python, _) => {
+                let has_left = self.leaves_script();
+                let reply = self.session.read_reply().ok().filter(|_| has_left);
+                let error = reply.and_then(|reply| self.script_error(&reply));
+                error.map_or_else(Vec::new, |error| error.stack)
+            }
+            (EngineKind::Octave, Trigger::Stdin) => {
+                self.seq = self.seq.wrapping_add(1).max(1);
+                let line = format!("printf(\"\\001done {}\\n\"); fflush(stdout);", self.seq);
+                if self.process.write_line(&line).is_ok() {
+                    self.leaves_script();
+                }
+                Vec::new()
+            }
+            _ => Vec::new(),
         }
+    }
+
+    /// Whether the engine says within a while that it has left the script. A program that the script has started may have got the
+    /// interrupt in its place, so there are more.
+    fn leaves_script(&mut self) -> bool {
         let start = Instant::now();
-        loop {
-            let rest = GRACE.saturating_sub(start.elapsed());
-            match self.worker.inbox.recv_timeout(rest) {
-                Ok(Signal::Done(seq)) if seq == self.seq => break,
+        while start.elapsed() < GRACE {
+            match self.worker.inbox.recv_timeout(INTERRUPTS) {
+                Ok(Signal::Done(seq)) if seq == self.seq => return true,
                 Ok(Signal::Closed) => self.open_outputs = self.open_outputs.saturating_sub(1),
                 Ok(_) => {}
-                Err(_) => return Vec::new(),
+                Err(RecvTimeoutError::Timeout) => self.worker.killer.interrupt(),
+                Err(RecvTimeoutError::Disconnected) => return false,
+            }
+            if self.process.ended().is_some() {
+                return false;
             }
         }
-        let reply = self.session.read_reply().ok();
-        let error = reply.and_then(|reply| self.script_error(&reply));
-        error.map_or_else(Vec::new, |error| error.stack)
+        false
     }
 
     /// The engine does not listen any more: why.
