@@ -1,5 +1,7 @@
 //! The settings that a recording needs to be replayed.
 
+use std::path::absolute;
+
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -58,6 +60,12 @@ fn note_physics(physics: Res<PhysicsSettings>, mut settings: ResMut<SessionSetti
     Ok(())
 }
 
+/// The same, wherever the program runs that replays it: its meshes are beside the file.
+fn from_everywhere(source: Source) -> Source {
+    let path = absolute(&source.path).unwrap_or(source.path);
+    Source { path, ..source }
+}
+
 fn note_robot(
     description: Res<Description>,
     robot: Res<Robot>,
@@ -65,7 +73,7 @@ fn note_robot(
 ) -> Result {
     let robot = RobotSettings {
         mode: robot.mode,
-        description: description.source.clone(),
+        description: description.source.clone().map(from_everywhere),
     };
     settings
         .0

@@ -112,10 +112,14 @@ impl EngineOptions {
     /// The engine that is named, if it runs scripts in this language; else any that does.
     fn engine_for(&self, language: &str, there: &Surroundings) -> Result<EngineChoice, Failure> {
         if language == OTHER {
-            let driver = self.engine.as_ref().map(PathBuf::from);
-            return driver.map(EngineChoice::Driver).ok_or_else(|| {
-                Failure::input("--script other needs --engine and the driver, a program that runs such scripts (docs/script-protocol.md)")
-            });
+            return match self.engine.as_deref() {
+                Some(driver) if matches!(parse(driver), EngineChoice::Program(_)) => {
+                    Ok(EngineChoice::Driver(driver.into()))
+                }
+                _ => Err(Failure::input(
+                    "--script other needs --engine and the driver, a program that runs such scripts (docs/script-protocol.md)",
+                )),
+            };
         }
         let Some((choice, by)) = self.named_engine(there) else {
             return Ok(match language {

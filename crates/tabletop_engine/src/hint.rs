@@ -9,7 +9,7 @@ use crate::{
 const FIELDS: [(&str, &str); 6] = [
     (
         "rgbVision",
-        "sensor.rgbVision is there only when there is a new picture: test with isfield; --picture-every 1 gives one in every call",
+        "sensor.rgbVision is there only when there is a new picture: test whether it is; --picture-every 1 gives one in every call",
     ),
     (
         "trackerLoc",

@@ -7,7 +7,7 @@ use tabletop_core::SimFact;
 use crate::clipboard::Clipboard;
 
 /// Older notices are forgotten, so that a script that is refused a million times does not fill the memory.
-const MAX_NOTICES: usize = 200;
+const MAX_NOTICES: usize = 1000;
 
 /// How the colours tell notices apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

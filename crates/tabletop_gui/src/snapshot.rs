@@ -23,7 +23,7 @@ pub(crate) struct Snapshots {
     folder: PathBuf,
     is_wanted: bool,
     /// What comes of those that are being written, in words.
-    writing: Vec<Task<String>>,
+    writing: Vec<Task<(Tone, String)>>,
 }
 
 impl Snapshots {
@@ -73,8 +73,14 @@ fn begin_writing(tick: Res<SimTick>, image: Res<SensorImage>, mut snapshots: Res
     let pool = IoTaskPool::get_or_init(TaskPool::new);
     let task = pool.spawn(async move {
         match save(&picture, &folder, now) {
-            Ok(path) => format!("the head view was saved as {}", path.display()),
-            Err(error) => format!("the head view could not be saved: {error}"),
+            Ok(path) => {
+                let told = format!("the head view was saved as {}", path.display());
+                (Tone::News, told)
+            }
+            Err(error) => {
+                let told = format!("the head view could not be saved: {error}");
+                (Tone::Fault, told)
+            }
         }
     });
     snapshots.writing.push(task);
@@ -86,8 +92,8 @@ fn tell(mut snapshots: ResMut<Snapshots>, mut notices: ResMut<Notices>) {
     }
     snapshots.writing.retain_mut(|task| {
         let words = check_ready(task);
-        if let Some(words) = &words {
-            notices.add(Tone::News, words);
+        if let Some((tone, words)) = &words {
+            notices.add(*tone, words);
         }
         words.is_none()
     });

@@ -96,7 +96,18 @@ impl Episode {
         earlier: &[u8],
         channels: Channels,
     ) -> Result<Self, RecorderError> {
-        let folder = Folder::create(folder)?;
+        Folder::create(folder, |folder| {
+            Self::begin_in(folder, header, scene, earlier, channels)
+        })
+    }
+
+    fn begin_in(
+        folder: Folder,
+        header: &SessionHeader,
+        scene: &SessionScene,
+        earlier: &[u8],
+        channels: Channels,
+    ) -> Result<Self, RecorderError> {
         let mut session = LogFile::create(folder.session())?;
         for line in [session_line(header), session_line(scene)] {
             let line =

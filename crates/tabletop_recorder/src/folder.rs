@@ -12,18 +12,26 @@ use crate::RecorderError;
 pub(crate) struct Folder(PathBuf);
 
 impl Folder {
-    /// Makes the folder. One that is there already is moved aside to the same name with the first free number appended.
-    pub(crate) fn create(path: &Path) -> Result<Self, RecorderError> {
-        if is_taken(path) {
-            let aside = first_free_name(path);
-            fs::rename(path, &aside).map_err(|source| RecorderError::MoveAside {
-                folder: path.to_owned(),
-                aside,
-                source,
-            })?;
+    /// Makes the folder, and has it filled. One that is there already is moved aside to the same name with the first free number
+    /// appended. If anything fails, all is as before.
+    pub(crate) fn create<T>(
+        path: &Path,
+        fill: impl FnOnce(Self) -> Result<T, RecorderError>,
+    ) -> Result<T, RecorderError> {
+        let aside = match is_taken(path) {
+            true => Some(move_aside(path)?),
+            false => None,
+        };
+        let folder = Self(path.to_owned());
+        let filled = create_folder(path).and_then(|()| fill(folder.clone()));
+        if filled.is_err() {
+            // What has failed is told; more cannot be done.
+            let _ = folder.remove();
+            if let Some(aside) = aside {
+                let _ = fs::rename(aside, path);
+            }
         }
-        create_folder(path)?;
-        Ok(Self(path.to_owned()))
+        filled
     }
 
     pub(crate) fn existing(path: &Path) -> Self {
@@ -113,6 +121,19 @@ pub(crate) fn create_folder(path: &Path) -> Result<(), RecorderError> {
     fs::create_dir_all(path).map_err(RecorderError::create(path))
 }
 
+/// Moves a folder to a name that is free, which is returned.
+fn move_aside(path: &Path) -> Result<PathBuf, RecorderError> {
+    let aside = first_free_name(path);
+    match fs::rename(path, &aside) {
+        Ok(()) => Ok(aside),
+        Err(source) => Err(RecorderError::MoveAside {
+            folder: path.to_owned(),
+            aside,
+            source,
+        }),
+    }
+}
+
 fn first_free_name(path: &Path) -> PathBuf {
     let numbered = |number: u32| {
         let mut name = path.components().as_path().as_os_str().to_owned();
@@ -139,9 +160,14 @@ mod tests {
         let parent = std::env::temp_dir().join(format!("tabletop_folder_{}", std::process::id()));
         let demo = parent.join("demo/");
         for content in ["first", "second", "third"] {
-            let folder = Folder::create(&demo).unwrap();
-            fs::write(folder.path().join("content"), content).unwrap();
+            Folder::create(&demo, |folder| {
+                fs::write(folder.path().join("content"), content).unwrap();
+                Ok(())
+            })
+            .unwrap();
         }
+        let failed = |_| Err::<(), _>(RecorderError::write(&demo)(io::Error::other("full")));
+        Folder::create(&demo, failed).unwrap_err();
         for (folder, content) in [("demo", "third"), ("demo-1", "first"), ("demo-2", "second")] {
             let path = parent.join(folder).join("content");
             assert_eq!(fs::read_to_string(path).unwrap(), content);
@@ -151,7 +177,7 @@ mod tests {
 
     #[test]
     fn a_folder_that_cannot_be_made_is_named() {
-        let error = Folder::create(Path::new("/dev/null/demo")).unwrap_err();
+        let error = Folder::create(Path::new("/dev/null/demo"), Ok).unwrap_err();
         assert!(error.to_string().contains("/dev/null/demo"), "{error}");
     }
 }

@@ -47,6 +47,14 @@ pub(super) fn figure(
     if file.ends_with(".shape.json") {
         return shape(file, &fs::read_to_string(&path).map_err(failed)?);
     }
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+    if !["stl", "obj", "dae"]
+        .iter()
+        .any(|known| extension == *known)
+    {
+        let kinds = "what can be read are STL, OBJ and DAE files";
+        return Err(failed(io::Error::other(kinds)));
+    }
     let parts = load(&path, scale, color).map_err(failed)?;
     if parts.is_empty() {
         return Err(LookError::Empty { path });

@@ -157,6 +157,7 @@ fn no_recording_starts_on_a_full_disk() {
     let (folder, reason) = failure(&mut app);
     assert_eq!(folder, disk.0.join("demo"));
     assert!(reason.starts_with("no recording was started"), "{reason}");
+    assert!(!disk.0.join("demo").exists(), "nothing is left of it");
     assert!(!app.world().resource::<Recording>().0);
 
     fs::remove_file(disk.0.join("filler")).unwrap();
