@@ -189,7 +189,7 @@ impl Running {
                 Err(RecvTimeoutError::Disconnected) => return EngineError::Stopped,
                 Ok(Signal::Done(_)) => continue,
                 Ok(Signal::Closed) => {
-                    self.open_outputs = self.open_outputs.saturating_sub(1);
+                    self.note_closed_output();
                     // The end of the outputs comes a moment before that of the process.
                     match self.process.wait(LOOK_AFTER) {
                         Some(status) => return self.died(status),
@@ -292,9 +292,18 @@ impl Running {
         }
     }
 
+    /// Counts the requests; none has the number 0.
+    fn next_request(&mut self) {
+        self.seq = self.seq.wrapping_add(1).max(1);
+    }
+
+    fn note_closed_output(&mut self) {
+        self.open_outputs = self.open_outputs.saturating_sub(1);
+    }
+
     /// Has the engine do something and reads its answer.
     fn call(&mut self, op: Op, what: &'static str, limit: Duration) -> Result<Arrays, EngineError> {
-        self.seq = self.seq.wrapping_add(1).max(1);
+        self.next_request();
         self.trigger(op)?;
         self.wait(what, limit)?;
         let reply = self.session.read_reply()?;
@@ -394,7 +403,7 @@ impl Running {
                     return Err(EngineError::Stopped);
                 }
                 Ok(Signal::Closed) => {
-                    self.open_outputs = self.open_outputs.saturating_sub(1);
+                    self.note_closed_output();
                     if self.process.wait(LOOK_AFTER).is_some() {
                         return Err(self.death());
                     }

@@ -330,6 +330,20 @@ fn faults_are_told_with_their_place() {
 }
 
 #[test]
+fn what_a_script_does_at_last_is_not_interrupted() {
+    let script = "import os, time\ndef init(aux):\n    try:\n        while True: time.sleep(0.01)\n    finally:\n        time.sleep(0.5)\n\
+                  \x20       open(os.path.join(os.path.dirname(__file__), 'done'), 'w').close()\n\
+                  def callback(sensor, motor, aux): pass\n";
+    let folder = Folder::new(&[("robot.py", script)]);
+    let mut config = config(folder.0.join("robot.py"));
+    config.timeouts.init = Duration::from_millis(300);
+    let session = Session::start(config).unwrap();
+    let error = session.init().unwrap_err();
+    assert!(matches!(error, EngineError::Timeout { .. }), "{error}");
+    assert!(folder.0.join("done").exists());
+}
+
+#[test]
 fn hangs_exits_and_missing_files_are_told() {
     let script = |init: &str| {
         format!("import os\ndef init(aux):\n    {init}\ndef callback(sensor, motor, aux): pass\n")

@@ -33,7 +33,7 @@ impl Running {
                 error.map_or_else(Vec::new, |error| error.stack)
             }
             (EngineKind::Octave, Trigger::Stdin) => {
-                self.seq = self.seq.wrapping_add(1).max(1);
+                self.next_request();
                 let line = format!("printf(\"\\001done {}\\n\"); fflush(stdout);", self.seq);
                 if self.process.write_line(&line).is_ok() {
                     self.leaves_script();
@@ -44,16 +44,18 @@ impl Running {
         }
     }
 
-    /// Whether the engine says within a while that it has left the script. A program that the script has started may have got the
-    /// interrupt in its place, so there are more.
+    /// Whether the engine says within a while that it has left the script. A program that Octave's script has started may have got
+    /// the interrupt in its place, so there are more; Python's `finally` is let be.
     fn leaves_script(&mut self) -> bool {
+        let repeats = self.worker.config.engine.kind == EngineKind::Octave;
         let start = Instant::now();
         while start.elapsed() < GRACE {
             match self.worker.inbox.recv_timeout(INTERRUPTS) {
                 Ok(Signal::Done(seq)) if seq == self.seq => return true,
-                Ok(Signal::Closed) => self.open_outputs = self.open_outputs.saturating_sub(1),
+                Ok(Signal::Closed) => self.note_closed_output(),
                 Ok(_) => {}
-                Err(RecvTimeoutError::Timeout) => self.worker.killer.interrupt(),
+                Err(RecvTimeoutError::Timeout) if repeats => self.worker.killer.interrupt(),
+                Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return false,
             }
             if self.process.ended().is_some() {
@@ -88,7 +90,7 @@ impl Running {
         while self.open_outputs > 0 {
             let rest = LAST_OUTPUT.saturating_sub(start.elapsed());
             match self.worker.inbox.recv_timeout(rest) {
-                Ok(Signal::Closed) => self.open_outputs -= 1,
+                Ok(Signal::Closed) => self.note_closed_output(),
                 Ok(_) => {}
                 Err(_) => break,
             }
@@ -97,7 +99,7 @@ impl Running {
 
     /// Lets the engine end by itself, so that it closes the script's files. Dropping it does the rest.
     pub(super) fn end(&mut self, limit: Duration) {
-        self.seq = self.seq.wrapping_add(1).max(1);
+        self.next_request();
         if let Some(file) = &mut self.trigger_file {
             drop(file.request(self.seq, Op::End, false));
         }
@@ -118,10 +120,10 @@ impl Running {
     fn wait_for_end(&mut self, mut limit: Duration) -> Duration {
         let start = Instant::now();
         while start.elapsed() < limit && self.process.wait(LOOK_AFTER).is_none() {
-            for signal in self.worker.inbox.try_iter() {
+            while let Ok(signal) = self.worker.inbox.try_recv() {
                 match signal {
                     Signal::Stop(sooner) => limit = limit.min(sooner),
-                    Signal::Closed => self.open_outputs = self.open_outputs.saturating_sub(1),
+                    Signal::Closed => self.note_closed_output(),
                     Signal::Init(_) | Signal::Step(_) | Signal::Done(_) => {}
                 }
             }
