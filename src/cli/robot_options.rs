@@ -9,10 +9,7 @@ use clap::Args;
 use tabletop::{
     baxter::{BaxterPlugin, Description, Source},
     core::RobotMode,
-    script::{
-        ENGINE_VARIABLE, EngineChoice, EngineConfig, EngineKind, FoundEngine, ScriptSettings,
-        Surroundings, Tell,
-    },
+    script::{ENGINE_VARIABLE, EngineChoice, EngineKind, ScriptSettings, Surroundings, Tell},
 };
 
 use super::Failure;
@@ -94,7 +91,7 @@ impl EngineOptions {
             settings.engine = parse(engine);
         }
         if script.is_some() || self.engine.is_some() {
-            found(&settings)?;
+            settings.engine_config().map_err(Failure::input)?;
         }
         if self.no_objects {
             settings.objects = Tell::Never;
@@ -178,20 +175,11 @@ fn runs(kind: EngineKind, language: &str) -> bool {
 
 /// Whether there are scripts where these settings say, as far as that can be seen before the engine starts.
 pub(super) fn check_scripts(settings: &ScriptSettings) -> Result<(), Failure> {
-    let mut config = EngineConfig::new(found(settings)?);
-    if let Some(agent) = &settings.agent {
-        config.agent.clone_from(agent);
-    }
+    let config = settings.engine_config().map_err(Failure::input)?;
     match config.fault() {
         None => Ok(()),
         Some(fault) => Err(Failure::input(fault)),
     }
-}
-
-/// The engine of these settings.
-fn found(settings: &ScriptSettings) -> Result<FoundEngine, Failure> {
-    let found = settings.surroundings.find(&settings.engine);
-    found.map_err(Failure::input)
 }
 
 fn parse(engine: &str) -> EngineChoice {

@@ -71,12 +71,8 @@ impl Script {
             return Ok(());
         }
         // The first tick is that of the init script.
-        let mut left = ticks + 1;
-        self.run_while(app, |_| {
-            let goes_on = left > 0;
-            left = left.saturating_sub(1);
-            goes_on
-        })?;
+        let mut left = 0..=ticks;
+        self.run_while(app, |_| left.next().is_some())?;
         see_off(app.world_mut());
         self.result()
     }

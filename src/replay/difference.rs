@@ -16,15 +16,42 @@ use super::ReplayError;
 pub fn first_difference(recorded: &Path, replayed: &Path) -> Result<Option<String>, ReplayError> {
     let mut files = files_in(recorded)?;
     files.extend(files_in(replayed)?);
+    first_that_differs(files, [recorded, replayed], |_, before, after| {
+        before == after
+    })
+}
+
+/// [`first_difference`] for a recording that was cut off: its files are beginnings, and the last ones are not there.
+pub(super) fn first_before_cut(
+    recorded: &Path,
+    replayed: &Path,
+) -> Result<Option<String>, ReplayError> {
+    let mut files = files_in(recorded)?;
+    files.retain(|file| !is_for_the_program_alone(file));
+    first_that_differs(files, [recorded, replayed], |file, before, after| {
+        let is_picture = file.extension().is_some_and(|extension| extension == "png");
+        after.starts_with(match is_picture {
+            true => before,
+            false => whole_lines(before),
+        })
+    })
+}
+
+/// The first of these files that is in one of two folders only, or is not the same in both, and how it differs.
+fn first_that_differs(
+    files: BTreeSet<PathBuf>,
+    [recorded, replayed]: [&Path; 2],
+    is_same: impl Fn(&Path, &[u8], &[u8]) -> bool,
+) -> Result<Option<String>, ReplayError> {
     for file in files {
         let name = file.display();
         let (before, after) = (recorded.join(&file), replayed.join(&file));
         let difference = match (before.exists(), after.exists()) {
-            (true, false) => format!("{name}: {NOT_REPLAYED}"),
+            (true, false) => format!("{name}: was recorded, and is not there in the replay"),
             (false, true) => format!("{name}: was not recorded, and is there in the replay"),
             _ => {
                 let (before, after) = (read(&before)?, read(&after)?);
-                if before == after {
+                if is_same(&file, &before, &after) {
                     continue;
                 }
                 format!("{name}: {}", first_difference_of(&before, &after))
@@ -34,34 +61,6 @@ pub fn first_difference(recorded: &Path, replayed: &Path) -> Result<Option<Strin
     }
     Ok(None)
 }
-
-/// [`first_difference`] for a recording that was cut off: its files are beginnings, and the last ones are not there.
-pub(super) fn first_before_cut(
-    recorded: &Path,
-    replayed: &Path,
-) -> Result<Option<String>, ReplayError> {
-    for file in files_in(recorded)? {
-        if is_for_the_program_alone(&file) {
-            continue;
-        }
-        let name = file.display();
-        if !replayed.join(&file).exists() {
-            return Ok(Some(format!("{name}: {NOT_REPLAYED}")));
-        }
-        let (before, after) = (read(&recorded.join(&file))?, read(&replayed.join(&file))?);
-        let whole = match file.extension().is_some_and(|extension| extension == "png") {
-            true => &before[..],
-            false => whole_lines(&before),
-        };
-        if !after.starts_with(whole) {
-            let difference = first_difference_of(whole, &after);
-            return Ok(Some(format!("{name}: {difference}")));
-        }
-    }
-    Ok(None)
-}
-
-const NOT_REPLAYED: &str = "was recorded, and is not there in the replay";
 
 /// Whether it is a picture that was not finished, or was undone.
 fn is_for_the_program_alone(file: &Path) -> bool {

@@ -1,6 +1,9 @@
 //! The examples of scripts do what they are for, in a real Octave.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop::{
@@ -54,6 +57,12 @@ impl Stage {
             "these tests need GNU Octave (octave-cli): {agent:?}"
         );
         stage
+    }
+
+    /// Where its scripts are.
+    fn scripts(&self) -> PathBuf {
+        let settings = self.app.world().resource::<ScriptSettings>();
+        settings.agent.clone().unwrap()
     }
 
     fn tick(&mut self) {
@@ -129,13 +138,7 @@ fn the_babbling_arm_learns_to_reach_and_remembers() {
         .filter_map(|word| word.parse::<f64>().ok());
     let errors: Vec<_> = words.filter(|number| *number < 1.0).collect();
     assert!(errors[1] < 0.7 * errors[0], "the error falls: {line}");
-    let folder = stage
-        .app
-        .world()
-        .resource::<ScriptSettings>()
-        .agent
-        .clone()
-        .unwrap();
+    let folder = stage.scripts();
     assert!(folder.join("babble.mat").exists());
 }
 
@@ -171,13 +174,7 @@ fn demonstrations_become_pictures() {
     while *stage.app.world().resource::<ScenarioRun>().outcome() == Outcome::Running {
         stage.tick();
     }
-    let folder = stage
-        .app
-        .world()
-        .resource::<ScriptSettings>()
-        .agent
-        .clone()
-        .unwrap();
+    let folder = stage.scripts();
     let mut pictures: Vec<_> = fs::read_dir(folder.join("pictures"))
         .unwrap()
         .map(|entry| entry.unwrap().path())

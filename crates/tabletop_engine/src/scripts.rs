@@ -54,16 +54,15 @@ pub(crate) fn note(script: &Path) -> Option<String> {
 
 /// Whether a function declares one of the variables that it shares with the simulator, or acts in the base workspace.
 fn reaches_shared(text: &str) -> bool {
-    let mut words = text.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
-    words.any(|word| matches!(word, "evalin" | "assignin"))
-        || text
-            .lines()
-            .filter_map(|line| line.trim().strip_prefix("global "))
-            .any(|names| {
-                let mut names =
-                    names.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
-                names.any(|name| SHARED.contains(&name))
-            })
+    let declared = text
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("global "));
+    words(text).any(|word| matches!(word, "evalin" | "assignin"))
+        || declared.flat_map(words).any(|name| SHARED.contains(&name))
+}
+
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|letter: char| !letter.is_alphanumeric() && letter != '_')
 }
 
 /// Whether a script is a function.

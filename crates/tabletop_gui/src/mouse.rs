@@ -2,7 +2,6 @@
 //! lets it go.
 
 use bevy::prelude::*;
-use bevy_egui::input::EguiWantsInput;
 use tabletop_core::{DragPlane, Hands, ObjectSpec, Paused, SimCommand, Table};
 
 use crate::{drag::Drag, pick::Pickable, pointer::Pointer};
@@ -33,7 +32,6 @@ impl Press {
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Press>()
         .init_resource::<Pointer>()
-        .init_resource::<EguiWantsInput>()
         .configure_sets(
             RunFixedMainLoop,
             MouseSystems.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
@@ -57,7 +55,6 @@ fn forget_press(mut press: ResMut<Press>) {
 fn press(
     buttons: Res<ButtonInput<MouseButton>>,
     pointer: Res<Pointer>,
-    wanted: Res<EguiWantsInput>,
     pickable: Pickable,
     hands: Res<Hands>,
     plane: Res<DragPlane>,
@@ -65,10 +62,7 @@ fn press(
     mut press: ResMut<Press>,
     mut commands: MessageWriter<SimCommand>,
 ) {
-    if !buttons.just_pressed(MouseButton::Left)
-        || wanted.wants_any_pointer_input()
-        || pointer.is_over_panel
-    {
+    if !buttons.just_pressed(MouseButton::Left) || pointer.is_panels {
         return;
     }
     let Some(ray) = pointer.ray else {
@@ -126,7 +120,6 @@ fn drag(
 fn come_up(
     buttons: Res<ButtonInput<MouseButton>>,
     pointer: Res<Pointer>,
-    wanted: Res<EguiWantsInput>,
     pickable: Pickable,
     hands: Res<Hands>,
     specs: Query<&ObjectSpec>,
@@ -137,8 +130,7 @@ fn come_up(
         return;
     }
     if let Press::Click(object) = *press
-        && !wanted.wants_any_pointer_input()
-        && !pointer.is_over_panel
+        && !pointer.is_panels
         && pointer.ray.and_then(|ray| pickable.object_along(ray)) == Some(object)
         && let Ok(spec) = specs.get(object)
     {

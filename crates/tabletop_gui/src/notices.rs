@@ -149,9 +149,7 @@ fn show_notices(
     if !is_open {
         notices.clear();
     }
-    if notices.is_unseen {
-        notices.is_unseen = false;
-    }
+    notices.is_unseen = false;
 }
 
 const fn color(tone: Tone) -> egui::Color32 {

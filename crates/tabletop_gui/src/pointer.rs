@@ -1,7 +1,7 @@
 //! Where the mouse points.
 
 use bevy::{prelude::*, window::PrimaryWindow};
-use bevy_egui::{EguiContext, PrimaryEguiContext, egui};
+use bevy_egui::{EguiContext, PrimaryEguiContext, egui, input::EguiWantsInput};
 use tabletop_core::UserCamera;
 
 use crate::mouse::MouseSystems;
@@ -11,12 +11,13 @@ use crate::mouse::MouseSystems;
 pub(crate) struct Pointer {
     /// The line of sight through it, from the user's camera.
     pub ray: Option<Ray3d>,
-    /// Whether it is over a panel. What egui says of that is a frame old, and the cursor may have come since.
-    pub is_over_panel: bool,
+    /// Whether a press is for the panels.
+    pub is_panels: bool,
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.add_systems(RunFixedMainLoop, aim.before(MouseSystems));
+    app.init_resource::<EguiWantsInput>()
+        .add_systems(RunFixedMainLoop, aim.before(MouseSystems));
 }
 
 fn aim(
@@ -24,18 +25,20 @@ fn aim(
     windows: Query<&Window, With<PrimaryWindow>>,
     cameras: Query<(&Camera, &GlobalTransform), With<UserCamera>>,
     mut panels: Query<&mut EguiContext, With<PrimaryEguiContext>>,
+    wanted: Res<EguiWantsInput>,
 ) {
     let cursor = windows.iter().next().and_then(Window::cursor_position);
     pointer.ray = cursor
         .zip(cameras.iter().next())
         .and_then(|(cursor, (camera, place))| camera.viewport_to_world(place, cursor).ok());
-    pointer.is_over_panel =
-        cursor
-            .zip(panels.iter_mut().next())
-            .is_some_and(|(cursor, mut panels)| {
-                let at = egui::pos2(cursor.x, cursor.y);
-                let layer = panels.get_mut().layer_id_at(at);
-                // The background is everywhere; the view is seen through it.
-                layer.is_some_and(|layer| layer.order != egui::Order::Background)
-            });
+    // What egui wants is a frame old, and the cursor may have come to a panel since.
+    let is_over_panel = cursor
+        .zip(panels.iter_mut().next())
+        .is_some_and(|(cursor, mut panels)| {
+            let at = egui::pos2(cursor.x, cursor.y);
+            let layer = panels.get_mut().layer_id_at(at);
+            // The background is everywhere; the view is seen through it.
+            layer.is_some_and(|layer| layer.order != egui::Order::Background)
+        });
+    pointer.is_panels = is_over_panel || wanted.wants_any_pointer_input();
 }

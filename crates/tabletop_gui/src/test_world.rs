@@ -65,7 +65,7 @@ impl TestWorld {
     pub fn look_along(&mut self, ray: Ray3d) {
         self.app.insert_resource(Pointer {
             ray: Some(ray),
-            is_over_panel: false,
+            is_panels: false,
         });
     }
 
@@ -75,7 +75,7 @@ impl TestWorld {
 
     /// There is a panel before what is pointed at.
     pub fn point_at_panel(&mut self) {
-        self.app.world_mut().resource_mut::<Pointer>().is_over_panel = true;
+        self.app.world_mut().resource_mut::<Pointer>().is_panels = true;
     }
 
     pub fn point_nowhere(&mut self) {

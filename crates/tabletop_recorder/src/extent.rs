@@ -8,7 +8,7 @@ use std::{
 
 use tabletop_core::{SimCommand, SimTick};
 
-use crate::{RecorderError, Session, folder::Folder, frame::FrameClock};
+use crate::{RecorderError, Session, folder::Folder, frame::FrameClock, log_file::whole_lines};
 
 /// Lines of states and joints are shorter.
 const LONGEST_LINE: u64 = 4096;
@@ -69,10 +69,4 @@ fn end_of(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut end = Vec::new();
     file.read_to_end(&mut end)?;
     Ok(end)
-}
-
-/// The lines that have a line end.
-fn whole_lines(text: &str) -> impl Iterator<Item = &str> {
-    let whole = text.rfind('\n').map_or("", |end| &text[..end]);
-    whole.split('\n')
 }

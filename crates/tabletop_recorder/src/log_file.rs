@@ -104,6 +104,12 @@ fn csv_lines(records: &[Vec<String>]) -> io::Result<Vec<u8>> {
     lines.into_inner().map_err(csv::IntoInnerError::into_error)
 }
 
+/// The lines of a file that have a line end: a kill in the middle of a write may leave one without.
+pub(crate) fn whole_lines(text: &str) -> impl Iterator<Item = &str> {
+    let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+    whole.split('\n')
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;

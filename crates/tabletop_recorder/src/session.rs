@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
 use tabletop_core::{HeadCamera, JointSpec, ObjectSpec, Pose, SimCommand, Table};
 
-use crate::RecorderError;
+use crate::{RecorderError, log_file::whole_lines};
 
 /// Version of the format that is written here.
 pub(crate) const FORMAT: u32 = 2;
@@ -90,8 +90,7 @@ impl Session {
     pub fn read(path: impl Into<PathBuf>) -> Result<Self, RecorderError> {
         let path = path.into();
         let text = fs::read_to_string(&path).map_err(RecorderError::read(&path))?;
-        let whole = text.rfind('\n').map_or("", |end| &text[..end]);
-        let mut lines = (1..).zip(whole.split('\n'));
+        let mut lines = (1..).zip(whole_lines(&text));
         let mut line = |number| lines.next().unwrap_or((number, ""));
         let header: SessionHeader = parse(&path, line(1))?;
         if header.format != FORMAT {

@@ -9,7 +9,7 @@ use bevy::prelude::*;
 use tabletop_core::{
     Agent, AgentNews, AgentOrder, PictureDemand, RobotMode, SimCommand, SimTick, Standstill,
 };
-use tabletop_engine::{EngineConfig, EngineError, EngineHandle, Output, Reply};
+use tabletop_engine::{EngineError, EngineHandle, Reply};
 
 use crate::{
     act::{command_of_motor, commands_of_init, last_command, unreachable},
@@ -220,16 +220,7 @@ enum Answer {
 }
 
 fn start(settings: &ScriptSettings, tick: SimTick) -> Result<Session, EngineError> {
-    let engine = settings.surroundings.find(&settings.engine)?;
-    let mut config = EngineConfig::new(engine);
-    if let Some(agent) = &settings.agent {
-        config.agent.clone_from(agent);
-    }
-    config.pair.clone_from(&settings.pair);
-    config.timeouts = settings.timeouts;
-    if settings.waiting == Waiting::Blocking {
-        config.output = Output::Whole;
-    }
+    let config = settings.engine_config()?;
     let told = Told::to(&config.agent, settings);
     Ok(Session {
         engine: EngineHandle::start(config)?,

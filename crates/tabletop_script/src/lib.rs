@@ -35,7 +35,7 @@ mod standstill;
 
 pub use settings::{ScriptSettings, Tell, Waiting};
 pub use tabletop_engine::{
-    ENGINE_VARIABLE, EngineChoice, EngineConfig, EngineKind, FoundEngine, Surroundings, Timeouts,
+    ENGINE_VARIABLE, EngineChoice, EngineConfig, EngineError, EngineKind, Surroundings, Timeouts,
 };
 
 use bevy::{ecs::system::RunSystemOnce as _, prelude::*};

@@ -7,7 +7,7 @@ use std::{
 
 use bevy::prelude::*;
 use tabletop_core::{AgentNews, TICKS_PER_SECOND};
-use tabletop_engine::{EngineChoice, Surroundings, Timeouts};
+use tabletop_engine::{EngineChoice, EngineConfig, EngineError, Output, Surroundings, Timeouts};
 
 use crate::mentions::mention;
 
@@ -68,6 +68,26 @@ pub enum Waiting {
     Blocking,
     /// A frame waits no longer than this; then it is drawn without a tick having passed, and so on.
     Frame(Duration),
+}
+
+impl ScriptSettings {
+    /// What the engine is started with.
+    ///
+    /// # Errors
+    /// The engine that is wanted is not there.
+    pub fn engine_config(&self) -> Result<EngineConfig, EngineError> {
+        let engine = self.surroundings.find(&self.engine)?;
+        let mut config = EngineConfig::new(engine);
+        if let Some(agent) = &self.agent {
+            config.agent.clone_from(agent);
+        }
+        config.pair.clone_from(&self.pair);
+        config.timeouts = self.timeouts;
+        if self.waiting == Waiting::Blocking {
+            config.output = Output::Whole;
+        }
+        Ok(config)
+    }
 }
 
 impl Default for ScriptSettings {
