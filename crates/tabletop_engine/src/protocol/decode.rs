@@ -47,6 +47,9 @@ impl Arrays {
             };
             arrays.put(name, array);
         }
+        if !names.0.is_empty() || !rest.0.is_empty() {
+            return Err(ProtocolError::Damaged("it goes on after its last array"));
+        }
         Ok(arrays)
     }
 }
