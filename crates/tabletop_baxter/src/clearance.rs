@@ -4,12 +4,12 @@ use bevy::prelude::*;
 use bevy_rapier3d::{
     parry::{
         bounding_volume::{Aabb, BoundingVolume},
-        query::{Contact, contact},
+        query::Contact,
     },
     rapier::prelude as rapier,
 };
 use tabletop_core::Pose;
-use tabletop_physics::{Convex, to_rapier};
+use tabletop_physics::{Convex, contact, to_rapier};
 
 /// Distance, in units, that is kept from what is in the way.
 pub(crate) const MARGIN: f32 = 0.01;
@@ -109,8 +109,6 @@ impl Solid {
     pub fn contact(&self, other: &Self, most: f32) -> Option<Contact> {
         let [here, there] = [self, other].map(|solid| to_rapier(solid.from));
         contact(&here, &*self.shape, &there, &*other.shape, most)
-            .ok()
-            .flatten()
     }
 
     /// The radius of a ball about the solid's origin that holds it.
@@ -145,8 +143,6 @@ impl Solid {
             &*other.shape,
             most,
         )
-        .ok()
-        .flatten()
         .map(|contact| contact.dist)
     }
 }

@@ -4,12 +4,12 @@ use bevy::prelude::*;
 use bevy_rapier3d::{
     parry::{
         bounding_volume::{Aabb, BoundingVolume},
-        query::contact,
         utils::PoseOpt,
     },
     prelude::RapierContext,
     rapier::prelude::{Collider, ColliderHandle, ContactPair},
 };
+use tabletop_physics::contact;
 
 use crate::clearance::MARGIN;
 
@@ -110,7 +110,7 @@ pub(crate) fn with_near<'a>(
             );
             Some(Contact {
                 thing: thing.entity,
-                point: nearest.ok().flatten()?.point2,
+                point: nearest?.point2,
                 impulse: 0.0,
             })
         })

@@ -1,8 +1,10 @@
 //! How near convex solids are to each other: for bodies that are moved without the physics engine.
 
 use bevy::prelude::*;
-use bevy_rapier3d::{parry, rapier::prelude as rapier};
+use bevy_rapier3d::rapier::prelude as rapier;
 use tabletop_core::Pose;
+
+use crate::contact::contact;
 
 /// A convex solid with its pose in the frame of what it is a part of.
 #[derive(Clone, Debug)]
@@ -50,15 +52,13 @@ pub fn nearest<'a>(
         let part_at = to_rapier(at * part.pose);
         obstacles.iter().filter_map(move |obstacle| {
             let obstacle_at = to_rapier(obstacle.pose);
-            parry::query::contact(
+            contact(
                 &part_at,
                 &*part.shape,
                 &obstacle_at,
                 &*obstacle.shape,
                 within,
             )
-            .ok()
-            .flatten()
             .map(|contact| Nearest {
                 distance: contact.dist,
                 away: contact.normal2,

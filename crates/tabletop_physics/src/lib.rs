@@ -29,6 +29,7 @@
 //! ```
 
 mod body;
+mod contact;
 mod convex;
 mod holding;
 mod joint;
@@ -42,6 +43,7 @@ mod transforms;
 mod twist;
 
 pub use body::collider;
+pub use contact::contact;
 pub use convex::{Convex, Nearest, convex_parts, nearest, to_rapier};
 pub use holding::{JustReleased, drawn, hold, let_fall, let_go};
 pub use mass::mass_properties;
