@@ -98,7 +98,6 @@ fn metadata(arguments: &[&str]) -> Value {
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--format-version", "1", "--locked", "--offline"])
         .args(arguments)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
         .output()
         .unwrap();
     assert!(
@@ -167,7 +166,6 @@ fn the_headless_program_has_no_renderer_and_no_window_library() {
         .args(["tree", "--package", "tabletop", "--no-default-features"])
         .args(["--edges", "normal,build", "--prefix", "none"])
         .args(["--locked", "--offline"])
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
         .output()
         .unwrap();
     let tree = String::from_utf8(output.stdout).unwrap();

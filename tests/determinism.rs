@@ -17,9 +17,7 @@ const FILES: [&str; 5] = [
 ];
 
 fn command(file: &str) -> SimCommand {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tablesetup")
-        .join(file);
+    let path = Path::new("tablesetup").join(file);
     SimCommand::SetScene(Box::new(read_task(&path).unwrap().scene))
 }
 

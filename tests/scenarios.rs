@@ -1,14 +1,13 @@
 //! Every shipped task file, run.
 
-use std::{fs, path::Path};
+use std::fs;
 
 use bevy::prelude::*;
 use tabletop::{prelude::*, xml::read_task};
 
 #[test]
 fn every_shipped_scene_keeps_its_objects_on_the_table() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tablesetup");
-    for entry in fs::read_dir(folder).unwrap() {
+    for entry in fs::read_dir("tablesetup").unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_none_or(|ending| ending != "xml") {
             continue;

@@ -76,6 +76,59 @@ fn a_recording_that_was_cut_off_replays_as_far_as_it_goes() {
 }
 
 #[test]
+fn a_recording_may_be_cut_off_right_after_a_picture() {
+    let folder = recording("stack_two_blocks", "cut-after-a-picture");
+    let session = fs::read_to_string(folder.join("session.jsonl")).unwrap();
+    let start = number_after(&session, "\"start_tick\":");
+    let frame = last_picture(&folder.join("1"));
+    let tick = start + 15 * frame;
+    for file in ["states.csv", "joints.csv"] {
+        keep_lines(&folder.join(file), |line| {
+            !number(line).is_some_and(|of| of >= tick)
+        });
+    }
+    keep_lines(&folder.join("1.txt"), |line| number(line) < Some(frame));
+    keep_lines(&folder.join("session.jsonl"), |line| {
+        !line.starts_with("{\"tick\":") || number_after(line, "{\"tick\":") < tick
+    });
+    fs::remove_file(folder.join("2.txt")).unwrap();
+    fs::remove_dir(folder.join("2")).unwrap();
+
+    let output = tabletop(&["replay", folder.to_str().unwrap(), "--verify"]);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(
+        said.contains(&format!("was cut off in tick {tick},")),
+        "{said}"
+    );
+}
+
+fn last_picture(folder: &Path) -> u64 {
+    let files = fs::read_dir(folder).unwrap();
+    let frames = files.map(|file| number(file.unwrap().file_name().to_str().unwrap()));
+    frames.max().unwrap().unwrap()
+}
+
+fn keep_lines(path: &Path, keep: impl Fn(&str) -> bool) {
+    let text = fs::read_to_string(path).unwrap();
+    let kept: String = text
+        .split_inclusive('\n')
+        .filter(|line| keep(line))
+        .collect();
+    fs::write(path, kept).unwrap();
+}
+
+/// The number with which a text begins.
+fn number(text: &str) -> Option<u64> {
+    let end = text.find(|letter: char| !letter.is_ascii_digit());
+    text[..end.unwrap_or(text.len())].parse().ok()
+}
+
+fn number_after(text: &str, words: &str) -> u64 {
+    number(text.split_once(words).unwrap().1).unwrap()
+}
+
+#[test]
 fn what_hands_did_before_the_start_is_done_again() {
     for (name, steps) in [
         (

@@ -30,8 +30,7 @@ fn folder(name: &str) -> PathBuf {
 /// A copy of the folder matlab, whose agentBehavior.m names this pair.
 pub fn copy_of_matlab(pair: &str) -> PathBuf {
     let folder = folder(pair);
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("matlab");
-    for entry in fs::read_dir(source).unwrap() {
+    for entry in fs::read_dir("matlab").unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|extension| extension == "m") {
             fs::copy(&path, folder.join(path.file_name().unwrap())).unwrap();

@@ -2,11 +2,11 @@
 
 use std::{
     fs,
-    path::{Path, PathBuf},
+    path::{self, Path, PathBuf},
     process::{Command, Output},
 };
 
-/// Runs the program without a display, in the folder of this package.
+/// Runs the program without a display, in the folder of this package, where cargo runs tests.
 pub fn tabletop(arguments: &[&str]) -> Output {
     command(arguments).output().unwrap()
 }
@@ -16,7 +16,6 @@ pub fn command(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tabletop"));
     command
         .args(arguments)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
         .env_remove("TABLETOP_ENGINE");
@@ -31,8 +30,7 @@ pub fn small_files(arguments: &[&str]) -> Output {
     shell
         .args(["-c", r#"trap "" XFSZ; ulimit -f 16; exec "$0" "$@""#])
         .arg(program.get_program())
-        .args(program.get_args())
-        .current_dir(env!("CARGO_MANIFEST_DIR"));
+        .args(program.get_args());
     shell.output().unwrap()
 }
 
@@ -56,9 +54,7 @@ pub fn place(name: &str) -> PathBuf {
 
 /// A file of the package, by its name in this folder.
 pub fn shipped(folder: &str, name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join(folder)
-        .join(name)
+    path::absolute(Path::new(folder).join(name)).unwrap()
 }
 
 /// A scenario of these steps, which begin in the second line, on the default table.

@@ -4,7 +4,7 @@
 
 mod common;
 
-use std::path::Path;
+use std::path;
 
 use common::{Folder, Session, TRIGGERS};
 use tabletop_engine::{Motor, Sensor, Trigger};
@@ -116,7 +116,7 @@ fn variables_may_have_any_name() {
 
 #[test]
 fn another_copy_of_the_driver_does_no_harm() {
-    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("matlab");
+    let repository = path::absolute("matlab").unwrap();
     let add = format!("clear all; addpath(genpath('{}'));", repository.display());
     for trigger in TRIGGERS {
         let [_, motor] = motors(&add, "clear all; motor.headVelocity = 3;", trigger);

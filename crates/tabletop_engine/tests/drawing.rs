@@ -50,7 +50,7 @@ fn nobody_chooses_files() {
 
 #[test]
 fn that_no_file_is_made_is_said_once() {
-    let folder = Folder::pair("", "print('-dpng', 'x.png'); disp done");
+    let folder = Folder::pair("", "print('-dpng', 'x.png'); fputs(stderr, \"done\\n\");");
     let mut config = octave(&folder.0, Trigger::Stdin);
     config.display = false;
     let session = Session::start(config).unwrap();

@@ -4,7 +4,7 @@
 
 mod common;
 
-use std::{fs, path::Path};
+use std::fs;
 
 use common::{
     Folder, Session, TRIGGERS, limits, octave,
@@ -16,8 +16,7 @@ use tabletop_engine::{Picture, Sensor, Trigger};
 fn scripts() -> Folder {
     let folder = Folder::new(&[]);
     fs::create_dir(folder.0.join("matlab")).unwrap();
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../matlab");
-    for entry in fs::read_dir(source).unwrap() {
+    for entry in fs::read_dir("../../matlab").unwrap() {
         let entry = entry.unwrap();
         if entry
             .path()

@@ -4,7 +4,11 @@
 
 mod common;
 
-use std::{fs, path::PathBuf, time::Duration};
+use std::{
+    fs,
+    path::{self, PathBuf},
+    time::Duration,
+};
 
 use common::{Folder, Session, script_error};
 use tabletop_engine::{
@@ -28,7 +32,7 @@ fn start(script: &str) -> (Folder, Session) {
 
 #[test]
 fn the_example_turns_every_joint() {
-    let root = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
+    let root = path::absolute("../..").unwrap();
     let mut config = config("python/example.py".into());
     config.working_dir = root;
     let session = Session::start(config).unwrap();

@@ -4,7 +4,7 @@
 
 mod common;
 
-use std::{fs, path::Path};
+use std::fs;
 
 use common::{Folder, Session, TRIGGERS, octave, robot::Robot};
 use tabletop_engine::{Picture, Sensor, Trigger};
@@ -14,8 +14,7 @@ fn folder() -> Folder {
     let folder = Folder::new(&[]);
     let scripts = folder.0.join("scripts");
     fs::create_dir(&scripts).unwrap();
-    for entry in fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scripts")).unwrap()
-    {
+    for entry in fs::read_dir("tests/scripts").unwrap() {
         let entry = entry.unwrap();
         fs::copy(entry.path(), scripts.join(entry.file_name())).unwrap();
     }

@@ -37,10 +37,11 @@ impl Session {
     }
 }
 
-/// The last frame with a picture.
+/// The last frame of which there is a picture or a `move` line.
 fn last_frame(folder: &Folder) -> Result<Option<u64>, RecorderError> {
     let mut last = None;
-    for text in (0..).map(|segment| folder.text(segment)) {
+    for segment in 0.. {
+        let text = folder.text(segment);
         if !text.exists() {
             break;
         }
@@ -50,6 +51,8 @@ fn last_frame(folder: &Folder) -> Result<Option<u64>, RecorderError> {
             frame.parse().ok().filter(|_| event.starts_with("move,"))
         });
         last = last.max(frames.max());
+        let pictured = folder.pictured_frames(segment)?;
+        last = last.max(pictured.into_iter().map(|(frame, _)| frame).max());
     }
     Ok(last)
 }

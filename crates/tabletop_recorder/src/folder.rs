@@ -94,16 +94,28 @@ impl Folder {
 
     /// Removes the pictures of a segment, and their channels, from this frame on.
     pub(crate) fn remove_pictures(&self, segment: u32, first: u64) -> Result<(), RecorderError> {
-        let folder = self.pictures(segment);
-        for entry in fs::read_dir(&folder).map_err(RecorderError::read(&folder))? {
-            let path = entry.map_err(RecorderError::read(&folder))?.path();
-            let name = path.file_name().and_then(|name| name.to_str());
-            let frame = name.and_then(|name| name.split('.').next());
-            if frame.is_some_and(|frame| frame.parse().is_ok_and(|frame: u64| frame >= first)) {
+        for (frame, path) in self.pictured_frames(segment)? {
+            if frame >= first {
                 fs::remove_file(&path).map_err(RecorderError::write(&path))?;
             }
         }
         Ok(())
+    }
+
+    /// The frames of a segment that are in pictures or their channels, each with the file.
+    pub(crate) fn pictured_frames(
+        &self,
+        segment: u32,
+    ) -> Result<Vec<(u64, PathBuf)>, RecorderError> {
+        let folder = self.pictures(segment);
+        let mut frames = Vec::new();
+        for entry in fs::read_dir(&folder).map_err(RecorderError::read(&folder))? {
+            let path = entry.map_err(RecorderError::read(&folder))?.path();
+            let name = path.file_name().and_then(|name| name.to_str());
+            let frame = name.and_then(|name| name.split('.').next()?.parse().ok());
+            frames.extend(frame.map(|frame| (frame, path)));
+        }
+        Ok(frames)
     }
 
     /// Removes the folder, if there is one.

@@ -3,7 +3,7 @@
 
 mod kit;
 
-use std::f64::consts::FRAC_PI_2;
+use std::{f64::consts::FRAC_PI_2, path};
 
 use kit::{Folder, Stage, octave};
 use tabletop_core::{
@@ -21,8 +21,8 @@ fn angles(robot: &Robot) -> [[f64; 7]; 2] {
 
 #[test]
 fn the_example_turns_every_joint_as_long_as_its_limits_allow() {
-    let scripts = concat!(env!("CARGO_MANIFEST_DIR"), "/../../matlab");
-    let mut stage = Stage::start(octave(scripts.as_ref()));
+    let scripts = path::absolute("../../matlab").unwrap();
+    let mut stage = Stage::start(octave(&scripts));
     stage.ticks(1);
     assert!(stage.is_online());
     assert_eq!(stage.markers(), 4);

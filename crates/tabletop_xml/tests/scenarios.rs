@@ -27,7 +27,7 @@ const NAMES: [&str; 13] = [
 ];
 
 fn scenario(name: &str) -> SceneSpec {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tablesetup");
+    let folder = Path::new("../../tablesetup");
     let task = read_task(&folder.join(name).with_extension("xml")).unwrap();
     assert_eq!(task.faults, []);
     task.scene

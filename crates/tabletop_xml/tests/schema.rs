@@ -12,7 +12,7 @@ use std::{
 use tabletop_xml::{Fault, NAMESPACE, parse, read_task};
 
 fn tablesetup() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tablesetup")
+    "../../tablesetup".into()
 }
 
 /// The files in `tablesetup/`, in the order of their names.
