@@ -1,6 +1,6 @@
 //! The engines' side of the bridge: files that are embedded in the program and written to a session's folder.
 
-use crate::{find::EngineKind, stand_ins};
+use crate::{choice::EngineKind, stand_ins};
 
 macro_rules! files {
     ($($name:literal),* $(,)?) => {

@@ -13,9 +13,10 @@ use std::{
 
 use crate::{
     agent::{Aux, InitReply},
+    choice::EngineKind,
     console::{Console, ConsoleLine, Output},
     error::EngineError,
-    find::{EngineKind, FoundEngine},
+    find::FoundEngine,
     motor::Motor,
     process::Killer,
     sensor::Sensor,

@@ -1,110 +1,15 @@
-//! Which engine runs the scripts, and where it is.
+//! Where the engine is that runs the scripts.
 
 use std::{
-    convert::Infallible,
-    env, fmt,
+    env,
     path::{Path, PathBuf},
-    str::FromStr,
 };
 
-use crate::error::EngineError;
-
-/// The variable that names the engine where nobody else does: "matlab", "octave", "python" or a program's path.
-pub const ENGINE_VARIABLE: &str = "TABLETOP_ENGINE";
-
-/// A kind of engine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EngineKind {
-    /// MATLAB, R2007b and later.
-    Matlab,
-    /// GNU Octave, 6 and later.
-    Octave,
-    /// Python 3.
-    Python,
-    /// A user's own program for scripts in another language.
-    Driver,
-}
-
-impl fmt::Display for EngineKind {
-    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        formatter.write_str(match self {
-            Self::Matlab => "MATLAB",
-            Self::Octave => "GNU Octave",
-            Self::Python => "Python",
-            Self::Driver => "a driver",
-        })
-    }
-}
-
-impl EngineKind {
-    fn programs(self, platform: Platform) -> &'static [&'static str] {
-        match (self, platform) {
-            (Self::Matlab, Platform::Windows) => &["matlab.exe"],
-            (Self::Matlab, _) => &["matlab"],
-            (Self::Octave, Platform::Windows) => &["octave-cli.exe"],
-            (Self::Octave, _) => &["octave-cli", "octave"],
-            (Self::Python, Platform::Windows) => &["python3.exe", "python.exe"],
-            (Self::Python, _) => &["python3"],
-            (Self::Driver, _) => &[],
-        }
-    }
-
-    /// Folders beside PATH, each with at most one part that is a pattern: everything up to "*" and after it must fit.
-    fn usual_places(self, platform: Platform) -> &'static [&'static str] {
-        match (self, platform) {
-            (Self::Matlab, Platform::Linux) => &[
-                "usr/local/MATLAB/R20*/bin",
-                "opt/MATLAB/R20*/bin",
-                "opt/matlab/R20*/bin",
-            ],
-            (Self::Matlab, Platform::MacOs) => &["Applications/MATLAB_R20*/bin"],
-            (Self::Matlab, Platform::Windows) => &["Program Files/MATLAB/R20*/bin"],
-            (Self::Octave, Platform::Linux) => &["usr/bin", "usr/local/bin", "snap/bin"],
-            (Self::Octave, Platform::MacOs) => &[
-                "opt/homebrew/bin",
-                "usr/local/bin",
-                "opt/local/bin",
-                "Applications/Octave*/Contents/Resources/usr/bin",
-            ],
-            (Self::Octave, Platform::Windows) => &[
-                "Program Files/GNU Octave/Octave-*/mingw64/bin",
-                "Octave/Octave-*/mingw64/bin",
-            ],
-            (Self::Python, Platform::MacOs) => &["opt/homebrew/bin", "usr/local/bin", "usr/bin"],
-            (Self::Python, Platform::Linux) => &["usr/bin", "usr/local/bin"],
-            (Self::Python, Platform::Windows) | (Self::Driver, _) => &[],
-        }
-    }
-}
-
-/// What was asked for.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum EngineChoice {
-    /// The variable `TABLETOP_ENGINE`, else MATLAB if it is there, else Octave.
-    #[default]
-    Auto,
-    /// One kind of engine.
-    Kind(EngineKind),
-    /// A program, or the folder in which it is.
-    Program(PathBuf),
-    /// A user's driver (see docs/script-protocol.md).
-    Driver(PathBuf),
-}
-
-impl FromStr for EngineChoice {
-    type Err = Infallible;
-
-    /// "auto", "matlab", "octave", "python", or the path of a program.
-    fn from_str(text: &str) -> Result<Self, Infallible> {
-        Ok(match text.to_ascii_lowercase().as_str() {
-            "" | "auto" => Self::Auto,
-            "matlab" => Self::Kind(EngineKind::Matlab),
-            "octave" => Self::Kind(EngineKind::Octave),
-            "python" => Self::Kind(EngineKind::Python),
-            _ => Self::Program(text.into()),
-        })
-    }
-}
+use crate::{
+    choice::{ENGINE_VARIABLE, EngineChoice, EngineKind},
+    error::EngineError,
+    places::{Platform, is_program, matching},
+};
 
 /// An engine that is there.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -113,17 +18,6 @@ pub struct FoundEngine {
     pub kind: EngineKind,
     /// Its program.
     pub program: PathBuf,
-}
-
-/// A platform with habits of its own about where programs are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Platform {
-    /// Linux and other Unix systems.
-    Linux,
-    /// macOS.
-    MacOs,
-    /// Windows.
-    Windows,
 }
 
 /// Where engines are looked for.
@@ -142,13 +36,7 @@ pub struct Surroundings {
 impl Surroundings {
     /// Those of this process.
     pub fn system() -> Self {
-        let platform = if cfg!(windows) {
-            Platform::Windows
-        } else if cfg!(target_os = "macos") {
-            Platform::MacOs
-        } else {
-            Platform::Linux
-        };
+        let platform = Platform::here();
         let drive = || env::var("SystemDrive").map(|drive| PathBuf::from(drive + "\\"));
         Self {
             platform,
@@ -309,52 +197,6 @@ impl Surroundings {
         );
         EngineError::NotFound(message)
     }
-}
-
-/// The folders that fit a pattern, the one with the highest version first.
-fn matching(root: &Path, place: &str) -> Vec<PathBuf> {
-    let Some((before, after)) = place.split_once('*') else {
-        return vec![root.join(place)];
-    };
-    let (parent, prefix) = before.rsplit_once('/').unwrap_or(("", before));
-    let (suffix, rest) = after.split_once('/').unwrap_or((after, ""));
-    let entries = root.join(parent).read_dir().into_iter().flatten().flatten();
-    let mut names: Vec<_> = entries
-        .map(|entry| entry.file_name().to_string_lossy().into_owned())
-        .filter(|name| name.starts_with(prefix) && name.ends_with(suffix))
-        .collect();
-    names.sort_by_cached_key(|name| std::cmp::Reverse(version(name)));
-    names
-        .iter()
-        .map(|name| root.join(parent).join(name).join(rest))
-        .collect()
-}
-
-/// The numbers and letters of a name, so that 10 comes after 9 and R2023b after R2023a.
-fn version(name: &str) -> Vec<(u64, String)> {
-    let mut parts = Vec::new();
-    for letter in name.chars() {
-        match (letter.to_digit(10), parts.last_mut()) {
-            (Some(digit), Some((number, text))) if String::is_empty(text) => {
-                *number = u64::saturating_add(u64::saturating_mul(*number, 10), digit.into());
-            }
-            (Some(digit), _) => parts.push((u64::from(digit), String::new())),
-            (None, Some((0, text))) if !text.is_empty() => text.push(letter),
-            (None, _) => parts.push((0, letter.to_string())),
-        }
-    }
-    parts
-}
-
-fn is_program(path: &Path) -> bool {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        path.metadata()
-            .is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0)
-    }
-    #[cfg(not(unix))]
-    path.is_file()
 }
 
 #[cfg(test)]

@@ -6,8 +6,8 @@ use std::{
 };
 
 use crate::{
+    choice::EngineKind,
     engine::{EngineConfig, Trigger},
-    find::EngineKind,
     session::Session,
 };
 

@@ -45,6 +45,7 @@
 //! starts are a group of their own, which ends with the last [`EngineHandle`] or, on Unix, with this program, however that ends.
 
 mod agent;
+mod choice;
 mod console;
 mod driver;
 mod engine;
@@ -56,6 +57,7 @@ mod launch;
 mod misuse;
 mod motor;
 mod output;
+mod places;
 mod process;
 pub mod protocol;
 mod readiness;
@@ -67,10 +69,12 @@ mod trigger;
 mod worker;
 
 pub use agent::{Aux, InitReply};
+pub use choice::{ENGINE_VARIABLE, EngineChoice, EngineKind};
 pub use console::{ConsoleLine, Output, Stream};
 pub use engine::{EngineConfig, EngineHandle, Reply, StepReply, Timeouts, Trigger};
 pub use error::{EngineError, Place, ScriptError};
-pub use find::{ENGINE_VARIABLE, EngineChoice, EngineKind, FoundEngine, Platform, Surroundings};
+pub use find::{FoundEngine, Surroundings};
 pub use misuse::{Element, Misuse};
 pub use motor::Motor;
+pub use places::Platform;
 pub use sensor::{Picture, SensedContact, SensedObject, Sensor};

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::find::EngineKind;
+use crate::choice::EngineKind;
 
 /// The largest coordinate that a marker may have, in units.
 pub(crate) const FARTHEST: f64 = 1e6;

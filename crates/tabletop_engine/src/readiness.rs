@@ -2,7 +2,7 @@
 
 use std::path::{PathBuf, absolute};
 
-use crate::{engine::EngineConfig, find::EngineKind, scripts};
+use crate::{choice::EngineKind, engine::EngineConfig, scripts};
 
 impl EngineConfig {
     /// Where the scripts are, as a full path.

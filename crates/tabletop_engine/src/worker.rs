@@ -13,11 +13,11 @@ use std::{
 
 use crate::{
     agent::{Aux, InitReply},
+    choice::EngineKind,
     console::{Console, Stream},
     driver,
     engine::{EngineConfig, Reply, StepReply, Trigger},
     error::{EngineError, ScriptError},
-    find::EngineKind,
     hint::hint,
     launch::{command, preparation, quoted},
     misuse::Misuse,

@@ -8,9 +8,9 @@ use std::{
 
 use super::{GRACE, LOOK_AFTER, Running, Signal};
 use crate::{
+    choice::EngineKind,
     engine::Trigger,
     error::{EngineError, Place},
-    find::EngineKind,
     trigger::Op,
 };
 

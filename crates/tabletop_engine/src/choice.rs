@@ -1,0 +1,59 @@
+//! Which engine runs the scripts.
+
+use std::{convert::Infallible, fmt, path::PathBuf, str::FromStr};
+
+/// The variable that names the engine where nobody else does: "matlab", "octave", "python" or a program's path.
+pub const ENGINE_VARIABLE: &str = "TABLETOP_ENGINE";
+
+/// A kind of engine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EngineKind {
+    /// MATLAB, R2007b and later.
+    Matlab,
+    /// GNU Octave, 6 and later.
+    Octave,
+    /// Python 3.
+    Python,
+    /// A user's own program for scripts in another language.
+    Driver,
+}
+
+impl fmt::Display for EngineKind {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Matlab => "MATLAB",
+            Self::Octave => "GNU Octave",
+            Self::Python => "Python",
+            Self::Driver => "a driver",
+        })
+    }
+}
+
+/// What was asked for.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum EngineChoice {
+    /// The variable `TABLETOP_ENGINE`, else MATLAB if it is there, else Octave.
+    #[default]
+    Auto,
+    /// One kind of engine.
+    Kind(EngineKind),
+    /// A program, or the folder in which it is.
+    Program(PathBuf),
+    /// A user's driver (see docs/script-protocol.md).
+    Driver(PathBuf),
+}
+
+impl FromStr for EngineChoice {
+    type Err = Infallible;
+
+    /// "auto", "matlab", "octave", "python", or the path of a program.
+    fn from_str(text: &str) -> Result<Self, Infallible> {
+        Ok(match text.to_ascii_lowercase().as_str() {
+            "" | "auto" => Self::Auto,
+            "matlab" => Self::Kind(EngineKind::Matlab),
+            "octave" => Self::Kind(EngineKind::Octave),
+            "python" => Self::Kind(EngineKind::Python),
+            _ => Self::Program(text.into()),
+        })
+    }
+}
