@@ -302,9 +302,10 @@ def _fault(error):
 
 
 def _reasons(error):
-    """What an error says, and a line for each that led to it."""
+    """What an error says, and a line for each that it is a group of or that led to it."""
     reasons = [_words(error)]
     while len(reasons) < PLACES:
+        reasons += [_reason("one of them:", part) for part in _parts(error)]
         link = "because of"
         origin = error.__cause__
         if origin is None and not error.__suppress_context__:
@@ -312,10 +313,20 @@ def _reasons(error):
             origin = error.__context__
         if origin is None:
             break
-        place = "".join(" (%s:%d)" % (file, line) for line, file in _where(origin)[:1])
-        reasons.append("%s %s%s" % (link, _words(origin), place))
+        reasons.append(_reason(link, origin))
         error = origin
     return reasons
+
+
+def _reason(link, error):
+    place = "".join(" (%s:%d)" % (file, line) for line, file in _where(error)[:1])
+    return "%s %s%s" % (link, _words(error), place)
+
+
+def _parts(error):
+    """The errors that a group of errors holds."""
+    parts = getattr(error, "exceptions", ())
+    return [part for part in parts if isinstance(part, BaseException)][:PLACES] if isinstance(parts, (list, tuple)) else []
 
 
 def _words(error):
@@ -324,6 +335,7 @@ def _words(error):
     if isinstance(error, SyntaxError):
         return "%s: %s" % (type(error).__name__, error.msg)
     words = "".join(traceback.format_exception_only(type(error), error)).strip()
+    words = words[len(SCRIPT) + 1 :] if words.startswith(SCRIPT + ".") else words
     if isinstance(error, SystemExit):
         return words + "; to end the script, set aux.exit"
     return words

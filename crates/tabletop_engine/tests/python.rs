@@ -196,6 +196,23 @@ fn what_led_to_an_error_is_told() {
     );
 }
 
+#[test]
+fn the_errors_of_a_group_are_told() {
+    let (folder, session) = start(
+        "class Group(Exception):\n\
+         \x20   exceptions = (ValueError('no ball'), 7, KeyError('hand'))\n\
+         def init(aux): raise Group('two tasks')\n\
+         def callback(sensor, motor, aux): pass\n",
+    );
+    let robot = folder.0.join("robot.py").display().to_string();
+    assert_eq!(
+        session.init().unwrap_err().to_string(),
+        format!(
+            "Group: two tasks\none of them: ValueError: no ball\none of them: KeyError: 'hand'\n  at {robot}:3"
+        )
+    );
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupt_is_answered_with_its_place_also_in_the_background() {
