@@ -6,6 +6,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use tabletop_recorder::whole_lines;
+
 use super::ReplayError;
 
 /// The first file in which two recordings differ, and how.
@@ -70,24 +72,24 @@ fn is_for_the_program_alone(file: &Path) -> bool {
             .is_some_and(|extension| extension == "part")
 }
 
-/// What is in a file up to its last line end: the kernel may cut a write in two when it kills.
-fn whole_lines(text: &[u8]) -> &[u8] {
-    let end = text.iter().rposition(|&byte| byte == b'\n');
-    end.and_then(|end| text.get(..=end)).unwrap_or_default()
-}
-
 /// Where two files differ: line and texts, or for pictures that they do.
 fn first_difference_of(before: &[u8], after: &[u8]) -> String {
     let (Ok(before), Ok(after)) = (std::str::from_utf8(before), std::str::from_utf8(after)) else {
         return "the pictures differ".into();
     };
-    let (mut before, mut after) = (before.lines(), after.lines());
-    let end = "the end of the file";
+    let [mut before, mut after] = [before, after].map(|text| text.split_inclusive('\n'));
+    let shown = |line: Option<&str>| match line {
+        Some(line) => format!("`{}`", line.trim_end_matches('\n').replace('\r', "\\r")),
+        None => "the end of the file".to_owned(),
+    };
     for line in 1.. {
         let (was, is) = (before.next(), after.next());
         if was != is || was.is_none() {
-            let (was, is) = (was.unwrap_or(end), is.unwrap_or(end));
-            return format!("line {line}: recorded `{was}`, replayed `{is}`");
+            return format!(
+                "line {line}: recorded {}, replayed {}",
+                shown(was),
+                shown(is)
+            );
         }
     }
     String::new()

@@ -74,11 +74,15 @@ impl Player {
     fn due(&mut self, tick: SimTick) -> Vec<SimCommand> {
         let mut due = Vec::new();
         while let Some(next) = self.commands.front() {
-            let ends_moment = matches!(
+            let begins_moment = matches!(
                 next.command,
-                SimCommand::StartRecording | SimCommand::SetPaused(false)
+                SimCommand::StartRecording
+                    | SimCommand::SetPaused(false)
+                    | SimCommand::LoadTask(_)
+                    | SimCommand::SetScene(_)
+                    | SimCommand::ClearTable
             );
-            if next.tick > tick.0 || ends_moment && self.has_paused && !due.is_empty() {
+            if next.tick > tick.0 || begins_moment && self.has_paused && !due.is_empty() {
                 break;
             }
             if let SimCommand::SetPaused(paused) = next.command {

@@ -165,6 +165,16 @@ fn what_hands_did_before_the_start_is_done_again() {
              Wait(0.1), Pause(false), Wait(1), Pause(true), Clear, Wait(0.2), Pause(false), Wait(0.5), Finish,",
         ),
         (
+            "changed_in_a_pause",
+            "Wait(0.2), Start, Wait(0.5), Pause(true), Load(file: \"CHAIN\"), Clear, Load(file: \"LIDBOX\"), Clear, Wait(0.1),
+             Load(file: \"SETUP\"), Pause(false), Wait(0.5), Grasp(\"GreenBlock\"), Wait(0.5), Finish,",
+        ),
+        (
+            "undone_in_a_pause",
+            "Wait(0.3), Start, Grasp(\"RedBlock\"), MoveTo((-2, 0.1, 5)), Wait(1), Pause(true), Wait(0.1), Undo, Pause(false), Wait(0.5),
+             Redo, Wait(1), Release, Wait(1), Pause(true), Undo, Wait(0.1), Redo, Undo, Wait(0.1), Pause(false), Wait(0.5), Finish,",
+        ),
+        (
             "cleared_before",
             "Clear, Wait(0.2), Start, Wait(0.3), Load(file: \"CHAIN\"), Wait(1), Finish,",
         ),

@@ -27,7 +27,8 @@ fn assert_same_files(expected: &Demonstration, found: &Demonstration, seed: u64)
 #[test]
 fn undo_leaves_no_trace() {
     let mut detours = 0;
-    'seeds: for seed in 0..150 {
+    // In 3192 the robot is shown for the first time after the detour.
+    'seeds: for seed in (0..150).chain([3192]) {
         let mut random = Random(seed);
         let script = script(&mut random, TICKS);
         let turning_point = random.below(TICKS as usize - 20);
@@ -108,7 +109,8 @@ fn redo_brings_back_what_was_undone() {
 
 #[test]
 fn a_recording_changes_nothing() {
-    for seed in 2000..2010 {
+    // In 7022 the scene changes while the robot is shown, and the robot then touches what is new.
+    for seed in (2000..2010).chain([7022]) {
         let script = script(&mut Random(seed), 2 * TICKS);
         let mut recorded = begun("recorded");
         let mut unrecorded = Demonstration::new("unrecorded");

@@ -55,11 +55,12 @@ pub(crate) fn spawn(world: &mut World) -> Result {
             ));
         }
         parts.push(part.id());
+        // One by one, before other newcomers: the order of bodies decides the last bits of their motion, and Bevy's tables have one
+        // of their own.
+        world.run_system_cached(init_rigid_bodies)?;
+        world.run_system_cached(init_colliders)?;
     }
     world.insert_resource(Parts(parts));
-    // Now, before other newcomers: the order of bodies decides the last bits of their motion.
-    world.run_system_cached(init_rigid_bodies)?;
-    world.run_system_cached(init_colliders)?;
     Ok(())
 }
 

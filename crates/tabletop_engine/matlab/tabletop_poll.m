@@ -4,8 +4,8 @@ function tabletop_poll(folder)
 ops = {'hello', 'init', 'step'};
 last = 0;
 beat = -1;
-quiet = 0;                                         % seconds since the last sign of life, at least
-idle = 0;                                          % seconds since the last request, at least
+quiet = 0;                                         % seconds since the last sign of life
+idle = 0;                                          % seconds since the last request
 while quiet < 30
     fid = fopen([folder 'trigger.bin'], 'r', 'ieee-le');
     words = [];
@@ -25,7 +25,9 @@ while quiet < 30
         tabletop_call(ops{words(2)}, folder, last, words(3), 1);
     else
         if idle < 0.01, nap = 0.0002; elseif idle < 5, nap = 0.001; else nap = 0.01; end
-        builtin('pause', nap);
+        before = clock;
+        builtin('pause', nap);                         % longer where the timer is coarse, not at all after "pause off"
+        nap = min(max(etime(clock, before), 0), 1);    % not the night that the computer has slept through
         idle = idle + nap;
         quiet = quiet + nap;
     end

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use bevy::prelude::{Entity, warn};
-use tabletop_core::{ObjectSpec, SensorImage, SimCommand, SimFact, SimTick};
+use tabletop_core::{ObjectSpec, Paused, SensorImage, SimCommand, SimFact, SimTick};
 
 use crate::{
     Channels, RecorderError, SessionHeader, SessionScene,
@@ -16,6 +16,7 @@ use crate::{
     log_file::LogFile,
     order::{in_order, is_about_recordings, turns_the_clock},
     picture::{write_depth, write_ids, write_png},
+    prelude::Prelude,
     session::{command_line, session_line},
     states::{self, State},
 };
@@ -35,6 +36,8 @@ pub(crate) struct Episode {
     last_joints: Option<Joints>,
     /// How many `create` lines were written.
     created: usize,
+    /// Whether the simulation is paused where the session log ends.
+    is_paused: bool,
     channels: Channels,
     /// The objects of the first tick, until their `create` lines are written.
     opening: Option<Vec<ObjectSpec>>,
@@ -69,6 +72,7 @@ struct Progress {
     states: u64,
     joints: u64,
     last_joints: Option<Joints>,
+    is_paused: bool,
 }
 
 /// The moment before a segment began.
@@ -88,12 +92,12 @@ struct UndoneSegment {
 }
 
 impl Episode {
-    /// Begins a recording in a new folder. `earlier` are the lines of the commands that came before it.
+    /// Begins a recording in a new folder.
     pub(crate) fn begin(
         folder: &Path,
         header: &SessionHeader,
         scene: &SessionScene,
-        earlier: &[u8],
+        earlier: &Prelude,
         channels: Channels,
     ) -> Result<Self, RecorderError> {
         Folder::create(folder, |folder| {
@@ -105,16 +109,17 @@ impl Episode {
         folder: Folder,
         header: &SessionHeader,
         scene: &SessionScene,
-        earlier: &[u8],
+        earlier: &Prelude,
         channels: Channels,
     ) -> Result<Self, RecorderError> {
         let mut session = LogFile::create(folder.session())?;
+        session.lock();
         for line in [session_line(header), session_line(scene)] {
             let line =
                 line.map_err(|error| RecorderError::write(&folder.session())(error.into()))?;
             session.append(&line)?;
         }
-        session.append(earlier)?;
+        session.append(earlier.lines())?;
         let mut states = LogFile::create(folder.states())?;
         states.append_records(&[states::header()])?;
         let mut joints = LogFile::create(folder.joints())?;
@@ -135,6 +140,7 @@ impl Episode {
             objects: Vec::new(),
             last_joints: None,
             created: 0,
+            is_paused: earlier.is_paused(),
             channels,
             opening: Some(objects.collect()),
             tick: start,
@@ -179,6 +185,9 @@ impl Episode {
             if is_about_recordings(&command) {
                 continue;
             }
+            if let SimCommand::SetPaused(paused) = command {
+                self.is_paused = paused;
+            }
             lines.extend(command_line(self.tick.0, &command).unwrap_or_default());
             self.logged.push((command, before));
         }
@@ -190,6 +199,7 @@ impl Episode {
         &mut self,
         tick: SimTick,
         facts: &[SimFact],
+        paused: Paused,
         spec: impl Fn(Entity) -> Option<&'w ObjectSpec>,
     ) -> Result<(), RecorderError> {
         let is_turn = |fact: &SimFact| matches!(fact, SimFact::Undone | SimFact::Redone);
@@ -211,6 +221,10 @@ impl Episode {
             }
             self.tick = tick;
             self.logged.clear();
+        }
+        if self.is_paused != paused.0 {
+            // A pause is not turned back with the clock.
+            self.log(vec![SimCommand::SetPaused(paused.0)])?;
         }
         let unlogged = std::mem::take(&mut self.unlogged);
         self.log(unlogged)?;
@@ -325,6 +339,7 @@ impl Episode {
             states: self.states.len(),
             joints: self.joints.len(),
             last_joints: self.last_joints,
+            is_paused: self.is_paused,
         }
     }
 
@@ -382,6 +397,7 @@ impl Episode {
         self.objects = progress.objects;
         self.created = progress.created;
         self.last_joints = progress.last_joints;
+        self.is_paused = progress.is_paused;
         Ok(())
     }
 

@@ -20,6 +20,18 @@ pub enum RecorderError {
         /// The reason.
         source: io::Error,
     },
+    /// Another recording is being made in the folder.
+    #[error("a recording is being made in {folder}; record into another folder")]
+    InUse {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// A file has the name that the folder is to have.
+    #[error("{path} is a file; record into a folder")]
+    NoFolder {
+        /// The file.
+        path: PathBuf,
+    },
     /// A file or folder cannot be made.
     #[error(
         "cannot create {path}: {source}; record into a folder that you may write to, on a disk with space left"
@@ -57,6 +69,16 @@ pub enum RecorderError {
         path: PathBuf,
         /// The reason.
         source: io::Error,
+    },
+    /// No simulation comes to a line of a session log.
+    #[error("{path}:{line}: {problem}; the log was changed, or is damaged")]
+    Course {
+        /// The session log.
+        path: PathBuf,
+        /// Number of the line, from 1.
+        line: usize,
+        /// What is wrong.
+        problem: String,
     },
     /// A line of a session log is not what it should be.
     #[error(

@@ -1,14 +1,19 @@
 //! How far a recording goes that has no end, because the program was killed or its disk was full.
 
 use std::{
-    fs::{self, File},
+    fs::File,
     io::{Read as _, Seek as _, SeekFrom},
     path::Path,
 };
 
 use tabletop_core::{SimCommand, SimTick};
 
-use crate::{RecorderError, Session, folder::Folder, frame::FrameClock, log_file::whole_lines};
+use crate::{
+    RecorderError, Session,
+    folder::Folder,
+    frame::FrameClock,
+    log_file::{read_whole_lines, whole_lines},
+};
 
 /// Lines of states and joints are shorter.
 const LONGEST_LINE: u64 = 4096;
@@ -45,8 +50,8 @@ fn last_frame(folder: &Folder) -> Result<Option<u64>, RecorderError> {
         if !text.exists() {
             break;
         }
-        let events = fs::read_to_string(&text).map_err(RecorderError::read(&text))?;
-        let frames = whole_lines(&events).filter_map(|line| {
+        let events = read_whole_lines(&text)?;
+        let frames = events.lines().filter_map(|line| {
             let (frame, event) = line.split_once(',')?;
             frame.parse().ok().filter(|_| event.starts_with("move,"))
         });
@@ -60,9 +65,9 @@ fn last_frame(folder: &Folder) -> Result<Option<u64>, RecorderError> {
 /// The tick with which the last line of a file begins.
 fn last_tick_of(path: &Path) -> Result<Option<u64>, RecorderError> {
     let end = end_of(path).map_err(RecorderError::read(path))?;
-    let end = String::from_utf8_lossy(&end);
+    let end = String::from_utf8_lossy(whole_lines(&end));
     let tick = |line: &str| line.split(',').next()?.parse().ok();
-    Ok(whole_lines(&end).last().and_then(tick))
+    Ok(end.lines().last().and_then(tick))
 }
 
 fn end_of(path: &Path) -> std::io::Result<Vec<u8>> {

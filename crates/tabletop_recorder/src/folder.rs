@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::RecorderError;
+use crate::{RecorderError, log_file::is_locked};
 
 /// The folder of a recording.
 #[derive(Clone, Debug)]
@@ -13,25 +13,49 @@ pub(crate) struct Folder(PathBuf);
 
 impl Folder {
     /// Makes the folder, and has it filled. One that is there already is moved aside to the same name with the first free number
-    /// appended. If anything fails, all is as before.
+    /// appended, unless a program is recording into it. If anything fails, all is as before.
     pub(crate) fn create<T>(
         path: &Path,
         fill: impl FnOnce(Self) -> Result<T, RecorderError>,
     ) -> Result<T, RecorderError> {
+        let folder = Self(path.to_owned());
         let aside = match is_taken(path) {
-            true => Some(move_aside(path)?),
+            true => Some(folder.clear_the_way()?),
             false => None,
         };
-        let folder = Self(path.to_owned());
-        let filled = create_folder(path).and_then(|()| fill(folder.clone()));
+        let made = folder.make();
+        let is_made = made.is_ok();
+        let filled = made.and_then(|()| fill(folder.clone()));
         if filled.is_err() {
             // What has failed is told; more cannot be done.
-            let _ = folder.remove();
+            if is_made {
+                let _ = folder.remove();
+            }
             if let Some(aside) = aside {
                 let _ = fs::rename(aside, path);
             }
         }
         filled
+    }
+
+    /// Moves what is there aside. Its new place is returned.
+    fn clear_the_way(&self) -> Result<PathBuf, RecorderError> {
+        let folder = self.0.clone();
+        if !self.0.is_dir() {
+            return Err(RecorderError::NoFolder { path: folder });
+        }
+        match is_locked(&self.session()) {
+            true => Err(RecorderError::InUse { folder }),
+            false => move_aside(&self.0),
+        }
+    }
+
+    /// Makes the folder, unless somebody else has just done that.
+    fn make(&self) -> Result<(), RecorderError> {
+        let parent = self.0.parent().filter(|parent| *parent != Path::new(""));
+        let made = parent.map_or(Ok(()), fs::create_dir_all);
+        made.and_then(|()| fs::create_dir(&self.0))
+            .map_err(RecorderError::create(&self.0))
     }
 
     pub(crate) fn existing(path: &Path) -> Self {
@@ -166,6 +190,7 @@ fn is_taken(path: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::log_file::LogFile;
 
     #[test]
     fn earlier_recordings_are_moved_aside_to_the_first_free_number() {
@@ -185,6 +210,33 @@ mod tests {
             assert_eq!(fs::read_to_string(path).unwrap(), content);
         }
         fs::remove_dir_all(parent).unwrap();
+    }
+
+    #[test]
+    fn what_is_being_recorded_and_what_is_no_recording_stays_where_it_is() {
+        let demo = std::env::temp_dir().join(format!("tabletop_locked_{}", std::process::id()));
+        let begin = || {
+            Folder::create(&demo, |folder| {
+                let session = LogFile::create(folder.session())?;
+                session.lock();
+                Ok(session)
+            })
+        };
+        let session = begin().unwrap();
+        let error = begin().unwrap_err().to_string();
+        assert!(error.starts_with("a recording is being made in"), "{error}");
+        drop(session);
+        drop(begin().unwrap());
+        let file = demo.join("session.jsonl");
+        let error = Folder::create(&file, Ok).unwrap_err().to_string();
+        assert!(
+            error.ends_with("is a file; record into a folder"),
+            "{error}"
+        );
+        assert!(file.exists());
+        for folder in [demo.clone(), PathBuf::from(format!("{}-1", demo.display()))] {
+            fs::remove_dir_all(folder).unwrap();
+        }
     }
 
     #[test]

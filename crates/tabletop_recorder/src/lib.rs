@@ -47,6 +47,7 @@ mod states;
 pub use error::RecorderError;
 pub use event::Event;
 pub use frame::{FRAMES_PER_SECOND, TICKS_PER_FRAME};
+pub use log_file::whole_lines;
 pub use rehearsal::RehearsalPlugin;
 pub use session::{
     Session, SessionCommand, SessionHeader, SessionObject, SessionScene, SessionSettings,

@@ -1,7 +1,7 @@
 //! Files that only ever end with a whole line.
 
 use std::{
-    fs::{File, OpenOptions},
+    fs::{File, OpenOptions, TryLockError},
     io::{self, Seek as _, SeekFrom, Write as _},
     path::{Path, PathBuf},
 };
@@ -36,6 +36,12 @@ impl LogFile {
         let mut log = Self { path, file, len };
         log.cut(len)?;
         Ok(log)
+    }
+
+    /// Lets other programs know that it is being written. They can as long as this lasts.
+    pub(crate) fn lock(&self) {
+        // Where a file system knows no locks, all goes on without.
+        let _ = self.file.try_lock();
     }
 
     pub(crate) fn len(&self) -> u64 {
@@ -94,6 +100,12 @@ impl LogFile {
     }
 }
 
+/// Whether somebody is [writing](LogFile::lock) a file.
+pub(crate) fn is_locked(path: &Path) -> bool {
+    let locked = File::open(path).map(|file| file.try_lock_shared());
+    matches!(locked, Ok(Err(TryLockError::WouldBlock)))
+}
+
 fn csv_lines(records: &[Vec<String>]) -> io::Result<Vec<u8>> {
     let mut lines = csv::WriterBuilder::new()
         .flexible(true)
@@ -104,10 +116,19 @@ fn csv_lines(records: &[Vec<String>]) -> io::Result<Vec<u8>> {
     lines.into_inner().map_err(csv::IntoInnerError::into_error)
 }
 
-/// The lines of a file that have a line end: a kill in the middle of a write may leave one without.
-pub(crate) fn whole_lines(text: &str) -> impl Iterator<Item = &str> {
-    let whole = text.rfind('\n').map_or("", |end| &text[..end]);
-    whole.split('\n')
+/// What is in a file of a recording up to its last line end: a kill in the middle of a write may leave half a line.
+pub fn whole_lines(bytes: &[u8]) -> &[u8] {
+    let end = bytes.iter().rposition(|&byte| byte == b'\n');
+    end.and_then(|end| bytes.get(..=end)).unwrap_or_default()
+}
+
+/// The text of a file up to its last line end.
+pub(crate) fn read_whole_lines(path: &Path) -> Result<String, RecorderError> {
+    let bytes = std::fs::read(path).map_err(RecorderError::read(path))?;
+    let text = String::from_utf8(whole_lines(&bytes).to_vec());
+    text.map_err(|error| {
+        RecorderError::read(path)(io::Error::new(io::ErrorKind::InvalidData, error))
+    })
 }
 
 #[cfg(test)]

@@ -46,6 +46,11 @@ impl Prelude {
         &self.lines
     }
 
+    /// Whether the simulation was paused before the commands of this tick.
+    pub(crate) fn is_paused(&self) -> bool {
+        self.is_paused
+    }
+
     pub(crate) fn count(&self) -> usize {
         self.count
     }

@@ -60,7 +60,7 @@ impl Recorder {
             &self.folder,
             &header,
             &stage.scene(),
-            self.prelude.lines(),
+            &self.prelude,
             self.channels,
         )?);
         self.is_finishing = false;
@@ -220,7 +220,7 @@ pub(crate) fn record(
         return;
     };
     let told: Vec<_> = facts.p0().read().cloned().collect();
-    let mut result = episode.write_facts(*tick, &told, |object| stage.spec(object));
+    let mut result = episode.write_facts(*tick, &told, *paused, |object| stage.spec(object));
     if result.is_ok() && !paused.0 {
         let image = image
             .as_deref()

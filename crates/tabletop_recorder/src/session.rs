@@ -1,16 +1,13 @@
 //! The session log: what a recording needs besides the states to be run again.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use bevy::prelude::{Resource, warn};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
 use tabletop_core::{HeadCamera, JointSpec, ObjectSpec, Pose, SimCommand, Table};
 
-use crate::{RecorderError, log_file::whole_lines};
+use crate::{RecorderError, log_file::read_whole_lines};
 
 /// Version of the format that is written here.
 pub(crate) const FORMAT: u32 = 2;
@@ -87,10 +84,13 @@ pub struct Session {
 
 impl Session {
     /// Reads a session log. A last line without its line end, as a program that was killed may leave it, does not count.
+    ///
+    /// # Errors
+    /// The file cannot be read, a line is not what it should be, or no simulation can have come to a command's tick.
     pub fn read(path: impl Into<PathBuf>) -> Result<Self, RecorderError> {
         let path = path.into();
-        let text = fs::read_to_string(&path).map_err(RecorderError::read(&path))?;
-        let mut lines = (1..).zip(whole_lines(&text));
+        let text = read_whole_lines(&path)?;
+        let mut lines = (1..).zip(text.lines());
         let mut line = |number| lines.next().unwrap_or((number, ""));
         let header: SessionHeader = parse(&path, line(1))?;
         if header.format != FORMAT {
@@ -98,9 +98,19 @@ impl Session {
             return Err(RecorderError::Format { path, found });
         }
         let scene = parse(&path, line(2))?;
-        let mut earlier = lines
-            .map(|line| parse(&path, line))
-            .collect::<Result<Vec<_>, _>>()?;
+        let mut earlier = Vec::new();
+        let mut course = Course::default();
+        for line in lines {
+            let entry = parse(&path, line)?;
+            course
+                .follow(&entry)
+                .map_err(|problem| RecorderError::Course {
+                    path: path.clone(),
+                    line: line.0,
+                    problem,
+                })?;
+            earlier.push(entry);
+        }
         let commands = earlier.split_off(earlier.len().min(header.earlier_commands));
         Ok(Self {
             header,
@@ -108,6 +118,33 @@ impl Session {
             earlier,
             commands,
         })
+    }
+}
+
+/// How far a simulation has come with the commands of a session log.
+#[derive(Default)]
+struct Course {
+    tick: u64,
+    is_paused: bool,
+}
+
+impl Course {
+    /// Goes on to the next command, or says why no simulation comes to it.
+    fn follow(&mut self, next: &SessionCommand) -> Result<(), String> {
+        let (tick, next_tick) = (self.tick, next.tick);
+        if next_tick < tick {
+            return Err(format!("tick {next_tick} comes after tick {tick}"));
+        }
+        if self.is_paused && next_tick > tick {
+            return Err(format!(
+                "tick {next_tick} never comes: the simulation is paused in tick {tick}, and nothing ends that"
+            ));
+        }
+        self.tick = next_tick;
+        if let SimCommand::SetPaused(paused) = next.command {
+            self.is_paused = paused;
+        }
+        Ok(())
     }
 }
 
@@ -146,6 +183,8 @@ pub(crate) fn command_line(tick: u64, command: &SimCommand) -> Option<Vec<u8>> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use bevy::math::Vec3;
     use tabletop_core::{Drive, Hand, RobotJoint};
 
@@ -217,6 +256,18 @@ mod tests {
             |commands: &[SessionCommand]| commands.iter().map(|c| c.tick).collect::<Vec<_>>();
         assert_eq!(ticks(&session.earlier), [2]);
         assert_eq!(ticks(&session.commands), [4]);
+
+        for (tick, command, problem) in [
+            (1, SimCommand::ClearTable, ":5: tick 1 comes after tick 4"),
+            (5, SimCommand::SetPaused(true), ":6: tick 7 never comes"),
+        ] {
+            let mut log = log[..log.len() - 15].to_vec();
+            log.extend(command_line(tick, &command).unwrap());
+            log.extend(command_line(7, &SimCommand::ClearTable).unwrap());
+            fs::write(&path, &log).unwrap();
+            let error = Session::read(&path).unwrap_err().to_string();
+            assert!(error.contains(problem), "{error}");
+        }
 
         log.push(b'\n');
         fs::write(&path, &log).unwrap();

@@ -16,8 +16,9 @@ use crate::{
 
 /// How long the last output of an engine that has ended is waited for.
 const LAST_OUTPUT: Duration = Duration::from_millis(300);
-/// Time from one interrupt of a script to the next.
-const INTERRUPTS: Duration = Duration::from_millis(200);
+/// Time from one interrupt of a script to the next: short, because a shell that it kills before it knows of interrupts ends like
+/// any other command.
+const INTERRUPTS: Duration = Duration::from_millis(40);
 
 impl Running {
     /// Lets the engine leave the script, if it does within a while. Python tells where that was; Octave and MATLAB have left it all

@@ -213,7 +213,10 @@ fn an_undone_grasp_out_of_the_other_hand_is_a_release() {
 #[test]
 fn undo_works_while_paused() {
     assert_same(
-        &[(20, SimCommand::SetPaused(false))],
+        &[
+            (20, SimCommand::SetPaused(true)),
+            (5, SimCommand::SetPaused(false)),
+        ],
         &[
             (20, grasp(LEFT, "a")),
             (20, SimCommand::SetPaused(true)),
