@@ -68,6 +68,7 @@ WANTED = ("drawMarkers", "initJointAngles", "exit")  # what a script sets in aux
 VELOCITIES = {"jointVelocities": (2, 7), "gripperVelocities": (2, 1)}
 SCRIPT = "__tabletop_script__"  # the script's name as a module: no file of a user has it
 FILE = "TABLETOP_SCRIPT"  # the variable that tells its file to the processes that it starts
+MOST = 300_000  # how many elements of an array, and letters of a text, are sent at most
 PLACES = 10  # how many lines of the script, and how many causes, an error names at most
 
 
@@ -171,8 +172,12 @@ def encode(arrays):
 
 def _elements(value):
     if isinstance(value, str):
+        value = value[:MOST]
         return TEXT, (1, len(value)), value.encode("utf-8", "replace")
-    value = _lists(value)
+    shape = getattr(value, "shape", ())
+    if isinstance(shape, tuple) and len(shape) <= MOST_DIMENSIONS and _size(shape) > MOST:
+        return OTHER, shape + (1,) * (2 - len(shape)), b"double"
+    value = _column(_lists(value))
     extents = _extents(value)
     if extents is None:
         lengths = [len(row) if isinstance(row, list) else 1 for row in value]
@@ -180,10 +185,28 @@ def _elements(value):
         return OTHER, (len(value), 1), kind.encode("utf-8")
     elements = _columns(value, extents)
     dims = extents + (1,) * (2 - len(extents))
+    if _size(extents) > MOST:  # nobody wants that much: its size will do
+        return OTHER, dims, b"double"
     strange = [type(element).__name__ for element in elements if not isinstance(element, numbers.Real)]
     if strange:
         return OTHER, dims, strange[0].encode("utf-8", "replace")
     return DOUBLE, dims, struct.pack("<%dd" % len(elements), *map(_double, elements))
+
+
+def _size(extents):
+    size = 1
+    for extent in extents:
+        size *= extent
+    return size
+
+
+def _column(value):
+    """[1, [2]] as [[1], [2]]: a column of which one row was set."""
+    if not isinstance(value, list) or not any(isinstance(row, list) for row in value):
+        return value
+    if not all(isinstance(row, numbers.Real) or isinstance(row, list) and len(row) == 1 for row in value):
+        return value
+    return [row if isinstance(row, list) else [row] for row in value]
 
 
 def _lists(value, depth=0):
@@ -285,11 +308,13 @@ def _expect(module, name, *arguments):
 
 
 def _warn_of_typos(aux, known):
-    """Says which fields that a script has given to aux look like others that mean something."""
-    for name in sorted(set(vars(aux)) - known - set(WANTED)):
-        meant = difflib.get_close_matches(name, WANTED, 1, 0.85)
-        if meant:
-            print("tabletop: aux.%s means nothing (did you mean %s?)" % (name, meant[0]), file=sys.stderr)
+    """Says which fields that a script has given to aux look like others that mean something. They are known from now on."""
+    for name in sorted(set(vars(aux)) - known):
+        known.add(name)
+        looks = {wanted.lower(): wanted for wanted in WANTED}
+        meant = difflib.get_close_matches(name.lower(), looks, 1, 0.75)
+        if meant and name not in WANTED:
+            print("tabletop: aux.%s means nothing (did you mean %s?)" % (name, looks[meant[0]]), file=sys.stderr)
 
 
 def _fault(error):
@@ -378,15 +403,17 @@ class _Agent:
     def init(self):
         request = self.request()
         self.aux = request.aux
-        known = set(vars(self.aux))
+        self.known = set(vars(self.aux))
         self.module = _load(request.agent.folder)
         self.module.init(self.aux)
-        _warn_of_typos(self.aux, known)
+        _warn_of_typos(self.aux, self.known)
         self.motor = SimpleNamespace(**{name: _zeros(*size) for name, size in VELOCITIES.items()})
         return {"aux." + name: value for name, value in vars(self.aux).items() if name in WANTED}
 
     def step(self):
         self.module.callback(self.request().sensor, self.motor, self.aux)
+        if len(vars(self.aux)) != len(self.known):
+            _warn_of_typos(self.aux, self.known)
         reply = {"motor." + name: value for name, value in vars(self.motor).items()}
         if hasattr(self.aux, "exit"):
             reply["aux.exit"] = 1

@@ -71,7 +71,7 @@ pub mod prelude {
 /// Everything that simulates, nothing that shows: [`CorePlugin`](core::CorePlugin), [`XmlPlugin`](xml::XmlPlugin),
 /// [`PhysicsPlugin`](physics::PhysicsPlugin), [`ScenePlugin`](scene::ScenePlugin),
 /// [`DemonstratorPlugin`](demonstrator::DemonstratorPlugin), [`BaxterPlugin`](baxter::BaxterPlugin), [`CameraPlugin`](camera::CameraPlugin),
-/// [`RecorderPlugin`](recorder::RecorderPlugin) and [`RecordedSettingsPlugin`].
+/// [`RecorderPlugin`](recorder::RecorderPlugin), [`ScriptPlugin`](script::ScriptPlugin) and [`RecordedSettingsPlugin`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TabletopSimPlugins;
 

@@ -128,7 +128,7 @@ impl Output {
         if path.exists() && !path.is_file() && !path.is_dir() {
             return Ok(());
         }
-        let is_new = !path.exists();
+        let is_new = path.symlink_metadata().is_err();
         let mut options = fs::OpenOptions::new();
         let opened = options.append(true).create(true).open(path);
         opened

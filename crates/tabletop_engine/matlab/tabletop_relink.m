@@ -2,12 +2,12 @@ function tabletop_relink
 % TABLETOP_RELINK  Undo what "clear" in a script has done: sensor, motor and aux of the base workspace
 %   are the shared globals again, and callbackFunc is there.
 %   By BUILTIN, because the scripts may have variables of any name.
-linked = ['builtin(''exist'', ''callbackFunc'', ''var'') && ' ...
+globals = 'builtin(''arrayfun'', @(v) v.global, builtin(''whos'', ''sensor'', ''motor'', ''aux''))';
+linked = ['builtin(''sum'', ' globals ') == 3 && builtin(''exist'', ''callbackFunc'', ''var'') && ' ...
     'builtin(''isa'', callbackFunc, ''function_handle'') && builtin(''isstruct'', sensor)'];
-shared = evalin('base', 'builtin(''whos'', ''sensor'', ''motor'', ''aux'')');
 try                                                % an expression would set "ans"
     evalin('base', ['if ~(' linked '), builtin(''error'', ''unlinked''); end']);
-    if numel(shared) == 3 && all([shared.global]), return; end
+    return
 catch
 end
 kept = tabletop_keep();

@@ -151,6 +151,7 @@ impl Lines {
             self.left_out += 1;
             return;
         }
+        let full = full && stream != Stream::Note;
         let text = clean(bytes, output.line());
         if stream == Stream::Error {
             if self.last_words.len() >= LAST_WORDS {
@@ -339,11 +340,25 @@ mod tests {
 
     #[test]
     fn one_line_is_no_lines() {
+        let mut lines = Lines {
+            left_out: 1,
+            ..Lines::default()
+        };
+        lines.note_gap(Duration::ZERO);
+        assert_eq!(
+            notes(lines.waiting.make_contiguous()),
+            ["(1 more line was left out)"]
+        );
+    }
+
+    #[test]
+    fn what_the_program_remarks_is_not_left_out() {
         let console = Console::new(Output::Readable);
-        for _ in 0..201 {
+        for _ in 0..100_000 {
             console.push(Stream::Out, b"x");
         }
-        assert_eq!(notes(&console.drain()), ["(1 more line was left out)"]);
+        console.push(Stream::Note, b"cut off");
+        assert!(notes(&console.drain()).contains(&"cut off"));
     }
 
     #[test]

@@ -201,16 +201,6 @@ impl EngineHandle {
         self.0.killer.kill();
     }
 
-    /// A reply, if there is one.
-    pub fn try_recv(&self) -> Option<Reply> {
-        self.0
-            .replies
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .try_recv()
-            .ok()
-    }
-
     /// The next reply, or nothing if none comes in time or no more will.
     pub fn recv_timeout(&self, limit: Duration) -> Option<Reply> {
         let replies = self

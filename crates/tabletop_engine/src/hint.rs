@@ -2,7 +2,7 @@
 
 use crate::{
     error::ScriptError,
-    scripts::{SHARED, is_function_file},
+    scripts::{SHARED, holds_function, is_function_file},
 };
 
 /// What a message says that a struct lacks, and when it is there.
@@ -40,7 +40,13 @@ const ALWAYS: [&str; 6] = [
 /// What to do about an error, if that is known.
 pub(crate) fn hint(error: &ScriptError, in_init: bool) -> Option<&'static str> {
     let message = error.message.as_str();
-    if message.contains("agentBehavior") && message.to_lowercase().contains("script") {
+    let is_about_behavior = message.contains("agentBehavior");
+    let lowercase = message.to_lowercase();
+    if is_about_behavior
+        && ["script", "too many outputs"]
+            .iter()
+            .any(|it| lowercase.contains(it))
+    {
         return Some(
             "agentBehavior.m must begin with \"function [init, callback] = agentBehavior()\"",
         );
@@ -62,6 +68,11 @@ pub(crate) fn hint(error: &ScriptError, in_init: bool) -> Option<&'static str> {
             },
         );
     }
+    if is_of_own_script(error) {
+        return Some(
+            "Octave comes to the functions in a script only after the lines above them; give each a file of its own",
+        );
+    }
     if message.contains("break must appear") {
         return Some("Octave knows no \"break\" outside a loop; write \"return\"");
     }
@@ -78,6 +89,20 @@ fn is_call_in_agent_behavior(error: &ScriptError) -> bool {
         .any(|place| place.file.file_stem() == Some("agentBehavior".as_ref()));
     let calls = ["script", "too many output", "value on the right hand side"];
     in_agent_behavior && calls.iter().any(|call| message.contains(call))
+}
+
+/// Whether a script has called a function that stands further down in it.
+fn is_of_own_script(error: &ScriptError) -> bool {
+    let name = error
+        .message
+        .strip_prefix('\'')
+        .and_then(|rest| rest.split_once("' undefined"));
+    let Some((name, _)) = name else {
+        return false;
+    };
+    error
+        .place()
+        .is_some_and(|place| !is_function_file(&place.file) && holds_function(&place.file, name))
 }
 
 /// Whether there is no such variable, as Octave or MATLAB say it.
@@ -122,6 +147,8 @@ mod tests {
         assert!(hint(matlab, false).unwrap().contains("comment"));
         assert_eq!(hint("structure has no member 'mine'", false), None);
         assert_eq!(hint("'rgbVision' undefined", false), None);
+        let single = "agentBehavior: function called with too many outputs";
+        assert!(hint(single, true).unwrap().contains("[init, callback]"));
         let script = "invalid call to script /x/agentBehavior.m";
         assert!(hint(script, true).unwrap().contains("function"));
         let file = "invalid function handle, unable to find function for @myInit.m";
@@ -129,5 +156,26 @@ mod tests {
         let matlab = "Unrecognized function or variable 'aux'.";
         assert!(hint(matlab, true).unwrap().contains("global"));
         assert_eq!(hint("'auxiliary' undefined", true), None);
+    }
+
+    #[test]
+    fn functions_of_a_script_are_to_have_files() {
+        let script = std::env::temp_dir().join(format!("tabletop-hint-{}.m", std::process::id()));
+        std::fs::write(
+            &script,
+            "x = twice(2);\nfunction y = twice(x)\ny = 2 * x;\nend\n",
+        )
+        .unwrap();
+        let hint = |message| {
+            let stack = format!("1 {}\n", script.display());
+            hint(&ScriptError::new("", message, &stack), false)
+        };
+        assert!(
+            hint("'twice' undefined")
+                .unwrap()
+                .contains("a file of its own")
+        );
+        assert_eq!(hint("'thrice' undefined"), None);
+        std::fs::remove_file(script).unwrap();
     }
 }

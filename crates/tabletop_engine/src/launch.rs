@@ -66,7 +66,7 @@ pub(crate) fn command(config: &EngineConfig, session: &Session) -> Result<Comman
 pub(crate) fn preparation(config: &EngineConfig, session: &Session) -> String {
     let home = absolute(&config.working_dir).unwrap_or_else(|_| config.working_dir.clone());
     format!(
-        "        warning('off', 'Octave:shadowed-function'); addpath({}); cd({});",
+        "        if exist('OCTAVE_VERSION', 'builtin'), warning('off', 'Octave:shadowed-function'); end, addpath({}); cd({});",
         quoted(&session.driver()),
         quoted(&home)
     )

@@ -106,13 +106,16 @@ fn number(field: &str, array: &Array) -> Result<f64, Misuse> {
     }
 }
 
+/// Most points that a script can mark.
+const MOST_POINTS: u32 = 100_000;
+
 /// Points in space, one in each row.
 pub(crate) fn points(field: &str, array: &Array) -> Result<Vec<[f64; 3]>, Misuse> {
-    // The driver sends no more.
     let expected = "Nx3 double, N at most 100000";
     let rows = match array.dims[..] {
         [_, 0] | [0, _] => 0,
-        [rows, 3] => rows,
+        [rows @ ..=MOST_POINTS, 3] => rows,
+        [_, 3] => return Err(size(field, array, expected)),
         _ => return Err(size(field, array, "Nx3")),
     };
     let dims = if rows == 0 {

@@ -141,9 +141,26 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     let mut files: Vec<_> = entries
         .map(|entry| entry.path())
         .filter(|path| path.extension().is_some_and(|extension| extension == "m"))
+        .filter(|path| !is_hidden(path))
         .collect();
     files.sort();
     files
+}
+
+/// Whether a file's name begins with a dot, as those have that macOS leaves beside others.
+fn is_hidden(path: &Path) -> bool {
+    path.file_name()
+        .is_some_and(|name| name.as_encoded_bytes().starts_with(b"."))
+}
+
+/// Whether a script holds a function of this name.
+pub(crate) fn holds_function(script: &Path, name: &str) -> bool {
+    let text = fs::read(script).unwrap_or_default();
+    let text = String::from_utf8_lossy(&text);
+    let mut heads = text
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("function"));
+    heads.any(|head| words(head).any(|word| word == name))
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::{
     collections::VecDeque,
     fs, io,
     path::{Path, PathBuf},
-    sync::mpsc::{Receiver, RecvTimeoutError, Sender},
+    sync::mpsc::{Receiver, Sender},
     thread,
     time::{Duration, Instant},
 };
@@ -81,10 +81,10 @@ impl Worker {
 /// An engine that has been started.
 struct Running {
     worker: Worker,
-    // The process goes before the folder that it uses.
+    // The process and the open file go before the folder in which they are.
     process: Process,
-    session: Session,
     trigger_file: Option<TriggerFile>,
+    session: Session,
     waiting: VecDeque<Signal>,
     seq: u32,
     open_outputs: u32,
@@ -186,7 +186,6 @@ impl Running {
                     self.end(limit);
                     return EngineError::Stopped;
                 }
-                Err(RecvTimeoutError::Disconnected) => return EngineError::Stopped,
                 Ok(Signal::Done(_)) => continue,
                 Ok(Signal::Closed) => {
                     self.note_closed_output();
@@ -196,7 +195,7 @@ impl Running {
                         None => continue,
                     }
                 }
-                Err(RecvTimeoutError::Timeout) => {
+                Err(_) => {
                     if let Some(file) = &mut self.trigger_file {
                         file.beat();
                     }
@@ -225,12 +224,15 @@ impl Running {
         }
         let folder = match config.engine.kind {
             EngineKind::Python | EngineKind::Driver if !agent.is_dir() => {
-                config.agent.parent().unwrap_or(Path::new("."))
+                config.agent.parent().unwrap_or(Path::new(""))
             }
             _ => &config.agent,
         };
-        let mut path = folder.to_string_lossy().into_owned();
-        if !path.is_empty() && !path.ends_with(['/', '\\']) {
+        let mut path = match folder.to_string_lossy() {
+            here if here.is_empty() => ".".to_owned(),
+            folder => folder.into_owned(),
+        };
+        if !path.ends_with(['/', '\\']) {
             path.push('/');
         }
         let mut arrays = aux.arrays(&path);
@@ -398,7 +400,7 @@ impl Running {
             match self.worker.inbox.recv_timeout(pause.min(limit - waited)) {
                 Ok(Signal::Done(seq)) if seq == self.seq => return Ok(()),
                 Ok(Signal::Done(_)) => {}
-                Ok(Signal::Stop(_)) | Err(RecvTimeoutError::Disconnected) => {
+                Ok(Signal::Stop(_)) => {
                     self.interrupt();
                     return Err(EngineError::Stopped);
                 }
@@ -409,7 +411,7 @@ impl Running {
                     }
                 }
                 Ok(request) => self.waiting.push_back(request),
-                Err(RecvTimeoutError::Timeout) => {}
+                Err(_) => {}
             }
             if self
                 .trigger_file

@@ -112,11 +112,13 @@ fn a_crash_is_told_from_an_error() {
 fn an_idle_engine_that_ends_is_noticed() {
     for trigger in TRIGGERS {
         let folder = Folder::pair(
-            "pid = getpid(); system(sprintf('(sleep 0.3; kill -9 %d) >/dev/null 2>&1 &', pid));",
+            "wait = sprintf('while ! [ -e %sgo ]; do sleep 0.05; done', aux.path); \
+             system(sprintf('(%s; kill -9 %d) >/dev/null 2>&1 &', wait, getpid()));",
             "",
         );
         let session = Session::octave(&folder.0, trigger);
         session.init().unwrap();
+        std::fs::write(folder.0.join("go"), "").unwrap();
         let reply = session.engine.recv_timeout(Duration::from_secs(20));
         assert!(
             matches!(reply, Some(Reply::Failed(EngineError::Died { .. }))),
@@ -133,7 +135,7 @@ fn an_engine_that_cannot_start_says_why() {
     let error = Session::start(config).err().unwrap();
     assert!(error.to_string().contains("no directory"), "{error}");
     let mut config = octave(&folder.0, Trigger::Stdin);
-    config.engine.program = "/bin/false".into();
+    config.engine.program = "/usr/bin/false".into();
     let error = Session::start(config).err().unwrap();
     assert!(matches!(error, EngineError::Died { .. }), "{error}");
 }

@@ -83,6 +83,36 @@ fn a_script_that_may_be_left_is_still_in_its_folder() {
 }
 
 #[test]
+fn a_script_may_be_left_whatever_is_put_on_the_path() {
+    for init in [
+        "addpath(aux.path);",
+        "addpath(genpath(aux.path));",
+        "restoredefaultpath;",
+        "",
+    ] {
+        let folder = Folder::pair(
+            init,
+            "addpath(aux.path); n = 1; if true, break, end, n = 2;",
+        );
+        // What cannot be read is nobody's business, until it is called.
+        fs::create_dir(folder.0.join("data.m")).unwrap();
+        fs::write(folder.0.join("._testInit.m"), b"\x80").unwrap();
+        let session = Session::octave(&folder.0, TRIGGERS[0]);
+        session.init().unwrap();
+        for _ in 0..2 {
+            session.step(&Sensor::default()).unwrap();
+        }
+        assert!(
+            session
+                .engine
+                .drain_console()
+                .iter()
+                .all(|line| !line.text.contains("UTF-8"))
+        );
+    }
+}
+
+#[test]
 fn the_program_says_what_it_has_changed() {
     let folder = Folder::pair("if true, break, end", "");
     let session = Session::octave(&folder.0, TRIGGERS[0]);

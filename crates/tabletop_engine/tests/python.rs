@@ -260,6 +260,44 @@ fn a_misused_aux_names_the_script_and_a_typo_is_noted() {
     session.init().unwrap();
     let note = "tabletop: aux.drawMarker means nothing (did you mean drawMarkers?)\n";
     assert_eq!(session.printed("drawMarkers"), note);
+    let (_folder, session) = start(
+        "def init(aux): aux.Exit = 1\ndef callback(sensor, motor, aux): aux.exits = True; aux.mine = 1\n",
+    );
+    session.init().unwrap();
+    for _ in 0..2 {
+        session.step(&Sensor::default()).unwrap();
+    }
+    let notes = "tabletop: aux.Exit means nothing (did you mean exit?)\ntabletop: aux.exits means nothing (did you mean exit?)\n";
+    assert_eq!(session.printed("exits"), notes);
+}
+
+#[test]
+fn what_is_too_large_is_told_by_its_size() {
+    let (folder, session) = start("def init(aux): pass\ndef callback(sensor, motor, aux): pass\n");
+    let told = |line: &str| {
+        let script =
+            format!("def init(aux): pass\ndef callback(sensor, motor, aux):\n    {line}\n");
+        fs::write(folder.0.join("robot.py"), script).unwrap();
+        session.init().unwrap();
+        let error = session.step(&Sensor::default()).unwrap_err();
+        assert!(!error.is_fatal(), "{error}");
+        error.to_string()
+    };
+    let error = told("raise ValueError('x' * 70_000_000)");
+    assert!(error.starts_with("ValueError: xxx"), "{}", error.len());
+    let error = told("motor.jointVelocities = [[0.0] * 3000] * 3000");
+    assert!(error.contains("is 3000x3000 double"), "{error}");
+}
+
+#[test]
+fn a_row_of_a_column_may_be_a_number() {
+    let (_folder, session) = start(
+        "def init(aux): pass\n\
+         def callback(sensor, motor, aux): motor.gripperVelocities = [[0.0], [0.5]]; motor.gripperVelocities[0] = -1.0\n",
+    );
+    session.init().unwrap();
+    let motor = session.step(&Sensor::default()).unwrap().motor;
+    assert_eq!(motor.gripper_velocities, [-1.0, 0.5]);
 }
 
 #[test]
@@ -357,7 +395,7 @@ fn what_a_script_does_at_last_is_not_interrupted() {
                   def callback(sensor, motor, aux): pass\n";
     let folder = Folder::new(&[("robot.py", script)]);
     let mut config = config(folder.0.join("robot.py"));
-    config.timeouts.init = Duration::from_millis(300);
+    config.timeouts.init = Duration::from_secs(1);
     let session = Session::start(config).unwrap();
     let error = session.init().unwrap_err();
     assert!(matches!(error, EngineError::Timeout { .. }), "{error}");
@@ -371,7 +409,7 @@ fn hangs_exits_and_missing_files_are_told() {
     };
     let folder = Folder::new(&[("robot.py", &script("while True: pass"))]);
     let mut config = config(folder.0.join("robot.py"));
-    config.timeouts.init = Duration::from_millis(300);
+    config.timeouts.init = Duration::from_secs(1);
     let session = Session::start(config.clone()).unwrap();
     let error = session.init().unwrap_err();
     assert!(matches!(error, EngineError::Timeout { .. }), "{error}");

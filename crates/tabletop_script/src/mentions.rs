@@ -29,13 +29,17 @@ fn scripts_in(folder: &Path, extension: &str) -> Vec<PathBuf> {
     let mut scripts = Vec::new();
     let mut folders = vec![folder.to_owned()];
     for _ in 0..=DEEPEST {
-        let (below, mut files): (Vec<_>, Vec<_>) = folders
+        let mut entries: Vec<_> = folders
             .iter()
             .flat_map(|folder| folder.read_dir().into_iter().flatten().flatten())
             .filter(|entry| !entry.file_name().as_encoded_bytes().starts_with(b"."))
             .map(|entry| entry.path())
-            .take(MOST_ENTRIES)
-            .partition(|path| path.is_dir());
+            .collect();
+        // Which ones are looked at must not depend on the file system.
+        entries.sort();
+        entries.truncate(MOST_ENTRIES);
+        let (below, mut files): (Vec<_>, Vec<_>) =
+            entries.into_iter().partition(|path| path.is_dir());
         files.retain(|file| file.extension().is_some_and(|other| other == extension));
         scripts.append(&mut files);
         folders = below;

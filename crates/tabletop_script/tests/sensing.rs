@@ -126,11 +126,15 @@ end
     };
     stage.app.world_mut().spawn((Transform::from(pose), spec));
     let mut touched = Vec::new();
-    while !stage.has_stopped() {
+    for _ in 0..100 {
+        if stage.has_stopped() {
+            break;
+        }
         touched = stage.robot().contacts.clone();
         stage.ticks(1);
     }
     assert_eq!(stage.failure(), None);
+    assert!(stage.has_stopped());
     let printed = stage.printed();
     let lines: Vec<Vec<_>> = printed
         .lines()

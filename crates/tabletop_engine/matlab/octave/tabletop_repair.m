@@ -1,6 +1,8 @@
-function tabletop_repair(scripts, folder)
+function used = tabletop_repair(scripts, folder)
 % TABLETOP_REPAIR  MATLAB leaves a script at a "break" outside a loop; Octave refuses to read such a script.
-%   Copies of those in the folder SCRIPTS, with "return" there, are found first from now on.
+%   Copies of those in the folder SCRIPTS, with "return" there, are found first from now on.  Returns the folder of the copies,
+%   empty if there are none.
+used = '';
 if is_same_file(pwd(), scripts), return; end       % where the originals are found before all copies
 copies = [folder 'repaired'];
 if ~isfolder(copies), mkdir(copies); end
@@ -11,7 +13,12 @@ share_private(original, copies);
 addpath(copies);
 dir_encoding(copies, dir_encoding(original));
 for file = dir(fullfile(scripts, '*.m'))'
-    text = fileread(fullfile(scripts, file.name));
+    if file.isdir || file.name(1) == '.', continue; end
+    try
+        text = fileread(fullfile(scripts, file.name));
+    catch
+        continue                                   % Octave tells when it needs it
+    end
     if isempty(strfind(text, 'break')), continue; end
     [~, name] = fileparts(file.name);
     do
@@ -21,6 +28,7 @@ for file = dir(fullfile(scripts, '*.m'))'
             % Octave would look for a file of that name first, which SOURCE does not want.
             write(fullfile(copies, [file.name '.sourced']), text);
             rehash;
+            used = copies;
             note = "\001note %s:%d: Octave knows no \"break\" outside a loop; \"return\" is used instead\n";
             printf(note, file.name, number);
         end

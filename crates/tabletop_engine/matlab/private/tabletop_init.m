@@ -6,22 +6,24 @@ agent = request.agent;
 template = struct('jointVelocities', zeros(2, 7), 'gripperVelocities', zeros(2, 1));
 driver = [folder 'driver' filesep];
 tabletop_path(driver);
+octave = exist('OCTAVE_VERSION', 'builtin');
 % What the scripts shadow is told; what the driver shadows is not.
-warning('on', 'Octave:shadowed-function');
+if octave, warning('on', 'Octave:shadowed-function'); end
 addpath(agent.folder);
-warning('off', 'Octave:shadowed-function');
+if octave, warning('off', 'Octave:shadowed-function'); end
 if isfield(agent, 'encoding'), dir_encoding(canonicalize_file_name(agent.folder), agent.encoding); end
 rehash;
 tabletop_global('sensor', struct());
 tabletop_global('motor', struct());
 tabletop_global('aux', request.aux);
 evalin('base', 'global sensor motor aux');
-if exist('OCTAVE_VERSION', 'builtin'), tabletop_repair(agent.folder, folder); end
+copies = '';
+if octave, copies = tabletop_repair(agent.folder, folder); end
 tabletop_keep(struct('running', fullfile(agent.folder, 'agentBehavior.m')));
 [initFunc, callbackFunc] = tabletop_pair(agent);
 assignin('base', 'initFunc', initFunc);
 assignin('base', 'callbackFunc', callbackFunc);
-kept = struct('aux', request.aux, 'motor', template, 'callbackFunc', callbackFunc, 'folder', agent.folder);
+kept = struct('aux', request.aux, 'motor', template, 'callbackFunc', callbackFunc, 'folder', agent.folder, 'copies', copies);
 kept.running = tabletop_file(initFunc);
 tabletop_keep(kept);
 tabletop_run('initFunc', folder);

@@ -11,4 +11,14 @@ catch                                              % the script has taken the dr
     addpath(kept.folder);
     tabletop_relink;
 end
+kept = tabletop_keep();
+if ~isempty(kept.copies), tabletop_front(kept.copies, folder); end
+end
+
+function tabletop_front(copies, folder)
+% Have the COPIES of scripts found first again, but for what else is in FOLDER, if a script has put others there.
+parts = ostrsplit(path(), pathsep());
+own = find(strcmp(parts, copies), 1);
+ahead = parts(1:own - 1);
+if isempty(own) || ~all(strcmp(ahead, '.') | strncmp(ahead, folder, numel(folder))), addpath(copies); end
 end

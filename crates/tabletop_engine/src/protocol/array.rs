@@ -146,15 +146,4 @@ impl Array {
             _ => None,
         }
     }
-
-    /// The number, if it is a single one.
-    pub fn as_scalar(&self) -> Option<f64> {
-        match &self.data {
-            Data::Double(data) => match data[..] {
-                [value] => Some(value),
-                _ => None,
-            },
-            _ => None,
-        }
-    }
 }

@@ -2,7 +2,6 @@
 
 use std::{
     process::ExitStatus,
-    sync::mpsc::RecvTimeoutError,
     time::{Duration, Instant},
 };
 
@@ -16,8 +15,10 @@ use crate::{
 
 /// How long the last output of an engine that has ended is waited for.
 const LAST_OUTPUT: Duration = Duration::from_millis(300);
-/// Time from one interrupt of a script to the next: short, because a shell that it kills before it knows of interrupts ends like
-/// any other command.
+/// How long a script that was interrupted may take to clean up.
+const CLEANUP: Duration = Duration::from_millis(200);
+/// Time from one further interrupt to the next: short, because a shell that gets one before it knows of interrupts ends as if it
+/// had got none.
 const INTERRUPTS: Duration = Duration::from_millis(40);
 
 impl Running {
@@ -50,14 +51,17 @@ impl Running {
     fn leaves_script(&mut self) -> bool {
         let repeats = self.worker.config.engine.kind == EngineKind::Octave;
         let start = Instant::now();
+        let mut pause = CLEANUP;
         while start.elapsed() < GRACE {
-            match self.worker.inbox.recv_timeout(INTERRUPTS) {
+            match self.worker.inbox.recv_timeout(pause) {
                 Ok(Signal::Done(seq)) if seq == self.seq => return true,
                 Ok(Signal::Closed) => self.note_closed_output(),
                 Ok(_) => {}
-                Err(RecvTimeoutError::Timeout) if repeats => self.worker.killer.interrupt(),
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return false,
+                Err(_) if repeats => {
+                    self.worker.killer.interrupt();
+                    pause = INTERRUPTS;
+                }
+                Err(_) => {}
             }
             if self.process.ended().is_some() {
                 return false;
