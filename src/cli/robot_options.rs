@@ -79,6 +79,9 @@ impl EngineOptions {
     /// The engine that is wanted is not there, or does not run this language.
     pub fn settings(&self, script: Option<&str>) -> Result<ScriptSettings, Failure> {
         let mut settings = ScriptSettings::default();
+        if self.engine.as_deref().map(parse) == Some(EngineChoice::Auto) {
+            settings.surroundings.variable = None;
+        }
         if let Some(script) = script {
             let (language, agent) = split(script);
             settings.agent = agent.map(PathBuf::from);

@@ -1,16 +1,17 @@
 //! `tabletop run`: the simulation without a window.
 
 use std::{
+    collections::BTreeSet,
     path::{Path, PathBuf},
     process::ExitCode,
 };
 
-use bevy::{app::PluginGroupBuilder, prelude::*};
+use bevy::{app::PluginGroupBuilder, ecs::message::MessageCursor, prelude::*};
 use clap::Args;
 use serde_json::json;
 use tabletop::{
     TabletopSimPlugins,
-    core::{SceneSpec, SimCommand, StepApp as _, TICKS_PER_SECOND},
+    core::{Recording, SceneSpec, SimCommand, SimFact, StepApp as _, TICKS_PER_SECOND},
     headless_app_with,
     recorder::{RecorderPlugin, RehearsalPlugin},
     report,
@@ -86,6 +87,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
             let setup = args.setup.as_deref();
             let setup = setup.unwrap_or(Path::new(super::DEFAULT_SETUP));
             let (mut app, result) = put_on_table(setup, plugins(args)?)?;
+            app.add_systems(FixedLast, tell_what_stops_the_robot);
             let script = Script::start(&mut app, args.script.is_some());
             let script = script.run(&mut app, ticks(seconds.unwrap_or(10.0)));
             args.write_ends(&app)?;
@@ -102,9 +104,17 @@ pub(super) fn simulate(
     final_state: &Output,
 ) -> Result<ExitCode, Failure> {
     let (mut app, result) = put_on_table(setup, TabletopSimPlugins.build())?;
-    app.step(ticks(seconds));
+    pass(&mut app, ticks(seconds));
     write_final_state(&app, final_state)?;
     Ok(result)
+}
+
+/// Simulates so many ticks. If there are none, all is put on the table nevertheless.
+pub(super) fn pass(app: &mut App, ticks: u64) {
+    if ticks == 0 {
+        app.world_mut().write_message(SimCommand::SetPaused(true));
+    }
+    app.step(ticks.max(1));
 }
 
 /// The simulator with a task file's scene on its table, and the exit code for the file's faults.
@@ -136,10 +146,16 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     }
 
     let mut app = headless_app_with((recording(plugins(args)?, args), ScenarioPlugin));
-    app.insert_resource(ScenarioRun::new(program));
+    app.insert_resource(ScenarioRun::new(program))
+        .add_systems(FixedLast, tell_what_stops_the_robot);
     let mut script = Script::start(&mut app, args.script.is_some());
+    let mut facts = MessageCursor::<SimFact>::default();
+    let mut has_recorded = false;
     let outcome = loop {
         app.step(1);
+        has_recorded |= facts
+            .read(app.world().resource())
+            .any(|fact| matches!(fact, SimFact::RecordingStarted { .. }));
         if let Err(unheard) = script.listen(&app) {
             break Err(unheard);
         }
@@ -151,7 +167,35 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     };
     see_off(app.world_mut());
     args.write_ends(&app)?;
+    if args.record.is_some() {
+        finish_recording(&mut app, has_recorded);
+    }
     outcome.and_then(|done| script.result().and(Ok(done)))
+}
+
+/// Ends the recording that a scenario has not ended, or says that there was none.
+fn finish_recording(app: &mut App, has_recorded: bool) {
+    if !has_recorded {
+        say("tabletop: nothing was recorded: the scenario has not come to a Start");
+    } else if app.world().resource::<Recording>().0 {
+        app.world_mut().write_message(SimCommand::FinishRecording);
+        app.step(1);
+    }
+}
+
+/// Says once of each thing that it stops an arm, or cannot be gripped.
+fn tell_what_stops_the_robot(mut facts: MessageReader<SimFact>, mut told: Local<BTreeSet<String>>) {
+    let stops = facts.read().filter(|fact| {
+        matches!(
+            fact,
+            SimFact::ArmBlocked { .. } | SimFact::GripRefused { .. }
+        )
+    });
+    for news in stops.filter_map(SimFact::robot_news) {
+        if told.insert(news.clone()) {
+            say(format_args!("tabletop: {news}"));
+        }
+    }
 }
 
 /// The simulator with the robot and the engine that were asked for.

@@ -9,6 +9,7 @@ use tabletop::{
 use super::{
     Failure,
     robot_options::{EngineOptions, check_scripts},
+    run::pass,
     terminal::{is_unheard, say},
 };
 
@@ -67,7 +68,7 @@ impl Script {
     /// Simulates so many ticks, or until the script has ended.
     pub fn run(mut self, app: &mut App, ticks: u64) -> Result<(), Failure> {
         if !self.is_wanted {
-            app.step(ticks);
+            pass(app, ticks);
             return Ok(());
         }
         // The first tick is that of the init script.

@@ -263,3 +263,66 @@ fn a_scenario_has_its_place_in_a_tick() {
     });
     app.step(1);
 }
+
+#[test]
+fn a_recording_ends_with_its_scenario() {
+    for (name, steps, told) in [
+        ("unfinished", "Start, Grasp(\"RedBlock\"), Wait(0.5),", ""),
+        (
+            "unstarted",
+            "Wait(0.1),",
+            "tabletop: nothing was recorded: the scenario has not come to a Start\n",
+        ),
+    ] {
+        let folder = place(name);
+        let scenario = scenario(&format!("{name}.ron"), steps);
+        let output = run(&scenario, &["--record", folder.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        assert_eq!(stderr(&output), told);
+        if told.is_empty() {
+            let output = tabletop(&["replay", folder.to_str().unwrap(), "--verify"]);
+            assert_eq!(
+                (output.status.code(), stderr(&output)),
+                (Some(0), String::new())
+            );
+        }
+    }
+}
+
+#[test]
+fn two_programs_do_not_record_into_one_folder() {
+    let folder = place("shared");
+    let into = folder.to_str().unwrap();
+    let steps =
+        "Grasp(\"RedBlock\"), MoveBy((0, 0, 3)), Wait(0.2), Release, Wait(0.3),".repeat(300);
+    let long = scenario("shared_long.ron", &format!("Start, {steps} Finish,"));
+    let mut first = command(&["run", long.to_str().unwrap(), "--record", into])
+        .spawn()
+        .unwrap();
+    while !folder.join("1.txt").exists() {
+        assert_eq!(first.try_wait().unwrap(), None, "it ended too early");
+    }
+    let short = scenario("shared_short.ron", "Start, Wait(0.1), Finish,");
+    let output = run(&short, &["--record", into]);
+    first.kill().unwrap();
+    first.wait().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let said = stderr(&output);
+    assert!(
+        said.contains(&format!("a recording is being made in {into}")),
+        "{said}"
+    );
+    // What is in the way is no recording that is being made any more.
+    let output = run(&short, &["--record", into]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    fs::remove_dir_all(format!("{into}-1")).unwrap();
+}
+
+#[test]
+fn what_stops_an_arm_is_told_once() {
+    let steps = "Robot(Show), Robot(Move([(RightS1, 1.0)])), Wait(2), Robot(Move([(RightS1, 1.0)])), Wait(0.5),";
+    let output = run(&scenario("stopped.ron", steps), &[]);
+    let told = stderr(&output);
+    let stop = "tabletop: the right arm is stopped by torso\n";
+    assert_eq!(told.matches(stop).count(), 1, "{told}");
+}

@@ -416,6 +416,17 @@ fn the_named_engine_runs_the_script() {
 }
 
 #[test]
+fn any_engine_is_taken_if_the_option_says_so() {
+    let script = python("auto", "pass", "aux.exit = True");
+    let mut command = command(&["run", "--script", &script, "--engine", "auto"]);
+    let output = command
+        .env("TABLETOP_ENGINE", "/no/octave")
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}
+
+#[test]
 fn a_script_that_fails_beside_a_scenario_is_told_once_when_it_does() {
     let script = python("beside", "pass", "raise ValueError('my bug')");
     for (name, steps, end) in [

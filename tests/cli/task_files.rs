@@ -191,3 +191,12 @@ fn without_a_display_the_table_is_simulated_without_a_window() {
     is_default_state(&stdout(&output));
     assert!(stderr(&output).lines().count() <= 2, "{}", stderr(&output));
 }
+
+#[test]
+fn without_time_all_is_where_it_is_put() {
+    let output = tabletop(&["run", "--seconds", "0", "--final-state", "-"]);
+    assert_eq!(
+        stdout(&output),
+        "RedBlock,2.0,0.0,1.0,0.0,0.0,-14.999999\nGreenBlock,-2.0,0.0,1.0,0.0,0.0,45.0\n"
+    );
+}

@@ -31,6 +31,7 @@ mod ray;
 mod recording;
 mod rewind;
 mod robot;
+mod robot_news;
 mod scene;
 mod sensor;
 mod shape;

@@ -2,8 +2,12 @@ function tabletop_relink
 % TABLETOP_RELINK  Undo what "clear" in a script has done: sensor, motor and aux of the base workspace
 %   are the shared globals again, and callbackFunc is there.
 %   By BUILTIN, because the scripts may have variables of any name.
-globals = 'builtin(''arrayfun'', @(v) v.global, builtin(''whos'', ''sensor'', ''motor'', ''aux''))';
-linked = ['builtin(''sum'', ' globals ') == 3 && builtin(''exist'', ''callbackFunc'', ''var'') && ' ...
+if exist('OCTAVE_VERSION', 'builtin')
+    linked = 'builtin(''isglobal'', ''sensor'') && builtin(''isglobal'', ''motor'') && builtin(''isglobal'', ''aux'')';
+else                                               % whose ISGLOBAL takes no names; this is slower in Octave
+    linked = 'sum(arrayfun(@(v) v.global, builtin(''whos'', ''sensor'', ''motor'', ''aux''))) == 3';
+end
+linked = [linked ' && builtin(''exist'', ''callbackFunc'', ''var'') && ' ...
     'builtin(''isa'', callbackFunc, ''function_handle'') && builtin(''isstruct'', sensor)'];
 try                                                % an expression would set "ans"
     evalin('base', ['if ~(' linked '), builtin(''error'', ''unlinked''); end']);

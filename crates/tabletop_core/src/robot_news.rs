@@ -1,0 +1,70 @@
+//! What the robot has done, in words.
+
+use crate::SimFact;
+
+/// The angle of the report's figure 11 has to be below this, in degrees.
+const LARGEST_GRIP_ANGLE: f32 = 180.0 / 16.0;
+
+impl SimFact {
+    /// What the robot has done, in words; nothing of what others have.
+    pub fn robot_news(&self) -> Option<String> {
+        Some(match self {
+            Self::GripMade { arm, id } => format!("the {arm} gripper holds {id}"),
+            Self::GripRefused { arm, id, angle } => format!(
+                "the {arm} gripper cannot hold {id}: its fingers touch it at θ = {:.1}°, which must be below \
+             {LARGEST_GRIP_ANGLE}°",
+                angle.to_degrees()
+            ),
+            Self::GripReleased { arm, id } => format!("the {arm} gripper holds {id} no longer"),
+            Self::ArmBlocked { arm, by } if by == "table" => {
+                format!("the {arm} arm is stopped by the table")
+            }
+            Self::ArmBlocked { arm, by } => format!("the {arm} arm is stopped by {by}"),
+            _ => return None,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Arm;
+
+    #[test]
+    fn facts_of_the_robot_have_words() {
+        for (fact, expected) in [
+            (
+                SimFact::GripMade {
+                    arm: Arm::Left,
+                    id: "red".into(),
+                },
+                "the left gripper holds red",
+            ),
+            (
+                SimFact::GripRefused {
+                    arm: Arm::Right,
+                    id: "red".into(),
+                    angle: 0.5,
+                },
+                "the right gripper cannot hold red: its fingers touch it at θ = 28.6°, which must be below 11.25°",
+            ),
+            (
+                SimFact::GripReleased {
+                    arm: Arm::Right,
+                    id: "red".into(),
+                },
+                "the right gripper holds red no longer",
+            ),
+            (
+                SimFact::ArmBlocked {
+                    arm: Arm::Left,
+                    by: "table".into(),
+                },
+                "the left arm is stopped by the table",
+            ),
+        ] {
+            assert_eq!(fact.robot_news().as_deref(), Some(expected));
+        }
+        assert_eq!(SimFact::Undone.robot_news(), None);
+    }
+}
