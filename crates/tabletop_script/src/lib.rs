@@ -30,6 +30,7 @@ mod agency;
 mod mentions;
 mod news;
 mod sense;
+mod session;
 mod settings;
 mod standstill;
 

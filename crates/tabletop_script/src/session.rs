@@ -1,0 +1,230 @@
+//! A script with its engine: what is asked of it, and what comes of its answers.
+
+use std::time::{Duration, Instant};
+
+use bevy::prelude::*;
+use tabletop_core::{Agent, AgentNews, RobotMode, SimTick, Standstill};
+use tabletop_engine::{EngineError, EngineHandle, Reply};
+
+use crate::{
+    act::{command_of_motor, commands_of_init, last_command, unreachable},
+    agency::Simulation,
+    sense::{Told, aux},
+    settings::{ScriptSettings, Waiting},
+};
+
+/// Longest time that one look for an answer takes while the simulation waits for the script anyway, and that what the script
+/// prints meanwhile waits to be told.
+const ONE_LOOK: Duration = Duration::from_millis(100);
+
+/// A script with its engine.
+pub(crate) struct Session {
+    pub engine: EngineHandle,
+    stage: Stage,
+    /// When the engine was asked for what it has not answered yet.
+    asked: Instant,
+    /// The tick of the last call, or of the init script.
+    called_at: SimTick,
+    /// The tick in which the init script has run.
+    began_at: SimTick,
+    /// What it gets to know.
+    told: Told,
+    /// An answer that came in a pause, after which it counts.
+    answer: Option<Reply>,
+    /// The tick of a picture that the script is to get next.
+    picture: Option<SimTick>,
+    /// Whether it has been said that nothing obeys its torques.
+    torques_noted: bool,
+}
+
+/// What is expected of the engine next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// That it comes up.
+    Start,
+    /// Nothing: the init script is due.
+    Ready,
+    /// That the init script has run.
+    Init,
+    /// Nothing: the callback script is due.
+    Idle,
+    /// That the callback script has run.
+    Step,
+}
+
+/// What came of an answer.
+pub(crate) enum Answer {
+    /// Another one is needed before the tick can begin.
+    None,
+    /// The tick can begin.
+    Orders,
+    /// The script is done.
+    Exit,
+}
+
+impl Session {
+    pub fn start(settings: &ScriptSettings, tick: SimTick) -> Result<Self, EngineError> {
+        let config = settings.engine_config()?;
+        let told = Told::to(&config.agent, settings);
+        Ok(Self {
+            engine: EngineHandle::start(config)?,
+            stage: Stage::Start,
+            asked: Instant::now(),
+            called_at: tick,
+            began_at: tick,
+            told,
+            answer: None,
+            picture: None,
+            torques_noted: false,
+        })
+    }
+
+    /// Has the engine do what is due for the tick that begins, and waits for the answer. Returns what came of it; `None` if nothing
+    /// is due, or the answer has to be waited for longer.
+    pub fn attend(
+        &mut self,
+        will_be_paused: bool,
+        simulation: &mut Simulation,
+    ) -> Option<Result<Answer, EngineError>> {
+        loop {
+            if will_be_paused && matches!(self.stage, Stage::Ready | Stage::Idle) {
+                return None;
+            }
+            self.ask_what_is_due(simulation);
+            let was_alive = self.engine.is_alive();
+            match self.look(will_be_paused, simulation) {
+                Some(reply @ (Reply::Init(_) | Reply::Step(_))) if will_be_paused => {
+                    if let Agent::Waiting { since } = *simulation.agent {
+                        *simulation.agent = Agent::Online { took: since };
+                    }
+                    self.answer = Some(reply);
+                    return None;
+                }
+                Some(reply) => match self.take(reply, simulation) {
+                    Ok(Answer::None) => {}
+                    answered => return Some(answered),
+                },
+                None if !was_alive => return Some(Err(EngineError::Stopped)),
+                None if simulation.settings.waiting == Waiting::Blocking => {}
+                None => {
+                    self.let_wait(will_be_paused, simulation);
+                    return None;
+                }
+            }
+        }
+    }
+
+    fn ask_what_is_due(&mut self, simulation: &Simulation) {
+        match self.stage {
+            Stage::Ready => {
+                self.engine.init(aux());
+                self.expect(Stage::Init);
+            }
+            Stage::Idle => {
+                let tick = *simulation.tick;
+                let picture = self
+                    .picture
+                    .and_then(|tick| simulation.senses.picture_since(tick));
+                self.picture.take_if(|_| picture.is_some());
+                let ticks = tick.0.saturating_sub(self.called_at.0).max(1);
+                self.called_at = tick;
+                let sensor = simulation.senses.sensor(ticks, picture, self.told);
+                self.engine.step(sensor);
+                self.expect(Stage::Step);
+            }
+            Stage::Start | Stage::Init | Stage::Step => {}
+        }
+    }
+
+    fn expect(&mut self, stage: Stage) {
+        self.stage = stage;
+        self.asked = Instant::now();
+    }
+
+    /// Looks for an answer, as long as a frame may wait for it.
+    fn look(&mut self, will_be_paused: bool, simulation: &mut Simulation) -> Option<Reply> {
+        let look = match simulation.settings.waiting {
+            Waiting::Blocking => ONE_LOOK,
+            Waiting::Frame(_) if will_be_paused || self.stage == Stage::Start => Duration::ZERO,
+            Waiting::Frame(most) => most,
+        };
+        let kept = self.answer.take();
+        let reply = kept.or_else(|| self.engine.recv_timeout(look));
+        simulation.news.print(&self.engine);
+        reply
+    }
+
+    /// Lets the simulation wait for the script. While the engine comes up, it goes on.
+    fn let_wait(&self, will_be_paused: bool, simulation: &mut Simulation) {
+        if self.stage == Stage::Start {
+            return;
+        }
+        simulation
+            .standstill
+            .set_if_neq(Standstill(!will_be_paused));
+        *simulation.agent = Agent::Waiting {
+            since: self.asked.elapsed(),
+        };
+    }
+
+    /// Does what an answer calls for.
+    fn take(&mut self, reply: Reply, simulation: &mut Simulation) -> Result<Answer, EngineError> {
+        let Simulation {
+            tick,
+            senses,
+            agent,
+            commands,
+            news,
+            ..
+        } = simulation;
+        match reply {
+            Reply::Started { description } => {
+                news.tell(AgentNews::Started {
+                    engine: description,
+                });
+                self.stage = Stage::Ready;
+                Ok(Answer::None)
+            }
+            Reply::Init(reply) => {
+                commands.write_batch(commands_of_init(&reply));
+                if let Some(note) = unreachable(&reply) {
+                    news.note(&note);
+                }
+                self.called_at = **tick;
+                self.began_at = **tick;
+                self.stage = Stage::Idle;
+                **agent = Agent::Online {
+                    took: self.asked.elapsed(),
+                };
+                // The first call comes with the next tick, when the arms are where the init script wants them.
+                Ok(Answer::Orders)
+            }
+            Reply::Step(reply) if reply.exit => {
+                commands.write_batch(last_command(&reply.motor));
+                Ok(Answer::Exit)
+            }
+            Reply::Step(reply) => {
+                let mode = senses.mode();
+                let unheeded = reply.motor.joint_torques.is_some() && mode != RobotMode::Dynamic;
+                if unheeded && !self.torques_noted {
+                    self.torques_noted = true;
+                    news.note("motor.jointTorques has no effect without --dynamic");
+                }
+                commands.write(command_of_motor(&reply.motor, mode));
+                self.stage = Stage::Idle;
+                **agent = Agent::Online { took: reply.took };
+                Ok(Answer::Orders)
+            }
+            Reply::Failed(error) => Err(error),
+        }
+    }
+
+    /// Asks for the picture that the script is to get next, if one is due.
+    pub fn ask_for_picture(&mut self, simulation: &Simulation) {
+        let ticks = simulation.tick.0.saturating_sub(self.began_at.0);
+        if ticks.is_multiple_of(simulation.settings.ticks_per_picture.max(1)) {
+            simulation.demand.ask();
+            self.picture = Some(*simulation.tick);
+        }
+    }
+}
