@@ -64,7 +64,7 @@ fn a_running_script_can_be_stopped_from_any_thread() {
                 matches!(reply, Some(Reply::Failed(EngineError::Stopped))),
                 "{reply:?}"
             );
-            assert!(start.elapsed() < Duration::from_secs(3));
+            assert!(start.elapsed() < Duration::from_secs(9));
         }
     }
 }

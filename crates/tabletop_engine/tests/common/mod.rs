@@ -115,7 +115,7 @@ impl Session {
     /// What has been printed, waiting for a line that holds `text`.
     pub fn printed(&self, text: &str) -> String {
         let mut all = String::new();
-        for _ in 0..200 {
+        for _ in 0..2000 {
             for line in self.engine.drain_console() {
                 all += &line.text;
                 all += "\n";
