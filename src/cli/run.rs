@@ -168,16 +168,17 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     see_off(app.world_mut());
     args.write_ends(&app)?;
     if args.record.is_some() {
-        finish_recording(&mut app, has_recorded);
+        finish_recording(&mut app);
+        if outcome.is_ok() && !has_recorded {
+            say("tabletop: nothing was recorded: the scenario has no Start");
+        }
     }
     outcome.and_then(|done| script.result().and(Ok(done)))
 }
 
-/// Ends the recording that a scenario has not ended, or says that there was none.
-fn finish_recording(app: &mut App, has_recorded: bool) {
-    if !has_recorded {
-        say("tabletop: nothing was recorded: the scenario has not come to a Start");
-    } else if app.world().resource::<Recording>().0 {
+/// Ends the recording that a scenario has not ended.
+fn finish_recording(app: &mut App) {
+    if app.world().resource::<Recording>().0 {
         app.world_mut().write_message(SimCommand::FinishRecording);
         app.step(1);
     }

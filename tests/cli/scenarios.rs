@@ -271,7 +271,7 @@ fn a_recording_ends_with_its_scenario() {
         (
             "unstarted",
             "Wait(0.1),",
-            "tabletop: nothing was recorded: the scenario has not come to a Start\n",
+            "tabletop: nothing was recorded: the scenario has no Start\n",
         ),
     ] {
         let folder = place(name);
@@ -308,10 +308,8 @@ fn two_programs_do_not_record_into_one_folder() {
     first.wait().unwrap();
     assert_eq!(output.status.code(), Some(1));
     let said = stderr(&output);
-    assert!(
-        said.contains(&format!("a recording is being made in {into}")),
-        "{said}"
-    );
+    let words = format!("a recording is being made in {into}");
+    assert!(said.contains(&words) && said.lines().count() == 1, "{said}");
     // What is in the way is no recording that is being made any more.
     let output = run(&short, &["--record", into]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));

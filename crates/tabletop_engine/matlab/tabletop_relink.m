@@ -5,7 +5,8 @@ function tabletop_relink
 if exist('OCTAVE_VERSION', 'builtin')
     linked = 'builtin(''isglobal'', ''sensor'') && builtin(''isglobal'', ''motor'') && builtin(''isglobal'', ''aux'')';
 else                                               % whose ISGLOBAL takes no names; this is slower in Octave
-    linked = 'sum(arrayfun(@(v) v.global, builtin(''whos'', ''sensor'', ''motor'', ''aux''))) == 3';
+    linked = ['builtin(''sum'', builtin(''arrayfun'', @(v) v.global, ' ...
+        'builtin(''whos'', ''sensor'', ''motor'', ''aux''))) == 3'];
 end
 linked = [linked ' && builtin(''exist'', ''callbackFunc'', ''var'') && ' ...
     'builtin(''isa'', callbackFunc, ''function_handle'') && builtin(''isstruct'', sensor)'];

@@ -26,7 +26,7 @@ const DIRECTIONS: [Vec3; 6] = [
 /// Where two solids at these poses are nearest to each other, if that is no farther than `most`, in units.
 ///
 /// This is what Parry's `contact` finds. But its search, from one direction, gives up on about one in ten thousand solids
-/// that touch a slab near its edge, and takes them for far apart. Where it has not found a plane between them, others
+/// that touch a slab near its edge, and takes them for far apart. Where it has not found a plane between them, other
 /// directions are tried.
 pub fn contact(
     at: &rapier::Pose,

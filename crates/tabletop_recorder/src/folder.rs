@@ -133,6 +133,9 @@ impl Folder {
     ) -> Result<Vec<(u64, PathBuf)>, RecorderError> {
         let folder = self.pictures(segment);
         let mut frames = Vec::new();
+        if !folder.exists() {
+            return Ok(frames);
+        }
         for entry in fs::read_dir(&folder).map_err(RecorderError::read(&folder))? {
             let path = entry.map_err(RecorderError::read(&folder))?.path();
             let name = path.file_name().and_then(|name| name.to_str());
