@@ -289,6 +289,7 @@ fn a_recording_ends_with_its_scenario() {
     }
 }
 
+#[cfg(unix)]
 #[test]
 fn two_programs_do_not_record_into_one_folder() {
     let folder = place("shared");

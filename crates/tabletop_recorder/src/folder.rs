@@ -193,6 +193,7 @@ fn is_taken(path: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    #[cfg(unix)]
     use crate::log_file::LogFile;
 
     #[test]
@@ -215,6 +216,7 @@ mod tests {
         fs::remove_dir_all(parent).unwrap();
     }
 
+    #[cfg(unix)]
     #[test]
     fn what_is_being_recorded_and_what_is_no_recording_stays_where_it_is() {
         let demo = std::env::temp_dir().join(format!("tabletop_locked_{}", std::process::id()));

@@ -38,10 +38,13 @@ impl LogFile {
         Ok(log)
     }
 
-    /// Lets other programs know that it is being written. They can as long as this lasts.
+    /// Lets other programs know that it is being written, as long as this is there.
     pub(crate) fn lock(&self) {
-        // Where a file system knows no locks, all goes on without.
-        let _ = self.file.try_lock();
+        // A lock of Windows would keep everybody from reading; but there, no folder with an open file is moved. Where a file system
+        // knows no locks, all goes on without.
+        if cfg!(unix) {
+            let _ = self.file.try_lock();
+        }
     }
 
     pub(crate) fn len(&self) -> u64 {
