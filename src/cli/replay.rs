@@ -9,7 +9,7 @@ use tabletop::{
     headless_app_with,
     recorder::{Channels, RecorderPlugin},
     replay::{Player, Replay},
-    script::{ScriptPlugin, see_off},
+    script::ScriptPlugin,
 };
 
 use super::{
@@ -153,10 +153,8 @@ fn watch(replay: &Replay, script: &str, args: &ReplayArgs) -> Result<ExitCode, F
     }
     let mut script = Script::start(&mut app, true);
     script.run_while(&mut app, |app| !app.world().resource::<Player>().is_over())?;
-    let mut left = 0..ticks(args.seconds.unwrap_or(0.0));
-    script.run_while(&mut app, |_| left.next().is_some())?;
-    see_off(app.world_mut());
-    script.result().and(Ok(ExitCode::SUCCESS))
+    let acted = script.act(&mut app, ticks(args.seconds.unwrap_or(0.0)));
+    acted.and(Ok(ExitCode::SUCCESS))
 }
 
 impl PictureArgs {

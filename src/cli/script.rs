@@ -66,13 +66,18 @@ impl Script {
     }
 
     /// Simulates so many ticks, or until the script has ended.
-    pub fn run(mut self, app: &mut App, ticks: u64) -> Result<(), Failure> {
+    pub fn run(self, app: &mut App, ticks: u64) -> Result<(), Failure> {
         if !self.is_wanted {
             pass(app, ticks);
             return Ok(());
         }
         // The first tick is that of the init script.
-        let mut left = 0..=ticks;
+        self.act(app, ticks + 1)
+    }
+
+    /// Lets the script act for so many ticks, or until it has ended.
+    pub fn act(mut self, app: &mut App, ticks: u64) -> Result<(), Failure> {
+        let mut left = 0..ticks;
         self.run_while(app, |_| left.next().is_some())?;
         see_off(app.world_mut());
         self.result()

@@ -124,7 +124,7 @@ pub(crate) fn call(
     match session.attend(will_be_paused, &mut simulation) {
         None => {}
         Some(Ok(Answer::Exit)) => agency.stop(&mut simulation),
-        Some(Ok(Answer::None | Answer::Orders)) => session.ask_for_picture(&simulation),
+        Some(Ok(Answer::Orders)) => session.ask_for_picture(&simulation),
         Some(Err(error)) => agency.fail(&error, &mut simulation),
     }
 }

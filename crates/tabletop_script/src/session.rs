@@ -54,8 +54,6 @@ enum Stage {
 
 /// What came of an answer.
 pub(crate) enum Answer {
-    /// Another one is needed before the tick can begin.
-    None,
     /// The tick can begin.
     Orders,
     /// The script is done.
@@ -100,10 +98,11 @@ impl Session {
                     self.answer = Some(reply);
                     return None;
                 }
-                Some(reply) => match self.take(reply, simulation) {
-                    Ok(Answer::None) => {}
-                    answered => return Some(answered),
-                },
+                Some(reply) => {
+                    if let Some(answer) = self.take(reply, simulation).transpose() {
+                        return Some(answer);
+                    }
+                }
                 None if !was_alive => return Some(Err(EngineError::Stopped)),
                 None if simulation.settings.waiting == Waiting::Blocking => {}
                 None => {
@@ -167,8 +166,12 @@ impl Session {
         };
     }
 
-    /// Does what an answer calls for.
-    fn take(&mut self, reply: Reply, simulation: &mut Simulation) -> Result<Answer, EngineError> {
+    /// Does what an answer calls for. Returns nothing if another one is needed before the tick can begin.
+    fn take(
+        &mut self,
+        reply: Reply,
+        simulation: &mut Simulation,
+    ) -> Result<Option<Answer>, EngineError> {
         let Simulation {
             tick,
             senses,
@@ -183,7 +186,7 @@ impl Session {
                     engine: description,
                 });
                 self.stage = Stage::Ready;
-                Ok(Answer::None)
+                Ok(None)
             }
             Reply::Init(reply) => {
                 commands.write_batch(commands_of_init(&reply));
@@ -197,11 +200,11 @@ impl Session {
                     took: self.asked.elapsed(),
                 };
                 // The first call comes with the next tick, when the arms are where the init script wants them.
-                Ok(Answer::Orders)
+                Ok(Some(Answer::Orders))
             }
             Reply::Step(reply) if reply.exit => {
                 commands.write_batch(last_command(&reply.motor));
-                Ok(Answer::Exit)
+                Ok(Some(Answer::Exit))
             }
             Reply::Step(reply) => {
                 let mode = senses.mode();
@@ -213,7 +216,7 @@ impl Session {
                 commands.write(command_of_motor(&reply.motor, mode));
                 self.stage = Stage::Idle;
                 **agent = Agent::Online { took: reply.took };
-                Ok(Answer::Orders)
+                Ok(Some(Answer::Orders))
             }
             Reply::Failed(error) => Err(error),
         }

@@ -11,7 +11,7 @@ use std::{
 };
 
 use tabletop_core::{Hand, SimCommand, SimTick};
-use tabletop_recorder::Session;
+use tabletop_recorder::{Session, whole_lines};
 
 use crate::stage::{Place, app_into, grasp, run, scene};
 
@@ -84,15 +84,13 @@ fn what_was_recorded_before_a_kill_is_complete() {
     }
 }
 
-/// What is in a file up to its last line end. The kernel may cut a write in two when it kills, between two pages.
-fn whole_lines(path: &Path) -> String {
-    let mut text = fs::read_to_string(path).unwrap();
-    text.truncate(text.rfind('\n').map_or(0, |end| end + 1));
-    text
+/// The text of a file up to its last line end.
+fn read_whole_lines(path: &Path) -> String {
+    String::from_utf8(whole_lines(&fs::read(path).unwrap()).to_vec()).unwrap()
 }
 
 fn check_recording(demo: &Path, last: u64) {
-    let states = whole_lines(&demo.join("states.csv"));
+    let states = read_whole_lines(&demo.join("states.csv"));
     let mut seen: BTreeMap<u64, Vec<String>> = BTreeMap::new();
     for row in csv::Reader::from_reader(states.as_bytes()).records() {
         let row = row.unwrap();
@@ -119,7 +117,7 @@ fn check_recording(demo: &Path, last: u64) {
         if !path.exists() {
             break;
         }
-        for line in whole_lines(&path).lines() {
+        for line in read_whole_lines(&path).lines() {
             let fields: Vec<_> = line.split(',').collect();
             let frame: u64 = fields[0].parse().unwrap();
             if fields[1] != "move" {
