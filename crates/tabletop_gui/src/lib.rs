@@ -33,33 +33,14 @@
 //!     .run();
 //! ```
 
-mod bar;
-mod clipboard;
-mod demo_tools;
-mod drag;
-mod head_view;
-mod jog;
-mod keys;
-mod mouse;
-mod notices;
-mod pause;
-mod pick;
-mod plane;
-mod pointer;
-mod robot_keys;
-mod robot_news;
-mod robot_window;
-mod script_control;
-mod slider;
-mod snapshot;
-mod status;
-mod style;
+mod input;
+mod panels;
 #[cfg(test)]
 mod test_world;
-mod turns;
+mod widgets;
 
-pub use bar::{Panel, Panels};
-pub use notices::{Notices, Tone};
+pub use panels::bar::{Panel, Panels};
+pub use panels::messages::{Notices, Tone};
 
 use bevy::{asset::AssetEventSystems, prelude::*};
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPostUpdateSet, PrimaryEguiContext};
@@ -86,26 +67,26 @@ impl Plugin for GuiPlugin {
         )
         .add_observer(draw_panels_over)
         .add_plugins((
-            style::plugin,
-            keys::plugin,
-            pointer::plugin,
-            mouse::plugin,
-            plane::plugin,
-            turns::plugin,
-            demo_tools::plugin,
-            bar::plugin,
-            notices::plugin,
-            pause::plugin,
+            widgets::style::plugin,
+            input::keys::plugin,
+            input::pointer::plugin,
+            input::mouse::plugin,
+            input::plane::plugin,
+            input::turns::plugin,
+            panels::demo_tools::plugin,
+            panels::bar::plugin,
+            panels::messages::plugin,
+            panels::pause::plugin,
         ))
         .add_plugins((
-            jog::plugin,
-            robot_keys::plugin,
-            robot_news::plugin,
-            robot_window::plugin,
-            script_control::plugin,
-            status::plugin,
-            head_view::plugin,
-            snapshot::plugin,
+            input::jog::plugin,
+            input::robot_keys::plugin,
+            panels::messages::robot::plugin,
+            panels::robot::plugin,
+            input::script_control::plugin,
+            panels::status::plugin,
+            panels::head_view::plugin,
+            input::snapshot::plugin,
         ));
     }
 }

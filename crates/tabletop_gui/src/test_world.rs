@@ -5,7 +5,7 @@ use tabletop_core::{
     CorePlugin, Hands, ObjectIndex, ObjectSpec, Pose, Rgb, Shape, SimCommand, Table, UserCamera,
 };
 
-use crate::pointer::Pointer;
+use crate::input::pointer::Pointer;
 
 /// Where the user's camera stands; it looks along Y.
 pub(crate) const EYE: Vec3 = Vec3::new(0.0, -12.0, 8.0);

@@ -1,10 +1,12 @@
 //! What the user must know: the faults of task files, what could not be done, and what the robot has done.
 
+pub(crate) mod robot;
+
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 use tabletop_core::SimFact;
 
-use crate::clipboard::Clipboard;
+use crate::widgets::clipboard::Clipboard;
 
 /// Older notices are forgotten, so that a script that is refused a million times does not fill the memory.
 const MAX_NOTICES: usize = 1000;

@@ -11,9 +11,9 @@ use bevy_egui::input::EguiWantsInput;
 use tabletop_core::{KeySystems, Paused, Robot, RobotJoint, SimCommand};
 
 use crate::{
-    head_view::HeadView,
-    jog::{Directions, Jog},
-    snapshot::Snapshots,
+    input::jog::{Directions, Jog},
+    input::snapshot::Snapshots,
+    panels::head_view::HeadView,
 };
 
 /// The keys of the joints, in the order in which they lie; with Shift they turn the other way.
@@ -113,7 +113,10 @@ fn directions(shift: bool, is_on: impl Fn(KeyCode) -> bool) -> Directions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{jog, keys, test_world::TestWorld};
+    use crate::{
+        input::{jog, keys},
+        test_world::TestWorld,
+    };
     use KeyCode::{
         Escape, KeyA, KeyB, KeyC, KeyD, KeyM, KeyN, KeyQ, KeyS, KeyW, KeyZ, Slash, Space,
     };

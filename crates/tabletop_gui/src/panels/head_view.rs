@@ -7,7 +7,7 @@ use bevy_egui::{
 };
 use tabletop_core::{HeadCamera, OrderSystems, Picture, PictureDemand, SensorImage};
 
-use crate::bar;
+use crate::panels::bar;
 
 /// Width of the inset, as a part of the window's.
 const WIDTH: f32 = 0.4;

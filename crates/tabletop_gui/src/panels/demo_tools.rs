@@ -8,10 +8,10 @@ use bevy_egui::{
 use tabletop_core::{Hand, Hands, History, ObjectSpec, Recording, SimCommand, SimFact};
 
 use crate::{
-    bar::{Panel, Panels},
-    plane::PlaneButtons,
-    slider::angle_slider,
-    turns::Turns,
+    input::plane::PlaneButtons,
+    input::turns::Turns,
+    panels::bar::{Panel, Panels},
+    widgets::slider::angle_slider,
 };
 
 /// The sliders have the colours of the axes, a little lighter, for a dark panel.

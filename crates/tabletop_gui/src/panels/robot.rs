@@ -10,10 +10,10 @@ use tabletop_core::{
 };
 
 use crate::{
-    bar::{Panel, Panels},
-    head_view::HeadView,
-    jog::{Directions, Jog},
-    script_control::toggled,
+    input::jog::{Directions, Jog},
+    input::script_control::toggled,
+    panels::bar::{Panel, Panels},
+    panels::head_view::HeadView,
 };
 
 /// Width of the track of the slider, in points.

@@ -4,7 +4,7 @@ use bevy::{prelude::*, window::PrimaryWindow};
 use bevy_egui::{EguiContext, PrimaryEguiContext, egui, input::EguiWantsInput};
 use tabletop_core::UserCamera;
 
-use crate::mouse::MouseSystems;
+use crate::input::mouse::MouseSystems;
 
 /// Where the mouse cursor is; nowhere while it is outside the window.
 #[derive(Resource, Clone, Copy, Debug, Default)]

@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use bevy_egui::input::EguiWantsInput;
 use tabletop_core::{DragPlane, Hand, Hands, Orbit, Paused, UserCamera};
 
-use crate::mouse::{MouseSystems, Press};
+use crate::input::mouse::{MouseSystems, Press};
 
 /// Speed of the plane in radians a second.
 const SPEED: f32 = 0.3;
@@ -111,7 +111,7 @@ fn direction_of_buttons(buttons: PlaneButtons) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{mouse, test_world::TestWorld};
+    use crate::{input::mouse, test_world::TestWorld};
     use KeyCode::{ControlLeft, ShiftRight, Slash};
     use bevy::time::TimeUpdateStrategy;
     use std::{f32::consts::FRAC_PI_2, time::Duration};

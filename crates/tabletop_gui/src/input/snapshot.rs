@@ -14,7 +14,7 @@ use bevy::{
 };
 use tabletop_core::{OrderSystems, Picture, PictureDemand, SensorImage, SimSystems, SimTick};
 
-use crate::notices::{Notices, Tone};
+use crate::panels::messages::{Notices, Tone};
 
 /// The pictures that are to be saved and those that are being saved.
 #[derive(Resource, Debug, Default)]

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use tabletop_core::SimFact;
 
-use crate::notices::{Notices, Tone};
+use crate::panels::messages::{Notices, Tone};
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(Update, note_facts);

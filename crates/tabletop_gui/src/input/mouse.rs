@@ -4,7 +4,7 @@
 use bevy::prelude::*;
 use tabletop_core::{DragPlane, Hands, ObjectSpec, Paused, SimCommand, Table};
 
-use crate::{drag::Drag, pick::Pickable, pointer::Pointer};
+use crate::input::{drag::Drag, pick::Pickable, pointer::Pointer};
 
 /// Reading the mouse, once a frame before its ticks.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use tabletop_core::{Agent, AgentNews, AgentOrder, KeySystems};
 
-use crate::notices::{Notices, Tone};
+use crate::panels::messages::{Notices, Tone};
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(Update, note_news).add_systems(
@@ -49,7 +49,7 @@ mod tests {
     use tabletop_core::CorePlugin;
 
     use super::*;
-    use crate::keys;
+    use crate::input::keys;
 
     fn app() -> App {
         let mut app = App::new();

@@ -4,7 +4,7 @@ use bevy_egui::egui::{
     Button, Color32, CursorIcon, DragValue, Pos2, Rect, Response, RichText, Sense, Stroke, Ui, vec2,
 };
 
-use crate::turns::MAX_DEGREES;
+use crate::input::turns::MAX_DEGREES;
 
 /// Degrees for a press on the track beside the knob.
 const TRACK_STEP: i32 = 45;

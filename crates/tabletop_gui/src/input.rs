@@ -1,0 +1,13 @@
+//! What the user does with keys and mouse.
+
+pub(crate) mod drag;
+pub(crate) mod jog;
+pub(crate) mod keys;
+pub(crate) mod mouse;
+pub(crate) mod pick;
+pub(crate) mod plane;
+pub(crate) mod pointer;
+pub(crate) mod robot_keys;
+pub(crate) mod script_control;
+pub(crate) mod snapshot;
+pub(crate) mod turns;
