@@ -50,7 +50,7 @@ pub use message::{SimCommand, SimFact};
 pub use number::Decimal;
 pub use object::{ObjectIndex, ObjectSpec};
 pub use pose::{Pose, UNITS_PER_METER, degrees_from_quat, quat_from_degrees};
-pub use recording::{History, Recording, Replaying};
+pub use recording::{History, OpenRecording, Recording, Replaying};
 pub use rewind::{Remembered, Rewinds, Rewound};
 pub use robot::{
     Arm, ArmState, Drive, Face, Gripped, JOINTS_PER_ARM, JointState, Markers, Robot, RobotContact,
@@ -93,6 +93,7 @@ impl Plugin for CorePlugin {
             .add_message::<SimFact>()
             .add_message::<AgentOrder>()
             .add_message::<AgentNews>()
+            .add_message::<OpenRecording>()
             .add_message::<Orbit>()
             .init_resource::<Agent>()
             .init_resource::<Standstill>()

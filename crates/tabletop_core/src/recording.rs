@@ -1,5 +1,7 @@
 //! What is known of the present recording outside the recorder.
 
+use std::path::PathBuf;
+
 use bevy::prelude::*;
 
 /// Whether a recording is running. The recorder sets it.
@@ -18,3 +20,7 @@ pub struct History {
     /// How many segments can be redone.
     pub redoable: usize,
 }
+
+/// The window is to open the recording in this folder and to play it. Whoever replays recordings reads it.
+#[derive(Message, Clone, Debug, PartialEq, Eq)]
+pub struct OpenRecording(pub PathBuf);

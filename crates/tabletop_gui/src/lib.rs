@@ -35,12 +35,14 @@
 
 mod input;
 mod panels;
+pub mod preferences;
 #[cfg(test)]
 mod test_world;
 mod widgets;
 
 pub use panels::bar::{Panel, Panels};
 pub use panels::messages::{Notices, Tone};
+pub use preferences::Preferences;
 
 use bevy::{asset::AssetEventSystems, prelude::*};
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPostUpdateSet, PrimaryEguiContext};
@@ -52,42 +54,43 @@ pub struct GuiPlugin;
 
 impl Plugin for GuiPlugin {
     fn build(&self, app: &mut App) {
-        app.insert_resource(EguiGlobalSettings {
-            auto_create_primary_context: false,
-            ..default()
-        })
-        .add_plugins(EguiPlugin {
-            // The few textures of the panels do not need it, and not every graphics driver has it.
-            bindless_mode_array_size: None,
-        })
-        // Else a texture that has changed, such as new letters, is seen a frame late, and what is new is not seen until then.
-        .configure_sets(
-            PostUpdate,
-            EguiPostUpdateSet::PostProcessOutput.before(AssetEventSystems),
-        )
-        .add_observer(draw_panels_over)
-        .add_plugins((
-            widgets::style::plugin,
-            input::keys::plugin,
-            input::pointer::plugin,
-            input::mouse::plugin,
-            input::plane::plugin,
-            input::turns::plugin,
-            panels::demo_tools::plugin,
-            panels::bar::plugin,
-            panels::messages::plugin,
-            panels::pause::plugin,
-        ))
-        .add_plugins((
-            input::jog::plugin,
-            input::robot_keys::plugin,
-            panels::messages::robot::plugin,
-            panels::robot::plugin,
-            input::script_control::plugin,
-            panels::status::plugin,
-            panels::head_view::plugin,
-            input::snapshot::plugin,
-        ));
+        app.init_resource::<Preferences>()
+            .insert_resource(EguiGlobalSettings {
+                auto_create_primary_context: false,
+                ..default()
+            })
+            .add_plugins(EguiPlugin {
+                // The few textures of the panels do not need it, and not every graphics driver has it.
+                bindless_mode_array_size: None,
+            })
+            // Else a texture that has changed, such as new letters, is seen a frame late, and what is new is not seen until then.
+            .configure_sets(
+                PostUpdate,
+                EguiPostUpdateSet::PostProcessOutput.before(AssetEventSystems),
+            )
+            .add_observer(draw_panels_over)
+            .add_plugins((
+                widgets::style::plugin,
+                input::keys::plugin,
+                input::pointer::plugin,
+                input::mouse::plugin,
+                input::plane::plugin,
+                input::turns::plugin,
+                panels::demo_tools::plugin,
+                panels::bar::plugin,
+                panels::messages::plugin,
+                panels::pause::plugin,
+            ))
+            .add_plugins((
+                input::jog::plugin,
+                input::robot_keys::plugin,
+                panels::messages::robot::plugin,
+                panels::robot::plugin,
+                input::script_control::plugin,
+                panels::status::plugin,
+                panels::head_view::plugin,
+                input::snapshot::plugin,
+            ));
     }
 }
 

@@ -1,0 +1,174 @@
+//! What the program remembers of a user between runs: RON files in the platform's configuration folder, one for each concern.
+
+use std::{
+    env, fs, io,
+    path::{Path, PathBuf},
+};
+
+use bevy::prelude::*;
+use directories::ProjectDirs;
+use ron::ser::PrettyConfig;
+use serde::{Serialize, de::DeserializeOwned};
+use thiserror::Error;
+
+/// The environment variable that names another folder.
+pub const FOLDER_VARIABLE: &str = "TABLETOP_CONFIG";
+
+/// Where preferences are kept.
+#[derive(Resource, Clone, Debug, PartialEq, Eq)]
+pub struct Preferences {
+    folder: Option<PathBuf>,
+}
+
+/// Why preferences could not be read or kept.
+#[derive(Debug, Error)]
+pub enum PreferencesError {
+    /// The file could not be read or written.
+    #[error("{path}: {error}")]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        error: io::Error,
+    },
+    /// The file is not what the program writes.
+    #[error("{path}:{error}; mend or delete the file")]
+    Syntax {
+        /// The file.
+        path: PathBuf,
+        /// Where and why.
+        error: ron::error::SpannedError,
+    },
+    /// The value has no form in RON.
+    #[error("{path}: {error}")]
+    Form {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: ron::Error,
+    },
+}
+
+impl Default for Preferences {
+    /// The folder that `TABLETOP_CONFIG` names, or the platform's: `~/.config/tabletop` on Linux.
+    fn default() -> Self {
+        let named = env::var_os(FOLDER_VARIABLE).filter(|folder| !folder.is_empty());
+        let folder = named.map(PathBuf::from).or_else(|| {
+            let folders = ProjectDirs::from("", "", "tabletop")?;
+            Some(folders.config_dir().to_owned())
+        });
+        Self { folder }
+    }
+}
+
+impl Preferences {
+    /// Preferences in a folder, which need not exist yet.
+    pub fn in_folder(folder: impl Into<PathBuf>) -> Self {
+        Self {
+            folder: Some(folder.into()),
+        }
+    }
+
+    /// Preferences that are forgotten at once.
+    pub const fn nowhere() -> Self {
+        Self { folder: None }
+    }
+
+    /// The file of a concern, such as `windows`.
+    pub fn file(&self, concern: &str) -> Option<PathBuf> {
+        let folder = self.folder.as_ref()?;
+        Some(folder.join(concern).with_extension("ron"))
+    }
+
+    /// What was kept of a concern, if anything was.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read, or it is not of this type.
+    pub fn read<T: DeserializeOwned>(&self, concern: &str) -> Result<Option<T>, PreferencesError> {
+        let Some(path) = self.file(concern) else {
+            return Ok(None);
+        };
+        match fs::read_to_string(&path) {
+            Ok(text) => ron::from_str(&text)
+                .map(Some)
+                .map_err(|error| PreferencesError::Syntax { path, error }),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(PreferencesError::Io { path, error }),
+        }
+    }
+
+    /// Keeps the value of a concern. A crash leaves the old file or the new one.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be written.
+    pub fn keep<T: Serialize>(&self, concern: &str, value: &T) -> Result<(), PreferencesError> {
+        let Some(path) = self.file(concern) else {
+            return Ok(());
+        };
+        match ron::ser::to_string_pretty(value, PrettyConfig::default()) {
+            Ok(text) => replace(&path, &text).map_err(|error| PreferencesError::Io { path, error }),
+            Err(error) => Err(PreferencesError::Form { path, error }),
+        }
+    }
+}
+
+fn replace(path: &Path, text: &str) -> io::Result<()> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    let new = path.with_extension("ron.new");
+    fs::write(&new, text)?;
+    fs::rename(&new, path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde::Deserialize;
+
+    #[derive(Serialize, Deserialize, Debug, PartialEq)]
+    struct Size {
+        width: u32,
+    }
+
+    fn folder(name: &str) -> PathBuf {
+        env::temp_dir().join(format!(
+            "tabletop-preferences-{name}-{}",
+            std::process::id()
+        ))
+    }
+
+    #[test]
+    fn what_is_kept_is_read_again() {
+        let folder = folder("kept");
+        let preferences = Preferences::in_folder(&folder);
+        assert_eq!(preferences.read::<Size>("display").unwrap(), None);
+        for width in [1, 2] {
+            preferences.keep("display", &Size { width }).unwrap();
+            let read = preferences.read("display").unwrap();
+            assert_eq!(read, Some(Size { width }));
+        }
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_damaged_file_is_named_with_the_place() {
+        let folder = folder("damaged");
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(folder.join("display.ron"), "(width: two)").unwrap();
+        let preferences = Preferences::in_folder(&folder);
+        let error = preferences.read::<Size>("display").unwrap_err();
+        let text = error.to_string();
+        assert!(text.contains("display.ron:1:9"), "{text}");
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn nowhere_keeps_nothing() {
+        let preferences = Preferences::nowhere();
+        preferences.keep("display", &Size { width: 1 }).unwrap();
+        assert_eq!(preferences.read::<Size>("display").unwrap(), None);
+    }
+}
