@@ -23,6 +23,7 @@ mod clock;
 mod color;
 mod figure;
 mod hand;
+mod keymap;
 mod message;
 mod number;
 mod object;
@@ -46,6 +47,10 @@ pub use clock::{
 pub use color::{ColorError, NAMED_COLORS, Rgb};
 pub use figure::{CarriesHeadCamera, Figure, Triangles};
 pub use hand::{Hand, Hands, Held};
+pub use keymap::{
+    Action, ActionGroup, Binding, BindingError, KeyboardFocus, Keymap, Keys, Modifiers, Situation,
+    Way, was_struck,
+};
 pub use message::{SimCommand, SimFact};
 pub use number::Decimal;
 pub use object::{ObjectIndex, ObjectSpec};
@@ -100,6 +105,8 @@ impl Plugin for CorePlugin {
             .init_resource::<DragPlane>()
             .init_resource::<Hands>()
             .init_resource::<History>()
+            .init_resource::<KeyboardFocus>()
+            .init_resource::<Keymap>()
             .init_resource::<Markers>()
             .init_resource::<Recording>()
             .init_resource::<Replaying>()

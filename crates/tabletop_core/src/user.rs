@@ -10,8 +10,7 @@ use crate::Table;
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct UserCamera;
 
-/// Systems that read keys, in [`RunFixedMainLoop`] before the ticks of a frame. They are left out while a panel has the
-/// keyboard.
+/// Systems that read [`Keys`](crate::Keys), in [`RunFixedMainLoop`] before the ticks of a frame.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct KeySystems;
 

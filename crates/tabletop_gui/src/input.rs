@@ -1,6 +1,7 @@
 //! What the user does with keys and mouse.
 
 pub(crate) mod drag;
+pub(crate) mod focus;
 pub(crate) mod jog;
 pub(crate) mod keys;
 pub(crate) mod mouse;

@@ -71,6 +71,7 @@ impl Plugin for GuiPlugin {
             .add_observer(draw_panels_over)
             .add_plugins((
                 widgets::style::plugin,
+                input::focus::plugin,
                 input::keys::plugin,
                 input::pointer::plugin,
                 input::mouse::plugin,

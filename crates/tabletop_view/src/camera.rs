@@ -7,7 +7,7 @@ use bevy::{
     prelude::*,
     render::view::NoIndirectDrawing,
 };
-use tabletop_core::{KeySystems, Orbit, Paused, Table, UserCamera};
+use tabletop_core::{Action, KeySystems, Keys, Orbit, Paused, Table, UserCamera};
 
 use crate::viewpoint::{Steering, Viewpoint};
 
@@ -71,11 +71,7 @@ fn look_at_first_table(
     }
 }
 
-fn steer(
-    keys: Res<ButtonInput<KeyCode>>,
-    time: Res<Time>,
-    mut cameras: Query<&mut Viewpoint, With<UserCamera>>,
-) {
+fn steer(keys: Keys, time: Res<Time>, mut cameras: Query<&mut Viewpoint, With<UserCamera>>) {
     let steering = steering(&keys);
     for mut viewpoint in &mut cameras {
         let steered = viewpoint.steered(steering, time.delta_secs());
@@ -97,28 +93,21 @@ fn place_camera(mut cameras: Query<(&Viewpoint, &mut Transform), Changed<Viewpoi
     }
 }
 
-/// What the keys ask of the camera. With Ctrl or Alt they mean something else.
-fn steering(keys: &ButtonInput<KeyCode>) -> Steering {
-    use KeyCode::*;
-    if keys.any_pressed([ControlLeft, ControlRight, AltLeft, AltRight]) {
-        return Steering::default();
-    }
-    let axis = |plus, minus| {
-        f32::from(u8::from(keys.pressed(plus))) - f32::from(u8::from(keys.pressed(minus)))
-    };
+/// What the keys ask of the camera.
+fn steering(keys: &Keys) -> Steering {
     Steering {
-        forward: axis(KeyW, KeyS),
-        right: axis(KeyD, KeyA),
-        up: axis(KeyQ, KeyZ),
-        turn_left: axis(ArrowLeft, ArrowRight),
-        turn_up: axis(ArrowUp, ArrowDown),
+        forward: keys.axis(Action::CameraForward, Action::CameraBack),
+        right: keys.axis(Action::CameraRight, Action::CameraLeft),
+        up: keys.axis(Action::CameraUp, Action::CameraDown),
+        turn_left: keys.axis(Action::LookLeft, Action::LookRight),
+        turn_up: keys.axis(Action::LookUp, Action::LookDown),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bevy::time::TimeUpdateStrategy;
+    use bevy::{ecs::system::RunSystemOnce as _, time::TimeUpdateStrategy};
     use std::time::Duration;
     use tabletop_core::CorePlugin;
 
@@ -197,10 +186,13 @@ mod tests {
     #[test]
     fn each_key_steers_in_its_direction() {
         use KeyCode::*;
-        let steering_with = |pressed: &[KeyCode]| {
+        let mut app = app(10);
+        let mut steering_with = |pressed: &[KeyCode]| {
             let mut keys = ButtonInput::default();
             pressed.iter().for_each(|&key| keys.press(key));
-            steering(&keys)
+            app.insert_resource(keys);
+            let steering = |keys: Keys| steering(&keys);
+            app.world_mut().run_system_once(steering).unwrap()
         };
         let parts = |s: Steering| [s.forward, s.right, s.up, s.turn_left, s.turn_up];
         for (part, plus, minus) in [

@@ -1,27 +1,17 @@
-//! Keys that are not the camera's: Space pauses, Esc quits.
+//! Keys of the whole program: Space pauses, Esc quits (report section 2.4).
 
 use bevy::prelude::*;
-use bevy_egui::input::{EguiWantsInput, egui_wants_any_keyboard_input};
-use tabletop_core::{KeySystems, Paused, SimCommand};
+use tabletop_core::{Action, KeySystems, Paused, SimCommand, was_struck};
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<EguiWantsInput>()
-        .configure_sets(
-            RunFixedMainLoop,
-            KeySystems.run_if(not(egui_wants_any_keyboard_input)),
+    app.add_systems(
+        RunFixedMainLoop,
+        (
+            toggle_pause.run_if(was_struck(Action::Pause)),
+            quit.run_if(was_struck(Action::Quit)),
         )
-        .add_systems(
-            RunFixedMainLoop,
-            (
-                toggle_pause.run_if(was_pressed(KeyCode::Space)),
-                quit.run_if(was_pressed(KeyCode::Escape)),
-            )
-                .in_set(KeySystems),
-        );
-}
-
-fn was_pressed(key: KeyCode) -> impl FnMut(Res<ButtonInput<KeyCode>>) -> bool + Clone {
-    move |keys| keys.just_pressed(key)
+            .in_set(KeySystems),
+    );
 }
 
 fn toggle_pause(paused: Res<Paused>, mut commands: MessageWriter<SimCommand>) {

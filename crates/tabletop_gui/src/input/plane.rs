@@ -1,8 +1,7 @@
 //! How the plane in which objects are dragged is turned (report section 4.3, figure 8d).
 
 use bevy::prelude::*;
-use bevy_egui::input::EguiWantsInput;
-use tabletop_core::{DragPlane, Hand, Hands, Orbit, Paused, UserCamera};
+use tabletop_core::{Action, DragPlane, Hand, Hands, Keys, Orbit, Paused, UserCamera};
 
 use crate::input::mouse::{MouseSystems, Press};
 
@@ -17,16 +16,14 @@ pub(crate) struct PlaneButtons {
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<PlaneButtons>()
-        .init_resource::<EguiWantsInput>()
-        .add_systems(
-            RunFixedMainLoop,
-            (face_camera, turn, swap)
-                .chain()
-                .in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop)
-                .before(MouseSystems)
-                .run_if(Paused::is_running),
-        );
+    app.init_resource::<PlaneButtons>().add_systems(
+        RunFixedMainLoop,
+        (face_camera, turn, swap)
+            .chain()
+            .in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop)
+            .before(MouseSystems)
+            .run_if(Paused::is_running),
+    );
 }
 
 /// Whenever the selected hand has something else than before, the plane faces the camera.
@@ -47,8 +44,7 @@ fn face_camera(
 /// The plane turns about the vertical through what is held, and the camera goes along, so that the view of the plane
 /// stays the same.
 fn turn(
-    keys: Res<ButtonInput<KeyCode>>,
-    wanted: Res<EguiWantsInput>,
+    keys: Keys,
     buttons: Res<PlaneButtons>,
     time: Res<Time>,
     hands: Res<Hands>,
@@ -61,11 +57,7 @@ fn turn(
     let Some(place) = held.and_then(|object| places.get(object).ok()) else {
         return;
     };
-    let by_keys = if wanted.wants_any_keyboard_input() {
-        0.0
-    } else {
-        direction_of(&keys)
-    };
+    let by_keys = keys.axis(Action::PlaneCounterClockwise, Action::PlaneClockwise);
     let direction = by_keys + direction_of_buttons(*buttons);
     if direction == 0.0 || press.is_drag() {
         return;
@@ -78,16 +70,9 @@ fn turn(
     });
 }
 
-/// While the left Ctrl key is held, the plane at right angles stands in; the camera stays.
-fn swap(
-    keys: Res<ButtonInput<KeyCode>>,
-    wanted: Res<EguiWantsInput>,
-    hands: Res<Hands>,
-    mut plane: ResMut<DragPlane>,
-) {
-    let is_perpendicular = keys.pressed(KeyCode::ControlLeft)
-        && !wanted.wants_any_keyboard_input()
-        && hands.held_by(hands.selected).is_some();
+/// While its key is held, the plane at right angles stands in; the camera stays.
+fn swap(keys: Keys, mut plane: ResMut<DragPlane>) {
+    let is_perpendicular = keys.is_held(Action::PlanePerpendicular);
     plane.set_if_neq(DragPlane {
         is_perpendicular,
         ..*plane
@@ -95,15 +80,6 @@ fn swap(
 }
 
 /// 1 is counter-clockwise as seen from above, -1 is clockwise.
-fn direction_of(keys: &ButtonInput<KeyCode>) -> f32 {
-    let is_shifted = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
-    match (keys.pressed(KeyCode::Slash), is_shifted) {
-        (false, _) => 0.0,
-        (true, false) => 1.0,
-        (true, true) => -1.0,
-    }
-}
-
 fn direction_of_buttons(buttons: PlaneButtons) -> f32 {
     f32::from(u8::from(buttons.counter_clockwise)) - f32::from(u8::from(buttons.clockwise))
 }

@@ -1,14 +1,9 @@
 //! The robot's keys (report sections 5 and 5.1).
 
-use KeyCode::{
-    AltLeft, AltRight, Backslash, BracketLeft, BracketRight, ControlLeft, ControlRight, Digit0,
-    Digit1, Digit2, Digit9, Equal, KeyG, KeyH, KeyI, KeyJ, KeyK, KeyL, KeyO, KeyP, KeyR, KeyT,
-    KeyU, KeyY, Minus, Quote, Semicolon, ShiftLeft, ShiftRight,
-};
-use RobotJoint::*;
 use bevy::prelude::*;
-use bevy_egui::input::EguiWantsInput;
-use tabletop_core::{KeySystems, Paused, Robot, RobotJoint, SimCommand};
+use tabletop_core::{
+    Action, KeySystems, Keys, Paused, Robot, RobotJoint, SimCommand, Way, was_struck,
+};
 
 use crate::{
     input::jog::{Directions, Jog},
@@ -16,58 +11,23 @@ use crate::{
     panels::head_view::HeadView,
 };
 
-/// The keys of the joints, in the order in which they lie; with Shift they turn the other way.
-const JOINT_KEYS: [(KeyCode, RobotJoint); 15] = [
-    (KeyT, RightW2),
-    (KeyY, RightW1),
-    (KeyU, RightW0),
-    (KeyI, RightE1),
-    (KeyO, RightE0),
-    (KeyP, RightS1),
-    (BracketLeft, RightS0),
-    (KeyG, LeftW2),
-    (KeyH, LeftW1),
-    (KeyJ, LeftW0),
-    (KeyK, LeftE1),
-    (KeyL, LeftE0),
-    (Semicolon, LeftS1),
-    (Quote, LeftS0),
-    (BracketRight, HeadPan),
-];
-
-/// The keys of the grippers: 1 opens, -1 closes.
-const GRIPPER_KEYS: [(KeyCode, RobotJoint, i8); 4] = [
-    (Equal, RightGripper, 1),
-    (Minus, RightGripper, -1),
-    (Digit0, LeftGripper, 1),
-    (Digit9, LeftGripper, -1),
-];
-
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<EguiWantsInput>().add_systems(
+    app.add_systems(
         RunFixedMainLoop,
         (
             hold_joint_keys.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
             (
-                show_or_hide.run_if(was_struck(KeyR)),
-                show_next_face.run_if(was_struck(Backslash)),
-                (|mut view: ResMut<HeadView>| view.toggle()).run_if(was_struck(Digit1)),
+                show_or_hide.run_if(was_struck(Action::ShowRobot)),
+                show_next_face.run_if(was_struck(Action::ShowNextFace)),
+                (|mut view: ResMut<HeadView>| view.toggle())
+                    .run_if(was_struck(Action::ShowHeadView)),
                 (|mut snapshots: ResMut<Snapshots>| snapshots.take_one())
-                    .run_if(was_struck(Digit2)),
+                    .run_if(was_struck(Action::SaveHeadView)),
             )
                 .in_set(KeySystems)
                 .run_if(Paused::is_running),
         ),
     );
-}
-
-/// With Ctrl or Alt, keys mean something else.
-fn are_plain(keys: &ButtonInput<KeyCode>) -> bool {
-    !keys.any_pressed([ControlLeft, ControlRight, AltLeft, AltRight])
-}
-
-fn was_struck(key: KeyCode) -> impl FnMut(Res<ButtonInput<KeyCode>>) -> bool + Clone {
-    move |keys| keys.just_pressed(key) && are_plain(&keys)
 }
 
 fn show_or_hide(robot: Res<Robot>, mut commands: MessageWriter<SimCommand>) {
@@ -79,35 +39,23 @@ fn show_next_face(robot: Res<Robot>, mut commands: MessageWriter<SimCommand>) {
 }
 
 /// Reads the keys of joints and grippers, once a frame for all of its ticks.
-fn hold_joint_keys(
-    keys: Res<ButtonInput<KeyCode>>,
-    wanted: Res<EguiWantsInput>,
-    paused: Res<Paused>,
-    mut jog: ResMut<Jog>,
-) {
-    let (held, struck) = if paused.0 || wanted.wants_any_keyboard_input() || !are_plain(&keys) {
-        default()
-    } else {
-        let shift = keys.any_pressed([ShiftLeft, ShiftRight]);
-        (
-            directions(shift, |key| keys.pressed(key)),
-            directions(shift, |key| keys.just_pressed(key)),
-        )
+fn hold_joint_keys(keys: Keys, paused: Res<Paused>, mut jog: ResMut<Jog>) {
+    let (held, struck) = match paused.0 {
+        true => default(),
+        false => (
+            directions(|action| keys.is_held(action)),
+            directions(|action| keys.was_struck(action)),
+        ),
     };
     jog.keys.update(held, struck);
 }
 
-/// Where these keys move the joints; those of a joint that contradict each other move nothing.
-fn directions(shift: bool, is_on: impl Fn(KeyCode) -> bool) -> Directions {
-    let turn = if shift { -1 } else { 1 };
-    let of_joints = JOINT_KEYS.map(|(key, joint)| (key, joint, turn));
-    let mut directions = Directions::default();
-    for (key, joint, direction) in of_joints.into_iter().chain(GRIPPER_KEYS) {
-        if is_on(key) {
-            directions[joint.index()] += direction;
-        }
-    }
-    directions
+/// Where these actions move the joints; those of a joint that contradict each other move nothing.
+fn directions(is_on: impl Fn(Action) -> bool) -> Directions {
+    RobotJoint::ALL.map(|joint| {
+        let is_on = |way| i8::from(is_on(Action::Move(joint, way)));
+        is_on(Way::Plus) - is_on(Way::Minus)
+    })
 }
 
 #[cfg(test)]
@@ -118,8 +66,11 @@ mod tests {
         test_world::TestWorld,
     };
     use KeyCode::{
-        Escape, KeyA, KeyB, KeyC, KeyD, KeyM, KeyN, KeyQ, KeyS, KeyW, KeyZ, Slash, Space,
+        AltRight, Backslash, BracketLeft, BracketRight, ControlLeft, Digit0, Digit1, Digit2,
+        Digit9, Equal, KeyG, KeyH, KeyI, KeyJ, KeyK, KeyL, KeyO, KeyP, KeyR, KeyT, KeyU, KeyY,
+        Minus, Quote, Semicolon, ShiftLeft, ShiftRight, Space,
     };
+    use RobotJoint::*;
     use bevy::time::TimeUpdateStrategy;
     use std::time::Duration;
     use tabletop_core::{Drive, Face};
@@ -280,18 +231,5 @@ mod tests {
         }
         held(&mut test, &[Digit2]);
         assert!(test.app.world().resource::<Snapshots>().are_wanted());
-    }
-
-    #[test]
-    fn no_key_means_two_things() {
-        let others = [
-            KeyW, KeyS, KeyA, KeyD, KeyQ, KeyZ, Slash, Space, Escape, KeyN, KeyB, KeyC, KeyM, KeyR,
-            Backslash, Digit1, Digit2,
-        ];
-        let joints = JOINT_KEYS.map(|(key, _)| key);
-        let grippers = GRIPPER_KEYS.map(|(key, ..)| key);
-        let all = others.into_iter().chain(joints).chain(grippers);
-        let distinct: std::collections::HashSet<_> = all.clone().collect();
-        assert_eq!(distinct.len(), all.count());
     }
 }

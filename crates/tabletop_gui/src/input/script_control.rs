@@ -1,7 +1,7 @@
 //! Starting and stopping the script that drives the robot (report section 5.2), and what it says.
 
 use bevy::prelude::*;
-use tabletop_core::{Agent, AgentNews, AgentOrder, KeySystems};
+use tabletop_core::{Action, Agent, AgentNews, AgentOrder, KeySystems, was_struck};
 
 use crate::panels::messages::{Notices, Tone};
 
@@ -9,7 +9,7 @@ pub(crate) fn plugin(app: &mut App) {
     app.add_systems(Update, note_news).add_systems(
         RunFixedMainLoop,
         toggle
-            .run_if(|keys: Res<ButtonInput<KeyCode>>| keys.just_pressed(KeyCode::KeyM))
+            .run_if(was_struck(Action::RunScript))
             .in_set(KeySystems),
     );
 }

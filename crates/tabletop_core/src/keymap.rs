@@ -1,0 +1,348 @@
+//! Which keys do what.
+
+mod action;
+mod binding;
+
+pub use action::{Action, ActionGroup, Situation, Way};
+pub use binding::{Binding, BindingError, Modifiers};
+
+use std::{cmp::Reverse, collections::BTreeMap};
+
+use bevy::{ecs::system::SystemParam, prelude::*};
+use bevy_input::{ButtonInput, keyboard::KeyCode};
+
+use crate::Hands;
+
+/// The keys of each action. Keys are told apart by their places on the keyboard, whatever is printed on them.
+#[derive(Resource, Clone, Debug, PartialEq, Eq)]
+pub struct Keymap {
+    bindings: BTreeMap<Action, Vec<Binding>>,
+}
+
+impl Default for Keymap {
+    fn default() -> Self {
+        let bindings = Action::ALL.map(|action| (action, action.default_bindings()));
+        Self {
+            bindings: bindings.into(),
+        }
+    }
+}
+
+impl Keymap {
+    /// The keys of an action.
+    pub fn bindings(&self, action: Action) -> &[Binding] {
+        self.bindings.get(&action).map_or(&[], Vec::as_slice)
+    }
+
+    /// Gives an action these keys instead of those that it had. Another action that has one of them in the same situation keeps it:
+    /// see [`conflicts`](Self::conflicts).
+    pub fn bind(&mut self, action: Action, bindings: impl IntoIterator<Item = Binding>) {
+        let bindings = bindings.into_iter().collect();
+        self.bindings.insert(action, bindings);
+    }
+
+    /// Keys that two actions have in the same situation, so that the second one is out of reach.
+    pub fn conflicts(&self) -> Vec<(Binding, Action, Action)> {
+        let mut owners = BTreeMap::new();
+        let mut conflicts = Vec::new();
+        for action in Action::ALL {
+            for &binding in self.bindings(action) {
+                let owner = *owners
+                    .entry((binding, action.situation()))
+                    .or_insert(action);
+                if owner != action {
+                    conflicts.push((binding, owner, action));
+                }
+            }
+        }
+        conflicts
+    }
+
+    /// What a key does that is struck with these modifiers: with Shift what it does without unless Shift has a meaning of its
+    /// own, and with something in the hand first of all what is done to that.
+    pub fn action(&self, key: KeyCode, held: Modifiers, is_holding: bool) -> Option<Action> {
+        let fitting = Action::ALL.into_iter().flat_map(|action| {
+            let bindings = self.bindings(action).iter();
+            bindings.map(move |binding| (*binding, action))
+        });
+        fitting
+            .filter(|(binding, action)| {
+                let is_possible = is_holding || action.situation() == Situation::Any;
+                binding.key == key && is_possible && binding.fits(held)
+            })
+            .min_by_key(|(binding, action)| {
+                let uses_shift = binding.modifiers.shift;
+                (Reverse(uses_shift), Reverse(action.situation()))
+            })
+            .map(|(_, action)| action)
+    }
+
+    /// The keys of an action as the user reads them: `Ctrl+Shift+Z or Ctrl+Y`. Empty if it has none.
+    pub fn hint(&self, action: Action) -> String {
+        let labels = self.bindings(action).iter().map(|binding| binding.label());
+        labels.collect::<Vec<_>>().join(" or ")
+    }
+
+    /// What an action does, and its keys: `Stops the simulation, or lets it run on (Space)`.
+    pub fn tooltip(&self, action: Action) -> String {
+        match (action.tooltip(), self.hint(action)) {
+            (tooltip, hint) if hint.is_empty() => tooltip.to_owned(),
+            (tooltip, hint) => format!("{tooltip} ({hint})"),
+        }
+    }
+}
+
+/// Who has the keyboard. The panels set it.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum KeyboardFocus {
+    /// Nobody: keys do what they are bound to.
+    #[default]
+    World,
+    /// Something that is open over the window, such as a list: Esc closes it.
+    Overlay,
+    /// A field in which text or a number is being typed: keys write.
+    Text,
+}
+
+impl KeyboardFocus {
+    /// Whether a key still does what it is bound to.
+    pub fn leaves(self, key: KeyCode) -> bool {
+        match self {
+            Self::World => true,
+            Self::Overlay => key != KeyCode::Escape,
+            Self::Text => binding::is_function_key(key),
+        }
+    }
+}
+
+/// What the user asks for with the keyboard at the moment.
+#[derive(SystemParam)]
+pub struct Keys<'w> {
+    keymap: Res<'w, Keymap>,
+    keys: Res<'w, ButtonInput<KeyCode>>,
+    focus: Res<'w, KeyboardFocus>,
+    hands: Res<'w, Hands>,
+}
+
+impl Keys<'_> {
+    /// Whether a key of this action is held down.
+    pub fn is_held(&self, action: Action) -> bool {
+        self.any(action, |key| self.keys.pressed(key))
+    }
+
+    /// Whether a key of this action has gone down in this frame, even if it is up again.
+    pub fn was_struck(&self, action: Action) -> bool {
+        self.any(action, |key| self.keys.just_pressed(key))
+    }
+
+    /// What a key that is or was down in this frame asks for.
+    pub fn meaning(&self, key: KeyCode) -> Option<Action> {
+        let is_holding = self.hands.held_by(self.hands.selected).is_some();
+        let action = self.keymap.action(key, self.modifiers_of(key), is_holding);
+        action.filter(|_| self.focus.leaves(key))
+    }
+
+    /// 1 while the first action is held, -1 while the second is, 0 while none or both are.
+    pub fn axis(&self, plus: Action, minus: Action) -> f32 {
+        f32::from(i8::from(self.is_held(plus)) - i8::from(self.is_held(minus)))
+    }
+
+    fn any(&self, action: Action, is_on: impl Fn(KeyCode) -> bool) -> bool {
+        let bindings = self.keymap.bindings(action).iter();
+        bindings
+            .map(|binding| binding.key)
+            .any(|key| is_on(key) && self.meaning(key) == Some(action))
+    }
+
+    /// In a slow frame, modifiers may have come up as well since a key did.
+    fn modifiers_of(&self, key: KeyCode) -> Modifiers {
+        let is_up_again = !self.keys.pressed(key);
+        Modifiers::that_are(|key| {
+            let was_down = self.keys.just_pressed(key) || self.keys.just_released(key);
+            self.keys.pressed(key) || (is_up_again && was_down)
+        })
+    }
+}
+
+/// Run condition: a key of this action has gone down in this frame.
+pub fn was_struck(action: Action) -> impl FnMut(Keys) -> bool + Clone {
+    move |keys: Keys| keys.was_struck(action)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use KeyCode::*;
+    use bevy::ecs::system::RunSystemOnce as _;
+
+    use crate::{Hand, RobotJoint};
+
+    fn world() -> World {
+        let mut world = World::new();
+        world.init_resource::<Keymap>();
+        world.init_resource::<KeyboardFocus>();
+        world.init_resource::<ButtonInput<KeyCode>>();
+        world.init_resource::<Hands>();
+        world
+    }
+
+    fn press(world: &mut World, keys: &[KeyCode]) {
+        let mut input = world.resource_mut::<ButtonInput<KeyCode>>();
+        input.reset_all();
+        keys.iter().for_each(|&key| input.press(key));
+    }
+
+    fn hold_something(world: &mut World) {
+        let object = world.spawn_empty().id();
+        let mut hands = world.resource_mut::<Hands>();
+        hands.selected = Hand::Left;
+        hands.set_held(Hand::Left, Some(object));
+    }
+
+    /// What is asked for with these keys held down.
+    fn held(world: &mut World, keys: &[KeyCode]) -> Vec<Action> {
+        press(world, keys);
+        let held = |keys: Keys| {
+            let all = Action::ALL.into_iter();
+            all.filter(|action| keys.is_held(*action))
+                .collect::<Vec<_>>()
+        };
+        world.run_system_once(held).unwrap()
+    }
+
+    #[test]
+    fn no_key_means_two_things_in_one_situation() {
+        assert_eq!(Keymap::default().conflicts(), []);
+    }
+
+    #[test]
+    fn every_default_key_does_what_it_is_bound_to() {
+        let mut world = world();
+        for action in Action::ALL {
+            for binding in action.default_bindings() {
+                if action.situation() == Situation::Holding {
+                    hold_something(&mut world);
+                }
+                let Modifiers { ctrl, shift, .. } = binding.modifiers;
+                let modifiers = [(ctrl, ControlRight), (shift, ShiftRight)];
+                let modifiers = modifiers.into_iter().filter(|(is_used, _)| *is_used);
+                let mut keys: Vec<_> = modifiers.map(|(_, key)| key).collect();
+                keys.push(binding.key);
+                assert_eq!(held(&mut world, &keys), [action], "{binding}");
+                world.insert_resource(Hands::default());
+            }
+        }
+    }
+
+    #[test]
+    fn shift_changes_only_keys_that_have_a_meaning_with_it() {
+        use Way::{Minus, Plus};
+        let mut world = world();
+        let w2 = |way| Action::Move(RobotJoint::RightW2, way);
+        assert_eq!(held(&mut world, &[KeyT]), [w2(Plus)]);
+        assert_eq!(held(&mut world, &[ShiftLeft, KeyT]), [w2(Minus)]);
+        let forward = Action::CameraForward;
+        assert_eq!(held(&mut world, &[ShiftLeft, KeyW]), [forward]);
+        assert_eq!(held(&mut world, &[ControlRight, KeyW]), []);
+        assert_eq!(held(&mut world, &[AltLeft, KeyW]), []);
+    }
+
+    #[test]
+    fn what_is_held_comes_first() {
+        let mut world = world();
+        let question_mark = [ShiftLeft, Slash];
+        assert_eq!(held(&mut world, &question_mark), [Action::ShowHelp]);
+        assert_eq!(held(&mut world, &[Slash]), []);
+        hold_something(&mut world);
+        assert_eq!(held(&mut world, &question_mark), [Action::PlaneClockwise]);
+        assert_eq!(held(&mut world, &[Slash]), [Action::PlaneCounterClockwise]);
+        let mut both = held(&mut world, &[ControlLeft, Slash]);
+        both.sort();
+        assert_eq!(
+            both,
+            [Action::PlaneCounterClockwise, Action::PlanePerpendicular]
+        );
+    }
+
+    #[test]
+    fn a_press_is_struck_once_and_held_until_it_is_released() {
+        let mut world = world();
+        let state = |world: &mut World| {
+            let state = |keys: Keys| (keys.was_struck(Action::Pause), keys.is_held(Action::Pause));
+            world.run_system_once(state).unwrap()
+        };
+        press(&mut world, &[Space]);
+        assert_eq!(state(&mut world), (true, true));
+        world.resource_mut::<ButtonInput<KeyCode>>().clear();
+        assert_eq!(state(&mut world), (false, true));
+        world.resource_mut::<ButtonInput<KeyCode>>().release(Space);
+        assert_eq!(state(&mut world), (false, false));
+    }
+
+    #[test]
+    fn a_stroke_within_a_frame_keeps_its_modifiers() {
+        let mut world = world();
+        let mut input = world.resource_mut::<ButtonInput<KeyCode>>();
+        let keys = [ControlLeft, KeyZ];
+        keys.iter().for_each(|&key| input.press(key));
+        keys.iter().for_each(|&key| input.release(key));
+        let struck = |keys: Keys| {
+            let all = Action::ALL.into_iter();
+            all.filter(|action| keys.was_struck(*action))
+                .collect::<Vec<_>>()
+        };
+        let struck = world.run_system_once(struck).unwrap();
+        assert_eq!(struck, [Action::Undo]);
+    }
+
+    #[test]
+    fn keys_write_while_text_is_typed_and_escape_closes_what_is_open() {
+        let mut world = world();
+        let keys = [Space, KeyR, Escape, F1];
+        let asked = |world: &mut World, focus: KeyboardFocus| {
+            world.insert_resource(focus);
+            held(world, &keys)
+        };
+        let [pause, quit, robot, help] = [
+            Action::Pause,
+            Action::Quit,
+            Action::ShowRobot,
+            Action::ShowHelp,
+        ];
+        let all = [pause, quit, robot, help];
+        assert_eq!(asked(&mut world, KeyboardFocus::World), all);
+        let but_quit = [pause, robot, help];
+        assert_eq!(asked(&mut world, KeyboardFocus::Overlay), but_quit);
+        assert_eq!(asked(&mut world, KeyboardFocus::Text), [help]);
+    }
+
+    #[test]
+    fn keys_can_be_bound_anew() {
+        let mut world = world();
+        let mut keymap = world.resource_mut::<Keymap>();
+        keymap.bind(Action::Pause, ["Ctrl+KeyP".parse().unwrap()]);
+        keymap.bind(Action::Quit, []);
+        assert_eq!(keymap.hint(Action::Pause), "Ctrl+P");
+        assert_eq!(keymap.hint(Action::Quit), "");
+        assert_eq!(held(&mut world, &[Space]), []);
+        assert_eq!(held(&mut world, &[Escape]), []);
+        assert_eq!(held(&mut world, &[ControlLeft, KeyP]), [Action::Pause]);
+    }
+
+    #[test]
+    fn a_key_that_is_bound_twice_is_a_conflict() {
+        let mut keymap = Keymap::default();
+        let space = "Space".parse().unwrap();
+        keymap.bind(Action::ShowRobot, [space]);
+        let conflict = (space, Action::Pause, Action::ShowRobot);
+        assert_eq!(keymap.conflicts(), [conflict]);
+    }
+
+    #[test]
+    fn hints_name_every_key() {
+        let keymap = Keymap::default();
+        assert_eq!(keymap.hint(Action::Redo), "Ctrl+Shift+Z or Ctrl+Y");
+        let tooltip = "Stops the simulation, or lets it run on (Space)";
+        assert_eq!(keymap.tooltip(Action::Pause), tooltip);
+    }
+}

@@ -1,0 +1,289 @@
+//! Who has the keyboard. egui takes it as soon as anything has been clicked or reached with Tab; here only text that is being typed
+//! does, and what is open over the window takes Esc, so that keys work anytime (report section 2.4).
+
+use bevy::prelude::*;
+use bevy_egui::{
+    EguiContext, EguiInput, EguiPostUpdateSet, EguiPreUpdateSet, egui,
+    helpers::bevy_to_egui_physical_key,
+};
+use tabletop_core::{KeyboardFocus, Keys};
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(
+        PreUpdate,
+        keep_bound_keys_from_panels
+            .after(EguiPreUpdateSet::ProcessInput)
+            .before(EguiPreUpdateSet::BeginPass),
+    )
+    .add_systems(
+        PostUpdate,
+        follow_panels.in_set(EguiPostUpdateSet::ProcessOutput),
+    );
+}
+
+fn follow_panels(mut contexts: Query<&mut EguiContext>, mut focus: ResMut<KeyboardFocus>) {
+    let of_contexts = contexts
+        .iter_mut()
+        .map(|mut context| focus_of(context.get_mut()));
+    focus.set_if_neq(of_contexts.max().unwrap_or_default());
+}
+
+fn focus_of(context: &egui::Context) -> KeyboardFocus {
+    let is_modal = context.memory(|memory| memory.top_modal_layer().is_some());
+    if context.text_edit_focused() {
+        KeyboardFocus::Text
+    } else if is_modal || context.any_popup_open() {
+        KeyboardFocus::Overlay
+    } else {
+        KeyboardFocus::World
+    }
+}
+
+/// A key that does something does nothing else: Space does not click the button that has the focus, arrows do not move its knob.
+fn keep_bound_keys_from_panels(
+    keys: Keys,
+    input: Res<ButtonInput<KeyCode>>,
+    mut panels: Query<&mut EguiInput>,
+) {
+    let bound = input
+        .get_pressed()
+        .chain(input.get_just_pressed())
+        .filter(|key| keys.meaning(**key).is_some());
+    let bound: Vec<_> = bound.filter_map(bevy_to_egui_physical_key).collect();
+    if bound.is_empty() {
+        return;
+    }
+    for mut panels in &mut panels {
+        panels.events.retain(|event| !is_press_of(event, &bound));
+    }
+}
+
+fn is_press_of(event: &egui::Event, keys: &[egui::Key]) -> bool {
+    matches!(
+        event,
+        egui::Event::Key { physical_key: Some(key), pressed: true, .. } if keys.contains(key)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use KeyCode::{ArrowRight, Digit1, Digit2, Enter, Escape, F1, KeyR, Space, Tab};
+    use tabletop_core::{Action, CorePlugin, KeySystems};
+
+    /// What there is to have the focus, and what came of it.
+    #[derive(Resource, Default)]
+    struct Form {
+        focus: Option<Widget>,
+        clicks: u32,
+        slider: f32,
+        number: i32,
+        text: String,
+        is_list_open: bool,
+    }
+
+    #[derive(Clone, Copy, PartialEq)]
+    enum Widget {
+        Button,
+        Slider,
+        Number,
+        Text,
+        List,
+    }
+
+    #[derive(Resource, Default)]
+    struct Struck(Vec<Action>);
+
+    fn draw(panel: Single<(&mut EguiContext, &mut EguiInput)>, mut form: ResMut<Form>) {
+        let (mut context, mut input) = panel.into_inner();
+        let form = &mut *form;
+        let _output = context.get_mut().run_ui(input.take(), |ui| {
+            let button = ui.button("a button");
+            form.clicks += u32::from(button.clicked());
+            let slider = ui.add(egui::Slider::new(&mut form.slider, 0.0..=1.0));
+            let number = ui.add(egui::DragValue::new(&mut form.number));
+            let text = ui.text_edit_singleline(&mut form.text);
+            let list = egui::ComboBox::from_label("a list").show_ui(ui, |ui| {
+                let _choice = ui.selectable_label(false, "a choice");
+            });
+            form.is_list_open = list.inner.is_some();
+            match form.focus.take() {
+                None => {}
+                Some(Widget::Button) => button.request_focus(),
+                Some(Widget::Slider) => slider.request_focus(),
+                Some(Widget::Number) => number.request_focus(),
+                Some(Widget::Text) => text.request_focus(),
+                Some(Widget::List) => list.response.request_focus(),
+            }
+        });
+    }
+
+    fn note_struck(keys: Keys, mut struck: ResMut<Struck>) {
+        let all = Action::ALL.into_iter();
+        struck
+            .0
+            .extend(all.filter(|action| keys.was_struck(*action)));
+    }
+
+    struct Keyboard {
+        app: App,
+    }
+
+    impl Keyboard {
+        fn new() -> Self {
+            let mut app = App::new();
+            app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
+                .init_resource::<ButtonInput<KeyCode>>()
+                .init_resource::<Form>()
+                .init_resource::<Struck>()
+                .add_systems(RunFixedMainLoop, note_struck.in_set(KeySystems))
+                .add_systems(PostUpdate, draw.before(follow_panels));
+            app.world_mut()
+                .spawn((EguiContext::default(), EguiInput::default()));
+            app.update();
+            Self { app }
+        }
+
+        /// A widget has the focus, for longer than a frame.
+        fn with_focus_on(widget: Widget) -> Self {
+            let mut keyboard = Self::new();
+            keyboard.app.world_mut().resource_mut::<Form>().focus = Some(widget);
+            for _ in 0..3 {
+                keyboard.app.update();
+            }
+            let world = keyboard.app.world_mut();
+            let mut contexts = world.query::<&mut EguiContext>();
+            let mut context = contexts.single_mut(world).unwrap();
+            assert!(context.get_mut().egui_wants_keyboard_input());
+            keyboard
+        }
+
+        fn event(&mut self, event: egui::Event) {
+            let world = self.app.world_mut();
+            let mut panels = world.query::<&mut EguiInput>();
+            panels.single_mut(world).unwrap().events.push(event);
+        }
+
+        /// What is asked for when a key goes down and up, as the window tells it.
+        fn strike(&mut self, key: KeyCode, text: &str) -> Vec<Action> {
+            for pressed in [true, false] {
+                if let Some(key) = bevy_to_egui_physical_key(&key) {
+                    self.event(egui::Event::Key {
+                        key,
+                        physical_key: Some(key),
+                        pressed,
+                        repeat: false,
+                        modifiers: egui::Modifiers::NONE,
+                    });
+                }
+                if pressed && !text.is_empty() {
+                    self.event(egui::Event::Text(text.to_owned()));
+                }
+                let mut input = self.app.world_mut().resource_mut::<ButtonInput<KeyCode>>();
+                match pressed {
+                    true => input.press(key),
+                    false => input.release(key),
+                }
+                self.app.update();
+                let mut input = self.app.world_mut().resource_mut::<ButtonInput<KeyCode>>();
+                input.clear();
+            }
+            // A list is drawn in the frame after the one in which it opens.
+            self.app.update();
+            std::mem::take(&mut self.app.world_mut().resource_mut::<Struck>().0)
+        }
+
+        fn form(&self) -> &Form {
+            self.app.world().resource()
+        }
+
+        fn focus(&self) -> KeyboardFocus {
+            *self.app.world().resource()
+        }
+    }
+
+    #[test]
+    fn after_tab_keys_do_what_they_did() {
+        let mut keyboard = Keyboard::new();
+        assert_eq!(keyboard.strike(Tab, ""), []);
+        assert_eq!(keyboard.strike(Space, " "), [Action::Pause]);
+        assert_eq!(keyboard.strike(KeyR, "r"), [Action::ShowRobot]);
+        assert_eq!(keyboard.strike(Escape, ""), [Action::Quit]);
+    }
+
+    #[test]
+    fn space_does_not_click_the_button_that_has_the_focus_but_enter_does() {
+        let mut keyboard = Keyboard::with_focus_on(Widget::Button);
+        assert_eq!(keyboard.strike(Space, " "), [Action::Pause]);
+        assert_eq!(keyboard.form().clicks, 0);
+        assert_eq!(keyboard.strike(Enter, ""), []);
+        assert_eq!(keyboard.form().clicks, 1);
+    }
+
+    #[test]
+    fn arrows_do_not_move_the_slider_that_has_the_focus() {
+        let mut keyboard = Keyboard::with_focus_on(Widget::Slider);
+        assert_eq!(keyboard.strike(ArrowRight, ""), [Action::LookRight]);
+        assert_eq!(keyboard.form().slider, 0.0);
+        assert_eq!(keyboard.strike(Space, " "), [Action::Pause]);
+    }
+
+    #[test]
+    fn an_open_list_takes_escape_and_nothing_else() {
+        let mut keyboard = Keyboard::with_focus_on(Widget::List);
+        assert_eq!(keyboard.strike(Enter, ""), []);
+        assert!(keyboard.form().is_list_open);
+        assert_eq!(keyboard.focus(), KeyboardFocus::Overlay);
+        assert_eq!(keyboard.strike(Space, " "), [Action::Pause]);
+        assert_eq!(keyboard.strike(KeyR, "r"), [Action::ShowRobot]);
+        assert!(keyboard.form().is_list_open);
+        assert_eq!(keyboard.strike(Escape, ""), []);
+        assert!(!keyboard.form().is_list_open);
+        assert_eq!(keyboard.strike(Escape, ""), [Action::Quit]);
+    }
+
+    #[test]
+    fn keys_write_into_a_field_until_escape_leaves_it() {
+        let mut keyboard = Keyboard::with_focus_on(Widget::Text);
+        assert_eq!(keyboard.focus(), KeyboardFocus::Text);
+        for (key, text) in [(KeyR, "r"), (Space, " "), (Digit2, "2")] {
+            assert_eq!(keyboard.strike(key, text), []);
+        }
+        assert_eq!(keyboard.form().text, "r 2");
+        assert_eq!(keyboard.strike(F1, ""), [Action::ShowHelp]);
+        assert_eq!(keyboard.strike(Escape, ""), []);
+        assert_eq!(keyboard.focus(), KeyboardFocus::World);
+        assert_eq!(keyboard.strike(Space, " "), [Action::Pause]);
+        assert_eq!(keyboard.form().text, "r 2");
+        assert_eq!(keyboard.strike(Escape, ""), [Action::Quit]);
+    }
+
+    #[test]
+    fn digits_write_a_number_until_enter_ends_it() {
+        let mut keyboard = Keyboard::with_focus_on(Widget::Number);
+        assert_eq!(keyboard.strike(Digit1, "1"), []);
+        assert_eq!(keyboard.strike(Digit2, "2"), []);
+        assert_eq!(keyboard.strike(Enter, ""), []);
+        assert_eq!(keyboard.form().number, 12);
+        assert_eq!(keyboard.strike(Digit1, "1"), [Action::ShowHeadView]);
+        assert_eq!(keyboard.form().number, 12);
+    }
+
+    #[test]
+    fn a_field_that_is_clicked_away_gives_the_keys_back() {
+        let mut keyboard = Keyboard::with_focus_on(Widget::Text);
+        let pos = egui::pos2(900.0, 900.0);
+        keyboard.event(egui::Event::PointerMoved(pos));
+        for pressed in [true, false] {
+            keyboard.event(egui::Event::PointerButton {
+                pos,
+                button: egui::PointerButton::Primary,
+                pressed,
+                modifiers: egui::Modifiers::NONE,
+            });
+            keyboard.app.update();
+        }
+        assert_eq!(keyboard.strike(KeyR, "r"), [Action::ShowRobot]);
+        assert_eq!(keyboard.form().text, "");
+    }
+}
