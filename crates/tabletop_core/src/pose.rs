@@ -3,7 +3,7 @@
 use std::ops::Mul;
 
 use bevy::{
-    math::{DMat3, DQuat},
+    math::{DMat3, DQuat, DVec3},
     prelude::*,
 };
 use serde::{Deserialize, Serialize};
@@ -45,7 +45,7 @@ impl Pose {
     }
 
     /// A pose from a location and the angles of a task file: degrees about the fixed X, then Y, then Z axis.
-    pub fn from_degrees(location: Vec3, rotation: Vec3) -> Self {
+    pub fn from_degrees(location: Vec3, rotation: impl Into<DVec3>) -> Self {
         Self::new(location, quat_from_degrees(rotation))
     }
 
@@ -101,8 +101,8 @@ impl From<&Transform> for Pose {
 }
 
 /// The rotation of a task file: `degrees.x` about the fixed X axis, then `degrees.y` about Y, then `degrees.z` about Z.
-pub fn quat_from_degrees(degrees: Vec3) -> Quat {
-    let [x, y, z] = degrees.as_dvec3().to_array().map(f64::to_radians);
+pub fn quat_from_degrees(degrees: impl Into<DVec3>) -> Quat {
+    let [x, y, z] = degrees.into().to_array().map(f64::to_radians);
     let rotation =
         DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x);
     rotation.as_quat().normalize()

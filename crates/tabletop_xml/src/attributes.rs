@@ -2,7 +2,7 @@
 
 use std::{fmt, ops::RangeInclusive};
 
-use bevy::math::Vec3;
+use bevy::math::{DVec3, Vec3};
 use tabletop_core::{Pose, Rgb};
 
 use crate::{
@@ -101,8 +101,8 @@ impl<'e, 'a, 'f> AttributeReader<'e, 'a, 'f> {
 
     pub fn pose(&mut self) -> Pose {
         let location = self.location("location");
-        let rotation = self.read("rotation", Vec3::ZERO, |text| {
-            value::vector(text, &ROTATIONS)
+        let rotation = self.read("rotation", DVec3::ZERO, |text| {
+            value::angles(text, &ROTATIONS)
         });
         Pose::from_degrees(location, rotation)
     }

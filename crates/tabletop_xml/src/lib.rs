@@ -22,6 +22,7 @@
 //! assert_eq!(chain.links(), 12);
 //! ```
 
+mod angles;
 mod attributes;
 mod build;
 mod chain;

@@ -1,8 +1,8 @@
 //! Texts of attributes as values.
 
-use std::{fmt, ops::RangeInclusive};
+use std::{fmt, ops::RangeInclusive, str::FromStr};
 
-use bevy::math::Vec3;
+use bevy::math::{DVec3, Vec3};
 use tabletop_core::{NAMED_COLORS, Rgb};
 
 use crate::{fault::Excerpt, syntax::is_blank};
@@ -12,7 +12,7 @@ pub(crate) const SPANS: RangeInclusive<f32> = 0.001..=1000.0;
 /// Components of locations, in units.
 pub(crate) const LOCATIONS: RangeInclusive<f32> = -10_000.0..=10_000.0;
 /// Components of rotations, in degrees.
-pub(crate) const ROTATIONS: RangeInclusive<f32> = -1e6..=1e6;
+pub(crate) const ROTATIONS: RangeInclusive<f64> = -1e6..=1e6;
 /// Masses, in kg.
 pub(crate) const MASSES: RangeInclusive<f32> = 0.0..=1e6;
 /// Paddings of links, in units.
@@ -52,15 +52,27 @@ pub(crate) fn number(text: &str, range: &RangeInclusive<f32>) -> Result<f32, Val
 
 /// Reads a vector `(x,y,z)`, with blanks anywhere between its numbers and marks.
 pub(crate) fn vector(text: &str, range: &RangeInclusive<f32>) -> Result<Vec3, ValueError> {
+    triple(text, range).map(Vec3::from)
+}
+
+/// Reads angles `(x,y,z)`. They need all digits of theirs, so that the rotation of a saved object reads back to the bit.
+pub(crate) fn angles(text: &str, range: &RangeInclusive<f64>) -> Result<DVec3, ValueError> {
+    triple(text, range).map(DVec3::from)
+}
+
+fn triple<T: FromStr + PartialOrd + fmt::Display>(
+    text: &str,
+    range: &RangeInclusive<T>,
+) -> Result<[T; 3], ValueError> {
     let expected = || {
         let (least, most) = (range.start(), range.end());
         format!("(x,y,z) with numbers from {least} to {most}")
     };
-    let Some(vector) = bare_vector(text) else {
+    let Some(triple) = bare_triple(text) else {
         return Err(ValueError::new(text, "is not a vector", expected()));
     };
-    match vector.to_array().iter().all(|part| range.contains(part)) {
-        true => Ok(vector),
+    match triple.iter().all(|part| range.contains(part)) {
+        true => Ok(triple),
         false => Err(ValueError::new(text, "is out of range", expected())),
     }
 }
@@ -138,15 +150,15 @@ pub(crate) fn trim(text: &str) -> &str {
     text.trim_matches(is_blank)
 }
 
-fn bare_vector(text: &str) -> Option<Vec3> {
+fn bare_triple<T: FromStr>(text: &str) -> Option<[T; 3]> {
     let inner = trim(text).strip_prefix('(')?.strip_suffix(')')?;
     let mut parts = inner.split(',').map(finite_or_huge);
-    let vector = Vec3::new(parts.next()??, parts.next()??, parts.next()??);
-    parts.next().is_none().then_some(vector)
+    let triple = [parts.next()??, parts.next()??, parts.next()??];
+    parts.next().is_none().then_some(triple)
 }
 
 /// A decimal number; infinite if it is too large for its type, which is out of every range.
-fn finite_or_huge(text: &str) -> Option<f32> {
+fn finite_or_huge<T: FromStr>(text: &str) -> Option<T> {
     let number = trim(text);
     let is_decimal = |byte: u8| byte.is_ascii_digit() || b"+-.eE".contains(&byte);
     match number.bytes().all(is_decimal) {
