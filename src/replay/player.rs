@@ -81,6 +81,7 @@ impl Player {
                     | SimCommand::LoadTask(_)
                     | SimCommand::SetScene(_)
                     | SimCommand::ClearTable
+                    | SimCommand::Make { .. }
             );
             if next.tick > tick.0 || begins_moment && self.has_paused && !due.is_empty() {
                 break;

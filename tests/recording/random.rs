@@ -27,9 +27,23 @@ impl Random {
     }
 }
 
-const IDS: [&str; 13] = [
-    "block0", "block1", "block2", "block3", "block4", "ball", "wall", "log", "c-link2", "c-link5",
-    "c-start", "b-lid", "b-box",
+const IDS: [&str; 16] = [
+    "block0",
+    "block1",
+    "block2",
+    "block3",
+    "block4",
+    "ball",
+    "wall",
+    "log",
+    "c-link2",
+    "c-link5",
+    "c-start",
+    "b-lid",
+    "b-box",
+    "largeblock",
+    "smallblock",
+    "container",
 ];
 
 fn object(id: &str, location: (f32, f32, f32), mass: f32, shape: Shape) -> SceneItem {
@@ -151,12 +165,24 @@ fn robot_command(random: &mut Random) -> SimCommand {
     }
 }
 
+fn scene_command(random: &mut Random) -> SimCommand {
+    let preset = random.of(&[Preset::BigBlock, Preset::Stack(2), Preset::BoxContainer]);
+    match random.below(8) {
+        0 => SimCommand::ClearTable,
+        _ => SimCommand::Make {
+            preset,
+            seed: random.below(1000) as u64,
+        },
+    }
+}
+
 /// What is told at which tick.
 pub fn script(random: &mut Random, ticks: u64) -> Vec<Vec<SimCommand>> {
     (0..ticks)
         .map(|_| match random.below(6) {
             0 => vec![hand_command(random)],
             1 if random.below(2) == 0 => vec![robot_command(random)],
+            2 if random.below(8) == 0 => vec![scene_command(random)],
             _ => Vec::new(),
         })
         .collect()

@@ -26,19 +26,19 @@ pub struct Rgb {
 /// The colours that a task file can name (report section 6.2).
 pub const NAMED_COLORS: [(&str, Rgb); 14] = [
     ("black", Rgb::BLACK),
-    ("blue", Rgb::new(0.0, 0.0, 1.0)),
-    ("brown", Rgb::new(65.0 / 255.0, 40.0 / 255.0, 25.0 / 255.0)),
-    ("cyan", Rgb::new(0.0, 1.0, 1.0)),
+    ("blue", Rgb::BLUE),
+    ("brown", Rgb::BROWN),
+    ("cyan", Rgb::CYAN),
     ("darkgray", Rgb::new(0.2, 0.2, 0.2)),
     ("gray", Rgb::GRAY),
-    ("green", Rgb::new(0.0, 1.0, 0.0)),
+    ("green", Rgb::GREEN),
     ("lightgray", Rgb::new(0.8, 0.8, 0.8)),
-    ("magenta", Rgb::new(1.0, 0.0, 1.0)),
-    ("orange", Rgb::new(251.0 / 255.0, 130.0 / 255.0, 0.0)),
+    ("magenta", Rgb::MAGENTA),
+    ("orange", Rgb::ORANGE),
     ("pink", Rgb::new(1.0, 0.68, 0.68)),
-    ("red", Rgb::new(1.0, 0.0, 0.0)),
+    ("red", Rgb::RED),
     ("white", Rgb::WHITE),
-    ("yellow", Rgb::new(1.0, 1.0, 0.0)),
+    ("yellow", Rgb::YELLOW),
 ];
 
 impl Rgb {
@@ -48,6 +48,22 @@ impl Rgb {
     pub const GRAY: Self = Self::new(0.5, 0.5, 0.5);
     /// White.
     pub const WHITE: Self = Self::new(1.0, 1.0, 1.0);
+    /// Blue.
+    pub const BLUE: Self = Self::new(0.0, 0.0, 1.0);
+    /// Brown.
+    pub const BROWN: Self = Self::new(65.0 / 255.0, 40.0 / 255.0, 25.0 / 255.0);
+    /// Cyan.
+    pub const CYAN: Self = Self::new(0.0, 1.0, 1.0);
+    /// Green.
+    pub const GREEN: Self = Self::new(0.0, 1.0, 0.0);
+    /// Magenta.
+    pub const MAGENTA: Self = Self::new(1.0, 0.0, 1.0);
+    /// Orange.
+    pub const ORANGE: Self = Self::new(251.0 / 255.0, 130.0 / 255.0, 0.0);
+    /// Red.
+    pub const RED: Self = Self::new(1.0, 0.0, 0.0);
+    /// Yellow.
+    pub const YELLOW: Self = Self::new(1.0, 1.0, 0.0);
 
     /// A colour from its parts, each 0..=1.
     pub const fn new(red: f32, green: f32, blue: f32) -> Self {

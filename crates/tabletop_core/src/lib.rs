@@ -28,6 +28,8 @@ mod message;
 mod number;
 mod object;
 mod pose;
+mod preset;
+mod random;
 mod ray;
 mod recording;
 mod rewind;
@@ -55,6 +57,8 @@ pub use message::{SimCommand, SimFact};
 pub use number::Decimal;
 pub use object::{ObjectIndex, ObjectSpec};
 pub use pose::{Pose, UNITS_PER_METER, degrees_from_quat, quat_from_degrees};
+pub use preset::Preset;
+pub use random::Random;
 pub use recording::{History, OpenRecording, Recording, Replaying};
 pub use rewind::{Remembered, Rewinds, Rewound};
 pub use robot::{
@@ -73,9 +77,9 @@ use bevy::prelude::*;
 pub mod prelude {
     #[doc(hidden)]
     pub use crate::{
-        Arm, CorePlugin, Drive, Hand, Hands, ObjectIndex, ObjectSpec, Paused, Pose, Rgb, Robot,
-        RobotJoint, SceneItem, SceneSpec, Shape, SimCommand, SimFact, SimSystems, SimTick, StepApp,
-        Table,
+        Arm, CorePlugin, Drive, Hand, Hands, ObjectIndex, ObjectSpec, Paused, Pose, Preset, Rgb,
+        Robot, RobotJoint, SceneItem, SceneSpec, Shape, SimCommand, SimFact, SimSystems, SimTick,
+        StepApp, Table,
     };
 }
 

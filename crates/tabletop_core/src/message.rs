@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use bevy::{ecs::system::SystemState, prelude::*};
 use serde::{Deserialize, Serialize};
 
-use crate::{Arm, Drive, Face, Hand, Pose, RobotJoint, SceneSpec};
+use crate::{Arm, Drive, Face, Hand, Pose, Preset, RobotJoint, SceneSpec};
 
 /// Something the simulation is to do in its next tick.
 #[derive(Message, Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,6 +19,13 @@ pub enum SimCommand {
     SetScene(Box<SceneSpec>),
     /// Remove every object from the table that no hand holds.
     ClearTable,
+    /// Make objects, without touching any that are there.
+    Make {
+        /// What to make.
+        preset: Preset,
+        /// Decides colours and place: the same seed makes the same in the same world.
+        seed: u64,
+    },
     /// Let mouse and panels act with this hand.
     SelectHand(Hand),
     /// Take an object into a hand.

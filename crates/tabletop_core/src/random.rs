@@ -1,15 +1,25 @@
 //! Random numbers that are the same everywhere and for ever.
 
 /// SplitMix64: a counter, scrambled (Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014).
-#[derive(Clone, Debug)]
-pub(crate) struct Random(u64);
+///
+/// ```
+/// use tabletop_core::Random;
+///
+/// let draw = |seed| Random::new(seed).between((0.0, 1.0));
+/// assert_eq!(draw(7), draw(7));
+/// assert_ne!(draw(7), draw(8));
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Random(u64);
 
 impl Random {
-    pub fn new(seed: u64) -> Self {
+    /// The stream of numbers that this seed begins.
+    pub const fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    fn bits(&mut self) -> u64 {
+    /// 64 bits.
+    pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.0;
         bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -21,6 +31,12 @@ impl Random {
     pub fn between(&mut self, (low, high): (f32, f32)) -> f32 {
         let fraction = (self.bits() >> 40) as f32 / (1 << 24) as f32;
         low + (high - low) * fraction
+    }
+
+    /// One of these.
+    pub fn one_of<T: Copy, const N: usize>(&mut self, choices: [T; N]) -> T {
+        const { assert!(N > 0) };
+        choices[(self.bits() % N as u64) as usize]
     }
 }
 
@@ -48,5 +64,12 @@ mod tests {
         assert!(numbers.iter().all(|number| (-2.0..=3.0).contains(number)));
         assert!(numbers.iter().any(|&number| number < -1.9));
         assert!(numbers.iter().any(|&number| number > 2.9));
+    }
+
+    #[test]
+    fn every_choice_is_made() {
+        let mut random = Random::new(0);
+        let made: Vec<_> = (0..100).map(|_| random.one_of(['a', 'b', 'c'])).collect();
+        assert!(['a', 'b', 'c'].iter().all(|choice| made.contains(choice)));
     }
 }

@@ -1,7 +1,7 @@
 //! How near convex solids are to each other: for bodies that are moved without the physics engine.
 
 use bevy::prelude::*;
-use bevy_rapier3d::rapier::prelude as rapier;
+use bevy_rapier3d::{parry::bounding_volume::BoundingVolume as _, rapier::prelude as rapier};
 use tabletop_core::Pose;
 
 use crate::contact::contact;
@@ -13,6 +13,16 @@ pub struct Convex {
     pub pose: Pose,
     /// The solid, in its own frame.
     pub shape: rapier::SharedShape,
+}
+
+impl Convex {
+    /// Whether it is within a distance, in units, of another solid that stands in the same frame.
+    pub fn is_near(&self, other: &Self, within: f32) -> bool {
+        let [at, other_at] = [self, other].map(|solid| to_rapier(solid.pose));
+        let bounds = self.shape.compute_aabb(&at).loosened(within);
+        bounds.intersects(&other.shape.compute_aabb(&other_at))
+            && contact(&at, &*self.shape, &other_at, &*other.shape, within).is_some()
+    }
 }
 
 /// The convex parts of a collider's shape.

@@ -13,6 +13,7 @@ fn is_carried_out_first(command: &SimCommand) -> bool {
         SimCommand::LoadTask(_)
             | SimCommand::SetScene(_)
             | SimCommand::ClearTable
+            | SimCommand::Make { .. }
             | SimCommand::SetPaused(_)
     )
 }

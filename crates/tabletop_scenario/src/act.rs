@@ -29,6 +29,10 @@ impl ScenarioRun {
             Step::With(hand, step) => return self.take(step, *hand, seen),
             Step::Load { file, .. } => SimCommand::LoadTask(file.clone()),
             Step::Clear => SimCommand::ClearTable,
+            Step::Make(preset) => SimCommand::Make {
+                preset: *preset,
+                seed: self.random().bits(),
+            },
             Step::Select(hand) => SimCommand::SelectHand(*hand),
             Step::Grasp(object) => SimCommand::Grasp {
                 hand,

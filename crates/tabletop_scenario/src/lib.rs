@@ -27,7 +27,6 @@ mod check;
 mod error;
 mod place;
 mod program;
-mod random;
 mod rest;
 mod robot;
 mod run;

@@ -2,9 +2,9 @@
 
 use bevy::prelude::*;
 use serde::Deserialize;
-use tabletop_core::{Pose, SceneItem, SceneSpec};
+use tabletop_core::{Pose, Random, SceneItem, SceneSpec};
 
-use crate::{bounds::Bounds, random::Random};
+use crate::bounds::Bounds;
 
 /// Least distance, in units, of an object that is placed to any other.
 const CLEARANCE: f32 = 0.05;

@@ -2,11 +2,9 @@
 
 use std::path::Path;
 
-use tabletop_core::{SceneSpec, TICKS_PER_SECOND};
+use tabletop_core::{Random, SceneSpec, TICKS_PER_SECOND};
 
-use crate::{
-    LocatedStep, Scenario, ScenarioError, SourceLocation, Step, place::place_all, random::Random,
-};
+use crate::{LocatedStep, Scenario, ScenarioError, SourceLocation, Step, place::place_all};
 
 /// Longest time that a scenario takes if nothing else is said, in seconds.
 const DEFAULT_LIMIT_SECONDS: u64 = 600;
@@ -17,6 +15,8 @@ pub struct Program {
     /// After how many ticks it fails if it is not done.
     pub limit: u64,
     pub(crate) steps: Vec<ProgramStep>,
+    /// What is random while it runs.
+    pub(crate) random: Random,
 }
 
 /// A step that needs no files.
@@ -36,7 +36,7 @@ pub(crate) enum Action {
 }
 
 impl Program {
-    /// Prepares a scenario: `load` reads a task file, and the seed decides where objects are placed.
+    /// Prepares a scenario: `load` reads a task file, and the seed decides where objects are placed, and what presets look like.
     ///
     /// # Errors
     ///
@@ -69,9 +69,11 @@ impl Program {
                 action,
             })
         });
+        let steps = steps.collect::<Result<_, _>>()?;
         Ok(Self {
             limit: DEFAULT_LIMIT_SECONDS * u64::from(TICKS_PER_SECOND),
-            steps: steps.collect::<Result<_, _>>()?,
+            steps,
+            random,
         })
     }
 }

@@ -1,7 +1,7 @@
 //! Running a scenario, tick by tick.
 
 use bevy::prelude::*;
-use tabletop_core::{SimCommand, TICKS_PER_SECOND};
+use tabletop_core::{Random, SimCommand, TICKS_PER_SECOND};
 
 use crate::{
     Program, ScenarioError, act::Progress, program::ProgramStep, rest::Stillness, robot::is_still,
@@ -58,6 +58,11 @@ impl ScenarioRun {
     /// How far it has come.
     pub const fn outcome(&self) -> &Outcome {
         &self.outcome
+    }
+
+    /// What is random.
+    pub(crate) fn random(&mut self) -> &mut Random {
+        &mut self.program.random
     }
 
     /// Takes the steps that are due in a tick: at most one of them gives a command. `refusal` is what the last tick's

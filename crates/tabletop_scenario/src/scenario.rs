@@ -168,7 +168,7 @@ mod tests {
                 steps: [
                     Load(file: "b.xml"),
                     Load(file: "b.xml", place: [(object: "x", x: (0, 1), y: (-1, 1), turn: (0, 360))]),
-                    Clear, Select(Left), With(Right, Grasp("x")), Grasp("y"),
+                    Clear, Make(Stack(5)), Make(BigBlock), Make(BoxContainer), Select(Left), With(Right, Grasp("x")), Grasp("y"),
                     MoveTo((1, 2.5, -3)), MoveBy((0, 0, 1e-1)), Glide(to: (1, 2, 3), seconds: 2),
                     Turn(axis: Z, degrees: -45), Release, Destroy,
                     Wait(0.5), WaitUntilRest(5), WaitUntilThere(5),
@@ -182,11 +182,11 @@ mod tests {
                 ],
             )"#;
         let scenario = Scenario::parse("s.ron", text)?;
-        assert_eq!(scenario.steps.len(), 31);
+        assert_eq!(scenario.steps.len(), 34);
         let setup = scenario.setup.map(|setup| setup.at.to_string());
         assert_eq!(setup.as_deref(), Some("s.ron:4:24"));
         assert_eq!(scenario.steps[3].at.to_string(), "s.ron:8:28");
-        assert_eq!(scenario.steps[3].text, "Select(Left)");
+        assert_eq!(scenario.steps[3].text, "Make(Stack(5))");
         Ok(())
     }
 
@@ -211,6 +211,7 @@ mod tests {
             ("", "1:1: ", ""),
             ("(steps: [\n  Wait(-1),\n])", "2:3: Wait(-1): ", "seconds"),
             ("(steps: [MoveTo((0, NaN, 0))])", "1:10: MoveTo", "finite"),
+            ("(steps: [Make(Stack(0))])", "1:10: Make", "1 to 50 blocks"),
             (
                 "(steps: [With(Left, Wait(1))])",
                 "1:10: With",

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 use serde::Deserialize;
-use tabletop_core::Hand;
+use tabletop_core::{Hand, Preset};
 
 use crate::{Check, Place, RobotStep};
 
@@ -28,6 +28,8 @@ pub enum Step {
     },
     /// Remove every object that no hand holds.
     Clear,
+    /// Make objects at a random free place over the table.
+    Make(Preset),
     /// Let the following steps act with this hand.
     Select(Hand),
     /// Let one step act with another hand than the selected one.
@@ -105,6 +107,7 @@ impl Step {
     pub(crate) fn fault(&self) -> Option<String> {
         match self {
             Self::Load { place, .. } => place.iter().find_map(Place::fault),
+            Self::Make(preset) => preset.fault(),
             Self::With(_, step) if !step.is_done_by_a_hand() => {
                 Some("`With` must be followed by a step that a hand does".to_owned())
             }

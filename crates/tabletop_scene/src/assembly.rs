@@ -18,20 +18,32 @@ pub struct Assembly {
 
 /// Takes a scene apart into objects and joints, and makes the ids unique.
 pub fn assemble(scene: &SceneSpec, ids: &mut IdAllocator) -> Assembly {
-    let mut assembly = Assembly {
-        table: scene.table,
-        objects: Vec::new(),
-        joints: Vec::new(),
-    };
+    let mut assembly = Assembly::on(scene.table);
     for item in &scene.items {
+        assembly.add(item, ids);
+    }
+    assembly
+}
+
+impl Assembly {
+    /// Nothing on this table.
+    pub(crate) const fn on(table: Table) -> Self {
+        Self {
+            table,
+            objects: Vec::new(),
+            joints: Vec::new(),
+        }
+    }
+
+    /// Adds what an item consists of.
+    pub(crate) fn add(&mut self, item: &SceneItem, ids: &mut IdAllocator) {
         match item {
-            SceneItem::Object(spec) => assembly.objects.push(ObjectSpec {
+            SceneItem::Object(spec) => self.objects.push(ObjectSpec {
                 id: ids.unique(&spec.id),
                 ..spec.clone()
             }),
-            SceneItem::Chain(spec) => chain::build(spec, ids, &mut assembly),
-            SceneItem::LidBox(spec) => lidbox::build(spec, ids, &mut assembly),
+            SceneItem::Chain(spec) => chain::build(spec, ids, self),
+            SceneItem::LidBox(spec) => lidbox::build(spec, ids, self),
         }
     }
-    assembly
 }

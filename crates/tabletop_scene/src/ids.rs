@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use bevy::prelude::Resource;
+
 /// Hands out ids that are unique, in the way of the original program: the id that was asked for (`obj` if none) if it is
 /// free, else that id with `#` and a count that goes up with every try.
 ///
@@ -12,7 +14,9 @@ use std::collections::BTreeSet;
 /// let given = ["a", "a", "", "", "a"].map(|wanted| ids.unique(wanted));
 /// assert_eq!(given, ["a", "a#0", "obj", "obj#1", "a#2"]);
 /// ```
-#[derive(Clone, Debug, Default)]
+///
+/// As a resource, it is the one of the present scene.
+#[derive(Resource, Clone, Debug, Default)]
 pub struct IdAllocator {
     taken: BTreeSet<String>,
     tries: u64,
@@ -25,6 +29,11 @@ impl IdAllocator {
             taken: taken.into_iter().collect(),
             tries: 0,
         }
+    }
+
+    /// Notes ids that somebody else has given.
+    pub fn take(&mut self, taken: impl IntoIterator<Item = String>) {
+        self.taken.extend(taken);
     }
 
     /// An id that nobody has, and takes it.

@@ -1,7 +1,7 @@
 //! The table and the objects on it: how a scene becomes bodies and joints, and how they come and go.
 //!
 //! [`assemble`] takes what a task file says apart into single objects with unique ids and the joints between them;
-//! [`ScenePlugin`] carries out the commands that put them on the table.
+//! [`ScenePlugin`] carries out the commands that put them on the table; [`present_scene`] is the way back.
 //!
 //! ```
 //! use bevy::prelude::*;
@@ -30,15 +30,21 @@
 
 mod assembly;
 mod chain;
+mod compound;
 mod ids;
 mod lidbox;
 mod life;
+mod present;
+mod preset;
 
 pub use assembly::{Assembly, assemble};
 pub use ids::IdAllocator;
+pub use present::{PresentScene, present_scene};
 
 use bevy::prelude::*;
-use tabletop_core::{PictureSystems, SimSystems};
+use tabletop_core::{PictureSystems, Rewound, SimSystems};
+
+use crate::compound::Compounds;
 
 /// Puts tables and objects into the world and takes them out. Needs [`CorePlugin`](tabletop_core::CorePlugin) and
 /// [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin).
@@ -47,6 +53,11 @@ pub struct ScenePlugin;
 
 impl Plugin for ScenePlugin {
     fn build(&self, app: &mut App) {
+        app.init_resource::<IdAllocator>()
+            .init_resource::<Compounds>();
+        let mut rewound = app.world_mut().resource_mut::<Rewound>();
+        rewound.add::<Compounds>();
+        rewound.add::<IdAllocator>();
         app.add_systems(
             FixedUpdate,
             (

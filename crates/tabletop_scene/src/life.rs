@@ -12,7 +12,7 @@ use tabletop_core::{
 };
 use tabletop_physics::{Parked, remove_object, renew_if_empty};
 
-use crate::{IdAllocator, assemble};
+use crate::{Assembly, IdAllocator, compound::Compounds, preset};
 
 /// Objects below this height, in units, have left the world.
 const LOWEST_Z: f32 = -1000.0;
@@ -89,12 +89,16 @@ pub(crate) fn carry_out_commands(
     reader: &mut SystemState<MessageReader<SimCommand>>,
 ) -> Result {
     let commands = SimCommand::unread(world, reader, |command| {
-        matches!(command, SimCommand::SetScene(_) | SimCommand::ClearTable)
+        matches!(
+            command,
+            SimCommand::SetScene(_) | SimCommand::ClearTable | SimCommand::Make { .. }
+        )
     })?;
     for command in commands {
         match command {
             SimCommand::SetScene(scene) => set_scene(world, &scene),
             SimCommand::ClearTable => clear(world),
+            SimCommand::Make { preset, seed } => preset::make(world, preset, seed),
             _ => {}
         }
     }
@@ -110,10 +114,24 @@ fn set_scene(world: &mut World, scene: &SceneSpec) {
     renew_if_empty(world);
 
     let held = world.resource::<ObjectIndex>().ids().map(str::to_owned);
-    let assembly = assemble(scene, &mut IdAllocator::with_taken(held));
+    let mut ids = IdAllocator::with_taken(held);
+    let mut assembly = Assembly::on(scene.table);
+    let mut members = Vec::new();
+    for item in &scene.items {
+        let first = assembly.objects.len();
+        assembly.add(item, &mut ids);
+        members.push((item, first..assembly.objects.len()));
+    }
+    world.insert_resource(ids);
     world.spawn(assembly.table);
+    let mut objects = Vec::new();
     for spec in assembly.objects {
-        world.spawn((Transform::from(spec.pose), spec));
+        let object = world.spawn((Transform::from(spec.pose), spec));
+        objects.push(object.id());
+    }
+    let mut compounds = world.resource_mut::<Compounds>();
+    for (item, members) in members {
+        compounds.note(item, &objects[members]);
     }
     for joint in assembly.joints {
         let index = world.resource::<ObjectIndex>();
