@@ -36,12 +36,13 @@
 mod input;
 mod panels;
 pub mod preferences;
+mod scale;
 #[cfg(test)]
 mod test_world;
 mod widgets;
 
-pub use panels::bar::{Panel, Panels};
 pub use panels::messages::{Notices, Tone};
+pub use panels::{Panel, Panels};
 pub use preferences::Preferences;
 
 use bevy::{asset::AssetEventSystems, prelude::*};
@@ -78,9 +79,12 @@ impl Plugin for GuiPlugin {
                 input::plane::plugin,
                 input::turns::plugin,
                 panels::demo_tools::plugin,
+                panels::memory::plugin,
                 panels::bar::plugin,
                 panels::messages::plugin,
+                panels::toasts::plugin,
                 panels::pause::plugin,
+                scale::plugin,
             ))
             .add_plugins((
                 input::jog::plugin,

@@ -1,9 +1,17 @@
 //! The windows inside the window.
 
+pub(crate) mod arrangement;
 pub(crate) mod bar;
 pub(crate) mod demo_tools;
 pub(crate) mod head_view;
+pub(crate) mod memory;
 pub(crate) mod messages;
+pub(crate) mod panel;
 pub(crate) mod pause;
 pub(crate) mod robot;
 pub(crate) mod status;
+pub(crate) mod toasts;
+pub(crate) mod window;
+
+pub use arrangement::Panels;
+pub use panel::Panel;

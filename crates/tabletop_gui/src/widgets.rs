@@ -1,5 +1,7 @@
 //! What the panels are made of.
 
+pub(crate) mod button;
 pub(crate) mod clipboard;
+pub(crate) mod icon;
 pub(crate) mod slider;
 pub(crate) mod style;

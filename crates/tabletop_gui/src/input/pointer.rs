@@ -35,8 +35,9 @@ fn aim(
     let is_over_panel = cursor
         .zip(panels.iter_mut().next())
         .is_some_and(|(cursor, mut panels)| {
-            let at = egui::pos2(cursor.x, cursor.y);
-            let layer = panels.get_mut().layer_id_at(at);
+            let context = panels.get_mut();
+            let at = egui::pos2(cursor.x, cursor.y) / context.zoom_factor();
+            let layer = context.layer_id_at(at);
             // The background is everywhere; the view is seen through it.
             layer.is_some_and(|layer| layer.order != egui::Order::Background)
         });

@@ -1,106 +1,44 @@
-//! The bar at the bottom of the window, which brings the panels back.
+//! The bar at the bottom of the window, which shows, aligns and hides the panels (report figure 4).
 
 use bevy::prelude::*;
-use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
+use bevy_egui::{
+    EguiContexts, EguiPrimaryContextPass,
+    egui::{self, Button, Context, RichText, Ui},
+};
 
-/// Width of every panel in points.
-const PANEL_WIDTH: f32 = 320.0;
+use crate::{
+    panels::{arrangement::Panels, messages::Notices, panel::Panel},
+    scale::{ScaleStep, UiScale},
+    widgets::{
+        icon::{Icon, icon_button},
+        style::FAULT,
+    },
+};
 
-/// A panel that the user can open and close.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Panel {
-    /// Speeds, and what the script does.
-    Status,
-    /// The robot's joints, and what is known of it.
-    Robot,
-    /// Hands, rotations and recording.
-    DemonstrationTools,
+/// Size of the buttons with pictures, in points.
+const ICON_SIZE: egui::Vec2 = egui::vec2(27.0, 23.0);
+
+/// What the bar shows.
+struct Model<'a> {
+    panels: &'a Panels,
+    /// How many faults the user has not seen yet.
+    unseen_faults: usize,
+    /// How large everything is drawn.
+    scale: f32,
 }
 
-impl Panel {
-    /// The panels, in the order of their buttons.
-    pub const ALL: [Self; 3] = [Self::Status, Self::Robot, Self::DemonstrationTools];
-
-    /// The text of its button.
-    pub const fn label(self) -> &'static str {
-        match self {
-            Self::Status => "Status",
-            Self::Robot => "Robot",
-            Self::DemonstrationTools => "Demo Tools",
-        }
-    }
-
-    /// The text of its title bar.
-    pub const fn title(self) -> &'static str {
-        match self {
-            Self::Status => "Status",
-            Self::Robot => "Robot",
-            Self::DemonstrationTools => "Demonstration Tools",
-        }
-    }
-
-    /// Where it appears first.
-    const fn place(self) -> egui::Pos2 {
-        match self {
-            Self::Status => egui::pos2(340.0, 176.0),
-            Self::Robot => egui::pos2(8.0, 286.0),
-            Self::DemonstrationTools => egui::pos2(8.0, 8.0),
-        }
-    }
-
-    fn id(self) -> egui::Id {
-        egui::Id::new(self.title())
-    }
-
-    /// Shows the panel unless it is closed.
-    pub(crate) fn show(
-        self,
-        context: &egui::Context,
-        panels: &mut Panels,
-        content: impl FnOnce(&mut egui::Ui),
-    ) {
-        let mut is_open = panels.is_open(self);
-        let frame = egui::Frame::window(&context.global_style());
-        let inner_width = PANEL_WIDTH - frame.total_margin().sum().x;
-        egui::Window::new(self.title())
-            .id(self.id())
-            .open(&mut is_open)
-            .frame(frame)
-            .resizable(false)
-            .default_width(inner_width)
-            .collapsible(false)
-            .default_pos(self.place())
-            .show(context, |ui| {
-                ui.set_width(inner_width);
-                content(ui);
-            });
-        if is_open != panels.is_open(self) {
-            panels.set_open(self, is_open);
-        }
-    }
-}
-
-/// Which panels are open. At first none is.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Panels {
-    open: [bool; Panel::ALL.len()],
-}
-
-impl Panels {
-    /// Whether a panel is open.
-    pub fn is_open(&self, panel: Panel) -> bool {
-        self.open[panel as usize]
-    }
-
-    /// Opens or closes a panel.
-    pub fn set_open(&mut self, panel: Panel, is_open: bool) {
-        self.open[panel as usize] = is_open;
-    }
+/// What the user asks of the bar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Request {
+    ShowAll,
+    Show(Panel),
+    Align,
+    HideAll,
+    Scale(ScaleStep),
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Panels>()
-        .add_systems(EguiPrimaryContextPass, show_bar);
+    app.add_systems(EguiPrimaryContextPass, show_bar);
 }
 
 fn id() -> egui::Id {
@@ -108,51 +46,238 @@ fn id() -> egui::Id {
 }
 
 /// Upper edge of the bar, in points from the top of the window.
-pub(crate) fn top(context: &egui::Context) -> f32 {
+pub(crate) fn top(context: &Context) -> f32 {
     let bar = context.memory(|memory| memory.area_rect(id()));
     bar.map_or_else(|| context.viewport_rect().bottom(), |bar| bar.top())
 }
 
-fn show_bar(mut contexts: EguiContexts, mut panels: ResMut<Panels>) {
+fn show_bar(
+    mut contexts: EguiContexts,
+    mut panels: ResMut<Panels>,
+    notices: Res<Notices>,
+    mut scale: ResMut<UiScale>,
+) {
     let Ok(context) = contexts.ctx_mut() else {
         return;
     };
-    let width = context.viewport_rect().width();
-    egui::Area::new(id())
-        .anchor(egui::Align2::LEFT_BOTTOM, egui::Vec2::ZERO)
-        .show(context, |ui| {
-            let frame = egui::Frame::side_top_panel(ui.style());
-            frame.show(ui, |ui| {
-                ui.set_width(width - frame.total_margin().sum().x);
-                ui.horizontal(|ui| {
-                    for panel in Panel::ALL {
-                        if ui.button(panel.label()).clicked() {
-                            panels.set_open(panel, true);
-                            bring_to_front(ui.ctx(), panel);
-                        }
-                    }
-                });
-            });
-        });
+    let model = Model {
+        panels: &panels,
+        unseen_faults: notices.unseen_faults().count(),
+        scale: context.zoom_factor(),
+    };
+    if let Some(request) = show(context, &model) {
+        carry_out(request, context, &mut panels, &mut scale);
+    }
 }
 
-fn bring_to_front(context: &egui::Context, panel: Panel) {
-    context.move_to_top(egui::LayerId::new(egui::Order::Middle, panel.id()));
+fn carry_out(request: Request, context: &Context, panels: &mut Panels, scale: &mut UiScale) {
+    match request {
+        Request::ShowAll => panels.set_all_open(true),
+        Request::Show(panel) => {
+            panels.set_open(panel, true);
+            panel.point_out(context);
+        }
+        Request::Align => panels.align(),
+        Request::HideAll => panels.set_all_open(false),
+        Request::Scale(step) => scale.change(step, context.zoom_factor()),
+    }
+}
+
+fn show(context: &Context, model: &Model) -> Option<Request> {
+    let width = context.viewport_rect().width();
+    let area = egui::Area::new(id())
+        .anchor(egui::Align2::LEFT_BOTTOM, egui::Vec2::ZERO)
+        .fade_in(false);
+    area.show(context, |ui| {
+        let frame = egui::Frame::side_top_panel(ui.style());
+        let shown = frame.show(ui, |ui| {
+            ui.set_width(width - frame.total_margin().sum().x);
+            ui.horizontal_wrapped(|ui| buttons(ui, model)).inner
+        });
+        shown.inner
+    })
+    .inner
+}
+
+fn buttons(ui: &mut Ui, model: &Model) -> Option<Request> {
+    let mut request = None;
+    let mut when = |is_clicked: bool, what: Request| {
+        if is_clicked {
+            request = Some(what);
+        }
+    };
+    when(
+        picture(ui, Icon::List, "Show all windows"),
+        Request::ShowAll,
+    );
+    for panel in Panel::ALL {
+        when(panel_button(ui, panel, model), Request::Show(panel));
+    }
+    let align = "Align the open windows at the left";
+    when(picture(ui, Icon::AlignLeft, align), Request::Align);
+    when(
+        picture(ui, Icon::Cross, "Hide all windows"),
+        Request::HideAll,
+    );
+    ui.separator();
+    let percent = format!("{:.0} %", 100.0 * model.scale);
+    for (text, step, tooltip) in [
+        (
+            "−",
+            ScaleStep::Smaller,
+            "Draw everything smaller (Ctrl + −)",
+        ),
+        (
+            &*percent,
+            ScaleStep::Automatic,
+            "How large everything is drawn; click for what fits this window (Ctrl + 0)",
+        ),
+        ("+", ScaleStep::Larger, "Draw everything larger (Ctrl + +)"),
+    ] {
+        let button = ui.button(text).on_hover_text(tooltip);
+        button
+            .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, step.name()));
+        when(button.clicked(), Request::Scale(step));
+    }
+    request
+}
+
+fn panel_button(ui: &mut Ui, panel: Panel, model: &Model) -> bool {
+    let mut text = RichText::new(panel.label());
+    if panel == Panel::Messages && model.unseen_faults > 0 {
+        text = RichText::new(format!("{} ({})", panel.label(), model.unseen_faults)).color(FAULT);
+    }
+    let is_open = model.panels.is_open(panel);
+    let button = ui.add(Button::new(text).selected(is_open));
+    button.on_hover_text(panel.tooltip()).clicked()
+}
+
+fn picture(ui: &mut Ui, icon: Icon, name: &str) -> bool {
+    let (_, rect) = ui.allocate_space(ICON_SIZE);
+    icon_button(ui, rect, icon, name, name).clicked()
 }
 
 #[cfg(test)]
 mod tests {
+    use egui_kittest::{Harness, kittest::Queryable as _};
+
     use super::*;
 
+    #[derive(Default)]
+    struct Stage {
+        panels: Panels,
+        unseen_faults: usize,
+        request: Option<Request>,
+    }
+
+    fn harness() -> Harness<'static, Stage> {
+        let frame = |ui: &mut Ui, stage: &mut Stage| {
+            let model = Model {
+                panels: &stage.panels,
+                unseen_faults: stage.unseen_faults,
+                scale: 1.25,
+            };
+            let request = show(ui.ctx(), &model);
+            stage.request = request.or(stage.request);
+        };
+        Harness::builder()
+            .with_size(egui::vec2(1024.0, 768.0))
+            .build_ui_state(frame, Stage::default())
+    }
+
+    fn clicked(name: &str) -> Option<Request> {
+        let mut harness = harness();
+        harness.get_by_label(name).click();
+        harness.run();
+        harness.state().request
+    }
+
     #[test]
-    fn each_panel_opens_and_closes_by_itself() {
-        let mut panels = Panels::default();
+    fn every_panel_has_its_button() {
         for panel in Panel::ALL {
-            assert!(!panels.is_open(panel));
-            panels.set_open(panel, true);
-            let open = Panel::ALL.iter().filter(|&&panel| panels.is_open(panel));
-            assert_eq!(open.count(), 1);
-            panels.set_open(panel, false);
+            assert_eq!(clicked(panel.label()), Some(Request::Show(panel)));
         }
+    }
+
+    #[test]
+    fn every_panel_tells_what_it_is_for() {
+        for panel in Panel::ALL {
+            let mut harness = harness();
+            harness.get_by_label(panel.label()).hover();
+            harness.run_steps(8);
+            let told = harness.query_by_label(panel.tooltip());
+            assert!(told.is_some(), "{panel:?}");
+        }
+    }
+
+    #[test]
+    fn all_are_shown_aligned_and_hidden() {
+        for (name, expected) in [
+            ("Show all windows", Request::ShowAll),
+            ("Align the open windows at the left", Request::Align),
+            ("Hide all windows", Request::HideAll),
+        ] {
+            assert_eq!(clicked(name), Some(expected));
+        }
+    }
+
+    #[test]
+    fn the_scale_is_changed() {
+        for step in ScaleStep::ALL {
+            assert_eq!(clicked(step.name()), Some(Request::Scale(step)));
+        }
+    }
+
+    #[test]
+    fn the_buttons_stand_in_the_order_of_the_report() {
+        let harness = harness();
+        let labels = Panel::ALL.map(Panel::label);
+        let names = ["Show all windows"]
+            .into_iter()
+            .chain(labels)
+            .chain(["Align the open windows at the left", "Hide all windows"]);
+        let lefts: Vec<_> = names
+            .map(|name| harness.get_by_label(name).rect().left())
+            .collect();
+        assert!(lefts.is_sorted(), "{lefts:?}");
+    }
+
+    #[test]
+    fn faults_that_were_not_seen_are_counted() {
+        let mut harness = harness();
+        harness.state_mut().unseen_faults = 3;
+        harness.run();
+        assert!(harness.query_by_label("Messages (3)").is_some());
+    }
+
+    #[test]
+    fn requests_are_carried_out() {
+        let context = Context::default();
+        let mut panels = Panels::default();
+        let mut scale = UiScale::default();
+        let mut open_after = |request| {
+            carry_out(request, &context, &mut panels, &mut scale);
+            Panel::ALL.map(|panel| panels.is_open(panel))
+        };
+        let all = [true; Panel::ALL.len()];
+        let none = [false; Panel::ALL.len()];
+        assert_eq!(open_after(Request::ShowAll), all);
+        assert_eq!(open_after(Request::Align), all);
+        assert_eq!(open_after(Request::HideAll), none);
+        for (i, panel) in Panel::ALL.into_iter().enumerate() {
+            let open = open_after(Request::Show(panel));
+            assert!(open[..=i].iter().all(|&is_open| is_open));
+            assert!(open[i + 1..].iter().all(|&is_open| !is_open));
+        }
+    }
+
+    #[test]
+    fn the_bar_is_as_wide_as_the_window_and_at_its_bottom() {
+        let harness = harness();
+        let context = &harness.ctx;
+        let bar = context.memory(|memory| memory.area_rect(id())).unwrap();
+        assert_eq!((bar.left(), bar.right()), (0.0, 1024.0));
+        assert_eq!(bar.bottom(), 768.0);
+        assert_eq!(top(context), bar.top());
     }
 }

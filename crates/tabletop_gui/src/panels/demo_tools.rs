@@ -10,7 +10,7 @@ use tabletop_core::{Hand, Hands, History, ObjectSpec, Recording, SimCommand, Sim
 use crate::{
     input::plane::PlaneButtons,
     input::turns::Turns,
-    panels::bar::{Panel, Panels},
+    panels::{Panel, Panels},
     widgets::slider::angle_slider,
 };
 

@@ -1,91 +1,75 @@
-//! What the user must know: the faults of task files, what could not be done, and what the robot has done.
+//! The Messages window: the faults of task files, what could not be done, and what the robot and its script have done.
 
+pub(crate) mod notices;
 pub(crate) mod robot;
+mod rows;
+
+pub(crate) use notices::Notice;
+pub use notices::{Notices, Tone};
 
 use bevy::prelude::*;
-use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
+use bevy_egui::{
+    EguiContexts, EguiPrimaryContextPass,
+    egui::{self, Label, RichText, ScrollArea, TextStyle, Ui},
+};
 use tabletop_core::SimFact;
 
-use crate::widgets::clipboard::Clipboard;
+use crate::{
+    panels::{Panel, Panels},
+    widgets::{
+        button::{button, switch},
+        clipboard::Clipboard,
+    },
+};
+use rows::Rows;
 
-/// Older notices are forgotten, so that a script that is refused a million times does not fill the memory.
-const MAX_NOTICES: usize = 1000;
+/// Height of the list in points, until the user changes it.
+const LIST_HEIGHT: f32 = 130.0;
 
-/// How the colours tell notices apart.
+/// What the list shows of the notices.
+#[derive(Resource, Clone, Debug)]
+pub(crate) struct MessageList {
+    /// Which tones, in their order.
+    tones: [bool; Tone::ALL.len()],
+    /// The notice to be shown at the top of the list.
+    sought: Option<u64>,
+    rows: Rows,
+}
+
+impl Default for MessageList {
+    fn default() -> Self {
+        Self {
+            tones: [true; Tone::ALL.len()],
+            sought: None,
+            rows: Rows::default(),
+        }
+    }
+}
+
+impl MessageList {
+    /// Brings a notice to the top of the list.
+    pub fn seek(&mut self, number: u64) {
+        self.sought = Some(number);
+    }
+
+    fn shows(&self, notice: &Notice) -> bool {
+        self.tones[notice.tone as usize]
+    }
+}
+
+/// What the user asks of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tone {
-    /// Something has happened.
-    News,
-    /// Somebody warns.
-    Warning,
-    /// Something is wrong.
-    Fault,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-struct Notice {
-    tone: Tone,
-    text: String,
-}
-
-/// The notices in the order in which they came, until the user closes their window.
-#[derive(Resource, Clone, Debug, Default, PartialEq)]
-pub struct Notices {
-    notices: Vec<Notice>,
-    /// Whether the newest fault has not been shown yet.
-    is_unseen: bool,
-}
-
-impl Notices {
-    /// Adds a notice unless it is there already.
-    pub fn add(&mut self, tone: Tone, text: &str) {
-        if !self.iter().any(|there| there == text) {
-            self.append(tone, text);
-        }
-    }
-
-    /// Adds a notice after all others, as often as it comes.
-    pub fn append(&mut self, tone: Tone, text: &str) {
-        if self.notices.len() == MAX_NOTICES {
-            self.notices.remove(0);
-        }
-        let text = text.to_owned();
-        self.notices.push(Notice { tone, text });
-        self.is_unseen |= tone == Tone::Fault;
-    }
-
-    /// Adds a notice after all others, also if it was there already.
-    pub fn renew(&mut self, tone: Tone, text: &str) {
-        self.notices.retain(|there| there.text != text);
-        self.append(tone, text);
-    }
-
-    /// The notices, oldest first.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = &str> {
-        self.notices.iter().map(|notice| notice.text.as_str())
-    }
-
-    /// Whether there is nothing to be said.
-    pub fn is_empty(&self) -> bool {
-        self.notices.is_empty()
-    }
-
-    /// All of them, one below the other.
-    pub fn text(&self) -> String {
-        self.iter().flat_map(|text| [text, "\n"]).collect()
-    }
-
-    /// Forgets them all.
-    pub fn clear(&mut self) {
-        self.notices.clear();
-    }
+enum Request {
+    Copy,
+    Clear,
 }
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Notices>()
+        .init_resource::<MessageList>()
         .init_resource::<Clipboard>()
         .add_systems(Update, (note_facts, note_clipboard))
-        .add_systems(EguiPrimaryContextPass, show_notices);
+        .add_systems(EguiPrimaryContextPass, show_panel);
 }
 
 fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
@@ -110,63 +94,113 @@ fn note_clipboard(clipboard: Res<Clipboard>, mut notices: ResMut<Notices>) {
     }
 }
 
-fn show_notices(
+fn show_panel(
     mut contexts: EguiContexts,
+    mut panels: ResMut<Panels>,
     mut notices: ResMut<Notices>,
+    mut list: ResMut<MessageList>,
     clipboard: Res<Clipboard>,
 ) {
-    if notices.is_empty() {
-        return;
-    }
     let Ok(context) = contexts.ctx_mut() else {
         return;
     };
-    let mut is_open = true;
-    egui::Window::new("Messages")
-        .open(&mut is_open)
-        .default_pos(egui::pos2(340.0, 8.0))
-        .default_width(640.0)
-        .default_height(160.0)
-        .show(context, |ui| {
-            if ui.button("Copy").clicked() {
-                clipboard.copy(notices.text());
-            }
-            ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
-            let lines = egui::ScrollArea::vertical().stick_to_bottom(true);
-            lines.auto_shrink(false).show(ui, |ui| {
-                let mut newest_fault = None;
-                for Notice { tone, text } in &notices.notices {
-                    let text = egui::RichText::new(text).monospace().color(color(*tone));
-                    let label = ui.add(egui::Label::new(text).selectable(true));
-                    newest_fault = Some(label)
-                        .filter(|_| *tone == Tone::Fault)
-                        .or(newest_fault);
-                }
-                // Of a long fault, what is said first is to be seen.
-                if let Some(fault) = newest_fault.filter(|_| notices.is_unseen) {
-                    fault.scroll_to_me(Some(egui::Align::TOP));
-                }
-            });
-        });
-    if !is_open {
-        notices.clear();
+    let shown = Panel::Messages.show(context, &mut panels, |ui| show(ui, &notices, &mut list));
+    let Some(request) = shown else {
+        return;
+    };
+    match request {
+        Some(Request::Copy) => clipboard.copy(text(&notices, &list)),
+        Some(Request::Clear) => notices.clear(),
+        None => {}
     }
-    notices.is_unseen = false;
+    if notices.unseen_faults().next().is_some() {
+        notices.see();
+    }
 }
 
-const fn color(tone: Tone) -> egui::Color32 {
-    match tone {
-        Tone::News => egui::Color32::LIGHT_GRAY,
-        Tone::Warning => egui::Color32::from_rgb(255, 200, 90),
-        Tone::Fault => egui::Color32::from_rgb(255, 130, 120),
+/// What the list shows, a notice below the other.
+fn text(notices: &Notices, list: &MessageList) -> String {
+    let shown = notices.all().filter(|notice| list.shows(notice));
+    shown
+        .flat_map(|notice| [notice.text.as_str(), "\n"])
+        .collect()
+}
+
+fn show(ui: &mut Ui, notices: &Notices, list: &mut MessageList) -> Option<Request> {
+    let request = ui.horizontal(|ui| tools(ui, notices, list)).inner;
+    // Of a long fault, what is said first is to be seen.
+    let newest_fault = notices.unseen_faults().last().map(|fault| fault.number);
+    let sought = list.sought.take().or(newest_fault);
+    ui.separator();
+    let size = egui::vec2(ui.available_width(), LIST_HEIGHT);
+    egui::Resize::default()
+        .id_salt("messages")
+        .default_size(size)
+        .min_size(egui::vec2(size.x, 40.0))
+        .resizable([false, true])
+        .with_stroke(false)
+        .show(ui, |ui| rows(ui, notices, list, sought));
+    request
+}
+
+/// Which notices to show, and what to do with them.
+fn tools(ui: &mut Ui, notices: &Notices, list: &mut MessageList) -> Option<Request> {
+    for (tone, is_shown) in Tone::ALL.into_iter().zip(&mut list.tones) {
+        let text = format!("{} ({})", tone.plural(), notices.count(tone));
+        if switch(ui, *is_shown, &text, tone.filter()).clicked() {
+            *is_shown = !*is_shown;
+        }
     }
+    ui.separator();
+    let has_some = !notices.is_empty();
+    let copy = button(ui, has_some, "Copy", "Put what is listed on the clipboard");
+    let clear = button(ui, has_some, "Clear", "Forget all messages");
+    match (copy.clicked(), clear.clicked()) {
+        (true, _) => Some(Request::Copy),
+        (false, true) => Some(Request::Clear),
+        (false, false) => None,
+    }
+}
+
+/// The rows that are seen.
+fn rows(ui: &mut Ui, notices: &Notices, list: &mut MessageList, sought: Option<u64>) {
+    let font = TextStyle::Monospace.resolve(ui.style());
+    let (letter, height) = ui.fonts_mut(|fonts| {
+        let letter = fonts.glyph_width(&font, '0');
+        (letter, fonts.row_height(&font))
+    });
+    ui.spacing_mut().item_spacing.y = 0.0;
+    ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
+    let bar = ui.spacing().scroll.allocated_width();
+    let columns = ((ui.available_width() - bar) / letter).floor() as usize;
+    let rows = list.rows.of(notices, list.tones, columns);
+    let mut scroll = ScrollArea::vertical()
+        .auto_shrink(false)
+        .stick_to_bottom(true);
+    let notice_of = |row: &rows::Row| notices.get(row.notice);
+    let is_sought =
+        |row: &rows::Row| notice_of(row).is_some_and(|notice| Some(notice.number) == sought);
+    if let Some(first) = rows.iter().position(is_sought) {
+        scroll = scroll.vertical_scroll_offset(first as f32 * height);
+    }
+    scroll.show_rows(ui, height, rows.len(), |ui, seen| {
+        for row in rows.get(seen).unwrap_or_default() {
+            if let Some(notice) = notice_of(row) {
+                let text = RichText::new(&notice.text[row.part.clone()]);
+                let text = text.font(font.clone()).color(notice.tone.color());
+                ui.add(Label::new(text).extend().selectable(true));
+            }
+        }
+    });
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use bevy::time::TimeUpdateStrategy;
+    use egui_kittest::{Harness, kittest::Queryable as _};
     use tabletop_core::CorePlugin;
+
+    use super::*;
 
     #[test]
     fn facts_become_notices_each_once() {
@@ -197,14 +231,101 @@ mod tests {
         );
     }
 
-    #[test]
-    fn the_oldest_notices_are_forgotten() {
-        let mut notices = Notices::default();
-        for number in 0..=MAX_NOTICES {
-            notices.add(Tone::News, &number.to_string());
+    #[derive(Default)]
+    struct Stage {
+        notices: Notices,
+        list: MessageList,
+        request: Option<Request>,
+    }
+
+    fn harness(notices: &[(Tone, &str)]) -> Harness<'static, Stage> {
+        let mut stage = Stage::default();
+        for (tone, text) in notices {
+            stage.notices.append(*tone, text);
         }
-        assert_eq!(notices.iter().len(), MAX_NOTICES);
-        assert_eq!(notices.iter().next(), Some("1"));
-        assert!(notices.text().starts_with("1\n2\n"));
+        let frame = |ui: &mut Ui, stage: &mut Stage| {
+            let request = show(ui, &stage.notices, &mut stage.list);
+            stage.request = request.or(stage.request);
+        };
+        Harness::new_ui_state(frame, stage)
+    }
+
+    const THREE: [(Tone, &str); 3] = [
+        (Tone::News, "all is well"),
+        (Tone::Warning, "take care"),
+        (Tone::Fault, "a.xml:1:2: broken"),
+    ];
+
+    #[test]
+    fn the_list_is_copied_and_cleared() {
+        for (name, expected) in [("Copy", Request::Copy), ("Clear", Request::Clear)] {
+            let mut harness = harness(&THREE);
+            harness.get_by_label(name).click();
+            harness.run();
+            assert_eq!(harness.state().request, Some(expected));
+        }
+    }
+
+    #[test]
+    fn nothing_can_be_done_with_no_messages() {
+        let mut harness = harness(&[]);
+        for name in ["Copy", "Clear"] {
+            harness.get_by_label(name).click();
+            harness.run();
+            assert_eq!(harness.state().request, None);
+        }
+    }
+
+    #[test]
+    fn each_tone_can_be_left_out() {
+        for (name, (tone, left_out)) in ["News (1)", "Warnings (1)", "Faults (1)"]
+            .into_iter()
+            .zip(THREE)
+        {
+            let mut harness = harness(&THREE);
+            harness.get_by_label(name).click();
+            harness.run();
+            for (_, text) in THREE {
+                let is_shown = harness.query_by_label(text).is_some();
+                assert_eq!(is_shown, text != left_out, "{tone:?}: {text}");
+            }
+            let stage = harness.state();
+            let copied = text(&stage.notices, &stage.list);
+            assert_eq!(copied.lines().count(), 2);
+            assert!(!copied.contains(left_out));
+        }
+    }
+
+    fn labels(harness: &Harness<Stage>) -> usize {
+        harness.query_all_by_label("x").count()
+    }
+
+    #[test]
+    fn only_rows_that_are_seen_are_laid_out() {
+        let many = vec![(Tone::News, "x"); 1000];
+        let harness = harness(&many);
+        assert!((5..100).contains(&labels(&harness)), "{}", labels(&harness));
+    }
+
+    #[test]
+    fn the_newest_is_seen_and_what_is_sought() {
+        let texts: Vec<_> = (0..500).map(|number| format!("number {number}.")).collect();
+        let notices: Vec<_> = texts.iter().map(|text| (Tone::News, &**text)).collect();
+        let mut harness = harness(&notices);
+        assert!(harness.query_by_label("number 499.").is_some());
+        assert!(harness.query_by_label("number 7.").is_none());
+        harness.state_mut().list.seek(7);
+        harness.run();
+        assert!(harness.query_by_label("number 7.").is_some());
+        assert!(harness.query_by_label("number 499.").is_none());
+    }
+
+    #[test]
+    fn the_beginning_of_the_newest_unseen_fault_is_seen() {
+        let mut notices = vec![(Tone::News, "x"); 100];
+        let long = format!("the beginning\n{}", "at\n".repeat(100));
+        notices.push((Tone::Fault, &long));
+        let harness = harness(&notices);
+        assert!(harness.query_by_label("the beginning").is_some());
     }
 }

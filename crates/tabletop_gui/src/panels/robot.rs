@@ -12,8 +12,8 @@ use tabletop_core::{
 use crate::{
     input::jog::{Directions, Jog},
     input::script_control::toggled,
-    panels::bar::{Panel, Panels},
     panels::head_view::HeadView,
+    panels::{Panel, Panels},
 };
 
 /// Width of the track of the slider, in points.

@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 use tabletop_core::{Agent, Paused, SimTick, TICKS_PER_SECOND};
 
-use crate::panels::bar::{Panel, Panels};
+use crate::panels::{Panel, Panels};
 
 /// The time over which speeds are averaged.
 const SPAN: Duration = Duration::from_secs(2);

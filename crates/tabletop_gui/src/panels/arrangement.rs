@@ -1,0 +1,224 @@
+//! Which panels are open, and where they stand (report section 2.4).
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use bevy::ecs::resource::Resource;
+use bevy_egui::egui::{Pos2, Rect, Vec2, vec2};
+use serde::{Deserialize, Serialize};
+
+use crate::{panels::panel::Panel, widgets::style::GAP};
+
+/// Which panels are open, and where they stand. At first only Status is open, and all are aligned at the left.
+#[derive(Resource, Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Panels {
+    open: BTreeSet<Panel>,
+    /// Those that the user has moved, in points from the upper left corner of the window.
+    moved: BTreeMap<Panel, (f32, f32)>,
+    /// The order in which all of them are stacked at the left.
+    stack: Vec<Panel>,
+}
+
+impl Default for Panels {
+    fn default() -> Self {
+        Self {
+            open: BTreeSet::from([Panel::Status]),
+            moved: BTreeMap::new(),
+            stack: Panel::ALL.into(),
+        }
+    }
+}
+
+impl Panels {
+    /// Whether a panel is open.
+    pub fn is_open(&self, panel: Panel) -> bool {
+        self.open.contains(&panel)
+    }
+
+    /// Opens or closes a panel.
+    pub fn set_open(&mut self, panel: Panel, is_open: bool) {
+        if is_open {
+            self.open.insert(panel);
+        } else {
+            self.open.remove(&panel);
+        }
+    }
+
+    /// Opens or closes all panels.
+    pub fn set_all_open(&mut self, are_open: bool) {
+        for panel in Panel::ALL {
+            self.set_open(panel, are_open);
+        }
+    }
+
+    /// Stacks the open panels at the left from the top downwards. Those that are closed get the places below.
+    pub fn align(&mut self) {
+        self.moved.clear();
+        self.stack = Panel::ALL.into();
+        self.stack.sort_by_key(|panel| !self.open.contains(panel));
+    }
+
+    /// Puts the upper left corner of a panel there.
+    pub(crate) fn move_to(&mut self, panel: Panel, place: Pos2) {
+        self.moved.insert(panel, place.into());
+    }
+
+    /// The upper left corner of a panel, so that all of it is seen on the desk if it is not larger than that.
+    pub(crate) fn place(&self, panel: Panel, desk: Rect, size: impl Fn(Panel) -> Vec2) -> Pos2 {
+        let place = match self.moved.get(&panel) {
+            Some(&moved) => moved.into(),
+            None => self.slot(panel, desk, &size),
+        };
+        kept_on(desk, place, size(panel))
+    }
+
+    /// The place of a panel in the stack, which goes on in another column where it is taller than the desk.
+    fn slot(&self, panel: Panel, desk: Rect, size: &impl Fn(Panel) -> Vec2) -> Pos2 {
+        let top_left = desk.min + Vec2::splat(GAP);
+        let mut place = top_left;
+        let mut column_width = 0.0_f32;
+        for &next in &self.stack {
+            let size = size(next);
+            if place.y > top_left.y && place.y + size.y > desk.bottom() {
+                place = Pos2::new(place.x + column_width + GAP, top_left.y);
+                column_width = 0.0;
+            }
+            if next == panel {
+                break;
+            }
+            place.y += size.y + GAP;
+            column_width = column_width.max(size.x);
+        }
+        place
+    }
+
+    /// What was read from a file, with what it lacks: it may be older than a panel.
+    pub(crate) fn completed(mut self) -> Self {
+        let mut seen = BTreeSet::new();
+        self.stack.retain(|&panel| seen.insert(panel));
+        let missing = Panel::ALL.into_iter().filter(|panel| !seen.contains(panel));
+        self.stack.extend(missing);
+        self.moved
+            .retain(|_, (x, y)| x.is_finite() && y.is_finite());
+        self
+    }
+}
+
+/// The place next to this one at which something of this size is on the desk; its upper left corner always is.
+pub(crate) fn kept_on(desk: Rect, place: Pos2, size: Vec2) -> Pos2 {
+    let room = (desk.size() - size).max(vec2(0.0, 0.0));
+    place.clamp(desk.min, desk.min + room)
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_egui::egui::pos2;
+
+    use super::*;
+
+    const DESK: Rect = Rect {
+        min: Pos2::ZERO,
+        max: pos2(1000.0, 700.0),
+    };
+
+    fn size(_: Panel) -> Vec2 {
+        vec2(300.0, 200.0)
+    }
+
+    fn place(panels: &Panels, panel: Panel) -> Pos2 {
+        panels.place(panel, DESK, size)
+    }
+
+    #[test]
+    fn only_status_is_open_at_first_in_the_upper_left_corner() {
+        let panels = Panels::default();
+        let open: Vec<_> = Panel::ALL
+            .into_iter()
+            .filter(|&panel| panels.is_open(panel))
+            .collect();
+        assert_eq!(open, [Panel::Status]);
+        assert_eq!(place(&panels, Panel::Status), pos2(GAP, GAP));
+    }
+
+    #[test]
+    fn every_panel_has_a_place_of_its_own_on_the_desk() {
+        let mut panels = Panels::default();
+        panels.set_all_open(true);
+        let rects = Panel::ALL.map(|panel| Rect::from_min_size(place(&panels, panel), size(panel)));
+        for (i, rect) in rects.iter().enumerate() {
+            assert!(DESK.contains_rect(*rect), "{:?} at {rect}", Panel::ALL[i]);
+            let others = &rects[..i];
+            assert!(others.iter().all(|other| !other.intersects(*rect)));
+        }
+    }
+
+    #[test]
+    fn a_stack_that_is_too_tall_goes_on_in_another_column() {
+        let panels = Panels::default();
+        let places: Vec<_> = Panel::ALL
+            .into_iter()
+            .map(|panel| place(&panels, panel))
+            .collect();
+        for (i, &place) in places.iter().enumerate() {
+            let (column, row) = ((i / 3) as f32, (i % 3) as f32);
+            let expected = pos2(GAP + column * (300.0 + GAP), GAP + row * (200.0 + GAP));
+            assert_eq!(place, expected);
+        }
+    }
+
+    #[test]
+    fn aligned_panels_are_in_order_and_closed_ones_below() {
+        let mut panels = Panels::default();
+        panels.set_open(Panel::Status, false);
+        panels.set_open(Panel::DemonstrationTools, true);
+        panels.set_open(Panel::Robot, true);
+        panels.move_to(Panel::Robot, pos2(500.0, 500.0));
+        panels.align();
+        let step = 200.0 + GAP;
+        for (panel, row) in [
+            (Panel::Robot, 0.0),
+            (Panel::DemonstrationTools, 1.0),
+            (Panel::Status, 2.0),
+        ] {
+            // More panels may come in between, in another column at the latest.
+            let place = place(&panels, panel);
+            if panels.is_open(panel) {
+                assert_eq!(place, pos2(GAP, GAP + row * step));
+            } else {
+                assert!(place.y >= GAP + row * step || place.x > GAP);
+            }
+        }
+    }
+
+    #[test]
+    fn a_panel_that_was_moved_off_the_desk_comes_back() {
+        let mut panels = Panels::default();
+        for (to, expected) in [
+            (pos2(-50.0, 20.0), pos2(0.0, 20.0)),
+            (pos2(900.0, 800.0), pos2(700.0, 500.0)),
+            (pos2(10.0, 20.0), pos2(10.0, 20.0)),
+        ] {
+            panels.move_to(Panel::Robot, to);
+            assert_eq!(place(&panels, Panel::Robot), expected);
+        }
+    }
+
+    #[test]
+    fn what_is_larger_than_the_desk_shows_its_title() {
+        let place = kept_on(DESK, pos2(5.0, 5.0), vec2(2000.0, 2000.0));
+        assert_eq!(place, DESK.min);
+    }
+
+    #[test]
+    fn a_file_that_lacks_panels_or_has_odd_places_is_completed() {
+        let panels = Panels {
+            stack: vec![Panel::Robot, Panel::Robot],
+            moved: BTreeMap::from([(Panel::Robot, (f32::NAN, 3.0))]),
+            ..Panels::default()
+        };
+        let panels = panels.completed();
+        assert_eq!(panels.stack.len(), Panel::ALL.len());
+        assert_eq!(panels.stack[0], Panel::Robot);
+        assert_eq!(panels.moved, BTreeMap::new());
+    }
+}

@@ -1,0 +1,230 @@
+//! What the user has been told.
+
+use std::collections::VecDeque;
+
+use bevy::prelude::*;
+use bevy_egui::egui::Color32;
+
+use crate::widgets::style::{FAULT, NEWS, WARNING};
+
+/// Older notices are forgotten, so that a script that is refused a million times does not fill the memory.
+const MAX_NOTICES: usize = 1000;
+
+/// How the colours tell notices apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// Something has happened.
+    News,
+    /// Somebody warns.
+    Warning,
+    /// Something is wrong.
+    Fault,
+}
+
+impl Tone {
+    pub(crate) const ALL: [Self; 3] = [Self::News, Self::Warning, Self::Fault];
+
+    /// What notices of this tone are called.
+    pub(crate) const fn plural(self) -> &'static str {
+        match self {
+            Self::News => "News",
+            Self::Warning => "Warnings",
+            Self::Fault => "Faults",
+        }
+    }
+
+    /// What leaving them out or not is called.
+    pub(crate) const fn filter(self) -> &'static str {
+        match self {
+            Self::News => "List what has happened",
+            Self::Warning => "List warnings",
+            Self::Fault => "List what is wrong",
+        }
+    }
+
+    pub(crate) const fn color(self) -> Color32 {
+        match self {
+            Self::News => NEWS,
+            Self::Warning => WARNING,
+            Self::Fault => FAULT,
+        }
+    }
+}
+
+/// One thing that the user has been told.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Notice {
+    /// How many notices came before it, counting those that are forgotten.
+    pub number: u64,
+    pub tone: Tone,
+    pub text: String,
+}
+
+/// The notices in the order in which they came, until the user clears them.
+#[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Notices {
+    notices: VecDeque<Notice>,
+    /// The number of the next one.
+    next: u64,
+    /// The number of the first one that the user has not seen in full.
+    unseen: u64,
+    /// Grows with every change of what there is.
+    revision: u64,
+}
+
+impl Notices {
+    /// Adds a notice unless it is there already.
+    pub fn add(&mut self, tone: Tone, text: &str) {
+        if !self.iter().any(|there| there == text) {
+            self.append(tone, text);
+        }
+    }
+
+    /// Adds a notice after all others, as often as it comes.
+    pub fn append(&mut self, tone: Tone, text: &str) {
+        if self.notices.len() == MAX_NOTICES {
+            self.notices.pop_front();
+        }
+        self.notices.push_back(Notice {
+            number: self.next,
+            tone,
+            text: text.to_owned(),
+        });
+        self.next += 1;
+        self.revision += 1;
+    }
+
+    /// Adds a notice after all others, also if it was there already.
+    pub fn renew(&mut self, tone: Tone, text: &str) {
+        self.notices.retain(|there| there.text != text);
+        self.append(tone, text);
+    }
+
+    /// The texts of the notices, oldest first.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.notices.iter().map(|notice| notice.text.as_str())
+    }
+
+    /// Whether there is nothing to be said.
+    pub fn is_empty(&self) -> bool {
+        self.notices.is_empty()
+    }
+
+    /// All of them, one below the other.
+    pub fn text(&self) -> String {
+        self.iter().flat_map(|text| [text, "\n"]).collect()
+    }
+
+    /// Forgets them all.
+    pub fn clear(&mut self) {
+        self.notices.clear();
+        self.revision += 1;
+    }
+
+    /// The notices, oldest first.
+    pub(crate) fn all(&self) -> impl ExactSizeIterator<Item = &Notice> + DoubleEndedIterator {
+        self.notices.iter()
+    }
+
+    /// The notice that is this far from the oldest one.
+    pub(crate) fn get(&self, index: usize) -> Option<&Notice> {
+        self.notices.get(index)
+    }
+
+    /// Those that came from this number on.
+    pub(crate) fn since(&self, number: u64) -> impl Iterator<Item = &Notice> {
+        let first = self
+            .notices
+            .partition_point(|notice| notice.number < number);
+        self.notices.range(first..)
+    }
+
+    /// The number of the next notice.
+    pub(crate) const fn next(&self) -> u64 {
+        self.next
+    }
+
+    /// A number that changes whenever the notices do.
+    pub(crate) const fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// How many notices have this tone.
+    pub(crate) fn count(&self, tone: Tone) -> usize {
+        self.all().filter(|notice| notice.tone == tone).count()
+    }
+
+    /// The faults that the user has not seen in full.
+    pub(crate) fn unseen_faults(&self) -> impl Iterator<Item = &Notice> {
+        self.since(self.unseen)
+            .filter(|notice| notice.tone == Tone::Fault)
+    }
+
+    /// The user sees them now.
+    pub(crate) const fn see(&mut self) {
+        self.unseen = self.next;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_oldest_notices_are_forgotten() {
+        let mut notices = Notices::default();
+        for number in 0..=MAX_NOTICES {
+            notices.add(Tone::News, &number.to_string());
+        }
+        assert_eq!(notices.iter().len(), MAX_NOTICES);
+        assert_eq!(notices.iter().next(), Some("1"));
+        assert!(notices.text().starts_with("1\n2\n"));
+    }
+
+    #[test]
+    fn a_notice_that_is_there_is_added_only_where_repetition_matters() {
+        let mut notices = Notices::default();
+        let texts = |notices: &Notices| notices.iter().collect::<Vec<_>>().join(" ");
+        for text in ["a", "b", "a"] {
+            notices.add(Tone::News, text);
+        }
+        assert_eq!(texts(&notices), "a b");
+        notices.renew(Tone::News, "a");
+        assert_eq!(texts(&notices), "b a");
+        notices.append(Tone::News, "b");
+        assert_eq!(texts(&notices), "b a b");
+    }
+
+    #[test]
+    fn faults_count_until_they_are_seen() {
+        let mut notices = Notices::default();
+        for (tone, text) in [
+            (Tone::Fault, "one"),
+            (Tone::News, "two"),
+            (Tone::Fault, "three"),
+        ] {
+            notices.add(tone, text);
+        }
+        assert_eq!(notices.unseen_faults().count(), 2);
+        notices.see();
+        assert_eq!(notices.unseen_faults().count(), 0);
+        notices.add(Tone::Fault, "four");
+        let unseen: Vec<_> = notices
+            .unseen_faults()
+            .map(|notice| &*notice.text)
+            .collect();
+        assert_eq!(unseen, ["four"]);
+    }
+
+    #[test]
+    fn numbers_go_on_after_notices_are_forgotten() {
+        let mut notices = Notices::default();
+        notices.add(Tone::News, "a");
+        notices.clear();
+        assert!(notices.is_empty());
+        notices.add(Tone::News, "b");
+        let since: Vec<_> = notices.since(1).map(|notice| &*notice.text).collect();
+        assert_eq!(since, ["b"]);
+        assert_eq!(notices.next(), 2);
+    }
+}

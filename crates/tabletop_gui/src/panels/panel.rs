@@ -1,0 +1,98 @@
+//! Which panels there are.
+
+use bevy::reflect::Reflect;
+use serde::{Deserialize, Serialize};
+
+/// A panel: a window inside the window, which the user opens, moves and closes.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Reflect, Serialize, Deserialize,
+)]
+pub enum Panel {
+    /// Speeds, what the script does, and what is recorded.
+    Status,
+    /// The robot's joints, and what is known of it.
+    Robot,
+    /// Hands, rotations and recording.
+    DemonstrationTools,
+    /// What the user has been told.
+    Messages,
+}
+
+impl Panel {
+    /// The panels in the order of their buttons, and from the top downwards when they are aligned.
+    pub const ALL: [Self; 4] = [
+        Self::Status,
+        Self::Robot,
+        Self::DemonstrationTools,
+        Self::Messages,
+    ];
+
+    /// The text of its button.
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::Status => "Status",
+            Self::Robot => "Robot",
+            Self::DemonstrationTools => "Demo Tools",
+            Self::Messages => "Messages",
+        }
+    }
+
+    /// The text of its title bar.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Status => "Status",
+            Self::Robot => "Robot",
+            Self::DemonstrationTools => "Demonstration Tools",
+            Self::Messages => "Messages",
+        }
+    }
+
+    /// What its button says while the mouse rests on it.
+    pub const fn tooltip(self) -> &'static str {
+        match self {
+            Self::Status => "Speeds, the script's state and the recording",
+            Self::Robot => "See the robot and what it sees; move its joints",
+            Self::DemonstrationTools => {
+                "Hands, what they hold, how it turns; record, undo and redo"
+            }
+            Self::Messages => "Everything that you have been told, with its place",
+        }
+    }
+
+    /// Width of its contents in points.
+    pub const fn width(self) -> f32 {
+        match self {
+            Self::Status | Self::Robot | Self::DemonstrationTools => 304.0,
+            Self::Messages => 480.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use bevy::reflect::{TypeInfo, Typed};
+
+    use super::*;
+
+    #[test]
+    fn every_panel_has_its_turn_once() {
+        let TypeInfo::Enum(variants) = Panel::type_info() else {
+            panic!("a panel is a variant");
+        };
+        let names: BTreeSet<_> = Panel::ALL.map(|panel| format!("{panel:?}")).into();
+        let expected = variants.variant_names().iter().map(ToString::to_string);
+        assert_eq!(names, expected.collect());
+        assert!(Panel::ALL.is_sorted(), "declared in the order of the bar");
+    }
+
+    #[test]
+    fn every_panel_has_texts_of_its_own() {
+        for text in [Panel::label, Panel::title, Panel::tooltip] {
+            let texts: BTreeSet<_> = Panel::ALL.map(text).into();
+            assert_eq!(texts.len(), Panel::ALL.len());
+            assert!(texts.iter().all(|text| !text.is_empty()));
+        }
+    }
+}

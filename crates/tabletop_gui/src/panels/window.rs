@@ -1,0 +1,271 @@
+//! The window of a panel: a title bar to move it by, a button that hides it, and its contents.
+
+use bevy_egui::egui::{
+    Align2, Area, Context, CornerRadius, Frame, Id, LayerId, Margin, Order, Pos2, Rect, ScrollArea,
+    Sense, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo, WidgetType, vec2,
+};
+
+use crate::{
+    panels::{
+        arrangement::{Panels, kept_on},
+        bar,
+        panel::Panel,
+    },
+    widgets::{
+        icon::{Icon, icon_button},
+        style::{ACCENT, CORNER, MARGIN, TITLE},
+    },
+};
+
+/// Height of the title bar in points.
+const TITLE_HEIGHT: f32 = 26.0;
+
+/// Height of a panel that has not been seen yet.
+const UNKNOWN_HEIGHT: f32 = 160.0;
+
+/// For how long, in seconds, and how thickly, in points, the border of a panel flashes.
+const FLASH_SECONDS: f64 = 0.4;
+const FLASH_WIDTH: f32 = 2.0;
+
+impl Panel {
+    /// Shows the panel unless it is closed, and returns what its contents return.
+    pub(crate) fn show<R>(
+        self,
+        context: &Context,
+        panels: &mut Panels,
+        content: impl FnOnce(&mut Ui) -> R,
+    ) -> Option<R> {
+        if !panels.is_open(self) {
+            return None;
+        }
+        let desk = desk(context);
+        let place = panels.place(self, desk, |panel| panel.size(context));
+        let highest = desk.height() - TITLE_HEIGHT - 2.0 * f32::from(MARGIN);
+        let area = Area::new(self.id()).fixed_pos(place).constrain(false);
+        let window = area.show(context, |ui| {
+            let spacing = ui.spacing().item_spacing;
+            ui.spacing_mut().item_spacing = Vec2::ZERO;
+            let frame = Frame::window(ui.style()).inner_margin(0);
+            let shown = frame.show(ui, |ui| {
+                let handled = self.title_bar(ui, place, desk);
+                let inside = Frame::new().inner_margin(Margin::same(MARGIN));
+                let shown = inside.show(ui, |ui| {
+                    ui.set_width(self.width());
+                    ui.spacing_mut().item_spacing = spacing;
+                    let scroll = ScrollArea::vertical().max_height(highest);
+                    scroll.auto_shrink([false, true]).show(ui, content).inner
+                });
+                (handled, shown.inner)
+            });
+            self.paint_flash(ui, shown.response.rect);
+            shown.inner
+        });
+        let title = || WidgetInfo::labeled(WidgetType::Window, true, self.title());
+        window.response.widget_info(title);
+        let (handled, content) = window.inner;
+        match handled {
+            Some(Handled::Moved(to)) => panels.move_to(self, to),
+            Some(Handled::Hidden) => panels.set_open(self, false),
+            None => {}
+        }
+        Some(content)
+    }
+
+    /// Brings the panel before all others, and lets its border flash.
+    pub(crate) fn point_out(self, context: &Context) {
+        context.move_to_top(LayerId::new(Order::Middle, self.id()));
+        let until = context.input(|input| input.time) + FLASH_SECONDS;
+        context.data_mut(|data| data.insert_temp(self.flash_id(), until));
+    }
+
+    fn id(self) -> Id {
+        Id::new(self.title())
+    }
+
+    fn flash_id(self) -> Id {
+        self.id().with("flash")
+    }
+
+    fn outer_width(self) -> f32 {
+        self.width() + 2.0 * f32::from(MARGIN)
+    }
+
+    fn size(self, context: &Context) -> Vec2 {
+        let seen = context.memory(|memory| memory.area_rect(self.id()));
+        seen.map_or(vec2(self.outer_width(), UNKNOWN_HEIGHT), |rect| rect.size())
+    }
+
+    fn title_bar(self, ui: &mut Ui, place: Pos2, desk: Rect) -> Option<Handled> {
+        let size = vec2(self.outer_width(), TITLE_HEIGHT);
+        let (rect, bar) = ui.allocate_exact_size(size, Sense::DRAG);
+        bar.widget_info(|| {
+            WidgetInfo::labeled(WidgetType::Other, true, format!("Move {}", self.title()))
+        });
+        let corners = CornerRadius {
+            nw: CORNER,
+            ne: CORNER,
+            ..CornerRadius::ZERO
+        };
+        ui.painter().rect_filled(rect, corners, TITLE);
+        let font = TextStyle::Button.resolve(ui.style());
+        let color = ui.visuals().strong_text_color();
+        let text = self.title();
+        ui.painter()
+            .text(rect.center(), Align2::CENTER_CENTER, text, font, color);
+        let corner = Rect::from_min_max(rect.max - Vec2::splat(TITLE_HEIGHT), rect.max);
+        let hide = icon_button(
+            ui,
+            corner.shrink(2.0),
+            Icon::Cross,
+            &format!("Hide {}", self.title()),
+            "Hide this window",
+        );
+        if hide.clicked() {
+            return Some(Handled::Hidden);
+        }
+        let grip = bar.id.with("grip");
+        if bar.drag_started() {
+            let pressed = ui.input(|input| input.pointer.press_origin())?;
+            ui.data_mut(|data| data.insert_temp(grip, pressed - place));
+        }
+        let grip: Vec2 = ui.data(|data| data.get_temp(grip))?;
+        let pointer = bar.interact_pointer_pos().filter(|_| bar.dragged())?;
+        Some(Handled::Moved(kept_on(
+            desk,
+            pointer - grip,
+            self.size(ui.ctx()),
+        )))
+    }
+
+    fn paint_flash(self, ui: &Ui, rect: Rect) {
+        let until: Option<f64> = ui.data(|data| data.get_temp(self.flash_id()));
+        if until.is_some_and(|until| ui.input(|input| input.time) < until) {
+            let stroke = Stroke::new(FLASH_WIDTH, ACCENT);
+            let painter = ui.painter();
+            painter.rect_stroke(rect, CORNER, stroke, StrokeKind::Inside);
+            ui.ctx().request_repaint();
+        }
+    }
+}
+
+/// What the user has done with a title bar.
+enum Handled {
+    Moved(Pos2),
+    Hidden,
+}
+
+/// Where panels may be: all above the bar.
+pub(crate) fn desk(context: &Context) -> Rect {
+    let mut desk = context.viewport_rect();
+    desk.set_bottom(bar::top(context));
+    desk
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_egui::egui::pos2;
+    use egui_kittest::{Harness, kittest::Queryable as _};
+
+    use super::*;
+
+    const SIZE: Vec2 = vec2(1000.0, 700.0);
+
+    fn harness() -> Harness<'static, Panels> {
+        let show = |ui: &mut Ui, panels: &mut Panels| {
+            for panel in Panel::ALL {
+                panel.show(ui.ctx(), panels, |ui| ui.label(panel.tooltip()));
+            }
+        };
+        Harness::builder()
+            .with_size(SIZE)
+            .build_ui_state(show, Panels::default())
+    }
+
+    fn top_left(harness: &Harness<Panels>, panel: Panel) -> Pos2 {
+        let name = format!("Move {}", panel.title());
+        harness.get_by_label(&name).rect().min
+    }
+
+    fn drag(harness: &mut Harness<Panels>, from: Pos2, to: Pos2) {
+        harness.hover_at(from);
+        harness.drag_at(from);
+        harness.run();
+        harness.hover_at(to);
+        harness.run();
+        harness.drop_at(to);
+        harness.run();
+    }
+
+    #[test]
+    fn only_what_is_open_is_shown() {
+        let mut harness = harness();
+        assert!(harness.query_by_label("Move Status").is_some());
+        assert!(harness.query_by_label("Move Robot").is_none());
+        harness.state_mut().set_open(Panel::Robot, true);
+        harness.run();
+        assert!(harness.query_by_label("Move Robot").is_some());
+    }
+
+    #[test]
+    fn the_cross_hides_each_panel() {
+        for panel in Panel::ALL {
+            let mut harness = harness();
+            harness.state_mut().set_open(panel, true);
+            harness.run();
+            let hide = format!("Hide {}", panel.title());
+            harness.get_by_label(&hide).click();
+            harness.run();
+            assert!(!harness.state().is_open(panel), "{panel:?}");
+        }
+    }
+
+    #[test]
+    fn a_panel_follows_the_mouse_by_its_title() {
+        let mut harness = harness();
+        let before = top_left(&harness, Panel::Status);
+        let grip = before + vec2(50.0, 10.0);
+        drag(&mut harness, grip, grip + vec2(200.0, 100.0));
+        let after = top_left(&harness, Panel::Status);
+        assert_eq!(after, before + vec2(200.0, 100.0));
+    }
+
+    #[test]
+    fn a_panel_that_is_dragged_off_the_screen_stays_on_it() {
+        for to in [pos2(-300.0, -300.0), pos2(5000.0, 5000.0)] {
+            let mut harness = harness();
+            let grip = top_left(&harness, Panel::Status) + vec2(50.0, 10.0);
+            drag(&mut harness, grip, to);
+            let window = harness.get_by_label("Status").rect();
+            let screen = Rect::from_min_size(Pos2::ZERO, SIZE);
+            assert!(screen.contains_rect(window), "{window}");
+        }
+    }
+
+    #[test]
+    fn a_panel_comes_back_when_the_screen_shrinks() {
+        let mut harness = harness();
+        harness
+            .state_mut()
+            .move_to(Panel::Status, pos2(690.0, 500.0));
+        harness.run();
+        harness.set_size(vec2(500.0, 300.0));
+        harness.run();
+        let window = harness.get_by_label("Status").rect();
+        assert!(window.max.x <= 500.0 && window.max.y <= 300.0, "{window}");
+    }
+
+    #[test]
+    fn a_panel_that_is_pointed_out_flashes_and_then_rests() {
+        let mut harness = harness();
+        Panel::Status.point_out(&harness.ctx);
+        harness.step();
+        let accented = |harness: &Harness<Panels>| {
+            let shapes = format!("{:?}", harness.output().shapes);
+            shapes.contains(&format!("{ACCENT:?}"))
+        };
+        assert!(accented(&harness));
+        // It would never end if a panel kept asking for pictures.
+        harness.run();
+        assert!(!accented(&harness));
+    }
+}
