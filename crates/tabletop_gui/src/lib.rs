@@ -36,6 +36,7 @@
 mod input;
 mod panels;
 pub mod preferences;
+mod preset_seeds;
 mod scale;
 #[cfg(test)]
 mod test_world;
@@ -44,6 +45,7 @@ mod widgets;
 pub use panels::messages::{Notices, Tone};
 pub use panels::{Panel, Panels};
 pub use preferences::Preferences;
+pub use preset_seeds::PresetSeeds;
 
 use bevy::{asset::AssetEventSystems, prelude::*};
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPostUpdateSet, PrimaryEguiContext};
@@ -56,6 +58,7 @@ pub struct GuiPlugin;
 impl Plugin for GuiPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Preferences>()
+            .init_resource::<PresetSeeds>()
             .insert_resource(EguiGlobalSettings {
                 auto_create_primary_context: false,
                 ..default()
