@@ -99,7 +99,7 @@ impl Band {
                 &pixels.depth[start..end],
                 &mut pixels.rgb[3 * start..3 * end],
             );
-            surface.paint(view, row, start, depths, rgb);
+            surface.paint(row, start, depths, rgb);
             start = end;
         }
     }
@@ -146,7 +146,7 @@ impl Band {
         for (offset, samples) in Offset::SMOOTH.into_iter().zip(&self.smooth) {
             let surface = &sight.seen.surfaces[samples.surface[column] as usize];
             let (x, y) = (column as f32 + offset.x, row as f32 + offset.y);
-            sum += surface.shown(sight.view, x, y, 1.0 / samples.nearness[column]);
+            sum += surface.shown(x, y, 1.0 / samples.nearness[column]);
         }
         sum / 4.0
     }

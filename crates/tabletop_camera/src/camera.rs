@@ -8,7 +8,7 @@ use bevy::{
 };
 use tabletop_core::{HeadCamera, Pose, Table};
 
-use crate::{mount::head_pose, row::Offset};
+use crate::row::Offset;
 
 /// Nearest visible distance in units, along the axis of view (report section 4, "head camera").
 pub(crate) const NEAR: f32 = 0.01;
@@ -39,7 +39,7 @@ impl Camera {
     /// The robot's head camera at this table.
     pub fn of_head(head: &HeadCamera, table: &Table) -> Self {
         Self {
-            pose: head.mount.unwrap_or_else(|| head_pose(head.pan, table)),
+            pose: head.pose(table),
             vertical_fov: head.vertical_fov,
             square_fov: head.square_fov,
             width: head.width,

@@ -73,7 +73,7 @@ impl Glass {
                     let nearness = samples.nearness[column as usize];
                     if nearness > other.nearness[column as usize] {
                         let (x, y) = (column as f32 + offset.x, row as f32 + offset.y);
-                        let shown = ball.surface.shown(view, x, y, 1.0 / nearness);
+                        let shown = ball.surface.shown(x, y, 1.0 / nearness);
                         *sum += shown.extend(1.0);
                     }
                 }

@@ -47,8 +47,6 @@ mod camera;
 mod face;
 mod facets;
 mod glass;
-mod light;
-mod mount;
 mod painter;
 mod round;
 mod row;
@@ -60,7 +58,6 @@ mod triangle;
 
 pub use camera::Camera;
 pub use facets::Facets;
-pub use mount::head_pose;
 pub use painter::Painter;
 pub use scene::{DrawnFigure, DrawnSolid, Scene};
 

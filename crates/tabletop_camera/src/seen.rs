@@ -3,17 +3,16 @@
 use std::ops::Range;
 
 use bevy::math::{Mat3, Vec2, Vec3};
-use tabletop_core::{Pose, Solid};
+use tabletop_core::{LIGHT, Pose, Solid};
 
 use crate::{
     camera::{Linear, View, Window},
     face::{CUBOID, CUBOID_NORMALS, EDGE_ON, Face, first_column},
     facets::Vertex,
-    light::{LAMP, light},
     round::{Curve, Ends, Round},
     row::{Offset, SampleRow},
     scene::{DrawnFigure, DrawnSolid, Scene},
-    surface::Surface,
+    surface::{Surface, bounded},
     triangle::Triangle,
 };
 
@@ -54,8 +53,8 @@ struct ComingUp {
 struct Corner {
     /// Where it is relative to the eye.
     place: Vec3,
-    /// The factor of its colour.
-    light: f32,
+    /// What it shows of the triangle's colour.
+    share: f32,
 }
 
 impl Seen {
@@ -96,8 +95,7 @@ impl Seen {
             if let Some(face) = Face::seen(view, corners, normal, window.rows.clone(), surface) {
                 self.faces.push(face);
                 let patch = self.next_patch();
-                let plane = Surface::flat(view, drawn, patch, corners[0], normal);
-                self.surfaces.push(plane);
+                self.surfaces.push(Surface::flat(drawn, patch, normal));
             }
         }
     }
@@ -121,13 +119,7 @@ impl Seen {
         let patches = [self.next_patch(), self.next_patch()];
         self.surfaces.extend([
             Surface::round(drawn, patches[0], curve),
-            Surface::flat(
-                view,
-                drawn,
-                patches[1],
-                center + to_eye * yspan / 2.0,
-                to_eye,
-            ),
+            Surface::flat(drawn, patches[1], to_eye),
         ]);
     }
 
@@ -169,7 +161,7 @@ impl Seen {
                 drawn.object,
                 self.patches + facet.patch,
                 facet.color,
-                light_by_depth(view, &corners, normal),
+                share_by_depth(view, &corners, normal),
             ));
         }
         self.patches += facets.patches;
@@ -270,12 +262,9 @@ impl ComingUp {
 
 impl Corner {
     fn of(vertex: &Vertex, location: Vec3, axes: &Mat3, view: &View) -> Self {
-        let point = location + *axes * vertex.position;
-        let place = point - view.eye;
-        let to_lamp = LAMP - point;
         Self {
-            place,
-            light: light((*axes * vertex.normal).dot(to_lamp), to_lamp),
+            place: location + *axes * vertex.position - view.eye,
+            share: bounded(LIGHT.share(*axes * vertex.normal)),
         }
     }
 }
@@ -296,15 +285,15 @@ fn rows_of(corners: [Option<Vec2>; 3], view: &View, window: &Window) -> Option<R
     between(least.y, most.y, view.height)
 }
 
-/// The light on a triangle, divided by the depth: as it is at the corners, and linear in between.
-fn light_by_depth(view: &View, corners: &[Corner; 3], normal: Vec3) -> Linear {
+/// What a triangle shows of its colour, divided by the depth: as it is at the corners, and linear in between.
+fn share_by_depth(view: &View, corners: &[Corner; 3], normal: Vec3) -> Linear {
     let [a, b, c] = corners.map(|corner| corner.place);
-    let [light, more_b, more_c] = [0, 1, 2].map(|i| match i {
-        0 => corners[0].light,
-        _ => corners[i].light - corners[0].light,
+    let [share, more_b, more_c] = [0, 1, 2].map(|i| match i {
+        0 => corners[0].share,
+        _ => corners[i].share - corners[0].share,
     });
-    // The vector whose product with each point of the plane is the light there.
-    let mut slope = normal * (light / normal.dot(a));
+    // The vector whose product with each point of the plane is the share there.
+    let mut slope = normal * (share / normal.dot(a));
     let volume = a.dot((b - a).cross(c - a));
     if volume != 0.0 {
         slope += ((c - a).cross(a) * more_b + a.cross(b - a) * more_c) / volume;

@@ -1,15 +1,9 @@
 //! Surfaces and what they look like.
 
 use bevy::math::Vec3;
-use tabletop_core::Rgb;
+use tabletop_core::{LIGHT, Rgb};
 
-use crate::{
-    camera::{Linear, View},
-    light::{AMBIENT, LAMP, light},
-    round::Curve,
-    row::Offset,
-    scene::DrawnSolid,
-};
+use crate::{camera::Linear, round::Curve, row::Offset, scene::DrawnSolid};
 
 /// A surface of one colour: one face of a cuboid, an end or the side of a cylinder, a ball, a triangle of a figure.
 #[derive(Clone, Copy, Debug)]
@@ -25,12 +19,10 @@ pub(crate) struct Surface {
 
 #[derive(Clone, Copy, Debug)]
 enum Form {
-    /// So many units below the lamp, measured along its normal; 0 if it is turned away from it.
-    Flat {
-        below_lamp: f32,
-    },
+    /// What it shows of its colour.
+    Flat(f32),
     Round(Curve),
-    /// What the light is at the corners of a triangle, divided by the depth, and linear in between.
+    /// What the corners of a triangle show of its colour, divided by the depth, and linear in between.
     Shaded(Linear),
 }
 
@@ -40,13 +32,12 @@ impl Surface {
         object: 0,
         patch: 0,
         color: Vec3::ZERO,
-        form: Form::Flat { below_lamp: 0.0 },
+        form: Form::Flat(0.0),
     };
 
-    /// A plane through a point that is given relative to the eye.
-    pub fn flat(view: &View, drawn: &DrawnSolid, patch: u32, point: Vec3, normal: Vec3) -> Self {
-        let below_lamp = normal.dot(LAMP - view.eye - point).max(0.0);
-        Self::of(drawn, patch, Form::Flat { below_lamp })
+    /// A plane that faces this way.
+    pub fn flat(drawn: &DrawnSolid, patch: u32, normal: Vec3) -> Self {
+        Self::of(drawn, patch, Form::Flat(LIGHT.share(normal)))
     }
 
     /// A ball, or the side of a cylinder.
@@ -55,12 +46,12 @@ impl Surface {
     }
 
     /// A triangle of this colour, red, green and blue in 0..=255.
-    pub const fn shaded(object: u32, patch: u32, color: Vec3, light_by_depth: Linear) -> Self {
+    pub const fn shaded(object: u32, patch: u32, color: Vec3, share_by_depth: Linear) -> Self {
         Self {
             object,
             patch,
             color,
-            form: Form::Shaded(light_by_depth),
+            form: Form::Shaded(share_by_depth),
         }
     }
 
@@ -74,46 +65,35 @@ impl Surface {
     }
 
     /// Red, green, blue in 0..=255 where it is met at this depth behind this point of the picture.
-    pub fn shown(&self, view: &View, x: f32, y: f32, depth: f32) -> Vec3 {
-        let to_lamp = LAMP - view.eye - view.rays.through(x, y) * depth;
-        self.lit(match self.form {
-            Form::Flat { below_lamp: 0.0 } => AMBIENT,
-            Form::Flat { below_lamp } => light(below_lamp, to_lamp),
-            Form::Round(curve) => {
-                let normal = curve.normal(curve.rays.through(x, y), depth);
-                light(normal.dot(to_lamp), to_lamp)
+    pub fn shown(&self, x: f32, y: f32, depth: f32) -> Vec3 {
+        self.color
+            * match self.form {
+                Form::Flat(share) => share,
+                Form::Round(curve) => LIGHT.share(curve.normal(curve.rays.through(x, y), depth)),
+                Form::Shaded(share_by_depth) => bounded(share_by_depth.at(x, y) * depth),
             }
-            Form::Shaded(light_by_depth) => (light_by_depth.at(x, y) * depth).max(AMBIENT),
-        })
     }
 
     /// Colours a part of a row, from this column on, in which it is seen at these depths.
-    pub fn paint(&self, view: &View, row: u32, column: usize, depths: &[f32], rgb: &mut [u8]) {
-        let ray = view.rays.on_row(row, Offset::CENTER);
-        let eye_to_lamp = LAMP - view.eye;
-        let to_lamp = |x: f32, depth: f32| eye_to_lamp - ray.at(x) * depth;
+    pub fn paint(&self, row: u32, column: usize, depths: &[f32], rgb: &mut [u8]) {
         match self.form {
-            Form::Flat { below_lamp: 0.0 } => {
-                let shown = bytes(self.lit(AMBIENT));
+            Form::Flat(share) => {
+                let shown = bytes(self.color * share);
                 for pixel in rgb.chunks_exact_mut(3) {
                     pixel.copy_from_slice(&shown);
                 }
             }
-            Form::Flat { below_lamp } => self.paint_lit::<16>(column, depths, rgb, |x, depth| {
-                light(below_lamp, to_lamp(x, depth))
-            }),
             Form::Round(curve) => {
-                let own_ray = curve.rays.on_row(row, Offset::CENTER);
-                self.paint_lit::<16>(column, depths, rgb, |x, depth| {
-                    let to_lamp = to_lamp(x, depth);
-                    light(curve.normal(own_ray.at(x), depth).dot(to_lamp), to_lamp)
+                let ray = curve.rays.on_row(row, Offset::CENTER);
+                self.paint_shares::<16>(column, depths, rgb, |x, depth| {
+                    LIGHT.share(curve.normal(ray.at(x), depth))
                 });
             }
-            Form::Shaded(light_by_depth) => {
-                let light_by_depth = light_by_depth.on_row(row, Offset::CENTER);
+            Form::Shaded(share_by_depth) => {
+                let share_by_depth = share_by_depth.on_row(row, Offset::CENTER);
                 // Triangles are small.
-                self.paint_lit::<4>(column, depths, rgb, |x, depth| {
-                    (light_by_depth.at(x) * depth).max(AMBIENT)
+                self.paint_shares::<4>(column, depths, rgb, |x, depth| {
+                    bounded(share_by_depth.at(x) * depth)
                 });
             }
         }
@@ -121,23 +101,23 @@ impl Surface {
 
     /// Works on so many pixels at a time, in steps that are so simple that the compiler does several at once.
     #[inline]
-    fn paint_lit<const STEP: usize>(
+    fn paint_shares<const STEP: usize>(
         &self,
         column: usize,
         depths: &[f32],
         rgb: &mut [u8],
-        light_at: impl Fn(f32, f32) -> f32,
+        share_at: impl Fn(f32, f32) -> f32,
     ) {
         let color = self.color.to_array();
         let steps = depths.chunks(STEP).zip(rgb.chunks_mut(3 * STEP));
         for (column, (depths, rgb)) in (column as i32..).step_by(STEP).zip(steps) {
-            let mut lights = [0.0; STEP];
-            for (x, (light, depth)) in (column..).zip(lights.iter_mut().zip(depths)) {
-                *light = light_at(x as f32, *depth);
+            let mut shares = [0.0; STEP];
+            for (x, (share, depth)) in (column..).zip(shares.iter_mut().zip(depths)) {
+                *share = share_at(x as f32, *depth);
             }
             let mut shown = [0; STEP];
-            for (shown, light) in shown.iter_mut().zip(&lights) {
-                let [red, green, blue] = color.map(|part| nearest_byte((part * light).min(255.0)));
+            for (shown, share) in shown.iter_mut().zip(&shares) {
+                let [red, green, blue] = color.map(|part| nearest_byte(part * share));
                 *shown = red | green << 8 | blue << 16;
             }
             for (pixel, shown) in rgb.chunks_exact_mut(3).zip(shown) {
@@ -146,10 +126,11 @@ impl Surface {
             }
         }
     }
+}
 
-    fn lit(&self, light: f32) -> Vec3 {
-        (self.color * light).min(Vec3::splat(255.0))
-    }
+/// A share between those at the corners of a triangle, which rounding may bring a little beyond them.
+pub(crate) fn bounded(share: f32) -> f32 {
+    share.max(LIGHT.least()).min(1.0)
 }
 
 /// A colour as numbers of 0..=255.

@@ -24,7 +24,9 @@ mod color;
 mod figure;
 mod hand;
 mod keymap;
+mod light;
 mod message;
+mod mount;
 mod number;
 mod object;
 mod pose;
@@ -53,6 +55,7 @@ pub use keymap::{
     Action, ActionGroup, Binding, BindingError, KeyboardFocus, Keymap, Keys, Modifiers, Situation,
     Way, was_struck,
 };
+pub use light::{LIGHT, Light};
 pub use message::{SimCommand, SimFact};
 pub use number::Decimal;
 pub use object::{ObjectIndex, ObjectSpec};

@@ -1,33 +1,36 @@
-//! The material of every surface: a colour, lit as the original program lights it (`surface.wgsl`).
+//! The material of every surface: a colour in the scene's [`Light`](tabletop_core::Light) (`surface.wgsl`).
 
 use bevy::{
     asset::embedded_asset, prelude::*, render::render_resource::AsBindGroup, shader::ShaderRef,
 };
-use tabletop_core::Rgb;
+use tabletop_core::{LIGHT, Rgb};
 
-/// A surface of one colour, or of the colours of its vertices. Up-facing faces near the centre of the table show it fully, faces turned away from the lamp
-/// at (0, 0, 10) show 80 % of it.
+/// A surface of one colour, or of the colours of its vertices. Faces that look up show it exactly, others a fixed share of it.
 #[derive(Asset, AsBindGroup, TypePath, Clone, Debug)]
 pub struct Surface {
     /// Red, green, blue as displayed, 0..=1, by which the colours of vertices are multiplied, and the opacity.
     #[uniform(0)]
     color: Vec4,
+    /// What faces along and against the axes show of it.
+    #[uniform(0)]
+    along: Vec3,
+    #[uniform(0)]
+    against: Vec3,
 }
 
 impl From<Rgb> for Surface {
     fn from(color: Rgb) -> Self {
-        Self {
-            color: Vec4::new(color.red, color.green, color.blue, 1.0),
-        }
+        Self::translucent(color, 1.0)
     }
 }
 
 impl Surface {
     /// A surface that covers this part (0..=1) of what is behind it.
     pub(crate) fn translucent(color: Rgb, opacity: f32) -> Self {
-        let Self { color } = color.into();
         Self {
-            color: color.with_w(opacity),
+            color: Vec4::new(color.red, color.green, color.blue, opacity),
+            along: LIGHT.along,
+            against: LIGHT.against,
         }
     }
 }

@@ -1,32 +1,32 @@
-// The light of the original program, worked out in display values: no gamma, no specular, no shadows. Vertices may have
-// colours of their own, as displayed, by which that of the material is multiplied.
+// Surfaces show a share of their colour that depends on the direction in which they face (`tabletop_core::Light`), in display
+// values. Vertices may have colours of their own, as displayed, by which that of the material is multiplied.
 
 #import bevy_pbr::forward_io::VertexOutput
 
-const AMBIENT: f32 = 0.8;
-// The one white lamp, in units.
-const LAMP_LOCATION: vec3<f32> = vec3<f32>(0.0, 0.0, 10.0);
-const LAMP_RANGE: f32 = 50.0;
+struct Surface {
+    color: vec4<f32>,
+    along: vec3<f32>,
+    against: vec3<f32>,
+}
 
-@group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> color: vec4<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> surface: Surface;
 
 @fragment
 fn fragment(in: VertexOutput) -> @location(0) vec4<f32> {
-    let light = AMBIENT + light_of_lamp(in.world_position.xyz, normalize(in.world_normal));
 #ifdef VERTEX_COLORS
-    let own_color = color.rgb * in.color.rgb;
+    let own_color = surface.color.rgb * in.color.rgb;
 #else
-    let own_color = color.rgb;
+    let own_color = surface.color.rgb;
 #endif
-    let shown = clamp(own_color * light, vec3<f32>(0.0), vec3<f32>(1.0));
-    return vec4<f32>(linear_from_display(shown), color.a);
+    let shown = clamp(own_color * share(normalize(in.world_normal)), vec3<f32>(0.0), vec3<f32>(1.0));
+    // The nearest bytes, by the rule of the robot's eye.
+    let bytes = floor(shown * 255.0 + 0.5);
+    return vec4<f32>(linear_from_display(bytes / 255.0), surface.color.a);
 }
 
-fn light_of_lamp(location: vec3<f32>, normal: vec3<f32>) -> f32 {
-    let to_lamp = LAMP_LOCATION - location;
-    let distance = max(length(to_lamp), 1e-6);
-    let fall_off = max(1.0 - distance / LAMP_RANGE, 0.0);
-    return max(dot(normal, to_lamp / distance), 0.0) * fall_off;
+fn share(normal: vec3<f32>) -> f32 {
+    let shares = select(surface.against, surface.along, normal > vec3<f32>(0.0));
+    return dot(normal * normal, shares);
 }
 
 // The picture is stored as sRGB: the hardware encodes what a shader returns, and this undoes it.

@@ -14,11 +14,11 @@ const IN_FRONT: f32 = 0.0028;
 /// From layer to layer, in m.
 const LAYER: f32 = 0.0003;
 
-const BACKGROUND: Rgb = Rgb::new(0.10, 0.20, 0.30);
-const WHITE: Rgb = Rgb::new(0.93, 0.95, 0.96);
-const IRIS: Rgb = Rgb::new(0.15, 0.45, 0.70);
-const PUPIL: Rgb = Rgb::new(0.03, 0.05, 0.08);
-const LINE: Rgb = Rgb::new(0.75, 0.86, 0.92);
+const BACKGROUND: Rgb = Rgb::new(0.13, 0.27, 0.40);
+const WHITE: Rgb = Rgb::new(1.00, 1.00, 1.00);
+const IRIS: Rgb = Rgb::new(0.20, 0.60, 0.93);
+const PUPIL: Rgb = Rgb::new(0.04, 0.07, 0.11);
+const LINE: Rgb = Rgb::new(0.90, 0.97, 1.00);
 
 /// Where the eyes are, in m from the middle of the picture: the right one, and mirrored the left one.
 const EYE: Vec2 = Vec2::new(0.047, 0.012);

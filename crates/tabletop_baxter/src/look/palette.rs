@@ -23,11 +23,11 @@ impl Paint {
     /// The colour, as it is displayed.
     pub const fn rgb(self) -> Rgb {
         match self {
-            Self::Red => Rgb::new(0.58, 0.045, 0.05),
-            Self::Charcoal => Rgb::new(0.18, 0.18, 0.19),
-            Self::Black => Rgb::new(0.05, 0.05, 0.055),
-            Self::LightGray => Rgb::new(0.72, 0.72, 0.72),
-            Self::Gray => Rgb::new(0.52, 0.52, 0.54),
+            Self::Red => Rgb::new(0.80, 0.062, 0.07),
+            Self::Charcoal => Rgb::new(0.25, 0.25, 0.26),
+            Self::Black => Rgb::new(0.07, 0.07, 0.076),
+            Self::LightGray => Rgb::new(0.95, 0.95, 0.95),
+            Self::Gray => Rgb::new(0.70, 0.70, 0.73),
         }
     }
 }

@@ -1,18 +1,19 @@
-//! Colours, against the formula of the light (original program, rendering): the colour times
-//! 0.8 + max(0, n·l)(1 - d/50), where the lamp hangs at (0, 0, 10).
+//! Colours: what faces up shows its own colour, what faces elsewhere a share of it (original program, rendering, without the lamp
+//! that made dark colours brighter than the task file says).
 
 use bevy::math::{DVec3, Vec3};
 use tabletop_camera::{Camera, DrawnSolid};
-use tabletop_core::{Picture, Pose, Rgb, Solid};
+use tabletop_core::{NAMED_COLORS, Picture, Pose, Rgb, Solid, Table};
 
 use crate::scenes::{default_scene, draw, head, level, smooth, solid, turned};
 
-fn lit(part: f32, point: DVec3, normal: DVec3) -> f64 {
-    let to_lamp = DVec3::Z * 10.0 - point;
-    let distance = to_lamp.length();
-    let cosine = normal.dot(to_lamp / distance).max(0.0);
-    let light = 0.8 + cosine * (1.0 - distance / 50.0).max(0.0);
-    (f64::from(part) * light).min(1.0) * 255.0
+/// What a surface with this normal shows of its colour: the mean of the shares of the directions along the axes, weighted by the
+/// squares of the normal's components.
+fn share(normal: DVec3) -> f64 {
+    let along = |component: f64, positive: f64, negative: f64| {
+        component * component * if component > 0.0 { positive } else { negative }
+    };
+    along(normal.x, 0.9, 0.7) + along(normal.y, 0.85, 0.8) + along(normal.z, 1.0, 0.6)
 }
 
 /// Every pixel that shows the solid has the colour of the formula, at the point that its depth tells.
@@ -30,7 +31,7 @@ fn assert_lit(drawn: DrawnSolid, camera: Camera, normal_at: impl Fn(DVec3) -> DV
             let color = picture.color(column, row).expect("a pixel");
             let Rgb { red, green, blue } = drawn.color;
             for (byte, part) in color.into_iter().zip([red, green, blue]) {
-                let exact = lit(part, point, normal_at(point));
+                let exact = f64::from(part) * share(normal_at(point)) * 255.0;
                 assert!(
                     (f64::from(byte) - exact).abs() < 0.6,
                     "{byte} for {exact} at {point}"
@@ -52,20 +53,71 @@ fn point_at(picture: &Picture, camera: &Camera, column: u32, row: u32) -> DVec3 
     camera.pose.rotation.as_dquat() * local + camera.pose.location.as_dvec3()
 }
 
+/// The colour of the pixel in which a point is seen.
+fn color_at(picture: &Picture, camera: &Camera, point: Vec3) -> Option<[u8; 3]> {
+    let pixel = camera.pixel_of(point).unwrap().round();
+    picture.color(pixel.x as u32, pixel.y as u32)
+}
+
+/// The colours of all pixels in which this object is seen.
+fn colors_of(object: u32, picture: &Picture) -> Vec<[u8; 3]> {
+    let pixels = picture.rgb.chunks_exact(3).zip(&picture.objects);
+    let mut colors: Vec<_> = pixels
+        .filter(|&(_, seen)| *seen == object)
+        .map(|(pixel, _)| [pixel[0], pixel[1], pixel[2]])
+        .collect();
+    colors.sort_unstable();
+    colors.dedup();
+    colors
+}
+
 #[test]
-fn a_flat_face_is_lit_as_its_distance_from_the_lamp_tells() {
-    let color = Rgb::new(0.5, 0.3, 0.55);
-    let plate = Solid::Cuboid(Vec3::new(20.0, 20.0, 2.0));
-    assert_lit(solid(1, [0.0, 0.0, -1.0], plate, color), head(), |_| {
-        DVec3::Z
-    });
-    // Half a unit below the lamp, from above.
-    let high = solid(1, [0.0, 0.0, 8.5], plate, color);
-    let above = Camera {
-        pose: Pose::at(Vec3::Z * 25.0),
+fn what_faces_up_shows_exactly_the_colour_of_the_task_file_anywhere_on_the_table() {
+    let from_above = Camera {
+        pose: Pose::at(Vec3::Z * 30.0),
         ..head()
     };
-    assert_lit(high, above, |_| DVec3::Z);
+    let colors = NAMED_COLORS.map(|(_, color)| color).into_iter();
+    let colors = colors.chain(["#00A57F", "#010203", "#fe7f80"].map(|text| text.parse().unwrap()));
+    for (number, color) in colors.enumerate() {
+        for location in [[0.0, 0.0], [-9.0, 5.0], [8.0, -5.0], [3.0, 4.0]] {
+            let [x, y] = location;
+            let plate = Solid::Cuboid(Vec3::new(1.0, 1.0, 0.2));
+            let about_z = Vec3::Z * 10.0 * number as f32;
+            let plate = turned(2, [x, y, 0.1], about_z, plate, color);
+            let scene = [DrawnSolid::of_table(&Table::default(), 1), plate];
+            let picture = draw(&scene, &from_above);
+            let shown = color_at(&picture, &from_above, Vec3::new(x, y, 0.2));
+            assert_eq!(shown, Some(color.to_bytes()), "{color} at {location:?}");
+            assert_eq!(colors_of(1, &picture), [[255; 3]]);
+        }
+    }
+}
+
+#[test]
+fn each_other_side_of_a_block_shows_a_share_of_its_own() {
+    let block = solid(1, [0.0; 3], Solid::Cuboid(Vec3::splat(2.0)), Rgb::WHITE);
+    for (side, percent) in [
+        (Vec3::X, 90.0),
+        (Vec3::NEG_X, 70.0),
+        (Vec3::Y, 85.0),
+        (Vec3::NEG_Y, 80.0),
+        (Vec3::Z, 100.0),
+        (Vec3::NEG_Z, 60.0),
+    ] {
+        let before = bevy::prelude::Transform::from_translation(side * 6.0)
+            .looking_at(Vec3::ZERO, side.any_orthonormal_vector());
+        let camera = Camera {
+            pose: (&before).into(),
+            ..level(Vec3::ZERO, 30, 30)
+        };
+        let shown = colors_of(1, &draw(&[block], &camera));
+        let [[red, green, blue]] = shown[..] else {
+            panic!("{shown:?} of the side {side}");
+        };
+        assert!(red == green && green == blue);
+        assert!((f32::from(red) - percent * 2.55).abs() < 0.6, "{red}");
+    }
 }
 
 #[test]
@@ -91,13 +143,16 @@ fn the_end_of_a_cylinder_is_flat() {
         yspan: 2.0,
     };
     for degrees in [90.0, -90.0] {
-        let color = Rgb::new(0.5, 0.3, 0.55);
+        let color = "#00A57F".parse().unwrap();
         let cylinder = turned(1, Vec3::Z, Vec3::X * degrees, standing, color);
         let above = Camera {
-            pose: Pose::at(Vec3::Z * 25.0),
+            pose: Pose::at(Vec3::Z * 35.0),
             ..head()
         };
-        assert_lit(cylinder, above, |_| DVec3::Z);
+        assert_eq!(
+            colors_of(1, &draw(&[cylinder], &above)),
+            [[0x00, 0xa5, 0x7f]]
+        );
     }
 }
 
@@ -105,15 +160,12 @@ fn the_end_of_a_cylinder_is_flat() {
 fn the_blocks_of_the_default_table_show_their_colours() {
     let camera = head();
     let picture = draw(&default_scene(), &camera);
-    let color_at = |point: Vec3| {
-        let pixel = camera.pixel_of(point).unwrap().round();
-        picture.color(pixel.x as u32, pixel.y as u32)
-    };
-    // Faces that look up saturate; the near side of the red block is turned away from the lamp.
+    let color_at = |point| color_at(&picture, &camera, point);
+    // The near side of the red block is turned a little to the left.
     assert_eq!(color_at(Vec3::new(2.0, 0.0, 2.0)), Some([255, 0, 0]));
     assert_eq!(color_at(Vec3::new(-2.0, 0.0, 2.0)), Some([0, 255, 0]));
     assert_eq!(color_at(Vec3::new(0.0, -4.0, 0.0)), Some([255, 255, 255]));
-    assert_eq!(color_at(Vec3::new(1.74, -0.966, 1.0)), Some([204, 0, 0]));
+    assert_eq!(color_at(Vec3::new(1.74, -0.966, 1.0)), Some([202, 0, 0]));
     assert_eq!(color_at(Vec3::new(0.0, -6.0, -0.15)), Some([204, 204, 204]));
     assert_eq!(picture.color(100, 0), Some([0, 0, 0]));
 }
@@ -123,7 +175,7 @@ fn the_blocks_of_the_default_table_show_their_colours() {
 #[test]
 fn the_picture_of_the_default_table_is_known_to_the_last_bit() {
     let sums = [head(), smooth(head())].map(|camera| fnv(&draw(&default_scene(), &camera).rgb));
-    let known = [0x6024_b840_ac12_ff66, 0xc45e_724a_77b5_b00f];
+    let known = [0x76d4_e45d_3977_9a8c, 0xf65c_a0a9_b2ae_889e];
     assert_eq!(sums, known, "{sums:#018x?}");
 }
 

@@ -5,8 +5,7 @@ use tabletop_core::{Picture, Rgb, Solid};
 
 use crate::scenes::{draw, head, level, mixed_scene, smooth, solid};
 
-/// A wall that fills the picture to the right of, or above, a line through the middle of it. Its near face is turned away
-/// from the lamp, so it shows 80 % of white.
+/// A wall that fills the picture to the right of, or above, a line through the middle of it. Its near face shows 80 % of white.
 fn wall_beyond_middle(direction: Vec3, shift: f32) -> Picture {
     let camera = smooth(level(Vec3::new(0.0, -20.0, 0.0), 21, 21));
     // At a distance of 10 units from the eye.

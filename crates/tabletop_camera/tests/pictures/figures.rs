@@ -237,7 +237,7 @@ fn markers_are_blended_over_what_is_behind_them_and_change_nothing_else() {
         let picture = with(vec![center]);
         assert_eq!(picture.objects, plain.objects);
         assert_eq!(picture.depth, plain.depth);
-        // Half of the white table behind it, and half of a ball that shows 0.5 of the light of 1.6 at most.
+        // Half of the white table behind it, and half of a ball that shows between 60 and 100 % of its colour.
         let [red, green, blue] = color_at(&picture, &camera, center);
         assert_eq!(red, 128);
         assert!(

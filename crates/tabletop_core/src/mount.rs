@@ -3,7 +3,8 @@
 use std::f64::consts::FRAC_PI_2;
 
 use bevy::math::{DQuat, Vec3};
-use tabletop_core::{Pose, Table};
+
+use crate::{HeadCamera, Pose, Table};
 
 /// From the table's near edge back to the origin of the robot, in units.
 const ROBOT_BEHIND_EDGE: f32 = 3.0;
@@ -20,11 +21,18 @@ const CAMERA: Vec3 = Vec3::new(0.0, 1.2839, 2.6368);
 /// How far below the horizon the camera looks, in radians: 56°.
 const TILT: f64 = 0.97832;
 
+impl HeadCamera {
+    /// Where it stands before this table. It looks along its own -Z with its Y up.
+    pub fn pose(&self, table: &Table) -> Pose {
+        self.mount.unwrap_or_else(|| head_pose(self.pan, table))
+    }
+}
+
 /// The pose of the head camera when the neck is turned by `pan` radians, positive to the robot's left. The robot stands
 /// before the middle of the table's near edge and looks along Y; the camera looks along its own -Z with its Y up.
 ///
 /// At a table of `yspan` 12 it is (0, -7.1168, 11.5921), looking along (0, 0.5584, -0.8296), as in the original program.
-pub fn head_pose(pan: f32, table: &Table) -> Pose {
+fn head_pose(pan: f32, table: &Table) -> Pose {
     let robot = Vec3::new(0.0, -(table.yspan / 2.0 + ROBOT_BEHIND_EDGE), ROBOT_HEIGHT);
     // Rounded from numbers of twice the length: the last bits of sine and cosine are not the same on every system.
     let turned = DQuat::from_rotation_z(f64::from(pan)).as_quat();

@@ -1,0 +1,89 @@
+//! How much of their colours surfaces show: the same in the window and to the robot's eye.
+
+use bevy::math::Vec3;
+
+/// The light of the scene, in display values: no lamp, no shadows, no highlights, no gamma. A surface shows a share of its
+/// colour that depends on nothing but the direction in which it faces. One that faces up shows its colour itself.
+///
+/// ```
+/// use bevy::math::Vec3;
+/// use tabletop_core::LIGHT;
+///
+/// assert_eq!(LIGHT.share(Vec3::Z), 1.0);
+/// assert_eq!(LIGHT.share(Vec3::NEG_Y), 0.8);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Light {
+    /// The shares of what faces along X (right), Y (away from the user) and Z (up).
+    pub along: Vec3,
+    /// The shares of what faces the other way: left, towards the user, down.
+    pub against: Vec3,
+}
+
+/// The light of every scene. As in the original program, the sides that the user and the robot see first show 80 %; the others
+/// differ from them, so that edges are seen.
+pub const LIGHT: Light = Light {
+    along: Vec3::new(0.9, 0.85, 1.0),
+    against: Vec3::new(0.7, 0.8, 0.6),
+};
+
+impl Light {
+    /// What a surface with this outward normal of unit length shows of its colour, at most 1: the mean of what it would show if it
+    /// faced along the axes, weighted by the squares of the normal's components, which makes round surfaces smooth.
+    #[inline]
+    pub fn share(&self, normal: Vec3) -> f32 {
+        let shares = Vec3::select(normal.cmpgt(Vec3::ZERO), self.along, self.against);
+        (normal * normal).dot(shares).min(1.0)
+    }
+
+    /// The smallest share.
+    pub const fn least(&self) -> f32 {
+        let (along, against) = (self.along, self.against);
+        let least = along.x.min(along.y).min(along.z);
+        least.min(against.x).min(against.y).min(against.z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn each_side_of_a_block_differs_from_its_neighbours() {
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+        let sides = axes.into_iter().flat_map(|axis| [axis, -axis]);
+        for (one, other) in sides
+            .clone()
+            .flat_map(|one| sides.clone().map(move |o| (one, o)))
+        {
+            if one.dot(other) == 0.0 {
+                assert!(
+                    (LIGHT.share(one) - LIGHT.share(other)).abs() > 0.04,
+                    "{one} {other}"
+                );
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_surface_shows_more_than_its_colour_or_less_than_the_least_share(
+            direction in [-1.0..1.0_f32, -1.0..1.0, -1.0..1.0],
+        ) {
+            let normal = Vec3::from(direction).normalize_or(Vec3::Z);
+            let share = LIGHT.share(normal);
+            prop_assert!((LIGHT.least() - 1e-6..=1.0).contains(&share), "{share}");
+        }
+
+        #[test]
+        fn surfaces_that_face_nearly_the_same_way_look_nearly_the_same(
+            direction in [-1.0..1.0_f32, -1.0..1.0, -1.0..1.0],
+            step in [-1e-3..1e-3_f32, -1e-3..1e-3, -1e-3..1e-3],
+        ) {
+            let normal = Vec3::from(direction).normalize_or(Vec3::Z);
+            let beside = (normal + Vec3::from(step)).normalize();
+            prop_assert!((LIGHT.share(normal) - LIGHT.share(beside)).abs() < 2e-3);
+        }
+    }
+}
