@@ -40,12 +40,14 @@ mod preset_seeds;
 mod scale;
 #[cfg(test)]
 mod test_world;
+mod widget_list;
 mod widgets;
 
 pub use panels::messages::{Notices, Tone};
 pub use panels::{Panel, Panels};
 pub use preferences::Preferences;
 pub use preset_seeds::PresetSeeds;
+pub use widget_list::WidgetListPlugin;
 
 use bevy::{asset::AssetEventSystems, prelude::*};
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPostUpdateSet, PrimaryEguiContext};
