@@ -1,6 +1,8 @@
 //! The program in a window.
 
 mod no_window;
+mod pace;
+mod redraw;
 mod replay;
 mod screenshot;
 
@@ -15,9 +17,8 @@ use bevy::{
     prelude::*,
     render::RenderPlugin,
     window::PresentMode,
-    winit::{UpdateMode, WinitSettings},
 };
-use tabletop_core::{Paused, SimCommand};
+use tabletop_core::SimCommand;
 use tabletop_gui::GuiPlugin;
 use tabletop_view::ViewPlugin;
 
@@ -94,9 +95,9 @@ fn build(options: WindowOptions) -> App {
         }),
         ViewPlugin,
         GuiPlugin,
-    ))
-    .insert_resource(WinitSettings::game())
-    .add_systems(Update, save_power.run_if(resource_changed::<Paused>));
+        pace::plugin,
+        redraw::plugin,
+    ));
     match options.show {
         Show::Task(setup) => {
             let load = SimCommand::LoadTask(setup);
@@ -124,15 +125,5 @@ fn log() -> LogPlugin {
         level: Level::WARN,
         filter: "tabletop=info".into(),
         ..default()
-    }
-}
-
-/// While the simulation stands still, a few pictures a second are enough; keys and mouse still act at once.
-fn save_power(paused: Res<Paused>, mut settings: ResMut<WinitSettings>) {
-    *settings = WinitSettings::game();
-    if paused.0 {
-        let rarely = UpdateMode::reactive_low_power(Duration::from_secs_f32(1.0 / 30.0));
-        settings.focused_mode = rarely;
-        settings.unfocused_mode = rarely;
     }
 }

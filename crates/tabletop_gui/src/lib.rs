@@ -35,6 +35,7 @@
 
 mod input;
 mod panels;
+mod picture;
 pub mod preferences;
 mod preset_seeds;
 mod scale;
@@ -45,6 +46,7 @@ mod widgets;
 
 pub use panels::messages::{Notices, Tone};
 pub use panels::{Panel, Panels};
+pub use picture::Picture;
 pub use preferences::Preferences;
 pub use preset_seeds::PresetSeeds;
 pub use widget_list::WidgetListPlugin;
@@ -92,6 +94,7 @@ impl Plugin for GuiPlugin {
                 scale::plugin,
             ))
             .add_plugins((
+                picture::plugin,
                 input::jog::plugin,
                 input::robot_keys::plugin,
                 panels::messages::robot::plugin,

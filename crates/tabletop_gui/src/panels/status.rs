@@ -6,31 +6,65 @@ use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 use tabletop_core::{Agent, Paused, SimTick, TICKS_PER_SECOND};
 
-use crate::panels::{Panel, Panels};
+use crate::{
+    Picture,
+    panels::{Panel, Panels},
+};
 
 /// The time over which speeds are averaged.
 const SPAN: Duration = Duration::from_secs(2);
 
+/// How often the simulated time is told while nothing else changes in the picture.
+const STILL_SPAN: Duration = Duration::from_secs(1);
+
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Speed>()
-        .add_systems(Update, measure)
+        .init_resource::<Clock>()
+        .add_systems(Update, (measure, tell_time))
         .add_systems(EguiPrimaryContextPass, show_status);
 }
 
-/// Frames and ticks of the last seconds.
+/// Pictures and ticks of the last seconds.
 #[derive(Resource, Default)]
 struct Speed {
     since: Duration,
-    frames: u32,
+    drawn: u64,
     ticks: SimTick,
-    /// Frames a second.
+    /// Pictures a second.
     fps: f32,
     /// Simulated seconds a second.
     pace: f32,
 }
 
-fn measure(time: Res<Time<Real>>, tick: Res<SimTick>, mut speed: ResMut<Speed>) {
-    speed.frames += 1;
+/// The simulated time as the window shows it.
+#[derive(Resource, Default)]
+struct Clock {
+    tick: SimTick,
+    read_at: Duration,
+}
+
+fn tell_time(
+    time: Res<Time<Real>>,
+    tick: Res<SimTick>,
+    picture: Res<Picture>,
+    paused: Res<Paused>,
+    mut clock: ResMut<Clock>,
+) {
+    let now = time.elapsed();
+    if !picture.is_still || paused.0 || now >= clock.read_at + STILL_SPAN {
+        *clock = Clock {
+            tick: *tick,
+            read_at: now,
+        };
+    }
+}
+
+fn measure(
+    time: Res<Time<Real>>,
+    tick: Res<SimTick>,
+    picture: Res<Picture>,
+    mut speed: ResMut<Speed>,
+) {
     speed.since += time.delta();
     if speed.since < SPAN {
         return;
@@ -38,8 +72,9 @@ fn measure(time: Res<Time<Real>>, tick: Res<SimTick>, mut speed: ResMut<Speed>) 
     let seconds = speed.since.as_secs_f32();
     let ticks = tick.0.saturating_sub(speed.ticks.0);
     *speed = Speed {
-        fps: speed.frames as f32 / seconds,
+        fps: picture.drawn.saturating_sub(speed.drawn) as f32 / seconds,
         pace: ticks as f32 / TICKS_PER_SECOND as f32 / seconds,
+        drawn: picture.drawn,
         ticks: *tick,
         ..default()
     };
@@ -49,7 +84,7 @@ fn show_status(
     mut contexts: EguiContexts,
     mut panels: ResMut<Panels>,
     speed: Res<Speed>,
-    tick: Res<SimTick>,
+    clock: Res<Clock>,
     paused: Res<Paused>,
     agent: Res<Agent>,
 ) {
@@ -61,7 +96,7 @@ fn show_status(
         grid.show(ui, |ui| {
             for (name, value) in [
                 ("FPS", format!("{:03.0}", speed.fps)),
-                ("Simulated", simulated(*tick, *paused, speed.pace)),
+                ("Simulated", simulated(clock.tick, *paused, speed.pace)),
                 ("Matlab", matlab(&agent)),
             ] {
                 ui.label(name);
@@ -110,22 +145,51 @@ mod tests {
         }
     }
 
-    #[test]
-    fn speeds_are_means_of_two_seconds() {
+    fn app() -> App {
         let mut app = App::new();
         app.add_plugins(MinimalPlugins)
             .init_resource::<SimTick>()
+            .init_resource::<Paused>()
+            .init_resource::<Picture>()
             .init_resource::<Speed>()
-            .add_systems(Update, measure)
+            .init_resource::<Clock>()
+            .add_systems(Update, (measure, tell_time))
             .insert_resource(bevy::time::TimeUpdateStrategy::ManualDuration(
                 Duration::from_millis(100),
             ));
-        for _ in 0..25 {
-            app.world_mut().resource_mut::<SimTick>().0 += 3;
-            app.update();
+        app
+    }
+
+    /// A frame with three ticks, drawn or not.
+    fn frame(app: &mut App, is_drawn: bool) {
+        app.world_mut().resource_mut::<SimTick>().0 += 3;
+        app.update();
+        app.world_mut().resource_mut::<Picture>().drawn += u64::from(is_drawn);
+    }
+
+    #[test]
+    fn speeds_are_means_of_two_seconds() {
+        let mut app = app();
+        for number in 0..25 {
+            frame(&mut app, number % 2 == 0);
         }
         let speed = app.world().resource::<Speed>();
-        assert!((speed.fps - 10.0).abs() < 1.0, "{}", speed.fps);
+        assert!((speed.fps - 5.0).abs() < 1.0, "{}", speed.fps);
         assert!((speed.pace - 0.5).abs() < 0.1, "{}", speed.pace);
+    }
+
+    #[test]
+    fn a_still_picture_tells_the_time_once_a_second() {
+        let mut app = app();
+        for (is_still, different) in [(false, 30), (true, 3)] {
+            app.world_mut().resource_mut::<Picture>().is_still = is_still;
+            let mut told = std::collections::BTreeSet::new();
+            for _ in 0..30 {
+                frame(&mut app, true);
+                told.insert(app.world().resource::<Clock>().tick.0);
+            }
+            let distinct = told.len();
+            assert!(distinct.abs_diff(different) <= 1, "{distinct}");
+        }
     }
 }

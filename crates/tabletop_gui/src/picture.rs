@@ -1,0 +1,61 @@
+//! How often the picture is drawn.
+
+use bevy::{ecs::entity::EntityHashMap, prelude::*};
+use bevy_egui::{EguiInput, EguiPreUpdateSet, egui};
+
+/// What the window has drawn. Whoever draws says so here; the Status window reads it.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Picture {
+    /// How many times it has been drawn since the start.
+    pub drawn: u64,
+    /// Whether nothing moves in it, so that texts which change all the time should not have it drawn all the time.
+    pub is_still: bool,
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Picture>().add_systems(
+        PreUpdate,
+        drop_repeated_modifiers
+            .after(EguiPreUpdateSet::ProcessInput)
+            .before(EguiPreUpdateSet::BeginPass),
+    );
+}
+
+/// `bevy_egui` tells egui in every frame which modifiers are held, and egui wants another frame after each event.
+fn drop_repeated_modifiers(
+    mut told: Local<EntityHashMap<egui::Modifiers>>,
+    mut inputs: Query<(Entity, &mut EguiInput)>,
+) {
+    for (context, mut input) in &mut inputs {
+        let told = told.entry(context).or_default();
+        input.events.retain(|event| match event {
+            egui::Event::ModifiersChanged(modifiers) => {
+                std::mem::replace(told, *modifiers) != *modifiers
+            }
+            _ => true,
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn egui_is_told_of_modifiers_when_they_change() {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, plugin));
+        let context = app.world_mut().spawn(EguiInput::default()).id();
+        let mut events = |modifiers| {
+            let changed = egui::Event::ModifiersChanged(modifiers);
+            let mut input = app.world_mut().get_mut::<EguiInput>(context).unwrap();
+            input.events = vec![egui::Event::Copy, changed];
+            app.update();
+            app.world().get::<EguiInput>(context).unwrap().events.len()
+        };
+        assert_eq!(events(egui::Modifiers::NONE), 1);
+        assert_eq!(events(egui::Modifiers::SHIFT), 2);
+        assert_eq!(events(egui::Modifiers::SHIFT), 1);
+        assert_eq!(events(egui::Modifiers::NONE), 2);
+    }
+}
