@@ -27,6 +27,7 @@ mod keymap;
 mod light;
 mod message;
 mod mount;
+mod navigation;
 mod number;
 mod object;
 mod pose;
@@ -57,6 +58,7 @@ pub use keymap::{
 };
 pub use light::{LIGHT, Light};
 pub use message::{SimCommand, SimFact};
+pub use navigation::{CameraMotion, CameraView, Steering};
 pub use number::Decimal;
 pub use object::{ObjectIndex, ObjectSpec};
 pub use pose::{Pose, UNITS_PER_METER, degrees_from_quat, quat_from_degrees};
@@ -72,7 +74,7 @@ pub use scene::{ChainSpec, Joint, JointKind, JointSpec, LidBoxSpec, SceneItem, S
 pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage};
 pub use shape::{Part, Primitive, Shape, Solid};
 pub use twist::Twist;
-pub use user::{DragPlane, KeySystems, Orbit, UserCamera};
+pub use user::{DragPlane, KeySystems, UserCamera};
 
 use bevy::prelude::*;
 
@@ -106,7 +108,7 @@ impl Plugin for CorePlugin {
             .add_message::<AgentOrder>()
             .add_message::<AgentNews>()
             .add_message::<OpenRecording>()
-            .add_message::<Orbit>()
+            .add_message::<CameraMotion>()
             .init_resource::<Agent>()
             .init_resource::<Standstill>()
             .init_resource::<DragPlane>()
@@ -119,6 +121,7 @@ impl Plugin for CorePlugin {
             .init_resource::<Replaying>()
             .init_resource::<Rewound>()
             .init_resource::<Robot>()
+            .init_resource::<Steering>()
             .init_resource::<ObjectIndex>()
             .add_systems(
                 FixedUpdate,

@@ -53,15 +53,6 @@ impl DragPlane {
     }
 }
 
-/// The user's camera is to go round the vertical line through a point, and keep looking at it from the same side.
-#[derive(Message, Clone, Copy, Debug, PartialEq)]
-pub struct Orbit {
-    /// A point of the line, in units.
-    pub center: Vec3,
-    /// How far, in radians, counter-clockwise as seen from above.
-    pub angle: f32,
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

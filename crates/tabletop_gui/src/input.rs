@@ -5,6 +5,7 @@ pub(crate) mod focus;
 pub(crate) mod jog;
 pub(crate) mod keys;
 pub(crate) mod mouse;
+pub(crate) mod navigate;
 pub(crate) mod pick;
 pub(crate) mod plane;
 pub(crate) mod pointer;

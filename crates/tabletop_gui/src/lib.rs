@@ -8,6 +8,7 @@
 //! | click on an object | the selected hand takes it |
 //! | drag what is held | moves it in the drag plane |
 //! | press anywhere else | lets it go |
+//! | right drag; middle, or Shift + right drag; wheel | the camera goes round, along, towards what is under the cursor |
 //! | `/`, Shift + `/` | turns the drag plane counter-clockwise, clockwise |
 //! | left Ctrl | shows the plane at right angles while held |
 //! | R | shows, hides the robot |
@@ -103,6 +104,8 @@ impl Plugin for GuiPlugin {
                 panels::status::plugin,
                 panels::head_view::plugin,
                 input::snapshot::plugin,
+                input::navigate::plugin,
+                panels::camera::plugin,
             ));
     }
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod arrangement;
 pub(crate) mod bar;
+pub(crate) mod camera;
 pub(crate) mod demo_tools;
 pub(crate) mod head_view;
 pub(crate) mod memory;

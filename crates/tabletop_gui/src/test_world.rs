@@ -65,7 +65,7 @@ impl TestWorld {
     pub fn look_along(&mut self, ray: Ray3d) {
         self.app.insert_resource(Pointer {
             ray: Some(ray),
-            is_panels: false,
+            ..default()
         });
     }
 

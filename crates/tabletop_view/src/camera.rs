@@ -1,4 +1,4 @@
-//! The user's camera and its keys.
+//! The user's camera, its keys, and what panels and mouse ask of it.
 
 use bevy::{
     camera::{ClearColorConfig, PerspectiveProjection},
@@ -7,9 +7,12 @@ use bevy::{
     prelude::*,
     render::view::NoIndirectDrawing,
 };
-use tabletop_core::{Action, KeySystems, Keys, Orbit, Paused, Table, UserCamera};
+use tabletop_core::{
+    Action, CameraMotion, CameraView, Hands, HeadCamera, KeySystems, Keys, Paused, Steering, Table,
+    UserCamera,
+};
 
-use crate::viewpoint::{Steering, Viewpoint};
+use crate::viewpoint::Viewpoint;
 
 /// Vertical field of view in degrees.
 const FIELD_OF_VIEW: f32 = 45.0;
@@ -17,15 +20,35 @@ const FIELD_OF_VIEW: f32 = 45.0;
 /// Nearest visible distance in units.
 const NEAR: f32 = 0.01;
 
+/// Speed of the keys in units/s, and in rad/s.
+const SPEED: f32 = 10.0;
+const TURN: f32 = 1.0;
+
+/// The longest time for which a frame steers, in seconds.
+const LONGEST_FRAME: f32 = 0.25;
+
+/// The longest time for which the first one does: before it, nobody did for most of the time since the last frame.
+const LONGEST_FIRST_FRAME: f32 = 1.0 / 60.0;
+
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(Startup, spawn_camera)
         .add_systems(
             RunFixedMainLoop,
-            steer.in_set(KeySystems).run_if(Paused::is_running),
+            (
+                steer_with_keys.run_if(Paused::is_running),
+                choose_view_with_keys,
+            )
+                .chain()
+                .in_set(KeySystems),
         )
         .add_systems(
             RunFixedMainLoop,
-            (look_at_first_table, orbit, place_camera)
+            (
+                look_at_first_table,
+                steer_with_panels.run_if(Paused::is_running),
+                carry_out_motions,
+                place_camera,
+            )
                 .chain()
                 .in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
         );
@@ -71,20 +94,104 @@ fn look_at_first_table(
     }
 }
 
-fn steer(keys: Keys, time: Res<Time>, mut cameras: Query<&mut Viewpoint, With<UserCamera>>) {
-    let steering = steering(&keys);
-    for mut viewpoint in &mut cameras {
-        let steered = viewpoint.steered(steering, time.delta_secs());
+fn steer_with_keys(
+    keys: Keys,
+    time: Res<Time<Real>>,
+    mut is_steered: Local<bool>,
+    mut cameras: Query<&mut Viewpoint, With<UserCamera>>,
+) {
+    steer(steering(&keys), &time, &mut is_steered, &mut cameras);
+}
+
+fn steer_with_panels(
+    steering: Res<Steering>,
+    time: Res<Time<Real>>,
+    mut is_steered: Local<bool>,
+    mut cameras: Query<&mut Viewpoint, With<UserCamera>>,
+) {
+    steer(*steering, &time, &mut is_steered, &mut cameras);
+}
+
+fn steer(
+    steering: Steering,
+    time: &Time<Real>,
+    is_steered: &mut bool,
+    cameras: &mut Query<&mut Viewpoint, With<UserCamera>>,
+) {
+    let longest = match *is_steered {
+        true => LONGEST_FRAME,
+        false => LONGEST_FIRST_FRAME,
+    };
+    *is_steered = steering != Steering::default();
+    for mut viewpoint in cameras {
+        let steered = viewpoint.steered(steering, time.delta_secs().min(longest));
         viewpoint.set_if_neq(steered);
     }
 }
 
-fn orbit(mut orbits: MessageReader<Orbit>, mut cameras: Query<&mut Viewpoint, With<UserCamera>>) {
-    for orbit in orbits.read() {
-        for mut viewpoint in &mut cameras {
-            *viewpoint = viewpoint.orbited(orbit.center, orbit.angle);
+fn choose_view_with_keys(keys: Keys, mut motions: MessageWriter<CameraMotion>) {
+    for (action, view) in [
+        (Action::ViewStart, CameraView::Start),
+        (Action::ViewTop, CameraView::Top),
+        (Action::ViewFront, CameraView::Front),
+        (Action::ViewRobotEye, CameraView::RobotEye),
+    ] {
+        if keys.was_struck(action) {
+            motions.write(CameraMotion::Look(view));
         }
     }
+}
+
+fn carry_out_motions(
+    mut motions: MessageReader<CameraMotion>,
+    tables: Query<&Table>,
+    head: Option<Res<HeadCamera>>,
+    hands: Res<Hands>,
+    places: Query<&Transform, Without<UserCamera>>,
+    mut cameras: Query<(&mut Viewpoint, &Projection), With<UserCamera>>,
+) {
+    let table = tables.iter().next().copied().unwrap_or_default();
+    let held = hands.held_by(hands.selected);
+    let center = held.and_then(|object| places.get(object).ok());
+    for motion in motions.read() {
+        for (mut viewpoint, projection) in &mut cameras {
+            let moved = match *motion {
+                CameraMotion::Orbit {
+                    center,
+                    angle,
+                    rise,
+                } => viewpoint.orbited(center, angle, rise),
+                CameraMotion::Shift(by) => viewpoint.shifted(by),
+                CameraMotion::Approach { point, factor } => viewpoint.approached(point, factor),
+                CameraMotion::Look(CameraView::Start) => Viewpoint::of_table(&table),
+                CameraMotion::Look(CameraView::Top) => {
+                    Viewpoint::from_above(&table, picture_of(projection))
+                }
+                CameraMotion::Look(CameraView::Front) => {
+                    Viewpoint::from_front(&table, picture_of(projection))
+                }
+                CameraMotion::Look(CameraView::RobotEye) => {
+                    let head = head.as_deref().copied().unwrap_or_default();
+                    Viewpoint::of_camera(head.pose(&table))
+                }
+                CameraMotion::Look(CameraView::Center) => {
+                    viewpoint.centered(center.map_or(Vec3::ZERO, |place| place.translation))
+                }
+            };
+            viewpoint.set_if_neq(moved);
+        }
+    }
+}
+
+/// What a camera takes in to the right and upwards at a distance of 1.
+fn picture_of(projection: &Projection) -> Vec2 {
+    let (up, aspect) = match projection {
+        Projection::Perspective(PerspectiveProjection {
+            fov, aspect_ratio, ..
+        }) => ((fov / 2.0).tan(), *aspect_ratio),
+        Projection::Orthographic(_) | Projection::Custom(_) => (1.0, 1.0),
+    };
+    Vec2::new(up * aspect, up)
 }
 
 fn place_camera(mut cameras: Query<(&Viewpoint, &mut Transform), Changed<Viewpoint>>) {
@@ -96,11 +203,11 @@ fn place_camera(mut cameras: Query<(&Viewpoint, &mut Transform), Changed<Viewpoi
 /// What the keys ask of the camera.
 fn steering(keys: &Keys) -> Steering {
     Steering {
-        forward: keys.axis(Action::CameraForward, Action::CameraBack),
-        right: keys.axis(Action::CameraRight, Action::CameraLeft),
-        up: keys.axis(Action::CameraUp, Action::CameraDown),
-        turn_left: keys.axis(Action::LookLeft, Action::LookRight),
-        turn_up: keys.axis(Action::LookUp, Action::LookDown),
+        forward: SPEED * keys.axis(Action::CameraForward, Action::CameraBack),
+        right: SPEED * keys.axis(Action::CameraRight, Action::CameraLeft),
+        up: SPEED * keys.axis(Action::CameraUp, Action::CameraDown),
+        turn_left: TURN * keys.axis(Action::LookLeft, Action::LookRight),
+        turn_up: TURN * keys.axis(Action::LookUp, Action::LookDown),
     }
 }
 
@@ -139,11 +246,16 @@ mod tests {
         for (milliseconds, frames) in [(10, 100), (50, 20)] {
             let mut app = app(milliseconds);
             press(&mut app, KeyCode::KeyQ);
+            app.update();
+            let start = location(&mut app).z;
             for _ in 0..frames {
                 app.update();
             }
-            let z = location(&mut app).z;
-            assert!((z - 24.0).abs() < 1e-3, "{z} at {milliseconds} ms a frame");
+            let climbed = location(&mut app).z - start;
+            assert!(
+                (climbed - 10.0).abs() < 1e-3,
+                "{climbed} at {milliseconds} ms a frame"
+            );
         }
     }
 
@@ -160,15 +272,109 @@ mod tests {
     }
 
     #[test]
-    fn the_camera_goes_round_a_point_when_asked() {
-        let mut app = app(10);
-        app.world_mut().write_message(Orbit {
-            center: Vec3::X,
-            angle: std::f32::consts::PI,
-        });
+    fn the_first_frame_of_a_press_counts_no_longer_than_the_press() {
+        let mut app = app(200);
+        press(&mut app, KeyCode::KeyQ);
         app.update();
-        let location = location(&mut app);
-        assert!((location - Vec3::new(2.0, 12.0, 14.0)).length() < 1e-4);
+        assert!(location(&mut app).z < 14.2);
+    }
+
+    #[test]
+    fn panels_steer_the_camera_as_long_as_they_ask_for_it() {
+        let mut app = app(10);
+        app.insert_resource(Steering {
+            up: 9.0,
+            ..default()
+        });
+        for _ in 0..100 {
+            app.update();
+        }
+        assert!((location(&mut app).z - 23.0).abs() < 1e-3);
+        app.insert_resource(Steering::default());
+        app.update();
+        assert!((location(&mut app).z - 23.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn the_camera_moves_at_once_when_asked() {
+        let [x, y, z] = [0.0, -12.0, 14.0];
+        for (motion, to) in [
+            (
+                CameraMotion::Orbit {
+                    center: Vec3::X,
+                    angle: std::f32::consts::PI,
+                    rise: 0.0,
+                },
+                Vec3::new(2.0, -y, z),
+            ),
+            (
+                CameraMotion::Shift(Vec3::new(1.0, 2.0, 3.0)),
+                Vec3::new(x + 1.0, y + 2.0, z + 3.0),
+            ),
+            (
+                CameraMotion::Approach {
+                    point: Vec3::ZERO,
+                    factor: 0.5,
+                },
+                Vec3::new(x, y, z) / 2.0,
+            ),
+        ] {
+            let mut app = app(10);
+            app.world_mut().write_message(motion);
+            app.update();
+            let location = location(&mut app);
+            assert!((location - to).length() < 1e-4, "{location} by {motion:?}");
+        }
+    }
+
+    /// Where the camera is and what it looks along.
+    fn view(app: &mut App) -> (Vec3, Vec3) {
+        let mut cameras = app.world_mut().query::<(&UserCamera, &Transform)>();
+        let place = cameras.single(app.world()).unwrap().1;
+        (place.translation, *place.forward())
+    }
+
+    #[test]
+    fn keys_choose_views() {
+        use KeyCode::*;
+        let mut app = app(10);
+        for (key, height, direction) in [
+            (Digit4, 10.0..60.0, Vec3::NEG_Z),
+            (Digit5, 1.0..5.0, Vec3::Y),
+            (Digit6, 11.0..12.0, Vec3::new(0.0, 0.5584, -0.8296)),
+            (
+                Digit3,
+                13.99..14.01,
+                Vec3::new(0.0, 12.0, -14.0).normalize(),
+            ),
+        ] {
+            press(&mut app, key);
+            app.update();
+            app.insert_resource(ButtonInput::<KeyCode>::default());
+            let (location, forward) = view(&mut app);
+            assert!(height.contains(&location.z), "{location} with {key:?}");
+            assert!(forward.distance(direction) < 0.02, "{forward} with {key:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_held_comes_to_the_middle_of_the_picture() {
+        let mut app = app(10);
+        let held = Vec3::new(5.0, 3.0, 2.0);
+        let object = app
+            .world_mut()
+            .spawn(Transform::from_translation(held))
+            .id();
+        for center in [Vec3::ZERO, held] {
+            app.world_mut()
+                .write_message(CameraMotion::Look(CameraView::Center));
+            app.update();
+            let (location, forward) = view(&mut app);
+            assert!((center - location).normalize().distance(forward) < 1e-4);
+            let mut hands = app.world_mut().resource_mut::<Hands>();
+            let hand = hands.selected;
+            hands.set_held(hand, Some(object));
+        }
     }
 
     #[test]
@@ -204,9 +410,9 @@ mod tests {
         ] {
             let mut expected = [0.0; 5];
             assert_eq!(parts(steering_with(&[plus, minus])), expected);
-            expected[part] = 1.0;
+            expected[part] = if part < 3 { SPEED } else { TURN };
             assert_eq!(parts(steering_with(&[plus])), expected);
-            expected[part] = -1.0;
+            expected[part] *= -1.0;
             assert_eq!(parts(steering_with(&[minus])), expected);
         }
         assert_eq!(steering_with(&[KeyW, ControlLeft]), Steering::default());

@@ -34,7 +34,7 @@ mod viewpoint;
 mod visual;
 
 pub use surface::Surface;
-pub use viewpoint::{Steering, Viewpoint};
+pub use viewpoint::Viewpoint;
 pub use visual::Visual;
 
 use bevy::prelude::*;
@@ -53,5 +53,96 @@ impl Plugin for ViewPlugin {
             sheet::plugin,
             aids::plugin,
         ));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use bevy::{ecs::query::QueryFilter, time::TimeUpdateStrategy};
+    use tabletop_core::{CorePlugin, DragPlane, Hands, ObjectSpec, Pose, Rgb, Shape, Table};
+
+    use super::*;
+
+    /// How many entities have changed since the last frame.
+    #[derive(Resource, Default)]
+    struct Changes(usize);
+
+    fn count<F: QueryFilter + 'static>(changed: Query<(), F>, mut changes: ResMut<Changes>) {
+        changes.0 += changed.iter().count();
+    }
+
+    fn count_assets<A: Asset>(assets: Res<Assets<A>>, mut changes: ResMut<Changes>) {
+        changes.0 += usize::from(assets.is_changed());
+    }
+
+    fn app() -> App {
+        let mut app = App::new();
+        // Frames are shorter than ticks, so that what is between two ticks is drawn, too.
+        let frame = Duration::from_millis(7);
+        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .insert_resource(TimeUpdateStrategy::ManualDuration(frame))
+            .init_resource::<ButtonInput<KeyCode>>()
+            .init_resource::<Assets<Mesh>>()
+            .init_resource::<Assets<Surface>>()
+            .init_resource::<Changes>()
+            .add_plugins((
+                visual::plugin,
+                markers::plugin,
+                camera::plugin,
+                sheet::systems,
+            ))
+            .add_systems(
+                Last,
+                (
+                    count::<Or<(Changed<Transform>, Changed<Visibility>)>>,
+                    count::<Or<(Changed<Mesh3d>, Changed<MeshMaterial3d<Surface>>)>>,
+                    count::<Or<(Changed<Projection>, Changed<Viewpoint>)>>,
+                    count_assets::<Mesh>,
+                    count_assets::<Surface>,
+                    count_assets::<sheet::Translucent>,
+                )
+                    .chain(),
+            );
+        app.finish();
+        app.cleanup();
+        app
+    }
+
+    fn changes_in(app: &mut App, frames: usize) -> usize {
+        (0..frames)
+            .map(|_| {
+                app.insert_resource(Changes::default());
+                app.update();
+                app.world().resource::<Changes>().0
+            })
+            .sum()
+    }
+
+    #[test]
+    fn nothing_that_is_drawn_changes_while_the_world_is_at_rest() {
+        let mut app = app();
+        app.world_mut().spawn(Table::default());
+        let pose = Pose::from_degrees(Vec3::new(0.1, 0.7, 1.3), Vec3::new(10.0, 20.0, 30.0));
+        let shape = Shape::Sphere {
+            radius: 1.0,
+            color: Rgb::GRAY,
+        };
+        let ball = ObjectSpec::new("ball", pose, 1.0, shape);
+        let object = app.world_mut().spawn((ball, Transform::from(pose))).id();
+        for is_held in [false, true] {
+            let mut hands = app.world_mut().resource_mut::<Hands>();
+            let hand = hands.selected;
+            hands.set_held(hand, is_held.then_some(object));
+            assert!(changes_in(&mut app, 20) > 0);
+            assert_eq!(changes_in(&mut app, 100), 0);
+        }
+        app.world_mut().resource_mut::<DragPlane>().heading = 1.0;
+        assert_eq!(changes_in(&mut app, 20), 1, "the sheet has turned");
+        let mut places = app.world_mut().query::<&mut Transform>();
+        let mut place = places.get_mut(app.world_mut(), object).unwrap();
+        place.translation.x += 1.0;
+        assert!(changes_in(&mut app, 20) > 1);
     }
 }

@@ -34,8 +34,12 @@ impl Motion {
         }
     }
 
-    /// Where to draw the body when `fraction` (0..=1) of the next tick has passed: one tick behind it.
+    /// Where to draw the body when `fraction` (0..=1) of the next tick has passed: one tick behind it. A body that stands still is
+    /// drawn at the same place to the last bit.
     pub fn at(self, fraction: f32) -> Pose {
+        if self.previous == self.present {
+            return self.present;
+        }
         Pose::new(
             self.previous.location.lerp(self.present.location, fraction),
             self.previous
@@ -67,6 +71,9 @@ mod tests {
         let (from, to) = (Pose::IDENTITY, Pose::at(Vec3::X));
         let motion = Motion::standing_at(from).moved_to(to).moved_to(to);
         assert_eq!(motion.at(0.3).location, Vec3::X);
+        let pose = Pose::from_degrees(Vec3::new(0.1, 0.7, 1.3), Vec3::new(10.0, 20.0, 30.0));
+        let motion = Motion::standing_at(pose);
+        assert!((0..100u8).all(|part| motion.at(f32::from(part) / 100.0) == pose));
     }
 
     #[test]

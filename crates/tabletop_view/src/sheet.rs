@@ -1,4 +1,4 @@
-//! The plane in which the mouse drags: a translucent sheet, seen from both sides (`sheet.wgsl`).
+//! The plane in which the mouse drags: a translucent sheet over the table, seen from both sides (`sheet.wgsl`).
 
 use bevy::{
     asset::embedded_asset,
@@ -18,10 +18,45 @@ use crate::{held::HeldVisual, visual::Drawn};
 /// outshine the black around the table: the graphics card blends linear values.
 const COLOR: LinearRgba = LinearRgba::new(0.12, 0.12, 0.8, 0.25);
 
-#[derive(Asset, AsBindGroup, TypePath, Clone, Debug)]
-struct Translucent {
+/// Where the sheet begins to fade: so far within the table's edges, and so far above what is held, in units.
+const RIM: f32 = 2.0;
+const HEADROOM: f32 = 1.0;
+
+/// Over how many units it does: it ends a unit beyond the table.
+const FADE: f32 = 3.0;
+
+/// A sheet that is seen fully within a box.
+#[derive(Asset, AsBindGroup, TypePath, Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Translucent {
     #[uniform(0)]
     color: LinearRgba,
+    /// The least and the largest coordinates of the box, in units.
+    #[uniform(0)]
+    least: Vec3,
+    #[uniform(0)]
+    most: Vec3,
+    /// So far from the box nothing is left of it, in units.
+    #[uniform(0)]
+    fade: f32,
+}
+
+impl Translucent {
+    /// Over a table, up to a little above what is held here.
+    fn over(table: &Table, held: Vec3) -> Self {
+        let corner = (Vec2::new(table.xspan, table.yspan) / 2.0 - RIM).max(Vec2::ZERO);
+        Self {
+            color: COLOR,
+            least: held.min((-corner).extend(0.0)),
+            most: (held + Vec3::Z * HEADROOM).max(corner.extend(HEADROOM)),
+            fade: FADE,
+        }
+    }
+
+    /// Nothing of it is seen farther from a point than this.
+    fn radius(&self, center: Vec3) -> f32 {
+        let farthest = (center - self.least).max(self.most - center);
+        farthest.length() + self.fade
+    }
 }
 
 /// Marks the entity that is the sheet.
@@ -30,7 +65,12 @@ struct Sheet;
 
 pub(crate) fn plugin(app: &mut App) {
     embedded_asset!(app, "sheet.wgsl");
-    app.add_plugins(MaterialPlugin::<Translucent>::default())
+    app.add_plugins((MaterialPlugin::<Translucent>::default(), systems));
+}
+
+/// All but what draws it.
+pub(crate) fn systems(app: &mut App) {
+    app.init_resource::<Assets<Translucent>>()
         .add_systems(Startup, spawn_sheet)
         .add_systems(Update, show_sheet);
 }
@@ -44,7 +84,7 @@ fn spawn_sheet(
     commands.spawn((
         Sheet,
         Mesh3d(meshes.add(upright)),
-        MeshMaterial3d(materials.add(Translucent { color: COLOR })),
+        MeshMaterial3d(materials.add(Translucent::over(&Table::default(), Vec3::ZERO))),
         Visibility::Hidden,
     ));
 }
@@ -54,20 +94,35 @@ fn show_sheet(
     held: HeldVisual,
     plane: Res<DragPlane>,
     tables: Query<&Table>,
-    sheet: Single<(&mut Transform, &mut Visibility), (With<Sheet>, Without<Drawn>)>,
+    mut materials: ResMut<Assets<Translucent>>,
+    sheet: Single<
+        (
+            &mut Transform,
+            &mut Visibility,
+            &MeshMaterial3d<Translucent>,
+        ),
+        (With<Sheet>, Without<Drawn>),
+    >,
 ) {
-    let (mut transform, mut visibility) = sheet.into_inner();
+    let (mut transform, mut visibility, material) = sheet.into_inner();
     let Some(held) = held.get() else {
         visibility.set_if_neq(Visibility::Hidden);
         return;
     };
     visibility.set_if_neq(Visibility::Visible);
     let table = tables.iter().next().copied().unwrap_or_default();
+    let center = held.pose.location;
+    let seen = Translucent::over(&table, center);
     transform.set_if_neq(Transform {
-        translation: held.pose.location,
+        translation: center,
         rotation: plane.rotation(),
-        scale: Vec3::splat(DragPlane::side(&table)),
+        scale: Vec3::splat(2.0 * seen.radius(center)),
     });
+    if materials.get(material) != Some(&seen)
+        && let Some(mut material) = materials.get_mut(material)
+    {
+        *material = seen;
+    }
 }
 
 impl Material for Translucent {
@@ -122,10 +177,7 @@ mod tests {
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
             .init_resource::<Assets<Mesh>>()
             .init_resource::<Assets<Surface>>()
-            .init_resource::<Assets<Translucent>>()
-            .add_plugins(visual::plugin)
-            .add_systems(Startup, spawn_sheet)
-            .add_systems(Update, show_sheet);
+            .add_plugins((visual::plugin, systems));
         app.finish();
         app.cleanup();
         app.update();
@@ -137,6 +189,33 @@ mod tests {
         let mut sheets = world.query_filtered::<(&Transform, &Visibility), With<Sheet>>();
         let (transform, visibility) = sheets.single(world).unwrap();
         (*transform, *visibility)
+    }
+
+    #[test]
+    fn the_sheet_ends_a_little_beyond_the_table_and_what_is_held() {
+        let table = Table {
+            xspan: 30.0,
+            yspan: 10.0,
+        };
+        for (held, least, most) in [
+            (
+                Vec3::new(1.0, 2.0, 3.0),
+                Vec3::new(-13.0, -3.0, 0.0),
+                Vec3::new(13.0, 3.0, 4.0),
+            ),
+            (
+                Vec3::new(20.0, 0.0, -1.0),
+                Vec3::new(-13.0, -3.0, -1.0),
+                Vec3::new(20.0, 3.0, 1.0),
+            ),
+        ] {
+            let sheet = Translucent::over(&table, held);
+            assert_eq!((sheet.least, sheet.most), (least, most));
+            let radius = sheet.radius(held);
+            for corner in [least, most, least.with_x(most.x), most.with_x(least.x)] {
+                assert!(corner.distance(held) + FADE <= radius + 1e-3);
+            }
+        }
     }
 
     #[test]
@@ -170,7 +249,8 @@ mod tests {
         let (transform, visibility) = sheet(&mut app);
         assert_eq!(visibility, Visibility::Visible);
         assert_eq!(transform.translation, location);
-        assert_eq!(transform.scale.x, 120.0);
+        // The far corners of the table, and no more than that.
+        assert!((32.0..40.0).contains(&transform.scale.x), "{transform:?}");
         assert!((transform.rotation * Vec3::X).distance(Vec3::Y) < 1e-6);
 
         let mut hands = app.world_mut().resource_mut::<Hands>();

@@ -55,7 +55,7 @@ fn point_at(picture: &Picture, camera: &Camera, column: u32, row: u32) -> DVec3 
 
 /// The colour of the pixel in which a point is seen.
 fn color_at(picture: &Picture, camera: &Camera, point: Vec3) -> Option<[u8; 3]> {
-    let pixel = camera.pixel_of(point).unwrap().round();
+    let pixel = camera.pixel_of(point).expect("in front").round();
     picture.color(pixel.x as u32, pixel.y as u32)
 }
 

@@ -249,7 +249,7 @@ fn somewhere() -> impl Strategy<Value = Pose> {
     let axis = || -6.0..6.0_f32;
     let turn = || -180.0..180.0_f32;
     ((axis(), axis(), axis()), (turn(), turn(), turn()))
-        .prop_map(|(location, degrees)| Pose::from_degrees(location.into(), degrees.into()))
+        .prop_map(|(location, degrees)| Pose::from_degrees(location.into(), Vec3::from(degrees)))
 }
 
 proptest! {

@@ -24,18 +24,33 @@ impl Pickable<'_, '_> {
                     Some((distance, object))
                 });
         let (nearest, object) = objects.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let mut tables = self.tables.iter();
-        let is_behind_table = tables.any(|table| {
-            distance_along(ray, &[table.slab()], Pose::IDENTITY)
-                .is_some_and(|table| table < nearest)
-        });
-        let mut figures = self.figures.iter();
-        let is_behind_figure = figures.any(|(figure, place)| {
+        let is_hidden = self
+            .others_along(ray)
+            .is_some_and(|distance| distance < nearest);
+        (!is_hidden).then_some(object)
+    }
+
+    /// The point of the first surface along this line of sight.
+    pub fn surface_along(&self, ray: Ray3d) -> Option<Vec3> {
+        let objects = self.objects.iter_many(self.index.iter());
+        objects
+            .filter_map(|(_, spec, place)| distance_along(ray, &spec.shape.drawn(), place.into()))
+            .chain(self.others_along(ray))
+            .min_by(f32::total_cmp)
+            .map(|distance| ray.get_point(distance))
+    }
+
+    /// How far along a line of sight is the first surface of what is no object.
+    fn others_along(&self, ray: Ray3d) -> Option<f32> {
+        let tables = self.tables.iter();
+        let tables =
+            tables.filter_map(|table| distance_along(ray, &[table.slab()], Pose::IDENTITY));
+        let figures = self.figures.iter();
+        let figures = figures.filter_map(|(figure, place)| {
             let place = place.compute_transform();
-            let distance = figure.coarse.distance_along(ray, (&place).into());
-            distance.is_some_and(|figure| figure < nearest)
+            figure.coarse.distance_along(ray, (&place).into())
         });
-        (!is_behind_table && !is_behind_figure).then_some(object)
+        tables.chain(figures).min_by(f32::total_cmp)
     }
 }
 
@@ -66,6 +81,21 @@ mod tests {
         world.init_resource::<ObjectIndex>();
         world.spawn(Table::default());
         world
+    }
+
+    #[test]
+    fn the_first_surface_is_of_an_object_or_not() {
+        let mut world = world();
+        block(&mut world, "red", Vec3::Z);
+        let mut surface = |x: f32, y: f32| {
+            let ray = Ray3d::new(Vec3::new(x, y, 20.0), Dir3::NEG_Z);
+            world
+                .run_system_once(move |pickable: Pickable| pickable.surface_along(ray))
+                .unwrap()
+        };
+        assert_eq!(surface(0.5, 0.0), Some(Vec3::new(0.5, 0.0, 2.0)));
+        assert_eq!(surface(5.0, 0.0), Some(Vec3::X * 5.0));
+        assert_eq!(surface(50.0, 0.0), None);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! How the plane in which objects are dragged is turned (report section 4.3, figure 8d).
 
 use bevy::prelude::*;
-use tabletop_core::{Action, DragPlane, Hand, Hands, Keys, Orbit, Paused, UserCamera};
+use tabletop_core::{Action, CameraMotion, DragPlane, Hand, Hands, Keys, Paused, UserCamera};
 
 use crate::input::mouse::{MouseSystems, Press};
 
@@ -51,7 +51,7 @@ fn turn(
     press: Res<Press>,
     places: Query<&Transform>,
     mut plane: ResMut<DragPlane>,
-    mut orbits: MessageWriter<Orbit>,
+    mut motions: MessageWriter<CameraMotion>,
 ) {
     let held = hands.held_by(hands.selected);
     let Some(place) = held.and_then(|object| places.get(object).ok()) else {
@@ -64,9 +64,10 @@ fn turn(
     }
     let angle = direction.signum() * SPEED * time.delta_secs();
     plane.heading += angle;
-    orbits.write(Orbit {
+    motions.write(CameraMotion::Orbit {
         center: place.translation,
         angle,
+        rise: 0.0,
     });
 }
 
@@ -114,13 +115,20 @@ mod tests {
         for _ in 0..100 {
             test.app
                 .world_mut()
-                .resource_mut::<Messages<Orbit>>()
+                .resource_mut::<Messages<CameraMotion>>()
                 .clear();
             test.hold_still();
-            let orbits = test.app.world().resource::<Messages<Orbit>>();
-            for orbit in orbits.iter_current_update_messages() {
-                assert_eq!(orbit.center, Vec3::Z);
-                angle += orbit.angle;
+            let motions = test.app.world().resource::<Messages<CameraMotion>>();
+            for motion in motions.iter_current_update_messages() {
+                let CameraMotion::Orbit {
+                    center: Vec3::Z,
+                    angle: more,
+                    rise: 0.0,
+                } = motion
+                else {
+                    panic!("{motion:?}");
+                };
+                angle += more;
             }
         }
         angle

@@ -11,6 +11,8 @@ use crate::input::mouse::MouseSystems;
 pub(crate) struct Pointer {
     /// The line of sight through it, from the user's camera.
     pub ray: Option<Ray3d>,
+    /// Where it is in the window, in its logical pixels from the upper left corner.
+    pub cursor: Option<Vec2>,
     /// Whether a press is for the panels.
     pub is_panels: bool,
 }
@@ -20,7 +22,7 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(RunFixedMainLoop, aim.before(MouseSystems));
 }
 
-fn aim(
+pub(crate) fn aim(
     mut pointer: ResMut<Pointer>,
     windows: Query<&Window, With<PrimaryWindow>>,
     cameras: Query<(&Camera, &GlobalTransform), With<UserCamera>>,
@@ -28,6 +30,7 @@ fn aim(
     wanted: Res<EguiWantsInput>,
 ) {
     let cursor = windows.iter().next().and_then(Window::cursor_position);
+    pointer.cursor = cursor;
     pointer.ray = cursor
         .zip(cameras.iter().next())
         .and_then(|(cursor, (camera, place))| camera.viewport_to_world(place, cursor).ok());

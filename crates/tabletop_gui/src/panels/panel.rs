@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 pub enum Panel {
     /// Speeds, what the script does, and what is recorded.
     Status,
+    /// Moves the user's camera.
+    Camera,
     /// The robot's joints, and what is known of it.
     Robot,
     /// Hands, rotations and recording.
@@ -20,8 +22,9 @@ pub enum Panel {
 
 impl Panel {
     /// The panels in the order of their buttons, and from the top downwards when they are aligned.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::Status,
+        Self::Camera,
         Self::Robot,
         Self::DemonstrationTools,
         Self::Messages,
@@ -31,6 +34,7 @@ impl Panel {
     pub const fn label(self) -> &'static str {
         match self {
             Self::Status => "Status",
+            Self::Camera => "Camera",
             Self::Robot => "Robot",
             Self::DemonstrationTools => "Demo Tools",
             Self::Messages => "Messages",
@@ -41,6 +45,7 @@ impl Panel {
     pub const fn title(self) -> &'static str {
         match self {
             Self::Status => "Status",
+            Self::Camera => "Camera Navigation",
             Self::Robot => "Robot",
             Self::DemonstrationTools => "Demonstration Tools",
             Self::Messages => "Messages",
@@ -51,6 +56,7 @@ impl Panel {
     pub const fn tooltip(self) -> &'static str {
         match self {
             Self::Status => "Speeds, the script's state and the recording",
+            Self::Camera => "Move and turn your view, or go to one of the views",
             Self::Robot => "See the robot and what it sees; move its joints",
             Self::DemonstrationTools => {
                 "Hands, what they hold, how it turns; record, undo and redo"
@@ -63,6 +69,7 @@ impl Panel {
     pub const fn width(self) -> f32 {
         match self {
             Self::Status | Self::Robot | Self::DemonstrationTools => 304.0,
+            Self::Camera => 332.0,
             Self::Messages => 480.0,
         }
     }

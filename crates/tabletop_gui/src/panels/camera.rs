@@ -1,0 +1,262 @@
+//! The Camera Navigation window (report section 3, figure 6): pads that move and turn the user's camera while they are dragged, and
+//! views to which it goes at once.
+
+use bevy::prelude::*;
+use bevy_egui::{
+    EguiContexts, EguiPrimaryContextPass,
+    egui::{
+        self, Align2, Button, FontId, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo,
+        WidgetType, vec2,
+    },
+};
+use tabletop_core::{Action, CameraMotion, CameraView, Keymap, Steering};
+
+use crate::panels::{Panel, Panels};
+
+/// Sides of a pad in points.
+const PAD: f32 = 140.0;
+
+/// Speed in units/s, and rad/s, after a drag as long as a pad.
+const TRAVEL: f32 = 18.0;
+const TURN: f32 = 2.0;
+
+/// Speed of the buttons in units/s.
+const CLIMB: f32 = 9.0;
+
+/// Radius of the dot where a drag began, in points.
+const DOT: f32 = 4.0;
+
+/// What the user asks of the camera.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Request {
+    /// What is held down asks for.
+    steering: Steering,
+    /// The button that was pressed.
+    view: Option<CameraView>,
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(EguiPrimaryContextPass, show_panel);
+}
+
+fn show_panel(
+    mut contexts: EguiContexts,
+    mut panels: ResMut<Panels>,
+    keymap: Res<Keymap>,
+    mut steering: ResMut<Steering>,
+    mut motions: MessageWriter<CameraMotion>,
+) {
+    let Ok(context) = contexts.ctx_mut() else {
+        return;
+    };
+    let shown = Panel::Camera.show(context, &mut panels, |ui| show(ui, &keymap));
+    let request = shown.unwrap_or_default();
+    steering.set_if_neq(request.steering);
+    if let Some(view) = request.view {
+        motions.write(CameraMotion::Look(view));
+    }
+}
+
+fn show(ui: &mut Ui, keymap: &Keymap) -> Request {
+    let steering = ui.horizontal(|ui| steering(ui, keymap)).inner;
+    if steering != Steering::default() {
+        // It goes on moving while nothing else changes.
+        ui.ctx().request_repaint();
+    }
+    let view = ui.horizontal_wrapped(|ui| views(ui, keymap)).inner;
+    Request { steering, view }
+}
+
+fn steering(ui: &mut Ui, keymap: &Keymap) -> Steering {
+    let travel = pad(
+        ui,
+        "drag to move",
+        "Drag up to go ahead, down to go back, sideways to go sideways: the farther, the faster",
+    );
+    let (ascends, descends) = ui
+        .vertical(|ui| {
+            let size = vec2(
+                ui.spacing().interact_size.x,
+                (PAD - ui.spacing().item_spacing.y) / 2.0,
+            );
+            let mut is_down = |text: &str, action| {
+                let button = ui.add_sized(size, Button::new(text));
+                let button = button.on_hover_text(keymap.tooltip(action));
+                button.is_pointer_button_down_on()
+            };
+            (
+                is_down("Asc", Action::CameraUp),
+                is_down("Dsc", Action::CameraDown),
+            )
+        })
+        .inner;
+    let turn = pad(
+        ui,
+        "look around",
+        "Drag to where you want to look: the farther, the faster",
+    );
+    Steering {
+        forward: TRAVEL * travel.y,
+        right: TRAVEL * travel.x,
+        up: CLIMB * (f32::from(u8::from(ascends)) - f32::from(u8::from(descends))),
+        turn_left: -TURN * turn.x,
+        turn_up: TURN * turn.y,
+    }
+}
+
+/// An area that is dragged on; how far from where the drag began, to the right and upwards, as parts of its side.
+fn pad(ui: &mut Ui, name: &str, tooltip: &str) -> Vec2 {
+    let (rect, response) = ui.allocate_exact_size(egui::Vec2::splat(PAD), Sense::drag());
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, name));
+    let visuals = ui.style().interact(&response);
+    let painter = ui.painter_at(rect);
+    painter.rect(
+        rect,
+        visuals.corner_radius,
+        visuals.weak_bg_fill,
+        visuals.bg_stroke,
+        StrokeKind::Inside,
+    );
+    let drag = ends_of_drag(ui, &response);
+    if let Some([from, to]) = drag {
+        let color = ui.visuals().selection.bg_fill;
+        painter.circle_filled(from, DOT, color);
+        painter.arrow(from, to - from, Stroke::new(2.0, color));
+    } else {
+        let font = FontId::proportional(egui::TextStyle::Body.resolve(ui.style()).size);
+        painter.text(
+            rect.center(),
+            Align2::CENTER_CENTER,
+            name,
+            font,
+            visuals.text_color(),
+        );
+    }
+    response.on_hover_text(tooltip);
+    drag.map_or(Vec2::ZERO, |[from, to]| {
+        let dragged = (to - from) / PAD;
+        Vec2::new(dragged.x, -dragged.y)
+    })
+}
+
+/// Where the mouse was pressed on something, and where it is now while its button is down.
+fn ends_of_drag(ui: &Ui, response: &Response) -> Option<[egui::Pos2; 2]> {
+    if !response.is_pointer_button_down_on() {
+        return None;
+    }
+    ui.input(|input| {
+        let pointer = &input.pointer;
+        Some([pointer.press_origin()?, pointer.latest_pos()?])
+    })
+}
+
+fn views(ui: &mut Ui, keymap: &Keymap) -> Option<CameraView> {
+    let mut pressed = None;
+    for view in CameraView::ALL {
+        let (text, tooltip) = words_for(view, keymap);
+        if ui.button(text).on_hover_text(tooltip).clicked() {
+            pressed = Some(view);
+        }
+    }
+    pressed
+}
+
+/// The text of a view's button, and what it says while the mouse rests on it.
+fn words_for(view: CameraView, keymap: &Keymap) -> (&'static str, String) {
+    let with_key = |action| keymap.tooltip(action);
+    match view {
+        CameraView::Start => ("Start", with_key(Action::ViewStart)),
+        CameraView::Top => ("Top", with_key(Action::ViewTop)),
+        CameraView::Front => ("Front", with_key(Action::ViewFront)),
+        CameraView::RobotEye => ("Robot's eye", with_key(Action::ViewRobotEye)),
+        CameraView::Center => (
+            "Centre",
+            "Puts what you hold, or the table's centre, into the middle of the picture".into(),
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::{Harness, kittest::Queryable as _};
+
+    use super::*;
+
+    fn harness() -> Harness<'static, Request> {
+        let keymap = Keymap::default();
+        let frame = move |ui: &mut Ui, request: &mut Request| *request = show(ui, &keymap);
+        let mut harness = Harness::new_ui_state(frame, Request::default());
+        harness.set_size(vec2(360.0, 240.0));
+        harness.run();
+        harness
+    }
+
+    /// The button goes down in the middle of a widget; the mouse is dragged this far to the right and down.
+    fn drag(harness: &mut Harness<Request>, label: &str, by: egui::Vec2) -> Steering {
+        let middle = harness.get_by_label(label).rect().center();
+        harness.drag_at(middle);
+        harness.step();
+        harness.hover_at(middle + by);
+        harness.step();
+        harness.step();
+        harness.state().steering
+    }
+
+    #[test]
+    fn a_pad_moves_the_camera_as_it_is_dragged_and_faster_the_farther() {
+        let mut harness = harness();
+        let slow = drag(&mut harness, "drag to move", vec2(14.0, -28.0));
+        assert!((slow.right - 1.8).abs() < 1e-4, "{slow:?}");
+        assert!((slow.forward - 3.6).abs() < 1e-4, "{slow:?}");
+        assert_eq!((slow.up, slow.turn_left, slow.turn_up), (0.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn a_drag_goes_on_beside_the_pad_and_ends_with_the_button() {
+        let mut harness = harness();
+        let fast = drag(&mut harness, "drag to move", vec2(0.0, 140.0));
+        assert!((fast.forward + 18.0).abs() < 1e-3, "{fast:?}");
+        let pad = harness.get_by_label("drag to move").rect().center();
+        harness.drop_at(pad + vec2(0.0, 140.0));
+        harness.step();
+        harness.step();
+        assert_eq!(*harness.state(), Request::default());
+    }
+
+    #[test]
+    fn the_other_pad_turns_the_camera_towards_where_it_is_dragged() {
+        let mut harness = harness();
+        let turn = drag(&mut harness, "look around", vec2(70.0, 35.0));
+        assert!((turn.turn_left + 1.0).abs() < 1e-4, "{turn:?}");
+        assert!((turn.turn_up + 0.5).abs() < 1e-4, "{turn:?}");
+        assert_eq!((turn.right, turn.forward, turn.up), (0.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn the_buttons_raise_and_lower_the_camera_while_they_are_held() {
+        for (label, up) in [("Asc", 9.0), ("Dsc", -9.0)] {
+            let mut harness = harness();
+            let climb = drag(&mut harness, label, egui::Vec2::ZERO);
+            assert_eq!(climb, Steering { up, ..default() });
+        }
+    }
+
+    #[test]
+    fn each_view_has_a_button() {
+        for (label, view) in [
+            ("Start", CameraView::Start),
+            ("Top", CameraView::Top),
+            ("Front", CameraView::Front),
+            ("Robot's eye", CameraView::RobotEye),
+            ("Centre", CameraView::Center),
+        ] {
+            let mut harness = harness();
+            harness.get_by_label(label).click();
+            let asked = (0..4).find_map(|_| {
+                harness.step();
+                harness.state().view
+            });
+            assert_eq!(asked, Some(view));
+        }
+    }
+}
