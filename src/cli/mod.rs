@@ -1,6 +1,8 @@
 //! What the program is told on the command line, and its exit codes: 0 done, 1 the run failed, 2 wrong usage or input.
 
 mod check;
+#[cfg(feature = "window")]
+mod keys;
 mod replay;
 mod robot;
 mod robot_options;
@@ -42,6 +44,9 @@ enum Command {
     Check(check::CheckArgs),
     /// Answer questions about the robot's joints and frames, a line of JSON each
     Robot(robot::RobotArgs),
+    /// List the keys of the window and what they do
+    #[cfg(feature = "window")]
+    Keys(keys::KeysArgs),
 }
 
 /// The task file that is loaded when none is named.
@@ -92,6 +97,8 @@ pub fn main() -> ExitCode {
         Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::Check(args)) => check::check(&args),
         Some(Command::Robot(args)) => robot::robot(&args),
+        #[cfg(feature = "window")]
+        Some(Command::Keys(args)) => keys::list(&args),
         None => window::open(cli.window),
     };
     result.unwrap_or_else(|failure| {

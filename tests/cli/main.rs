@@ -2,6 +2,8 @@
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod examples;
+#[cfg(feature = "window")]
+mod keys;
 mod kinematics;
 mod replay;
 mod robot;

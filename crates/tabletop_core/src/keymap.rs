@@ -2,9 +2,11 @@
 
 mod action;
 mod binding;
+mod letters;
 
 pub use action::{Action, ActionGroup, Situation, Way};
 pub use binding::{Binding, BindingError, Modifiers};
+pub use letters::KeyLetters;
 
 use std::{cmp::Reverse, collections::BTreeMap};
 
@@ -13,7 +15,8 @@ use bevy_input::{ButtonInput, keyboard::KeyCode};
 
 use crate::Hands;
 
-/// The keys of each action. Keys are told apart by their places on the keyboard, whatever is printed on them.
+/// The keys of each action. Keys are told apart by their places on the keyboard, whatever is printed on them, unless
+/// [Ctrl or the like](KeyLetters) is held down as well.
 #[derive(Resource, Clone, Debug, PartialEq, Eq)]
 pub struct Keymap {
     bindings: BTreeMap<Action, Vec<Binding>>,
@@ -121,37 +124,35 @@ pub struct Keys<'w> {
     keymap: Res<'w, Keymap>,
     keys: Res<'w, ButtonInput<KeyCode>>,
     focus: Res<'w, KeyboardFocus>,
+    letters: Res<'w, KeyLetters>,
     hands: Res<'w, Hands>,
 }
 
 impl Keys<'_> {
     /// Whether a key of this action is held down.
     pub fn is_held(&self, action: Action) -> bool {
-        self.any(action, |key| self.keys.pressed(key))
+        let mut held = self.keys.get_pressed();
+        held.any(|key| self.meaning(*key) == Some(action))
     }
 
     /// Whether a key of this action has gone down in this frame, even if it is up again.
     pub fn was_struck(&self, action: Action) -> bool {
-        self.any(action, |key| self.keys.just_pressed(key))
+        let mut struck = self.keys.get_just_pressed();
+        struck.any(|key| self.meaning(*key) == Some(action))
     }
 
     /// What a key that is or was down in this frame asks for.
     pub fn meaning(&self, key: KeyCode) -> Option<Action> {
         let is_holding = self.hands.held_by(self.hands.selected).is_some();
-        let action = self.keymap.action(key, self.modifiers_of(key), is_holding);
+        let modifiers = self.modifiers_of(key);
+        let letter = self.letters.with(modifiers, key);
+        let action = self.keymap.action(letter, modifiers, is_holding);
         action.filter(|_| self.focus.leaves(key))
     }
 
     /// 1 while the first action is held, -1 while the second is, 0 while none or both are.
     pub fn axis(&self, plus: Action, minus: Action) -> f32 {
         f32::from(i8::from(self.is_held(plus)) - i8::from(self.is_held(minus)))
-    }
-
-    fn any(&self, action: Action, is_on: impl Fn(KeyCode) -> bool) -> bool {
-        let bindings = self.keymap.bindings(action).iter();
-        bindings
-            .map(|binding| binding.key)
-            .any(|key| is_on(key) && self.meaning(key) == Some(action))
     }
 
     /// In a slow frame, modifiers may have come up as well since a key did.
@@ -181,6 +182,7 @@ mod tests {
         let mut world = World::new();
         world.init_resource::<Keymap>();
         world.init_resource::<KeyboardFocus>();
+        world.init_resource::<KeyLetters>();
         world.init_resource::<ButtonInput<KeyCode>>();
         world.init_resource::<Hands>();
         world

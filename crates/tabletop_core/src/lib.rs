@@ -53,8 +53,8 @@ pub use color::{ColorError, NAMED_COLORS, Rgb};
 pub use figure::{CarriesHeadCamera, Figure, Triangles};
 pub use hand::{Hand, Hands, Held};
 pub use keymap::{
-    Action, ActionGroup, Binding, BindingError, KeyboardFocus, Keymap, Keys, Modifiers, Situation,
-    Way, was_struck,
+    Action, ActionGroup, Binding, BindingError, KeyLetters, KeyboardFocus, Keymap, Keys, Modifiers,
+    Situation, Way, was_struck,
 };
 pub use light::{LIGHT, Light};
 pub use message::{SimCommand, SimFact};
@@ -114,6 +114,7 @@ impl Plugin for CorePlugin {
             .init_resource::<DragPlane>()
             .init_resource::<Hands>()
             .init_resource::<History>()
+            .init_resource::<KeyLetters>()
             .init_resource::<KeyboardFocus>()
             .init_resource::<Keymap>()
             .init_resource::<Markers>()

@@ -2,10 +2,12 @@
 
 pub(crate) mod drag;
 pub(crate) mod focus;
+pub(crate) mod history_keys;
 pub(crate) mod jog;
 pub(crate) mod keys;
 pub(crate) mod mouse;
 pub(crate) mod navigate;
+pub(crate) mod object_keys;
 pub(crate) mod pick;
 pub(crate) mod plane;
 pub(crate) mod pointer;

@@ -1,26 +1,9 @@
 //! Keys, mouse and panels of the window. Everything that the user does becomes a [`SimCommand`](tabletop_core::SimCommand); what came
 //! of it is read from [`SimFact`](tabletop_core::SimFact)s.
 //!
-//! | key, mouse | what it does |
-//! |---|---|
-//! | Space | pause, resume |
-//! | Esc | quit |
-//! | click on an object | the selected hand takes it |
-//! | drag what is held | moves it in the drag plane |
-//! | press anywhere else | lets it go |
-//! | right drag; middle, or Shift + right drag; wheel | the camera goes round, along, towards what is under the cursor |
-//! | `/`, Shift + `/` | turns the drag plane counter-clockwise, clockwise |
-//! | left Ctrl | shows the plane at right angles while held |
-//! | R | shows, hides the robot |
-//! | 1, 2 | shows, hides the head view; saves it as a file |
-//! | `\` | the robot's next face |
-//! | T Y U I O P `[` | joints W2, W1, W0, E1, E0, S1, S0 of the right arm |
-//! | G H J K L `;` `'` | the same joints of the left arm |
-//! | `]` | the head joint H0 |
-//! | Shift + any of these joints | the other way |
-//! | `=`, `-` | opens, closes the right gripper |
-//! | 0, 9 | opens, closes the left gripper |
-//! | M | starts, stops the script that drives the robot |
+//! Which keys there are stands in one table, [`Action`](tabletop_core::Action); users bind others in [`keymap_file`]s. A click on an
+//! object puts it into the selected hand, a drag moves it in the drag plane, a press anywhere else lets it go. Right drags, middle drags
+//! and the wheel move the camera.
 //!
 //! Panels are drawn over the picture of the [`UserCamera`].
 //!
@@ -35,6 +18,7 @@
 //! ```
 
 mod input;
+pub mod keymap_file;
 mod panels;
 mod picture;
 pub mod preferences;
@@ -45,6 +29,7 @@ mod test_world;
 mod widget_list;
 mod widgets;
 
+pub use panels::help::Help;
 pub use panels::messages::{Notices, Tone};
 pub use panels::{Panel, Panels};
 pub use picture::Picture;
@@ -82,6 +67,7 @@ impl Plugin for GuiPlugin {
                 widgets::style::plugin,
                 input::focus::plugin,
                 input::keys::plugin,
+                input::history_keys::plugin,
                 input::pointer::plugin,
                 input::mouse::plugin,
                 input::plane::plugin,
@@ -96,6 +82,9 @@ impl Plugin for GuiPlugin {
             ))
             .add_plugins((
                 picture::plugin,
+                keymap_file::plugin,
+                input::object_keys::plugin,
+                panels::help::plugin,
                 input::jog::plugin,
                 input::robot_keys::plugin,
                 panels::messages::robot::plugin,

@@ -5,6 +5,7 @@ pub(crate) mod bar;
 pub(crate) mod camera;
 pub(crate) mod demo_tools;
 pub(crate) mod head_view;
+pub(crate) mod help;
 pub(crate) mod memory;
 pub(crate) mod messages;
 pub(crate) mod panel;

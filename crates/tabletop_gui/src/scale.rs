@@ -1,10 +1,8 @@
 //! How large panels and their texts are drawn: what fits the window, or what the user has chosen.
 
 use bevy::{prelude::*, window::PrimaryWindow};
-use bevy_egui::{
-    EguiContexts, EguiPrimaryContextPass,
-    egui::{Context, gui_zoom::kb_shortcuts},
-};
+use bevy_egui::{EguiContexts, EguiPrimaryContextPass};
+use tabletop_core::{Action, KeySystems, Keys};
 
 use crate::{
     panels::messages::{Notices, Tone},
@@ -80,6 +78,7 @@ fn automatic(size: Vec2) -> f32 {
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<UiScale>()
         .add_systems(Startup, recall)
+        .add_systems(RunFixedMainLoop, change_by_keys.in_set(KeySystems))
         .add_systems(EguiPrimaryContextPass, apply)
         .add_systems(Update, keep.run_if(resource_changed::<UiScale>));
 }
@@ -109,44 +108,44 @@ fn keep(
     }
 }
 
+fn change_by_keys(
+    keys: Keys,
+    windows: Query<&Window, With<PrimaryWindow>>,
+    mut scale: ResMut<UiScale>,
+) {
+    let Some(window) = windows.iter().next() else {
+        return;
+    };
+    for (action, step) in [
+        (Action::DrawLarger, ScaleStep::Larger),
+        (Action::DrawSmaller, ScaleStep::Smaller),
+        (Action::DrawToFit, ScaleStep::Automatic),
+    ] {
+        if keys.was_struck(action) {
+            let shown = scale.in_window(window.size());
+            scale.change(step, shown);
+        }
+    }
+}
+
 fn apply(
     mut contexts: EguiContexts,
     windows: Query<&Window, With<PrimaryWindow>>,
-    mut scale: ResMut<UiScale>,
+    scale: Res<UiScale>,
 ) {
     let (Ok(context), Some(window)) = (contexts.ctx_mut(), windows.iter().next()) else {
         return;
     };
     // Else egui would scale by itself, and forget it.
     context.options_mut(|options| options.zoom_with_keyboard = false);
-    if let Some(step) = struck(context) {
-        scale.change(step, context.zoom_factor());
-    }
     context.set_zoom_factor(scale.in_window(window.size()));
-}
-
-/// What the user does with Ctrl and plus, minus or zero.
-fn struck(context: &Context) -> Option<ScaleStep> {
-    [
-        (kb_shortcuts::ZOOM_IN, ScaleStep::Larger),
-        (kb_shortcuts::ZOOM_IN_SECONDARY, ScaleStep::Larger),
-        (kb_shortcuts::ZOOM_OUT, ScaleStep::Smaller),
-        (kb_shortcuts::ZOOM_RESET, ScaleStep::Automatic),
-    ]
-    .into_iter()
-    .find_map(|(keys, step)| {
-        context
-            .input_mut(|input| input.consume_shortcut(&keys))
-            .then_some(step)
-    })
 }
 
 #[cfg(test)]
 mod tests {
     use std::{env, fs, path::PathBuf};
 
-    use bevy_egui::egui::{Key, Modifiers};
-    use egui_kittest::Harness;
+    use tabletop_core::CorePlugin;
 
     use super::*;
 
@@ -189,24 +188,31 @@ mod tests {
 
     #[test]
     fn keys_change_the_scale() {
-        for (key, expected) in [
-            (Key::Plus, ScaleStep::Larger),
-            (Key::Equals, ScaleStep::Larger),
-            (Key::Minus, ScaleStep::Smaller),
-            (Key::Num0, ScaleStep::Automatic),
+        use KeyCode::{ControlLeft, Digit0, Equal, Minus, NumpadAdd, ShiftLeft};
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .init_resource::<UiScale>()
+            .add_systems(Update, change_by_keys);
+        app.world_mut().spawn((Window::default(), PrimaryWindow));
+        for (keys, expected) in [
+            (&[Equal][..], None),
+            (&[ControlLeft, Equal], Some(1.25)),
+            (&[ControlLeft, ShiftLeft, Equal], Some(1.25)),
+            (&[ControlLeft, NumpadAdd], Some(1.25)),
+            (&[ControlLeft, Minus], Some(1.0)),
+            (&[ControlLeft, Digit0], None),
         ] {
-            let show = |ui: &mut bevy_egui::egui::Ui, steps: &mut Vec<ScaleStep>| {
-                ui.ctx()
-                    .options_mut(|options| options.zoom_with_keyboard = false);
-                steps.extend(struck(ui.ctx()));
-            };
-            let mut harness = Harness::new_ui_state(show, Vec::new());
-            harness.key_press(key);
-            harness.run();
-            assert_eq!(*harness.state(), []);
-            harness.key_press_modifiers(Modifiers::COMMAND, key);
-            harness.run();
-            assert_eq!(*harness.state(), [expected]);
+            let before = if keys == [Equal] { None } else { Some(1.1) };
+            app.insert_resource(UiScale(before));
+            let mut input = ButtonInput::default();
+            keys.iter().for_each(|&key| input.press(key));
+            app.insert_resource(input);
+            app.update();
+            assert_eq!(
+                *app.world().resource::<UiScale>(),
+                UiScale(expected),
+                "{keys:?}"
+            );
         }
     }
 

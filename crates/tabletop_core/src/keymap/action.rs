@@ -84,6 +84,12 @@ pub enum Action {
     ShowHelp,
     /// Fill the screen with the window, or no longer.
     FillScreen,
+    /// Draw panels and texts larger.
+    DrawLarger,
+    /// Draw panels and texts smaller.
+    DrawSmaller,
+    /// Draw panels and texts as large as fits the window.
+    DrawToFit,
 }
 
 /// One of the two ways in which a joint moves, with the signs of manual control.
@@ -128,7 +134,7 @@ struct Row {
 }
 
 /// Actions without a joint.
-const PLAIN: [Action; 36] = [
+const PLAIN: [Action; 39] = [
     Action::Pause,
     Action::Quit,
     Action::Step,
@@ -165,6 +171,9 @@ const PLAIN: [Action; 36] = [
     Action::RunScript,
     Action::ShowHelp,
     Action::FillScreen,
+    Action::DrawLarger,
+    Action::DrawSmaller,
+    Action::DrawToFit,
 ];
 
 /// The joints in the order in which their keys lie on the keyboard.
@@ -330,7 +339,10 @@ impl Action {
             | Self::ShowNextFace
             | Self::RunScript
             | Self::ShowHelp
-            | Self::FillScreen => false,
+            | Self::FillScreen
+            | Self::DrawLarger
+            | Self::DrawSmaller
+            | Self::DrawToFit => false,
         }
     }
 
@@ -387,6 +399,9 @@ impl Action {
 
             Self::ShowHelp => row(Window, "show_help", "Help", "Shows or hides what the keys do", vec![plain(F1), shift(Slash)]),
             Self::FillScreen => row(Window, "fill_screen", "Full screen", "Fills the screen with the window, or no longer", vec![plain(F11)]),
+            Self::DrawLarger => row(Window, "draw_larger", "Larger", "Draws everything larger", vec![ctrl(Equal), ctrl(NumpadAdd)]),
+            Self::DrawSmaller => row(Window, "draw_smaller", "Smaller", "Draws everything smaller", vec![ctrl(KeyCode::Minus), ctrl(NumpadSubtract)]),
+            Self::DrawToFit => row(Window, "draw_to_fit", "Fit the window", "Draws everything as large as fits the window", vec![ctrl(Digit0), ctrl(Numpad0)]),
 
             Self::Move(joint, way) => row_of_joint(joint, way),
         };

@@ -211,12 +211,17 @@ fn label(key: KeyCode) -> String {
         AltRight => "right Alt",
         SuperLeft => "left Super",
         SuperRight => "right Super",
+        NumpadAdd => "keypad +",
+        NumpadSubtract => "keypad -",
+        NumpadMultiply => "keypad *",
+        NumpadDivide => "keypad /",
+        NumpadDecimal => "keypad .",
         key => {
             let name = format!("{key:?}");
-            let short = ["Key", "Digit"]
+            let shortened = [("Key", ""), ("Digit", ""), ("Numpad", "keypad ")]
                 .into_iter()
-                .find_map(|prefix| name.strip_prefix(prefix));
-            return short.unwrap_or(&name).to_owned();
+                .find_map(|(prefix, short)| Some(short.to_owned() + name.strip_prefix(prefix)?));
+            return shortened.unwrap_or(name);
         }
     };
     label.to_owned()
@@ -270,6 +275,8 @@ mod tests {
             ("Shift+Slash", "Shift+/"),
             ("ArrowLeft", "←"),
             ("F11", "F11"),
+            ("Numpad0", "keypad 0"),
+            ("Ctrl+NumpadAdd", "Ctrl+keypad +"),
             ("ControlLeft", "left Ctrl"),
         ] {
             assert_eq!(binding(text).label(), label);

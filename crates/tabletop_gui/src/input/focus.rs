@@ -1,24 +1,37 @@
 //! Who has the keyboard. egui takes it as soon as anything has been clicked or reached with Tab; here only text that is being typed
 //! does, and what is open over the window takes Esc, so that keys work anytime (report section 2.4).
 
-use bevy::prelude::*;
+use bevy::{
+    input::{InputSystems, keyboard::KeyboardInput},
+    prelude::*,
+};
 use bevy_egui::{
     EguiContext, EguiInput, EguiPostUpdateSet, EguiPreUpdateSet, egui,
     helpers::bevy_to_egui_physical_key,
 };
-use tabletop_core::{KeyboardFocus, Keys};
+use tabletop_core::{KeyLetters, KeyboardFocus, Keys};
 
 pub(crate) fn plugin(app: &mut App) {
-    app.add_systems(
-        PreUpdate,
-        keep_bound_keys_from_panels
-            .after(EguiPreUpdateSet::ProcessInput)
-            .before(EguiPreUpdateSet::BeginPass),
-    )
-    .add_systems(
-        PostUpdate,
-        follow_panels.in_set(EguiPostUpdateSet::ProcessOutput),
-    );
+    app.add_message::<KeyboardInput>()
+        .add_systems(
+            PreUpdate,
+            (
+                learn_letters.after(InputSystems),
+                keep_bound_keys_from_panels
+                    .after(EguiPreUpdateSet::ProcessInput)
+                    .before(EguiPreUpdateSet::BeginPass),
+            )
+                .chain(),
+        )
+        .add_systems(
+            PostUpdate,
+            follow_panels.in_set(EguiPostUpdateSet::ProcessOutput),
+        );
+}
+
+fn learn_letters(mut input: MessageReader<KeyboardInput>, mut letters: ResMut<KeyLetters>) {
+    let pressed = input.read().filter(|input| input.state.is_pressed());
+    pressed.for_each(|input| letters.learn(input));
 }
 
 fn follow_panels(mut contexts: Query<&mut EguiContext>, mut focus: ResMut<KeyboardFocus>) {

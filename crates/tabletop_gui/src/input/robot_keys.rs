@@ -71,7 +71,13 @@ mod tests {
         Minus, Quote, Semicolon, ShiftLeft, ShiftRight, Space,
     };
     use RobotJoint::*;
-    use bevy::time::TimeUpdateStrategy;
+    use bevy::{
+        input::{
+            ButtonState, InputPlugin,
+            keyboard::{Key, KeyboardFocusLost, KeyboardInput},
+        },
+        time::TimeUpdateStrategy,
+    };
     use std::time::Duration;
     use tabletop_core::{Drive, Face};
 
@@ -190,6 +196,27 @@ mod tests {
         assert_eq!(held(&mut test, &[KeyK, KeyR, Backslash]), []);
         assert_eq!(held(&mut test, &[Space]), [SimCommand::SetPaused(false)]);
         assert_eq!(held(&mut test, &[KeyK]), [drive(LeftE1, 1.0)]);
+    }
+
+    #[test]
+    fn keys_come_up_when_the_window_loses_the_focus() {
+        let mut test = TestWorld::new(|app: &mut App| {
+            app.init_resource::<HeadView>()
+                .init_resource::<Snapshots>()
+                .add_plugins((InputPlugin, jog::plugin, plugin));
+        });
+        test.app.world_mut().write_message(KeyboardInput {
+            key_code: KeyK,
+            logical_key: Key::Character("k".into()),
+            state: ButtonState::Pressed,
+            text: None,
+            repeat: false,
+            window: Entity::PLACEHOLDER,
+        });
+        assert_eq!(test.hold_still(), [drive(LeftE1, 1.0)]);
+        assert_eq!(test.hold_still(), [drive(LeftE1, 1.0)]);
+        test.app.world_mut().write_message(KeyboardFocusLost);
+        assert_eq!(test.hold_still(), []);
     }
 
     #[test]

@@ -6,8 +6,10 @@ use bevy_egui::{
     egui::{self, Button, Context, RichText, Ui},
 };
 
+use tabletop_core::{Action, Keymap};
+
 use crate::{
-    panels::{arrangement::Panels, messages::Notices, panel::Panel},
+    panels::{arrangement::Panels, help::Help, messages::Notices, panel::Panel},
     scale::{ScaleStep, UiScale},
     widgets::{
         icon::{Icon, icon_button},
@@ -25,6 +27,7 @@ struct Model<'a> {
     unseen_faults: usize,
     /// How large everything is drawn.
     scale: f32,
+    keymap: &'a Keymap,
 }
 
 /// What the user asks of the bar.
@@ -35,6 +38,7 @@ enum Request {
     Align,
     HideAll,
     Scale(ScaleStep),
+    Help,
 }
 
 pub(crate) fn plugin(app: &mut App) {
@@ -55,7 +59,9 @@ fn show_bar(
     mut contexts: EguiContexts,
     mut panels: ResMut<Panels>,
     notices: Res<Notices>,
+    keymap: Res<Keymap>,
     mut scale: ResMut<UiScale>,
+    mut help: ResMut<Help>,
 ) {
     let Ok(context) = contexts.ctx_mut() else {
         return;
@@ -64,13 +70,20 @@ fn show_bar(
         panels: &panels,
         unseen_faults: notices.unseen_faults().count(),
         scale: context.zoom_factor(),
+        keymap: &keymap,
     };
     if let Some(request) = show(context, &model) {
-        carry_out(request, context, &mut panels, &mut scale);
+        carry_out(request, context, &mut panels, &mut scale, &mut help);
     }
 }
 
-fn carry_out(request: Request, context: &Context, panels: &mut Panels, scale: &mut UiScale) {
+fn carry_out(
+    request: Request,
+    context: &Context,
+    panels: &mut Panels,
+    scale: &mut UiScale,
+    help: &mut Help,
+) {
     match request {
         Request::ShowAll => panels.set_all_open(true),
         Request::Show(panel) => {
@@ -80,6 +93,7 @@ fn carry_out(request: Request, context: &Context, panels: &mut Panels, scale: &m
         Request::Align => panels.align(),
         Request::HideAll => panels.set_all_open(false),
         Request::Scale(step) => scale.change(step, context.zoom_factor()),
+        Request::Help => help.toggle(),
     }
 }
 
@@ -121,24 +135,20 @@ fn buttons(ui: &mut Ui, model: &Model) -> Option<Request> {
     );
     ui.separator();
     let percent = format!("{:.0} %", 100.0 * model.scale);
-    for (text, step, tooltip) in [
-        (
-            "−",
-            ScaleStep::Smaller,
-            "Draw everything smaller (Ctrl + −)",
-        ),
-        (
-            &*percent,
-            ScaleStep::Automatic,
-            "How large everything is drawn; click for what fits this window (Ctrl + 0)",
-        ),
-        ("+", ScaleStep::Larger, "Draw everything larger (Ctrl + +)"),
-    ] {
+    let mut button = |text: &str, action, name, what| {
+        let tooltip = model.keymap.tooltip(action);
         let button = ui.button(text).on_hover_text(tooltip);
-        button
-            .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, step.name()));
-        when(button.clicked(), Request::Scale(step));
+        button.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, name));
+        when(button.clicked(), what);
+    };
+    for (text, action, step) in [
+        ("−", Action::DrawSmaller, ScaleStep::Smaller),
+        (&*percent, Action::DrawToFit, ScaleStep::Automatic),
+        ("+", Action::DrawLarger, ScaleStep::Larger),
+    ] {
+        button(text, action, step.name(), Request::Scale(step));
     }
+    button("?", Action::ShowHelp, "Help", Request::Help);
     request
 }
 
@@ -167,6 +177,7 @@ mod tests {
     struct Stage {
         panels: Panels,
         unseen_faults: usize,
+        keymap: Keymap,
         request: Option<Request>,
     }
 
@@ -176,6 +187,7 @@ mod tests {
                 panels: &stage.panels,
                 unseen_faults: stage.unseen_faults,
                 scale: 1.25,
+                keymap: &stage.keymap,
             };
             let request = show(ui.ctx(), &model);
             stage.request = request.or(stage.request);
@@ -229,6 +241,11 @@ mod tests {
     }
 
     #[test]
+    fn a_question_mark_asks_for_help() {
+        assert_eq!(clicked("Help"), Some(Request::Help));
+    }
+
+    #[test]
     fn the_buttons_stand_in_the_order_of_the_report() {
         let harness = harness();
         let labels = Panel::ALL.map(Panel::label);
@@ -255,8 +272,9 @@ mod tests {
         let context = Context::default();
         let mut panels = Panels::default();
         let mut scale = UiScale::default();
+        let mut help = Help::default();
         let mut open_after = |request| {
-            carry_out(request, &context, &mut panels, &mut scale);
+            carry_out(request, &context, &mut panels, &mut scale, &mut help);
             Panel::ALL.map(|panel| panels.is_open(panel))
         };
         let all = [true; Panel::ALL.len()];
@@ -269,6 +287,8 @@ mod tests {
             assert!(open[..=i].iter().all(|&is_open| is_open));
             assert!(open[i + 1..].iter().all(|&is_open| !is_open));
         }
+        carry_out(Request::Help, &context, &mut panels, &mut scale, &mut help);
+        assert!(help.is_open());
     }
 
     #[test]

@@ -1,0 +1,75 @@
+//! `docs/controls.md` names every key, and tests that exist.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::{fs, path::Path};
+
+use tabletop_core::{Action, ActionGroup, Keymap};
+
+fn root() -> &'static Path {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    crates.parent().unwrap()
+}
+
+fn page() -> String {
+    fs::read_to_string(root().join("docs/controls.md")).unwrap()
+}
+
+/// How the line of an action begins.
+fn line_of(action: Action) -> String {
+    let keymap = Keymap::default();
+    let bindings = keymap.bindings(action).iter();
+    let keys: Vec<_> = bindings
+        .map(|binding| format!("`{}`", binding.label()))
+        .collect();
+    format!(
+        "| {} | {} | `{action}` | ",
+        keys.join(", "),
+        action.tooltip()
+    )
+}
+
+#[test]
+fn every_action_has_a_line_with_its_keys() {
+    let page = page();
+    let missing: Vec<_> = ActionGroup::ALL
+        .into_iter()
+        .flat_map(ActionGroup::actions)
+        .map(line_of)
+        .filter(|line| !page.lines().any(|there| there.starts_with(line)))
+        .collect();
+    assert!(
+        missing.is_empty(),
+        "docs/controls.md lacks\n{}",
+        missing.join("\n")
+    );
+}
+
+#[test]
+fn no_line_is_left_of_an_action_that_has_gone() {
+    let page = page();
+    let (_, keys) = page.split_once("## Keys").unwrap();
+    let lines = keys.lines().filter(|line| line.starts_with("| `")).count();
+    assert_eq!(lines, Action::ALL.len());
+}
+
+#[test]
+fn every_line_of_a_table_is_proven_by_tests_that_exist() {
+    let page = page();
+    let lines = page.lines().filter(|line| {
+        let is_head = line.contains("proven by") || line.starts_with("|---");
+        line.starts_with('|') && !is_head
+    });
+    for line in lines {
+        let proof = line.trim_end_matches(" |").rsplit("| ").next().unwrap();
+        let links: Vec<_> = proof.split("[`").skip(1).collect();
+        assert!(!links.is_empty(), "no proof: {line}");
+        for link in links {
+            let (test, rest) = link.split_once("`](../").unwrap();
+            let (file, _) = rest.split_once(')').unwrap();
+            let source = fs::read_to_string(root().join(file));
+            let source = source.unwrap_or_else(|error| panic!("{file}: {error}"));
+            let function = format!("fn {test}(");
+            assert!(source.contains(&function), "{file} has no test {test}");
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! Keys that undo and redo (report section 4.1).
+
+use bevy::prelude::*;
+use tabletop_core::{Action, History, KeySystems, SimCommand, was_struck};
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(
+        RunFixedMainLoop,
+        (
+            undo.run_if(was_struck(Action::Undo)),
+            redo.run_if(was_struck(Action::Redo)),
+        )
+            .in_set(KeySystems),
+    );
+}
+
+fn undo(history: Res<History>, mut commands: MessageWriter<SimCommand>) {
+    if history.undoable > 0 {
+        commands.write(SimCommand::Undo);
+    }
+}
+
+fn redo(history: Res<History>, mut commands: MessageWriter<SimCommand>) {
+    if history.redoable > 0 {
+        commands.write(SimCommand::Redo);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_world::TestWorld;
+    use KeyCode::{ControlLeft, KeyY, KeyZ, ShiftRight};
+
+    #[test]
+    fn keys_undo_and_redo_as_far_as_there_is_something() {
+        for (keys, command) in [
+            (&[ControlLeft, KeyZ][..], SimCommand::Undo),
+            (&[ControlLeft, ShiftRight, KeyZ], SimCommand::Redo),
+            (&[ControlLeft, KeyY], SimCommand::Redo),
+        ] {
+            let mut test = TestWorld::new(plugin);
+            keys.iter().for_each(|&key| test.keys().press(key));
+            assert_eq!(test.hold_still(), []);
+            test.app.insert_resource(History {
+                undoable: 1,
+                redoable: 1,
+            });
+            test.keys().release_all();
+            keys.iter().for_each(|&key| test.keys().press(key));
+            assert_eq!(test.hold_still(), [command]);
+            assert_eq!(test.hold_still(), []);
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! The sheet that says what keys and mouse do.
+
+use bevy::prelude::*;
+use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
+use tabletop_core::{Action, ActionGroup, KeySystems, Keymap, Way, was_struck};
+
+/// The groups of each column, from left to right.
+const COLUMNS: [&[ActionGroup]; 3] = [
+    &[
+        ActionGroup::Simulation,
+        ActionGroup::Demonstration,
+        ActionGroup::Objects,
+        ActionGroup::Window,
+    ],
+    &[ActionGroup::Camera, ActionGroup::Robot],
+    &[ActionGroup::RightArm, ActionGroup::LeftArm],
+];
+
+/// Sizes in points.
+const COLUMN_WIDTH: f32 = 276.0;
+const KEY_WIDTH: f32 = 124.0;
+const MARGIN: f32 = 48.0;
+
+const FOOTNOTE: &str =
+    "Keys are those at these places of a US keyboard, whatever is printed on them.";
+
+/// Whether the sheet is shown.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Help {
+    is_open: bool,
+}
+
+impl Help {
+    /// Shows the sheet, or hides it.
+    pub const fn toggle(&mut self) {
+        self.is_open = !self.is_open;
+    }
+
+    /// Whether the sheet is shown.
+    pub const fn is_open(self) -> bool {
+        self.is_open
+    }
+}
+
+/// What the sheet says: groups with their lines, column by column.
+#[derive(Clone, Debug, PartialEq)]
+struct Sheet {
+    columns: Vec<Vec<(ActionGroup, Vec<Line>)>>,
+}
+
+/// What keys do, and which ones.
+#[derive(Clone, Debug, PartialEq)]
+struct Line {
+    label: String,
+    keys: String,
+    tooltip: String,
+}
+
+/// What the user asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Request {
+    Close,
+}
+
+impl Sheet {
+    fn of(keymap: &Keymap) -> Self {
+        let lines = |group: &ActionGroup| {
+            let lines = group
+                .actions()
+                .filter_map(|action| Line::of(action, keymap));
+            (*group, lines.collect())
+        };
+        Self {
+            columns: COLUMNS
+                .iter()
+                .map(|groups| groups.iter().map(lines).collect())
+                .collect(),
+        }
+    }
+}
+
+impl Line {
+    /// A joint has one line for both ways.
+    fn of(action: Action, keymap: &Keymap) -> Option<Self> {
+        let hint = keymap.hint(action);
+        let (label, hint) = match action {
+            Action::Move(joint, Way::Minus) if !joint.is_gripper() => return None,
+            Action::Move(joint, Way::Plus) if !joint.is_gripper() => {
+                let back = keymap.hint(Action::Move(joint, Way::Minus));
+                let label = action.label().replace('+', "+ / −");
+                (label, format!("{} / {}", or_none(hint), or_none(back)))
+            }
+            _ => (action.label(), or_none(hint)),
+        };
+        Some(Self {
+            label,
+            keys: hint,
+            tooltip: action.tooltip().to_owned(),
+        })
+    }
+}
+
+fn or_none(hint: String) -> String {
+    if hint.is_empty() {
+        "–".to_owned()
+    } else {
+        hint
+    }
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Help>()
+        .add_systems(
+            RunFixedMainLoop,
+            (|mut help: ResMut<Help>| help.toggle())
+                .run_if(was_struck(Action::ShowHelp))
+                .in_set(KeySystems),
+        )
+        .add_systems(
+            EguiPrimaryContextPass,
+            show_help.run_if(|help: Res<Help>| help.is_open),
+        );
+}
+
+fn show_help(mut contexts: EguiContexts, keymap: Res<Keymap>, mut help: ResMut<Help>) {
+    let Ok(context) = contexts.ctx_mut() else {
+        return;
+    };
+    match show_sheet(context, &Sheet::of(&keymap)) {
+        Some(Request::Close) => help.is_open = false,
+        None => {}
+    }
+}
+
+/// Shows the sheet over everything else, also over what a pause lays over the window.
+fn show_sheet(context: &egui::Context, sheet: &Sheet) -> Option<Request> {
+    let id = egui::Id::new("help");
+    let layer = egui::Modal::default_area(id).layer();
+    // The click that opened the sheet does not close it.
+    let was_shown = context.memory(|memory| memory.top_modal_layer() == Some(layer));
+    context.move_to_top(layer);
+    let modal = egui::Modal::new(id).show(context, |ui| show(ui, sheet));
+    let is_clicked = was_shown && context.input(|input| input.pointer.any_click());
+    (is_clicked || modal.should_close())
+        .then_some(Request::Close)
+        .or(modal.inner)
+}
+
+fn show(ui: &mut egui::Ui, sheet: &Sheet) -> Option<Request> {
+    let mut is_closed = false;
+    let screen = ui.ctx().content_rect().size() - egui::Vec2::splat(MARGIN);
+    let shown_columns = (screen.x / COLUMN_WIDTH).floor().max(1.0) as usize;
+    ui.horizontal(|ui| {
+        ui.heading("Keys");
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let button = ui.button("Close").on_hover_text("Closes this sheet (Esc)");
+            is_closed = button.clicked();
+        });
+    });
+    ui.separator();
+    let scroll = egui::ScrollArea::vertical().max_height(screen.y - 96.0);
+    scroll.show(ui, |ui| {
+        for columns in sheet.columns.chunks(shown_columns) {
+            ui.horizontal_top(|ui| {
+                for column in columns {
+                    ui.vertical(|ui| {
+                        ui.set_width(COLUMN_WIDTH - ui.spacing().item_spacing.x);
+                        for (group, lines) in column {
+                            show_group(ui, *group, lines);
+                        }
+                    });
+                }
+            });
+        }
+    });
+    ui.separator();
+    ui.weak(FOOTNOTE);
+    is_closed.then_some(Request::Close)
+}
+
+fn show_group(ui: &mut egui::Ui, group: ActionGroup, lines: &[Line]) {
+    ui.strong(group.label());
+    egui::Grid::new(group.label())
+        .num_columns(2)
+        .min_col_width(KEY_WIDTH)
+        .spacing([8.0, 2.0])
+        .show(ui, |ui| {
+            for line in lines {
+                ui.monospace(&line.keys);
+                ui.label(&line.label).on_hover_text(&line.tooltip);
+                ui.end_row();
+            }
+        });
+    ui.add_space(6.0);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_world::TestWorld;
+    use egui_kittest::{Harness, kittest::Queryable as _};
+
+    /// The sheet in a window, and whether it was closed.
+    fn harness(size: egui::Vec2) -> Harness<'static, Option<Request>> {
+        let sheet = Sheet::of(&Keymap::default());
+        Harness::builder().with_size(size).build_ui_state(
+            move |ui, request| *request = show_sheet(ui.ctx(), &sheet).or(*request),
+            None,
+        )
+    }
+
+    #[test]
+    fn every_action_stands_in_one_column() {
+        let mut shown: Vec<_> = COLUMNS.concat();
+        shown.sort();
+        let mut all = ActionGroup::ALL;
+        all.sort();
+        assert_eq!(shown, all);
+    }
+
+    #[test]
+    fn lines_say_the_present_keys() {
+        let mut keymap = Keymap::default();
+        keymap.bind(Action::Pause, ["F5".parse().unwrap()]);
+        keymap.bind(Action::Quit, []);
+        let line = |action| Line::of(action, &keymap).map(|line| (line.label, line.keys));
+        let some = |label: &str, keys: &str| Some((label.to_owned(), keys.to_owned()));
+        assert_eq!(line(Action::Pause), some("Pause, resume", "F5"));
+        assert_eq!(line(Action::Quit), some("Quit", "–"));
+        let w2 = |way| Action::Move(tabletop_core::RobotJoint::RightW2, way);
+        assert_eq!(line(w2(Way::Plus)), some("W2 + / −", "T / Shift+T"));
+        assert_eq!(line(w2(Way::Minus)), None);
+    }
+
+    #[test]
+    fn the_sheet_shows_every_line() {
+        for size in [egui::vec2(1024.0, 768.0), egui::vec2(400.0, 300.0)] {
+            let harness = harness(size);
+            harness.get_by_label("Pause, resume");
+            assert_eq!(harness.get_all_by_label("Open gripper").count(), 2);
+        }
+    }
+
+    #[test]
+    fn the_key_shows_and_hides_the_sheet() {
+        let mut test = TestWorld::new(plugin);
+        for is_open in [true, false] {
+            test.keys().press(KeyCode::F1);
+            for _ in 0..2 {
+                test.hold_still();
+                assert_eq!(test.app.world().resource::<Help>().is_open(), is_open);
+            }
+            test.keys().release(KeyCode::F1);
+        }
+    }
+
+    #[test]
+    fn button_escape_and_a_click_close_the_sheet() {
+        let close: [fn(&mut Harness<'static, Option<Request>>); 3] = [
+            |harness| harness.get_by_label("Close").click(),
+            |harness| harness.key_press(egui::Key::Escape),
+            |harness| {
+                let pos = egui::pos2(3.0, 3.0);
+                for pressed in [true, false] {
+                    harness.event(egui::Event::PointerButton {
+                        pos,
+                        button: egui::PointerButton::Primary,
+                        pressed,
+                        modifiers: egui::Modifiers::NONE,
+                    });
+                }
+            },
+        ];
+        for close in close {
+            let mut harness = harness(egui::vec2(1024.0, 768.0));
+            harness.run();
+            assert_eq!(*harness.state(), None);
+            close(&mut harness);
+            harness.run();
+            assert_eq!(*harness.state(), Some(Request::Close));
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! The keys of the window, as a list for people or as a file to change.
+
+use std::{fmt::Write as _, path::PathBuf, process::ExitCode};
+
+use clap::Args;
+use tabletop::core::{ActionGroup, Keymap};
+use tabletop_gui::{Preferences, keymap_file};
+
+use super::{Failure, Output, WRONG_INPUT, terminal::say};
+
+#[derive(Args)]
+pub(super) struct KeysArgs {
+    /// The keys that this file binds, instead of keys.ron in the folder of the preferences
+    #[arg(long, value_name = "FILE")]
+    keys: Option<PathBuf>,
+    /// Print a complete file to change and to keep as keys.ron
+    #[arg(long)]
+    ron: bool,
+}
+
+/// Lists the keys, after what is wrong with the file that binds them.
+pub(super) fn list(args: &KeysArgs) -> Result<ExitCode, Failure> {
+    let preferences = Preferences::default();
+    let (keymap, faults) = keymap_file::read(args.keys.as_deref(), &preferences);
+    faults.iter().for_each(say);
+    let text = match args.ron {
+        true => keymap_file::write(&keymap),
+        false => table(&keymap, &preferences),
+    };
+    Output::Stdout.write(text.as_bytes())?;
+    Ok(match faults.is_empty() {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::from(WRONG_INPUT),
+    })
+}
+
+fn table(keymap: &Keymap, preferences: &Preferences) -> String {
+    let mut text = String::new();
+    for group in ActionGroup::ALL {
+        let _infallible = writeln!(text, "{}", group.label());
+        for action in group.actions() {
+            let (keys, name) = (keymap.hint(action), action.name());
+            let what = action.tooltip();
+            let _infallible = writeln!(text, "  {keys:<24}{name:<26}{what}");
+        }
+        text.push('\n');
+    }
+    text.push_str(
+        "Keys are those at these places of a US keyboard, whatever is printed on them.\n",
+    );
+    if let Some(path) = preferences.file("keys") {
+        let path = path.display();
+        let _infallible = writeln!(
+            text,
+            "To change them: tabletop keys --ron > {path}, and edit that file."
+        );
+    }
+    text
+}
