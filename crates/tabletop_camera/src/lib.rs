@@ -62,7 +62,7 @@ pub use painter::Painter;
 pub use scene::{DrawnFigure, DrawnSolid, Scene};
 
 use bevy::prelude::*;
-use tabletop_core::{HeadCamera, Markers, PictureDemand, PictureSystems, SensorImage, SimSystems};
+use tabletop_core::{HeadCamera, Markers, PictureDemand, PictureSystems, SensorImage};
 
 /// Takes the head camera's picture when it is asked for: of [`HeadCamera`], on [`PictureDemand`], into [`SensorImage`].
 /// Needs [`CorePlugin`](tabletop_core::CorePlugin).
@@ -79,7 +79,6 @@ impl Plugin for CameraPlugin {
             .add_observer(sense::note_looks)
             .add_observer(sense::note_figure)
             .add_observer(sense::forget_figure)
-            .configure_sets(FixedUpdate, PictureSystems.in_set(SimSystems::Sense))
             .add_systems(FixedUpdate, sense::take_picture.in_set(PictureSystems));
     }
 }

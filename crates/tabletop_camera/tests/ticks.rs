@@ -240,6 +240,24 @@ fn a_demand_waits_for_the_end_of_a_pause() {
     assert_eq!(app.world().resource::<SensorImage>().picture.width, 200);
 }
 
+#[test]
+fn a_demand_that_is_insisted_on_is_met_in_a_pause() {
+    let mut app = app();
+    app.start();
+    put_table_and_cube(&mut app);
+    app.insert_resource(Paused(true));
+    app.world().resource::<PictureDemand>().insist();
+    app.step(1);
+    let picture = |app: &mut App| {
+        let mut image = app.world_mut().resource_mut::<SensorImage>();
+        std::mem::take(&mut image.picture)
+    };
+    assert_eq!(picture(&mut app).width, 200);
+    app.world().resource::<PictureDemand>().ask();
+    app.step(1);
+    assert_eq!(picture(&mut app).width, 0, "that demand waits again");
+}
+
 fn plate(size: f32) -> Triangles {
     Triangles {
         positions: vec![Vec3::ZERO, Vec3::X * size, Vec3::Y * size],

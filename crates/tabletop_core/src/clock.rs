@@ -9,7 +9,7 @@ use bevy::{
     prelude::*,
 };
 
-use crate::{SimCommand, Standstill};
+use crate::{PictureDemand, PictureSystems, SimCommand, Standstill};
 
 /// Ticks per second of simulated time.
 pub const TICKS_PER_SECOND: u32 = 60;
@@ -34,7 +34,7 @@ pub enum SimSystems {
     Physics,
     /// Global transforms are brought up to this tick. Runs while paused, too.
     Propagate,
-    /// Contacts, grips, forward kinematics and camera pictures are read from the new state.
+    /// Contacts, grips and forward kinematics are read from the new state; then [the picture is taken](PictureSystems).
     Sense,
     /// Recorders and scripts get what this tick brought.
     Record,
@@ -114,6 +114,7 @@ pub(crate) fn configure(app: &mut App) {
                 SimSystems::Physics.run_if(Paused::is_running),
                 SimSystems::Propagate,
                 SimSystems::Sense.run_if(Paused::is_running),
+                PictureSystems.run_if(PictureDemand::is_due),
                 SimSystems::Record.run_if(Paused::is_running),
                 SimSystems::Advance.run_if(Paused::is_running),
             )

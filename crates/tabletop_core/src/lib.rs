@@ -30,6 +30,8 @@ mod mount;
 mod navigation;
 mod number;
 mod object;
+mod pace;
+mod playback;
 mod pose;
 mod preset;
 mod random;
@@ -41,6 +43,7 @@ mod robot_news;
 mod scene;
 mod sensor;
 mod shape;
+mod timeline;
 mod twist;
 mod user;
 
@@ -61,6 +64,8 @@ pub use message::{SimCommand, SimFact};
 pub use navigation::{CameraMotion, CameraView, Steering};
 pub use number::Decimal;
 pub use object::{ObjectIndex, ObjectSpec};
+pub use pace::{Pace, PacePlugin, SingleStep};
+pub use playback::{Playback, PlaybackOrder};
 pub use pose::{Pose, UNITS_PER_METER, degrees_from_quat, quat_from_degrees};
 pub use preset::Preset;
 pub use random::Random;
@@ -73,6 +78,9 @@ pub use robot::{
 pub use scene::{ChainSpec, Joint, JointKind, JointSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
 pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage};
 pub use shape::{Part, Primitive, Shape, Solid};
+pub use timeline::{
+    Act, Actor, Timeline, TimelineGrip, TimelinePicture, TimelineSegment, TimelineStage, Verb,
+};
 pub use twist::Twist;
 pub use user::{DragPlane, KeySystems, UserCamera};
 
@@ -109,6 +117,7 @@ impl Plugin for CorePlugin {
             .add_message::<AgentNews>()
             .add_message::<OpenRecording>()
             .add_message::<CameraMotion>()
+            .add_message::<PlaybackOrder>()
             .init_resource::<Agent>()
             .init_resource::<Standstill>()
             .init_resource::<DragPlane>()
@@ -118,12 +127,14 @@ impl Plugin for CorePlugin {
             .init_resource::<KeyboardFocus>()
             .init_resource::<Keymap>()
             .init_resource::<Markers>()
+            .init_resource::<Playback>()
             .init_resource::<Recording>()
             .init_resource::<Replaying>()
             .init_resource::<Rewound>()
             .init_resource::<Robot>()
             .init_resource::<Steering>()
             .init_resource::<ObjectIndex>()
+            .init_resource::<Timeline>()
             .add_systems(
                 FixedUpdate,
                 set_paused

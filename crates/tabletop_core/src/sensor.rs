@@ -8,7 +8,7 @@ use std::{
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{Pose, SimTick};
+use crate::{Paused, Pose, SimTick};
 
 /// How the robot's head camera looks at the table (report section 4, "head camera").
 ///
@@ -113,24 +113,39 @@ impl SensorImage {
 /// It is asked before [`SimSystems::Sense`](crate::SimSystems::Sense) of that tick, and the [`SensorImage`] is there in
 /// [`SimSystems::Record`](crate::SimSystems::Record) of the same tick. Whoever asks needs only shared access, and asking
 /// twice is asking once, so it does not matter in which order several systems ask. While the simulation stands still, a
-/// demand waits.
+/// demand waits, unless it is [insisted](Self::insist) on.
 #[derive(Resource, Debug, Default)]
-pub struct PictureDemand(AtomicBool);
+pub struct PictureDemand {
+    is_asked: AtomicBool,
+    is_insisted: AtomicBool,
+}
 
 impl PictureDemand {
     /// Asks for a picture of this tick.
     pub fn ask(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.is_asked.store(true, Ordering::Relaxed);
+    }
+
+    /// Asks for a picture of this tick, also if the simulation is paused in it.
+    pub fn insist(&self) {
+        self.ask();
+        self.is_insisted.store(true, Ordering::Relaxed);
     }
 
     /// Whether a picture was asked for; afterwards none is.
     pub fn take(&mut self) -> bool {
-        std::mem::take(self.0.get_mut())
+        *self.is_insisted.get_mut() = false;
+        std::mem::take(self.is_asked.get_mut())
+    }
+
+    /// Run condition: the simulation is running, or somebody insists.
+    pub(crate) fn is_due(demand: Option<Res<Self>>, paused: Res<Paused>) -> bool {
+        !paused.0 || demand.is_some_and(|demand| demand.is_insisted.load(Ordering::Relaxed))
     }
 }
 
-/// Taking the picture, in [`SimSystems::Sense`](crate::SimSystems::Sense). What changes in that phase which objects there
-/// are comes before it.
+/// Taking the picture, after [`SimSystems::Sense`](crate::SimSystems::Sense) and before
+/// [`SimSystems::Record`](crate::SimSystems::Record).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PictureSystems;
 

@@ -43,8 +43,10 @@ mod grasp;
 mod history;
 mod obstacles;
 mod rules;
+mod snapshot;
 
 pub use grasp::{Carry, CarryTarget};
+pub use snapshot::Snapshot;
 
 use bevy::prelude::*;
 use tabletop_core::{ActuateSystems, CommandSystems, Paused};

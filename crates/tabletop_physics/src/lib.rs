@@ -49,7 +49,7 @@ pub use holding::{JustReleased, drawn, hold, let_fall, let_go};
 pub use mass::mass_properties;
 pub use nearby::{Nearby, nearby};
 pub use newcomers::BodySystems;
-pub use parking::{KeepRemoved, Parked, remove_object};
+pub use parking::{KeepRemoved, Parked, drop_removed, remove_object};
 pub use settings::PhysicsSettings;
 pub use snapshot::{PhysicsSnapshot, renew_if_empty};
 

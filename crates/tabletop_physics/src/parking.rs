@@ -1,12 +1,25 @@
 //! Removing objects so that a snapshot can bring them back.
 
 use bevy::{ecs::entity_disabling::Disabled, prelude::*};
+use tabletop_core::Rewinds;
 
 use crate::snapshot::remove_body;
 
-/// Whether removed objects are kept as disabled entities, because a snapshot may bring them back.
+/// Whether, and what for, removed objects are kept as disabled entities, because a snapshot may bring them back.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct KeepRemoved(pub bool);
+pub struct KeepRemoved {
+    /// What was done can be undone.
+    pub for_undo: bool,
+    /// A recording is played, and its player goes back.
+    pub for_playback: bool,
+}
+
+impl KeepRemoved {
+    /// Whether anybody wants them.
+    pub const fn is_on(self) -> bool {
+        self.for_undo || self.for_playback
+    }
+}
 
 /// Marks an object that was removed from the world while removed objects are [kept](KeepRemoved).
 #[derive(Component, Clone, Copy, Debug)]
@@ -16,9 +29,21 @@ pub struct Parked;
 pub fn remove_object(world: &mut World, object: Entity) {
     remove_body(world, object);
     let keep = world.get_resource::<KeepRemoved>();
-    if keep.is_some_and(|keep| keep.0) {
+    if keep.is_some_and(|keep| keep.is_on()) {
         world.entity_mut(object).insert(Parked).insert(Disabled);
     } else {
         world.despawn(object);
+    }
+}
+
+/// Removes for good what was removed, if nobody keeps it any more.
+pub fn drop_removed(world: &mut World) {
+    let keep = world.get_resource::<KeepRemoved>();
+    if keep.is_some_and(|keep| keep.is_on()) {
+        return;
+    }
+    let mut disabled = world.query_filtered::<Entity, (With<Rewinds>, With<Disabled>)>();
+    for entity in disabled.iter(world).collect::<Vec<_>>() {
+        world.try_despawn(entity).ok();
     }
 }

@@ -38,8 +38,14 @@ impl Tracked {
     pub(crate) fn is_news(&self, pose: Pose) -> bool {
         self.reported.is_none_or(|reported| {
             let rests = self.last.is_some_and(|last| is_same(last.pose, pose));
-            rests && !is_same(reported, pose) || is_far(reported, pose)
+            rests && self.is_elsewhere(pose) || is_far(reported, pose)
         })
+    }
+
+    /// Whether it is anywhere else, by any bit, than its last `move` line says.
+    pub(crate) fn is_elsewhere(&self, pose: Pose) -> bool {
+        self.reported
+            .is_none_or(|reported| !is_same(reported, pose))
     }
 
     pub(crate) fn report(&mut self, pose: Pose) {
@@ -143,10 +149,12 @@ mod tests {
         let mut tracked = reported_at(Pose::IDENTITY);
         let rest = Pose::at(Vec3::X * 1e-6);
         assert!(!tracked.is_news(rest), "it still moves");
+        assert!(tracked.is_elsewhere(rest));
         assert!(tracked.note(still(rest)));
         assert!(tracked.is_news(rest), "it has come to rest");
         tracked.report(rest);
         assert!(!tracked.note(still(rest)));
         assert!(!tracked.is_news(rest), "it is where it was reported");
+        assert!(!tracked.is_elsewhere(rest));
     }
 }

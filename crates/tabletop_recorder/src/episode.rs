@@ -1,14 +1,18 @@
 //! A recording while it is made: one demonstration as a sequence of segments.
 
-use std::path::Path;
+use std::{collections::BTreeMap, path::Path};
 
-use bevy::prelude::{Entity, warn};
-use tabletop_core::{ObjectSpec, Paused, SensorImage, SimCommand, SimFact, SimTick};
+use bevy::prelude::warn;
+use tabletop_core::{
+    Act, Actor, ObjectSpec, Paused, Pose, Rgb, SensorImage, SimCommand, SimFact, SimTick, Timeline,
+    TimelineGrip, TimelinePicture, TimelineSegment, TimelineStage,
+};
 
 use crate::{
     Channels, RecorderError, SessionHeader, SessionScene,
     cause::{Beginning, beginnings},
     change::Tracked,
+    chronicle::{TimelineMark, TimelineTail},
     event::Event,
     folder::{Folder, create_folder},
     frame::FrameClock,
@@ -18,7 +22,8 @@ use crate::{
     picture::{write_depth, write_ids, write_png},
     prelude::Prelude,
     session::{command_line, session_line},
-    states::{self, State},
+    stage::{Shown, Sight, Stage},
+    states,
 };
 
 /// A running recording.
@@ -32,6 +37,8 @@ pub(crate) struct Episode {
     text: LogFile,
     segment: u32,
     objects: Vec<Tracked>,
+    /// What there was to be seen at the last frame.
+    sight: Sight,
     /// The robot's joints at the end of the tick before.
     last_joints: Option<Joints>,
     /// How many `create` lines were written.
@@ -51,14 +58,10 @@ pub(crate) struct Episode {
     unlogged: Vec<SimCommand>,
     undoable: Vec<SegmentStart>,
     redoable: Vec<UndoneSegment>,
-}
-
-/// What an image shows.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Shown<'w> {
-    Table,
-    Object(&'w ObjectSpec),
-    Other,
+    /// The colours of all objects that there were.
+    colors: BTreeMap<String, Rgb>,
+    /// How many pictures were written, also of what was undone.
+    pictures: usize,
 }
 
 /// How far a recording had come.
@@ -66,6 +69,7 @@ pub(crate) enum Shown<'w> {
 struct Progress {
     segment: u32,
     objects: Vec<Tracked>,
+    sight: Sight,
     created: usize,
     text: u64,
     session: u64,
@@ -79,6 +83,7 @@ struct Progress {
 #[derive(Clone, Debug)]
 struct SegmentStart {
     before: Progress,
+    timeline: TimelineMark,
     /// What the session log must say more, if the recording goes on from here.
     released: Vec<SimCommand>,
     tick: SimTick,
@@ -89,6 +94,7 @@ struct SegmentStart {
 struct UndoneSegment {
     start: SegmentStart,
     end: Progress,
+    timeline: TimelineTail,
 }
 
 impl Episode {
@@ -138,6 +144,7 @@ impl Episode {
             text,
             segment: 0,
             objects: Vec::new(),
+            sight: Sight::default(),
             last_joints: None,
             created: 0,
             is_paused: earlier.is_paused(),
@@ -148,11 +155,31 @@ impl Episode {
             unlogged: Vec::new(),
             undoable: Vec::new(),
             redoable: Vec::new(),
+            colors: BTreeMap::new(),
+            pictures: 0,
         })
     }
 
     pub(crate) fn folder(&self) -> &Path {
         self.folder.path()
+    }
+
+    /// The timeline of a recording that begins.
+    pub(crate) fn timeline(&self) -> Timeline {
+        let start = self.clock.start;
+        let opening = TimelineSegment {
+            start,
+            act: None,
+            color: None,
+        };
+        Timeline {
+            stage: TimelineStage::Running,
+            folder: self.folder().to_owned(),
+            start,
+            end: start,
+            segments: vec![opening],
+            ..Timeline::default()
+        }
     }
 
     pub(crate) fn is_frame(&self, tick: SimTick) -> bool {
@@ -195,12 +222,13 @@ impl Episode {
     }
 
     /// Writes what has happened in a tick.
-    pub(crate) fn write_facts<'w>(
+    pub(crate) fn write_facts(
         &mut self,
         tick: SimTick,
         facts: &[SimFact],
         paused: Paused,
-        spec: impl Fn(Entity) -> Option<&'w ObjectSpec>,
+        stage: &Stage,
+        timeline: &mut Timeline,
     ) -> Result<(), RecorderError> {
         let is_turn = |fact: &SimFact| matches!(fact, SimFact::Undone | SimFact::Redone);
         let last_turn = facts.iter().rposition(is_turn);
@@ -213,11 +241,11 @@ impl Episode {
                 self.redoable.last().map(|segment| &segment.end)
             };
             let told = without_restored(&facts[..facts.len() - 1], restored);
-            self.write_events(told, &spec)?;
+            self.write_events(told, stage, timeline)?;
             if is_undo {
-                self.undo()?;
+                self.undo(timeline)?;
             } else {
-                self.redo()?;
+                self.redo(timeline)?;
             }
             self.tick = tick;
             self.logged.clear();
@@ -228,13 +256,14 @@ impl Episode {
         }
         let unlogged = std::mem::take(&mut self.unlogged);
         self.log(unlogged)?;
-        self.write_events(rest, &spec)
+        self.write_events(rest, stage, timeline)
     }
 
-    fn write_events<'w>(
+    fn write_events(
         &mut self,
         facts: &[SimFact],
-        spec: &impl Fn(Entity) -> Option<&'w ObjectSpec>,
+        stage: &Stage,
+        timeline: &mut Timeline,
     ) -> Result<(), RecorderError> {
         let frame = self.clock.frame(self.tick);
         let commands: Vec<_> = self
@@ -245,15 +274,18 @@ impl Episode {
         let mut beginnings = beginnings(&commands, facts).into_iter();
         let mut lines = Vec::new();
         for fact in facts {
+            self.note_act(fact, timeline);
             let event = match fact {
                 SimFact::SegmentBegun => {
                     lines.splice(..0, self.open(frame));
                     self.text.append_records(&std::mem::take(&mut lines))?;
-                    self.begin_segment(beginnings.next().unwrap_or_default())?;
+                    self.begin_segment(beginnings.next().unwrap_or_default(), timeline)?;
                     continue;
                 }
                 SimFact::ObjectCreated { id, object } => {
-                    let Some(spec) = spec(*object) else { continue };
+                    let Some(spec) = stage.spec(*object) else {
+                        continue;
+                    };
                     if let Some(opening) = &mut self.opening {
                         if opening.iter().all(|known| known.id != *id) {
                             opening.push(spec.clone());
@@ -263,7 +295,7 @@ impl Episode {
                     if self.is_tracked(id) {
                         continue;
                     }
-                    self.track(id);
+                    self.track(spec);
                     Event::Create(spec)
                 }
                 SimFact::ObjectDeleted { id } => {
@@ -291,23 +323,50 @@ impl Episode {
     /// The `create` lines of the objects that are there at the beginning.
     fn open(&mut self, frame: u64) -> Vec<Vec<String>> {
         let objects = self.opening.take().unwrap_or_default();
-        objects.iter().for_each(|spec| self.track(&spec.id));
+        objects.iter().for_each(|spec| self.track(spec));
         objects
             .iter()
             .map(|spec| Event::Create(spec).fields(frame))
             .collect()
     }
 
-    fn track(&mut self, id: &str) {
+    fn track(&mut self, spec: &ObjectSpec) {
         self.created += 1;
-        self.objects.push(Tracked::new(id, self.created));
+        self.objects.push(Tracked::new(&spec.id, self.created));
+        if let Some(solid) = spec.shape.drawn().first() {
+            self.colors.insert(spec.id.clone(), solid.color);
+        }
+    }
+
+    /// Puts what hands and grippers do on the timeline.
+    fn note_act(&self, fact: &SimFact, timeline: &mut Timeline) {
+        let Some(act) = Act::of(fact) else {
+            return;
+        };
+        match (act.actor, &mut timeline.segments[..]) {
+            (Actor::Gripper(_), _) => timeline.grips.push(TimelineGrip {
+                tick: self.tick,
+                act,
+            }),
+            (Actor::Hand(_), [_, .., last]) if last.act.is_none() => {
+                let color = |id| self.colors.get(id).copied();
+                last.color = act.object.as_ref().and_then(color);
+                last.act = Some(act);
+            }
+            // What falls off the world is lost to its hand, in the middle of a segment.
+            (Actor::Hand(_), _) => {}
+        }
     }
 
     fn is_tracked(&self, id: &str) -> bool {
         self.objects.iter().any(|object| object.id == id)
     }
 
-    fn begin_segment(&mut self, beginning: Beginning) -> Result<(), RecorderError> {
+    fn begin_segment(
+        &mut self,
+        beginning: Beginning,
+        timeline: &mut Timeline,
+    ) -> Result<(), RecorderError> {
         let mut before = self.progress();
         if let Some(&(_, session)) = self.logged.get(beginning.before) {
             before.session = session;
@@ -317,6 +376,12 @@ impl Episode {
             before,
             released: released.collect(),
             tick: self.tick,
+            timeline: TimelineMark::of(timeline),
+        });
+        timeline.segments.push(TimelineSegment {
+            start: self.tick,
+            act: None,
+            color: None,
         });
         if !self.redoable.is_empty() {
             self.redoable.clear();
@@ -333,6 +398,7 @@ impl Episode {
         Progress {
             segment: self.segment,
             objects: self.objects.clone(),
+            sight: self.sight.clone(),
             created: self.created,
             text: self.text.len(),
             session: self.session.len(),
@@ -344,7 +410,7 @@ impl Episode {
     }
 
     /// Goes back to the moment before the present segment began, and puts its files away.
-    fn undo(&mut self) -> Result<(), RecorderError> {
+    fn undo(&mut self, timeline: &mut Timeline) -> Result<(), RecorderError> {
         let Some(start) = self.undoable.pop() else {
             warn!("the world was set back to before the recording; the recording goes on");
             return Ok(());
@@ -364,16 +430,24 @@ impl Episode {
             self.session.append(&line)?;
         }
         self.resume(start.before.clone())?;
-        self.redoable.push(UndoneSegment { start, end });
+        let timeline = start.timeline.cut(timeline);
+        self.redoable.push(UndoneSegment {
+            start,
+            end,
+            timeline,
+        });
         Ok(())
     }
 
     /// Brings back the segment that was undone last, in the place of what was recorded since.
-    fn redo(&mut self) -> Result<(), RecorderError> {
-        let Some(UndoneSegment { start, end }) = self.redoable.pop() else {
+    fn redo(&mut self, timeline: &mut Timeline) -> Result<(), RecorderError> {
+        let Some(undone) = self.redoable.pop() else {
             warn!("the world was set to what the recording does not know; the recording goes on");
             return Ok(());
         };
+        let UndoneSegment { start, end, .. } = undone;
+        start.timeline.cut(timeline);
+        undone.timeline.append_to(timeline);
         let away = self.folder.undone_segment(end.segment);
         self.folder
             .remove_pictures(start.before.segment, self.clock.frame(start.tick))?;
@@ -395,6 +469,7 @@ impl Episode {
         self.text = LogFile::reopen(self.folder.text(progress.segment), progress.text)?;
         self.segment = progress.segment;
         self.objects = progress.objects;
+        self.sight = progress.sight;
         self.created = progress.created;
         self.last_joints = progress.last_joints;
         self.is_paused = progress.is_paused;
@@ -402,49 +477,76 @@ impl Episode {
     }
 
     /// Writes what the end of a tick brings: a row for each object that has moved, and at a frame the moves and a picture.
-    pub(crate) fn write_tick<'w>(
+    pub(crate) fn write_tick(
         &mut self,
         tick: SimTick,
-        state: impl Fn(&str) -> Option<State>,
-        joints: &Joints,
+        stage: &Stage,
         image: Option<&SensorImage>,
-        what: impl Fn(Entity) -> Shown<'w>,
+        timeline: &mut Timeline,
     ) -> Result<(), RecorderError> {
-        let is_frame = self.clock.is_frame(tick);
-        let frame = self.clock.frame(tick);
-        let mut moves = Vec::new();
+        timeline.end = tick;
+        if self.clock.is_frame(tick) {
+            self.write_frame(tick, Tracked::is_news, stage, image, timeline)?;
+        }
         let mut rows = Vec::new();
         for object in &mut self.objects {
-            let Some(state) = state(&object.id) else {
-                continue;
-            };
-            let pose = state.pose;
-            if is_frame && object.is_news(pose) {
-                object.report(pose);
-                let id = &object.id;
-                moves.push(Event::Move { id, pose }.fields(frame));
-            }
-            if object.note(state) {
+            if let Some(state) = stage.state(&object.id)
+                && object.note(state)
+            {
                 rows.push(states::row(tick, &object.id, state));
             }
         }
-        if !moves.is_empty()
-            && let Some(image) = image
-        {
-            self.write_image(frame, image, what)?;
-        }
-        self.text.append_records(&moves)?;
         self.states.append_records(&rows)?;
-        let rows = joints::rows(tick, self.last_joints.as_ref(), joints);
-        self.last_joints = Some(*joints);
+        let rows = joints::rows(tick, self.last_joints.as_ref(), stage.joints());
+        self.last_joints = Some(*stage.joints());
         self.joints.append_records(&rows)
     }
 
-    fn write_image<'w>(
+    /// Writes a frame: a line for each object of which this is so, and a picture if there is such a line, or something else to be
+    /// seen than at the frame before.
+    fn write_frame(
+        &mut self,
+        tick: SimTick,
+        is_told: impl Fn(&Tracked, Pose) -> bool,
+        stage: &Stage,
+        image: Option<&SensorImage>,
+        timeline: &mut Timeline,
+    ) -> Result<(), RecorderError> {
+        let frame = self.clock.frame(tick);
+        let mut moves = Vec::new();
+        for object in &mut self.objects {
+            if let Some(state) = stage.state(&object.id)
+                && is_told(object, state.pose)
+            {
+                object.report(state.pose);
+                let (id, pose) = (&object.id, state.pose);
+                moves.push(Event::Move { id, pose }.fields(frame));
+            }
+        }
+        let sight = stage.sight(&self.objects);
+        let is_another = sight != self.sight;
+        self.sight = sight;
+        if (is_another || !moves.is_empty())
+            && let Some(image) = image
+        {
+            self.write_image(frame, image, stage)?;
+            self.pictures += 1;
+            let path = self.folder.picture(self.segment, frame);
+            timeline.pictures.pop_if(|last| last.path == path);
+            timeline.pictures.push(TimelinePicture {
+                tick,
+                path,
+                serial: self.pictures,
+            });
+        }
+        self.text.append_records(&moves)
+    }
+
+    fn write_image(
         &self,
         frame: u64,
         image: &SensorImage,
-        what: impl Fn(Entity) -> Shown<'w>,
+        stage: &Stage,
     ) -> Result<(), RecorderError> {
         let channel = |name| self.folder.channel(self.segment, frame, name);
         let picture = &image.picture;
@@ -453,10 +555,8 @@ impl Episode {
             write_depth(picture, &channel("depth"))?;
         }
         if self.channels.ids {
-            let numbers = image
-                .shown
-                .iter()
-                .map(|&entity| self.number_of(what(entity)));
+            let shown = image.shown.iter();
+            let numbers = shown.map(|&entity| self.number_of(stage.shown(entity)));
             write_ids(picture, &numbers.collect::<Vec<_>>(), &channel("ids"))?;
         }
         Ok(())
@@ -475,19 +575,35 @@ impl Episode {
         number.unwrap_or(u16::MAX)
     }
 
-    /// The lines of the commands that were logged since the recording began.
-    pub(crate) fn commands(&self) -> Result<Vec<u8>, RecorderError> {
-        self.session.read_from(self.head)
-    }
-
-    /// Ends the recording.
-    pub(crate) fn finish(&mut self, tick: SimTick) -> Result<(), RecorderError> {
+    /// Ends the recording with a last frame, after which every object is where its last `move` line says. If that does not fit on the
+    /// disk, nothing of it stays. Returns the lines of the commands that were logged since the recording began.
+    pub(crate) fn finish(
+        &mut self,
+        tick: SimTick,
+        stage: &Stage,
+        image: Option<&SensorImage>,
+        timeline: &mut Timeline,
+    ) -> Result<Vec<u8>, RecorderError> {
+        timeline.end = tick;
+        let commands = self.session.read_from(self.head)?;
+        let text = self.text.len();
+        let frame = self.clock.frame(tick);
         let line = command_line(tick.0, &SimCommand::FinishRecording).unwrap_or_default();
-        self.session.append(&line)?;
+        let ended = self
+            .write_frame(tick, Tracked::is_elsewhere, stage, image, timeline)
+            .and_then(|()| self.session.append(&line));
+        if let Err(error) = ended {
+            // What has failed is told; more cannot be done.
+            let _ = self.text.cut(text);
+            if !self.clock.is_frame(tick) {
+                let _ = self.folder.remove_pictures(self.segment, frame);
+            }
+            return Err(error);
+        }
         if let Err(error) = self.drop_undone() {
             warn!("what was undone is still there: {error}");
         }
-        Ok(())
+        Ok(commands)
     }
 
     /// Removes for good what was undone.

@@ -80,6 +80,16 @@ pub enum RecorderError {
         /// What is wrong.
         problem: String,
     },
+    /// A line of another file is not what it should be.
+    #[error("{path}:{line}: {problem}; the file was changed, or is damaged")]
+    Line {
+        /// The file.
+        path: PathBuf,
+        /// Number of the line, from 1.
+        line: u64,
+        /// What is wrong.
+        problem: String,
+    },
     /// A line of a session log is not what it should be.
     #[error(
         "{path}:{line}: {source}; expected a session log of format {format}, as this program writes it",

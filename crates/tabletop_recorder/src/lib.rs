@@ -27,6 +27,7 @@
 
 mod cause;
 mod change;
+mod chronicle;
 mod episode;
 mod error;
 mod event;
@@ -39,15 +40,21 @@ mod order;
 mod picture;
 mod prelude;
 mod properties;
+mod reading;
 mod recorder;
 mod rehearsal;
 mod session;
+mod stage;
 mod states;
 
 pub use error::RecorderError;
 pub use event::Event;
 pub use frame::{FRAMES_PER_SECOND, TICKS_PER_FRAME};
 pub use log_file::whole_lines;
+pub use reading::{
+    JointRow, Occurrence, RecordedEvent, RecordedFrame, RecordedSegment, RecordingReader, StateRow,
+};
+pub use recorder::retell;
 pub use rehearsal::RehearsalPlugin;
 pub use session::{
     Session, SessionCommand, SessionHeader, SessionObject, SessionScene, SessionSettings,
@@ -57,14 +64,14 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 use serde_json::{Map, Value};
-use tabletop_core::{Paused, SimSystems, TickSystems};
+use tabletop_core::{PictureSystems, SimSystems, TickSystems};
 
 use crate::recorder::{Recorder, ask_for_picture, record, take_commands};
 
 /// Records the simulation into a folder from [`StartRecording`] to [`FinishRecording`], both ticks included.
 /// Needs [`CorePlugin`](tabletop_core::CorePlugin).
 ///
-/// It keeps between the phases of a tick: before [`SimSystems::Ingest`] it logs the commands, after [`SimSystems::Sense`]
+/// It keeps between the phases of a tick: before [`SimSystems::Ingest`] it logs the commands, after [`PictureSystems`]
 /// it writes what came of them. Both also happen while paused, so that nothing is missed that is done meanwhile.
 ///
 /// [`StartRecording`]: tabletop_core::SimCommand::StartRecording
@@ -110,10 +117,9 @@ impl Plugin for RecorderPlugin {
                         .after(SimSystems::Load)
                         .before(SimSystems::Ingest),
                     ask_for_picture
-                        .run_if(Paused::is_running)
                         .after(SimSystems::Propagate)
                         .before(SimSystems::Sense),
-                    record.after(SimSystems::Sense).before(SimSystems::Record),
+                    record.after(PictureSystems).before(SimSystems::Record),
                 )
                     .in_set(TickSystems),
             );

@@ -3,6 +3,7 @@
 use tabletop_core::{SimCommand, SimTick};
 
 use crate::{
+    SessionCommand,
     order::{in_order, is_about_recordings},
     session::command_line,
 };
@@ -53,6 +54,21 @@ impl Prelude {
 
     pub(crate) fn count(&self) -> usize {
         self.count
+    }
+
+    /// What was told since a tick before which the world was empty.
+    pub(crate) fn told(begin: SimTick, commands: &[SessionCommand]) -> Self {
+        let mut prelude = Self {
+            begin: Some(begin),
+            ..Self::default()
+        };
+        for SessionCommand { tick, command } in commands {
+            if !is_about_recordings(command) {
+                prelude.append(&command_line(*tick, command).unwrap_or_default());
+            }
+            prelude.note_lasting(command);
+        }
+        prelude
     }
 
     /// Takes in the commands of a tick in which nothing is recorded.
@@ -152,6 +168,26 @@ mod tests {
         assert_eq!(prelude.count(), 3);
         prelude.note(SimTick(9), &[scene(), SimCommand::StartRecording], true);
         assert_eq!((prelude.begin(), prelude.count()), (Some(SimTick(9)), 1));
+    }
+
+    #[test]
+    fn what_is_told_again_is_what_was_noted() {
+        let commands = [
+            (3, scene()),
+            (4, SimCommand::ShowRobot(true)),
+            (5, scene()),
+            (6, SimCommand::SetPaused(true)),
+        ];
+        let mut noted = Prelude::default();
+        for (tick, command) in &commands {
+            noted.note(SimTick(*tick), std::slice::from_ref(command), true);
+        }
+        let commands = commands.map(|(tick, command)| SessionCommand { tick, command });
+        let told_again = Prelude::told(SimTick(3), &commands);
+        assert_eq!(told_again.begin(), noted.begin());
+        assert_eq!(told(&told_again), told(&noted));
+        assert_eq!(told_again.is_paused(), noted.is_paused());
+        assert_eq!(told_again.has_used_robot, noted.has_used_robot);
     }
 
     #[test]

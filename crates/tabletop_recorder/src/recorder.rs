@@ -2,19 +2,15 @@
 
 use std::path::PathBuf;
 
-use bevy::{ecs::system::SystemParam, prelude::*};
+use bevy::prelude::*;
 use tabletop_core::{
-    Hand, Hands, HeadCamera, Joint, JointSpec, ObjectIndex, ObjectSpec, Paused, PictureDemand,
-    Recording, Robot, SensorImage, SimCommand, SimFact, SimTick, TICKS_PER_SECOND, Table, Twist,
+    Hand, Hands, Paused, PictureDemand, Recording, SensorImage, SimCommand, SimFact, SimTick,
+    TICKS_PER_SECOND, Timeline, TimelineStage,
 };
 
 use crate::{
-    Channels, RecorderError, SessionHeader, SessionObject, SessionScene, SessionSettings,
-    TICKS_PER_FRAME,
-    episode::{Episode, Shown},
-    prelude::Prelude,
-    session::FORMAT,
-    states::State,
+    Channels, RecorderError, SessionCommand, SessionHeader, TICKS_PER_FRAME, episode::Episode,
+    prelude::Prelude, session::FORMAT, stage::Stage,
 };
 
 /// Why a recording cannot be started.
@@ -44,7 +40,12 @@ impl Recorder {
         }
     }
 
-    fn start(&mut self, tick: SimTick, stage: &Stage) -> Result<SimFact, RecorderError> {
+    fn start(
+        &mut self,
+        tick: SimTick,
+        stage: &Stage,
+        timeline: &mut Timeline,
+    ) -> Result<SimFact, RecorderError> {
         let header = SessionHeader {
             format: FORMAT,
             program: env!("CARGO_PKG_VERSION").to_owned(),
@@ -56,89 +57,21 @@ impl Recorder {
             camera: stage.camera.as_deref().copied(),
             settings: stage.settings.0.clone(),
         };
-        self.episode = Some(Episode::begin(
-            &self.folder,
-            &header,
-            &stage.scene(),
-            &self.prelude,
-            self.channels,
-        )?);
+        let scene = stage.scene();
+        let episode = Episode::begin(&self.folder, &header, &scene, &self.prelude, self.channels)?;
+        *timeline = episode.timeline();
+        self.episode = Some(episode);
         self.is_finishing = false;
         let folder = self.folder.clone();
         Ok(SimFact::RecordingStarted { folder })
     }
 }
 
-/// The world as recordings see it.
-#[derive(SystemParam)]
-pub(crate) struct Stage<'w, 's> {
-    index: Res<'w, ObjectIndex>,
-    objects: Query<
-        'w,
-        's,
-        (
-            &'static ObjectSpec,
-            &'static Transform,
-            Option<&'static Twist>,
-        ),
-    >,
-    tables: Query<'w, 's, &'static Table>,
-    joints: Query<'w, 's, &'static Joint>,
-    camera: Option<Res<'w, HeadCamera>>,
-    settings: Res<'w, SessionSettings>,
-    robot: Res<'w, Robot>,
-}
-
-impl Stage<'_, '_> {
-    fn scene(&self) -> SessionScene {
-        let place = |object| self.index.iter().position(|other| other == object);
-        let mut joints: Vec<_> = self.joints.iter().collect();
-        joints.sort_by_key(|joint| joint.objects.map(place));
-        let objects = self.index.iter().filter_map(|object| {
-            let (spec, transform, _) = self.objects.get(object).ok()?;
-            Some(SessionObject {
-                pose: transform.into(),
-                spec: spec.clone(),
-            })
-        });
-        SessionScene {
-            table: self.tables.iter().next().copied(),
-            objects: objects.collect(),
-            joints: joints
-                .into_iter()
-                .filter_map(|joint| self.joint(joint))
-                .collect(),
-        }
-    }
-
-    fn joint(&self, joint: &Joint) -> Option<JointSpec> {
-        let id = |object| self.spec(object).map(|spec| spec.id.clone());
-        let [first, second] = joint.objects;
-        Some(JointSpec {
-            objects: [id(first)?, id(second)?],
-            frames: joint.frames,
-            kind: joint.kind,
-        })
-    }
-
-    fn spec(&self, object: Entity) -> Option<&ObjectSpec> {
-        self.objects.get(object).ok().map(|(spec, ..)| spec)
-    }
-
-    fn shown(&self, entity: Entity) -> Shown<'_> {
-        match self.spec(entity) {
-            Some(spec) => Shown::Object(spec),
-            None if self.tables.contains(entity) => Shown::Table,
-            None => Shown::Other,
-        }
-    }
-
-    fn state(&self, id: &str) -> Option<State> {
-        let (_, transform, twist) = self.objects.get(self.index.get(id)?).ok()?;
-        Some(State {
-            pose: transform.into(),
-            twist: twist.copied().unwrap_or_default(),
-        })
+/// Tells the recorder, if there is one, that the world is what these commands have made of an empty one since this tick: a player has
+/// put it back there. The next recording begins with them.
+pub fn retell(world: &mut World, begin: SimTick, commands: &[SessionCommand]) {
+    if let Some(mut recorder) = world.get_resource_mut::<Recorder>() {
+        recorder.prelude = Prelude::told(begin, commands);
     }
 }
 
@@ -148,6 +81,7 @@ pub(crate) fn take_commands(
     mut recording: ResMut<Recording>,
     mut commands: MessageReader<SimCommand>,
     mut facts: MessageWriter<SimFact>,
+    mut timeline: ResMut<Timeline>,
     tick: Res<SimTick>,
     hands: Res<Hands>,
     stage: Stage,
@@ -158,7 +92,7 @@ pub(crate) fn take_commands(
             SimCommand::StartRecording if recorder.episode.is_some() => {
                 facts.write(refused(IS_RUNNING.into()));
             }
-            SimCommand::StartRecording => match recorder.start(*tick, &stage) {
+            SimCommand::StartRecording => match recorder.start(*tick, &stage, &mut timeline) {
                 Ok(started) => {
                     recording.0 = true;
                     facts.write(started);
@@ -196,11 +130,15 @@ pub(crate) fn take_commands(
 pub(crate) fn ask_for_picture(
     recorder: Res<Recorder>,
     tick: Res<SimTick>,
+    paused: Res<Paused>,
     demand: Option<Res<PictureDemand>>,
 ) {
-    if let (Some(episode), Some(demand)) = (&recorder.episode, demand)
-        && episode.is_frame(*tick)
-    {
+    let (Some(episode), Some(demand)) = (&recorder.episode, demand) else {
+        return;
+    };
+    if recorder.is_finishing {
+        demand.insist();
+    } else if !paused.0 && episode.is_frame(*tick) {
         demand.ask();
     }
 }
@@ -210,29 +148,41 @@ pub(crate) fn record(
     mut recorder: ResMut<Recorder>,
     mut recording: ResMut<Recording>,
     mut facts: ParamSet<(MessageReader<SimFact>, MessageWriter<SimFact>)>,
+    mut timeline: ResMut<Timeline>,
     tick: Res<SimTick>,
     paused: Res<Paused>,
     stage: Stage,
     image: Option<Res<SensorImage>>,
 ) {
+    let is_finishing = recorder.is_finishing;
     let Some(episode) = &mut recorder.episode else {
         facts.p0().clear();
+        end_running(&mut timeline);
         return;
     };
     let told: Vec<_> = facts.p0().read().cloned().collect();
-    let mut result = episode.write_facts(*tick, &told, *paused, |object| stage.spec(object));
+    let mut result = episode.write_facts(*tick, &told, *paused, &stage, &mut timeline);
+    let image = image
+        .as_deref()
+        .filter(|image| image.tick == *tick && image.picture.width > 0);
     if result.is_ok() && !paused.0 {
-        let image = image
-            .as_deref()
-            .filter(|image| image.tick == *tick && image.picture.width > 0);
-        let state = |id: &str| stage.state(id);
-        let joints = &stage.robot.joints;
-        result = episode.write_tick(*tick, state, joints, image, |entity| stage.shown(entity));
+        result = episode.write_tick(*tick, &stage, image, &mut timeline);
     }
-    let mut facts = facts.p1();
-    recorder.stop_on_error(result, &mut recording, &mut facts);
-    if recorder.is_finishing {
-        recorder.finish(*tick, &mut recording, &mut facts);
+    let ending = match result {
+        Ok(()) if is_finishing => episode
+            .finish(*tick, &stage, image, &mut timeline)
+            .map(Some),
+        result => result.map(|()| None),
+    };
+    recorder.end_if_told(ending, &mut recording, &mut facts.p1());
+    if recorder.episode.is_none() {
+        end_running(&mut timeline);
+    }
+}
+
+fn end_running(timeline: &mut ResMut<Timeline>) {
+    if timeline.stage == TimelineStage::Running {
+        timeline.stage = TimelineStage::Finished;
     }
 }
 
@@ -252,20 +202,16 @@ impl Recorder {
         }
     }
 
-    fn finish(
+    /// Ends a recording of which these are the commands, if it was told to end, or one that cannot go on.
+    fn end_if_told(
         &mut self,
-        tick: SimTick,
+        ending: Result<Option<Vec<u8>>, RecorderError>,
         recording: &mut Recording,
         facts: &mut MessageWriter<SimFact>,
     ) {
-        let Some(episode) = &mut self.episode else {
-            self.is_finishing = false;
-            return;
-        };
-        let commands = episode.commands();
-        let result = episode.finish(tick).and(commands);
-        match result {
-            Ok(commands) => {
+        match ending {
+            Ok(None) => {}
+            Ok(Some(commands)) => {
                 if let Some(folder) = self.end(Some(&commands), recording) {
                     facts.write(SimFact::RecordingFinished { folder });
                 }

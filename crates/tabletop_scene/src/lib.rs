@@ -42,7 +42,7 @@ pub use ids::IdAllocator;
 pub use present::{PresentScene, present_scene};
 
 use bevy::prelude::*;
-use tabletop_core::{PictureSystems, Rewound, SimSystems};
+use tabletop_core::{Rewound, SimSystems};
 
 use crate::compound::Compounds;
 
@@ -62,9 +62,7 @@ impl Plugin for ScenePlugin {
             FixedUpdate,
             (
                 life::carry_out_commands.in_set(SimSystems::Ingest),
-                life::remove_fallen
-                    .in_set(SimSystems::Sense)
-                    .before(PictureSystems),
+                life::remove_fallen.in_set(SimSystems::Sense),
             ),
         )
         .add_observer(life::note_created)

@@ -245,7 +245,6 @@ mod tests {
         app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(2))
             .init_resource::<Notices>()
-            .configure_sets(FixedUpdate, PictureSystems.in_set(SimSystems::Sense))
             .add_systems(
                 FixedUpdate,
                 (|mut demand: ResMut<PictureDemand>,

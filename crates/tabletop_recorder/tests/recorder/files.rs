@@ -2,7 +2,11 @@
 
 use std::{collections::BTreeMap, fs};
 
-use tabletop_core::{Hand, Recording, SimCommand, SimFact, SimTick, StepApp as _};
+use bevy::prelude::App;
+use tabletop_core::{
+    Hand, ObjectIndex, ObjectSpec, Recording, Rgb, Robot, Shape, SimCommand, SimFact, SimTick,
+    StepApp as _,
+};
 use tabletop_recorder::{Session, SessionCommand};
 
 use crate::stage::{Place, app, app_into, block, grasp, heard, location, run, scene};
@@ -58,10 +62,11 @@ fn a_demonstration_is_written_as_the_original_program_does() {
     );
     assert_eq!(
         place.read("4.txt"),
-        "5,delete,zz\n5,destroy,RightHand\n5,move,a,1.75,1.0,0.5,0.0,0.0,0.0\n"
+        "5,delete,zz\n5,destroy,RightHand\n5,move,a,1.75,1.0,0.5,0.0,0.0,0.0\n\
+         6,move,a,1.8499999,1.0,0.5,0.0,0.0,0.0\n"
     );
     let frames: Vec<_> = (0..5).map(|segment| place.frames(segment)).collect();
-    assert_eq!(frames, [vec![0, 1], vec![2], vec![3], vec![4], vec![5]]);
+    assert_eq!(frames, [vec![0, 1], vec![2], vec![3], vec![4], vec![5, 6]]);
     assert!(!place.demo().join("5.txt").exists());
 }
 
@@ -77,8 +82,9 @@ fn a_picture_shows_its_frame() {
             (40, SimCommand::FinishRecording),
         ],
     );
-    assert_eq!(place.frames(0), [0, 1, 2]);
-    for frame in 0..3_u8 {
+    assert_eq!(place.frames(0), [0, 1, 2, 3]);
+    let end = 7 + 40;
+    for frame in 0..4_u8 {
         let file = fs::File::open(place.demo().join(format!("0/{frame}.png"))).unwrap();
         let mut reader = png::Decoder::new(std::io::BufReader::new(file))
             .read_info()
@@ -86,7 +92,7 @@ fn a_picture_shows_its_frame() {
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut pixels).unwrap();
         assert_eq!((info.width, info.height), (4, 3));
-        let grey = 7 + 15 * frame;
+        let grey = end.min(7 + 15 * frame);
         assert_eq!(pixels[..4], [grey, grey, grey, 255]);
     }
 }
@@ -207,8 +213,8 @@ fn a_reader_for_the_original_program_reads_a_recording() {
     let text: String = (0..=4).map(|n| place.read(&format!("{n}.txt"))).collect();
     let poses = read_as_the_original(&text);
     assert_eq!(poses.keys().collect::<Vec<_>>(), ["bb", "still"]);
-    let last_frame = location("bb", SimTick(1 + 15 * 7));
-    assert_eq!(poses["bb"], [last_frame.x, 2.0, 0.5, 0.0, 0.0, 0.0]);
+    let end = location("bb", SimTick(1 + 20 + 40 + 30 + 15 + 14));
+    assert_eq!(poses["bb"], [end.x, 2.0, 0.5, 0.0, 0.0, 0.0]);
     assert_eq!(poses["still"], [0.0, 5.0, 0.5, 0.0, 0.0, 0.0]);
 }
 
@@ -364,8 +370,98 @@ fn what_happens_while_paused_is_recorded() {
             (5, SimCommand::FinishRecording),
         ],
     );
-    assert_eq!(place.read("0.txt"), format!("1,create,a,{CREATED}\n"));
+    assert_eq!(
+        place.read("0.txt"),
+        format!("1,create,a,{CREATED}\n1,move,a,0.0,0.0,0.0,0.0,0.0,0.0\n")
+    );
+    assert_eq!(place.frames(0), [1]);
     assert!(!app.world().resource::<Recording>().0);
+}
+
+#[test]
+fn the_last_frame_tells_where_everything_is_that_is_not_where_its_last_line_says() {
+    let place = Place::new();
+    let mut app = app(&place);
+    run(
+        &mut app,
+        &[
+            (0, scene(&["a", "still"])),
+            (1, SimCommand::StartRecording),
+            // Two hundredths of a unit farther than at frame 2.
+            (32, SimCommand::FinishRecording),
+        ],
+    );
+    let text = place.read("0.txt");
+    let last: Vec<_> = text.lines().filter(|line| line.starts_with("3,")).collect();
+    assert_eq!(last, ["3,move,a,0.32999998,1.0,0.5,0.0,0.0,0.0"]);
+    assert_eq!(place.frames(0), [0, 1, 2, 3]);
+}
+
+/// The frames of segment 0 if nothing moves, and this is done after 20 ticks.
+fn frames_of_what_stands_still(act: impl FnOnce(&mut App)) -> Vec<u64> {
+    let place = Place::new();
+    let mut app = app(&place);
+    run(
+        &mut app,
+        &[
+            (0, scene(&["still", "still more"])),
+            (1, SimCommand::StartRecording),
+        ],
+    );
+    app.step(20);
+    act(&mut app);
+    run(&mut app, &[(100, SimCommand::FinishRecording)]);
+    place.frames(0)
+}
+
+#[test]
+fn what_appears_vanishes_or_changes_its_colour_is_in_a_picture_though_nothing_moves() {
+    assert_eq!(frames_of_what_stands_still(|_| {}), [0]);
+    assert_eq!(
+        frames_of_what_stands_still(|app| {
+            app.world_mut().write_message(SimCommand::ClearTable);
+        }),
+        [0, 2]
+    );
+    assert_eq!(
+        frames_of_what_stands_still(|app| {
+            let still = app.world().resource::<ObjectIndex>().get("still").unwrap();
+            let blue = ObjectSpec {
+                shape: Shape::Sphere {
+                    radius: 1.0,
+                    color: Rgb::new(0.0, 0.0, 1.0),
+                },
+                ..block("still")
+            };
+            app.world_mut().entity_mut(still).insert(blue);
+        }),
+        [0, 2]
+    );
+    assert_eq!(
+        frames_of_what_stands_still(|app| {
+            app.world_mut().resource_mut::<Robot>().is_shown = true;
+        }),
+        [0, 2]
+    );
+}
+
+#[test]
+fn a_destroyed_object_is_gone_from_the_video() {
+    let place = Place::new();
+    let mut app = app(&place);
+    run(
+        &mut app,
+        &[
+            (0, scene(&["still", "still more"])),
+            (1, SimCommand::StartRecording),
+            (20, grasp(Hand::Left, "still")),
+            (20, SimCommand::Destroy(Hand::Left)),
+            (40, SimCommand::FinishRecording),
+        ],
+    );
+    let frames: Vec<_> = (0..3).map(|segment| place.frames(segment)).collect();
+    assert_eq!(frames, [vec![0], vec![], vec![3]]);
+    assert_eq!(place.read("2.txt"), "3,delete,still\n3,destroy,LeftHand\n");
 }
 
 #[test]

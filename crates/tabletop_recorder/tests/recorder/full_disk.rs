@@ -143,6 +143,36 @@ fn check_recording(demo: &Path, ticks: u64) {
 }
 
 #[test]
+fn a_last_frame_that_does_not_fit_is_not_there_at_all() {
+    let place = Place::new();
+    let Some(disk) = SmallDisk::mount(place.path().join("end")) else {
+        return;
+    };
+    let demo = disk.0.join("demo");
+    let mut app = app_into(demo.clone());
+    run(
+        &mut app,
+        &[
+            (0, scene(&["a"])),
+            (0, SimCommand::StartRecording),
+            (20, SimCommand::SetPaused(true)),
+            (1, scene(&["bb"])),
+        ],
+    );
+    let before = fs::read(demo.join("0.txt")).unwrap();
+    fill(&disk.0, 1 << 20);
+    run(&mut app, &[(0, SimCommand::FinishRecording)]);
+    // The test hears nothing in a pause.
+    run(&mut app, &[(0, SimCommand::SetPaused(false))]);
+    let (_, reason) = failure(&mut app);
+    assert!(reason.contains("No space left"), "{reason}");
+    assert_eq!(fs::read(demo.join("0.txt")).unwrap(), before);
+    assert_eq!(fs::read_dir(demo.join("0")).unwrap().count(), 2);
+    let session = Session::read(demo.join("session.jsonl")).unwrap();
+    assert!(!session.is_finished());
+}
+
+#[test]
 fn no_recording_starts_on_a_full_disk() {
     let place = Place::new();
     let Some(disk) = SmallDisk::mount(place.path().join("full")) else {

@@ -4,5 +4,6 @@
 mod files;
 mod full_disk;
 mod kill;
+mod reading;
 mod stage;
 mod undo;

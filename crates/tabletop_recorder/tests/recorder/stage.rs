@@ -132,9 +132,7 @@ pub fn app_into(folder: PathBuf) -> App {
         (
             act.in_set(SimSystems::Ingest),
             move_objects.in_set(SimSystems::Physics),
-            take_picture
-                .in_set(SimSystems::Sense)
-                .in_set(PictureSystems),
+            take_picture.in_set(PictureSystems),
             hear.in_set(SimSystems::Record),
         ),
     )

@@ -262,5 +262,5 @@ fn an_undo_of_what_was_never_begun_is_survived() {
     app.world_mut().write_message(SimFact::Undone);
     app.world_mut().write_message(SimFact::Redone);
     run(&mut app, &[(20, SimCommand::FinishRecording)]);
-    assert_eq!(place.frames(0), [0, 1]);
+    assert_eq!(place.frames(0), [0, 1, 2]);
 }

@@ -1,0 +1,215 @@
+//! The lines of a segment's text file, read.
+
+use std::{path::Path, str::FromStr};
+
+use bevy::math::Vec3;
+use tabletop_core::Hand;
+
+use crate::{RecorderError, reading::damaged};
+
+/// A line of a segment's text file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedEvent {
+    /// The first frame that shows it.
+    pub frame: u64,
+    /// What happened.
+    pub what: Occurrence,
+}
+
+/// What a line of a segment's text file tells.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Occurrence {
+    /// An object is there for the first time.
+    Create {
+        /// Its id.
+        id: String,
+        /// Its properties, as key and value.
+        properties: Vec<(String, String)>,
+    },
+    /// An object has gone.
+    Delete {
+        /// Its id.
+        id: String,
+    },
+    /// An object is somewhere else, or turned.
+    Move {
+        /// Its id.
+        id: String,
+        /// Where it is now, in units.
+        location: Vec3,
+        /// Its angles in degrees about the fixed X, then Y, then Z axis.
+        degrees: Vec3,
+    },
+    /// A hand has taken an object.
+    Grasp {
+        /// The hand.
+        hand: Hand,
+        /// Id of the object.
+        id: String,
+    },
+    /// A hand has let go of what it held.
+    Release {
+        /// The hand.
+        hand: Hand,
+    },
+    /// A hand has removed what it held.
+    Destroy {
+        /// The hand.
+        hand: Hand,
+    },
+}
+
+/// Reads the text of a file of events.
+pub(super) fn read(path: &Path, text: &str) -> Result<Vec<RecordedEvent>, RecorderError> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .from_reader(text.as_bytes());
+    let mut events = Vec::new();
+    for record in reader.records() {
+        let place = |record: &csv::StringRecord| record.position().map_or(0, csv::Position::line);
+        let record = record.map_err(|error| {
+            let line = error.position().map_or(0, csv::Position::line);
+            damaged(path, line, error)
+        })?;
+        let event = parse(&record).map_err(|problem| damaged(path, place(&record), problem))?;
+        events.push(event);
+    }
+    Ok(events)
+}
+
+fn parse(record: &csv::StringRecord) -> Result<RecordedEvent, String> {
+    let fields: Vec<_> = record.iter().collect();
+    let [frame, ref event @ ..] = fields[..] else {
+        return Err("the line is empty".into());
+    };
+    let frame = number("a frame", frame)?;
+    let what = match *event {
+        ["create", id, ref pairs @ ..] if pairs.len().is_multiple_of(2) => Occurrence::Create {
+            id: id.into(),
+            properties: pairs
+                .chunks_exact(2)
+                .map(|pair| (pair[0].into(), pair[1].into()))
+                .collect(),
+        },
+        ["delete", id] => Occurrence::Delete { id: id.into() },
+        ["move", id, x, y, z, rx, ry, rz] => Occurrence::Move {
+            id: id.into(),
+            location: vector([x, y, z])?,
+            degrees: vector([rx, ry, rz])?,
+        },
+        ["grasp", by, id] => Occurrence::Grasp {
+            hand: hand(by)?,
+            id: id.into(),
+        },
+        ["release", by] => Occurrence::Release { hand: hand(by)? },
+        ["destroy", by] => Occurrence::Destroy { hand: hand(by)? },
+        _ => {
+            return Err(format!(
+                "expected an event of a recording, found `{}`",
+                event.join(",")
+            ));
+        }
+    };
+    Ok(RecordedEvent { frame, what })
+}
+
+fn vector(texts: [&str; 3]) -> Result<Vec3, String> {
+    let [x, y, z] = texts.map(|text| number("a number", text));
+    Ok(Vec3::new(x?, y?, z?))
+}
+
+pub(super) fn number<T: FromStr>(expected: &str, text: &str) -> Result<T, String> {
+    let parsed = text.parse();
+    parsed.map_err(|_| format!("expected {expected}, found `{text}`"))
+}
+
+fn hand(name: &str) -> Result<Hand, String> {
+    let hand = Hand::ALL.into_iter().find(|hand| hand.name() == name);
+    hand.ok_or_else(|| format!("expected a hand, such as LeftHand, found `{name}`"))
+}
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::{ObjectSpec, Pose, Rgb, Shape};
+
+    use super::*;
+    use crate::Event;
+
+    fn read_back(event: Event) -> Occurrence {
+        let mut lines = csv::WriterBuilder::new()
+            .flexible(true)
+            .from_writer(Vec::new());
+        lines.write_record(event.fields(7)).unwrap();
+        let text = String::from_utf8(lines.into_inner().unwrap()).unwrap();
+        let [event] = &read(Path::new("1.txt"), &text).unwrap()[..] else {
+            panic!("{text} is not one event");
+        };
+        assert_eq!(event.frame, 7);
+        event.what.clone()
+    }
+
+    #[test]
+    fn what_is_written_reads_back() {
+        let id = "a, \"b\"";
+        let shape = Shape::Sphere {
+            radius: 0.5,
+            color: Rgb::WHITE,
+        };
+        let spec = ObjectSpec::new(id, Pose::IDENTITY, 1.0, shape);
+        let pairs = [
+            ("shape", "sphere"),
+            ("radius", "0.5"),
+            ("color", "#ffffff"),
+            ("mass", "1.0"),
+        ];
+        let pose = Pose::from_degrees(Vec3::new(-2.0, 1e-5, 12_345_678.0), Vec3::Z * 45.0);
+        let hand = Hand::Both;
+        let own = |id: &str| id.to_owned();
+        for (event, expected) in [
+            (
+                Event::Create(&spec),
+                Occurrence::Create {
+                    id: own(id),
+                    properties: pairs.map(|(key, value)| (own(key), own(value))).into(),
+                },
+            ),
+            (Event::Delete { id }, Occurrence::Delete { id: own(id) }),
+            (
+                Event::Move { id, pose },
+                Occurrence::Move {
+                    id: own(id),
+                    location: pose.location,
+                    degrees: pose.degrees(),
+                },
+            ),
+            (
+                Event::Grasp { hand, id },
+                Occurrence::Grasp { hand, id: own(id) },
+            ),
+            (Event::Release { hand }, Occurrence::Release { hand }),
+            (Event::Destroy { hand }, Occurrence::Destroy { hand }),
+        ] {
+            assert_eq!(read_back(event), expected);
+        }
+    }
+
+    #[test]
+    fn a_line_that_is_none_is_named() {
+        for (line, problem) in [
+            ("x,delete,a", "expected a frame, found `x`"),
+            ("1,fly,a", "expected an event of a recording, found `fly,a`"),
+            ("1,create,a,shape", "expected an event"),
+            ("1,move,a,1,2,3,4,5,six", "expected a number, found `six`"),
+            (
+                "1,grasp,Foot,a",
+                "expected a hand, such as LeftHand, found `Foot`",
+            ),
+        ] {
+            let text = format!("0,delete,\"two\nlines\"\n{line}\n");
+            let error = read(Path::new("1.txt"), &text).unwrap_err().to_string();
+            assert!(error.starts_with("1.txt:3: "), "{error}");
+            assert!(error.contains(problem), "{error}");
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! The rows of states and joints, read.
+
+use std::path::Path;
+
+use bevy::math::{Quat, Vec3};
+use tabletop_core::{JointState, Pose, RobotJoint, SimTick, Twist};
+
+use crate::{
+    RecorderError,
+    log_file::read_whole_lines,
+    reading::{damaged, event::number},
+};
+
+/// Where an object was at the end of a tick, and how fast.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StateRow {
+    /// The tick.
+    pub tick: SimTick,
+    /// Id of the object.
+    pub id: String,
+    /// Where it was, in units, and how it was turned.
+    pub pose: Pose,
+    /// How fast it was, in units/s and rad/s.
+    pub twist: Twist,
+}
+
+/// How a joint of the robot was at the end of a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointRow {
+    /// The tick.
+    pub tick: SimTick,
+    /// The joint.
+    pub joint: RobotJoint,
+    /// Its position, velocity and torque.
+    pub state: JointState,
+}
+
+pub(super) fn states(path: &Path) -> Result<Vec<StateRow>, RecorderError> {
+    rows(path, |fields| {
+        let [tick, id, numbers @ ..] = fields else {
+            return Err(String::new());
+        };
+        let numbers = numbers_of::<f32, 13>(numbers)?;
+        let [x, y, z, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz] = numbers;
+        Ok(StateRow {
+            tick: SimTick(number("a tick", tick)?),
+            id: (*id).to_owned(),
+            pose: Pose::new(Vec3::new(x, y, z), Quat::from_xyzw(qx, qy, qz, qw)),
+            twist: Twist {
+                linear: Vec3::new(vx, vy, vz),
+                angular: Vec3::new(wx, wy, wz),
+            },
+        })
+    })
+}
+
+pub(super) fn joints(path: &Path) -> Result<Vec<JointRow>, RecorderError> {
+    rows(path, |fields| {
+        let [tick, name, numbers @ ..] = fields else {
+            return Err(String::new());
+        };
+        let joint = RobotJoint::ALL
+            .into_iter()
+            .find(|joint| joint.name() == *name);
+        let [position, velocity, torque] = numbers_of::<f64, 3>(numbers)?;
+        Ok(JointRow {
+            tick: SimTick(number("a tick", tick)?),
+            joint: joint.ok_or_else(|| format!("expected a joint, found `{name}`"))?,
+            state: JointState {
+                position,
+                velocity,
+                torque,
+            },
+        })
+    })
+}
+
+/// The rows of a file below its header.
+fn rows<T>(
+    path: &Path,
+    parse: impl Fn(&[&str]) -> Result<T, String>,
+) -> Result<Vec<T>, RecorderError> {
+    let text = read_whole_lines(path)?;
+    let mut reader = csv::ReaderBuilder::new()
+        .flexible(true)
+        .from_reader(text.as_bytes());
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|error| {
+            let line = error.position().map_or(0, csv::Position::line);
+            damaged(path, line, error)
+        })?;
+        let fields: Vec<_> = record.iter().collect();
+        let row = parse(&fields).map_err(|problem| {
+            let line = record.position().map_or(0, csv::Position::line);
+            damaged(path, line, problem)
+        })?;
+        rows.push(row);
+    }
+    Ok(rows)
+}
+
+fn numbers_of<T: std::str::FromStr + Copy, const N: usize>(
+    texts: &[&str],
+) -> Result<[T; N], String> {
+    let numbers: Result<Vec<T>, _> = texts.iter().map(|text| number("a number", text)).collect();
+    let found = texts.len();
+    <[T; N]>::try_from(numbers?).map_err(|_| format!("expected {N} numbers, found {found}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{joints, states};
+
+    fn file(name: &str, lines: &[Vec<String>]) -> std::path::PathBuf {
+        let name = format!("tabletop_rows_{name}_{}", std::process::id());
+        let path = std::env::temp_dir().join(name);
+        let lines: Vec<_> = lines.iter().map(|fields| fields.join(",") + "\n").collect();
+        std::fs::write(&path, lines.concat()).unwrap();
+        path
+    }
+
+    #[test]
+    fn states_read_back_to_the_bit() {
+        let state = states::State {
+            pose: Pose::new(
+                Vec3::new(0.1, -1e-30, 3e7),
+                Quat::from_rotation_x(1.0 / 3.0),
+            ),
+            twist: Twist {
+                linear: Vec3::splat(1.0 / 3.0),
+                angular: Vec3::NEG_Y,
+            },
+        };
+        let path = file(
+            "states",
+            &[states::header(), states::row(SimTick(9), "a", state)],
+        );
+        let row = StateRow {
+            tick: SimTick(9),
+            id: "a".into(),
+            pose: state.pose,
+            twist: state.twist,
+        };
+        assert_eq!(states(&path).unwrap(), [row]);
+        std::fs::remove_file(path).unwrap();
+    }
+
+    #[test]
+    fn joints_read_back_to_the_bit_and_wrong_rows_are_named() {
+        let mut all = [JointState::default(); 17];
+        all[RobotJoint::LeftE1.index()].position = 1.0 / 3.0;
+        let mut lines = vec![joints::header()];
+        lines.extend(joints::rows(SimTick(4), None, &all));
+        let path = file("joints", &lines);
+        let rows = joints(&path).unwrap();
+        assert_eq!(rows.len(), 17);
+        let row = JointRow {
+            tick: SimTick(4),
+            joint: RobotJoint::LeftE1,
+            state: all[RobotJoint::LeftE1.index()],
+        };
+        assert!(rows.contains(&row));
+        for (field, problem) in [
+            (1, "expected a joint, found `x`"),
+            (4, "expected a number, found `x`"),
+        ] {
+            let mut lines = lines.clone();
+            lines[3][field] = "x".into();
+            let path = file("joints", &lines);
+            let error = joints(&path).unwrap_err().to_string();
+            assert!(
+                error.starts_with(&format!("{}:4: ", path.display())),
+                "{error}"
+            );
+            assert!(error.contains(problem), "{error}");
+        }
+        lines[3].pop();
+        let error = joints(&file("joints", &lines)).unwrap_err().to_string();
+        assert!(error.contains("expected 3 numbers, found 2"), "{error}");
+        std::fs::remove_file(path).unwrap();
+    }
+}

@@ -1,0 +1,140 @@
+//! What a segment of a recording holds, and what it begins with.
+
+use std::{collections::BTreeMap, path::PathBuf};
+
+use tabletop_core::{Act, Actor, Hand, Rgb, SimCommand, SimTick, TimelineSegment, Verb};
+
+use crate::{
+    SessionCommand,
+    reading::{Occurrence, RecordedEvent, RecordingReader},
+};
+
+/// A segment of a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordedSegment {
+    /// Its number, from 0.
+    pub number: u32,
+    /// Its first tick.
+    pub start: SimTick,
+    /// What a hand did with which it begins; nothing in the first one.
+    pub act: Option<Act>,
+    /// Its events in their order.
+    pub events: Vec<RecordedEvent>,
+    /// Its frames that have pictures, in their order.
+    pub frames: Vec<RecordedFrame>,
+}
+
+/// A frame that has a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RecordedFrame {
+    /// Its number.
+    pub number: u64,
+    /// The tick whose end it shows.
+    pub tick: SimTick,
+    /// The file of its picture.
+    pub picture: PathBuf,
+}
+
+impl RecordedSegment {
+    pub(super) fn on_timeline(&self, colors: &BTreeMap<String, Rgb>) -> TimelineSegment {
+        let object = self.act.as_ref().and_then(|act| act.object.as_ref());
+        TimelineSegment {
+            start: self.start,
+            act: self.act.clone(),
+            color: object.and_then(|id| colors.get(id)).copied(),
+        }
+    }
+}
+
+/// What the hands hold, as far as events tell.
+#[derive(Debug, Default)]
+pub(super) struct Hands(BTreeMap<Hand, String>);
+
+impl Hands {
+    /// Follows the events of a segment. Returns the first thing that a hand did, and its frame.
+    pub(super) fn follow(&mut self, events: &[RecordedEvent]) -> Option<(Act, u64)> {
+        let acts = events
+            .iter()
+            .filter_map(|event| Some((self.act(&event.what)?, event.frame)));
+        acts.collect::<Vec<_>>().into_iter().next()
+    }
+
+    fn act(&mut self, what: &Occurrence) -> Option<Act> {
+        let (hand, verb, object) = match what {
+            Occurrence::Grasp { hand, id } => {
+                self.0.insert(*hand, id.clone());
+                (hand, Verb::Grasp, Some(id.clone()))
+            }
+            Occurrence::Release { hand } => (hand, Verb::Release, self.0.remove(hand)),
+            Occurrence::Destroy { hand } => (hand, Verb::Destroy, self.0.remove(hand)),
+            Occurrence::Create { .. } | Occurrence::Delete { .. } | Occurrence::Move { .. } => {
+                return None;
+            }
+        };
+        Some(Act {
+            actor: Actor::Hand(*hand),
+            verb,
+            object,
+        })
+    }
+}
+
+/// The colours of all objects, by id.
+pub(super) fn colors(segments: &[RecordedSegment]) -> BTreeMap<String, Rgb> {
+    let events = segments.iter().flat_map(|segment| &segment.events);
+    let created = events.filter_map(|event| match &event.what {
+        Occurrence::Create { id, properties } => {
+            let color = properties.iter().find(|(key, _)| key == "color")?;
+            Some((id.clone(), color.1.parse().ok()?))
+        }
+        _ => None,
+    });
+    created.collect()
+}
+
+impl RecordingReader {
+    /// The tick in which a segment began with an act that a frame shows, and the commands after the one that it came of.
+    pub(super) fn begin_of<'c>(
+        &self,
+        act: &Act,
+        frame: u64,
+        commands: &'c [SessionCommand],
+    ) -> (SimTick, &'c [SessionCommand]) {
+        let last = self.tick_of_frame(frame);
+        let before = self.tick_of_frame(frame.saturating_sub(1));
+        let is_here = |command: &SessionCommand| {
+            let is_after = command.tick > before.0 || frame == 0;
+            is_after && command.tick <= last.0
+        };
+        let of = |is_cause: fn(&Act, &SimCommand) -> bool| {
+            let mut all = commands.iter();
+            all.position(|command| is_here(command) && is_cause(act, &command.command))
+        };
+        if let Some(at) = of(is_told) {
+            (SimTick(commands[at].tick), &commands[at + 1..])
+        } else if let Some(at) = of(is_forced) {
+            (SimTick(commands[at].tick), &commands[at..])
+        } else {
+            (last, commands)
+        }
+    }
+}
+
+/// Whether a command is to do just this.
+fn is_told(act: &Act, command: &SimCommand) -> bool {
+    let by = |hand: &Hand| act.actor == Actor::Hand(*hand);
+    match (act.verb, command) {
+        (Verb::Grasp, SimCommand::Grasp { hand, object }) => {
+            by(hand) && act.object.as_ref() == Some(object)
+        }
+        (Verb::Release, SimCommand::Release(hand)) | (Verb::Destroy, SimCommand::Destroy(hand)) => {
+            by(hand)
+        }
+        _ => false,
+    }
+}
+
+/// Whether a command makes a hand let go, because another one takes what it holds, or needs it.
+fn is_forced(act: &Act, command: &SimCommand) -> bool {
+    act.verb == Verb::Release && matches!(command, SimCommand::Grasp { .. })
+}

@@ -1,0 +1,117 @@
+//! The world as recordings see it.
+
+use bevy::{ecs::system::SystemParam, prelude::*};
+use tabletop_core::{
+    HeadCamera, Joint, JointSpec, ObjectIndex, ObjectSpec, Robot, Shape, Table, Twist,
+};
+
+use crate::{
+    SessionObject, SessionScene, SessionSettings, change::Tracked, joints::Joints, states::State,
+};
+
+/// The world as recordings see it.
+#[derive(SystemParam)]
+pub(crate) struct Stage<'w, 's> {
+    index: Res<'w, ObjectIndex>,
+    objects: Query<
+        'w,
+        's,
+        (
+            &'static ObjectSpec,
+            &'static Transform,
+            Option<&'static Twist>,
+        ),
+    >,
+    tables: Query<'w, 's, &'static Table>,
+    joints: Query<'w, 's, &'static Joint>,
+    pub(crate) camera: Option<Res<'w, HeadCamera>>,
+    pub(crate) settings: Res<'w, SessionSettings>,
+    robot: Res<'w, Robot>,
+}
+
+impl Stage<'_, '_> {
+    pub(crate) fn scene(&self) -> SessionScene {
+        let place = |object| self.index.iter().position(|other| other == object);
+        let mut joints: Vec<_> = self.joints.iter().collect();
+        joints.sort_by_key(|joint| joint.objects.map(place));
+        let objects = self.index.iter().filter_map(|object| {
+            let (spec, transform, _) = self.objects.get(object).ok()?;
+            Some(SessionObject {
+                pose: transform.into(),
+                spec: spec.clone(),
+            })
+        });
+        SessionScene {
+            table: self.tables.iter().next().copied(),
+            objects: objects.collect(),
+            joints: joints
+                .into_iter()
+                .filter_map(|joint| self.joint(joint))
+                .collect(),
+        }
+    }
+
+    fn joint(&self, joint: &Joint) -> Option<JointSpec> {
+        let id = |object| self.spec(object).map(|spec| spec.id.clone());
+        let [first, second] = joint.objects;
+        Some(JointSpec {
+            objects: [id(first)?, id(second)?],
+            frames: joint.frames,
+            kind: joint.kind,
+        })
+    }
+
+    pub(crate) fn spec(&self, object: Entity) -> Option<&ObjectSpec> {
+        self.objects.get(object).ok().map(|(spec, ..)| spec)
+    }
+
+    pub(crate) fn shown(&self, entity: Entity) -> Shown<'_> {
+        match self.spec(entity) {
+            Some(spec) => Shown::Object(spec),
+            None if self.tables.contains(entity) => Shown::Table,
+            None => Shown::Other,
+        }
+    }
+
+    pub(crate) fn state(&self, id: &str) -> Option<State> {
+        let (_, transform, twist) = self.objects.get(self.index.get(id)?).ok()?;
+        Some(State {
+            pose: transform.into(),
+            twist: twist.copied().unwrap_or_default(),
+        })
+    }
+
+    /// The robot's joints.
+    pub(crate) fn joints(&self) -> &Joints {
+        &self.robot.joints
+    }
+
+    /// What there is to be seen of these objects and the robot, wherever they are.
+    pub(crate) fn sight(&self, objects: &[Tracked]) -> Sight {
+        let shape = |id: &str| Some(self.spec(self.index.get(id)?)?.shape.clone());
+        let seen = objects
+            .iter()
+            .filter_map(|object| Some((object.number, shape(&object.id)?)));
+        Sight {
+            objects: seen.collect(),
+            robot: self.robot.is_shown,
+        }
+    }
+}
+
+/// What an image shows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Shown<'w> {
+    Table,
+    Object(&'w ObjectSpec),
+    Other,
+}
+
+/// What there is to be seen, wherever it is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Sight {
+    /// The number of each object's `create` line, and how it looks.
+    objects: Vec<(usize, Shape)>,
+    /// Whether the robot stands at the table.
+    robot: bool,
+}

@@ -1,0 +1,204 @@
+//! Recordings are read as they were made.
+
+use std::fs;
+
+use bevy::math::Vec3;
+use tabletop_core::{
+    Hand, RobotJoint, SimCommand, SimTick, StepApp as _, Timeline, TimelinePicture, TimelineStage,
+};
+use tabletop_recorder::{Occurrence, RecordingReader};
+
+use crate::stage::{Place, app, grasp, location, run, scene};
+
+const LEFT: Hand = Hand::Left;
+const RIGHT: Hand = Hand::Right;
+
+/// A recording with everything that begins segments, and its timeline while it was made.
+fn recorded(place: &Place, script: &[(u64, SimCommand)]) -> Timeline {
+    let mut app = app(place);
+    let begin = [
+        (0, scene(&["a", "bb", "still"])),
+        (3, SimCommand::StartRecording),
+    ];
+    run(&mut app, &begin);
+    run(&mut app, script);
+    app.world().resource::<Timeline>().clone()
+}
+
+fn demonstration() -> Vec<(u64, SimCommand)> {
+    vec![
+        (20, grasp(LEFT, "a")),
+        (7, SimCommand::Release(LEFT)),
+        (0, grasp(RIGHT, "a")),
+        (30, grasp(LEFT, "a")),
+        (9, SimCommand::Destroy(RIGHT)),
+        (9, SimCommand::Destroy(LEFT)),
+        (50, SimCommand::FinishRecording),
+    ]
+}
+
+/// What is the same in the timeline of a recording that is made and of one that is read.
+fn comparable(timeline: &Timeline) -> Timeline {
+    let pictures = timeline.pictures.iter();
+    Timeline {
+        stage: TimelineStage::Absent,
+        pictures: pictures
+            .map(|picture| TimelinePicture {
+                serial: 0,
+                ..picture.clone()
+            })
+            .collect(),
+        ..timeline.clone()
+    }
+}
+
+#[test]
+fn the_timeline_of_a_recording_is_the_one_with_which_it_was_made() {
+    let place = Place::new();
+    let made = recorded(&place, &demonstration());
+    assert_eq!(made.stage, TimelineStage::Finished);
+    let read = RecordingReader::open(place.demo()).unwrap();
+    let timeline = read.timeline().unwrap();
+    assert_eq!(timeline.stage, TimelineStage::Open);
+    assert_eq!(comparable(&timeline), comparable(&made));
+    let acts = timeline.segments.iter().map(|segment| {
+        let act = segment.act.as_ref();
+        (segment.start.0, act.map(ToString::to_string))
+    });
+    let expected = [
+        (3, None),
+        (24, Some("LeftHand grasps a")),
+        (31, Some("LeftHand releases a")),
+        (31, Some("RightHand grasps a")),
+        (61, Some("RightHand releases a")),
+        (61, Some("LeftHand grasps a")),
+        (79, Some("LeftHand destroys a")),
+    ];
+    let expected = expected.map(|(tick, act)| (tick, act.map(str::to_owned)));
+    assert_eq!(acts.collect::<Vec<_>>(), expected);
+}
+
+#[test]
+fn undo_takes_its_segments_off_the_timeline_and_redo_brings_them_back() {
+    for turns in [
+        vec![(3, SimCommand::Undo)],
+        vec![(3, SimCommand::Undo), (0, SimCommand::Undo)],
+        vec![(3, SimCommand::Undo), (5, SimCommand::Redo)],
+        vec![
+            (3, SimCommand::Undo),
+            (0, SimCommand::Undo),
+            (20, SimCommand::Redo),
+            (0, SimCommand::Redo),
+            (1, SimCommand::Undo),
+        ],
+    ] {
+        let place = Place::new();
+        let mut script = demonstration();
+        script.pop();
+        script.extend(turns);
+        script.push((40, SimCommand::FinishRecording));
+        let made = recorded(&place, &script);
+        let read = RecordingReader::open(place.demo()).unwrap();
+        assert_eq!(comparable(&read.timeline().unwrap()), comparable(&made));
+    }
+}
+
+#[test]
+fn events_pictures_states_and_joints_are_read_with_their_ticks() {
+    let place = Place::new();
+    recorded(&place, &demonstration());
+    let recording = RecordingReader::open(place.demo()).unwrap();
+    assert_eq!(
+        (recording.first_tick(), recording.cut_off_at()),
+        (SimTick(3), None)
+    );
+    let last = recording.last_tick();
+    let segments = recording.segments().unwrap();
+    assert_eq!(segments.len(), 7);
+    for segment in &segments {
+        for frame in &segment.frames {
+            assert_eq!(frame.tick.0, (3 + 15 * frame.number).min(last.0));
+            assert!(frame.picture.is_file());
+        }
+    }
+    let moves = segments.iter().flat_map(|segment| &segment.events);
+    for event in moves {
+        if let Occurrence::Move {
+            id,
+            location: at,
+            degrees,
+        } = &event.what
+        {
+            let tick = (3 + 15 * event.frame).min(last.0);
+            assert_eq!((*at, *degrees), (location(id, SimTick(tick)), Vec3::ZERO));
+        }
+    }
+    for tick in [3, 10, 60, last.0] {
+        let states = recording.states_at(SimTick(tick)).unwrap();
+        assert_eq!(states.keys().collect::<Vec<_>>(), ["a", "bb", "still"]);
+        let place = states["bb"].pose.location;
+        assert_eq!(place, location("bb", SimTick(tick)));
+    }
+    assert_eq!(recording.states_at(SimTick(2)).unwrap().len(), 0);
+    assert_eq!(recording.joints().unwrap().len(), RobotJoint::ALL.len());
+    assert!(recording.joints_at(last).is_ok());
+}
+
+#[test]
+fn what_was_cut_off_is_read_as_far_as_it_goes() {
+    let place = Place::new();
+    let mut app = app(&place);
+    run(
+        &mut app,
+        &[
+            (0, scene(&["a"])),
+            (0, SimCommand::StartRecording),
+            (20, grasp(LEFT, "a")),
+        ],
+    );
+    app.step(20);
+    let half = |file: &str| {
+        let path = place.demo().join(file);
+        let mut bytes = fs::read(&path).unwrap();
+        bytes.extend(b"40,half a li");
+        fs::write(path, bytes).unwrap();
+    };
+    for file in ["1.txt", "states.csv", "joints.csv"] {
+        half(file);
+    }
+    let recording = RecordingReader::open(place.demo()).unwrap();
+    assert_eq!(recording.cut_off_at(), Some(recording.last_tick()));
+    let timeline = recording.timeline().unwrap();
+    let running = app.world().resource::<Timeline>();
+    assert_eq!(timeline.segments, running.segments);
+    assert_eq!(timeline.end, running.end);
+    assert!(recording.states().is_ok() && recording.joints().is_ok());
+}
+
+#[test]
+fn what_is_no_recording_or_damaged_is_an_error_with_its_place() {
+    let place = Place::new();
+    let error = RecordingReader::open(place.path()).unwrap_err().to_string();
+    assert!(error.contains("session.jsonl"), "{error}");
+    recorded(&place, &demonstration());
+    let recording = RecordingReader::open(place.demo()).unwrap();
+    for file in ["1.txt", "states.csv", "joints.csv"] {
+        let path = place.demo().join(file);
+        fs::write(&path, "tick,what\n1,nonsense\n").unwrap();
+        let error = match file {
+            "1.txt" => recording.segments().unwrap_err(),
+            "states.csv" => recording.states().unwrap_err(),
+            _ => recording.joints().unwrap_err(),
+        };
+        let error = error.to_string();
+        assert!(
+            error.starts_with(&format!("{}:", path.display())),
+            "{error}"
+        );
+        assert!(
+            error.ends_with("the file was changed, or is damaged"),
+            "{error}"
+        );
+        fs::write(&path, "").unwrap();
+    }
+}

@@ -1,0 +1,50 @@
+//! A recording ends with where everything is.
+
+use std::fs;
+
+use bevy::prelude::*;
+use tabletop::{
+    prelude::*,
+    recorder::Channels,
+    replay::{Replay, first_difference},
+};
+
+use crate::demonstration::Demonstration;
+
+#[test]
+fn a_block_that_was_let_fall_a_little_lies_where_it_came_to_rest() {
+    let mut demonstration = Demonstration::new("ending");
+    let hand = Hand::Any;
+    let object = "RedBlock".to_owned();
+    let location = Vec3::new(0.0, 3.0, 1.02);
+    demonstration.act(&[
+        (
+            vec![SimCommand::LoadTask("tablesetup/default.xml".into())],
+            60,
+        ),
+        (vec![SimCommand::StartRecording], 10),
+        (vec![SimCommand::Grasp { hand, object }], 1),
+        (vec![SimCommand::MoveTo { hand, location }], 30),
+        (vec![SimCommand::Release(hand)], 5),
+        (vec![SimCommand::FinishRecording], 1),
+    ]);
+    let text = fs::read_to_string(demonstration.folder.join("2.txt")).unwrap();
+    let mut lines = text.lines();
+    let last = lines.rfind(|line| line.contains(",move,RedBlock,"));
+    let fields: Vec<_> = last.unwrap().split(',').collect();
+    let height: f32 = fields[5].parse().unwrap();
+    let block = demonstration.app.world().resource::<ObjectIndex>();
+    let block = block.get("RedBlock").unwrap();
+    let place = demonstration.app.world().get::<Transform>(block).unwrap();
+    assert_eq!(height, place.translation.z, "{text}");
+    assert!(height < 1.01, "{text}");
+
+    let replay = Replay::read(&demonstration.folder).unwrap();
+    let replayed = demonstration.folder.with_file_name("ending_replayed");
+    let _not_there = fs::remove_dir_all(&replayed);
+    replay
+        .record(replayed.clone(), replay.camera(), Channels::default())
+        .unwrap();
+    let difference = first_difference(&demonstration.folder, &replayed).unwrap();
+    assert_eq!(difference, None);
+}
