@@ -1,9 +1,11 @@
 //! Running a recording again.
 
 mod difference;
+mod playback;
 mod player;
 
 pub use difference::first_difference;
+pub use playback::PlaybackPlugin;
 pub use player::Player;
 
 use std::{
@@ -17,12 +19,13 @@ use tabletop_baxter::BaxterPlugin;
 use tabletop_core::{HeadCamera, SimCommand, SimFact, SimTick, StepApp as _, TICKS_PER_SECOND};
 use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
 use tabletop_recorder::{
-    Channels, RecorderError, RecorderPlugin, Session, SessionCommand, TICKS_PER_FRAME,
+    Channels, RecorderError, RecorderPlugin, RecordingReader, Session, SessionCommand,
+    TICKS_PER_FRAME,
 };
 
 use crate::{
     TabletopSimPlugins, headless_app_with,
-    settings::{PHYSICS, ROBOT, RobotSettings},
+    settings::{PHYSICS, ROBOT, RobotSettings, Settings},
 };
 
 /// Why a recording cannot be run again.
@@ -69,11 +72,11 @@ pub enum ReplayError {
 /// A recording that can be run again: it goes through the same states, to the bit.
 #[derive(Clone, Debug)]
 pub struct Replay {
-    folder: PathBuf,
+    recording: RecordingReader,
+    /// Its session, with an end if it was cut off.
     session: Session,
-    cut_off_at: Option<SimTick>,
     begin: SimTick,
-    physics: PhysicsSettings,
+    settings: Settings,
     robot: BaxterPlugin,
 }
 
@@ -86,8 +89,8 @@ impl Replay {
     pub fn read(folder: impl Into<PathBuf>) -> Result<Self, ReplayError> {
         let folder = folder.into();
         let path = folder.join("session.jsonl");
-        let mut session = Session::read(&path)?;
-        let header = &session.header;
+        let recording = RecordingReader::open(&folder)?;
+        let header = recording.header();
         let fault = |name, problem| ReplayError::Settings {
             path: path.clone(),
             name,
@@ -111,20 +114,18 @@ impl Replay {
                 .map_err(|error| fault("settings.physics", error.to_string()))?,
             None => PhysicsSettings::default(),
         };
-        let robot = match header.settings.get(ROBOT) {
+        let robot_settings = match header.settings.get(ROBOT) {
             Some(robot) => RobotSettings::deserialize(robot)
-                .map_err(|error| error.to_string())
-                .and_then(|robot| robot.plugin().map_err(|error| error.to_string()))
-                .map_err(|error| fault("settings.robot", error))?,
-            None => BaxterPlugin::default(),
+                .map_err(|error| fault("settings.robot", error.to_string()))?,
+            None => RobotSettings::default(),
         };
+        let robot = robot_settings.clone().plugin();
+        let robot = robot.map_err(|error| fault("settings.robot", error.to_string()))?;
         let Some(begin) = header.begin_tick.map(SimTick) else {
             return Err(ReplayError::NoBeginning { path });
         };
-        let cut_off_at = match session.is_finished() {
-            true => None,
-            false => Some(session.last_tick(&folder)?),
-        };
+        let mut session = recording.session().clone();
+        let cut_off_at = recording.cut_off_at();
         session
             .commands
             .extend(cut_off_at.map(|tick| SessionCommand {
@@ -132,24 +133,31 @@ impl Replay {
                 command: SimCommand::FinishRecording,
             }));
         Ok(Self {
-            folder,
+            recording,
             session,
-            cut_off_at,
             begin,
-            physics,
+            settings: Settings {
+                physics,
+                robot: robot_settings,
+            },
             robot,
         })
     }
 
     /// The recording's folder.
     pub fn folder(&self) -> &Path {
-        &self.folder
+        self.recording.folder()
+    }
+
+    /// The recording, to be read.
+    pub fn recording(&self) -> &RecordingReader {
+        &self.recording
     }
 
     /// The tick in which the recording was cut off, if it was: the program was killed, or its disk was full. It is replayed
     /// that far.
     pub fn cut_off_at(&self) -> Option<SimTick> {
-        self.cut_off_at
+        self.recording.cut_off_at()
     }
 
     /// The first file in which the recording of a replay differs from this one, and how. Of what was cut off, nothing is
@@ -158,9 +166,9 @@ impl Replay {
     /// # Errors
     /// A folder or file cannot be read.
     pub fn first_difference(&self, replayed: &Path) -> Result<Option<String>, ReplayError> {
-        match self.cut_off_at {
-            None => first_difference(&self.folder, replayed),
-            Some(_) => difference::first_before_cut(&self.folder, replayed),
+        match self.cut_off_at() {
+            None => first_difference(self.folder(), replayed),
+            Some(_) => difference::first_before_cut(self.folder(), replayed),
         }
     }
 
@@ -179,7 +187,7 @@ impl Replay {
         TabletopSimPlugins
             .build()
             .set(PhysicsPlugin {
-                settings: self.physics,
+                settings: self.settings.physics,
             })
             .set(self.robot.clone())
     }

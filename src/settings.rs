@@ -15,6 +15,59 @@ use tabletop_recorder::SessionSettings;
 pub(crate) const PHYSICS: &str = "physics";
 pub(crate) const ROBOT: &str = "robot";
 
+/// What a world must have been made with to go through the same states.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Settings {
+    pub(crate) physics: PhysicsSettings,
+    pub(crate) robot: RobotSettings,
+}
+
+impl Settings {
+    /// Those of a world.
+    pub(crate) fn of(world: &World) -> Self {
+        let robot = world.get_resource::<Robot>();
+        let description = world.get_resource::<Description>();
+        Self {
+            physics: world
+                .get_resource::<PhysicsSettings>()
+                .copied()
+                .unwrap_or_default(),
+            robot: RobotSettings {
+                mode: robot.map(|robot| robot.mode).unwrap_or_default(),
+                description: description
+                    .and_then(|description| description.source.clone())
+                    .map(from_everywhere),
+            },
+        }
+    }
+
+    /// The first setting in which these differ from others, with both values.
+    pub(crate) fn first_difference(&self, here: &Self) -> Option<String> {
+        let [recorded, here] = [self, here].map(|settings| value(settings).ok());
+        first_difference("settings", &recorded?, &here?)
+    }
+}
+
+/// Longer values are not shown.
+const LONGEST_VALUE: usize = 60;
+
+fn first_difference(name: &str, recorded: &Value, here: &Value) -> Option<String> {
+    if let (Value::Object(recorded), Value::Object(here)) = (recorded, here) {
+        return recorded.iter().find_map(|(key, value)| {
+            let other = here.get(key).unwrap_or(&Value::Null);
+            first_difference(&format!("{name}.{key}"), value, other)
+        });
+    }
+    if recorded == here {
+        return None;
+    }
+    let [recorded, here] = [recorded, here].map(Value::to_string);
+    Some(match recorded.len().max(here.len()) > LONGEST_VALUE {
+        true => format!("{name} is another one"),
+        false => format!("{name} was {recorded}, and is {here} here"),
+    })
+}
+
 /// Which robot stood at the table.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct RobotSettings {
@@ -54,10 +107,13 @@ impl Plugin for RecordedSettingsPlugin {
 }
 
 fn note_physics(physics: Res<PhysicsSettings>, mut settings: ResMut<SessionSettings>) -> Result {
-    // Through a text, in which numbers have the digits of their 32 bits.
-    let value: Value = serde_json::from_str(&serde_json::to_string(&*physics)?)?;
-    settings.0.insert(PHYSICS.into(), value);
+    settings.0.insert(PHYSICS.into(), value(&*physics)?);
     Ok(())
+}
+
+/// Through a text, in which numbers have the digits of their 32 bits.
+fn value(settings: &impl Serialize) -> serde_json::Result<Value> {
+    serde_json::from_str(&serde_json::to_string(settings)?)
 }
 
 /// The same, wherever the program runs that replays it: its meshes are beside the file.
@@ -79,4 +135,32 @@ fn note_robot(
         .0
         .insert(ROBOT.into(), serde_json::to_value(robot)?);
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_setting_that_differs_is_named_with_both_values() {
+        let settings = || Settings {
+            physics: PhysicsSettings::default(),
+            robot: RobotSettings::default(),
+        };
+        let difference = |other: &Settings| other.first_difference(&settings());
+        assert_eq!(difference(&settings()), None);
+        let mut moon = settings();
+        moon.physics.gravity = 16.0;
+        let found = difference(&moon).unwrap();
+        assert_eq!(found, "settings.physics.gravity was 16.0, and is 98.1 here");
+        let mut other = settings();
+        other.robot.description = Some(Source {
+            path: "robot.urdf".into(),
+            urdf: "<robot/>".repeat(100),
+        });
+        assert_eq!(
+            difference(&other).unwrap(),
+            "settings.robot.description is another one"
+        );
+    }
 }

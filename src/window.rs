@@ -18,14 +18,14 @@ use bevy::{
     render::RenderPlugin,
     window::PresentMode,
 };
-use tabletop_core::SimCommand;
+use tabletop_core::{OpenRecording, PacePlugin, SimCommand};
 use tabletop_gui::GuiPlugin;
 use tabletop_view::ViewPlugin;
 
 use crate::{
     TabletopSimPlugins,
     baxter::BaxterPlugin,
-    replay::Replay,
+    replay::{PlaybackPlugin, Replay},
     script::{ScriptPlugin, ScriptSettings, Waiting},
 };
 
@@ -50,6 +50,19 @@ pub enum Show {
     /// What was recorded. When it is over, the user can go on from there.
     Replay(Box<Replay>),
 }
+
+impl Show {
+    /// The task to begin with when a recording is put away.
+    fn task(&self) -> PathBuf {
+        match self {
+            Self::Task(task) => task.clone(),
+            Self::Replay(_) => DEFAULT_TASK.into(),
+        }
+    }
+}
+
+/// The task of a window that has shown none yet.
+const DEFAULT_TASK: &str = "tablesetup/default.xml";
 
 /// How long a frame waits for a script.
 const LONGEST_WAIT: Duration = Duration::from_millis(50);
@@ -95,15 +108,23 @@ fn build(options: WindowOptions) -> App {
         }),
         ViewPlugin,
         GuiPlugin,
+        PacePlugin,
+        PlaybackPlugin {
+            task: options.show.task(),
+        },
         pace::plugin,
         redraw::plugin,
+        replay::plugin,
     ));
     match options.show {
         Show::Task(setup) => {
             let load = SimCommand::LoadTask(setup);
             app.world_mut().write_message(load);
         }
-        Show::Replay(replay) => replay::play(&replay, &mut app),
+        Show::Replay(replay) => {
+            let open = OpenRecording(replay.folder().to_owned());
+            app.world_mut().write_message(open);
+        }
     }
     if let Some(screenshot) = options.screenshot {
         screenshot.plan(&mut app);

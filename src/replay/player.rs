@@ -1,6 +1,6 @@
 //! Giving the commands of a recording again.
 
-use std::collections::VecDeque;
+use std::sync::Arc;
 
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop_core::{
@@ -14,7 +14,9 @@ use tabletop_recorder::{Session, SessionCommand};
 /// end the recording waits, and markers are shown. A script can watch meanwhile.
 #[derive(Resource, Clone, Debug)]
 pub struct Player {
-    commands: VecDeque<SessionCommand>,
+    commands: Arc<[SessionCommand]>,
+    /// How many of them were given.
+    given: usize,
     /// The first tick of the recording.
     start: SimTick,
     /// Whether the recording has paused the simulation.
@@ -31,9 +33,15 @@ const WATCHES: &str =
 impl Player {
     pub(crate) fn new(session: &Session) -> Self {
         let commands = session.earlier.iter().chain(&session.commands);
+        let start = SimTick(session.header.start_tick);
+        Self::of(commands.cloned().collect(), start)
+    }
+
+    fn of(commands: Vec<SessionCommand>, start: SimTick) -> Self {
         Self {
-            commands: commands.cloned().collect(),
-            start: SimTick(session.header.start_tick),
+            commands: commands.into(),
+            given: 0,
+            start,
             has_paused: false,
             records: false,
             is_watched: false,
@@ -42,27 +50,39 @@ impl Player {
 
     /// A player that starts a recording where the recording began.
     pub(crate) fn recording(session: &Session) -> Self {
-        let mut player = Self::new(session);
         let start = SessionCommand {
-            tick: player.start.0,
+            tick: session.header.start_tick,
             command: SimCommand::StartRecording,
         };
-        player.commands.insert(session.earlier.len(), start);
-        player.records = true;
-        player
+        let earlier = session.earlier.iter().cloned();
+        let commands = earlier
+            .chain([start])
+            .chain(session.commands.iter().cloned());
+        Self {
+            records: true,
+            ..Self::of(commands.collect(), SimTick(session.header.start_tick))
+        }
     }
 
     /// Lets it play in an app.
     pub(crate) fn play_in(self, app: &mut App) {
-        app.insert_resource(self).add_systems(
-            FixedUpdate,
-            play.in_set(TickSystems).before(SimSystems::Load),
-        );
+        app.insert_resource(self);
+        plugin(app);
+    }
+
+    /// The commands that it has given.
+    pub(crate) fn given(&self) -> &[SessionCommand] {
+        &self.commands[..self.given]
+    }
+
+    /// Whether the simulation is paused because the recording says so.
+    pub(crate) fn has_paused(&self) -> bool {
+        self.has_paused
     }
 
     /// Whether all its commands were given.
     pub fn is_over(&self) -> bool {
-        self.commands.is_empty()
+        self.given == self.commands.len()
     }
 
     /// The first tick of the recording: what comes before it has led there.
@@ -73,7 +93,7 @@ impl Player {
     /// The commands that are due. What was told in one tick at several moments of a pause is told at several moments.
     fn due(&mut self, tick: SimTick) -> Vec<SimCommand> {
         let mut due = Vec::new();
-        while let Some(next) = self.commands.front() {
+        while let Some(next) = self.commands.get(self.given) {
             let begins_moment = matches!(
                 next.command,
                 SimCommand::StartRecording
@@ -89,11 +109,23 @@ impl Player {
             if let SimCommand::SetPaused(paused) = next.command {
                 self.has_paused = paused;
             }
-            let next = self.commands.pop_front().map(|next| next.command);
-            due.extend(next.filter(|next| self.records || *next != SimCommand::FinishRecording));
+            self.given += 1;
+            if self.records || next.command != SimCommand::FinishRecording {
+                due.push(next.command.clone());
+            }
         }
         due
     }
+}
+
+/// Lets the [`Player`] of an app play, if it has one.
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(
+        FixedUpdate,
+        play.run_if(resource_exists::<Player>)
+            .in_set(TickSystems)
+            .before(SimSystems::Load),
+    );
 }
 
 fn play(
@@ -153,15 +185,8 @@ mod tests {
 
     fn player(commands: &[(u64, SimCommand)]) -> Player {
         let commands = commands.iter().cloned();
-        Player {
-            commands: commands
-                .map(|(tick, command)| SessionCommand { tick, command })
-                .collect(),
-            start: SimTick(0),
-            has_paused: false,
-            records: false,
-            is_watched: false,
-        }
+        let commands = commands.map(|(tick, command)| SessionCommand { tick, command });
+        Player::of(commands.collect(), SimTick(0))
     }
 
     #[test]

@@ -1,37 +1,25 @@
-//! A recording in the window.
+//! Recordings in the window.
 
 use bevy::prelude::*;
-use tabletop_core::SimTick;
+use tabletop_core::{Playback, Timeline};
 use tabletop_gui::{Notices, Tone};
 
-use crate::replay::{Player, Replay};
-
-/// How many times as fast as it was what has led to the recording goes by, at most.
-const HURRY: f32 = 50.0;
-
-/// Plays a recording in the app of a window, and says when it is over.
-pub(super) fn play(replay: &Replay, app: &mut App) {
-    replay.play_in(app);
-    let over = format!(
-        "the replay of {} is over; you can go on from here",
-        replay.folder().display()
-    );
-    let announce = move |mut notices: ResMut<Notices>| notices.add(Tone::News, &over);
-    app.add_systems(
-        Update,
-        (
-            hurry_to_the_start.run_if(not(is_over)),
-            announce.run_if(is_over.and_then(run_once)),
-        ),
-    );
+pub(super) fn plugin(app: &mut App) {
+    app.add_systems(Update, announce_end.run_if(resource_changed::<Playback>));
 }
 
-fn is_over(player: Res<Player>) -> bool {
-    player.is_over()
-}
-
-/// Lets time fly until the recording begins.
-fn hurry_to_the_start(player: Res<Player>, tick: Res<SimTick>, mut time: ResMut<Time<Virtual>>) {
-    let left = player.start().0.saturating_sub(tick.0);
-    time.set_relative_speed((left as f32 / 10.0).clamp(1.0, HURRY));
+/// Says that the user can act when an open recording has come to its end.
+fn announce_end(
+    playback: Res<Playback>,
+    timeline: Res<Timeline>,
+    mut was_over: Local<bool>,
+    mut notices: ResMut<Notices>,
+) {
+    let is_over = playback.is_over && !playback.loops;
+    if is_over && !std::mem::replace(&mut *was_over, is_over) {
+        let folder = timeline.folder.display();
+        let over = format!("the replay of {folder} is over; you can go on from here");
+        notices.add(Tone::News, &over);
+    }
+    *was_over = is_over;
 }

@@ -64,37 +64,42 @@ impl Demonstration {
 
     /// Every bit that tells the state of the objects and the robot.
     pub fn bits(&self) -> Vec<(String, Vec<u32>)> {
-        let world = self.app.world();
-        let tick = world.resource::<SimTick>().0 as u32;
-        let objects = world.resource::<ObjectIndex>().iter().map(|object| {
-            let place = world.get::<Transform>(object).unwrap();
-            let velocity = world.get::<Velocity>(object).unwrap();
-            let twist = world.get::<Twist>(object).unwrap();
-            assert_eq!(
-                (twist.linear, twist.angular),
-                (velocity.linear, velocity.angular)
-            );
-            let numbers = [place.translation, velocity.linear, velocity.angular]
-                .into_iter()
-                .flat_map(|vector| vector.to_array())
-                .chain(place.rotation.to_array())
-                .map(f32::to_bits);
-            let sleeps = world
-                .get::<Sleeping>(object)
-                .is_some_and(|state| state.sleeping);
-            let id = world.get::<ObjectSpec>(object).unwrap().id.clone();
-            (id, numbers.chain([u32::from(sleeps)]).collect())
-        });
-        let robot = world.resource::<Robot>();
-        let joints = robot.joints.iter().flat_map(|joint| {
-            let bits = joint.position.to_bits();
-            [bits as u32, (bits >> 32) as u32]
-        });
-        let held = robot.arms.iter().map(|arm| arm.holds.len() as u32);
-        let robot = [u32::from(robot.is_shown)].into_iter().chain(joints);
-        std::iter::once(("tick".into(), vec![tick]))
-            .chain([("robot".into(), robot.chain(held).collect())])
-            .chain(objects)
-            .collect()
+        bits(&self.app)
     }
+}
+
+/// Every bit that tells the state of the objects and the robot.
+pub fn bits(app: &App) -> Vec<(String, Vec<u32>)> {
+    let world = app.world();
+    let tick = world.resource::<SimTick>().0 as u32;
+    let objects = world.resource::<ObjectIndex>().iter().map(|object| {
+        let place = world.get::<Transform>(object).unwrap();
+        let velocity = world.get::<Velocity>(object).unwrap();
+        let twist = world.get::<Twist>(object).unwrap();
+        assert_eq!(
+            (twist.linear, twist.angular),
+            (velocity.linear, velocity.angular)
+        );
+        let numbers = [place.translation, velocity.linear, velocity.angular]
+            .into_iter()
+            .flat_map(|vector| vector.to_array())
+            .chain(place.rotation.to_array())
+            .map(f32::to_bits);
+        let sleeps = world
+            .get::<Sleeping>(object)
+            .is_some_and(|state| state.sleeping);
+        let id = world.get::<ObjectSpec>(object).unwrap().id.clone();
+        (id, numbers.chain([u32::from(sleeps)]).collect())
+    });
+    let robot = world.resource::<Robot>();
+    let joints = robot.joints.iter().flat_map(|joint| {
+        let bits = joint.position.to_bits();
+        [bits as u32, (bits >> 32) as u32]
+    });
+    let held = robot.arms.iter().map(|arm| arm.holds.len() as u32);
+    let robot = [u32::from(robot.is_shown)].into_iter().chain(joints);
+    std::iter::once(("tick".into(), vec![tick]))
+        .chain([("robot".into(), robot.chain(held).collect())])
+        .chain(objects)
+        .collect()
 }

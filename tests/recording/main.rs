@@ -2,6 +2,8 @@
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod demonstration;
+mod ending;
+mod playback;
 mod random;
 mod robot;
 mod settings;

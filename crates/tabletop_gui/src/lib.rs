@@ -92,6 +92,7 @@ impl Plugin for GuiPlugin {
                 input::script_control::plugin,
                 panels::status::plugin,
                 panels::head_view::plugin,
+                panels::timeline::plugin,
                 input::snapshot::plugin,
                 input::navigate::plugin,
                 panels::camera::plugin,

@@ -12,6 +12,7 @@ pub(crate) mod panel;
 pub(crate) mod pause;
 pub(crate) mod robot;
 pub(crate) mod status;
+pub(crate) mod timeline;
 pub(crate) mod toasts;
 pub(crate) mod window;
 

@@ -18,16 +18,19 @@ pub enum Panel {
     DemonstrationTools,
     /// What the user has been told.
     Messages,
+    /// The recording that is made or open, along its time.
+    Timeline,
 }
 
 impl Panel {
     /// The panels in the order of their buttons, and from the top downwards when they are aligned.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Status,
         Self::Camera,
         Self::Robot,
         Self::DemonstrationTools,
         Self::Messages,
+        Self::Timeline,
     ];
 
     /// The text of its button.
@@ -38,6 +41,7 @@ impl Panel {
             Self::Robot => "Robot",
             Self::DemonstrationTools => "Demo Tools",
             Self::Messages => "Messages",
+            Self::Timeline => "Timeline",
         }
     }
 
@@ -49,6 +53,7 @@ impl Panel {
             Self::Robot => "Robot",
             Self::DemonstrationTools => "Demonstration Tools",
             Self::Messages => "Messages",
+            Self::Timeline => "Timeline",
         }
     }
 
@@ -62,6 +67,7 @@ impl Panel {
                 "Hands, what they hold, how it turns; record, undo and redo"
             }
             Self::Messages => "Everything that you have been told, with its place",
+            Self::Timeline => "The recording along its time; step, play slowly or fast",
         }
     }
 
@@ -71,6 +77,7 @@ impl Panel {
             Self::Status | Self::Robot | Self::DemonstrationTools => 304.0,
             Self::Camera => 332.0,
             Self::Messages => 480.0,
+            Self::Timeline => 640.0,
         }
     }
 }

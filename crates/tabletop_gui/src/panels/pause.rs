@@ -1,8 +1,10 @@
-//! The pause overlay, which covers view and panels.
+//! The pause overlay, which covers view and panels; with the Timeline open, the view alone.
 
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 use tabletop_core::Paused;
+
+use crate::panels::{Panel, Panels};
 
 const TEXT: &str = "Simulation Paused\n\nPress SPACE to resume\nPress ESC to quit";
 
@@ -20,13 +22,18 @@ pub(crate) fn plugin(app: &mut App) {
     );
 }
 
-fn show_overlay(mut contexts: EguiContexts) {
+fn show_overlay(mut contexts: EguiContexts, panels: Res<Panels>) {
     let Ok(context) = contexts.ctx_mut() else {
         return;
     };
     let screen = context.viewport_rect();
+    // The buttons of the timeline step through a pause.
+    let order = match panels.is_open(Panel::Timeline) {
+        true => egui::Order::Background,
+        false => egui::Order::Foreground,
+    };
     egui::Area::new(egui::Id::new("pause"))
-        .order(egui::Order::Foreground)
+        .order(order)
         .fixed_pos(screen.min)
         .fade_in(false)
         .show(context, |ui| {

@@ -1,0 +1,266 @@
+//! The Timeline: the recording that is made or open, with its segments, its pictures and a playhead.
+
+mod axis;
+mod film;
+mod orders;
+mod pictures;
+mod track;
+mod transport;
+
+use std::path::PathBuf;
+
+use bevy::{ecs::system::SystemParam, prelude::*};
+use bevy_egui::{
+    EguiContexts, EguiPrimaryContextPass,
+    egui::{self, Ui},
+};
+use tabletop_core::{
+    History, Keymap, Pace, Paused, Playback, SimTick, Timeline, TimelineSegment, TimelineStage,
+};
+
+use self::{axis::Axis, pictures::Pictures};
+use crate::panels::{Panel, Panels};
+
+/// What to do where there is no recording.
+const ABSENT: &str = "There is no recording. Start one in Demonstration Tools, or open one: drop its folder onto the window.";
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<View>()
+        .add_plugins(orders::plugin)
+        .add_systems(Update, open_with_recording)
+        .add_systems(EguiPrimaryContextPass, show_panel);
+}
+
+/// What the panel shows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Model<'a> {
+    pub timeline: &'a Timeline,
+    pub playback: Playback,
+    /// The tick whose end the world shows.
+    pub shown: SimTick,
+    pub is_paused: bool,
+    pub pace: Pace,
+    pub history: History,
+    pub keymap: &'a Keymap,
+}
+
+/// What the user asks for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Request {
+    Play,
+    Pause,
+    /// Simulate one tick.
+    Step,
+    /// Show the end of this tick, and play on if it plays.
+    GoTo(SimTick),
+    /// Show the end of this tick, and stand still.
+    StopAt(SimTick),
+    SetPace(Pace),
+    Loop(bool),
+    /// Undo so many segments.
+    Undo(usize),
+    Redo,
+    Open(PathBuf),
+    Close,
+}
+
+/// What the panel remembers.
+#[derive(Resource, Default)]
+pub(crate) struct View {
+    /// The moment that the user looks at, though the world is not there.
+    looked_at: Option<SimTick>,
+    /// The moment under the mouse while it drags.
+    dragged_to: Option<SimTick>,
+    pictures: Pictures,
+}
+
+impl Model<'_> {
+    fn is_open(&self) -> bool {
+        self.timeline.stage == TimelineStage::Open
+    }
+
+    /// Where the playhead is.
+    fn playhead(&self) -> SimTick {
+        let Timeline { start, end, .. } = *self.timeline;
+        self.shown.clamp(start, end.max(start))
+    }
+
+    /// A moment in seconds from the beginning.
+    fn time(&self, tick: SimTick) -> String {
+        axis::seconds(tick.0.saturating_sub(self.timeline.start.0))
+    }
+
+    /// The sentence of a segment.
+    fn sentence(&self, number: usize) -> String {
+        let act = self
+            .segment(number)
+            .and_then(|segment| segment.act.as_ref());
+        let act = act.map_or_else(|| "Beginning".into(), ToString::to_string);
+        format!("Segment {number}: {act}")
+    }
+
+    fn segment(&self, number: usize) -> Option<&TimelineSegment> {
+        self.timeline.segments.get(number)
+    }
+}
+
+/// Shows the panel's contents, and returns what the user asks for.
+pub(crate) fn show(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> {
+    view.pictures.begin_frame(model.timeline);
+    let mut requests = transport::show(ui, model);
+    if model.timeline.stage == TimelineStage::Absent {
+        view.looked_at = None;
+        ui.label(ABSENT);
+        return requests;
+    }
+    let (rect, _) = ui.allocate_exact_size(
+        egui::vec2(ui.available_width(), track::HEIGHT),
+        egui::Sense::hover(),
+    );
+    let axis = Axis::new(model.timeline, rect.x_range());
+    let mut moments = track::show(ui, model, axis, rect);
+    moments.extend(film::show(ui, model, axis, &mut view.pictures));
+    let mut dragged_to = None;
+    for moment in moments {
+        match moment {
+            Moment::Dragged(tick) => dragged_to = Some(tick),
+            Moment::Chosen(tick) if model.is_open() => requests.push(Request::GoTo(tick)),
+            Moment::Chosen(tick) => view.looked_at = Some(tick),
+        }
+    }
+    view.dragged_to = dragged_to;
+    if let Some(tick) = dragged_to {
+        film::show_large_at_pointer(ui, model, tick, &mut view.pictures);
+    }
+    if model.is_open() {
+        view.looked_at = None;
+    }
+    requests.extend(show_segment(ui, model, view));
+    requests
+}
+
+/// A moment that the user points out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Moment {
+    /// The mouse drags over it.
+    Dragged(SimTick),
+    /// It was clicked, or the mouse let go there.
+    Chosen(SimTick),
+}
+
+/// The segment of the playhead, or of the moment that the user looks at.
+fn show_segment(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> {
+    let mut requests = Vec::new();
+    let tick = view.dragged_to.or(view.looked_at);
+    let tick = tick.unwrap_or_else(|| model.playhead());
+    let Some(number) = model.timeline.segment_at(tick) else {
+        return requests;
+    };
+    ui.horizontal(|ui| {
+        if let Some(color) = model.segment(number).and_then(|segment| segment.color) {
+            let (rect, _) = ui.allocate_exact_size(egui::Vec2::splat(14.0), egui::Sense::hover());
+            ui.painter().rect_filled(rect, 2.0, track::color(color));
+        }
+        ui.strong(model.sentence(number));
+        let (start, end) = (
+            model.timeline.segments[number].start,
+            model.timeline.end_of(number),
+        );
+        ui.weak(format!("{} – {}", model.time(start), model.time(end)));
+    });
+    if model.timeline.stage == TimelineStage::Running {
+        let later = model.timeline.segments.len().saturating_sub(number);
+        let count = later.min(model.history.undoable);
+        ui.horizontal(|ui| {
+            let segments = match count {
+                1 => "this segment".to_owned(),
+                count => format!("this segment and all after it: {count} segments"),
+            };
+            let undo = ui
+                .add_enabled(
+                    number > 0 && count > 0,
+                    egui::Button::new("Undo back to here"),
+                )
+                .on_hover_text(format!("Undo {segments}"))
+                .on_disabled_hover_text("The first segment cannot be undone");
+            if undo.clicked() {
+                view.looked_at = None;
+                requests.push(Request::Undo(count));
+            }
+            let redo = ui
+                .add_enabled(model.history.redoable > 0, egui::Button::new("Redo"))
+                .on_hover_text("Bring back the segment that was undone last")
+                .on_disabled_hover_text("Nothing was undone");
+            if redo.clicked() {
+                requests.push(Request::Redo);
+            }
+        });
+    }
+    if let Some(tick) = view.looked_at {
+        ui.horizontal(|ui| {
+            ui.label(format!("The picture of {}", model.time(tick)));
+            let back = ui.button("Back to now");
+            if back.on_hover_text("Look at the present again").clicked() {
+                view.looked_at = None;
+            }
+        });
+        film::show_large(ui, model, tick, &mut view.pictures);
+    }
+    requests
+}
+
+/// The panel opens with a recording.
+fn open_with_recording(
+    timeline: Res<Timeline>,
+    mut stage: Local<TimelineStage>,
+    mut panels: ResMut<Panels>,
+) {
+    let is_new = *stage != timeline.stage;
+    *stage = timeline.stage;
+    if is_new && timeline.stage == TimelineStage::Open {
+        panels.set_open(Panel::Timeline, true);
+    }
+}
+
+/// What the model is made from.
+#[derive(SystemParam)]
+struct Source<'w> {
+    timeline: Res<'w, Timeline>,
+    playback: Res<'w, Playback>,
+    tick: Res<'w, SimTick>,
+    paused: Res<'w, Paused>,
+    pace: Res<'w, Pace>,
+    history: Res<'w, History>,
+    keymap: Res<'w, Keymap>,
+}
+
+fn show_panel(
+    mut contexts: EguiContexts,
+    mut panels: ResMut<Panels>,
+    source: Source,
+    mut view: ResMut<View>,
+    mut orders: orders::Orders,
+) {
+    let Ok(context) = contexts.ctx_mut() else {
+        return;
+    };
+    let model = Model {
+        timeline: &source.timeline,
+        playback: *source.playback,
+        shown: SimTick(source.tick.0.saturating_sub(1)),
+        is_paused: source.paused.0,
+        pace: *source.pace,
+        history: *source.history,
+        keymap: &source.keymap,
+    };
+    let mut requests = Vec::new();
+    Panel::Timeline.show(context, &mut panels, |ui| {
+        requests = show(ui, &model, &mut view);
+    });
+    for request in requests {
+        orders.carry_out(request);
+    }
+}
+
+#[cfg(test)]
+mod tests;

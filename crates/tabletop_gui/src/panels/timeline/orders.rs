@@ -1,0 +1,224 @@
+//! What the user asks of the timeline, carried out.
+
+use bevy::{ecs::system::SystemParam, prelude::*};
+use tabletop_core::{
+    Action, KeySystems, OpenRecording, OrderSystems, Pace, PlaybackOrder, Recording, SimCommand,
+    SingleStep, was_struck,
+};
+
+use super::Request;
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<PendingUndos>()
+        .init_resource::<Pace>()
+        .add_message::<SingleStep>()
+        .add_systems(
+            FixedUpdate,
+            undo_one
+                .run_if(|undos: Res<PendingUndos>| undos.0 > 0)
+                .in_set(OrderSystems::User),
+        )
+        .add_systems(
+            RunFixedMainLoop,
+            (
+                step.run_if(was_struck(Action::Step)),
+                go_slower.run_if(was_struck(Action::Slower)),
+                go_faster.run_if(was_struck(Action::Faster)),
+            )
+                .in_set(KeySystems),
+        );
+}
+
+/// How many segments are still to be undone.
+#[derive(Resource, Debug, Default)]
+pub(super) struct PendingUndos(usize);
+
+/// Where requests go.
+#[derive(SystemParam)]
+pub(super) struct Orders<'w> {
+    commands: MessageWriter<'w, SimCommand>,
+    steps: MessageWriter<'w, SingleStep>,
+    playback: MessageWriter<'w, PlaybackOrder>,
+    open: MessageWriter<'w, OpenRecording>,
+    pace: ResMut<'w, Pace>,
+    undos: ResMut<'w, PendingUndos>,
+}
+
+impl Orders<'_> {
+    pub fn carry_out(&mut self, request: Request) {
+        match request {
+            Request::Play => {
+                self.commands.write(SimCommand::SetPaused(false));
+            }
+            Request::Pause => {
+                self.commands.write(SimCommand::SetPaused(true));
+            }
+            Request::Step => {
+                self.steps.write(SingleStep);
+            }
+            Request::GoTo(tick) => {
+                self.playback.write(PlaybackOrder::GoTo(tick));
+            }
+            Request::StopAt(tick) => {
+                self.playback.write(PlaybackOrder::StopAt(tick));
+            }
+            Request::SetPace(pace) => *self.pace = pace,
+            Request::Loop(loops) => {
+                self.playback.write(PlaybackOrder::Loop(loops));
+            }
+            Request::Undo(segments) => self.undos.0 = segments,
+            Request::Redo => {
+                self.commands.write(SimCommand::Redo);
+            }
+            Request::Open(folder) => {
+                self.open.write(OpenRecording(folder));
+            }
+            Request::Close => {
+                self.playback.write(PlaybackOrder::Close);
+            }
+        }
+    }
+}
+
+/// A tick undoes one segment, as a user does.
+fn undo_one(
+    recording: Res<Recording>,
+    mut undos: ResMut<PendingUndos>,
+    mut commands: MessageWriter<SimCommand>,
+) {
+    undos.0 -= 1;
+    if recording.0 {
+        commands.write(SimCommand::Undo);
+    } else {
+        undos.0 = 0;
+    }
+}
+
+fn step(mut steps: MessageWriter<SingleStep>) {
+    steps.write(SingleStep);
+}
+
+fn go_slower(mut pace: ResMut<Pace>) {
+    *pace = pace.slower();
+}
+
+fn go_faster(mut pace: ResMut<Pace>) {
+    *pace = pace.faster();
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::time::TimeUpdateStrategy;
+    use tabletop_core::{CorePlugin, SimTick};
+
+    use super::*;
+
+    #[derive(Resource, Default)]
+    struct Asked(Vec<Request>);
+
+    #[derive(Resource, Default)]
+    struct Told(Vec<SimCommand>);
+
+    fn carry_out(mut asked: ResMut<Asked>, mut orders: Orders) {
+        for request in asked.0.drain(..) {
+            orders.carry_out(request);
+        }
+    }
+
+    fn app() -> App {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
+            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
+            .init_resource::<ButtonInput<KeyCode>>()
+            .init_resource::<Asked>()
+            .init_resource::<Told>()
+            .add_systems(Update, carry_out)
+            .add_systems(
+                FixedLast,
+                |mut commands: MessageReader<SimCommand>, mut told: ResMut<Told>| {
+                    told.0.extend(commands.read().cloned());
+                },
+            );
+        app.finish();
+        app.cleanup();
+        app.update();
+        app
+    }
+
+    fn ask(app: &mut App, request: Request) -> Vec<SimCommand> {
+        app.world_mut().resource_mut::<Asked>().0.push(request);
+        (0..6).for_each(|_| app.update());
+        std::mem::take(&mut app.world_mut().resource_mut::<Told>().0)
+    }
+
+    fn sent<M: Message + Clone>(app: &mut App, request: Request) -> Vec<M> {
+        app.world_mut().resource_mut::<Asked>().0.push(request);
+        app.update();
+        app.world_mut()
+            .resource_mut::<Messages<M>>()
+            .drain()
+            .collect()
+    }
+
+    #[test]
+    fn requests_become_what_users_tell() {
+        let mut app = app();
+        for (request, command) in [
+            (Request::Play, SimCommand::SetPaused(false)),
+            (Request::Pause, SimCommand::SetPaused(true)),
+            (Request::Redo, SimCommand::Redo),
+        ] {
+            assert_eq!(ask(&mut app, request), [command]);
+        }
+        let tick = SimTick(7);
+        for (request, order) in [
+            (Request::GoTo(tick), PlaybackOrder::GoTo(tick)),
+            (Request::StopAt(tick), PlaybackOrder::StopAt(tick)),
+            (Request::Loop(true), PlaybackOrder::Loop(true)),
+            (Request::Close, PlaybackOrder::Close),
+        ] {
+            assert_eq!(sent::<PlaybackOrder>(&mut app, request), [order]);
+        }
+        let open = Request::Open("demo".into());
+        assert_eq!(
+            sent::<OpenRecording>(&mut app, open),
+            [OpenRecording("demo".into())]
+        );
+        assert_eq!(sent::<SingleStep>(&mut app, Request::Step), [SingleStep]);
+        ask(&mut app, Request::SetPace(Pace::Double));
+        assert_eq!(*app.world().resource::<Pace>(), Pace::Double);
+    }
+
+    #[test]
+    fn segments_are_undone_one_a_tick_while_a_recording_runs() {
+        let mut app = app();
+        assert_eq!(ask(&mut app, Request::Undo(3)), []);
+        app.insert_resource(Recording(true));
+        assert_eq!(ask(&mut app, Request::Undo(3)), vec![SimCommand::Undo; 3]);
+        assert_eq!(ask(&mut app, Request::Redo), [SimCommand::Redo]);
+    }
+
+    #[test]
+    fn keys_step_and_set_the_pace() {
+        let mut app = app();
+        let keymap = tabletop_core::Keymap::default();
+        let strike = |app: &mut App, action| {
+            let binding = keymap.bindings(action)[0];
+            let mut keys = app.world_mut().resource_mut::<ButtonInput<KeyCode>>();
+            if binding.modifiers.shift {
+                keys.press(KeyCode::ShiftLeft);
+            }
+            keys.press(binding.key);
+            app.update();
+            let mut keys = app.world_mut().resource_mut::<ButtonInput<KeyCode>>();
+            keys.reset_all();
+        };
+        strike(&mut app, Action::Faster);
+        assert_eq!(*app.world().resource::<Pace>(), Pace::Double);
+        strike(&mut app, Action::Slower);
+        assert_eq!(*app.world().resource::<Pace>(), Pace::Normal);
+        strike(&mut app, Action::Step);
+        let steps = app.world().resource::<Messages<SingleStep>>();
+        assert_eq!(steps.iter_current_update_messages().count(), 1);
+    }
+}

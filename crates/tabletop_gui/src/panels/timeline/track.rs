@@ -1,0 +1,166 @@
+//! The ruler, the segments on it, what the grippers do, and the playhead.
+
+use bevy_egui::egui::{
+    Align2, Color32, FontId, Rect, Response, Sense, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2,
+};
+use tabletop_core::{Actor, Rgb, SimTick, TimelineSegment, Verb};
+
+use super::{Model, Moment, axis::Axis};
+
+/// Heights in points.
+const RULER: f32 = 16.0;
+const SEGMENTS: f32 = 28.0;
+const GRIPS: f32 = 10.0;
+pub(super) const HEIGHT: f32 = RULER + SEGMENTS + GRIPS;
+
+/// Side of the square that shows the colour of an object.
+const SWATCH: f32 = 10.0;
+
+/// The narrowest segment that can be clicked.
+const NARROWEST: f32 = 3.0;
+
+const SMALL: FontId = FontId::proportional(10.0);
+const PLAYHEAD: Color32 = Color32::from_rgb(255, 255, 255);
+
+pub(super) fn color(color: Rgb) -> Color32 {
+    let [red, green, blue] = color.to_bytes();
+    Color32::from_rgb(red, green, blue)
+}
+
+/// Shows the track, and returns the moments that the user points out.
+pub(super) fn show(ui: &mut Ui, model: &Model, axis: Axis, rect: Rect) -> Vec<Moment> {
+    let ruler = Rect::from_min_size(rect.min, vec2(rect.width(), RULER));
+    let lane = ruler
+        .translate(vec2(0.0, RULER))
+        .with_max_y(ruler.max.y + SEGMENTS);
+    let mut moments = show_ruler(ui, model, axis, ruler);
+    for number in 0..model.timeline.segments.len() {
+        moments.extend(show_segment(ui, model, axis, lane, number));
+    }
+    show_grips(ui, model, axis, lane.max.y);
+    paint_playhead(ui, model, axis, rect);
+    moments
+}
+
+fn show_ruler(ui: &mut Ui, model: &Model, axis: Axis, rect: Rect) -> Vec<Moment> {
+    let response = ui.interact(rect, ui.id().with("ruler"), Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Slider, true, "Time"));
+    let painter = ui.painter_at(rect.expand2(vec2(0.0, SEGMENTS)));
+    painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
+    for (x, text) in axis.marks() {
+        let color = ui.visuals().weak_text_color();
+        let (top, bottom) = (rect.max.y - 4.0, rect.max.y);
+        painter.vline(x, top..=bottom, Stroke::new(1.0, color));
+        let anchor = pos2(x + 2.0, rect.min.y);
+        painter.text(anchor, Align2::LEFT_TOP, text, SMALL, color);
+    }
+    let chosen = moment(&response, axis, model.timeline.start);
+    let hover = response.hover_pos().map(|at| axis.tick_at(at.x));
+    if let Some(tick) = hover {
+        response.on_hover_text_at_pointer(told_at(model, tick));
+    }
+    chosen
+}
+
+fn show_segment(ui: &mut Ui, model: &Model, axis: Axis, lane: Rect, number: usize) -> Vec<Moment> {
+    let Some(segment) = model.segment(number) else {
+        return Vec::new();
+    };
+    let end = SimTick(model.timeline.end_of(number).0 + 1);
+    let (left, right) = (axis.x_of(segment.start), axis.x_of(end));
+    let right = right.max(left + NARROWEST).min(lane.max.x);
+    let left = left.min(right - NARROWEST);
+    let rect = Rect::from_x_y_ranges(left..=right, lane.y_range()).shrink2(vec2(0.5, 1.0));
+    let id = ui.id().with(("segment", number));
+    let response = ui.interact(rect, id, Sense::click_and_drag());
+    let sentence = model.sentence(number);
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, &sentence));
+    let is_present = model.timeline.segment_at(model.playhead()) == Some(number);
+    paint_segment(ui, segment, &response, rect, is_present);
+    let moments = moment(&response, axis, segment.start);
+    if let Some(at) = response.hover_pos() {
+        response.on_hover_text_at_pointer(told_at(model, axis.tick_at(at.x)));
+    }
+    moments
+}
+
+fn paint_segment(
+    ui: &Ui,
+    segment: &TimelineSegment,
+    response: &Response,
+    rect: Rect,
+    is_present: bool,
+) {
+    let visuals = ui.style().interact_selectable(response, is_present);
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, 3.0, visuals.bg_fill);
+    let mut text_left = rect.min.x + 4.0;
+    if let Some(object) = segment.color {
+        let swatch = vec2(SWATCH.min(rect.width()), SWATCH);
+        let corner = pos2(rect.min.x + 3.0, rect.center().y - SWATCH / 2.0);
+        painter.rect_filled(Rect::from_min_size(corner, swatch), 2.0, color(object));
+        text_left += SWATCH + 3.0;
+    }
+    let text = segment
+        .act
+        .as_ref()
+        .map_or_else(|| "Beginning".into(), ToString::to_string);
+    let anchor = pos2(text_left, rect.center().y);
+    let ink = visuals.text_color();
+    painter.text(anchor, Align2::LEFT_CENTER, text, SMALL, ink);
+}
+
+/// What the grippers took is marked upwards, what they let go of downwards.
+fn show_grips(ui: &mut Ui, model: &Model, axis: Axis, top: f32) {
+    for (number, grip) in model.timeline.grips.iter().enumerate() {
+        let center = pos2(axis.x_of(grip.tick), top + GRIPS / 2.0);
+        let rect = Rect::from_center_size(center, vec2(8.0, GRIPS));
+        let response = ui.interact(rect, ui.id().with(("grip", number)), Sense::hover());
+        let sentence = format!("{}: {}", model.time(grip.tick), grip.act);
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &sentence));
+        let arrow = match grip.act.verb {
+            Verb::Grasp => "▲",
+            Verb::Release | Verb::Destroy => "▼",
+        };
+        debug_assert!(matches!(grip.act.actor, Actor::Gripper(_)));
+        let ink = ui.visuals().strong_text_color();
+        ui.painter()
+            .text(center, Align2::CENTER_CENTER, arrow, SMALL, ink);
+        response.on_hover_text(sentence);
+    }
+}
+
+fn paint_playhead(ui: &Ui, model: &Model, axis: Axis, rect: Rect) {
+    let painter = ui.painter();
+    if let Some(goal) = model.playback.goal {
+        let ink = ui.visuals().weak_text_color();
+        painter.vline(axis.x_of(goal), rect.y_range(), Stroke::new(1.0, ink));
+    }
+    let x = axis.x_of(model.playhead());
+    painter.vline(x, rect.y_range(), Stroke::new(1.5, PLAYHEAD));
+    let top = pos2(x, rect.min.y + 1.0);
+    painter.text(top, Align2::CENTER_TOP, "▼", SMALL, PLAYHEAD);
+}
+
+/// The moment under the mouse while it drags, or the one that is chosen: by a key or another program, the first one.
+pub(super) fn moment(response: &Response, axis: Axis, first: SimTick) -> Vec<Moment> {
+    let under_mouse = response
+        .interact_pointer_pos()
+        .map(|place| axis.tick_at(place.x));
+    if response.clicked() || response.drag_stopped() {
+        vec![Moment::Chosen(under_mouse.unwrap_or(first))]
+    } else if response.dragged() {
+        under_mouse.map(Moment::Dragged).into_iter().collect()
+    } else {
+        Vec::new()
+    }
+}
+
+/// The time of a moment and what goes on then.
+pub(super) fn told_at(model: &Model, tick: SimTick) -> String {
+    let time = model.time(tick);
+    match model.timeline.segment_at(tick) {
+        Some(number) => format!("{time}\n{}", model.sentence(number)),
+        None => time,
+    }
+}

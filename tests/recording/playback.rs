@@ -1,0 +1,358 @@
+//! Recordings that are opened while the simulator runs.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    time::Duration,
+};
+
+use bevy::{prelude::*, time::TimeUpdateStrategy};
+use tabletop::{
+    core::{
+        HeadCamera, OpenRecording, PacePlugin, Playback, PlaybackOrder, SingleStep, TICK_SECONDS,
+        Timeline, TimelineStage,
+    },
+    prelude::*,
+    recorder::{Channels, RecorderPlugin, RecordingReader},
+    replay::{PlaybackPlugin, Replay, first_difference},
+};
+
+use crate::demonstration::{Demonstration, bits};
+
+const HAND: Hand = Hand::Right;
+
+/// A recording of two blocks, one of which is put onto the other.
+fn recording(name: &str) -> Demonstration {
+    let mut demonstration = Demonstration::new(name);
+    let object = "RedBlock".to_owned();
+    // It pushes the other block off the table, which falls out of the world.
+    let location = Vec3::new(-1.8, 0.1, 3.4);
+    demonstration.act(&[
+        (vec![task()], 30),
+        (vec![SimCommand::StartRecording], 20),
+        (vec![SimCommand::Grasp { hand: HAND, object }], 5),
+        (
+            vec![SimCommand::MoveTo {
+                hand: HAND,
+                location,
+            }],
+            60,
+        ),
+        (vec![SimCommand::Release(HAND)], 400),
+        (vec![SimCommand::FinishRecording], 1),
+    ]);
+    demonstration
+}
+
+fn task() -> SimCommand {
+    SimCommand::LoadTask("tablesetup/default.xml".into())
+}
+
+/// A window without a picture, in which something was done already.
+struct Window {
+    app: App,
+    folder: PathBuf,
+}
+
+impl Window {
+    fn used(name: &str) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        let _not_there = fs::remove_dir_all(&folder);
+        let recorder = RecorderPlugin {
+            folder: folder.clone(),
+            ..default()
+        };
+        let mut app = App::new();
+        app.add_plugins((
+            MinimalPlugins,
+            TabletopSimPlugins.build().set(recorder),
+            PacePlugin,
+            PlaybackPlugin {
+                task: "tablesetup/tower.xml".into(),
+            },
+        ))
+        .insert_resource(HeadCamera {
+            width: 40,
+            height: 30,
+            ..default()
+        })
+        .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(
+            TICK_SECONDS,
+        )));
+        app.finish();
+        app.cleanup();
+        let mut window = Self { app, folder };
+        window.tell(SimCommand::LoadTask("tablesetup/lidbox.xml".into()));
+        window.frames(20);
+        window.tell(SimCommand::ShowRobot(true));
+        window.tell(SimCommand::Grasp {
+            hand: Hand::Left,
+            object: "obj-lid".into(),
+        });
+        window.frames(20);
+        window
+    }
+
+    fn tell<M: Message>(&mut self, message: M) {
+        self.app.world_mut().write_message(message);
+    }
+
+    fn frames(&mut self, frames: usize) {
+        (0..frames).for_each(|_| self.app.update());
+    }
+
+    fn open(&mut self, folder: &Path) {
+        self.tell(OpenRecording(folder.to_owned()));
+        self.frames(1);
+        self.arrive();
+    }
+
+    /// Waits until the world is where it was told to go.
+    fn arrive(&mut self) {
+        for _ in 0..10_000 {
+            if self.app.world().resource::<Playback>().goal.is_none() {
+                return;
+            }
+            self.app.update();
+        }
+        panic!("{:?}", self.app.world().resource::<Playback>());
+    }
+
+    fn look_at(&mut self, tick: u64) {
+        self.tell(PlaybackOrder::StopAt(SimTick(tick)));
+        self.frames(1);
+        self.arrive();
+        self.frames(3);
+    }
+
+    fn next_tick(&self) -> u64 {
+        self.app.world().resource::<SimTick>().0
+    }
+
+    /// Where every object is, as the recording has it.
+    fn poses(&self) -> Vec<(String, Pose)> {
+        let world = self.app.world();
+        let index = world.resource::<ObjectIndex>();
+        let mut poses: Vec<_> = index
+            .ids()
+            .map(|id| {
+                let object = index.get(id).unwrap();
+                (
+                    id.to_owned(),
+                    world.get::<Transform>(object).unwrap().into(),
+                )
+            })
+            .collect();
+        poses.sort_by(|a: &(String, Pose), b| a.0.cmp(&b.0));
+        poses
+    }
+}
+
+/// Where the objects were that had not yet fallen off the world.
+fn recorded_poses(recording: &RecordingReader, tick: u64) -> Vec<(String, Pose)> {
+    let states = recording.states_at(SimTick(tick)).unwrap();
+    let poses = states.into_iter().map(|(id, row)| (id, row.pose));
+    poses.filter(|(_, pose)| pose.location.z > -990.0).collect()
+}
+
+#[test]
+fn the_world_goes_to_any_moment_and_is_as_it_was() {
+    let demonstration = recording("moments");
+    let reader = RecordingReader::open(&demonstration.folder).unwrap();
+    let (start, end) = (reader.first_tick().0, reader.last_tick().0);
+    let mut window = Window::used("moments_window");
+    window.open(&demonstration.folder);
+    for tick in [
+        end,
+        start,
+        start + 60,
+        start + 300,
+        start + 301,
+        start + 20,
+        end - 1,
+        end,
+    ] {
+        window.look_at(tick);
+        assert_eq!(window.next_tick(), tick + 1);
+        assert!(window.app.world().resource::<Paused>().0);
+        assert_eq!(window.poses(), recorded_poses(&reader, tick), "tick {tick}");
+    }
+    assert!(window.app.world().resource::<Playback>().is_over);
+    assert_eq!(bits(&window.app), demonstration.bits());
+}
+
+#[test]
+fn a_recording_that_is_opened_plays_to_its_end_and_the_user_goes_on_and_records() {
+    let demonstration = recording("played");
+    let mut window = Window::used("played_window");
+    window.open(&demonstration.folder);
+    window.look_at(300);
+    window.look_at(100);
+    window.tell(SimCommand::SetPaused(false));
+    window.tell(SimCommand::Release(HAND));
+    window.frames(450);
+    assert!(window.app.world().resource::<Playback>().is_over);
+    window.tell(SimCommand::StartRecording);
+    window.frames(5);
+    let timeline = window.app.world().resource::<Timeline>();
+    assert_eq!(timeline.stage, TimelineStage::Running);
+    assert_eq!(timeline.folder, window.folder);
+    let object = "GreenBlock".to_owned();
+    window.tell(SimCommand::Grasp { hand: HAND, object });
+    window.frames(30);
+    window.tell(SimCommand::FinishRecording);
+    window.frames(5);
+
+    let replay = Replay::read(&window.folder).unwrap();
+    let replayed = window.folder.with_file_name("played_again");
+    let _not_there = fs::remove_dir_all(&replayed);
+    replay
+        .record(replayed.clone(), replay.camera(), Channels::default())
+        .unwrap();
+    assert_eq!(first_difference(&window.folder, &replayed).unwrap(), None);
+}
+
+#[test]
+fn what_is_put_away_leaves_a_fresh_task() {
+    let demonstration = recording("put_away");
+    let mut window = Window::used("put_away_window");
+    window.open(&demonstration.folder);
+    window.look_at(200);
+    window.tell(PlaybackOrder::Close);
+    window.frames(30);
+    let world = window.app.world();
+    assert_eq!(world.resource::<Timeline>().stage, TimelineStage::Absent);
+    assert_eq!(*world.resource::<Playback>(), Playback::default());
+    assert!(!world.resource::<Paused>().0);
+    assert!(!world.resource::<Robot>().is_shown);
+    let index = world.resource::<ObjectIndex>();
+    assert!(
+        index.get("obj-lid").is_some(),
+        "the task that was loaded last"
+    );
+    let next = window.next_tick();
+    assert!((20..40).contains(&next), "{next}");
+}
+
+#[test]
+fn a_recording_that_ends_in_a_pause_is_gone_through() {
+    let mut demonstration = Demonstration::new("ends_in_a_pause");
+    demonstration.act(&[
+        (vec![task()], 30),
+        (vec![SimCommand::StartRecording], 20),
+        (vec![SimCommand::SetPaused(true)], 3),
+        (vec![SimCommand::FinishRecording], 1),
+    ]);
+    let mut window = Window::used("ends_in_a_pause_window");
+    window.open(&demonstration.folder);
+    for _ in 0..2 {
+        window.look_at(1000);
+        assert!(window.app.world().resource::<Playback>().is_over);
+        assert_eq!(window.next_tick(), 50);
+        window.look_at(40);
+        assert_eq!(window.next_tick(), 41);
+    }
+}
+
+#[test]
+fn a_recording_that_loops_begins_again() {
+    let demonstration = recording("looping");
+    let mut window = Window::used("looping_window");
+    window.open(&demonstration.folder);
+    let (start, end) = {
+        let timeline = window.app.world().resource::<Timeline>();
+        (timeline.start.0, timeline.end.0)
+    };
+    window.tell(PlaybackOrder::Loop(true));
+    window.tell(PlaybackOrder::GoTo(SimTick(end - 3)));
+    window.frames(1);
+    window.arrive();
+    window.frames(20);
+    let next = window.next_tick();
+    assert!((start..start + 20).contains(&next), "{next}");
+    assert!(!window.app.world().resource::<Paused>().0);
+}
+
+#[test]
+fn what_cannot_be_opened_is_told_in_one_line() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_recording");
+    let _there_already = fs::create_dir_all(&folder);
+    let moon = recording("moon_recording");
+    let session = moon.folder.join("session.jsonl");
+    let text = fs::read_to_string(&session).unwrap();
+    fs::write(&session, text.replacen("98.1", "16.2", 1)).unwrap();
+    let damaged = recording("damaged_recording");
+    fs::write(damaged.folder.join("1.txt"), "2,grasp,Foot,RedBlock\n").unwrap();
+    for (folder, words) in [
+        (&folder, "session.jsonl: "),
+        (
+            &moon.folder,
+            "settings.physics.gravity was 16.2, and is 98.1 here; `tabletop replay ",
+        ),
+        (&damaged.folder, "1.txt:1: expected a hand"),
+    ] {
+        let mut window = Window::used("unopened_window");
+        let before = window.poses();
+        window.tell(OpenRecording(folder.clone()));
+        window.frames(1);
+        let facts = window.app.world().resource::<Messages<SimFact>>();
+        let mut refusals = facts.iter_current_update_messages().filter_map(|fact| {
+            let SimFact::Refused { reason } = fact else {
+                return None;
+            };
+            Some(reason)
+        });
+        let reason = refusals.next().unwrap();
+        assert!(reason.contains(words), "{reason}");
+        assert!(reason.contains(folder.to_str().unwrap()), "{reason}");
+        assert_eq!(reason.lines().count(), 1, "{reason}");
+        assert_eq!(refusals.next(), None);
+        assert_eq!(window.poses().len(), before.len());
+    }
+}
+
+#[test]
+fn while_a_recording_is_made_none_is_opened() {
+    let demonstration = recording("closed");
+    let mut window = Window::used("recording_window");
+    window.tell(SimCommand::StartRecording);
+    window.frames(5);
+    window.tell(OpenRecording(demonstration.folder.clone()));
+    window.frames(1);
+    let timeline = window.app.world().resource::<Timeline>();
+    assert_eq!(timeline.stage, TimelineStage::Running);
+    assert_eq!(timeline.folder, window.folder);
+}
+
+#[test]
+fn a_recording_made_in_single_steps_replays_to_the_same_bytes() {
+    let mut window = Window::used("steps");
+    window.tell(SimCommand::StartRecording);
+    window.frames(10);
+    window.tell(SimCommand::SetPaused(true));
+    window.frames(3);
+    for steps in 1..20 {
+        let before = window.next_tick();
+        window
+            .app
+            .world_mut()
+            .write_message_batch(vec![SingleStep; steps % 4]);
+        window.frames(6);
+        assert_eq!(window.next_tick(), before + (steps % 4) as u64);
+        if steps == 9 {
+            window.tell(SimCommand::LoadTask("tablesetup/default.xml".into()));
+            window.frames(2);
+        }
+    }
+    window.tell(SimCommand::SetPaused(false));
+    window.frames(20);
+    window.tell(SimCommand::FinishRecording);
+    window.frames(2);
+    let replay = Replay::read(&window.folder).unwrap();
+    let replayed = window.folder.with_file_name("steps_replayed");
+    let _not_there = fs::remove_dir_all(&replayed);
+    replay
+        .record(replayed.clone(), replay.camera(), Channels::default())
+        .unwrap();
+    assert_eq!(first_difference(&window.folder, &replayed).unwrap(), None);
+}
