@@ -5,13 +5,15 @@ use bevy::prelude::*;
 use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{
-        self, Align2, Button, FontId, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo,
-        WidgetType, vec2,
+        self, Align2, Button, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, WidgetType, vec2,
     },
 };
 use tabletop_core::{Action, CameraMotion, CameraView, Keymap, Steering};
 
-use crate::panels::{Panel, Panels};
+use crate::{
+    panels::{Panel, Panels},
+    widgets::style::ACCENT,
+};
 
 /// Sides of a pad in points.
 const PAD: f32 = 140.0;
@@ -71,7 +73,16 @@ fn steering(ui: &mut Ui, keymap: &Keymap) -> Steering {
     let travel = pad(
         ui,
         "drag to move",
-        "Drag up to go ahead, down to go back, sideways to go sideways: the farther, the faster",
+        &with_keys(
+            "Drag up to go ahead, down to go back, sideways to go sideways: the farther, the faster",
+            [
+                Action::CameraForward,
+                Action::CameraBack,
+                Action::CameraLeft,
+                Action::CameraRight,
+            ],
+            keymap,
+        ),
     );
     let (ascends, descends) = ui
         .vertical(|ui| {
@@ -93,7 +104,16 @@ fn steering(ui: &mut Ui, keymap: &Keymap) -> Steering {
     let turn = pad(
         ui,
         "look around",
-        "Drag to where you want to look: the farther, the faster",
+        &with_keys(
+            "Drag to where you want to look: the farther, the faster",
+            [
+                Action::LookUp,
+                Action::LookDown,
+                Action::LookLeft,
+                Action::LookRight,
+            ],
+            keymap,
+        ),
     );
     Steering {
         forward: TRAVEL * travel.y,
@@ -104,11 +124,22 @@ fn steering(ui: &mut Ui, keymap: &Keymap) -> Steering {
     }
 }
 
+/// What a pad says while the mouse rests on it, with the keys that do the same.
+fn with_keys(text: &str, actions: [Action; 4], keymap: &Keymap) -> String {
+    let keys = actions.map(|action| keymap.hint(action));
+    format!("{text} ({})", keys.join(", "))
+}
+
 /// An area that is dragged on; how far from where the drag began, to the right and upwards, as parts of its side.
 fn pad(ui: &mut Ui, name: &str, tooltip: &str) -> Vec2 {
     let (rect, response) = ui.allocate_exact_size(egui::Vec2::splat(PAD), Sense::drag());
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, name));
-    let visuals = ui.style().interact(&response);
+    let drag = ends_of_drag(ui, &response);
+    let widgets = &ui.visuals().widgets;
+    let visuals = match response.hovered() || drag.is_some() {
+        true => widgets.hovered,
+        false => widgets.inactive,
+    };
     let painter = ui.painter_at(rect);
     painter.rect(
         rect,
@@ -117,20 +148,13 @@ fn pad(ui: &mut Ui, name: &str, tooltip: &str) -> Vec2 {
         visuals.bg_stroke,
         StrokeKind::Inside,
     );
-    let drag = ends_of_drag(ui, &response);
     if let Some([from, to]) = drag {
-        let color = ui.visuals().selection.bg_fill;
-        painter.circle_filled(from, DOT, color);
-        painter.arrow(from, to - from, Stroke::new(2.0, color));
+        painter.circle_filled(from, DOT, ACCENT);
+        painter.arrow(from, to - from, Stroke::new(2.0, ACCENT));
     } else {
-        let font = FontId::proportional(egui::TextStyle::Body.resolve(ui.style()).size);
-        painter.text(
-            rect.center(),
-            Align2::CENTER_CENTER,
-            name,
-            font,
-            visuals.text_color(),
-        );
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        let center = Align2::CENTER_CENTER;
+        painter.text(rect.center(), center, name, font, visuals.text_color());
     }
     response.on_hover_text(tooltip);
     drag.map_or(Vec2::ZERO, |[from, to]| {
@@ -238,6 +262,24 @@ mod tests {
             let mut harness = harness();
             let climb = drag(&mut harness, label, egui::Vec2::ZERO);
             assert_eq!(climb, Steering { up, ..default() });
+        }
+    }
+
+    #[test]
+    fn pads_and_buttons_tell_their_keys() {
+        for (label, keys) in [
+            ("drag to move", "(W, S, A, D)"),
+            ("look around", "(↑, ↓, ←, →)"),
+            ("Asc", "(Q)"),
+            ("Robot's eye", "(6)"),
+        ] {
+            let mut harness = harness();
+            harness.get_by_label(label).hover();
+            let told = (0..100).any(|_| {
+                harness.step();
+                harness.query_by_label_contains(keys).is_some()
+            });
+            assert!(told, "{label} does not tell {keys}");
         }
     }
 
