@@ -31,6 +31,7 @@ mod widgets;
 
 pub use panels::help::Help;
 pub use panels::messages::{Notices, Tone};
+pub use panels::status::Renderer;
 pub use panels::{Panel, Panels};
 pub use picture::Picture;
 pub use preferences::Preferences;

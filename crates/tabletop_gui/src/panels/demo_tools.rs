@@ -5,13 +5,14 @@ use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{self, Color32, Ui},
 };
-use tabletop_core::{Hand, Hands, History, ObjectSpec, Recording, SimCommand, SimFact};
+use tabletop_core::{
+    Action, Hand, Hands, History, Keymap, ObjectSpec, Recording, SimCommand, SimFact,
+};
 
 use crate::{
-    input::plane::PlaneButtons,
-    input::turns::Turns,
+    input::{plane::PlaneButtons, turns::Turns},
     panels::{Panel, Panels},
-    widgets::slider::angle_slider,
+    widgets::{button::button, slider::angle_slider},
 };
 
 /// The sliders have the colours of the axes, a little lighter, for a dark panel.
@@ -20,6 +21,9 @@ const SLIDERS: [(&str, Color32); 3] = [
     ("Y", Color32::from_rgb(60, 220, 60)),
     ("Z", Color32::from_rgb(90, 130, 255)),
 ];
+
+/// What an empty hand has (report figure 8b).
+const EMPTY: &str = "<empty>";
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(Update, open_at_first_grasp)
@@ -40,127 +44,237 @@ fn open_at_first_grasp(
     }
 }
 
-/// What the panel shows and changes.
+/// What the panel shows.
+#[derive(Clone, Copy, Debug)]
+struct Model<'a> {
+    /// The selected hand.
+    hand: Hand,
+    /// Id of what it holds.
+    held: Option<&'a str>,
+    /// How far it has turned that about each axis, in degrees.
+    turns: [i32; 3],
+    is_recording: bool,
+    history: History,
+    keymap: &'a Keymap,
+}
+
+/// What the user does with the panel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Asked {
+    /// The buttons that are held down.
+    plane: PlaneButtons,
+    request: Option<Request>,
+}
+
+/// What the user asks of the panel once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Request {
+    Select(Hand),
+    Release,
+    Destroy,
+    /// Turn what is held about an axis until this is the sum of its turns.
+    TurnTo {
+        axis: usize,
+        degrees: i32,
+    },
+    Start,
+    Finish,
+    Undo,
+    Redo,
+}
+
+/// Where the model comes from.
 #[derive(SystemParam)]
-struct Tools<'w, 's> {
+struct Sources<'w, 's> {
     hands: Res<'w, Hands>,
     specs: Query<'w, 's, &'static ObjectSpec>,
     recording: Res<'w, Recording>,
     history: Res<'w, History>,
-    turns: ResMut<'w, Turns>,
-    plane_buttons: ResMut<'w, PlaneButtons>,
-    commands: MessageWriter<'w, SimCommand>,
+    keymap: Res<'w, Keymap>,
 }
 
-fn show_panel(mut contexts: EguiContexts, mut panels: ResMut<Panels>, mut tools: Tools) {
+impl Sources<'_, '_> {
+    fn model(&self, turns: &Turns) -> Model<'_> {
+        let hand = self.hands.selected;
+        let held = self.hands.held_by(hand);
+        let held = held.and_then(|object| self.specs.get(object).ok());
+        Model {
+            hand,
+            held: held.map(|spec| spec.id.as_str()),
+            turns: turns.of(hand),
+            is_recording: self.recording.0,
+            history: *self.history,
+            keymap: &self.keymap,
+        }
+    }
+}
+
+fn show_panel(
+    mut contexts: EguiContexts,
+    mut panels: ResMut<Panels>,
+    sources: Sources,
+    mut turns: ResMut<Turns>,
+    mut plane_buttons: ResMut<PlaneButtons>,
+    mut commands: MessageWriter<SimCommand>,
+) {
     let Ok(context) = contexts.ctx_mut() else {
         return;
     };
-    let mut pressed = PlaneButtons::default();
-    Panel::DemonstrationTools.show(context, &mut panels, |ui| {
-        tools.hands(ui);
-        ui.separator();
-        let is_holding = tools.held().is_some();
-        tools.held_object(ui, is_holding);
-        ui.separator();
-        ui.add_enabled_ui(is_holding, |ui| {
-            pressed = plane_rotation(ui);
-            ui.separator();
-            tools.object_rotation(ui);
-        });
-        ui.separator();
-        tools.recording(ui);
-    });
-    tools.plane_buttons.set_if_neq(pressed);
+    let model = sources.model(&turns);
+    let hand = model.hand;
+    let asked = Panel::DemonstrationTools.show(context, &mut panels, |ui| show(ui, &model));
+    let Asked { plane, request } = asked.unwrap_or_default();
+    plane_buttons.set_if_neq(plane);
+    if let Some(request) = request {
+        commands.write_batch(command(request, hand, &mut turns));
+    }
 }
 
-impl Tools<'_, '_> {
-    /// Id of what the selected hand holds.
-    fn held(&self) -> Option<&str> {
-        let object = self.hands.held_by(self.hands.selected)?;
-        Some(&self.specs.get(object).ok()?.id)
-    }
+/// The command that carries out what is asked of the panel while a hand is selected.
+fn command(request: Request, hand: Hand, turns: &mut Turns) -> Option<SimCommand> {
+    Some(match request {
+        Request::Select(hand) => SimCommand::SelectHand(hand),
+        Request::Release => SimCommand::Release(hand),
+        Request::Destroy => SimCommand::Destroy(hand),
+        Request::TurnTo { axis, degrees } => return turns.turn_to(hand, axis, degrees),
+        Request::Start => SimCommand::StartRecording,
+        Request::Finish => SimCommand::FinishRecording,
+        Request::Undo => SimCommand::Undo,
+        Request::Redo => SimCommand::Redo,
+    })
+}
 
-    fn hands(&mut self, ui: &mut Ui) {
-        ui.horizontal(|ui| {
-            ui.label("Current Hand:");
-            for hand in Hand::ALL {
-                let is_selected = self.hands.selected == hand;
-                if ui.radio(is_selected, format!("{hand:?}")).clicked() && !is_selected {
-                    self.commands.write(SimCommand::SelectHand(hand));
-                }
-            }
-        });
+fn show(ui: &mut Ui, model: &Model) -> Asked {
+    let hand = hands(ui, model);
+    ui.separator();
+    let object = held_object(ui, model);
+    ui.separator();
+    let is_holding = model.held.is_some();
+    let rotation = |ui: &mut Ui| {
+        let plane = plane_rotation(ui, model);
+        ui.separator();
+        (plane, object_rotation(ui, model))
+    };
+    let (plane, turn) = ui.add_enabled_ui(is_holding, rotation).inner;
+    ui.separator();
+    let recording = recording(ui, model);
+    Asked {
+        plane,
+        request: hand.or(object).or(turn).or(recording),
     }
+}
 
-    fn held_object(&mut self, ui: &mut Ui, is_holding: bool) {
-        ui.horizontal(|ui| {
-            ui.label("Current Object:");
-            let id = self.held().unwrap_or("<empty>");
-            ui.add(egui::Label::new(egui::RichText::new(id).strong()).truncate());
-        });
-        let hand = self.hands.selected;
-        ui.add_enabled_ui(is_holding, |ui| {
-            ui.horizontal(|ui| {
-                self.command_button(ui, "Release", true, SimCommand::Release(hand));
-                self.command_button(ui, "Destroy", true, SimCommand::Destroy(hand));
-            });
-        });
-    }
-
-    fn object_rotation(&mut self, ui: &mut Ui) {
-        ui.label("Object Rotation:");
-        let hand = self.hands.selected;
-        for (axis, (name, color)) in SLIDERS.into_iter().enumerate() {
-            let shown = self.turns.of(hand)[axis];
-            let changed = angle_slider(ui, name, color, shown);
-            if changed != shown {
-                let turn = self.turns.turn_to(hand, axis, changed);
-                self.commands.write_batch(turn);
+fn hands(ui: &mut Ui, model: &Model) -> Option<Request> {
+    let choose = |ui: &mut Ui| {
+        ui.label("Current Hand:");
+        let mut chosen = None;
+        for hand in Hand::ALL {
+            let is_selected = model.hand == hand;
+            let radio = ui.radio(is_selected, format!("{hand:?}"));
+            let radio = radio.on_hover_text(what_a_hand_is(hand));
+            if radio.clicked() && !is_selected {
+                chosen = Some(Request::Select(hand));
             }
         }
-    }
+        chosen
+    };
+    ui.horizontal(choose).inner
+}
 
-    fn recording(&mut self, ui: &mut Ui) {
-        let is_recording = self.recording.0;
-        let (can_undo, can_redo) = (self.history.undoable > 0, self.history.redoable > 0);
-        ui.horizontal(|ui| {
-            ui.label("Recording:");
-            self.command_button(ui, "Start", !is_recording, SimCommand::StartRecording);
-            self.command_button(ui, "Finish", is_recording, SimCommand::FinishRecording);
-            self.command_button(ui, "Undo", can_undo, SimCommand::Undo);
-            self.command_button(ui, "Redo", can_redo, SimCommand::Redo);
-        });
+const fn what_a_hand_is(hand: Hand) -> &'static str {
+    match hand {
+        Hand::Left => "Act with the left hand",
+        Hand::Right => "Act with the right hand",
+        Hand::Both => "Act with both hands at once",
+        Hand::Any => "Act with whichever hand is free",
     }
+}
 
-    fn command_button(&mut self, ui: &mut Ui, text: &str, is_enabled: bool, command: SimCommand) {
-        if ui
-            .add_enabled(is_enabled, egui::Button::new(text))
-            .clicked()
-        {
-            self.commands.write(command);
+fn held_object(ui: &mut Ui, model: &Model) -> Option<Request> {
+    ui.horizontal(|ui| {
+        ui.label("Current Object:");
+        let id = egui::RichText::new(model.held.unwrap_or(EMPTY)).strong();
+        ui.add(egui::Label::new(id).truncate());
+    });
+    let is_holding = model.held.is_some();
+    let buttons = |ui: &mut Ui| {
+        let release = button(ui, is_holding, "Release", "Let go of the object");
+        let destroy = "Remove the object from the world";
+        let destroy = button(ui, is_holding, "Destroy", destroy);
+        match (release.clicked(), destroy.clicked()) {
+            (true, _) => Some(Request::Release),
+            (false, true) => Some(Request::Destroy),
+            (false, false) => None,
         }
-    }
+    };
+    ui.horizontal(buttons).inner
 }
 
 /// The buttons that turn the plane while they are held down.
-fn plane_rotation(ui: &mut Ui) -> PlaneButtons {
-    ui.horizontal(|ui| {
+fn plane_rotation(ui: &mut Ui, model: &Model) -> PlaneButtons {
+    let buttons = |ui: &mut Ui| {
         ui.label("Plane Rotation:");
-        let mut is_down = |text| ui.button(text).is_pointer_button_down_on();
+        let mut is_down = |text, action| {
+            let button = button(ui, true, text, &model.keymap.tooltip(action));
+            button.is_pointer_button_down_on()
+        };
         PlaneButtons {
-            counter_clockwise: is_down("CCW"),
-            clockwise: is_down("CW"),
+            counter_clockwise: is_down("CCW", Action::PlaneCounterClockwise),
+            clockwise: is_down("CW", Action::PlaneClockwise),
         }
-    })
-    .inner
+    };
+    ui.horizontal(buttons).inner
+}
+
+fn object_rotation(ui: &mut Ui, model: &Model) -> Option<Request> {
+    ui.label("Object Rotation:");
+    let mut turn = None;
+    for (axis, (name, color)) in SLIDERS.into_iter().enumerate() {
+        let shown = model.turns[axis];
+        let degrees = angle_slider(ui, name, color, shown);
+        if degrees != shown {
+            turn = Some(Request::TurnTo { axis, degrees });
+        }
+    }
+    turn
+}
+
+fn recording(ui: &mut Ui, model: &Model) -> Option<Request> {
+    let is_recording = model.is_recording;
+    let can_undo = is_recording && model.history.undoable > 0;
+    let can_redo = is_recording && model.history.redoable > 0;
+    let undo = model.keymap.tooltip(Action::Undo);
+    let redo = model.keymap.tooltip(Action::Redo);
+    let buttons = |ui: &mut Ui| {
+        ui.label("Recording:");
+        let mut asked = None;
+        for (request, is_enabled, text, tooltip) in [
+            (
+                Request::Start,
+                !is_recording,
+                "Start",
+                "Begin to record the demonstration",
+            ),
+            (Request::Finish, is_recording, "Finish", "End the recording"),
+            (Request::Undo, can_undo, "Undo", &undo),
+            (Request::Redo, can_redo, "Redo", &redo),
+        ] {
+            if button(ui, is_enabled, text, tooltip).clicked() {
+                asked = Some(request);
+            }
+        }
+        asked
+    };
+    ui.horizontal(buttons).inner
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use bevy::time::TimeUpdateStrategy;
+    use egui_kittest::{Harness, kittest::Queryable as _};
     use tabletop_core::CorePlugin;
+
+    use super::*;
 
     #[test]
     fn the_first_grasp_opens_the_panel_and_later_ones_leave_it_closed() {
@@ -179,5 +293,183 @@ mod tests {
             assert_eq!(panels.is_open(Panel::DemonstrationTools), is_open);
             panels.set_open(Panel::DemonstrationTools, false);
         }
+    }
+
+    /// What the panel is shown with, and everything that was asked of it.
+    #[derive(Clone, Debug, Default)]
+    struct Stage {
+        hand: Hand,
+        held: Option<&'static str>,
+        is_recording: bool,
+        history: History,
+        keymap: Keymap,
+        plane: PlaneButtons,
+        requests: Vec<Request>,
+    }
+
+    impl Stage {
+        fn holding() -> Self {
+            Self {
+                held: Some("red"),
+                ..default()
+            }
+        }
+
+        fn recording(undoable: usize, redoable: usize) -> Self {
+            Self {
+                is_recording: true,
+                history: History { undoable, redoable },
+                ..default()
+            }
+        }
+
+        fn harness(self) -> Harness<'static, Self> {
+            let frame = |ui: &mut Ui, stage: &mut Self| {
+                let model = Model {
+                    hand: stage.hand,
+                    held: stage.held,
+                    turns: [10, 0, -20],
+                    is_recording: stage.is_recording,
+                    history: stage.history,
+                    keymap: &stage.keymap,
+                };
+                let asked = show(ui, &model);
+                stage.plane = asked.plane;
+                stage.requests.extend(asked.request);
+            };
+            Harness::builder()
+                .with_size(egui::vec2(Panel::DemonstrationTools.width(), 400.0))
+                .build_ui_state(frame, self)
+        }
+
+        fn after_click(self, name: &str) -> Vec<Request> {
+            let mut harness = self.harness();
+            harness.get_by_label(name).click();
+            harness.run();
+            harness.into_state().requests
+        }
+    }
+
+    #[test]
+    fn each_hand_can_be_selected() {
+        for hand in Hand::ALL {
+            let other = Hand::ALL.into_iter().find(|&other| other != hand);
+            let stage = Stage {
+                hand: other.unwrap(),
+                ..default()
+            };
+            let requests = stage.after_click(&format!("{hand:?}"));
+            assert_eq!(requests, [Request::Select(hand)]);
+        }
+    }
+
+    #[test]
+    fn what_is_held_is_named_released_and_destroyed() {
+        let harness = Stage::holding().harness();
+        assert!(harness.query_by_label("red").is_some());
+        for (name, request) in [("Release", Request::Release), ("Destroy", Request::Destroy)] {
+            assert_eq!(Stage::holding().after_click(name), [request]);
+        }
+    }
+
+    #[test]
+    fn what_is_held_is_turned_by_each_slider() {
+        for (axis, (name, degrees)) in [("X", 10), ("Y", 0), ("Z", -20)].into_iter().enumerate() {
+            for (step, way) in [(1, "up"), (-1, "down")] {
+                let requests = Stage::holding().after_click(&format!("{name} {way} by 1°"));
+                let degrees = degrees + step;
+                assert_eq!(requests, [Request::TurnTo { axis, degrees }]);
+            }
+        }
+    }
+
+    #[test]
+    fn an_empty_hand_can_do_nothing_with_objects() {
+        let harness = Stage::default().harness();
+        assert!(harness.query_by_label(EMPTY).is_some());
+        for name in ["Release", "Destroy", "X up by 1°", "Z down by 1°"] {
+            assert_eq!(Stage::default().after_click(name), [], "{name}");
+        }
+    }
+
+    #[test]
+    fn the_plane_turns_while_its_buttons_are_held_down() {
+        for (name, expected) in [("CCW", (true, false)), ("CW", (false, true))] {
+            let mut harness = Stage::holding().harness();
+            let at = harness.get_by_label(name).rect().center();
+            let plane = |harness: &Harness<Stage>| {
+                let plane = harness.state().plane;
+                (plane.counter_clockwise, plane.clockwise)
+            };
+            harness.hover_at(at);
+            harness.drag_at(at);
+            harness.run();
+            harness.run();
+            assert_eq!(plane(&harness), expected);
+            harness.drop_at(at);
+            harness.run();
+            assert_eq!(plane(&harness), (false, false));
+        }
+    }
+
+    #[test]
+    fn a_recording_is_started_or_finished_undone_and_redone() {
+        for (stage, allowed) in [
+            (Stage::default(), &["Start"][..]),
+            (Stage::recording(0, 0), &["Finish"]),
+            (Stage::recording(2, 0), &["Finish", "Undo"]),
+            (Stage::recording(0, 1), &["Finish", "Redo"]),
+        ] {
+            for (name, request) in [
+                ("Start", Request::Start),
+                ("Finish", Request::Finish),
+                ("Undo", Request::Undo),
+                ("Redo", Request::Redo),
+            ] {
+                let requests = stage.clone().after_click(name);
+                let expected = allowed.contains(&name).then_some(request);
+                assert_eq!(requests, expected.into_iter().collect::<Vec<_>>(), "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_request_becomes_its_command() {
+        let mut turns = Turns::default();
+        let hand = Hand::Left;
+        for (request, expected) in [
+            (
+                Request::Select(Hand::Both),
+                SimCommand::SelectHand(Hand::Both),
+            ),
+            (Request::Release, SimCommand::Release(hand)),
+            (Request::Destroy, SimCommand::Destroy(hand)),
+            (
+                Request::TurnTo {
+                    axis: 2,
+                    degrees: 30,
+                },
+                SimCommand::Turn {
+                    hand,
+                    axis: Vec3::Z,
+                    degrees: 30.0,
+                },
+            ),
+            (Request::Start, SimCommand::StartRecording),
+            (Request::Finish, SimCommand::FinishRecording),
+            (Request::Undo, SimCommand::Undo),
+            (Request::Redo, SimCommand::Redo),
+        ] {
+            assert_eq!(command(request, hand, &mut turns), Some(expected));
+        }
+    }
+
+    #[test]
+    fn tooltips_name_the_keys() {
+        let mut harness = Stage::recording(1, 0).harness();
+        harness.get_by_label("Undo").hover();
+        harness.run_steps(8);
+        let told = harness.query_by_label_contains("(Ctrl+Z)");
+        assert!(told.is_some());
     }
 }

@@ -1,4 +1,5 @@
-//! The pause overlay, which covers view and panels; with the Timeline open, the view alone.
+//! The pause overlay, which covers view, panels and bar (report section 2.4); with the Timeline open, the view alone. What is open in
+//! the foreground stays before it.
 
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
@@ -30,9 +31,11 @@ fn show_overlay(mut contexts: EguiContexts, panels: Res<Panels>) {
     // The buttons of the timeline step through a pause.
     let order = match panels.is_open(Panel::Timeline) {
         true => egui::Order::Background,
-        false => egui::Order::Foreground,
+        false => egui::Order::Middle,
     };
-    egui::Area::new(egui::Id::new("pause"))
+    let id = egui::Id::new("pause");
+    context.move_to_top(egui::LayerId::new(order, id));
+    egui::Area::new(id)
         .order(order)
         .fixed_pos(screen.min)
         .fade_in(false)

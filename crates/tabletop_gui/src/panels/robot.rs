@@ -3,17 +3,23 @@
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
-    egui::{self, Button, ComboBox, Label, RichText, Slider, Ui},
+    egui::{
+        self, Button, CollapsingHeader, ComboBox, Label, RichText, Slider, Ui, WidgetInfo,
+        WidgetType,
+    },
 };
 use tabletop_core::{
-    Agent, AgentOrder, Arm, Drive, Face, ObjectSpec, Robot, RobotJoint, SimCommand,
+    Action, Agent, AgentOrder, Arm, Drive, Face, Keymap, ObjectSpec, Robot, RobotJoint, SimCommand,
+    Way,
 };
 
 use crate::{
-    input::jog::{Directions, Jog},
-    input::script_control::toggled,
-    panels::head_view::HeadView,
-    panels::{Panel, Panels},
+    input::{
+        jog::{Directions, Jog},
+        script_control::toggled,
+    },
+    panels::{Panel, Panels, head_view::HeadView},
+    widgets::button::switch,
 };
 
 /// Width of the track of the slider, in points.
@@ -29,7 +35,7 @@ const SCRIPT_MOVES: &str = "a script moves the arms";
 const LIST_HEIGHT: f32 = 400.0;
 
 pub(crate) fn plugin(app: &mut App) {
-    app.add_systems(EguiPrimaryContextPass, show_window);
+    app.add_systems(EguiPrimaryContextPass, show_panel);
 }
 
 /// The joint that the user has selected.
@@ -48,35 +54,30 @@ impl Default for Selection {
     }
 }
 
-/// What the window shows and changes.
-#[derive(SystemParam)]
-struct RobotWindow<'w, 's> {
-    robot: Res<'w, Robot>,
-    specs: Query<'w, 's, &'static ObjectSpec>,
-    head_view: ResMut<'w, HeadView>,
-    jog: ResMut<'w, Jog>,
-    selection: Local<'s, Selection>,
-    commands: MessageWriter<'w, SimCommand>,
-    agent: Res<'w, Agent>,
-    orders: MessageWriter<'w, AgentOrder>,
+/// What the window shows.
+#[derive(Clone, Copy)]
+struct Model<'a> {
+    robot: &'a Robot,
+    /// Ids of what the left and the right gripper hold.
+    held: &'a [Vec<&'a str>; 2],
+    shows_head_view: bool,
+    /// Whether a script moves the arms.
+    is_scripted: bool,
+    keymap: &'a Keymap,
 }
 
-fn show_window(mut contexts: EguiContexts, mut panels: ResMut<Panels>, mut window: RobotWindow) {
-    let Ok(context) = contexts.ctx_mut() else {
-        return;
-    };
-    let mut pressed = Pressed::default();
-    Panel::Robot.show(context, &mut panels, |ui| {
-        window.switches(ui);
-        ui.separator();
-        pressed = window.joint(ui);
-        window.goal(ui);
-        ui.separator();
-        window.state(ui);
-        ui.separator();
-        window.face(ui);
-    });
-    window.jog.buttons.update(pressed.held, pressed.struck);
+impl Model<'_> {
+    /// Whether the user can move a joint.
+    fn is_free(&self, joint: RobotJoint) -> bool {
+        !self.is_scripted || joint == RobotJoint::HeadPan
+    }
+}
+
+/// What the user does with the window.
+#[derive(Default)]
+struct Asked {
+    pressed: Pressed,
+    requests: Vec<Request>,
 }
 
 /// Where the buttons move the joints.
@@ -88,176 +89,285 @@ struct Pressed {
     struck: Directions,
 }
 
-impl RobotWindow<'_, '_> {
-    /// What there is to see, and who controls the robot.
-    fn switches(&mut self, ui: &mut Ui) {
-        ui.horizontal(|ui| {
-            let is_shown = self.robot.is_shown;
-            if switch(ui, "Show/Hide", is_shown) {
-                self.commands.write(SimCommand::ShowRobot(!is_shown));
-            }
-            if switch(ui, "Head View", self.head_view.is_shown()) {
-                self.head_view.toggle();
-            }
-            if switch(ui, "Matlab Control", self.agent.is_on()) {
-                self.orders.write(toggled(&self.agent));
-            }
-        });
-    }
+/// What the user asks of the window once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Request {
+    ShowRobot(bool),
+    ToggleHeadView,
+    ToggleScript,
+    /// Bring all joints back to where they stood at the start.
+    GoHome,
+    /// Bring a joint to an angle in rad, or an opening in units.
+    Go(RobotJoint, f64),
+    ShowFace(Face),
+}
 
-    /// Whether the user can move the selected joint: a script moves the arms.
-    fn is_free(&self) -> bool {
-        !self.agent.is_on() || self.selection.joint == RobotJoint::HeadPan
-    }
+/// Where the model comes from.
+#[derive(SystemParam)]
+struct Sources<'w, 's> {
+    robot: Res<'w, Robot>,
+    specs: Query<'w, 's, &'static ObjectSpec>,
+    agent: Res<'w, Agent>,
+    keymap: Res<'w, Keymap>,
+}
 
-    /// Selects a joint, and moves it while a button is held down.
-    fn joint(&mut self, ui: &mut Ui) -> Pressed {
-        let mut pressed = Pressed::default();
-        ui.horizontal(|ui| {
-            let before = self.selection.joint;
-            let mut joint = before;
-            ComboBox::from_id_salt("joint")
-                .selected_text(label(joint))
-                .width(120.0)
-                .height(LIST_HEIGHT)
-                .show_ui(ui, |ui| {
-                    for choice in RobotJoint::ALL {
-                        ui.selectable_value(&mut joint, choice, label(choice));
-                    }
-                });
-            if joint != before {
-                *self.selection = Selection { joint, goal: None };
+impl Sources<'_, '_> {
+    /// Ids of what the gripper of an arm holds.
+    fn held_by(&self, arm: Arm) -> Vec<&str> {
+        let held = &self.robot.arm(arm).holds;
+        self.specs.iter_many(held).map(|spec| &*spec.id).collect()
+    }
+}
+
+fn show_panel(
+    mut contexts: EguiContexts,
+    mut panels: ResMut<Panels>,
+    sources: Sources,
+    mut selection: Local<Selection>,
+    mut head_view: ResMut<HeadView>,
+    mut jog: ResMut<Jog>,
+    mut commands: MessageWriter<SimCommand>,
+    mut orders: MessageWriter<AgentOrder>,
+) {
+    let Ok(context) = contexts.ctx_mut() else {
+        return;
+    };
+    let model = Model {
+        robot: &sources.robot,
+        held: &Arm::BOTH.map(|arm| sources.held_by(arm)),
+        shows_head_view: head_view.is_shown(),
+        is_scripted: sources.agent.is_on(),
+        keymap: &sources.keymap,
+    };
+    let asked = Panel::Robot.show(context, &mut panels, |ui| show(ui, &model, &mut selection));
+    let Asked { pressed, requests } = asked.unwrap_or_default();
+    jog.buttons.update(pressed.held, pressed.struck);
+    for request in requests {
+        match request {
+            Request::ToggleHeadView => head_view.toggle(),
+            Request::ToggleScript => {
+                orders.write(toggled(&sources.agent));
             }
-            for (text, direction) in [("−", -1), ("+", 1)] {
-                let button = Button::new(RichText::new(text).strong().monospace());
-                let button = button.min_size(egui::vec2(32.0, 0.0));
-                let response = ui.add_enabled(self.is_free(), button);
-                let response = response.on_disabled_hover_text(SCRIPT_MOVES);
-                let is_held = response.is_pointer_button_down_on();
-                let has_gone_down = ui.input(|input| input.pointer.primary_pressed());
-                let joint = joint.index();
-                if is_held {
-                    pressed.held[joint] = direction;
-                }
-                // A short click may be over within a frame.
-                if has_gone_down && (is_held || response.clicked()) {
-                    pressed.struck[joint] = direction;
-                }
+            Request::ShowRobot(is_shown) => {
+                commands.write(SimCommand::ShowRobot(is_shown));
             }
-            let home = ui.add_enabled(!self.agent.is_on(), Button::new("Home"));
-            if home.on_disabled_hover_text(SCRIPT_MOVES).clicked() {
+            Request::GoHome => {
                 let home = RobotJoint::ALL.map(|joint| (joint, Drive::Toward(joint.home())));
-                self.commands.write(SimCommand::Drive(home.into()));
-                self.selection.goal = None;
+                commands.write(SimCommand::Drive(home.into()));
             }
-        });
-        pressed
-    }
-
-    /// Sends the selected joint somewhere.
-    fn goal(&mut self, ui: &mut Ui) {
-        let Selection { joint, goal } = *self.selection;
-        let state = self.robot.joint(joint);
-        let (least, largest) = joint.limits();
-        let shown = goal.unwrap_or_else(|| joint.clamp(state.position));
-        let mut value = shown;
-        ui.spacing_mut().slider_width = TRACK_WIDTH;
-        let slider = Slider::new(&mut value, least..=largest)
-            .custom_formatter(|value, _| number(value, 3))
-            .suffix(unit(joint))
-            .update_while_editing(false);
-        let slider = ui.add_enabled(self.is_free(), slider);
-        let slider = slider.on_disabled_hover_text(SCRIPT_MOVES);
-        if value != shown {
-            self.selection.goal = Some(value);
-            let drive = Drive::Toward(value);
-            self.commands.write(SimCommand::Drive(vec![(joint, drive)]));
-        } else if state.velocity == 0.0 && !slider.is_pointer_button_down_on() {
-            self.selection.goal = None;
+            Request::Go(joint, goal) => {
+                let drive = Drive::Toward(goal);
+                commands.write(SimCommand::Drive(vec![(joint, drive)]));
+            }
+            Request::ShowFace(face) => {
+                commands.write(SimCommand::ShowFace(face));
+            }
         }
     }
+}
 
-    /// The arms side by side.
-    fn state(&self, ui: &mut Ui) {
-        let grid = egui::Grid::new("state")
-            .striped(true)
-            .spacing(egui::vec2(12.0, 2.0))
-            .max_col_width(ARM_WIDTH);
-        grid.show(ui, |ui| {
-            let row = |ui: &mut Ui, name: &str, cell: &dyn Fn(Arm) -> RichText| {
-                ui.label(name);
-                for arm in Arm::BOTH {
-                    ui.add(Label::new(cell(arm)).truncate());
-                }
-                ui.end_row();
-            };
-            row(ui, "rad, °", &|arm| match arm {
-                Arm::Left => RichText::new("Left").strong(),
-                Arm::Right => RichText::new("Right").strong(),
-            });
-            for (i, joint) in RobotJoint::of_arm(Arm::Left).into_iter().enumerate() {
-                let name = label(joint).trim_start_matches("Left ");
-                row(ui, name, &|arm| self.value(RobotJoint::of_arm(arm)[i]));
+fn show(ui: &mut Ui, model: &Model, selection: &mut Selection) -> Asked {
+    let mut asked = Asked::default();
+    switches(ui, model, &mut asked.requests);
+    ui.separator();
+    joint(ui, model, selection, &mut asked);
+    goal(ui, model, selection, &mut asked.requests);
+    ui.separator();
+    face(ui, model, &mut asked.requests);
+    CollapsingHeader::new("Joints and grippers").show(ui, |ui| state(ui, model, selection.joint));
+    asked
+}
+
+/// What there is to see, and who controls the robot.
+fn switches(ui: &mut Ui, model: &Model, requests: &mut Vec<Request>) {
+    let is_shown = model.robot.is_shown;
+    ui.horizontal(|ui| {
+        for (text, is_on, action, request) in [
+            (
+                "Show/Hide",
+                is_shown,
+                Action::ShowRobot,
+                Request::ShowRobot(!is_shown),
+            ),
+            (
+                "Head View",
+                model.shows_head_view,
+                Action::ShowHeadView,
+                Request::ToggleHeadView,
+            ),
+            (
+                "Matlab Control",
+                model.is_scripted,
+                Action::RunScript,
+                Request::ToggleScript,
+            ),
+        ] {
+            if switch(ui, is_on, text, &model.keymap.tooltip(action)).clicked() {
+                requests.push(request);
             }
-            row(ui, "Gripper", &|arm| self.value(RobotJoint::gripper(arm)));
-            row(ui, "Holds", &|arm| self.held_by(arm).into());
-            row(ui, "Blocked", &|arm| {
-                let blocked_by = self.robot.arm(arm).blocked_by.as_deref();
-                blocked_by.unwrap_or(NOTHING).into()
-            });
-            ui.label("Head H0");
-            ui.label(self.value(RobotJoint::HeadPan));
-            ui.end_row();
-        });
-    }
+        }
+    });
+}
 
-    /// Where a joint stands; the selected one stands out.
-    fn value(&self, joint: RobotJoint) -> RichText {
-        let position = self.robot.joint(joint).position;
+/// Selects a joint, and moves it while a button is held down.
+fn joint(ui: &mut Ui, model: &Model, selection: &mut Selection, asked: &mut Asked) {
+    ui.horizontal(|ui| {
+        let joint = chosen_joint(ui, selection.joint);
+        if joint != selection.joint {
+            *selection = Selection { joint, goal: None };
+        }
+        for (text, direction, way) in [("−", -1, Way::Minus), ("+", 1, Way::Plus)] {
+            let button = Button::new(RichText::new(text).strong().monospace());
+            let button = button.min_size(egui::vec2(32.0, 0.0));
+            let response = ui.add_enabled(model.is_free(joint), button);
+            let tooltip = model.keymap.tooltip(Action::Move(joint, way));
+            let response = response
+                .on_hover_text(tooltip)
+                .on_disabled_hover_text(SCRIPT_MOVES);
+            let is_held = response.is_pointer_button_down_on();
+            let has_gone_down = ui.input(|input| input.pointer.primary_pressed());
+            let joint = joint.index();
+            if is_held {
+                asked.pressed.held[joint] = direction;
+            }
+            // A short click may be over within a frame.
+            if has_gone_down && (is_held || response.clicked()) {
+                asked.pressed.struck[joint] = direction;
+            }
+        }
+        let home = "Bring every joint back to where it stood at the start";
+        let home = ui
+            .add_enabled(!model.is_scripted, Button::new("Home"))
+            .on_hover_text(home)
+            .on_disabled_hover_text(SCRIPT_MOVES);
+        if home.clicked() {
+            asked.requests.push(Request::GoHome);
+            selection.goal = None;
+        }
+    });
+}
+
+fn chosen_joint(ui: &mut Ui, before: RobotJoint) -> RobotJoint {
+    let mut joint = before;
+    let list = ComboBox::from_id_salt("joint")
+        .selected_text(label(joint))
+        .width(120.0)
+        .height(LIST_HEIGHT)
+        .show_ui(ui, |ui| {
+            for choice in RobotJoint::ALL {
+                ui.selectable_value(&mut joint, choice, label(choice));
+            }
+        });
+    name(&list.response, WidgetType::ComboBox, "Joint");
+    list.response.on_hover_text("The joint to be moved");
+    joint
+}
+
+/// Sends the selected joint somewhere.
+fn goal(ui: &mut Ui, model: &Model, selection: &mut Selection, requests: &mut Vec<Request>) {
+    let joint = selection.joint;
+    let state = model.robot.joint(joint);
+    let (least, largest) = joint.limits();
+    let shown = selection
+        .goal
+        .unwrap_or_else(|| joint.clamp(state.position));
+    let mut value = shown;
+    ui.spacing_mut().slider_width = TRACK_WIDTH;
+    let slider = Slider::new(&mut value, least..=largest)
+        .custom_formatter(|value, _| number(value, 3))
+        .suffix(unit(joint))
+        .update_while_editing(false);
+    let slider = ui
+        .add_enabled(model.is_free(joint), slider)
+        .on_hover_text("Where the joint is to go")
+        .on_disabled_hover_text(SCRIPT_MOVES);
+    name(&slider, WidgetType::Slider, "Goal");
+    if value != shown {
+        selection.goal = Some(value);
+        requests.push(Request::Go(joint, value));
+    } else if state.velocity == 0.0 && !slider.is_pointer_button_down_on() {
+        selection.goal = None;
+    }
+}
+
+/// The arms side by side.
+fn state(ui: &mut Ui, model: &Model, selected: RobotJoint) {
+    let value = |joint: RobotJoint| {
+        let position = model.robot.joint(joint).position;
         let text = RichText::new(reading(joint, position)).monospace();
-        if joint == self.selection.joint {
+        if joint == selected {
             text.strong()
         } else {
             text
         }
-    }
-
-    /// Ids of what the gripper of an arm holds.
-    fn held_by(&self, arm: Arm) -> String {
-        let held = &self.robot.arm(arm).holds;
-        let ids: Vec<_> = self.specs.iter_many(held).map(|spec| &*spec.id).collect();
-        if ids.is_empty() {
-            NOTHING.into()
-        } else {
-            ids.join(", ")
-        }
-    }
-
-    fn face(&mut self, ui: &mut Ui) {
-        ui.horizontal(|ui| {
-            ui.label("Face:");
-            let before = self.robot.face;
-            let mut face = before;
-            ComboBox::from_id_salt("face")
-                .selected_text(format!("{face:?}"))
-                .show_ui(ui, |ui| {
-                    for choice in Face::ALL {
-                        ui.selectable_value(&mut face, choice, format!("{choice:?}"));
-                    }
-                });
-            if face != before {
-                self.commands.write(SimCommand::ShowFace(face));
+    };
+    let grid = egui::Grid::new("state")
+        .striped(true)
+        .spacing(egui::vec2(12.0, 2.0))
+        .max_col_width(ARM_WIDTH);
+    grid.show(ui, |ui| {
+        let row = |ui: &mut Ui, name: &str, cell: &dyn Fn(Arm) -> RichText| {
+            ui.label(name);
+            for arm in Arm::BOTH {
+                ui.add(Label::new(cell(arm)).truncate());
             }
+            ui.end_row();
+        };
+        row(ui, "rad, °", &|arm| match arm {
+            Arm::Left => RichText::new("Left").strong(),
+            Arm::Right => RichText::new("Right").strong(),
         });
+        for (i, joint) in RobotJoint::of_arm(Arm::Left).into_iter().enumerate() {
+            let name = label(joint).trim_start_matches("Left ");
+            row(ui, name, &|arm| value(RobotJoint::of_arm(arm)[i]));
+        }
+        row(ui, "Gripper", &|arm| value(RobotJoint::gripper(arm)));
+        row(ui, "Holds", &|arm| held(model, arm).into());
+        row(ui, "Blocked", &|arm| {
+            let blocked_by = model.robot.arm(arm).blocked_by.as_deref();
+            blocked_by.unwrap_or(NOTHING).into()
+        });
+        ui.label("Head H0");
+        ui.label(value(RobotJoint::HeadPan));
+        ui.end_row();
+    });
+}
+
+fn held(model: &Model, arm: Arm) -> String {
+    match &*model.held[arm as usize] {
+        [] => NOTHING.into(),
+        ids => ids.join(", "),
     }
+}
+
+fn face(ui: &mut Ui, model: &Model, requests: &mut Vec<Request>) {
+    ui.horizontal(|ui| {
+        ui.label("Face:");
+        let before = model.robot.face;
+        let mut face = before;
+        let list = ComboBox::from_id_salt("face")
+            .selected_text(format!("{face:?}"))
+            .show_ui(ui, |ui| {
+                for choice in Face::ALL {
+                    ui.selectable_value(&mut face, choice, format!("{choice:?}"));
+                }
+            });
+        name(&list.response, WidgetType::ComboBox, "Face");
+        let tooltip = model.keymap.hint(Action::ShowNextFace);
+        let tooltip = format!("What the robot's screen shows (next one: {tooltip})");
+        list.response.on_hover_text(tooltip);
+        if face != before {
+            requests.push(Request::ShowFace(face));
+        }
+    });
+}
+
+/// Gives a widget without words a name.
+fn name(response: &egui::Response, kind: WidgetType, name: &str) {
+    response.widget_info(|| WidgetInfo::labeled(kind, response.enabled(), name));
 }
 
 const NOTHING: &str = "-";
-
-/// A button that shows whether something is on; whether it was clicked.
-fn switch(ui: &mut Ui, text: &str, is_on: bool) -> bool {
-    ui.add(Button::new(text).selected(is_on)).clicked()
-}
 
 /// Name of a joint, as in the report's figure 10.
 const fn label(joint: RobotJoint) -> &'static str {
@@ -309,8 +419,10 @@ fn number(value: f64, decimals: usize) -> String {
 
 #[cfg(test)]
 mod tests {
+    use bevy_egui::egui::{Event, Modifiers, PointerButton, accesskit::Role};
+    use egui_kittest::{Harness, kittest::Queryable as _};
+
     use super::*;
-    use bevy_egui::egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect, vec2};
 
     #[test]
     fn joints_are_labelled_by_arm_and_name() {
@@ -337,52 +449,50 @@ mod tests {
         assert_eq!(number(-0.001, 3), "-0.001");
     }
 
-    /// An app with nothing but the window's content in an egui of its own.
-    struct Bench {
-        world: World,
-        context: egui::Context,
+    /// What the window is shown with, and everything that was asked of it.
+    #[derive(Default)]
+    struct Stage {
+        robot: Robot,
+        is_scripted: bool,
+        keymap: Keymap,
+        selection: Selection,
+        pressed: Pressed,
+        struck: Vec<i8>,
+        requests: Vec<Request>,
     }
 
-    impl Bench {
-        fn new() -> Self {
-            let mut world = World::new();
-            world.init_resource::<Robot>();
-            world.init_resource::<HeadView>();
-            world.init_resource::<Jog>();
-            world.init_resource::<Messages<SimCommand>>();
-            world.init_resource::<Agent>();
-            world.init_resource::<Messages<AgentOrder>>();
+    impl Stage {
+        fn scripted() -> Self {
             Self {
-                world,
-                context: egui::Context::default(),
+                is_scripted: true,
+                ..default()
             }
         }
 
-        /// A frame with these events: the buttons' directions, and the commands.
-        fn frame(&mut self, events: Vec<Event>) -> (Pressed, Vec<SimCommand>) {
-            let input = RawInput {
-                screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(400.0, 300.0))),
-                events,
-                ..RawInput::default()
+        fn harness(self) -> Harness<'static, Self> {
+            let frame = |ui: &mut Ui, stage: &mut Self| {
+                let model = Model {
+                    robot: &stage.robot,
+                    held: &[vec![], vec!["red", "blue"]],
+                    shows_head_view: false,
+                    is_scripted: stage.is_scripted,
+                    keymap: &stage.keymap,
+                };
+                let asked = show(ui, &model, &mut stage.selection);
+                stage.requests.extend(asked.requests);
+                stage.pressed = asked.pressed;
+                stage.struck.push(of_first_joint(stage.pressed.struck));
             };
-            let mut pressed = Pressed::default();
-            let mut state = bevy::ecs::system::SystemState::<RobotWindow>::new(&mut self.world);
-            let mut window = state.get_mut(&mut self.world).unwrap();
-            let _output = self.context.run_ui(input, |ui| {
-                pressed = window.joint(ui);
-                window.goal(ui);
-            });
-            let mut messages = self.world.resource_mut::<Messages<SimCommand>>();
-            (pressed, messages.drain().collect())
+            Harness::builder()
+                .with_size(egui::vec2(Panel::Robot.width(), 600.0))
+                .build_ui_state(frame, self)
         }
 
-        fn button(&self, at: Pos2, pressed: bool) -> Event {
-            Event::PointerButton {
-                pos: at,
-                button: PointerButton::Primary,
-                pressed,
-                modifiers: Modifiers::default(),
-            }
+        fn after_click(self, name: &str) -> Vec<Request> {
+            let mut harness = self.harness();
+            harness.get_by_label(name).click();
+            harness.run();
+            harness.into_state().requests
         }
     }
 
@@ -392,58 +502,129 @@ mod tests {
     }
 
     #[test]
-    fn the_buttons_move_the_selected_joint_while_they_are_held() {
-        let mut hits = Vec::new();
-        for x in (4..400).step_by(8) {
-            let at = Pos2::new(x as f32, 10.0);
-            let mut bench = Bench::new();
-            bench.frame(vec![]);
-            bench.frame(vec![Event::PointerMoved(at)]);
-            let (down, _) = bench.frame(vec![bench.button(at, true)]);
-            let direction = of_first_joint(down.held);
-            assert_eq!(of_first_joint(down.struck), direction);
-            let (held, _) = bench.frame(vec![]);
-            assert_eq!(of_first_joint(held.held), direction);
-            assert_eq!(of_first_joint(held.struck), 0);
-            let (up, commands) = bench.frame(vec![bench.button(at, false)]);
-            assert_eq!([up.held, up.struck].map(of_first_joint), [0, 0]);
-            hits.push((direction, commands.len()));
+    fn the_switches_ask_for_what_they_say() {
+        for (name, request) in [
+            ("Show/Hide", Request::ShowRobot(true)),
+            ("Head View", Request::ToggleHeadView),
+            ("Matlab Control", Request::ToggleScript),
+            ("Home", Request::GoHome),
+        ] {
+            assert_eq!(Stage::default().after_click(name), [request]);
         }
-        hits.dedup();
-        hits.retain(|&hit| hit != (0, 0));
-        // Left to right: minus, plus, Home.
-        assert_eq!(hits, [(-1, 0), (1, 0), (0, 1)]);
+    }
+
+    #[test]
+    fn a_robot_that_is_shown_can_be_hidden() {
+        let mut stage = Stage::default();
+        stage.robot.is_shown = true;
+        let requests = stage.after_click("Show/Hide");
+        assert_eq!(requests, [Request::ShowRobot(false)]);
+    }
+
+    #[test]
+    fn the_buttons_move_the_selected_joint_while_they_are_held() {
+        for (name, direction) in [("−", -1), ("+", 1)] {
+            let mut harness = Stage::default().harness();
+            let at = harness.get_by_label(name).rect().center();
+            let held = |harness: &Harness<Stage>| of_first_joint(harness.state().pressed.held);
+            harness.hover_at(at);
+            harness.drag_at(at);
+            harness.run();
+            harness.run();
+            assert_eq!(held(&harness), direction);
+            harness.drop_at(at);
+            harness.run();
+            assert_eq!(held(&harness), 0);
+            let struck = harness.state().struck.iter();
+            let struck: Vec<_> = struck.filter(|&&struck| struck != 0).collect();
+            assert_eq!(struck, [&direction], "struck once");
+        }
     }
 
     #[test]
     fn a_click_within_a_frame_strikes() {
-        let mut strikes = Vec::new();
-        for x in (4..400).step_by(8) {
-            let at = Pos2::new(x as f32, 10.0);
-            let mut bench = Bench::new();
-            bench.frame(vec![]);
-            bench.frame(vec![Event::PointerMoved(at)]);
-            let (click, _) = bench.frame(vec![bench.button(at, true), bench.button(at, false)]);
-            strikes.push(of_first_joint(click.struck));
+        for (name, direction) in [("−", -1), ("+", 1)] {
+            let mut harness = Stage::default().harness();
+            let pos = harness.get_by_label(name).rect().center();
+            harness.hover_at(pos);
+            harness.run();
+            for pressed in [true, false] {
+                harness.input_mut().events.push(Event::PointerButton {
+                    pos,
+                    button: PointerButton::Primary,
+                    pressed,
+                    modifiers: Modifiers::default(),
+                });
+            }
+            harness.run();
+            assert!(harness.state().struck.contains(&direction), "{name}");
         }
-        strikes.dedup();
-        strikes.retain(|&strike| strike != 0);
-        assert_eq!(strikes, [-1, 1]);
+    }
+
+    #[test]
+    fn every_joint_can_be_selected() {
+        for joint in RobotJoint::ALL {
+            let mut harness = Stage::default().harness();
+            harness.get_by_label("Joint").click();
+            harness.run();
+            let choices = harness.query_all_by_label(label(joint));
+            choices.last().unwrap().click();
+            harness.run();
+            assert_eq!(harness.state().selection.joint, joint);
+            assert_eq!(harness.state().requests, []);
+        }
+    }
+
+    #[test]
+    fn every_face_can_be_chosen() {
+        for face in Face::ALL {
+            let mut stage = Stage::default();
+            let other = Face::ALL.into_iter().find(|&other| other != face);
+            stage.robot.face = other.unwrap();
+            let mut harness = stage.harness();
+            harness
+                .get_by_role_and_label(Role::ComboBox, "Face")
+                .click();
+            harness.run();
+            harness.get_by_label(&format!("{face:?}")).click();
+            harness.run();
+            assert_eq!(harness.state().requests, [Request::ShowFace(face)]);
+        }
     }
 
     #[test]
     fn the_slider_sends_the_joint_where_it_is_clicked_and_nothing_otherwise() {
-        let mut bench = Bench::new();
-        assert_eq!(bench.frame(vec![]).1, []);
-        let at = Pos2::new(100.0, 32.0);
-        bench.frame(vec![Event::PointerMoved(at)]);
-        let (_, commands) = bench.frame(vec![bench.button(at, true)]);
-        let [SimCommand::Drive(drives)] = &commands[..] else {
-            panic!("{commands:?}");
-        };
-        let [(RobotJoint::LeftS0, Drive::Toward(goal))] = drives[..] else {
-            panic!("{drives:?}");
+        let mut harness = Stage::default().harness();
+        assert_eq!(harness.state().requests, []);
+        let slider = harness.get_by_label("Goal").rect();
+        let at = slider.min + egui::vec2(TRACK_WIDTH / 2.0, slider.height() / 2.0);
+        harness.hover_at(at);
+        harness.drag_at(at);
+        harness.run();
+        let [Request::Go(RobotJoint::LeftS0, goal)] = harness.state().requests[..] else {
+            panic!("{:?}", harness.state().requests);
         };
         assert!((-0.2..0.2).contains(&goal), "{goal}");
+    }
+
+    #[test]
+    fn while_a_script_moves_the_arms_the_user_cannot() {
+        for name in ["Home", "−", "+", "Goal"] {
+            let mut harness = Stage::scripted().harness();
+            harness.get_by_label(name).click();
+            harness.run();
+            let stage = harness.state();
+            assert_eq!(stage.requests, [], "{name}");
+            assert!(stage.struck.iter().all(|&struck| struck == 0), "{name}");
+        }
+    }
+
+    #[test]
+    fn what_the_grippers_hold_is_shown() {
+        let mut harness = Stage::default().harness();
+        assert!(harness.query_by_label("red, blue").is_none());
+        harness.get_by_label("Joints and grippers").click();
+        harness.run();
+        assert!(harness.query_by_label("red, blue").is_some());
     }
 }

@@ -1,14 +1,20 @@
-//! The Status window: how fast the picture and the simulation are, and what the script does.
+//! The Status window (report figure 4): how fast the picture and the simulation are, what the script does, what is recorded.
 
-use std::time::Duration;
+use std::{path::PathBuf, time::Duration};
 
-use bevy::prelude::*;
-use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
-use tabletop_core::{Agent, Paused, SimTick, TICKS_PER_SECOND};
+use bevy::{ecs::system::SystemParam, prelude::*};
+use bevy_egui::{
+    EguiContexts, EguiPrimaryContextPass,
+    egui::{Label, RichText, Ui},
+};
+use tabletop_core::{
+    Agent, History, Paused, Recording, Replaying, SimFact, SimTick, TICKS_PER_SECOND,
+};
 
 use crate::{
     Picture,
     panels::{Panel, Panels},
+    widgets::style::WARNING,
 };
 
 /// The time over which speeds are averaged.
@@ -17,23 +23,50 @@ const SPAN: Duration = Duration::from_secs(2);
 /// How often the simulated time is told while nothing else changes in the picture.
 const STILL_SPAN: Duration = Duration::from_secs(1);
 
+/// Height of a row, and width of the names of the values, in points.
+const ROW_HEIGHT: f32 = 16.0;
+const NAME_WIDTH: f32 = 84.0;
+
+/// Ticks between two frames of a recording (report section 4.1: four images a second).
+const TICKS_PER_FRAME: u64 = TICKS_PER_SECOND as u64 / 4;
+
+/// What draws the window. Whoever opens the window sets it.
+#[derive(Resource, Clone, Debug, PartialEq, Eq)]
+pub struct Renderer {
+    /// What it calls itself.
+    pub name: String,
+    /// Whether it draws on the processor instead of a graphics card.
+    pub is_software: bool,
+}
+
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Speed>()
         .init_resource::<Clock>()
-        .add_systems(Update, (measure, tell_time))
-        .add_systems(EguiPrimaryContextPass, show_status);
+        .init_resource::<Take>()
+        .add_systems(Update, (measure, tell_time, follow_recording))
+        .add_systems(EguiPrimaryContextPass, show_panel);
 }
 
-/// Pictures and ticks of the last seconds.
+/// Pictures, ticks and calls of the script in the last seconds.
 #[derive(Resource, Default)]
 struct Speed {
     since: Duration,
     drawn: u64,
     ticks: SimTick,
+    calls: u32,
+    calling: Duration,
+    mean: Means,
+}
+
+/// What is shown of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Means {
     /// Pictures a second.
     fps: f32,
     /// Simulated seconds a second.
     pace: f32,
+    /// How long a call of the script took.
+    call: Option<Duration>,
 }
 
 /// The simulated time as the window shows it.
@@ -62,86 +95,221 @@ fn tell_time(
 fn measure(
     time: Res<Time<Real>>,
     tick: Res<SimTick>,
+    agent: Res<Agent>,
     picture: Res<Picture>,
     mut speed: ResMut<Speed>,
 ) {
     speed.since += time.delta();
+    if let Agent::Online { took } = *agent {
+        speed.calls += 1;
+        speed.calling += took;
+    }
     if speed.since < SPAN {
         return;
     }
     let seconds = speed.since.as_secs_f32();
     let ticks = tick.0.saturating_sub(speed.ticks.0);
     *speed = Speed {
-        fps: picture.drawn.saturating_sub(speed.drawn) as f32 / seconds,
-        pace: ticks as f32 / TICKS_PER_SECOND as f32 / seconds,
+        mean: Means {
+            fps: picture.drawn.saturating_sub(speed.drawn) as f32 / seconds,
+            pace: ticks as f32 / TICKS_PER_SECOND as f32 / seconds,
+            call: speed.calling.checked_div(speed.calls),
+        },
         drawn: picture.drawn,
         ticks: *tick,
         ..default()
     };
 }
 
-fn show_status(
-    mut contexts: EguiContexts,
-    mut panels: ResMut<Panels>,
-    speed: Res<Speed>,
-    clock: Res<Clock>,
-    paused: Res<Paused>,
-    agent: Res<Agent>,
-) {
+/// Where the present recording goes, and when it began.
+#[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
+struct Take {
+    folder: PathBuf,
+    began: SimTick,
+}
+
+fn follow_recording(mut facts: MessageReader<SimFact>, tick: Res<SimTick>, mut take: ResMut<Take>) {
+    for fact in facts.read() {
+        if let SimFact::RecordingStarted { folder } = fact {
+            *take = Take {
+                folder: folder.clone(),
+                began: *tick,
+            };
+        }
+    }
+}
+
+/// What the window shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Model {
+    mean: Means,
+    /// The simulated time.
+    tick: SimTick,
+    is_paused: bool,
+    agent: Agent,
+    film: Film,
+    renderer: Option<Renderer>,
+}
+
+/// What there is of recordings.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+enum Film {
+    #[default]
+    None,
+    /// One is written.
+    Recorded {
+        folder: PathBuf,
+        segment: usize,
+        frame: u64,
+    },
+    /// One is played.
+    Replayed,
+}
+
+/// Where the model comes from.
+#[derive(SystemParam)]
+struct Sources<'w> {
+    speed: Res<'w, Speed>,
+    clock: Res<'w, Clock>,
+    tick: Res<'w, SimTick>,
+    paused: Res<'w, Paused>,
+    agent: Res<'w, Agent>,
+    recording: Res<'w, Recording>,
+    replaying: Res<'w, Replaying>,
+    take: Res<'w, Take>,
+    history: Res<'w, History>,
+    renderer: Option<Res<'w, Renderer>>,
+}
+
+impl Sources<'_> {
+    fn model(&self) -> Model {
+        Model {
+            mean: self.speed.mean,
+            tick: self.clock.tick,
+            is_paused: self.paused.0,
+            agent: self.agent.clone(),
+            film: self.film(),
+            renderer: self.renderer.as_deref().cloned(),
+        }
+    }
+
+    fn film(&self) -> Film {
+        let ticks = self.tick.0.saturating_sub(self.take.began.0);
+        match (self.recording.0, self.replaying.0) {
+            (true, _) => Film::Recorded {
+                folder: self.take.folder.clone(),
+                segment: self.history.undoable,
+                frame: ticks / TICKS_PER_FRAME,
+            },
+            (false, true) => Film::Replayed,
+            (false, false) => Film::None,
+        }
+    }
+}
+
+fn show_panel(mut contexts: EguiContexts, mut panels: ResMut<Panels>, sources: Sources) {
     let Ok(context) = contexts.ctx_mut() else {
         return;
     };
-    Panel::Status.show(context, &mut panels, |ui| {
-        let grid = egui::Grid::new("status").spacing(egui::vec2(12.0, 2.0));
-        grid.show(ui, |ui| {
-            for (name, value) in [
-                ("FPS", format!("{:03.0}", speed.fps)),
-                ("Simulated", simulated(clock.tick, *paused, speed.pace)),
-                ("Matlab", matlab(&agent)),
-            ] {
-                ui.label(name);
-                ui.label(value);
-                ui.end_row();
-            }
-        });
+    if panels.is_open(Panel::Status) {
+        let model = sources.model();
+        Panel::Status.show(context, &mut panels, |ui| show(ui, &model));
+    }
+}
+
+fn show(ui: &mut Ui, model: &Model) {
+    ui.spacing_mut().interact_size.y = ROW_HEIGHT;
+    ui.spacing_mut().item_spacing.y = 2.0;
+    row(ui, "FPS", format!("{:03.0}", model.mean.fps));
+    row(ui, "Simulated", simulated(model));
+    row(ui, "Matlab", matlab(&model.agent, model.mean.call));
+    row(ui, "Recording", recording(&model.film));
+    if let Some(renderer) = &model.renderer {
+        row(ui, "Renderer", words_for(renderer));
+    }
+}
+
+fn row(ui: &mut Ui, name: &str, value: impl Into<RichText>) {
+    ui.horizontal(|ui| {
+        let cursor = ui.cursor().left();
+        ui.label(RichText::new(name).weak());
+        ui.add_space(cursor + NAME_WIDTH - ui.cursor().left());
+        ui.add(Label::new(value.into()).truncate());
     });
 }
 
-fn simulated(tick: SimTick, paused: Paused, pace: f32) -> String {
-    let seconds = tick.0 as f64 / f64::from(TICKS_PER_SECOND);
-    match paused.0 {
+fn simulated(model: &Model) -> String {
+    let seconds = model.tick.0 as f64 / f64::from(TICKS_PER_SECOND);
+    match model.is_paused {
         true => format!("{seconds:.1} s, paused"),
-        false => format!("{seconds:.1} s, {pace:.2} × real time"),
+        false => format!("{seconds:.1} s, {:.2} × real time", model.mean.pace),
     }
 }
 
 /// What the script does, in words.
-fn matlab(agent: &Agent) -> String {
-    match agent {
-        Agent::Off => "offline".into(),
-        Agent::Starting => "starting".into(),
-        Agent::Online { took } => format!("online, {:.1} ms a call", took.as_secs_f64() * 1e3),
-        Agent::Waiting { since } => format!("waiting for script {:.1} s", since.as_secs_f64()),
-        Agent::Failed => "stopped by an error".into(),
+fn matlab(agent: &Agent, call: Option<Duration>) -> String {
+    match (agent, call) {
+        (Agent::Off, _) => "offline".into(),
+        (Agent::Starting, _) => "starting".into(),
+        (Agent::Online { .. }, None) => "online".into(),
+        (Agent::Online { .. }, Some(call)) => {
+            format!("online, {:.1} ms a call", call.as_secs_f64() * 1e3)
+        }
+        (Agent::Waiting { since }, _) => {
+            format!("waiting for script {:.1} s", since.as_secs_f64())
+        }
+        (Agent::Failed, _) => "stopped by an error".into(),
+    }
+}
+
+fn recording(film: &Film) -> String {
+    match film {
+        Film::None => "not recording".into(),
+        Film::Recorded {
+            folder,
+            segment,
+            frame,
+        } => format!("segment {segment}, frame {frame} in {}", folder.display()),
+        Film::Replayed => "a recording is played".into(),
+    }
+}
+
+fn words_for(renderer: &Renderer) -> RichText {
+    match renderer.is_software {
+        true => RichText::new(format!("software renderer ({})", renderer.name)).color(WARNING),
+        false => renderer.name.as_str().into(),
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use bevy::{ecs::system::RunSystemOnce as _, time::TimeUpdateStrategy};
+    use egui_kittest::{Harness, kittest::Queryable as _};
+    use tabletop_core::CorePlugin;
+
     use super::*;
+
+    const fn ms(ms: u64) -> Duration {
+        Duration::from_millis(ms)
+    }
 
     #[test]
     fn the_script_has_words_for_all_that_it_does() {
-        let ms = Duration::from_millis;
-        for (agent, words) in [
-            (Agent::Off, "offline"),
-            (Agent::Online { took: ms(1) }, "online, 1.0 ms a call"),
+        for (agent, call, words) in [
+            (Agent::Off, None, "offline"),
+            (Agent::Online { took: ms(9) }, None, "online"),
+            (
+                Agent::Online { took: ms(9) },
+                Some(ms(1)),
+                "online, 1.0 ms a call",
+            ),
             (
                 Agent::Waiting { since: ms(3210) },
+                None,
                 "waiting for script 3.2 s",
             ),
         ] {
-            assert_eq!(matlab(&agent), words);
+            assert_eq!(matlab(&agent, call), words);
         }
     }
 
@@ -153,10 +321,9 @@ mod tests {
             .init_resource::<Picture>()
             .init_resource::<Speed>()
             .init_resource::<Clock>()
+            .init_resource::<Agent>()
             .add_systems(Update, (measure, tell_time))
-            .insert_resource(bevy::time::TimeUpdateStrategy::ManualDuration(
-                Duration::from_millis(100),
-            ));
+            .insert_resource(TimeUpdateStrategy::ManualDuration(ms(100)));
         app
     }
 
@@ -171,11 +338,15 @@ mod tests {
     fn speeds_are_means_of_two_seconds() {
         let mut app = app();
         for number in 0..25 {
+            let took = ms(if number % 2 == 0 { 1 } else { 3 });
+            app.insert_resource(Agent::Online { took });
             frame(&mut app, number % 2 == 0);
         }
-        let speed = app.world().resource::<Speed>();
-        assert!((speed.fps - 5.0).abs() < 1.0, "{}", speed.fps);
-        assert!((speed.pace - 0.5).abs() < 0.1, "{}", speed.pace);
+        let mean = app.world().resource::<Speed>().mean;
+        assert!((mean.fps - 5.0).abs() < 0.6, "{mean:?}");
+        assert!((mean.pace - 0.5).abs() < 0.1, "{mean:?}");
+        let call = mean.call.unwrap();
+        assert!(ms(1) < call && call < ms(3), "{mean:?}");
     }
 
     #[test]
@@ -191,5 +362,85 @@ mod tests {
             let distinct = told.len();
             assert!(distinct.abs_diff(different) <= 1, "{distinct}");
         }
+    }
+
+    #[test]
+    fn everything_is_shown_in_words() {
+        let model = Model {
+            mean: Means {
+                fps: 59.6,
+                pace: 0.5,
+                call: None,
+            },
+            tick: SimTick(125),
+            film: Film::Recorded {
+                folder: "demo".into(),
+                segment: 2,
+                frame: 57,
+            },
+            renderer: Some(Renderer {
+                name: "llvmpipe".into(),
+                is_software: true,
+            }),
+            ..default()
+        };
+        let harness = Harness::new_ui(move |ui| show(ui, &model));
+        for value in [
+            "060",
+            "2.1 s, 0.50 × real time",
+            "offline",
+            "segment 2, frame 57 in demo",
+            "software renderer (llvmpipe)",
+        ] {
+            assert!(harness.query_by_label(value).is_some(), "{value}");
+        }
+    }
+
+    #[test]
+    fn at_rest_nothing_is_recorded_and_time_stands() {
+        let model = Model {
+            is_paused: true,
+            ..default()
+        };
+        let harness = Harness::new_ui(move |ui| show(ui, &model));
+        for value in ["000", "0.0 s, paused", "not recording"] {
+            assert!(harness.query_by_label(value).is_some(), "{value}");
+        }
+        assert!(harness.query_by_label("Renderer").is_none());
+    }
+
+    #[test]
+    fn a_recording_is_followed_frame_by_frame() {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::ZERO))
+            .init_resource::<Speed>()
+            .init_resource::<Clock>()
+            .init_resource::<Take>()
+            .add_systems(Update, follow_recording);
+        app.insert_resource(SimTick(100));
+        app.world_mut().write_message(SimFact::RecordingStarted {
+            folder: "demo".into(),
+        });
+        app.update();
+        app.insert_resource(SimTick(131));
+        let mut film = |recording, replaying, undoable| {
+            app.insert_resource(Recording(recording));
+            app.insert_resource(Replaying(replaying));
+            app.insert_resource(History {
+                undoable,
+                redoable: 0,
+            });
+            let film = |sources: Sources| sources.film();
+            app.world_mut().run_system_once(film).unwrap()
+        };
+        assert_eq!(film(false, false, 0), Film::None);
+        assert_eq!(film(false, true, 0), Film::Replayed);
+        let expected = Film::Recorded {
+            folder: "demo".into(),
+            segment: 3,
+            frame: 2,
+        };
+        assert_eq!(film(true, false, 3), expected);
     }
 }

@@ -45,6 +45,8 @@ impl Panel {
         let window = area.show(context, |ui| {
             let spacing = ui.spacing().item_spacing;
             ui.spacing_mut().item_spacing = Vec2::ZERO;
+            // Else the panel could not grow.
+            ui.set_max_size(vec2(self.outer_width(), desk.height()));
             let frame = Frame::window(ui.style()).inner_margin(0);
             let shown = frame.show(ui, |ui| {
                 let handled = self.title_bar(ui, place, desk);
@@ -204,6 +206,29 @@ mod tests {
         harness.state_mut().set_open(Panel::Robot, true);
         harness.run();
         assert!(harness.query_by_label("Move Robot").is_some());
+    }
+
+    #[test]
+    fn a_panel_is_as_high_as_its_contents_until_it_fills_the_desk() {
+        let show = |ui: &mut Ui, (panels, height): &mut (Panels, f32)| {
+            let content = |ui: &mut Ui| ui.allocate_space(vec2(10.0, *height));
+            Panel::Status.show(ui.ctx(), panels, content);
+        };
+        let mut harness = Harness::builder()
+            .with_size(SIZE)
+            .build_ui_state(show, (Panels::default(), 50.0));
+        for (content, expected) in [
+            (50.0, 50.0),
+            (500.0, 500.0),
+            (5000.0, SIZE.y - TITLE_HEIGHT - 16.0),
+            (80.0, 80.0),
+        ] {
+            harness.state_mut().1 = content;
+            harness.run();
+            let window = harness.get_by_label("Status").rect();
+            let height = window.height() - TITLE_HEIGHT - 16.0;
+            assert!((height - expected).abs() < 3.0, "{height} for {content}");
+        }
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! A slider for an angle in whole degrees: a knob on a track, a button at either end, and the number.
 
 use bevy_egui::egui::{
-    Button, Color32, CursorIcon, DragValue, Pos2, Rect, Response, RichText, Sense, Stroke, Ui, vec2,
+    Button, Color32, CursorIcon, DragValue, Pos2, Rect, Response, RichText, Sense, Stroke, Ui,
+    WidgetInfo, WidgetType, vec2,
 };
 
 use crate::input::turns::MAX_DEGREES;
@@ -14,7 +15,7 @@ const BUTTON_STEP: i32 = 1;
 
 /// Sizes in points.
 const HEIGHT: f32 = 20.0;
-const TRACK_WIDTH: f32 = 190.0;
+const TRACK_WIDTH: f32 = 170.0;
 const KNOB_RADIUS: f32 = 8.0;
 
 /// Shows the angle, and returns it as the user changes it.
@@ -22,34 +23,44 @@ pub(crate) fn angle_slider(ui: &mut Ui, name: &str, color: Color32, degrees: i32
     let mut changed = degrees;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
+        ui.spacing_mut().button_padding.x = 4.0;
         ui.label(RichText::new(name).color(color).strong().monospace());
-        if ui.add(step_button("⏴")).clicked() {
+        if step_button(ui, "⏴", &format!("{name} down by 1°")) {
             changed -= BUTTON_STEP;
         }
-        if let Some(degrees) = moved_on_track(ui, color, degrees) {
+        if let Some(degrees) = moved_on_track(ui, name, color, degrees) {
             changed = degrees;
         }
-        if ui.add(step_button("⏵")).clicked() {
+        if step_button(ui, "⏵", &format!("{name} up by 1°")) {
             changed += BUTTON_STEP;
         }
         let number = DragValue::new(&mut changed)
             .range(-MAX_DEGREES..=MAX_DEGREES)
             .update_while_editing(false)
             .suffix("°");
-        ui.add_sized(vec2(46.0, HEIGHT), number);
+        let number = ui.add_sized(vec2(50.0, HEIGHT), number);
+        number.widget_info(|| {
+            let mut info = WidgetInfo::drag_value(ui.is_enabled(), f64::from(degrees));
+            info.label = Some(format!("{name} in degrees"));
+            info
+        });
+        number.on_hover_text("Drag, or click and type");
     });
     changed.clamp(-MAX_DEGREES, MAX_DEGREES)
 }
 
-fn step_button(text: &str) -> Button<'_> {
-    Button::new(text).small().min_size(vec2(18.0, HEIGHT))
+fn step_button(ui: &mut Ui, text: &str, name: &str) -> bool {
+    let button = ui.add(Button::new(text).small().min_size(vec2(18.0, HEIGHT)));
+    button.widget_info(|| WidgetInfo::labeled(WidgetType::Button, ui.is_enabled(), name));
+    button.on_hover_text(name).clicked()
 }
 
 /// The track with its knob: the angle to which a drag of the knob or a press on the track brings it.
-fn moved_on_track(ui: &mut Ui, color: Color32, degrees: i32) -> Option<i32> {
+fn moved_on_track(ui: &mut Ui, name: &str, color: Color32, degrees: i32) -> Option<i32> {
     let size = vec2(TRACK_WIDTH, HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::drag());
     let response = response.on_hover_cursor(CursorIcon::PointingHand);
+    response.widget_info(|| WidgetInfo::slider(ui.is_enabled(), f64::from(degrees), name));
     let track = Track::in_rect(rect);
     paint(ui, &track, &response, color, degrees);
     let knob = response.id;
