@@ -34,7 +34,7 @@ fn note_news(mut news: MessageReader<AgentNews>, mut notices: ResMut<Notices>) {
             }
             AgentNews::Printed { line, is_error } => {
                 let tone = if *is_error { Tone::Warning } else { Tone::News };
-                notices.append(tone, line);
+                notices.log(tone, line);
             }
             AgentNews::Noted { line } => notices.append(Tone::Warning, line),
             AgentNews::Failed { reason } => notices.append(Tone::Fault, reason),

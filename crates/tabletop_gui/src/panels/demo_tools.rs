@@ -12,7 +12,10 @@ use tabletop_core::{
 use crate::{
     input::{plane::PlaneButtons, turns::Turns},
     panels::{Panel, Panels},
-    widgets::{button::button, slider::angle_slider},
+    widgets::{
+        button::{button, hold_button},
+        slider::angle_slider,
+    },
 };
 
 /// The sliders have the colours of the axes, a little lighter, for a dark panel.
@@ -24,6 +27,9 @@ const SLIDERS: [(&str, Color32); 3] = [
 
 /// What an empty hand has (report figure 8b).
 const EMPTY: &str = "<empty>";
+
+/// Why the plane cannot be turned.
+const NOTHING_HELD: &str = "the selected hand holds nothing";
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(Update, open_at_first_grasp)
@@ -191,23 +197,26 @@ const fn what_a_hand_is(hand: Hand) -> &'static str {
 }
 
 fn held_object(ui: &mut Ui, model: &Model) -> Option<Request> {
-    ui.horizontal(|ui| {
-        ui.label("Current Object:");
-        let id = egui::RichText::new(model.held.unwrap_or(EMPTY)).strong();
-        ui.add(egui::Label::new(id).truncate());
-    });
     let is_holding = model.held.is_some();
-    let buttons = |ui: &mut Ui| {
-        let release = button(ui, is_holding, "Release", "Let go of the object");
+    // From the right, so that a long id leaves room for the buttons.
+    let from_the_right = egui::Layout::right_to_left(egui::Align::Center);
+    let row = |ui: &mut Ui| {
         let destroy = "Remove the object from the world";
-        let destroy = button(ui, is_holding, "Destroy", destroy);
-        match (release.clicked(), destroy.clicked()) {
+        let destroy = button(ui, is_holding, "Destroy", destroy).clicked();
+        let release = button(ui, is_holding, "Release", "Let go of the object").clicked();
+        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            ui.label("Current Object:");
+            let id = egui::RichText::new(model.held.unwrap_or(EMPTY)).strong();
+            ui.add(egui::Label::new(id).truncate());
+        });
+        match (release, destroy) {
             (true, _) => Some(Request::Release),
             (false, true) => Some(Request::Destroy),
             (false, false) => None,
         }
     };
-    ui.horizontal(buttons).inner
+    let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
+    ui.allocate_ui_with_layout(size, from_the_right, row).inner
 }
 
 /// The buttons that turn the plane while they are held down.
@@ -215,8 +224,8 @@ fn plane_rotation(ui: &mut Ui, model: &Model) -> PlaneButtons {
     let buttons = |ui: &mut Ui| {
         ui.label("Plane Rotation:");
         let mut is_down = |text, action| {
-            let button = button(ui, true, text, &model.keymap.tooltip(action));
-            button.is_pointer_button_down_on()
+            let tooltip = model.keymap.tooltip(action);
+            hold_button(ui, model.held.is_some(), text, &tooltip, NOTHING_HELD).is_held
         };
         PlaneButtons {
             counter_clockwise: is_down("CCW", Action::PlaneCounterClockwise),

@@ -24,7 +24,7 @@ use crate::{
 use rows::Rows;
 
 /// Height of the list in points, until the user changes it.
-const LIST_HEIGHT: f32 = 130.0;
+const LIST_HEIGHT: f32 = 180.0;
 
 /// What the list shows of the notices.
 #[derive(Resource, Clone, Debug)]
@@ -48,8 +48,9 @@ impl Default for MessageList {
 
 impl MessageList {
     /// Brings a notice to the top of the list.
-    pub fn seek(&mut self, number: u64) {
-        self.sought = Some(number);
+    pub fn seek(&mut self, notice: &Notice) {
+        self.sought = Some(notice.number);
+        self.tones[notice.tone as usize] = true;
     }
 
     fn shows(&self, notice: &Notice) -> bool {
@@ -314,7 +315,10 @@ mod tests {
         let mut harness = harness(&notices);
         assert!(harness.query_by_label("number 499.").is_some());
         assert!(harness.query_by_label("number 7.").is_none());
-        harness.state_mut().list.seek(7);
+        let stage = harness.state_mut();
+        let seventh = stage.notices.get(7).cloned().unwrap();
+        stage.list.tones = [false; 3];
+        stage.list.seek(&seventh);
         harness.run();
         assert!(harness.query_by_label("number 7.").is_some());
         assert!(harness.query_by_label("number 499.").is_none());

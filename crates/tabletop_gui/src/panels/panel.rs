@@ -76,7 +76,7 @@ impl Panel {
         match self {
             Self::Status | Self::Robot | Self::DemonstrationTools => 304.0,
             Self::Camera => 332.0,
-            Self::Messages => 480.0,
+            Self::Messages => 340.0,
             Self::Timeline => 640.0,
         }
     }

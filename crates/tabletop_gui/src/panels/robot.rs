@@ -19,7 +19,7 @@ use crate::{
         script_control::toggled,
     },
     panels::{Panel, Panels, head_view::HeadView},
-    widgets::button::switch,
+    widgets::button::{hold_button, switch},
 };
 
 /// Width of the track of the slider, in points.
@@ -217,22 +217,18 @@ fn joint(ui: &mut Ui, model: &Model, selection: &mut Selection, asked: &mut Aske
             *selection = Selection { joint, goal: None };
         }
         for (text, direction, way) in [("−", -1, Way::Minus), ("+", 1, Way::Plus)] {
-            let button = Button::new(RichText::new(text).strong().monospace());
-            let button = button.min_size(egui::vec2(32.0, 0.0));
-            let response = ui.add_enabled(model.is_free(joint), button);
-            let tooltip = model.keymap.tooltip(Action::Move(joint, way));
-            let response = response
-                .on_hover_text(tooltip)
-                .on_disabled_hover_text(SCRIPT_MOVES);
-            let is_held = response.is_pointer_button_down_on();
-            let has_gone_down = ui.input(|input| input.pointer.primary_pressed());
-            let joint = joint.index();
-            if is_held {
-                asked.pressed.held[joint] = direction;
+            let button = hold_button(
+                ui,
+                model.is_free(joint),
+                RichText::new(text).strong().monospace(),
+                &model.keymap.tooltip(Action::Move(joint, way)),
+                SCRIPT_MOVES,
+            );
+            if button.is_held {
+                asked.pressed.held[joint.index()] = direction;
             }
-            // A short click may be over within a frame.
-            if has_gone_down && (is_held || response.clicked()) {
-                asked.pressed.struck[joint] = direction;
+            if button.was_struck {
+                asked.pressed.struck[joint.index()] = direction;
             }
         }
         let home = "Bring every joint back to where it stood at the start";

@@ -55,7 +55,7 @@ impl Toasts {
     /// Takes the notices that are new at this time, and drops those that were there long enough.
     fn update(&mut self, notices: &Notices, now: f64) {
         self.shown.retain(|toast| now < toast.until);
-        for notice in notices.since(self.next) {
+        for notice in notices.since(self.next).filter(|new| !new.is_quiet) {
             self.shown.retain(|toast| toast.notice.text != notice.text);
             self.shown.push(Toast {
                 notice: notice.clone(),
@@ -67,9 +67,11 @@ impl Toasts {
         self.shown.drain(..surplus);
     }
 
-    /// The user has seen a notice.
-    fn dismiss(&mut self, number: u64) {
-        self.shown.retain(|toast| toast.notice.number != number);
+    /// Takes away a notice that the user has seen.
+    fn dismiss(&mut self, number: u64) -> Option<Notice> {
+        let mut shown = self.shown.iter();
+        let index = shown.position(|toast| toast.notice.number == number)?;
+        Some(self.shown.remove(index).notice)
     }
 }
 
@@ -89,9 +91,9 @@ fn show_toasts(
         return;
     };
     toasts.update(&notices, context.input(|input| input.time));
-    if let Some(number) = show(context, &toasts) {
-        toasts.dismiss(number);
-        list.seek(number);
+    let clicked = show(context, &toasts);
+    if let Some(notice) = clicked.and_then(|number| toasts.dismiss(number)) {
+        list.seek(&notice);
         panels.set_open(Panel::Messages, true);
         Panel::Messages.point_out(context);
     }
@@ -220,8 +222,20 @@ mod tests {
         notices.append(Tone::Fault, "bad");
         let mut toasts = Toasts::default();
         toasts.update(&notices, 0.0);
-        toasts.dismiss(0);
+        let seen = toasts.dismiss(0).unwrap();
+        assert_eq!(seen.text, "wrong");
         toasts.update(&notices, 1.0);
         assert_eq!(texts(&toasts), ["bad"]);
+        assert_eq!(toasts.dismiss(0), None);
+    }
+
+    #[test]
+    fn what_a_script_prints_is_only_listed() {
+        let mut notices = Notices::default();
+        notices.log(Tone::News, "printed");
+        let mut toasts = Toasts::default();
+        toasts.update(&notices, 0.0);
+        assert_eq!(texts(&toasts), [""; 0]);
+        assert_eq!(notices.iter().len(), 1);
     }
 }

@@ -10,7 +10,7 @@ use bevy_egui::{
 pub(crate) const ACCENT: Color32 = Color32::from_rgb(64, 196, 180);
 
 /// Behind what is selected.
-const SELECTED: Color32 = Color32::from_rgb(22, 88, 82);
+const SELECTED: Color32 = Color32::from_rgb(26, 78, 73);
 
 /// Behind the contents of panels, and behind their titles.
 const SURFACE: Color32 = Color32::from_rgb(24, 26, 30);
@@ -69,7 +69,7 @@ fn apply(mut is_applied: Local<bool>, mut contexts: EguiContexts) {
 pub(crate) fn dress(style: &mut egui::Style) {
     style.animation_time = FADE;
     let spacing = &mut style.spacing;
-    spacing.item_spacing = vec2(8.0, 6.0);
+    spacing.item_spacing = vec2(8.0, 4.0);
     spacing.button_padding = vec2(8.0, 2.0);
     spacing.interact_size = Vec2::new(36.0, 22.0);
     spacing.window_margin = egui::Margin::same(MARGIN);

@@ -58,6 +58,8 @@ pub(crate) struct Notice {
     pub number: u64,
     pub tone: Tone,
     pub text: String,
+    /// Whether it is only listed.
+    pub is_quiet: bool,
 }
 
 /// The notices in the order in which they came, until the user clears them.
@@ -82,6 +84,15 @@ impl Notices {
 
     /// Adds a notice after all others, as often as it comes.
     pub fn append(&mut self, tone: Tone, text: &str) {
+        self.push(tone, text, false);
+    }
+
+    /// Adds a line to the list after all others without calling the user's attention to it.
+    pub fn log(&mut self, tone: Tone, text: &str) {
+        self.push(tone, text, true);
+    }
+
+    fn push(&mut self, tone: Tone, text: &str, is_quiet: bool) {
         if self.notices.len() == MAX_NOTICES {
             self.notices.pop_front();
         }
@@ -89,6 +100,7 @@ impl Notices {
             number: self.next,
             tone,
             text: text.to_owned(),
+            is_quiet,
         });
         self.next += 1;
         self.revision += 1;
