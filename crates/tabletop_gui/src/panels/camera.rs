@@ -16,9 +16,10 @@ use crate::{
 };
 
 /// Sides of a pad in points.
-const PAD: f32 = 140.0;
+const PAD: f32 = 126.0;
 
-/// Speed in units/s, and rad/s, after a drag as long as a pad.
+/// Speed in units/s, and rad/s, after a drag of this length in points.
+const FULL_DRAG: f32 = 140.0;
 const TRAVEL: f32 = 18.0;
 const TURN: f32 = 2.0;
 
@@ -91,7 +92,9 @@ fn steering(ui: &mut Ui, keymap: &Keymap) -> Steering {
                 (PAD - ui.spacing().item_spacing.y) / 2.0,
             );
             let mut is_down = |text: &str, action| {
-                let button = ui.add_sized(size, Button::new(text));
+                // What can only be clicked is let go of after a second.
+                let button = Button::new(text).sense(Sense::click_and_drag());
+                let button = ui.add_sized(size, button);
                 let button = button.on_hover_text(keymap.tooltip(action));
                 button.is_pointer_button_down_on()
             };
@@ -158,7 +161,7 @@ fn pad(ui: &mut Ui, name: &str, tooltip: &str) -> Vec2 {
     }
     response.on_hover_text(tooltip);
     drag.map_or(Vec2::ZERO, |[from, to]| {
-        let dragged = (to - from) / PAD;
+        let dragged = (to - from) / FULL_DRAG;
         Vec2::new(dragged.x, -dragged.y)
     })
 }

@@ -74,8 +74,7 @@ impl Panel {
     /// Width of its contents in points.
     pub const fn width(self) -> f32 {
         match self {
-            Self::Status | Self::Robot | Self::DemonstrationTools => 304.0,
-            Self::Camera => 332.0,
+            Self::Status | Self::Camera | Self::Robot | Self::DemonstrationTools => 304.0,
             Self::Messages => 340.0,
             Self::Timeline => 640.0,
         }
