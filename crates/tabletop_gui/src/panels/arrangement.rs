@@ -72,24 +72,32 @@ impl Panels {
         kept_on(desk, place, size(panel))
     }
 
-    /// The place of a panel in the stack, which goes on in another column where it is taller than the desk.
+    /// The place of a panel in the stack. Where the desk is too low for all, it goes on in another column; what still fits below an
+    /// earlier one, and is no wider, goes there.
     fn slot(&self, panel: Panel, desk: Rect, size: &impl Fn(Panel) -> Vec2) -> Pos2 {
-        let top_left = desk.min + Vec2::splat(GAP);
-        let mut place = top_left;
-        let mut column_width = 0.0_f32;
+        let mut columns = vec![Vec2::ZERO];
+        let mut slot = (0, 0.0);
         for &next in &self.stack {
             let size = size(next);
-            if place.y > top_left.y && place.y + size.y > desk.bottom() {
-                place = Pos2::new(place.x + column_width + GAP, top_left.y);
-                column_width = 0.0;
-            }
+            let last = columns.len() - 1;
+            let has_room = |(i, column): (usize, &Vec2)| {
+                let is_low = column.y == 0.0 || GAP + column.y + size.y <= desk.height();
+                is_low && (i == last || size.x <= column.x)
+            };
+            let column = columns.iter().enumerate().position(has_room);
+            let column = column.unwrap_or_else(|| {
+                columns.push(Vec2::ZERO);
+                columns.len() - 1
+            });
             if next == panel {
-                break;
+                slot = (column, columns[column].y);
             }
-            place.y += size.y + GAP;
-            column_width = column_width.max(size.x);
+            columns[column].x = columns[column].x.max(size.x);
+            columns[column].y += size.y + GAP;
         }
-        place
+        let (column, below) = slot;
+        let beside: f32 = columns[..column].iter().map(|column| column.x + GAP).sum();
+        desk.min + vec2(GAP + beside, GAP + below)
     }
 
     /// What was read from a file, with what it lacks: it may be older than a panel.
@@ -164,6 +172,31 @@ mod tests {
             let expected = pos2(GAP + column * (300.0 + GAP), GAP + row * (200.0 + GAP));
             assert_eq!(place, expected);
         }
+    }
+
+    #[test]
+    fn what_fits_below_an_earlier_column_goes_there() {
+        let panels = Panels::default();
+        let size = |panel: Panel| match panel {
+            Panel::Robot => vec2(300.0, 400.0),
+            Panel::Timeline => vec2(500.0, 100.0),
+            Panel::Status | Panel::Camera | Panel::DemonstrationTools | Panel::Messages => {
+                vec2(300.0, 150.0)
+            }
+        };
+        let place = |panel| panels.place(panel, DESK, size);
+        let below = |rows: f32| GAP + rows * (150.0 + GAP);
+        assert_eq!(place(Panel::Camera), pos2(GAP, below(1.0)));
+        let second = GAP + 300.0 + GAP;
+        assert_eq!(place(Panel::Robot), pos2(second, GAP));
+        assert_eq!(place(Panel::DemonstrationTools), pos2(GAP, below(2.0)));
+        let under_robot = GAP + 400.0 + GAP;
+        assert_eq!(
+            place(Panel::Timeline),
+            pos2(second, under_robot),
+            "too wide for the first"
+        );
+        assert_eq!(place(Panel::Messages), pos2(GAP, below(3.0)));
     }
 
     #[test]

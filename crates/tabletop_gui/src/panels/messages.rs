@@ -146,6 +146,7 @@ fn show(ui: &mut Ui, notices: &Notices, list: &mut MessageList) -> Option<Reques
 
 /// Which notices to show, and what to do with them.
 fn tools(ui: &mut Ui, notices: &Notices, list: &mut MessageList) -> Option<Request> {
+    ui.spacing_mut().item_spacing.x = 4.0;
     for (tone, is_shown) in Tone::ALL.into_iter().zip(&mut list.tones) {
         let text = format!("{} ({})", tone.plural(), notices.count(tone));
         if switch(ui, *is_shown, &text, tone.filter()).clicked() {

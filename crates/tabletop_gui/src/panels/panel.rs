@@ -16,10 +16,10 @@ pub enum Panel {
     Robot,
     /// Hands, rotations and recording.
     DemonstrationTools,
-    /// What the user has been told.
-    Messages,
     /// The recording that is made or open, along its time.
     Timeline,
+    /// What the user has been told.
+    Messages,
 }
 
 impl Panel {
@@ -29,8 +29,8 @@ impl Panel {
         Self::Camera,
         Self::Robot,
         Self::DemonstrationTools,
-        Self::Messages,
         Self::Timeline,
+        Self::Messages,
     ];
 
     /// The text of its button.
