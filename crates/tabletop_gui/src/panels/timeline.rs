@@ -229,7 +229,6 @@ struct Source<'w> {
     playback: Res<'w, Playback>,
     tick: Res<'w, SimTick>,
     paused: Res<'w, Paused>,
-    pace: Res<'w, Pace>,
     history: Res<'w, History>,
     keymap: Res<'w, Keymap>,
 }
@@ -249,7 +248,7 @@ fn show_panel(
         playback: *source.playback,
         shown: SimTick(source.tick.0.saturating_sub(1)),
         is_paused: source.paused.0,
-        pace: *source.pace,
+        pace: orders.pace(),
         history: *source.history,
         keymap: &source.keymap,
     };

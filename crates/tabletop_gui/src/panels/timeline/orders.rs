@@ -45,6 +45,10 @@ pub(super) struct Orders<'w> {
 }
 
 impl Orders<'_> {
+    pub fn pace(&self) -> Pace {
+        *self.pace
+    }
+
     pub fn carry_out(&mut self, request: Request) {
         match request {
             Request::Play => {

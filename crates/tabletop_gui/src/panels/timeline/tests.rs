@@ -272,6 +272,12 @@ fn what_grippers_do_is_on_the_timeline() {
 }
 
 #[test]
+fn what_the_panel_reads_and_writes_is_not_the_same() {
+    let mut system = IntoSystem::into_system(show_panel);
+    system.initialize(&mut World::new());
+}
+
+#[test]
 fn each_widget_shows_what_it_does() {
     let harness = harness(Desk::new(TimelineStage::Open));
     for name in ["Play", "Loop", "Close", "Pace 2×"] {
