@@ -70,8 +70,14 @@ impl Keymap {
         });
         fitting
             .filter(|(binding, action)| {
-                let is_possible = is_holding || action.situation() == Situation::Any;
-                binding.key == key && is_possible && binding.fits(held)
+                let fits = match action.situation() {
+                    Situation::Any => binding.fits(held),
+                    // Ctrl is a key of its own then.
+                    Situation::Holding => {
+                        is_holding && (binding.fits(held) || binding.fits(held.without_ctrl()))
+                    }
+                };
+                binding.key == key && fits
             })
             .min_by_key(|(binding, action)| {
                 let uses_shift = binding.modifiers.shift;

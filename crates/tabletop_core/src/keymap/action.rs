@@ -379,8 +379,8 @@ impl Action {
             Self::ViewFront => row(Camera, "view_front", "View: front", "Looks at the table from its front edge", vec![plain(Digit5)]),
             Self::ViewRobotEye => row(Camera, "view_robot_eye", "View: robot's eye", "Looks at the table from where the robot's head is", vec![plain(Digit6)]),
 
-            Self::PlaneCounterClockwise => row(Demonstration, "plane_counter_clockwise", "Plane CCW", "Turns the drag plane counter-clockwise", vec![plain(Slash), ctrl(Slash)]),
-            Self::PlaneClockwise => row(Demonstration, "plane_clockwise", "Plane CW", "Turns the drag plane clockwise", vec![shift(Slash), ctrl_shift(Slash)]),
+            Self::PlaneCounterClockwise => row(Demonstration, "plane_counter_clockwise", "Plane CCW", "Turns the drag plane counter-clockwise", vec![plain(Slash)]),
+            Self::PlaneClockwise => row(Demonstration, "plane_clockwise", "Plane CW", "Turns the drag plane clockwise", vec![shift(Slash)]),
             Self::PlanePerpendicular => row(Demonstration, "plane_perpendicular", "Plane at right angles", "Shows the drag plane at right angles", vec![plain(ControlLeft)]),
             Self::Undo => row(Demonstration, "undo", "Undo", "Discards the present segment of the recording", vec![ctrl(KeyZ)]),
             Self::Redo => row(Demonstration, "redo", "Redo", "Brings back the segment that was undone last", vec![ctrl_shift(KeyZ), ctrl(KeyY)]),

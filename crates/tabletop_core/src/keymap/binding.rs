@@ -69,6 +69,14 @@ impl Modifiers {
         }
     }
 
+    /// These, but not Ctrl.
+    pub(super) const fn without_ctrl(self) -> Self {
+        Self {
+            ctrl: false,
+            ..self
+        }
+    }
+
     /// Those of which one key or the other is on.
     pub(super) fn that_are(is_on: impl core::ops::Fn(KeyCode) -> bool) -> Self {
         Self {

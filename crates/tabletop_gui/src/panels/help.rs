@@ -16,9 +16,45 @@ const COLUMNS: [&[ActionGroup]; 3] = [
     &[ActionGroup::RightArm, ActionGroup::LeftArm],
 ];
 
+/// What the mouse does beside the panels.
+const MOUSE: [(&str, &str, &str); 6] = [
+    (
+        "click",
+        "Take an object",
+        "The selected hand takes the object under the cursor",
+    ),
+    (
+        "drag",
+        "Move what is held",
+        "What the selected hand holds moves in the blue plane",
+    ),
+    (
+        "press elsewhere",
+        "Let go",
+        "The selected hand lets go of what it holds",
+    ),
+    (
+        "right drag",
+        "Go round",
+        "The camera goes round what is under the cursor",
+    ),
+    (
+        "middle drag",
+        "Move along",
+        "The camera keeps a point under the cursor; so does Shift with the right button",
+    ),
+    (
+        "wheel",
+        "Nearer, farther",
+        "The camera goes towards what is under the cursor, or away from it",
+    ),
+];
+
 /// Sizes in points.
-const COLUMN_WIDTH: f32 = 276.0;
-const KEY_WIDTH: f32 = 124.0;
+const COLUMN_WIDTH: f32 = 290.0;
+const COLUMN_GAP: f32 = 28.0;
+const KEY_GAP: f32 = 12.0;
+const LINE_GAP: f32 = 3.0;
 const MARGIN: f32 = 48.0;
 
 const FOOTNOTE: &str =
@@ -45,7 +81,13 @@ impl Help {
 /// What the sheet says: groups with their lines, column by column.
 #[derive(Clone, Debug, PartialEq)]
 struct Sheet {
-    columns: Vec<Vec<(ActionGroup, Vec<Line>)>>,
+    columns: Vec<Vec<Group>>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Group {
+    name: &'static str,
+    lines: Vec<Line>,
 }
 
 /// What keys do, and which ones.
@@ -64,17 +106,38 @@ enum Request {
 
 impl Sheet {
     fn of(keymap: &Keymap) -> Self {
-        let lines = |group: &ActionGroup| {
-            let lines = group
-                .actions()
-                .filter_map(|action| Line::of(action, keymap));
-            (*group, lines.collect())
+        let groups = |groups: &&[ActionGroup]| -> Vec<_> {
+            let groups = groups.iter();
+            groups.map(|&group| Group::of(group, keymap)).collect()
         };
+        let mut columns: Vec<_> = COLUMNS.iter().map(groups).collect();
+        if let Some(last) = columns.last_mut() {
+            last.push(Group::mouse());
+        }
+        Self { columns }
+    }
+}
+
+impl Group {
+    fn of(group: ActionGroup, keymap: &Keymap) -> Self {
+        let lines = group.actions();
         Self {
-            columns: COLUMNS
-                .iter()
-                .map(|groups| groups.iter().map(lines).collect())
+            name: group.label(),
+            lines: lines
+                .filter_map(|action| Line::of(action, keymap))
                 .collect(),
+        }
+    }
+
+    fn mouse() -> Self {
+        let lines = MOUSE.map(|(keys, label, tooltip)| Line {
+            label: label.to_owned(),
+            keys: keys.to_owned(),
+            tooltip: tooltip.to_owned(),
+        });
+        Self {
+            name: "Mouse",
+            lines: lines.into(),
         }
     }
 }
@@ -151,7 +214,7 @@ fn show(ui: &mut egui::Ui, sheet: &Sheet) -> Option<Request> {
     let screen = ui.ctx().content_rect().size() - egui::Vec2::splat(MARGIN);
     let shown_columns = (screen.x / COLUMN_WIDTH).floor().max(1.0) as usize;
     ui.horizontal(|ui| {
-        ui.heading("Keys");
+        ui.heading("Keys and mouse");
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let button = ui.button("Close").on_hover_text("Closes this sheet (Esc)");
             is_closed = button.clicked();
@@ -160,16 +223,11 @@ fn show(ui: &mut egui::Ui, sheet: &Sheet) -> Option<Request> {
     ui.separator();
     let scroll = egui::ScrollArea::vertical().max_height(screen.y - 96.0);
     scroll.show(ui, |ui| {
+        ui.spacing_mut().interact_size.y = 0.0;
         for columns in sheet.columns.chunks(shown_columns) {
             ui.horizontal_top(|ui| {
-                for column in columns {
-                    ui.vertical(|ui| {
-                        ui.set_width(COLUMN_WIDTH - ui.spacing().item_spacing.x);
-                        for (group, lines) in column {
-                            show_group(ui, *group, lines);
-                        }
-                    });
-                }
+                ui.spacing_mut().item_spacing.x = COLUMN_GAP;
+                columns.iter().for_each(|column| show_column(ui, column));
             });
         }
     });
@@ -178,20 +236,23 @@ fn show(ui: &mut egui::Ui, sheet: &Sheet) -> Option<Request> {
     is_closed.then_some(Request::Close)
 }
 
-fn show_group(ui: &mut egui::Ui, group: ActionGroup, lines: &[Line]) {
-    ui.strong(group.label());
-    egui::Grid::new(group.label())
-        .num_columns(2)
-        .min_col_width(KEY_WIDTH)
-        .spacing([8.0, 2.0])
-        .show(ui, |ui| {
-            for line in lines {
+fn show_column(ui: &mut egui::Ui, groups: &[Group]) {
+    let first = groups.first().map(|group| group.name);
+    let grid = egui::Grid::new(first).num_columns(2);
+    grid.spacing([KEY_GAP, LINE_GAP]).show(ui, |ui| {
+        for group in groups {
+            if Some(group.name) != first {
+                ui.end_row();
+            }
+            ui.strong(group.name);
+            ui.end_row();
+            for line in &group.lines {
                 ui.monospace(&line.keys);
                 ui.label(&line.label).on_hover_text(&line.tooltip);
                 ui.end_row();
             }
-        });
-    ui.add_space(6.0);
+        }
+    });
 }
 
 #[cfg(test)]
@@ -237,6 +298,7 @@ mod tests {
         for size in [egui::vec2(1024.0, 768.0), egui::vec2(400.0, 300.0)] {
             let harness = harness(size);
             harness.get_by_label("Pause, resume");
+            harness.get_by_label("Nearer, farther");
             assert_eq!(harness.get_all_by_label("Open gripper").count(), 2);
         }
     }
