@@ -3,11 +3,9 @@
 
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
-use tabletop_core::Paused;
+use tabletop_core::{Action, Keymap, Paused};
 
 use crate::panels::{Panel, Panels};
-
-const TEXT: &str = "Simulation Paused\n\nPress SPACE to resume\nPress ESC to quit";
 
 /// Size of the text in points.
 const TEXT_SIZE: f32 = 36.0;
@@ -23,7 +21,7 @@ pub(crate) fn plugin(app: &mut App) {
     );
 }
 
-fn show_overlay(mut contexts: EguiContexts, panels: Res<Panels>) {
+fn show_overlay(mut contexts: EguiContexts, panels: Res<Panels>, keymap: Res<Keymap>) {
     let Ok(context) = contexts.ctx_mut() else {
         return;
     };
@@ -43,16 +41,33 @@ fn show_overlay(mut contexts: EguiContexts, panels: Res<Panels>) {
             ui.allocate_rect(screen, egui::Sense::click());
             let painter = ui.painter();
             painter.rect_filled(screen, 0.0, DIMMING);
-            let text = painter.layout_job(centered_text(screen.width()));
+            let text = painter.layout_job(centered(text(&keymap), screen.width()));
             let top_center = screen.center() - egui::vec2(0.0, text.size().y / 2.0);
             painter.galley(top_center, text, egui::Color32::WHITE);
         });
 }
 
-fn centered_text(width: f32) -> egui::text::LayoutJob {
+fn text(keymap: &Keymap) -> String {
+    let [pause, quit] = [Action::Pause, Action::Quit].map(|action| keymap.hint(action));
+    let (pause, quit) = (pause.to_uppercase(), quit.to_uppercase());
+    format!("Simulation Paused\n\nPress {pause} to resume\nPress {quit} to quit")
+}
+
+fn centered(text: String, width: f32) -> egui::text::LayoutJob {
     let font = egui::FontId::proportional(TEXT_SIZE);
     egui::text::LayoutJob {
         halign: egui::Align::Center,
-        ..egui::text::LayoutJob::simple(TEXT.to_owned(), font, egui::Color32::WHITE, width)
+        ..egui::text::LayoutJob::simple(text, font, egui::Color32::WHITE, width)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_text_names_the_keys() {
+        let told = "Simulation Paused\n\nPress SPACE to resume\nPress ESC to quit";
+        assert_eq!(text(&Keymap::default()), told);
     }
 }
