@@ -164,11 +164,16 @@ mod tests {
             for _ in 0..3 {
                 keyboard.app.update();
             }
-            let world = keyboard.app.world_mut();
+            assert!(keyboard.has_egui());
+            keyboard
+        }
+
+        /// Whether egui would take the keys for itself.
+        fn has_egui(&mut self) -> bool {
+            let world = self.app.world_mut();
             let mut contexts = world.query::<&mut EguiContext>();
             let mut context = contexts.single_mut(world).unwrap();
-            assert!(context.get_mut().egui_wants_keyboard_input());
-            keyboard
+            context.get_mut().egui_wants_keyboard_input()
         }
 
         fn event(&mut self, event: egui::Event) {
@@ -219,6 +224,7 @@ mod tests {
     fn after_tab_keys_do_what_they_did() {
         let mut keyboard = Keyboard::new();
         assert_eq!(keyboard.strike(Tab, ""), []);
+        assert!(keyboard.has_egui());
         assert_eq!(keyboard.strike(Space, " "), [Action::Pause]);
         assert_eq!(keyboard.strike(KeyR, "r"), [Action::ShowRobot]);
         assert_eq!(keyboard.strike(Escape, ""), [Action::Quit]);
