@@ -1,9 +1,12 @@
 //! How much a headless tick costs beside one step of bare Rapier for the same scene, on one core.
 //!
 //! `cargo bench --bench headless_speed` prints, for unit blocks in towers of five that may not sleep, the median time of a
-//! tick of the whole simulator, of a step of Rapier alone with the same bodies and settings, and their ratio. Both run in
+//! tick of the whole simulator, of a step of Rapier alone with the same bodies, settings and effort, and their ratio. Both run in
 //! turns in one process, so that what else the machine does touches both.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
+
+#[path = "shared/towers.rs"]
+mod towers;
 
 use std::time::{Duration, Instant};
 
@@ -11,9 +14,11 @@ use bevy::prelude::*;
 use bevy_rapier3d::rapier::prelude as rapier;
 use tabletop::{
     core::TICK_SECONDS,
-    physics::{PhysicsPlugin, PhysicsSettings, integration_parameters},
+    physics::{Care, Engine, PhysicsSettings, integration_parameters},
     prelude::*,
 };
+
+use towers::{simulator, towers_of_five};
 
 const TICKS_PER_TURN: u32 = 60;
 const TURNS: usize = 40;
@@ -26,7 +31,7 @@ const SETTINGS: PhysicsSettings = PhysicsSettings {
 fn main() {
     println!("blocks  simulator  bare Rapier  ratio");
     for blocks in [10, 50, 200] {
-        let mut simulator = simulator(blocks);
+        let mut simulator = simulator(SETTINGS, towers_of_five(blocks));
         let mut bare = BareRapier::new(blocks);
         simulator.step(60);
         (0..60).for_each(|_| bare.step());
@@ -59,39 +64,6 @@ fn median(mut times: Vec<Duration>) -> Duration {
     times[times.len() / 2]
 }
 
-/// Where the blocks stand: towers of five on a grid.
-fn locations(blocks: usize) -> impl Iterator<Item = Vec3> {
-    (0..blocks).map(|block| {
-        let (tower, storey) = (block / 5, block % 5);
-        let (column, row) = (tower % 8, tower / 8);
-        Vec3::new(
-            column as f32 * 2.0 - 7.0,
-            row as f32 * 2.0 - 4.0,
-            storey as f32 + 0.5,
-        )
-    })
-}
-
-fn simulator(blocks: usize) -> App {
-    let physics = PhysicsPlugin { settings: SETTINGS };
-    let mut app = headless_app_with(TabletopSimPlugins.build().set(physics));
-    let items = locations(blocks)
-        .enumerate()
-        .map(|(block, location)| {
-            let shape = Shape::Block {
-                span: Vec3::ONE,
-                color: Rgb::GRAY,
-            };
-            let id = format!("block{block}");
-            SceneItem::Object(ObjectSpec::new(id, Pose::at(location), 1.0, shape))
-        })
-        .collect();
-    let scene = SceneSpec { items, ..default() };
-    app.world_mut()
-        .write_message(SimCommand::SetScene(Box::new(scene)));
-    app
-}
-
 #[derive(Default)]
 struct BareRapier {
     pipeline: rapier::PhysicsPipeline,
@@ -104,6 +76,7 @@ struct BareRapier {
     impulse_joints: rapier::ImpulseJointSet,
     multibody_joints: rapier::MultibodyJointSet,
     ccd_solver: rapier::CCDSolver,
+    care: Care,
 }
 
 impl BareRapier {
@@ -125,11 +98,10 @@ impl BareRapier {
         let slab = rapier::ColliderBuilder::cuboid(half.x, half.y, half.z)
             .translation(Vec3::NEG_Z * half.z);
         bare.colliders.insert(surface(slab));
-        for location in locations(blocks) {
+        for location in towers_of_five(blocks) {
             let mut body = rapier::RigidBodyBuilder::dynamic()
                 .translation(location)
                 .ccd_enabled(true)
-                .soft_ccd_prediction(3.0)
                 .angular_damping(SETTINGS.angular_damping)
                 .build();
             body.activation_mut().normalized_linear_threshold = -1.0;
@@ -143,6 +115,16 @@ impl BareRapier {
     }
 
     fn step(&mut self) {
+        self.care.spend(Engine {
+            parameters: &mut self.parameters,
+            islands: &self.islands,
+            broad_phase: &self.broad_phase,
+            narrow_phase: &self.narrow_phase,
+            bodies: &mut self.bodies,
+            colliders: &self.colliders,
+            joints: &self.impulse_joints,
+            gravity: SETTINGS.gravity,
+        });
         self.pipeline.step(
             Vec3::NEG_Z * SETTINGS.gravity,
             &self.parameters,

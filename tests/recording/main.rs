@@ -5,6 +5,7 @@ mod demonstration;
 mod ending;
 mod playback;
 mod random;
+mod rest;
 mod robot;
 mod settings;
 mod slow_script;

@@ -9,7 +9,7 @@ use bevy_rapier3d::{
     prelude::RapierContext,
     rapier::prelude::{Collider, ColliderHandle, ContactPair},
 };
-use tabletop_physics::contact;
+use tabletop_physics::{contact, impulse_share};
 
 use crate::clearance::MARGIN;
 
@@ -39,7 +39,9 @@ pub(crate) fn with_pressed<'a>(
             false => pair.collider2,
         };
         let at = rapier.colliders.colliders.get(thing)?.position();
-        let (centre, impulse) = pressure(pair, is_first)?;
+        let (centre, reported) = pressure(pair, is_first)?;
+        let bodies = &rapier.rigidbody_set.bodies;
+        let impulse = reported * impulse_share(pair, bodies, &rapier.colliders.colliders);
         Some(Contact {
             thing: rapier.colliders.collider_entity(thing)?,
             point: *at * centre,
@@ -48,7 +50,8 @@ pub(crate) fn with_pressed<'a>(
     })
 }
 
-/// The centre of the pressure on the first or the second collider of a pair, in its frame, and the impulse along the normals.
+/// The centre of the pressure on the first or the second collider of a pair, in its frame, and the impulse along the normals that the
+/// engine reports.
 fn pressure(pair: &ContactPair, on_first: bool) -> Option<(Vec3, f32)> {
     let (mut moment, mut impulse) = (Vec3::ZERO, 0.0);
     for manifold in pair.solver_manifolds() {

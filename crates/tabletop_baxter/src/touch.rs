@@ -13,6 +13,7 @@ use bevy_rapier3d::{
     parry::bounding_volume::BoundingVolume, plugin::RapierContextMut, rapier::prelude as rapier,
 };
 use tabletop_core::{Arm, JOINTS_PER_ARM, TICK_SECONDS, UNITS_PER_METER};
+use tabletop_physics::impulse_share;
 
 use crate::{
     clearance::TOUCHING,
@@ -142,8 +143,14 @@ fn resistance(
             continue;
         };
         let friction = own.friction() * other.friction();
+        let share = impulse_share(
+            pair,
+            &rapier.rigidbody_set.bodies,
+            &rapier.colliders.colliders,
+        );
         for manifold in pair.solver_manifolds() {
-            let impulse: f32 = manifold.points.iter().map(|point| point.data.impulse).sum();
+            let reported: f32 = manifold.points.iter().map(|point| point.data.impulse).sum();
+            let impulse = reported * share;
             let ahead = manifold.data.normal.dot(direction) * sign;
             let touches = manifold.points.iter().any(|point| point.dist < TOUCHING);
             if ahead > AHEAD && touches && other_body.is_fixed() {

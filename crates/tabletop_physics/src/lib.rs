@@ -31,20 +31,27 @@
 mod body;
 mod contact;
 mod convex;
+mod depth;
+mod effort;
 mod holding;
 mod joint;
+mod landing;
 mod mass;
 mod nearby;
 mod newcomers;
 mod parking;
+mod prism;
 mod settings;
 mod snapshot;
+mod substeps;
+mod touches;
 mod transforms;
 mod twist;
 
 pub use body::collider;
 pub use contact::contact;
 pub use convex::{Convex, Nearest, convex_parts, nearest, to_rapier};
+pub use effort::{Care, Engine, impulse_share};
 pub use holding::{JustReleased, drawn, hold, let_fall, let_go};
 pub use mass::mass_properties;
 pub use nearby::{Nearby, nearby};
@@ -59,10 +66,11 @@ use bevy_rapier3d::{
     prelude::*,
     rapier::dynamics::{IntegrationParameters, SpringCoefficients},
 };
-use tabletop_core::{SimSystems, TICK_SECONDS, UNITS_PER_METER};
+use tabletop_core::{SimSystems, TICK_SECONDS};
 
-/// Units in a metre, to which Rapier scales its tolerances.
-const LENGTH_UNIT: f32 = UNITS_PER_METER as f32;
+/// What Rapier scales its tolerances to. The parameters name them in units; a greater number would only fatten the boxes
+/// in which it looks for contacts.
+const LENGTH_UNIT: f32 = 1.0;
 
 /// Adds Rapier and gives objects, table and joints their bodies. Needs [`CorePlugin`](tabletop_core::CorePlugin).
 #[derive(Clone, Copy, Debug, Default)]
@@ -81,6 +89,7 @@ impl Plugin for PhysicsPlugin {
             .add_message::<ContactForceEvent>()
             .add_message::<MassModifiedEvent>();
         app.init_resource::<KeepRemoved>()
+            .init_resource::<Care>()
             .insert_resource(self.settings)
             .insert_resource(TimestepMode::Fixed {
                 dt: TICK_SECONDS,
@@ -114,6 +123,10 @@ impl Plugin for PhysicsPlugin {
                 FixedUpdate,
                 (
                     sync_backend().in_set(PhysicsSet::SyncBackend),
+                    effort::spend_effort
+                        .after(PhysicsSet::SyncBackend)
+                        .before(PhysicsSet::StepSimulation)
+                        .in_set(SimSystems::Physics),
                     RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::StepSimulation),
                     RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::Writeback),
                     (transforms::propagate(), twist::note_twists).in_set(SimSystems::Propagate),
@@ -149,24 +162,26 @@ fn sync_backend() -> ScheduleConfigs<ScheduleSystem> {
 }
 
 /// The parameters of Rapier's solver, tuned until towers of ten unit blocks stand still: at this scale, gravity is ten times what Rapier's
-/// defaults are made for, and its soft contacts let tall stacks sway and buckle. How stiff a contact may be is limited by
-/// the number of iterations, which are the sub-steps of a tick (`tests/quality` of tabletop_scene holds the bar).
+/// defaults are made for, and its soft contacts let tall stacks sway and buckle (`tests/quality` of tabletop_scene holds the
+/// bar). [`Care`] changes them before every step.
 pub fn integration_parameters() -> IntegrationParameters {
     let stiff_contacts = SpringCoefficients {
         natural_frequency: 540.0,
-        damping_ratio: 5.0,
+        damping_ratio: 10.0,
     };
     IntegrationParameters {
         dt: TICK_SECONDS,
         length_unit: LENGTH_UNIT,
-        num_solver_iterations: 36,
+        num_solver_iterations: substeps::FEWEST_SUBSTEPS,
         contact_softness: stiff_contacts,
         static_contact_softness: stiff_contacts,
         warmstart_joints: true,
+        normalized_allowed_linear_error: 0.05,
         // What was squeezed comes apart gently.
-        normalized_max_corrective_velocity: 0.3,
-        // Old contacts would be reused after moves of up to half a unit.
-        contact_recycling: false,
+        normalized_max_corrective_velocity: 3.0,
+        normalized_prediction_distance: effort::PREDICTION,
+        normalized_max_linear_velocity: 4000.0,
+        normalized_contact_recycle_distance: 0.005,
         ..default()
     }
 }

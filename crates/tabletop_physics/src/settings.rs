@@ -31,7 +31,7 @@ impl PhysicsSettings {
         restitution: 0.0,
         angular_damping: 0.5,
         rolling_damping: 2.0,
-        link_damping: 5.0,
+        link_damping: 12.0,
         sleep: true,
     };
 }

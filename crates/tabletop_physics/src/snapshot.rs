@@ -6,6 +6,8 @@ use bevy_rapier3d::{
     rapier::prelude::{CCDSolver, DefaultBroadPhase, IslandManager, NarrowPhase, PhysicsPipeline},
 };
 
+use crate::Care;
+
 /// The physics engine's whole state: not poses alone, but contacts, sleep and everything else that decides what comes next.
 /// A world that is [restored](Self::restore) goes on bit for bit as the one that the snapshot was [taken](Self::take) of,
 /// if the entities of its bodies have their components of that moment, too.
@@ -18,6 +20,7 @@ pub struct PhysicsSnapshot {
     broad_phase: DefaultBroadPhase,
     narrow_phase: NarrowPhase,
     ccd_solver: CCDSolver,
+    care: Care,
 }
 
 /// The parts of Rapier's context.
@@ -31,6 +34,7 @@ type Context = (
 impl PhysicsSnapshot {
     /// The present state; `None` in a world without physics.
     pub fn take(world: &mut World) -> Option<Self> {
+        let care = *world.get_resource()?;
         let mut contexts = world.query_filtered::<Context, With<DefaultRapierContext>>();
         let (simulation, bodies, colliders, joints) = contexts.single_mut(world).ok()?;
         Some(Self {
@@ -41,11 +45,13 @@ impl PhysicsSnapshot {
             broad_phase: simulation.broad_phase.clone(),
             narrow_phase: simulation.narrow_phase.clone(),
             ccd_solver: simulation.ccd_solver.clone(),
+            care,
         })
     }
 
     /// Puts the engine back into this state.
     pub fn restore(&self, world: &mut World) {
+        world.insert_resource(self.care);
         let mut contexts = world.query_filtered::<Context, With<DefaultRapierContext>>();
         let Ok((mut simulation, mut bodies, mut colliders, mut joints)) =
             contexts.single_mut(world)

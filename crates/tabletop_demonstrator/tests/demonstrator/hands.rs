@@ -37,6 +37,33 @@ fn a_block_is_stacked_on_another() {
 }
 
 #[test]
+fn what_is_let_go_of_where_it_was_grasped_stays_there() {
+    let blocks = |spans: &[f32]| {
+        let mut top = 0.0;
+        let place = |(number, span): (usize, &f32)| {
+            let at = (0.0, 0.0, top + span / 2.0);
+            top += span;
+            object(
+                &format!("block{number}"),
+                at,
+                1.0,
+                block(Vec3::splat(*span)),
+            )
+        };
+        spans.iter().enumerate().map(place).collect()
+    };
+    for spans in [&[1.0][..], &[2.0], &[2.0, 1.0], &[1.0, 1.0, 1.0, 1.0]] {
+        let mut desk = Desk::new(blocks(spans));
+        let top = format!("block{}", spans.len() - 1);
+        let before = desk.pose(&top);
+        desk.grasp(Hand::Any, &top).step(30);
+        desk.tell(SimCommand::Release(Hand::Any)).step(120);
+        let moved = desk.pose(&top).location.distance(before.location);
+        assert!(moved < 0.0002, "{top} moved by {moved}");
+    }
+}
+
+#[test]
 fn a_held_object_does_not_fall_and_goes_exactly_where_it_is_told() {
     let mut desk = Desk::new(two_blocks());
     let location = Vec3::new(1.234, -2.5, 6.789);

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
-use tabletop_core::{SceneItem, StepApp as _};
+use tabletop_core::{SceneItem, Shape, StepApp as _};
 
 use crate::world::*;
 
@@ -136,4 +136,68 @@ fn a_block_slides_as_far_as_friction_lets_it() {
         (slid / expected - 1.0).abs() < 0.1,
         "slid {slid}, not {expected}"
     );
+}
+
+/// How far aside of where it was dropped an object comes to rest, in units.
+fn lands_aside(shape: Shape, degrees: Vec3, bottom: f32, height: f32) -> f32 {
+    let dropped = turned("it", Vec3::Z * (bottom + height), degrees, 1.0, shape);
+    let mut world = TestWorld::new([dropped]);
+    world.seconds(4.0);
+    let at = world.pose("it").location;
+    assert!((at.z - bottom).abs() < 0.002, "it lies at {at}");
+    at.truncate().length()
+}
+
+#[test]
+fn a_cube_that_falls_flat_lands_below() {
+    for height in [0.05, 0.3, 1.0, 3.0, 10.0] {
+        for yaw in [0.0, 17.0, 45.0] {
+            let cube = block(Vec3::splat(2.0));
+            let aside = lands_aside(cube, Vec3::Z * yaw, 1.0, height);
+            assert!(aside < 0.002, "{aside} aside from {height}, yaw {yaw}°");
+        }
+    }
+}
+
+#[test]
+fn every_convex_shape_that_falls_flat_lands_below() {
+    let standing = Vec3::X * 90.0;
+    for (shape, degrees, bottom) in [
+        (block(Vec3::ONE), Vec3::ZERO, 0.5),
+        (block((1.0, 2.0, 3.0)), Vec3::ZERO, 1.5),
+        (block((4.0, 1.0, 0.5)), Vec3::Z * 30.0, 0.25),
+        (block((1.0, 1.0, 0.05)), Vec3::ZERO, 0.025),
+        (cylinder(0.5, 1.0), standing, 0.5),
+        (cylinder(1.0, 0.5), standing, 0.25),
+        (cylinder(0.4, 1.5), standing, 0.75),
+        (sphere(0.5), Vec3::ZERO, 0.5),
+    ] {
+        for height in [1.0, 3.0, 10.0] {
+            let aside = lands_aside(shape.clone(), degrees, bottom, height);
+            assert!(aside < 0.002, "{aside} aside from {height}: {shape:?}");
+        }
+    }
+}
+
+#[test]
+fn a_cylinder_that_falls_on_its_side_hardly_rolls() {
+    for height in [0.3, 1.0, 3.0] {
+        let aside = lands_aside(cylinder(0.5, 3.0), Vec3::ZERO, 0.5, height);
+        assert!(aside < 0.002, "{aside} aside from {height}");
+    }
+}
+
+#[test]
+fn a_cube_that_falls_flat_onto_blocks_stays_on_them() {
+    for (storeys, height, most) in [(1, 1.0, 0.002), (3, 0.5, 0.005), (3, 3.0, 0.03)] {
+        let mut items = tower(storeys);
+        let at = Vec3::Z * (storeys as f32 + 0.5 + height);
+        items.push(object("it", at, 1.0, block(Vec3::ONE)));
+        let mut world = TestWorld::new(items);
+        world.seconds(4.0);
+        for (id, pose) in world.poses() {
+            let aside = pose.location.truncate().length();
+            assert!(aside < most, "{id} is {aside} aside: {storeys}, {height}");
+        }
+    }
 }

@@ -6,15 +6,6 @@ use tabletop_physics::PhysicsSettings;
 
 use crate::world::*;
 
-fn tower(blocks: usize) -> Vec<SceneItem> {
-    (0..blocks)
-        .map(|i| {
-            let location = Vec3::new(0.0, 0.0, i as f32 + 0.5);
-            object(&format!("block{i}"), location, 1.0, block(Vec3::ONE))
-        })
-        .collect()
-}
-
 /// How far the objects are from where they were put, in units, and how much they have turned, in degrees.
 fn drift(world: &TestWorld, put: &[SceneItem]) -> (f32, f32) {
     put.iter().fold((0.0f32, 0.0f32), |(far, turn), item| {
@@ -47,6 +38,32 @@ fn a_tower_that_may_not_sleep_stands_still_for_a_minute() {
     world.seconds(60.0);
     let (far, turn) = drift(&world, &tower(10));
     assert!(far < 0.002 && turn < 0.05, "moved {far}, turned {turn}°");
+}
+
+#[test]
+fn a_stack_of_twenty_stands_for_a_minute() {
+    let mut world = TestWorld::new(tower(20));
+    world.seconds(60.0);
+    let (far, turn) = drift(&world, &tower(20));
+    assert!(far < 0.005 && turn < 0.05, "moved {far}, turned {turn}°");
+}
+
+#[test]
+fn the_heavy_stands_on_the_light() {
+    for ratio in [2.0, 10.0] {
+        let put = [
+            object("light", Vec3::Z * 0.5, 1.0, block(Vec3::ONE)),
+            object("heavy", Vec3::Z * 1.5, ratio, block(Vec3::ONE)),
+        ];
+        let settings = PhysicsSettings {
+            sleep: false,
+            ..default()
+        };
+        let mut world = TestWorld::with_settings(settings, put.clone());
+        world.seconds(60.0);
+        let (far, turn) = drift(&world, &put);
+        assert!(far < 0.001 && turn < 0.05, "moved {far}, turned {turn}°");
+    }
 }
 
 #[test]

@@ -133,6 +133,16 @@ pub fn open_box(span: impl Into<Vec3>, thickness: f32) -> Shape {
     }
 }
 
+/// Unit blocks of 1 kg, one on the other.
+pub fn tower(blocks: usize) -> Vec<SceneItem> {
+    (0..blocks)
+        .map(|i| {
+            let location = Vec3::new(0.0, 0.0, i as f32 + 0.5);
+            object(&format!("block{i}"), location, 1.0, block(Vec3::ONE))
+        })
+        .collect()
+}
+
 /// The chain of figure 16.
 pub fn report_chain(link_count: u32) -> SceneItem {
     SceneItem::Chain(ChainSpec {

@@ -1,0 +1,258 @@
+//! Effort where it is needed: how finely the engine works in the next step, chosen from its state alone.
+//!
+//! The solver is most of a tick. What stands alone needs few sub-steps; what is deep in a stack, or handled, needs many; what
+//! lands needs many sweeps.
+
+use bevy::prelude::*;
+use bevy_rapier3d::{
+    prelude::*,
+    rapier::prelude::{
+        ColliderSet, ContactPair, DefaultBroadPhase, ImpulseJointSet, IntegrationParameters,
+        IslandManager, NarrowPhase, RigidBody, RigidBodySet,
+    },
+};
+
+use crate::{
+    JustReleased, PhysicsSettings,
+    landing::landing_speed,
+    substeps::{FEWEST_SUBSTEPS, MOST_SUBSTEPS, Situation},
+    touches::{Touches, bodies_of},
+};
+
+/// How far ahead contacts are looked for, in units.
+pub(crate) const PREDICTION: f32 = 0.2;
+
+/// How far ahead of what is fast they are looked for, in units: more than it moves in a tick after a fall of 100 units.
+pub(crate) const SOFT_CCD_PREDICTION: f32 = 3.0;
+
+/// Speed, in units/s, from which contacts are looked for so far ahead, and from which collision detection is continuous.
+const SPEED_OF_CCD: f32 = 6.0;
+
+/// How many sub-steps fewer than in the tick before an island may have.
+const DECAY: usize = 2;
+
+/// Ticks for which everything has the most sub-steps after a hand or a robot has been near something.
+const HANDLING_TICKS: u32 = 30;
+
+/// Ticks for which the engine sweeps as for a landing. Continuous collision detection stops what is fast a little above what it
+/// lands on, and it falls the rest of the way in the next ones.
+const LANDING_TICKS: u32 = 4;
+
+/// How often the solver goes over the contacts in a sub-step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Sweeps {
+    /// To correct speeds and depths, without friction.
+    correcting: usize,
+    /// To correct speeds alone, with friction.
+    plain: usize,
+}
+
+/// Of most ticks. With more plain sweeps, friction would let towers creep.
+const SWEEPS: Sweeps = Sweeps {
+    correcting: 8,
+    plain: 1,
+};
+
+/// While hands or robots handle something: squeezed between them it is stiffer so.
+const HANDLING_SWEEPS: Sweeps = Sweeps {
+    correcting: 1,
+    plain: 1,
+};
+
+/// While something lands flat. Its corners must share the impact equally before friction acts on what is left, or it turns the
+/// difference into a slide.
+const LANDING_SWEEPS: Sweeps = Sweeps {
+    correcting: 4,
+    plain: 32,
+};
+
+/// For how many ticks the engine takes more care than the state calls for.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Care {
+    handling: u32,
+    landing: u32,
+}
+
+/// What effort depends on, and where it is set.
+pub struct Engine<'a> {
+    /// What holds for all bodies.
+    pub parameters: &'a mut IntegrationParameters,
+    /// Which bodies are awake.
+    pub islands: &'a IslandManager,
+    /// Which shapes are near each other.
+    pub broad_phase: &'a DefaultBroadPhase,
+    /// Which shapes touch each other.
+    pub narrow_phase: &'a NarrowPhase,
+    /// The bodies.
+    pub bodies: &'a mut RigidBodySet,
+    /// Their shapes.
+    pub colliders: &'a ColliderSet,
+    /// What holds them together.
+    pub joints: &'a ImpulseJointSet,
+    /// Downward acceleration in units/s².
+    pub gravity: f32,
+}
+
+pub(crate) fn spend_effort(
+    mut contexts: Query<(
+        &mut RapierContextSimulation,
+        &RapierContextColliders,
+        &mut RapierRigidBodySet,
+        &RapierContextJoints,
+    )>,
+    released: Query<(), With<JustReleased>>,
+    settings: Res<PhysicsSettings>,
+    mut care: ResMut<Care>,
+) {
+    if !released.is_empty() {
+        care.landing = LANDING_TICKS;
+    }
+    for (mut simulation, colliders, mut bodies, joints) in &mut contexts {
+        let simulation = &mut *simulation;
+        care.spend(Engine {
+            parameters: &mut simulation.integration_parameters,
+            islands: &simulation.islands,
+            broad_phase: &simulation.broad_phase,
+            narrow_phase: &simulation.narrow_phase,
+            bodies: &mut bodies.bodies,
+            colliders: &colliders.colliders,
+            joints: &joints.impulse_joints,
+            gravity: settings.gravity,
+        });
+    }
+}
+
+impl Care {
+    /// Chooses how finely the engine works in the next step.
+    pub fn spend(&mut self, engine: Engine) {
+        if engine.islands.num_active_bodies() == 0 {
+            *self = Self::default();
+            Mode::UNKNOWN.set(engine.parameters);
+            return;
+        }
+        let touches = Touches::of(&engine);
+        self.handling = ticks_left(self.handling, HANDLING_TICKS, touches.is_handling);
+        let is_handling = self.handling > 0;
+
+        let (mut landing, mut is_any_fast) = (0.0f32, false);
+        let mut changes = Vec::new();
+        for handle in engine.islands.active_bodies() {
+            let body = &engine.bodies[handle];
+            if !body.is_dynamic() {
+                continue;
+            }
+            let situation = Situation::of(handle, &engine, &touches);
+            let before = FEWEST_SUBSTEPS + body.additional_solver_iterations();
+            let substeps = match is_handling {
+                true => MOST_SUBSTEPS,
+                false => situation.substeps().max(before.saturating_sub(DECAY)),
+            };
+            let is_fast = is_handling || engine.fastest_point(body) > SPEED_OF_CCD;
+            let prediction = if is_fast { SOFT_CCD_PREDICTION } else { 0.0 };
+            if substeps != before || prediction != body.soft_ccd_prediction() {
+                changes.push((handle, substeps, prediction));
+            }
+            is_any_fast |= is_fast;
+            if !situation.is_jointed && !situation.is_handled {
+                landing = landing.max(landing_speed(&engine, handle));
+            }
+        }
+        for (handle, substeps, prediction) in changes {
+            let body = &mut engine.bodies[handle];
+            body.set_additional_solver_iterations(substeps - FEWEST_SUBSTEPS);
+            body.set_soft_ccd_prediction(prediction);
+        }
+
+        self.landing = ticks_left(self.landing, LANDING_TICKS, landing > 0.0);
+        let is_landing = self.landing > 0;
+        let sweeps = match (is_landing, is_handling) {
+            (true, _) => LANDING_SWEEPS,
+            (false, true) => HANDLING_SWEEPS,
+            (false, false) => SWEEPS,
+        };
+        let mode = Mode {
+            sweeps,
+            // What is farther than this is touched in one point, whatever its shape.
+            prediction: (landing * engine.parameters.dt).clamp(PREDICTION, SOFT_CCD_PREDICTION),
+            recycles: !is_handling && !is_landing,
+            clusters: is_handling,
+            is_continuous: is_any_fast,
+        };
+        mode.set(engine.parameters);
+    }
+}
+
+/// The ticks that are left of some, which may begin again.
+fn ticks_left(ticks: u32, all: u32, begin_again: bool) -> u32 {
+    match begin_again {
+        true => all,
+        false => ticks.saturating_sub(1),
+    }
+}
+
+/// What holds for all bodies in a step.
+struct Mode {
+    sweeps: Sweeps,
+    /// How far ahead contacts are looked for, in units.
+    prediction: f32,
+    /// Whether contacts of what has hardly moved are kept.
+    recycles: bool,
+    /// Whether contacts of several parts that have the same normal are merged.
+    clusters: bool,
+    /// Whether collision detection is continuous.
+    is_continuous: bool,
+}
+
+impl Mode {
+    /// While everything sleeps, and new bodies may appear.
+    const UNKNOWN: Self = Self {
+        sweeps: SWEEPS,
+        prediction: PREDICTION,
+        recycles: false,
+        clusters: false,
+        is_continuous: true,
+    };
+
+    fn set(self, parameters: &mut IntegrationParameters) {
+        parameters.num_internal_pgs_iterations = self.sweeps.correcting;
+        parameters.num_internal_stabilization_iterations = self.sweeps.plain;
+        parameters.normalized_prediction_distance = self.prediction;
+        parameters.contact_recycling = self.recycles;
+        parameters.contact_clustering = self.clusters;
+        parameters.max_ccd_substeps = usize::from(self.is_continuous);
+    }
+}
+
+impl Engine<'_> {
+    /// An upper bound of the speed, in units/s, that a point of a body has at the end of a tick in which nothing stops it.
+    pub(crate) fn fastest_point(&self, body: &RigidBody) -> f32 {
+        const REACH: f32 = 2.0;
+        let falling = self.gravity * self.parameters.dt;
+        body.linvel().length() + falling + REACH * body.angvel().length()
+    }
+}
+
+/// The part of the impulses that the engine reports for a pair that acted in the last step: it counts those with which it began the
+/// step as well as those of all sub-steps.
+pub fn impulse_share(pair: &ContactPair, bodies: &RigidBodySet, colliders: &ColliderSet) -> f32 {
+    let touching = bodies_of(pair, colliders).into_iter().flatten();
+    let additional =
+        touching.filter_map(|body| Some(bodies.get(body)?.additional_solver_iterations()));
+    let substeps = (FEWEST_SUBSTEPS + additional.max().unwrap_or(0)) as f32;
+    substeps / (substeps + 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn care_lasts_and_ends() {
+        let mut ticks = ticks_left(0, 3, true);
+        for left in [2, 1, 0, 0] {
+            ticks = ticks_left(ticks, 3, false);
+            assert_eq!(ticks, left);
+        }
+        assert_eq!(ticks_left(2, 3, true), 3);
+    }
+}

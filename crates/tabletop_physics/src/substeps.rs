@@ -1,0 +1,137 @@
+//! How many sub-steps a body needs.
+
+use bevy_rapier3d::rapier::prelude::{RigidBody, RigidBodyHandle};
+
+use crate::{effort::Engine, touches::Touches};
+
+/// Sub-steps of every island, at least.
+pub(crate) const FEWEST_SUBSTEPS: usize = 4;
+
+/// Sub-steps of what is handled.
+pub(crate) const MOST_SUBSTEPS: usize = 36;
+
+/// Sub-steps of what touches nothing yet, so that it lands well.
+pub(crate) const SUBSTEPS_OF_FREE: usize = 20;
+
+/// Sub-steps by the greatest depth of a body in its stack, from 1 on; the last number holds for all that are deeper.
+const SUBSTEPS_BY_DEPTH: [usize; 16] = [4, 4, 4, 4, 6, 11, 12, 12, 13, 13, 13, 13, 14, 14, 14, 16];
+
+/// Sub-steps of other shapes than blocks, at least: they touch with fewer points.
+const SUBSTEPS_OF_OTHER_SHAPES: usize = 9;
+
+/// Sub-steps of what joints hold, at least.
+const SUBSTEPS_OF_JOINTED: usize = 7;
+
+/// Sub-steps of bodies that touch one of a much different mass, at least.
+const SUBSTEPS_OF_UNEVEN: usize = 16;
+
+/// Sub-steps of what is fast, at least.
+const SUBSTEPS_OF_FAST: usize = 20;
+
+/// What is faster than this, in units/s and rad/s together, is fast.
+const FAST: f32 = 20.0;
+
+/// What the number of a body's sub-steps depends on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Situation {
+    /// How deep it is in its stack, if it is supported.
+    depth: Option<u32>,
+    is_block: bool,
+    is_uneven: bool,
+    /// Whether joints hold it.
+    pub is_jointed: bool,
+    /// Whether a hand or a robot touches it.
+    pub is_handled: bool,
+    speed: f32,
+}
+
+impl Situation {
+    pub fn of(handle: RigidBodyHandle, engine: &Engine, touches: &Touches) -> Self {
+        let body = &engine.bodies[handle];
+        let number = handle.into_raw_parts().0;
+        let mut shapes = body.colliders().iter();
+        Self {
+            depth: touches.depths.of(number),
+            is_block: shapes.all(|shape| engine.colliders[*shape].shape().as_cuboid().is_some()),
+            is_uneven: touches.uneven.contains(&number),
+            is_jointed: engine.joints.attached_joints(handle).next().is_some(),
+            is_handled: touches.handled.contains(&number),
+            speed: speed(body),
+        }
+    }
+
+    pub fn substeps(self) -> usize {
+        let by_depth = match self.depth {
+            Some(depth) => SUBSTEPS_BY_DEPTH[(depth as usize - 1).min(SUBSTEPS_BY_DEPTH.len() - 1)],
+            None if self.is_jointed => FEWEST_SUBSTEPS,
+            None => SUBSTEPS_OF_FREE,
+        };
+        let others = [
+            (!self.is_block, SUBSTEPS_OF_OTHER_SHAPES),
+            (self.is_uneven, SUBSTEPS_OF_UNEVEN),
+            (self.is_jointed, SUBSTEPS_OF_JOINTED),
+            (self.is_handled, MOST_SUBSTEPS),
+            (self.speed > FAST && !self.is_jointed, SUBSTEPS_OF_FAST),
+        ];
+        let others = others.into_iter().filter(|(applies, _)| *applies);
+        others.fold(by_depth, |most, (_, substeps)| most.max(substeps))
+    }
+}
+
+/// How fast a body is, in units/s and rad/s together.
+pub(crate) fn speed(body: &RigidBody) -> f32 {
+    body.linvel().length() + body.angvel().length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BLOCK: Situation = Situation {
+        depth: Some(1),
+        is_block: true,
+        is_uneven: false,
+        is_jointed: false,
+        is_handled: false,
+        speed: 0.0,
+    };
+
+    #[test]
+    fn what_is_deeper_gets_more() {
+        let substeps = |depth| {
+            let depth = Some(depth);
+            Situation { depth, ..BLOCK }.substeps()
+        };
+        assert_eq!([1, 5, 6, 16, 1000].map(substeps), [4, 6, 11, 16, 16]);
+        assert!((1..40).all(|depth| substeps(depth) <= substeps(depth + 1)));
+    }
+
+    #[test]
+    fn the_greatest_need_counts() {
+        let uneven = Situation {
+            is_uneven: true,
+            is_block: false,
+            ..BLOCK
+        };
+        assert_eq!(uneven.substeps(), SUBSTEPS_OF_UNEVEN);
+        let handled = Situation {
+            is_handled: true,
+            ..uneven
+        };
+        assert_eq!(handled.substeps(), MOST_SUBSTEPS);
+    }
+
+    #[test]
+    fn a_link_that_swings_gets_no_more_than_one_that_hangs() {
+        let hanging = Situation {
+            depth: None,
+            is_jointed: true,
+            ..BLOCK
+        };
+        let swinging = Situation {
+            speed: 2.0 * FAST,
+            ..hanging
+        };
+        assert_eq!(swinging.substeps(), hanging.substeps());
+    }
+}

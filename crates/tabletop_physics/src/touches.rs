@@ -1,0 +1,101 @@
+//! What bodies touch.
+
+use std::collections::BTreeSet;
+
+use bevy_rapier3d::rapier::prelude::{
+    ColliderSet, ContactPair, RigidBody, RigidBodyHandle, RigidBodySet,
+};
+
+use crate::{depth::Depths, effort::Engine};
+
+/// Masses of which one is more than this many times the other are uneven.
+const UNEVEN: f32 = 1.5;
+
+/// What bodies, by their numbers, touch.
+pub(crate) struct Touches {
+    pub depths: Depths,
+    /// Those that touch one of a much different mass.
+    pub uneven: BTreeSet<u32>,
+    /// Those that touch what hands or robots move.
+    pub handled: BTreeSet<u32>,
+    /// Whether any is near to what hands or robots move.
+    pub is_handling: bool,
+}
+
+impl Touches {
+    pub fn of(engine: &Engine) -> Self {
+        let (mut supported, mut touching) = (Vec::new(), Vec::new());
+        let (mut uneven, mut handled) = (BTreeSet::new(), BTreeSet::new());
+        let mut is_handling = false;
+        for pair in engine.narrow_phase.contact_pairs() {
+            let [first, second] =
+                bodies_of(pair, engine.colliders).map(|body| Mover::of(body, engine.bodies));
+            let touches = pair.has_any_active_contact();
+            match (first, second) {
+                (Mover::Forces(a, first), Mover::Forces(b, second)) => {
+                    let [lighter, heavier] = sorted(first.mass(), second.mass());
+                    if touches {
+                        touching.push((a, b));
+                    }
+                    if touches && heavier > UNEVEN * lighter {
+                        uneven.extend([a, b]);
+                    }
+                }
+                (Mover::Forces(a, body), Mover::Hand(hand))
+                | (Mover::Hand(hand), Mover::Forces(a, body)) => {
+                    is_handling |= !body.is_sleeping() || hand.is_moving();
+                    if touches {
+                        supported.push(a);
+                        handled.insert(a);
+                    }
+                }
+                (Mover::Forces(a, _), Mover::Nothing) | (Mover::Nothing, Mover::Forces(a, _)) => {
+                    if touches {
+                        supported.push(a);
+                    }
+                }
+                (Mover::Hand(_) | Mover::Nothing, Mover::Hand(_) | Mover::Nothing) => {}
+            }
+        }
+        Self {
+            depths: Depths::new(&supported, &touching),
+            uneven,
+            handled,
+            is_handling,
+        }
+    }
+}
+
+fn sorted(a: f32, b: f32) -> [f32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// What moves a body.
+enum Mover<'a> {
+    /// Forces; with its number.
+    Forces(u32, &'a RigidBody),
+    /// A hand or a robot.
+    Hand(&'a RigidBody),
+    /// Nothing.
+    Nothing,
+}
+
+impl<'a> Mover<'a> {
+    fn of(handle: Option<RigidBodyHandle>, bodies: &'a RigidBodySet) -> Self {
+        match handle.and_then(|handle| Some((handle, bodies.get(handle)?))) {
+            Some((handle, body)) if body.is_dynamic() => {
+                Self::Forces(handle.into_raw_parts().0, body)
+            }
+            Some((_, body)) if body.is_kinematic() => Self::Hand(body),
+            _ => Self::Nothing,
+        }
+    }
+}
+
+/// The bodies of a pair of shapes.
+pub(crate) fn bodies_of(
+    pair: &ContactPair,
+    colliders: &ColliderSet,
+) -> [Option<RigidBodyHandle>; 2] {
+    [pair.collider1, pair.collider2].map(|collider| colliders.get(collider)?.parent())
+}
