@@ -1,13 +1,17 @@
 //! The program in a window.
 
+mod display;
+mod frame_rate;
 mod no_window;
-mod pace;
+mod opening;
 mod redraw;
 mod replay;
 mod screenshot;
 
+pub use display::DisplayOptions;
 pub use no_window::NoWindow;
 pub use screenshot::ScreenshotAt;
+pub use tabletop_gui::display::{Antialiasing, Resolution};
 
 use std::{path::PathBuf, time::Duration};
 
@@ -16,12 +20,12 @@ use bevy::{
     log::{Level, LogPlugin},
     prelude::*,
     render::RenderPlugin,
-    window::PresentMode,
 };
 use tabletop_core::{OpenRecording, PacePlugin, SimCommand};
-use tabletop_gui::GuiPlugin;
+use tabletop_gui::{GuiPlugin, Preferences};
 use tabletop_view::ViewPlugin;
 
+use self::opening::{Beginning, Opening};
 use crate::{
     TabletopSimPlugins,
     baxter::BaxterPlugin,
@@ -38,6 +42,8 @@ pub struct WindowOptions {
     pub robot: BaxterPlugin,
     /// The scripts that can drive the robot, and their engine.
     pub scripts: ScriptSettings,
+    /// How it is shown.
+    pub display: DisplayOptions,
     /// A picture to take, after which the program ends.
     pub screenshot: Option<ScreenshotAt>,
 }
@@ -82,10 +88,12 @@ pub fn run(options: WindowOptions) -> Result<AppExit, NoWindow> {
 /// The app without what belongs to the whole process, so that giving up leaves no trace.
 fn build(options: WindowOptions) -> App {
     let mut app = App::new();
+    let preferences = Preferences::default();
+    let beginning = Beginning::new(options.display, &preferences);
     app.add_plugins((
         DefaultPlugins
             .set(WindowPlugin {
-                primary_window: Some(window()),
+                primary_window: Some(beginning.window()),
                 ..default()
             })
             // The first frames wait for their shaders instead of being black.
@@ -112,14 +120,20 @@ fn build(options: WindowOptions) -> App {
         PlaybackPlugin {
             task: options.show.task(),
         },
-        pace::plugin,
+        display::plugin,
+        frame_rate::plugin,
+        opening::plugin,
         redraw::plugin,
         replay::plugin,
-    ));
+    ))
+    .insert_resource(preferences)
+    .insert_resource(Opening::Begun(beginning));
     match options.show {
         Show::Task(setup) => {
-            let load = SimCommand::LoadTask(setup);
-            app.world_mut().write_message(load);
+            let load = move |mut commands: MessageWriter<SimCommand>| {
+                commands.write(SimCommand::LoadTask(setup.clone()));
+            };
+            app.add_systems(Startup, load);
         }
         Show::Replay(replay) => {
             let open = OpenRecording(replay.folder().to_owned());
@@ -130,15 +144,6 @@ fn build(options: WindowOptions) -> App {
         screenshot.plan(&mut app);
     }
     app
-}
-
-fn window() -> Window {
-    Window {
-        title: "tabletop".into(),
-        resolution: (1024, 768).into(),
-        present_mode: PresentMode::AutoVsync,
-        ..default()
-    }
 }
 
 fn log() -> LogPlugin {

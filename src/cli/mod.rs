@@ -2,6 +2,8 @@
 
 mod check;
 #[cfg(feature = "window")]
+mod display;
+#[cfg(feature = "window")]
 mod keys;
 mod replay;
 mod robot;

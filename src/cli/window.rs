@@ -31,16 +31,24 @@ pub(super) struct WindowArgs {
     engine: EngineOptions,
     #[command(flatten)]
     robot: RobotOptions,
+    #[cfg(feature = "window")]
+    #[command(flatten)]
+    display: super::display::DisplayArgs,
 }
 
 #[cfg(feature = "window")]
 pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
     use tabletop::window::{self, ScreenshotAt, Show, WindowOptions};
 
+    let mut display = args.display.options();
+    if args.screenshot.is_some() {
+        display.ask.get_or_insert(false);
+    }
     let options = WindowOptions {
         show: Show::Task(args.setup.clone()),
         robot: args.robot.plugin()?,
         scripts: args.engine.settings(args.script.as_deref())?,
+        display,
         screenshot: args.screenshot.map(|path| ScreenshotAt {
             path,
             seconds: args.after as f32,
@@ -57,13 +65,17 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
 pub(super) fn play(replay: Replay, scripts: ScriptSettings) -> Result<ExitCode, Failure> {
     use tabletop::{
         baxter::BaxterPlugin,
-        window::{self, Show, WindowOptions},
+        window::{self, DisplayOptions, Show, WindowOptions},
     };
 
     let options = WindowOptions {
         show: Show::Replay(Box::new(replay)),
         robot: BaxterPlugin::default(),
         scripts,
+        display: DisplayOptions {
+            ask: Some(false),
+            ..DisplayOptions::default()
+        },
         screenshot: None,
     };
     window::run(options).map(exit_code).map_err(Failure::run)

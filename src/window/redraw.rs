@@ -18,7 +18,7 @@ use tabletop_gui::Picture;
 use tabletop_view::Surface;
 
 use self::sight::{Drawn, Sight};
-use super::pace::Pace;
+use super::frame_rate::FrameRate;
 
 /// How many frames are drawn at the start, whatever there is to see.
 const STARTING: u32 = 5;
@@ -221,7 +221,7 @@ fn draw_when_due(app: &mut App) {
             main.resource_mut::<Picture>().drawn += 1;
         }
         // Here, and not at the end of a frame: the picture is being drawn meanwhile, and what the user does next is still read in time.
-        main.resource_mut::<Pace>().wait();
+        main.resource_mut::<FrameRate>().wait();
     });
     // The renderer says when it has drawn a frame, and without frames Bevy's clock would complain every frame that it does not.
     app.world_mut().remove_resource::<TimeReceiver>();

@@ -17,6 +17,7 @@
 //!     .run();
 //! ```
 
+pub mod display;
 mod input;
 pub mod keymap_file;
 mod panels;
@@ -50,6 +51,7 @@ impl Plugin for GuiPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Preferences>()
             .init_resource::<PresetSeeds>()
+            .init_resource::<display::Renderer>()
             .insert_resource(EguiGlobalSettings {
                 auto_create_primary_context: false,
                 ..default()
@@ -64,6 +66,7 @@ impl Plugin for GuiPlugin {
                 EguiPostUpdateSet::PostProcessOutput.before(AssetEventSystems),
             )
             .add_observer(draw_panels_over)
+            .add_plugins((picture::plugin, panels::display::plugin))
             .add_plugins((
                 widgets::style::plugin,
                 input::focus::plugin,
@@ -82,7 +85,6 @@ impl Plugin for GuiPlugin {
                 scale::plugin,
             ))
             .add_plugins((
-                picture::plugin,
                 keymap_file::plugin,
                 input::object_keys::plugin,
                 panels::help::plugin,

@@ -1,6 +1,7 @@
 //! How often frames come.
 
 use std::{
+    num::NonZeroU32,
     thread,
     time::{Duration, Instant},
 };
@@ -10,11 +11,9 @@ use bevy::{
     winit::{UpdateMode, WinitSettings},
 };
 use tabletop_core::Paused;
+use tabletop_gui::display::DisplaySettings;
 
-use super::redraw::Redraw;
-
-/// Frames a second, unless the user has chosen another number: so many as the simulation has ticks.
-const HZ: u32 = 60;
+use super::{opening::Opening, redraw::Redraw};
 
 /// How often a window in which nothing happens looks after what comes neither from mouse nor keys, such as a file that has changed.
 const IDLE: Duration = Duration::from_millis(250);
@@ -24,22 +23,22 @@ const LINGER: Duration = Duration::from_millis(500);
 
 /// When the next frame may begin.
 #[derive(Resource, Clone, Copy, Debug)]
-pub(super) struct Pace {
+pub(super) struct FrameRate {
     period: Duration,
     due: Option<Instant>,
 }
 
-impl Default for Pace {
+impl Default for FrameRate {
     fn default() -> Self {
-        Self::of(HZ)
+        Self::of(DisplaySettings::default().refresh_rate)
     }
 }
 
-impl Pace {
-    /// At most so many frames a second, but at least one.
-    pub fn of(hz: u32) -> Self {
+impl FrameRate {
+    /// At most so many frames a second.
+    pub fn of(rate: NonZeroU32) -> Self {
         Self {
-            period: Duration::from_secs(1) / hz.max(1),
+            period: Duration::from_secs(1) / rate.get(),
             due: None,
         }
     }
@@ -64,19 +63,21 @@ impl Pace {
 }
 
 pub(super) fn plugin(app: &mut App) {
-    app.init_resource::<Pace>()
+    app.init_resource::<FrameRate>()
         .insert_resource(WinitSettings::continuous())
-        .add_systems(Last, rest_while_paused);
+        .add_systems(Last, rest_while_waiting);
 }
 
-/// A pause in which nothing happens costs next to nothing; keys and mouse still act at once.
-fn rest_while_paused(
+/// A window that waits for the user costs next to nothing; keys and mouse still act at once.
+fn rest_while_waiting(
     paused: Res<Paused>,
+    opening: Res<Opening>,
     redraw: Res<Redraw>,
     time: Res<Time<Real>>,
     mut settings: ResMut<WinitSettings>,
 ) {
-    let mode = match paused.0 && redraw.idle_for(time.elapsed()) > LINGER {
+    let is_waiting = paused.0 || *opening != Opening::Done;
+    let mode = match is_waiting && redraw.idle_for(time.elapsed()) > LINGER {
         true => UpdateMode::reactive_low_power(IDLE),
         false => UpdateMode::Continuous,
     };
@@ -93,23 +94,24 @@ mod tests {
     use super::*;
 
     const MS: Duration = Duration::from_millis(1);
+    const HUNDRED: NonZeroU32 = NonZeroU32::new(100).expect("it is not zero");
 
     #[test]
     fn frames_begin_a_period_apart() {
-        let (mut pace, start) = (Pace::of(100), Instant::now());
-        assert_eq!(pace.pause(start), Duration::ZERO);
-        assert_eq!(pace.pause(start + 3 * MS), 7 * MS);
-        assert_eq!(pace.pause(start + 10 * MS), 10 * MS);
+        let (mut rate, start) = (FrameRate::of(HUNDRED), Instant::now());
+        assert_eq!(rate.pause(start), Duration::ZERO);
+        assert_eq!(rate.pause(start + 3 * MS), 7 * MS);
+        assert_eq!(rate.pause(start + 10 * MS), 10 * MS);
     }
 
     #[test]
     fn a_late_frame_is_made_up_for_and_a_missed_one_is_not() {
-        let (mut pace, start) = (Pace::of(100), Instant::now());
-        pace.pause(start);
-        assert_eq!(pace.pause(start + 14 * MS), Duration::ZERO);
-        assert_eq!(pace.pause(start + 15 * MS), 5 * MS);
-        assert_eq!(pace.pause(start + 500 * MS), Duration::ZERO);
-        assert_eq!(pace.pause(start + 500 * MS), 10 * MS);
+        let (mut rate, start) = (FrameRate::of(HUNDRED), Instant::now());
+        rate.pause(start);
+        assert_eq!(rate.pause(start + 14 * MS), Duration::ZERO);
+        assert_eq!(rate.pause(start + 15 * MS), 5 * MS);
+        assert_eq!(rate.pause(start + 500 * MS), Duration::ZERO);
+        assert_eq!(rate.pause(start + 500 * MS), 10 * MS);
     }
 
     #[test]
@@ -118,6 +120,7 @@ mod tests {
         app.add_plugins(MinimalPlugins)
             .init_resource::<Paused>()
             .init_resource::<Redraw>()
+            .insert_resource(Opening::Done)
             .insert_resource(bevy::time::TimeUpdateStrategy::ManualDuration(100 * MS))
             .add_plugins(plugin);
         let mut modes = |paused| {
