@@ -22,7 +22,7 @@ use bevy::{
     render::RenderPlugin,
 };
 use tabletop_core::{OpenRecording, PacePlugin, SimCommand};
-use tabletop_gui::{GuiPlugin, Preferences};
+use tabletop_gui::{GuiPlugin, Preferences, keymap_file::KeymapFile};
 use tabletop_view::ViewPlugin;
 
 use self::opening::{Beginning, Opening};
@@ -44,6 +44,8 @@ pub struct WindowOptions {
     pub scripts: ScriptSettings,
     /// How it is shown.
     pub display: DisplayOptions,
+    /// The file that binds keys; else it is the user's own, if there is one.
+    pub keys: Option<PathBuf>,
     /// A picture to take, after which the program ends.
     pub screenshot: Option<ScreenshotAt>,
 }
@@ -139,6 +141,9 @@ fn build(options: WindowOptions) -> App {
             let open = OpenRecording(replay.folder().to_owned());
             app.world_mut().write_message(open);
         }
+    }
+    if let Some(keys) = options.keys {
+        app.insert_resource(KeymapFile(keys));
     }
     if let Some(screenshot) = options.screenshot {
         screenshot.plan(&mut app);

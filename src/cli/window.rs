@@ -17,6 +17,10 @@ pub(super) struct WindowArgs {
     /// The task file to begin with
     #[arg(long, value_name = "FILE", default_value = super::DEFAULT_SETUP)]
     setup: PathBuf,
+    /// The file that binds keys, instead of keys.ron in the folder of the preferences; see `tabletop keys`
+    #[cfg(feature = "window")]
+    #[arg(long, value_name = "FILE")]
+    keys: Option<PathBuf>,
     /// Save a picture of the window to this PNG file, and quit
     #[arg(long, value_name = "FILE")]
     screenshot: Option<PathBuf>,
@@ -49,6 +53,7 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
         robot: args.robot.plugin()?,
         scripts: args.engine.settings(args.script.as_deref())?,
         display,
+        keys: args.keys,
         screenshot: args.screenshot.map(|path| ScreenshotAt {
             path,
             seconds: args.after as f32,
@@ -76,6 +81,7 @@ pub(super) fn play(replay: Replay, scripts: ScriptSettings) -> Result<ExitCode, 
             ask: Some(false),
             ..DisplayOptions::default()
         },
+        keys: None,
         screenshot: None,
     };
     window::run(options).map(exit_code).map_err(Failure::run)

@@ -56,6 +56,7 @@ const COLUMN_GAP: f32 = 28.0;
 const KEY_GAP: f32 = 12.0;
 const LINE_GAP: f32 = 3.0;
 const MARGIN: f32 = 48.0;
+const FRAME_HEIGHT: f32 = 96.0;
 
 const FOOTNOTE: &str =
     "Keys are those at these places of a US keyboard, whatever is printed on them.";
@@ -221,7 +222,10 @@ fn show(ui: &mut egui::Ui, sheet: &Sheet) -> Option<Request> {
         });
     });
     ui.separator();
-    let scroll = egui::ScrollArea::vertical().max_height(screen.y - 96.0);
+    let highest = screen.y - FRAME_HEIGHT;
+    let scroll = egui::ScrollArea::vertical()
+        .max_height(highest)
+        .min_scrolled_height(highest);
     scroll.show(ui, |ui| {
         ui.spacing_mut().interact_size.y = 0.0;
         for columns in sheet.columns.chunks(shown_columns) {
