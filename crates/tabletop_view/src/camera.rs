@@ -335,9 +335,10 @@ mod tests {
     }
 
     #[test]
-    fn keys_choose_views() {
+    fn keys_choose_views_also_in_a_pause() {
         use KeyCode::*;
         let mut app = app(10);
+        app.insert_resource(Paused(true));
         for (key, height, direction) in [
             (Digit4, 10.0..60.0, Vec3::NEG_Z),
             (Digit5, 1.0..5.0, Vec3::Y),
