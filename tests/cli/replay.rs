@@ -92,7 +92,7 @@ fn a_recording_may_be_cut_off_right_after_a_picture() {
         !line.starts_with("{\"tick\":") || number_after(line, "{\"tick\":") < tick
     });
     fs::remove_file(folder.join("2.txt")).unwrap();
-    fs::remove_dir(folder.join("2")).unwrap();
+    fs::remove_dir_all(folder.join("2")).unwrap();
 
     let output = tabletop(&["replay", folder.to_str().unwrap(), "--verify"]);
     let said = stderr(&output);

@@ -90,6 +90,18 @@ impl Model<'_> {
         axis::seconds(tick.0.saturating_sub(self.timeline.start.0))
     }
 
+    /// Where it has come to, or where it is going.
+    fn progress(&self) -> String {
+        match self.playback.goal {
+            Some(goal) => format!("going to {} …", self.time(goal)),
+            None => format!(
+                "{} of {}",
+                self.time(self.playhead()),
+                self.time(self.timeline.end)
+            ),
+        }
+    }
+
     /// The sentence of a segment.
     fn sentence(&self, number: usize) -> String {
         let act = self
@@ -167,6 +179,8 @@ fn show_segment(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> {
             model.timeline.end_of(number),
         );
         ui.weak(format!("{} – {}", model.time(start), model.time(end)));
+        let right = egui::Layout::right_to_left(egui::Align::Center);
+        ui.with_layout(right, |ui| ui.label(model.progress()));
     });
     if model.timeline.stage == TimelineStage::Running {
         let later = model.timeline.segments.len().saturating_sub(number);

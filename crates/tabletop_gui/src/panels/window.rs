@@ -54,7 +54,10 @@ impl Panel {
                 let shown = inside.show(ui, |ui| {
                     ui.set_width(self.width());
                     ui.spacing_mut().item_spacing = spacing;
-                    let scroll = ScrollArea::vertical().max_height(highest);
+                    // Without the least height, what has grown would be scrolled in the space that it had before.
+                    let scroll = ScrollArea::vertical()
+                        .min_scrolled_height(highest)
+                        .max_height(highest);
                     scroll.auto_shrink([false, true]).show(ui, content).inner
                 });
                 (handled, shown.inner)
@@ -229,6 +232,25 @@ mod tests {
             let height = window.height() - TITLE_HEIGHT - 16.0;
             assert!((height - expected).abs() < 3.0, "{height} for {content}");
         }
+    }
+
+    #[test]
+    fn a_panel_grows_with_its_contents() {
+        let show = |ui: &mut Ui, lines: &mut usize| {
+            let mut panels = Panels::default();
+            Panel::Status.show(ui.ctx(), &mut panels, |ui| {
+                for line in 0..*lines {
+                    ui.label(format!("line {line}"));
+                }
+            });
+        };
+        let mut harness = Harness::builder().with_size(SIZE).build_ui_state(show, 2);
+        harness.run();
+        *harness.state_mut() = 25;
+        harness.run();
+        let window = harness.get_by_label("Status").rect();
+        let last = harness.get_by_label("line 24").rect();
+        assert!(window.contains_rect(last), "{window} {last}");
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! The ruler, the segments on it, what the grippers do, and the playhead.
 
 use bevy_egui::egui::{
-    Align2, Color32, FontId, Rect, Response, Sense, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2,
+    Align2, Color32, FontId, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo,
+    WidgetType, pos2, vec2,
 };
-use tabletop_core::{Actor, Rgb, SimTick, TimelineSegment, Verb};
+use tabletop_core::{Act, Rgb, SimTick, TimelineSegment, Verb};
 
 use super::{Model, Moment, axis::Axis};
 
@@ -18,6 +19,9 @@ const SWATCH: f32 = 10.0;
 
 /// The narrowest segment that can be clicked.
 const NARROWEST: f32 = 3.0;
+
+/// Half the width of a mark.
+const MARK: f32 = 4.0;
 
 const SMALL: FontId = FontId::proportional(10.0);
 const PLAYHEAD: Color32 = Color32::from_rgb(255, 255, 255);
@@ -101,13 +105,27 @@ fn paint_segment(
         painter.rect_filled(Rect::from_min_size(corner, swatch), 2.0, color(object));
         text_left += SWATCH + 3.0;
     }
-    let text = segment
-        .act
-        .as_ref()
-        .map_or_else(|| "Beginning".into(), ToString::to_string);
-    let anchor = pos2(text_left, rect.center().y);
     let ink = visuals.text_color();
-    painter.text(anchor, Align2::LEFT_CENTER, text, SMALL, ink);
+    let room = rect.max.x - text_left;
+    let texts = texts(segment.act.as_ref()).map(|text| painter.layout_no_wrap(text, SMALL, ink));
+    let [.., shortest] = &texts;
+    let fitting = texts.iter().find(|text| text.size().x <= room);
+    let text = fitting.unwrap_or(shortest);
+    let top_left = pos2(text_left, rect.center().y - text.size().y / 2.0);
+    painter.galley(top_left, text.clone(), ink);
+}
+
+/// What can be said of a segment, the longest text first.
+fn texts(act: Option<&Act>) -> [String; 3] {
+    let Some(act) = act else {
+        return ["Beginning", "Begin", ""].map(str::to_owned);
+    };
+    let object = act.object.as_deref().unwrap_or_default();
+    [
+        act.to_string(),
+        format!("{} {object}", act.verb.name()),
+        object.to_owned(),
+    ]
 }
 
 /// What the grippers took is marked upwards, what they let go of downwards.
@@ -118,14 +136,12 @@ fn show_grips(ui: &mut Ui, model: &Model, axis: Axis, top: f32) {
         let response = ui.interact(rect, ui.id().with(("grip", number)), Sense::hover());
         let sentence = format!("{}: {}", model.time(grip.tick), grip.act);
         response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &sentence));
-        let arrow = match grip.act.verb {
-            Verb::Grasp => "▲",
-            Verb::Release | Verb::Destroy => "▼",
+        let up = match grip.act.verb {
+            Verb::Grasp => MARK,
+            Verb::Release | Verb::Destroy => -MARK,
         };
-        debug_assert!(matches!(grip.act.actor, Actor::Gripper(_)));
         let ink = ui.visuals().strong_text_color();
-        ui.painter()
-            .text(center, Align2::CENTER_CENTER, arrow, SMALL, ink);
+        paint_mark(ui.painter(), center, up, ink);
         response.on_hover_text(sentence);
     }
 }
@@ -138,8 +154,15 @@ fn paint_playhead(ui: &Ui, model: &Model, axis: Axis, rect: Rect) {
     }
     let x = axis.x_of(model.playhead());
     painter.vline(x, rect.y_range(), Stroke::new(1.5, PLAYHEAD));
-    let top = pos2(x, rect.min.y + 1.0);
-    painter.text(top, Align2::CENTER_TOP, "▼", SMALL, PLAYHEAD);
+    paint_mark(painter, pos2(x, rect.min.y + MARK), -MARK, PLAYHEAD);
+}
+
+/// A triangle that points so far up.
+fn paint_mark(painter: &Painter, center: Pos2, up: f32, color: Color32) {
+    let corners = [(-MARK, up), (MARK, up), (0.0, -up)];
+    let corners = corners.map(|(x, y)| center + vec2(x, y));
+    let shape = Shape::convex_polygon(corners.into(), color, Stroke::NONE);
+    painter.add(shape);
 }
 
 /// The moment under the mouse while it drags, or the one that is chosen: by a key or another program, the first one.

@@ -166,13 +166,6 @@ fn recording(ui: &mut Ui, model: &Model) -> Vec<Request> {
             }
         }
     }
-    if timeline.stage != TimelineStage::Absent {
-        let end = model.time(timeline.end);
-        ui.label(match model.playback.goal {
-            Some(goal) => format!("going to {} …", model.time(goal)),
-            None => format!("{} of {end}", model.time(model.playhead())),
-        });
-    }
     requests
 }
 
