@@ -49,6 +49,9 @@ mod headless;
 pub mod replay;
 pub mod report;
 mod settings;
+pub mod task_files;
+#[cfg(test)]
+mod test_folder;
 #[cfg(feature = "window")]
 pub mod window;
 

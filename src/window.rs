@@ -1,6 +1,7 @@
 //! The program in a window.
 
 mod display;
+mod files;
 mod frame_rate;
 mod no_window;
 mod opening;
@@ -22,7 +23,7 @@ use bevy::{
     render::RenderPlugin,
 };
 use tabletop_core::{OpenRecording, PacePlugin, SimCommand};
-use tabletop_gui::{GuiPlugin, Preferences, keymap_file::KeymapFile};
+use tabletop_gui::{GuiPlugin, Preferences, PresetSeeds, keymap_file::KeymapFile};
 use tabletop_view::ViewPlugin;
 
 use self::opening::{Beginning, Opening};
@@ -46,6 +47,8 @@ pub struct WindowOptions {
     pub display: DisplayOptions,
     /// The file that binds keys; else it is the user's own, if there is one.
     pub keys: Option<PathBuf>,
+    /// Decides the colours and places of presets.
+    pub seed: u64,
     /// A picture to take, after which the program ends.
     pub screenshot: Option<ScreenshotAt>,
 }
@@ -71,6 +74,9 @@ impl Show {
 
 /// The task of a window that has shown none yet.
 const DEFAULT_TASK: &str = "tablesetup/default.xml";
+
+/// The seed of a window for which none is named.
+pub const DEFAULT_SEED: u64 = PresetSeeds::DEFAULT;
 
 /// How long a frame waits for a script.
 const LONGEST_WAIT: Duration = Duration::from_millis(50);
@@ -123,12 +129,14 @@ fn build(options: WindowOptions) -> App {
             task: options.show.task(),
         },
         display::plugin,
+        files::plugin,
         frame_rate::plugin,
         opening::plugin,
         redraw::plugin,
         replay::plugin,
     ))
     .insert_resource(preferences)
+    .insert_resource(PresetSeeds::new(options.seed))
     .insert_resource(Opening::Begun(beginning));
     match options.show {
         Show::Task(setup) => {

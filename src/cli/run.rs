@@ -16,6 +16,7 @@ use tabletop::{
     recorder::{RecorderPlugin, RehearsalPlugin},
     report,
     script::{ScriptPlugin, see_off},
+    task_files::save_task,
     xml::read_task,
 };
 use tabletop_scenario::{Outcome, Program, Scenario, ScenarioPlugin, ScenarioRun};
@@ -57,6 +58,9 @@ pub(super) struct RunArgs {
     /// Write how the robot is in the end, as JSON; `-` for standard output
     #[arg(long, value_name = "FILE|-")]
     final_robot: Option<Output>,
+    /// Save the final state as a new task file
+    #[arg(long, value_name = "FILE.xml")]
+    save: Option<PathBuf>,
     /// Let a script drive the robot: `matlab` (the scripts that matlab/agentBehavior.m names), `matlab:FOLDER`, `octave:FOLDER`,
     /// `python:FILE`, or `other:FILE`, which the driver runs that `--engine` names. Without a scenario, the run ends with the
     /// script
@@ -227,6 +231,11 @@ fn recording(plugins: PluginGroupBuilder, args: &RunArgs) -> PluginGroupBuilder 
 impl RunArgs {
     /// Whether what is asked for at the end of a run can be written then.
     fn check_ends(&self) -> Result<(), Failure> {
+        if let Some(path) = self.save.as_deref().filter(|path| path.exists()) {
+            let path = path.display();
+            let reason = format!("{path}: it exists, and --save replaces nothing; name a new file");
+            return Err(Failure::input(reason));
+        }
         let mut outputs = self.final_state.iter().chain(&self.final_robot);
         outputs.try_for_each(Output::check)
     }
@@ -241,8 +250,22 @@ impl RunArgs {
             report::write_robot(app.world(), &mut json).map_err(Failure::run)?;
             output.write(&json)?;
         }
+        if let Some(path) = &self.save {
+            save(app, path)?;
+        }
         Ok(())
     }
+}
+
+/// Saves where everything is as a task file, and says what that cannot say.
+fn save(app: &App, path: &Path) -> Result<(), Failure> {
+    let name = path.display();
+    let unsaid = save_task(app.world(), path)
+        .map_err(|error| Failure::run(format!("{name}: it cannot be saved: {error}")))?;
+    for unsaid in unsaid {
+        say(format_args!("tabletop: {name}: {unsaid}"));
+    }
+    Ok(())
 }
 
 /// The scene of a task file, or everything that is wrong with it.

@@ -21,6 +21,9 @@ pub(super) struct WindowArgs {
     #[cfg(feature = "window")]
     #[arg(long, value_name = "FILE")]
     keys: Option<PathBuf>,
+    /// What decides the colours and places of presets
+    #[arg(long, value_name = "N", default_value = "5566")]
+    seed: u64,
     /// Save a picture of the window to this PNG file, and quit
     #[arg(long, value_name = "FILE")]
     screenshot: Option<PathBuf>,
@@ -54,6 +57,7 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
         scripts: args.engine.settings(args.script.as_deref())?,
         display,
         keys: args.keys,
+        seed: args.seed,
         screenshot: args.screenshot.map(|path| ScreenshotAt {
             path,
             seconds: args.after as f32,
@@ -82,6 +86,7 @@ pub(super) fn play(replay: Replay, scripts: ScriptSettings) -> Result<ExitCode, 
             ..DisplayOptions::default()
         },
         keys: None,
+        seed: window::DEFAULT_SEED,
         screenshot: None,
     };
     window::run(options).map(exit_code).map_err(Failure::run)

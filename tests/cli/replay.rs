@@ -31,7 +31,13 @@ fn replays_to_the_same_bytes(recording: &Path) {
 
 #[test]
 fn every_shipped_scenario_replays_to_the_same_bytes() {
-    for scenario in ["stack_two_blocks", "build_letters", "lidbox", "break_chain"] {
+    for scenario in [
+        "stack_two_blocks",
+        "build_letters",
+        "lidbox",
+        "break_chain",
+        "presets",
+    ] {
         let folder = recording(scenario, scenario);
         assert!(folder.join("0/0.png").exists(), "{scenario} has no picture");
         replays_to_the_same_bytes(&folder);

@@ -45,6 +45,25 @@ fn the_default_blocks_stay_where_they_are_put() {
 }
 
 #[test]
+fn the_final_state_is_saved_as_a_new_task_file() {
+    let path = place("final_state.xml");
+    let name = path.to_str().unwrap();
+    let setup = "tablesetup/chain.xml";
+    let arguments = ["run", "--setup", setup, "--seconds", "1", "--save", name];
+    let output = tabletop(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("cannot say how a chain hangs"));
+    let output = tabletop(&["check", name]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+
+    let saved = fs::read(&path).unwrap();
+    let output = tabletop(&arguments);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("it exists"));
+    assert_eq!(fs::read(&path).unwrap(), saved);
+}
+
+#[test]
 fn the_final_state_goes_to_a_file() {
     let path = place("final.csv");
     let output = tabletop(&[

@@ -18,6 +18,7 @@
 //! ```
 
 pub mod display;
+mod files;
 mod input;
 pub mod keymap_file;
 mod panels;
@@ -30,10 +31,11 @@ mod test_world;
 mod widget_list;
 mod widgets;
 
+pub use files::{FileRequest, Files, TaskFile};
 pub use panels::help::Help;
 pub use panels::messages::{Notices, Tone};
 pub use panels::status::Renderer;
-pub use panels::{Panel, Panels};
+pub use panels::{Browser, Panel, Panels, Purpose};
 pub use picture::Picture;
 pub use preferences::Preferences;
 pub use preset_seeds::PresetSeeds;
@@ -99,6 +101,11 @@ impl Plugin for GuiPlugin {
                 input::snapshot::plugin,
                 input::navigate::plugin,
                 panels::camera::plugin,
+            ))
+            .add_plugins((
+                files::plugin,
+                panels::objects::plugin,
+                panels::browser::plugin,
             ));
     }
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod arrangement;
 pub(crate) mod bar;
+pub(crate) mod browser;
 pub(crate) mod camera;
 pub(crate) mod demo_tools;
 pub(crate) mod display;
@@ -9,6 +10,7 @@ pub(crate) mod head_view;
 pub(crate) mod help;
 pub(crate) mod memory;
 pub(crate) mod messages;
+pub(crate) mod objects;
 pub(crate) mod panel;
 pub(crate) mod pause;
 pub(crate) mod robot;
@@ -18,4 +20,5 @@ pub(crate) mod toasts;
 pub(crate) mod window;
 
 pub use arrangement::Panels;
+pub use browser::{Browser, Purpose};
 pub use panel::Panel;

@@ -27,16 +27,16 @@ pub struct PresentScene {
 
 /// What is on the table now, as a scene with ids that a task file can have: in the order of creation, with chains and lid
 /// boxes as such as long as they are whole.
-pub fn present_scene(world: &mut World) -> PresentScene {
-    let mut tables = world.query::<&Table>();
-    let table = tables.iter(world).next().copied().unwrap_or_default();
+pub fn present_scene(world: &World) -> PresentScene {
+    let tables = world.try_query::<&Table>();
+    let table = tables.and_then(|mut tables| tables.iter(world).next().copied());
     let mut present = Inventory {
         world,
         ids: IdAllocator::default(),
         renamed: Vec::new(),
         present: PresentScene {
             scene: SceneSpec {
-                table,
+                table: table.unwrap_or_default(),
                 items: Vec::new(),
             },
             unsaid: Vec::new(),
@@ -183,9 +183,8 @@ impl Inventory<'_> {
         let holder = self.world.get::<Held>(object).map(|held| held.by);
         if let (Some(hand), Some(spec)) = (holder, self.spec(object)) {
             let unsaid = format!(
-                "a task file has no hands: `{}`, which the {} holds, is saved as let go",
-                spec.id,
-                hand.name()
+                "a task file has no hands: `{}`, which {hand} holds, is saved as let go",
+                spec.id
             );
             self.present.unsaid.push(unsaid);
         }
@@ -195,7 +194,7 @@ impl Inventory<'_> {
         if !self.renamed.is_empty() {
             let renamed = self.renamed.join(", ");
             self.present.unsaid.push(format!(
-                "a task file cannot say all ids: {renamed} is what they will be"
+                "a task file cannot say all ids: saved are {renamed}"
             ));
         }
     }
@@ -246,4 +245,198 @@ fn with_marks_of_ids(id: &str) -> String {
         |mark: char| mark != '_' && !mark.is_ascii_alphanumeric(),
         "_",
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::{Hand, StepApp as _, prelude::*};
+    use tabletop_physics::PhysicsPlugin;
+
+    use super::*;
+    use crate::ScenePlugin;
+
+    fn app(items: Vec<SceneItem>) -> App {
+        let mut app = App::new();
+        app.add_plugins((
+            MinimalPlugins,
+            CorePlugin::default(),
+            PhysicsPlugin::default(),
+            ScenePlugin,
+        ))
+        .start();
+        let table = Table {
+            xspan: 30.0,
+            yspan: 8.0,
+        };
+        let scene = SceneSpec { table, items };
+        app.world_mut()
+            .write_message(SimCommand::SetScene(Box::new(scene)));
+        app.step(1);
+        app
+    }
+
+    fn block(id: &str, x: f32) -> SceneItem {
+        let shape = Shape::Block {
+            span: Vec3::ONE,
+            color: Rgb::RED,
+        };
+        let pose = Pose::at(Vec3::new(x, 0.0, 0.5));
+        SceneItem::Object(ObjectSpec::new(id, pose, 1.0, shape))
+    }
+
+    fn chain() -> ChainSpec {
+        ChainSpec {
+            id: "c".into(),
+            start: Vec3::new(6.0, 2.0, 4.0),
+            end: Vec3::new(-6.0, 2.0, 4.0),
+            link_span: Vec3::new(0.1, 1.0, 0.1),
+            link_count: 0,
+            link_padding: 0.05,
+            link_mass: 1.0,
+            color: Rgb::GRAY,
+        }
+    }
+
+    fn lidbox() -> LidBoxSpec {
+        LidBoxSpec {
+            id: "b".into(),
+            pose: Pose::at(Vec3::new(0.0, 0.0, 1.5)),
+            span: Vec3::splat(3.0),
+            thickness: 0.25,
+            box_mass: 9.0,
+            lid_mass: 1.0,
+            color: Rgb::GRAY,
+            handle_span: Vec3::splat(0.5),
+            handle_thickness: 0.125,
+            handle_color: Rgb::BLUE,
+            descriptions: vec![("use".into(), "chest".into())],
+        }
+    }
+
+    fn object(app: &App, id: &str) -> Entity {
+        app.world().resource::<ObjectIndex>().get(id).unwrap()
+    }
+
+    fn unsaid(present: &PresentScene) -> Vec<&str> {
+        present.unsaid.iter().map(String::as_str).collect()
+    }
+
+    #[test]
+    fn objects_are_saved_where_they_are_now_in_their_order() {
+        let mut app = app(vec![block("b", 0.0), block("a", 3.0)]);
+        let moved = object(&app, "b");
+        let place = Transform::from_xyz(1.0, 2.0, 0.5);
+        app.world_mut().entity_mut(moved).insert(place);
+        let PresentScene { scene, unsaid } = present_scene(app.world());
+        assert_eq!((scene.table.xspan, unsaid), (30.0, Vec::new()));
+        let [SceneItem::Object(b), SceneItem::Object(a)] = &scene.items[..] else {
+            panic!("{:?}", scene.items);
+        };
+        assert_eq!((&*b.id, &*a.id), ("b", "a"));
+        assert_eq!(b.pose, Pose::at(place.translation));
+    }
+
+    #[test]
+    fn ids_that_the_program_has_made_come_back_by_themselves() {
+        let blocks = ["a", "a", "", "", "a"];
+        let items = (0..).zip(blocks).map(|(i, id)| block(id, i as f32 * 2.0));
+        let present = present_scene(app(items.collect()).world());
+        assert_eq!(unsaid(&present), [""; 0]);
+        let ids: Vec<_> = present.scene.items.iter().map(id).collect();
+        assert_eq!(ids, ["a", "a", "obj", "obj", "a"]);
+    }
+
+    #[test]
+    fn an_id_that_a_file_cannot_say_is_told_with_the_nearest() {
+        let mut app = app(vec![block("a", 0.0), block("a", 2.0)]);
+        let first = object(&app, "a");
+        app.world_mut().despawn(first);
+        let present = present_scene(app.world());
+        assert_eq!(id(&present.scene.items[0]), "a_0");
+        assert_eq!(
+            unsaid(&present),
+            ["a task file cannot say all ids: saved are `a#0` as `a_0`"]
+        );
+    }
+
+    #[test]
+    fn a_chain_is_saved_as_one_and_how_it_hangs_is_told() {
+        let mut app = app(vec![SceneItem::Chain(chain())]);
+        let links = ChainSpec {
+            link_count: 12,
+            ..chain()
+        };
+        let saved = [SceneItem::Chain(links)];
+        app.step(120);
+        let present = present_scene(app.world());
+        assert_eq!(present.scene.items, saved);
+        assert_eq!(
+            unsaid(&present),
+            [
+                "a task file cannot say how a chain hangs: that of `c-start` is saved in a straight line"
+            ]
+        );
+    }
+
+    #[test]
+    fn what_is_left_of_a_broken_chain_is_saved_as_blocks() {
+        let mut app = app(vec![SceneItem::Chain(chain())]);
+        let link = object(&app, "c-link3");
+        app.world_mut().despawn(link);
+        let present = present_scene(app.world());
+        assert_eq!(present.scene.items.len(), 13);
+        let is_block = |item: &SceneItem| matches!(item, SceneItem::Object(object) if matches!(object.shape, Shape::Block { .. }));
+        assert!(present.scene.items.iter().all(is_block));
+        assert_eq!(present.unsaid.len(), 2, "{:?}", present.unsaid);
+    }
+
+    #[test]
+    fn a_lid_box_is_saved_as_one_and_an_open_lid_is_told() {
+        let mut app = app(vec![SceneItem::LidBox(lidbox())]);
+        let present = present_scene(app.world());
+        let [SceneItem::LidBox(saved)] = &present.scene.items[..] else {
+            panic!("{:?}", present.scene.items);
+        };
+        let pose = saved.pose;
+        assert!(pose.location.distance(lidbox().pose.location) < 1e-3);
+        assert_eq!(*saved, LidBoxSpec { pose, ..lidbox() });
+        assert_eq!(unsaid(&present), [""; 0]);
+
+        let lid = object(&app, "b-lid");
+        let mut lid = app.world_mut().get_mut::<Transform>(lid).unwrap();
+        lid.translation.x -= 1.0;
+        let present = present_scene(app.world());
+        assert_eq!(
+            unsaid(&present),
+            ["a task file cannot say that a lid is open: that of `b-box` is saved shut"]
+        );
+    }
+
+    #[test]
+    fn what_a_hand_holds_is_saved_as_let_go() {
+        let mut app = app(vec![block("a", 0.0)]);
+        let held = object(&app, "a");
+        let by = Hand::Left;
+        app.world_mut().entity_mut(held).insert(Held { by });
+        let present = present_scene(app.world());
+        assert_eq!(present.scene.items.len(), 1);
+        assert_eq!(
+            unsaid(&present),
+            ["a task file has no hands: `a`, which LeftHand holds, is saved as let go"]
+        );
+    }
+
+    #[test]
+    fn presets_are_saved_as_what_they_are() {
+        let mut app = app(Vec::new());
+        for preset in [Preset::Stack(3), Preset::BoxContainer] {
+            app.world_mut()
+                .write_message(SimCommand::Make { preset, seed: 1 });
+        }
+        app.step(1);
+        let present = present_scene(app.world());
+        let ids: Vec<_> = present.scene.items.iter().map(id).collect();
+        assert_eq!(ids, ["smallblock", "smallblock", "smallblock", "container"]);
+        assert_eq!(unsaid(&present), [""; 0]);
+    }
 }

@@ -46,7 +46,7 @@ mod write;
 mod test_support;
 
 pub use fault::{Fault, MAX_FAULTS};
-pub use parse::{MAX_FILE_BYTES, ParsedTask, ReadError, parse, read_task};
+pub use parse::{MAX_FILE_BYTES, ParsedTask, ReadError, is_task, parse, read_task};
 pub use plugin::XmlPlugin;
 pub use write::write;
 

@@ -91,6 +91,26 @@ pub fn parse(file: &Path, text: &[u8]) -> ParsedTask {
     }
 }
 
+/// Whether a file is meant to be loaded, whatever is wrong with it: its root is `<tabletop>`, and it holds more than the templates that
+/// the later program had (`<def>`), which only other files use.
+///
+/// ```
+/// assert!(tabletop_xml::is_task(b"<tabletop><cube/></tabletop>"));
+/// assert!(!tabletop_xml::is_task(b"<tabletop><def name='lid'/></tabletop>"));
+/// assert!(!tabletop_xml::is_task(b"<robot/>"));
+/// ```
+pub fn is_task(text: &[u8]) -> bool {
+    let root = build::read(&decode(text), &mut Faults::default());
+    root.is_some_and(|root| {
+        let is_of_templates = |name| matches!(name, "def" | "include");
+        let has_more = root
+            .children
+            .iter()
+            .any(|child| !is_of_templates(child.name));
+        root.name == "tabletop" && (root.children.is_empty() || has_more)
+    })
+}
+
 /// Reads a task file from the disk.
 ///
 /// # Errors

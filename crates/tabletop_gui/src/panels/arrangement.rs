@@ -180,9 +180,11 @@ mod tests {
         let size = |panel: Panel| match panel {
             Panel::Robot => vec2(300.0, 400.0),
             Panel::Timeline => vec2(500.0, 100.0),
-            Panel::Status | Panel::Camera | Panel::DemonstrationTools | Panel::Messages => {
-                vec2(300.0, 150.0)
-            }
+            Panel::Status
+            | Panel::Camera
+            | Panel::DemonstrationTools
+            | Panel::Objects
+            | Panel::Messages => vec2(300.0, 150.0),
         };
         let place = |panel| panels.place(panel, DESK, size);
         let below = |rows: f32| GAP + rows * (150.0 + GAP);
@@ -196,7 +198,7 @@ mod tests {
             pos2(second, under_robot),
             "too wide for the first"
         );
-        assert_eq!(place(Panel::Messages), pos2(GAP, below(3.0)));
+        assert_eq!(place(Panel::Objects), pos2(GAP, below(3.0)));
     }
 
     #[test]

@@ -16,6 +16,8 @@ pub enum Panel {
     Robot,
     /// Hands, rotations and recording.
     DemonstrationTools,
+    /// Task files and presets.
+    Objects,
     /// The recording that is made or open, along its time.
     Timeline,
     /// What the user has been told.
@@ -24,11 +26,12 @@ pub enum Panel {
 
 impl Panel {
     /// The panels in the order of their buttons, and from the top downwards when they are aligned.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Status,
         Self::Camera,
         Self::Robot,
         Self::DemonstrationTools,
+        Self::Objects,
         Self::Timeline,
         Self::Messages,
     ];
@@ -40,6 +43,7 @@ impl Panel {
             Self::Camera => "Camera",
             Self::Robot => "Robot",
             Self::DemonstrationTools => "Demo Tools",
+            Self::Objects => "Objects",
             Self::Messages => "Messages",
             Self::Timeline => "Timeline",
         }
@@ -52,6 +56,7 @@ impl Panel {
             Self::Camera => "Camera Navigation",
             Self::Robot => "Robot",
             Self::DemonstrationTools => "Demonstration Tools",
+            Self::Objects => "Objects",
             Self::Messages => "Messages",
             Self::Timeline => "Timeline",
         }
@@ -66,6 +71,7 @@ impl Panel {
             Self::DemonstrationTools => {
                 "Hands, what they hold, how it turns; record, undo and redo"
             }
+            Self::Objects => "Load and save task files; make objects, and clear the table",
             Self::Messages => "Everything that you have been told, with its place",
             Self::Timeline => "The recording along its time; step, play slowly or fast",
         }
@@ -74,7 +80,11 @@ impl Panel {
     /// Width of its contents in points.
     pub const fn width(self) -> f32 {
         match self {
-            Self::Status | Self::Camera | Self::Robot | Self::DemonstrationTools => 304.0,
+            Self::Status
+            | Self::Camera
+            | Self::Robot
+            | Self::DemonstrationTools
+            | Self::Objects => 304.0,
             Self::Messages => 340.0,
             Self::Timeline => 640.0,
         }

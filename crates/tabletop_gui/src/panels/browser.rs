@@ -1,0 +1,445 @@
+//! The program's own list of files, for desktops that have no dialog for it.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use bevy::prelude::*;
+use bevy_egui::{
+    EguiContexts, EguiPrimaryContextPass,
+    egui::{Id, Label, Modal, RichText, ScrollArea, TextEdit, Ui},
+};
+
+use crate::{
+    files::{FileRequest, short_name},
+    widgets::button::button,
+};
+
+/// Size of the list in points.
+const WIDTH: f32 = 420.0;
+const HEIGHT: f32 = 300.0;
+
+/// What a file is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Opening a task file or a recording.
+    Open,
+    /// Saving a task file.
+    Save,
+}
+
+/// A window that shows a folder, in which the user chooses a file.
+#[derive(Resource, Debug, Default)]
+pub struct Browser {
+    search: Option<Search>,
+}
+
+/// What the user looks for, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Search {
+    purpose: Purpose,
+    folder: Folder,
+    /// What is selected or typed.
+    name: String,
+    /// The file that would be replaced.
+    replaces: Option<PathBuf>,
+}
+
+/// What can be chosen in a folder.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Folder {
+    path: PathBuf,
+    entries: Vec<Entry>,
+    /// Why there are no entries.
+    problem: Option<String>,
+}
+
+/// Something in a folder.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Entry {
+    kind: Kind,
+    name: String,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Folder,
+    Recording,
+    Task,
+}
+
+/// What the user wants.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Request {
+    Enter(PathBuf),
+    Choose(PathBuf),
+    Replace(PathBuf),
+    Keep,
+    Cancel,
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Browser>()
+        .add_systems(EguiPrimaryContextPass, show_browser);
+}
+
+impl Browser {
+    /// Lets the user look for a file, first in this folder.
+    pub fn ask(&mut self, purpose: Purpose, folder: &Path) {
+        self.search = Some(Search {
+            purpose,
+            folder: Folder::read(folder),
+            name: match purpose {
+                Purpose::Open => String::new(),
+                Purpose::Save => "task.xml".into(),
+            },
+            replaces: None,
+        });
+    }
+
+    /// Does what the user wants, and says what is to be done with which file.
+    fn carry_out(&mut self, request: Request) -> Option<FileRequest> {
+        let search = self.search.as_mut()?;
+        match (request, search.purpose) {
+            (Request::Enter(folder), _) => search.folder = Folder::read(&folder),
+            (Request::Keep, _) => search.replaces = None,
+            (Request::Choose(path), Purpose::Save) if path.exists() => {
+                search.replaces = Some(path);
+            }
+            (Request::Choose(path), Purpose::Open) => {
+                self.search = None;
+                return Some(FileRequest::Open(path));
+            }
+            (Request::Choose(path) | Request::Replace(path), _) => {
+                self.search = None;
+                return Some(FileRequest::Save(path));
+            }
+            (Request::Cancel, _) => self.search = None,
+        }
+        None
+    }
+}
+
+fn show_browser(
+    mut contexts: EguiContexts,
+    mut browser: ResMut<Browser>,
+    mut requests: MessageWriter<FileRequest>,
+) {
+    let Ok(context) = contexts.ctx_mut() else {
+        return;
+    };
+    let Some(search) = &mut browser.bypass_change_detection().search else {
+        return;
+    };
+    let modal = Modal::new(Id::new("browser")).show(context, |ui| show(ui, search));
+    let cancelled = modal.should_close().then_some(Request::Cancel);
+    if let Some(request) = modal.inner.or(cancelled) {
+        requests.write_batch(browser.carry_out(request));
+    }
+}
+
+fn show(ui: &mut Ui, search: &mut Search) -> Option<Request> {
+    ui.set_width(WIDTH);
+    let (title, verb) = match search.purpose {
+        Purpose::Open => ("Open a task file or a recording", "Open"),
+        Purpose::Save => ("Save as a task file", "Save"),
+    };
+    ui.heading(title);
+    if let Some(path) = &search.replaces {
+        return ask_to_replace(ui, path);
+    }
+    let place = place(ui, &search.folder);
+    ui.separator();
+    let chosen = entries(ui, search);
+    ui.separator();
+    if search.purpose == Purpose::Save {
+        ui.horizontal(|ui| {
+            let label = ui.label("File name:");
+            let field = TextEdit::singleline(&mut search.name).desired_width(f32::INFINITY);
+            ui.add(field).labelled_by(label.id);
+        });
+    }
+    let mut answer = None;
+    ui.horizontal(|ui| {
+        let is_named = !search.name.trim().is_empty();
+        if button(ui, is_named, verb, title).clicked() {
+            answer = Some(search.choose());
+        }
+        if button(ui, true, "Cancel", "Closes this window").clicked() {
+            answer = Some(Request::Cancel);
+        }
+    });
+    answer.or(place).or(chosen)
+}
+
+fn ask_to_replace(ui: &mut Ui, path: &Path) -> Option<Request> {
+    ui.label(format!("{} exists. Replace it?", path.display()));
+    let buttons = ui.horizontal(|ui| {
+        let replace = button(ui, true, "Replace", "Saves over what the file holds");
+        let keep = button(ui, true, "Keep it", "Goes back to choose another name");
+        (replace.clicked(), keep.clicked())
+    });
+    match buttons.inner {
+        (true, _) => Some(Request::Replace(path.to_owned())),
+        (_, true) => Some(Request::Keep),
+        _ => None,
+    }
+}
+
+fn place(ui: &mut Ui, folder: &Folder) -> Option<Request> {
+    ui.horizontal(|ui| {
+        let above = folder.path.parent();
+        let up = button(
+            ui,
+            above.is_some(),
+            "Up",
+            "Goes to the folder that holds this one",
+        );
+        ui.add(Label::new(folder.path.display().to_string()).truncate());
+        up.clicked()
+            .then(|| above.map(|above| Request::Enter(above.to_owned())))
+    })
+    .inner
+    .flatten()
+}
+
+fn entries(ui: &mut Ui, search: &mut Search) -> Option<Request> {
+    let mut request = None;
+    let list = ScrollArea::vertical()
+        .max_height(HEIGHT)
+        .min_scrolled_height(HEIGHT);
+    list.auto_shrink(false).show(ui, |ui| {
+        if let Some(problem) = &search.folder.problem {
+            ui.label(RichText::new(problem).color(ui.visuals().error_fg_color));
+        } else if search.folder.entries.is_empty() {
+            ui.weak("There are no folders, task files or recordings here.");
+        }
+        for Entry { kind, name } in &search.folder.entries {
+            let text = match kind {
+                Kind::Folder => format!("{name}/"),
+                Kind::Recording => format!("{name} (recording)"),
+                Kind::Task => name.clone(),
+            };
+            let entry = ui.selectable_label(search.name == *name, text);
+            match (kind, search.purpose) {
+                (Kind::Folder, _) | (Kind::Recording, Purpose::Save) => {
+                    if entry.clicked() {
+                        request = Some(Request::Enter(search.folder.path.join(name)));
+                    }
+                }
+                (Kind::Task, _) | (Kind::Recording, Purpose::Open) => {
+                    if entry.clicked() {
+                        search.name.clone_from(name);
+                    }
+                    if entry.double_clicked() {
+                        request = Some(Request::Choose(search.folder.path.join(name)));
+                    }
+                }
+            }
+        }
+    });
+    request
+}
+
+impl Search {
+    /// Takes what is selected or typed.
+    fn choose(&self) -> Request {
+        let mut path = self.folder.path.join(self.name.trim());
+        if self.purpose == Purpose::Save && path.extension().is_none() {
+            path.set_extension("xml");
+        }
+        Request::Choose(path)
+    }
+}
+
+impl Folder {
+    fn read(path: &Path) -> Self {
+        let path = std::path::absolute(path).unwrap_or(path.to_owned());
+        match list(&path) {
+            Ok(entries) => Self {
+                path,
+                entries,
+                problem: None,
+            },
+            Err(error) => Self {
+                problem: Some(format!("{} cannot be read: {error}", short_name(&path))),
+                path,
+                entries: Vec::new(),
+            },
+        }
+    }
+}
+
+/// Folders, then recordings, then task files, each by name; without what is hidden.
+fn list(folder: &Path) -> io::Result<Vec<Entry>> {
+    let found = fs::read_dir(folder)?;
+    let mut entries: Vec<_> = found
+        .flatten()
+        .filter_map(|found| entry(&found.path()))
+        .collect();
+    entries.sort();
+    Ok(entries)
+}
+
+fn entry(path: &Path) -> Option<Entry> {
+    let name = short_name(path);
+    let is_task = path
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("xml"));
+    let kind = if path.is_dir() {
+        match path.join("session.jsonl").is_file() {
+            true => Kind::Recording,
+            false => Kind::Folder,
+        }
+    } else {
+        is_task.then_some(Kind::Task)?
+    };
+    (!name.starts_with('.')).then_some(Entry { kind, name })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::{Harness, kittest::Queryable as _};
+
+    /// A folder with a task file, a recording, and a folder with another task file.
+    fn folder(name: &str) -> PathBuf {
+        let folder =
+            std::env::temp_dir().join(format!("tabletop-browser-{name}-{}", std::process::id()));
+        for file in [
+            "a.xml",
+            "demo/session.jsonl",
+            "more/b.xml",
+            ".hidden/c.xml",
+            "notes.txt",
+        ] {
+            let path = folder.join(file);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, "").unwrap();
+        }
+        folder
+    }
+
+    struct Stage {
+        browser: Browser,
+        requests: Vec<FileRequest>,
+    }
+
+    fn harness(purpose: Purpose, folder: &Path) -> Harness<'static, Stage> {
+        let mut browser = Browser::default();
+        browser.ask(purpose, folder);
+        let frame = |ui: &mut Ui, stage: &mut Stage| {
+            let Some(search) = &mut stage.browser.search else {
+                return;
+            };
+            if let Some(request) = show(ui, search) {
+                stage.requests.extend(stage.browser.carry_out(request));
+            }
+        };
+        let stage = Stage {
+            browser,
+            requests: Vec::new(),
+        };
+        Harness::builder()
+            .with_size([500.0, 500.0])
+            .build_ui_state(frame, stage)
+    }
+
+    fn click(harness: &mut Harness<Stage>, names: &[&str]) {
+        for name in names {
+            harness.get_by_label(name).click();
+            harness.run();
+        }
+    }
+
+    #[test]
+    fn a_folder_lists_folders_recordings_and_task_files() {
+        let folder = folder("lists");
+        let names: Vec<_> = list(&folder)
+            .unwrap()
+            .into_iter()
+            .map(|entry| entry.name)
+            .collect();
+        assert_eq!(names, ["more", "demo", "a.xml"]);
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_task_file_or_a_recording_is_opened() {
+        let folder = folder("open");
+        for (names, path) in [
+            (&["a.xml", "Open"][..], "a.xml"),
+            (&["demo (recording)", "Open"], "demo"),
+            (&["more/", "b.xml", "Open"], "more/b.xml"),
+            (&["more/", "Up", "a.xml", "Open"], "a.xml"),
+        ] {
+            let mut harness = harness(Purpose::Open, &folder);
+            click(&mut harness, names);
+            let expected = FileRequest::Open(folder.join(path));
+            assert_eq!(harness.state().requests, [expected]);
+            assert!(harness.state().browser.search.is_none());
+        }
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn nothing_is_done_without_a_choice() {
+        let folder = folder("nothing");
+        let mut harness = harness(Purpose::Open, &folder);
+        click(&mut harness, &["Open"]);
+        assert!(harness.state().browser.search.is_some());
+        click(&mut harness, &["Cancel"]);
+        assert!(harness.state().browser.search.is_none());
+        assert_eq!(harness.state().requests, []);
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_file_is_saved_under_the_name_that_is_typed() {
+        let folder = folder("save");
+        for (typed, name) in [("new", "new.xml"), ("new.xml", "new.xml")] {
+            let mut harness = harness(Purpose::Save, &folder);
+            harness.state_mut().browser.search.as_mut().unwrap().name = typed.into();
+            harness.run();
+            click(&mut harness, &["Save"]);
+            let expected = FileRequest::Save(folder.join(name));
+            assert_eq!(harness.state().requests, [expected]);
+        }
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_file_that_exists_is_replaced_only_if_the_user_says_so() {
+        let folder = folder("replace");
+        let mut harness = harness(Purpose::Save, &folder);
+        click(&mut harness, &["a.xml", "Save", "Keep it"]);
+        assert_eq!(harness.state().requests, []);
+        click(&mut harness, &["Save", "Replace"]);
+        assert_eq!(
+            harness.state().requests,
+            [FileRequest::Save(folder.join("a.xml"))]
+        );
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn the_name_can_be_typed() {
+        let folder = folder("typed");
+        let mut harness = harness(Purpose::Save, &folder);
+        harness.get_by_label("File name:").focus();
+        harness.run();
+        harness.get_by_label("File name:").type_text("my_");
+        harness.run();
+        let search = harness.state().browser.search.as_ref().unwrap();
+        assert!(search.name.contains("my_"), "{}", search.name);
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_read_says_so() {
+        let harness = harness(Purpose::Open, Path::new("/no such folder"));
+        let problem = harness.query_by_label_contains("no such folder cannot be read: ");
+        assert!(problem.is_some());
+    }
+}

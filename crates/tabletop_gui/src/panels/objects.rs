@@ -1,0 +1,365 @@
+//! The Objects window (report section 6, figure 13): task files and presets.
+
+use std::path::PathBuf;
+
+use bevy::prelude::*;
+use bevy_egui::{
+    EguiContexts, EguiPrimaryContextPass,
+    egui::{
+        ComboBox, Direction, Id, InnerResponse, Layout, Response, Ui, WidgetInfo, WidgetType, vec2,
+    },
+};
+use tabletop_core::{Action, Keymap, Preset, SimCommand};
+
+use crate::{
+    files::{FileRequest, Files, TaskFile, short_name},
+    panels::{Panel, Panels},
+    preset_seeds::PresetSeeds,
+    widgets::button::button,
+};
+
+/// Width of the buttons at the right of the lists, in points.
+const BUTTON_WIDTH: f32 = 84.0;
+
+/// What the second list offers.
+const ENTRIES: [(&str, Entry); 6] = [
+    ("Make a big block", Entry::Make(Preset::BigBlock)),
+    ("Make a stack of 3 blocks", Entry::Make(Preset::Stack(3))),
+    ("Make a stack of 5 blocks", Entry::Make(Preset::Stack(5))),
+    ("Make a stack of 8 blocks", Entry::Make(Preset::Stack(8))),
+    ("Make a box container", Entry::Make(Preset::BoxContainer)),
+    ("Clear the table", Entry::Clear),
+];
+
+/// What an entry of the second list does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Entry {
+    Make(Preset),
+    Clear,
+}
+
+/// What the panel shows.
+struct Model<'a> {
+    tasks: &'a [TaskFile],
+    recent: &'a [PathBuf],
+    reloads: bool,
+    keymap: &'a Keymap,
+}
+
+/// What is selected in the lists.
+#[derive(Default)]
+struct Selection {
+    task: Option<PathBuf>,
+    entry: usize,
+}
+
+/// What the user wants.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Request {
+    Load(PathBuf),
+    Make(Preset),
+    Clear,
+    File(FileRequest),
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(EguiPrimaryContextPass, show_panel);
+}
+
+fn show_panel(
+    mut contexts: EguiContexts,
+    mut panels: ResMut<Panels>,
+    mut selection: Local<Selection>,
+    mut seeds: ResMut<PresetSeeds>,
+    mut commands: MessageWriter<SimCommand>,
+    mut file_requests: MessageWriter<FileRequest>,
+    files: Res<Files>,
+    keymap: Res<Keymap>,
+) {
+    let Ok(context) = contexts.ctx_mut() else {
+        return;
+    };
+    let model = Model {
+        tasks: &files.tasks,
+        recent: &files.recent,
+        reloads: files.reloads,
+        keymap: &keymap,
+    };
+    let request = Panel::Objects.show(context, &mut panels, |ui| show(ui, &model, &mut selection));
+    match request.flatten() {
+        Some(Request::Load(path)) => {
+            commands.write(SimCommand::LoadTask(path));
+        }
+        Some(Request::Make(preset)) => {
+            commands.write(seeds.make(preset));
+        }
+        Some(Request::Clear) => {
+            commands.write(SimCommand::ClearTable);
+        }
+        Some(Request::File(request)) => {
+            file_requests.write(request);
+        }
+        None => {}
+    }
+}
+
+fn show(ui: &mut Ui, model: &Model, selection: &mut Selection) -> Option<Request> {
+    let tasks = tasks(ui, model, selection);
+    let presets = presets(ui, model, selection);
+    ui.separator();
+    let files = files(ui, model);
+    tasks.or(presets).or(files)
+}
+
+fn tasks(ui: &mut Ui, model: &Model, selection: &mut Selection) -> Option<Request> {
+    let selected = model
+        .tasks
+        .iter()
+        .find(|task| Some(&task.path) == selection.task.as_ref())
+        .or(model.tasks.first());
+    let text = selected.map_or("no task files in tablesetup/", |task| &task.name);
+    let mut chosen = None;
+    let row = ui.horizontal(|ui| {
+        let list = list(ui, "Task file", text, |ui| {
+            for task in model.tasks {
+                let is_selected = selected == Some(task);
+                if ui.selectable_label(is_selected, &task.name).clicked() {
+                    chosen = Some(task.path.clone());
+                }
+            }
+        });
+        let list = list.on_hover_text("The task files in the folder tablesetup/");
+        let load = wide_button(
+            ui,
+            selected.is_some(),
+            "Load XML",
+            "Clears the table and puts on it what the task file says",
+        );
+        (list.clicked(), load.clicked())
+    });
+    selection.task = chosen.or(selection.task.take());
+    match row.inner {
+        (true, _) => Some(Request::File(FileRequest::ListTasks)),
+        (_, true) => selected.map(|task| Request::Load(task.path.clone())),
+        _ => None,
+    }
+}
+
+fn presets(ui: &mut Ui, model: &Model, selection: &mut Selection) -> Option<Request> {
+    let row = ui.horizontal(|ui| {
+        let (text, _) = ENTRIES[selection.entry];
+        let list = list(ui, "Preset objects", text, |ui| {
+            for (index, (text, _)) in ENTRIES.into_iter().enumerate() {
+                ui.selectable_value(&mut selection.entry, index, text);
+            }
+        });
+        list.on_hover_text("Objects in random colours at a random free place");
+        let (_, entry) = ENTRIES[selection.entry];
+        let key = match entry {
+            Entry::Make(Preset::BigBlock) => Some(Action::MakeBlock),
+            Entry::Make(Preset::Stack(5)) => Some(Action::MakeStack),
+            Entry::Make(Preset::Stack(_) | Preset::BoxContainer) => None,
+            Entry::Clear => Some(Action::ClearTable),
+        };
+        let tooltip = match key {
+            Some(action) => model.keymap.tooltip(action),
+            None => "Makes these objects somewhere on the table".to_owned(),
+        };
+        wide_button(ui, true, "Execute", &tooltip)
+            .clicked()
+            .then_some(entry)
+    });
+    row.inner.map(|entry| match entry {
+        Entry::Make(preset) => Request::Make(preset),
+        Entry::Clear => Request::Clear,
+    })
+}
+
+fn files(ui: &mut Ui, model: &Model) -> Option<Request> {
+    let mut request = None;
+    ui.horizontal(|ui| {
+        let open = model.keymap.tooltip(Action::OpenFile);
+        if button(ui, true, "Open…", &open).clicked() {
+            request = Some(FileRequest::AskToOpen);
+        }
+        let save = model.keymap.tooltip(Action::SaveFile);
+        if button(ui, true, "Save as…", &save).clicked() {
+            request = Some(FileRequest::AskToSave);
+        }
+        ui.add_enabled_ui(!model.recent.is_empty(), |ui| {
+            let menu = ui.menu_button("Recent", |ui| {
+                for path in model.recent {
+                    let entry = ui.button(short_name(path));
+                    let entry = entry.on_hover_text(path.display().to_string());
+                    if entry.clicked() {
+                        request = Some(FileRequest::Open(path.clone()));
+                    }
+                }
+            });
+            menu.response
+                .on_hover_text("Task files and recordings that were opened before")
+                .on_disabled_hover_text("Nothing has been opened yet")
+        });
+    });
+    let mut reloads = model.reloads;
+    let check = ui.checkbox(&mut reloads, "Reload when the file changes");
+    let check = check.on_hover_text(
+        "Loads the task file anew when another program has changed it, except while recording",
+    );
+    if check.changed() {
+        request = Some(FileRequest::Reload(reloads));
+    }
+    request.map(Request::File)
+}
+
+/// A list that drops down, as wide as there is room for beside a button.
+fn list(ui: &mut Ui, name: &str, selected: &str, entries: impl FnOnce(&mut Ui)) -> Response {
+    let width = ui.available_width() - BUTTON_WIDTH - ui.spacing().item_spacing.x;
+    let list = ComboBox::from_id_salt(Id::new(name))
+        .width(width)
+        .truncate()
+        .height(320.0)
+        .selected_text(selected);
+    let InnerResponse { response, .. } = list.show_ui(ui, entries);
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(WidgetType::ComboBox, true, name);
+        info.current_text_value = Some(selected.to_owned());
+        info
+    });
+    response
+}
+
+fn wide_button(ui: &mut Ui, is_enabled: bool, text: &str, tooltip: &str) -> Response {
+    ui.allocate_ui_with_layout(
+        vec2(BUTTON_WIDTH, ui.spacing().interact_size.y),
+        Layout::centered_and_justified(Direction::TopDown),
+        |ui| button(ui, is_enabled, text, tooltip),
+    )
+    .inner
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use egui_kittest::{Harness, kittest::Queryable as _};
+
+    struct Stage {
+        files: Files,
+        keymap: Keymap,
+        selection: Selection,
+        requests: Vec<Request>,
+    }
+
+    fn harness(tasks: &[&str]) -> Harness<'static, Stage> {
+        let tasks = tasks.iter().map(|name| TaskFile {
+            name: (*name).to_owned(),
+            path: Path::new("tablesetup").join(name),
+        });
+        let stage = Stage {
+            files: Files {
+                tasks: tasks.collect(),
+                recent: vec!["/tasks/mine.xml".into(), "/recordings/demo".into()],
+                reloads: false,
+            },
+            keymap: Keymap::default(),
+            selection: Selection::default(),
+            requests: Vec::new(),
+        };
+        let frame = |ui: &mut Ui, stage: &mut Stage| {
+            let model = Model {
+                tasks: &stage.files.tasks,
+                recent: &stage.files.recent,
+                reloads: stage.files.reloads,
+                keymap: &stage.keymap,
+            };
+            stage
+                .requests
+                .extend(show(ui, &model, &mut stage.selection));
+        };
+        Harness::builder()
+            .with_size([320.0, 500.0])
+            .build_ui_state(frame, stage)
+    }
+
+    /// Clicks on what has these names, one after the other, and says what was wanted.
+    fn clicked(harness: &mut Harness<Stage>, names: &[&str]) -> Vec<Request> {
+        for name in names {
+            harness.get_by_label(name).click();
+            harness.run();
+        }
+        std::mem::take(&mut harness.state_mut().requests)
+    }
+
+    fn load(name: &str) -> Request {
+        Request::Load(Path::new("tablesetup").join(name))
+    }
+
+    const LIST: Request = Request::File(FileRequest::ListTasks);
+
+    #[test]
+    fn the_first_task_file_is_loaded_or_the_one_that_is_chosen() {
+        let mut harness = harness(&["a.xml", "b.xml", "c.xml"]);
+        assert_eq!(clicked(&mut harness, &["Load XML"]), [load("a.xml")]);
+        let chosen = clicked(&mut harness, &["Task file", "b.xml", "Load XML"]);
+        assert_eq!(chosen, [LIST, load("b.xml")]);
+    }
+
+    #[test]
+    fn a_chosen_file_that_has_gone_is_not_loaded() {
+        let mut harness = harness(&["a.xml", "b.xml"]);
+        clicked(&mut harness, &["Task file", "b.xml"]);
+        harness.state_mut().files.tasks.pop();
+        assert_eq!(clicked(&mut harness, &["Load XML"]), [load("a.xml")]);
+        harness.state_mut().files.tasks.clear();
+        harness.run();
+        assert_eq!(clicked(&mut harness, &["Load XML"]), []);
+    }
+
+    #[test]
+    fn every_preset_can_be_executed() {
+        let mut harness = harness(&[]);
+        assert_eq!(
+            clicked(&mut harness, &["Execute"]),
+            [Request::Make(Preset::BigBlock)]
+        );
+        for (text, entry) in ENTRIES {
+            let wanted = clicked(&mut harness, &["Preset objects", text, "Execute"]);
+            let expected = match entry {
+                Entry::Make(preset) => Request::Make(preset),
+                Entry::Clear => Request::Clear,
+            };
+            assert_eq!(wanted, [expected], "{text}");
+        }
+    }
+
+    #[test]
+    fn files_are_opened_and_saved() {
+        for (names, request) in [
+            (&["Open…"][..], FileRequest::AskToOpen),
+            (&["Save as…"], FileRequest::AskToSave),
+            (
+                &["Recent", "mine.xml"],
+                FileRequest::Open("/tasks/mine.xml".into()),
+            ),
+            (
+                &["Recent", "demo"],
+                FileRequest::Open("/recordings/demo".into()),
+            ),
+            (&["Reload when the file changes"], FileRequest::Reload(true)),
+        ] {
+            let mut harness = harness(&["a.xml"]);
+            assert_eq!(clicked(&mut harness, names), [Request::File(request)]);
+        }
+    }
+
+    #[test]
+    fn without_recent_files_there_is_no_list_of_them() {
+        let mut harness = harness(&["a.xml"]);
+        harness.state_mut().files.recent.clear();
+        harness.run();
+        assert_eq!(clicked(&mut harness, &["Recent"]), []);
+        assert!(harness.query_by_label("mine.xml").is_none());
+    }
+}

@@ -1,0 +1,191 @@
+//! The task files of a folder, and the present state as a task file.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use bevy::prelude::World;
+
+use crate::{
+    scene::{PresentScene, present_scene},
+    xml::{MAX_FILE_BYTES, is_task, write},
+};
+
+/// The folder of the task files that the window lists, in the working folder.
+pub const TASK_FOLDER: &str = "tablesetup";
+
+/// The task files directly in a folder, by name: without those that only hold templates (`def-*.xml`), and without the
+/// `debug.xml` that the later program wrote.
+///
+/// ```
+/// use std::path::Path;
+/// use tabletop::task_files::{TASK_FOLDER, task_files};
+///
+/// let files = task_files(Path::new(TASK_FOLDER));
+/// assert!(files.contains(&Path::new(TASK_FOLDER).join("default.xml")));
+/// ```
+pub fn task_files(folder: &Path) -> Vec<PathBuf> {
+    let Ok(found) = fs::read_dir(folder) else {
+        return Vec::new();
+    };
+    let mut files: Vec<_> = found
+        .flatten()
+        .map(|found| found.path())
+        .filter(|path| is_listed(path))
+        .collect();
+    files.sort();
+    files
+}
+
+fn is_listed(path: &Path) -> bool {
+    let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
+        return false;
+    };
+    let is_task_name = name.ends_with(".xml") && !name.starts_with("def-") && name != "debug.xml";
+    let is_file = |path: &Path| {
+        path.metadata()
+            .is_ok_and(|file| file.is_file() && file.len() <= MAX_FILE_BYTES as u64)
+    };
+    is_task_name && is_file(path) && fs::read(path).is_ok_and(|text| is_task(&text))
+}
+
+/// Saves what is on the table as a task file, which is replaced if it is there. Returns what a task file cannot say of it.
+///
+/// # Errors
+///
+/// The file cannot be written; what was there is as before.
+pub fn save_task(world: &World, path: &Path) -> io::Result<Vec<String>> {
+    let PresentScene { scene, unsaid } = present_scene(world);
+    replace(path, write(&scene).as_bytes())?;
+    Ok(unsaid)
+}
+
+/// Puts a whole file in the place of another, or nothing.
+fn replace(path: &Path, text: &[u8]) -> io::Result<()> {
+    // Not the link to the file.
+    let path = path.canonicalize().unwrap_or(path.to_owned());
+    let mut new = path.clone().into_os_string();
+    new.push(".new");
+    let new = PathBuf::from(new);
+    fs::write(&new, text)
+        .and_then(|()| fs::rename(&new, &path))
+        .inspect_err(|_| {
+            let _was_not_written = fs::remove_file(&new);
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::prelude::*;
+    use tabletop_core::prelude::*;
+
+    use super::*;
+    use crate::{
+        headless_app,
+        scene::{IdAllocator, assemble},
+        test_folder::TestFolder,
+        xml::read_task,
+    };
+
+    #[test]
+    fn task_files_are_listed_by_name_and_templates_are_not() {
+        let folder = TestFolder::new("task-files-listed");
+        let task = "<tabletop xmlns='http://synapse.cs.umd.edu/tabletop-xml'/>";
+        for (name, text) in [
+            ("b.xml", task),
+            ("a.xml", task),
+            ("faulty.xml", "<tabletop><cube/>"),
+            ("def-lid.xml", task),
+            ("debug.xml", task),
+            ("template.xml", "<tabletop><def name='lid'/></tabletop>"),
+            ("other.xml", "<robot/>"),
+            ("notes.txt", task),
+            ("none.xml", ""),
+        ] {
+            folder.write(name, text);
+        }
+        fs::create_dir(folder.join("folder.xml")).unwrap();
+        let files = task_files(&folder);
+        let names: Vec<_> = files.iter().map(|path| path.file_name().unwrap()).collect();
+        assert_eq!(names, ["a.xml", "b.xml", "faulty.xml"]);
+        assert_eq!(task_files(&folder.join("missing")), Vec::<PathBuf>::new());
+    }
+
+    /// The largest difference of two scenes' rotations, which are the same otherwise.
+    fn deviation(mut one: SceneSpec, other: &SceneSpec) -> f32 {
+        let mut largest = 0.0_f32;
+        let pose = |item: &SceneItem| match item {
+            SceneItem::Object(object) => Some(object.pose),
+            SceneItem::LidBox(lidbox) => Some(lidbox.pose),
+            SceneItem::Chain(_) => None,
+        };
+        for (one, other) in one.items.iter_mut().zip(&other.items) {
+            let (Some(mine), Some(theirs)) = (pose(one), pose(other)) else {
+                continue;
+            };
+            let difference = Vec4::from(mine.rotation) - Vec4::from(theirs.rotation);
+            largest = largest.max(difference.abs().max_element());
+            match one {
+                SceneItem::Object(object) => object.pose.rotation = theirs.rotation,
+                SceneItem::LidBox(lidbox) => lidbox.pose.rotation = theirs.rotation,
+                SceneItem::Chain(_) => {}
+            }
+        }
+        assert_eq!(one, *other);
+        largest
+    }
+
+    fn saved(app: &App, path: &Path) -> SceneSpec {
+        save_task(app.world(), path).unwrap();
+        let task = read_task(path).unwrap();
+        assert_eq!(task.faults, []);
+        task.scene
+    }
+
+    #[test]
+    fn a_saved_scene_is_the_same_when_it_is_loaded() {
+        let folder = TestFolder::new("task-files-saved");
+        let path = folder.join("saved.xml");
+        for file in task_files(Path::new(TASK_FOLDER)) {
+            let mut app = headless_app();
+            app.world_mut()
+                .write_message(SimCommand::LoadTask(file.clone()));
+            app.step(90);
+            let present = present_scene(app.world()).scene;
+            let first = saved(&app, &path);
+            let off = deviation(first.clone(), &present);
+            assert!(off <= 2e-7, "{}: {off}", file.display());
+            // What a file has said once, it says again to the bit.
+            fs::write(&path, write(&first)).unwrap();
+            assert_eq!(read_task(&path).unwrap().scene, first);
+            let ids = |scene: &SceneSpec| {
+                let assembly = assemble(scene, &mut IdAllocator::default());
+                assembly
+                    .objects
+                    .into_iter()
+                    .map(|object| object.id)
+                    .collect::<Vec<_>>()
+            };
+            let index = app.world().resource::<ObjectIndex>();
+            let objects = index
+                .iter()
+                .filter_map(|object| app.world().get::<ObjectSpec>(object));
+            let there: Vec<_> = objects.map(|spec| spec.id.clone()).collect();
+            assert_eq!(ids(&first), there, "{}", file.display());
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_written_leaves_what_was_there() {
+        let folder = TestFolder::new("task-files-kept");
+        let path = folder.join("kept.xml");
+        fs::write(&path, "old").unwrap();
+        fs::create_dir(folder.join("kept.xml.new")).unwrap();
+        assert!(replace(&path, b"new").is_err());
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        fs::remove_dir(folder.join("kept.xml.new")).unwrap();
+        replace(&path, b"new").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+    }
+}

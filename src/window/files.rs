@@ -1,0 +1,301 @@
+//! Files that the user opens and saves while the window is open.
+
+mod dialog;
+mod kind;
+mod recent;
+mod reload;
+
+use std::path::Path;
+
+use bevy::{ecs::system::SystemState, prelude::*, window::FileDragAndDrop};
+use tabletop_core::{OpenRecording, SimCommand};
+use tabletop_gui::{FileRequest, Files, Notices, Purpose, TaskFile, Tone};
+
+use self::{
+    dialog::Dialog,
+    kind::Kind,
+    recent::remember,
+    reload::{Watch, keep_setting},
+};
+use crate::task_files::{TASK_FOLDER, save_task, task_files};
+
+pub(super) fn plugin(app: &mut App) {
+    app.add_plugins((recent::plugin, reload::plugin))
+        .init_resource::<Dialog>()
+        .add_systems(Startup, |mut requests: MessageWriter<FileRequest>| {
+            requests.write(FileRequest::ListTasks);
+        })
+        .add_systems(
+            Update,
+            (take_dropped, dialog::take_answer, carry_out).chain(),
+        );
+}
+
+fn take_dropped(
+    mut drops: MessageReader<FileDragAndDrop>,
+    mut requests: MessageWriter<FileRequest>,
+) {
+    for drop in drops.read() {
+        if let FileDragAndDrop::DroppedFile { path_buf, .. } = drop {
+            requests.write(FileRequest::Open(path_buf.clone()));
+        }
+    }
+}
+
+fn carry_out(world: &mut World, reader: &mut SystemState<MessageReader<FileRequest>>) -> Result {
+    let requests: Vec<_> = reader.get_mut(world)?.read().cloned().collect();
+    for request in requests {
+        match request {
+            FileRequest::ListTasks => list_tasks(world),
+            FileRequest::AskToOpen => dialog::ask(world, Purpose::Open),
+            FileRequest::AskToSave => dialog::ask(world, Purpose::Save),
+            FileRequest::Open(path) => open(world, &path),
+            FileRequest::Save(path) => save(world, &path),
+            FileRequest::Reload(reloads) => keep_setting(world, reloads),
+        }
+    }
+    Ok(())
+}
+
+fn list_tasks(world: &mut World) {
+    let tasks = task_files(Path::new(TASK_FOLDER)).into_iter();
+    let tasks = tasks.map(|path| TaskFile {
+        name: name(&path),
+        path,
+    });
+    world.resource_mut::<Files>().tasks = tasks.collect();
+}
+
+fn open(world: &mut World, path: &Path) {
+    let path = std::path::absolute(path).unwrap_or(path.to_owned());
+    match Kind::of(&path) {
+        Ok(Kind::Task) => {
+            world.write_message(SimCommand::LoadTask(path.clone()));
+            remember(world, path);
+        }
+        Ok(Kind::Recording(folder)) => {
+            world.write_message(OpenRecording(folder.clone()));
+            remember(world, folder);
+        }
+        Err(reason) => tell(world, Tone::Fault, &reason),
+    }
+}
+
+fn save(world: &mut World, path: &Path) {
+    match save_task(world, path) {
+        Ok(unsaid) => {
+            tell(world, Tone::News, &format!("{} is saved", path.display()));
+            for unsaid in unsaid {
+                let unsaid = format!("{}: {unsaid}", name(path));
+                tell(world, Tone::Warning, &unsaid);
+            }
+            world.resource_mut::<Watch>().note_saved(path);
+            remember(world, path.to_owned());
+            list_tasks(world);
+        }
+        Err(error) => {
+            let reason = format!("{} cannot be saved: {error}", path.display());
+            tell(world, Tone::Fault, &reason);
+        }
+    }
+}
+
+fn tell(world: &mut World, tone: Tone, text: &str) {
+    world.resource_mut::<Notices>().renew(tone, text);
+}
+
+fn name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    name.to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{
+        fs,
+        path::{Path, PathBuf},
+    };
+
+    use tabletop_core::{CorePlugin, Recording, SimFact};
+    use tabletop_gui::{Browser, Preferences};
+
+    use super::*;
+    use crate::{scene::ScenePlugin, test_folder::TestFolder};
+
+    /// A folder with a task file, a recording and something else.
+    fn folder(name: &str) -> TestFolder {
+        let folder = TestFolder::new(&format!("files-{name}"));
+        for (path, text) in [
+            ("task.xml", TASK),
+            ("demo/session.jsonl", ""),
+            ("demo/0/15.png", ""),
+            ("notes.txt", ""),
+        ] {
+            folder.write(path, text);
+        }
+        folder
+    }
+
+    const TASK: &str = "<tabletop xmlns='http://synapse.cs.umd.edu/tabletop-xml'>\
+                        <sphere location='(0,0,1)'/></tabletop>";
+
+    fn app(folder: &Path) -> App {
+        let mut app = App::new();
+        app.add_plugins((
+            MinimalPlugins,
+            CorePlugin::default(),
+            crate::physics::PhysicsPlugin::default(),
+            ScenePlugin,
+        ))
+        .insert_resource(Preferences::in_folder(folder.join("config")))
+        .init_resource::<Files>()
+        .init_resource::<Notices>()
+        .init_resource::<Browser>()
+        .add_message::<FileRequest>()
+        .add_message::<FileDragAndDrop>()
+        .add_plugins(plugin);
+        app.finish();
+        app.cleanup();
+        app.update();
+        app
+    }
+
+    fn ask(app: &mut App, request: FileRequest) {
+        app.world_mut().write_message(request);
+        app.update();
+    }
+
+    fn written<M: Message + Clone>(app: &App) -> Vec<M> {
+        let messages = app.world().resource::<Messages<M>>();
+        messages.get_cursor().read(messages).cloned().collect()
+    }
+
+    fn told(app: &App) -> Vec<String> {
+        let notices = app.world().resource::<Notices>();
+        notices.iter().map(str::to_owned).collect()
+    }
+
+    fn recent(app: &App) -> Vec<PathBuf> {
+        app.world().resource::<Files>().recent.clone()
+    }
+
+    #[test]
+    fn what_is_dropped_onto_the_window_is_opened() {
+        let folder = folder("dropped");
+        let drop = |app: &mut App, path: &str| {
+            app.world_mut().write_message(FileDragAndDrop::DroppedFile {
+                window: Entity::PLACEHOLDER,
+                path_buf: folder.join(path),
+            });
+            app.update();
+        };
+        let mut task = app(&folder);
+        drop(&mut task, "task.xml");
+        assert_eq!(
+            written::<SimCommand>(&task),
+            [SimCommand::LoadTask(folder.join("task.xml"))]
+        );
+        for path in ["demo", "demo/session.jsonl", "demo/0/15.png"] {
+            let mut recording = app(&folder);
+            drop(&mut recording, path);
+            let opened = written::<OpenRecording>(&recording);
+            assert_eq!(opened, [OpenRecording(folder.join("demo"))], "{path}");
+        }
+        for path in ["notes.txt", "missing.xml", ""] {
+            let mut other = app(&folder);
+            drop(&mut other, path);
+            assert_eq!(told(&other).len(), 1, "{path}");
+            assert!(written::<SimCommand>(&other).is_empty());
+            assert!(written::<OpenRecording>(&other).is_empty());
+        }
+    }
+
+    #[test]
+    fn recent_files_are_remembered_between_runs_as_long_as_they_are_there() {
+        let folder = folder("recent");
+        let mut first = app(&folder);
+        for path in ["task.xml", "demo", "task.xml"] {
+            ask(&mut first, FileRequest::Open(folder.join(path)));
+        }
+        let expected = [folder.join("task.xml"), folder.join("demo")];
+        assert_eq!(recent(&first), expected);
+        assert_eq!(recent(&app(&folder)), expected);
+        fs::remove_file(folder.join("task.xml")).unwrap();
+        assert_eq!(recent(&app(&folder)), [folder.join("demo")]);
+    }
+
+    #[test]
+    fn a_saved_state_is_told_and_remembered() {
+        let folder = folder("saved");
+        let mut app = app(&folder);
+        let path = folder.join("saved.xml");
+        ask(&mut app, FileRequest::Save(path.clone()));
+        assert_eq!(told(&app), [format!("{} is saved", path.display())]);
+        assert_eq!(recent(&app), std::slice::from_ref(&path));
+        let task = crate::xml::read_task(&path).unwrap();
+        assert_eq!((task.scene, task.faults), default());
+        ask(
+            &mut app,
+            FileRequest::Save(folder.join("missing/saved.xml")),
+        );
+        assert!(
+            told(&app)[1].contains("cannot be saved: "),
+            "{:?}",
+            told(&app)
+        );
+    }
+
+    /// An app whose task file is loaded and then changed, some seconds ago.
+    fn changed(folder: &Path, text: &str, reloads: bool, is_recording: bool) -> App {
+        let mut app = app(folder);
+        let path = folder.join("task.xml");
+        app.world_mut().resource_mut::<Files>().reloads = reloads;
+        app.world_mut().resource_mut::<Recording>().0 = is_recording;
+        app.world_mut().write_message(SimFact::TaskLoaded {
+            path: path.clone(),
+            faults: Vec::new(),
+        });
+        app.update();
+        fs::write(&path, text).unwrap();
+        app.world_mut().run_system_cached(reload::reload).unwrap();
+        app
+    }
+
+    #[test]
+    fn a_task_file_that_changes_is_loaded_anew_if_the_user_wants_it() {
+        let folder = folder("reload");
+        let larger = TASK.replace("(0,0,1)", "(0,0,10)");
+        let load = [SimCommand::LoadTask(folder.join("task.xml"))];
+        assert_eq!(
+            written::<SimCommand>(&changed(&folder, &larger, false, false)),
+            []
+        );
+        let mut app = changed(&folder, TASK, true, false);
+        assert_eq!(written::<SimCommand>(&app), load);
+        app.world_mut().run_system_cached(reload::reload).unwrap();
+        assert_eq!(written::<SimCommand>(&app), load, "it is loaded once");
+    }
+
+    #[test]
+    fn a_change_during_a_recording_or_with_faults_is_told_and_changes_nothing() {
+        let folder = folder("no_reload");
+        let larger = TASK.replace("(0,0,1)", "(0,0,10)");
+        for (text, is_recording, words) in [
+            (&*larger, true, "while a recording runs"),
+            ("<tabletop", false, "has changed and is not loaded"),
+        ] {
+            fs::write(folder.join("task.xml"), TASK).unwrap();
+            let app = changed(&folder, text, true, is_recording);
+            assert_eq!(written::<SimCommand>(&app), []);
+            let told = told(&app);
+            assert!(told.len() == 1 && told[0].contains(words), "{told:?}");
+        }
+    }
+
+    #[test]
+    fn the_setting_is_remembered() {
+        let folder = folder("setting");
+        ask(&mut app(&folder), FileRequest::Reload(true));
+        assert!(app(&folder).world().resource::<Files>().reloads);
+    }
+}

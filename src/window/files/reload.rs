@@ -1,0 +1,144 @@
+//! Loading the task file on the table anew when another program has changed it.
+
+use std::{
+    path::{Path, PathBuf},
+    time::{Duration, SystemTime},
+};
+
+use bevy::{prelude::*, time::common_conditions::on_real_timer};
+use tabletop_core::{OpenRecording, Recording, Replaying, SimCommand, SimFact};
+use tabletop_gui::{Files, Notices, Preferences, Tone};
+
+use crate::xml::read_task;
+
+/// How often the file is looked at.
+const PERIOD: Duration = Duration::from_millis(700);
+
+/// What [`Preferences`] call the setting.
+const CONCERN: &str = "reload";
+
+/// The task file on the table, as it was when it was loaded or saved.
+#[derive(Resource, Debug, Default)]
+pub(super) struct Watch {
+    file: Option<(PathBuf, Option<Stamp>)>,
+}
+
+/// What changes when a file is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Stamp {
+    length: u64,
+    modified: Option<SystemTime>,
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<Watch>()
+        .add_systems(Startup, recall_setting)
+        .add_systems(
+            Update,
+            (note_loaded, reload.run_if(on_real_timer(PERIOD))).chain(),
+        );
+}
+
+impl Stamp {
+    fn of(path: &Path) -> Option<Self> {
+        let file = path.metadata().ok()?;
+        Some(Self {
+            length: file.len(),
+            modified: file.modified().ok(),
+        })
+    }
+}
+
+impl Watch {
+    /// The program itself has written this file.
+    pub fn note_saved(&mut self, path: &Path) {
+        if let Some((watched, stamp)) = &mut self.file
+            && is_same(watched, path)
+        {
+            *stamp = Stamp::of(path);
+        }
+    }
+
+    /// The file, if it has changed since the last time, and is there.
+    fn take_change(&mut self) -> Option<PathBuf> {
+        let (path, stamp) = self.file.as_mut()?;
+        let now = Stamp::of(path).filter(|now| Some(*now) != *stamp)?;
+        *stamp = Some(now);
+        Some(path.clone())
+    }
+}
+
+fn is_same(one: &Path, other: &Path) -> bool {
+    let there = |path: &Path| path.canonicalize().unwrap_or(path.to_owned());
+    there(one) == there(other)
+}
+
+fn recall_setting(
+    preferences: Res<Preferences>,
+    mut files: ResMut<Files>,
+    mut notices: ResMut<Notices>,
+) {
+    match preferences.read(CONCERN) {
+        Ok(reloads) => files.reloads = reloads.unwrap_or_default(),
+        Err(error) => notices.add(Tone::Warning, &error.to_string()),
+    }
+}
+
+/// Keeps what the user has chosen.
+pub(super) fn keep_setting(world: &mut World, reloads: bool) {
+    world.resource_mut::<Files>().reloads = reloads;
+    if let Err(error) = world.resource::<Preferences>().keep(CONCERN, &reloads) {
+        let mut notices = world.resource_mut::<Notices>();
+        notices.add(Tone::Warning, &error.to_string());
+    }
+}
+
+fn note_loaded(
+    mut facts: MessageReader<SimFact>,
+    mut recordings: MessageReader<OpenRecording>,
+    mut watch: ResMut<Watch>,
+) {
+    for fact in facts.read() {
+        if let SimFact::TaskLoaded { path, .. } = fact {
+            watch.file = Some((path.clone(), Stamp::of(path)));
+        }
+    }
+    if recordings.read().count() > 0 {
+        watch.file = None;
+    }
+}
+
+/// Loads the file anew if it has changed. Half of a file, as an editor may have written so far, has a fault: then the world stays.
+pub(super) fn reload(
+    files: Res<Files>,
+    recording: Res<Recording>,
+    replaying: Res<Replaying>,
+    mut watch: ResMut<Watch>,
+    mut notices: ResMut<Notices>,
+    mut commands: MessageWriter<SimCommand>,
+) {
+    if !files.reloads || replaying.0 {
+        return;
+    }
+    let Some(path) = watch.take_change() else {
+        return;
+    };
+    let fault = match read_task(&path) {
+        Ok(task) => task.faults.first().map(ToString::to_string),
+        Err(error) => Some(error.to_string()),
+    };
+    let name = path.display();
+    match fault {
+        Some(fault) => notices.renew(
+            Tone::Fault,
+            &format!("{name} has changed and is not loaded: {fault}"),
+        ),
+        None if recording.0 => notices.renew(
+            Tone::Warning,
+            &format!("{name} has changed; it is not loaded while a recording runs"),
+        ),
+        None => {
+            commands.write(SimCommand::LoadTask(path));
+        }
+    }
+}
