@@ -75,10 +75,14 @@ struct Entry<'a> {
     bindings: Vec<(&'a str, Binding)>,
 }
 
-/// Reads a keymap. What is wrong with it is told with line and column, and left out.
+/// Reads a keymap. What is wrong with it is told with line and column, and left out. An empty text binds nothing anew, as a shell leaves it that
+/// is about to write the file.
 pub fn parse(text: &str) -> (Keymap, Vec<String>) {
     let mut faults = Vec::new();
     let mut keymap = Keymap::default();
+    if text.trim().is_empty() {
+        return (keymap, faults);
+    }
     match ron::from_str::<RawEntries>(text) {
         Ok(entries) => {
             let entries = entries_of(&entries, text, &mut faults);
@@ -259,7 +263,9 @@ mod tests {
         expected.bind(Action::Pause, [binding("KeyV")]);
         expected.bind(Action::ClearTable, []);
         assert_eq!(keymap, expected);
-        assert_eq!(parse("{}"), (Keymap::default(), vec![]));
+        for nothing in ["{}", "", "\n"] {
+            assert_eq!(parse(nothing), (Keymap::default(), vec![]));
+        }
     }
 
     #[test]
@@ -352,7 +358,6 @@ mod tests {
     #[test]
     fn what_is_no_map_of_lists_is_told_with_its_place() {
         for (text, place) in [
-            ("", "1:1"),
             ("{\n  \"pause\": \"Space\"}", "2:"),
             ("{\n\n  \"pause\" [\"Space\"]}", "3:"),
             ("[\"Space\"]", "1:1"),
