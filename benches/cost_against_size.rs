@@ -116,7 +116,6 @@ fn scene(size: usize) -> SimCommand {
             yspan: span,
         },
         items: items.collect(),
-        ..default()
     }))
 }
 

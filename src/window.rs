@@ -23,7 +23,9 @@ use bevy::{
     render::RenderPlugin,
 };
 use tabletop_core::{OpenRecording, PacePlugin, SimCommand};
-use tabletop_gui::{GuiPlugin, Preferences, PresetSeeds, keymap_file::KeymapFile};
+use tabletop_gui::{
+    GuiPlugin, Preferences, PresetSeeds, WidgetListPlugin, keymap_file::KeymapFile,
+};
 use tabletop_view::ViewPlugin;
 
 use self::opening::{Beginning, Opening};
@@ -51,6 +53,8 @@ pub struct WindowOptions {
     pub seed: u64,
     /// A picture to take, after which the program ends.
     pub screenshot: Option<ScreenshotAt>,
+    /// A file that lists the widgets on the screen, for programs that click.
+    pub widgets: Option<PathBuf>,
 }
 
 /// What is on the table of a window.
@@ -152,6 +156,9 @@ fn build(options: WindowOptions) -> App {
     }
     if let Some(keys) = options.keys {
         app.insert_resource(KeymapFile(keys));
+    }
+    if let Some(file) = options.widgets {
+        app.add_plugins(WidgetListPlugin { file });
     }
     if let Some(screenshot) = options.screenshot {
         screenshot.plan(&mut app);

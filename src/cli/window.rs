@@ -38,6 +38,10 @@ pub(super) struct WindowArgs {
     engine: EngineOptions,
     #[command(flatten)]
     robot: RobotOptions,
+    /// Keep a list of the widgets on the screen in this file, a line each with its name and place, for programs that click
+    #[cfg(feature = "window")]
+    #[arg(long, value_name = "FILE")]
+    widgets: Option<PathBuf>,
     #[cfg(feature = "window")]
     #[command(flatten)]
     display: super::display::DisplayArgs,
@@ -62,6 +66,7 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
             path,
             seconds: args.after as f32,
         }),
+        widgets: args.widgets,
     };
     window::run(options).map(exit_code).or_else(|no_window| {
         say(format_args!("tabletop: {no_window}"));
@@ -88,6 +93,7 @@ pub(super) fn play(replay: Replay, scripts: ScriptSettings) -> Result<ExitCode, 
         keys: None,
         seed: window::DEFAULT_SEED,
         screenshot: None,
+        widgets: None,
     };
     window::run(options).map(exit_code).map_err(Failure::run)
 }
