@@ -17,8 +17,9 @@ use bevy::{
     },
 };
 use tabletop_core::{Action, KeySystems, UserCamera, was_struck};
-use tabletop_gui::display::{
-    Antialiasing, DisplayOffer, DisplaySettings, Renderer, Resolution, ScreenMode,
+use tabletop_gui::{
+    Renderer,
+    display::{Antialiasing, DisplayOffer, DisplaySettings, Resolution, ScreenMode},
 };
 use wgpu_types::DeviceType;
 
@@ -92,6 +93,7 @@ fn fill_screen(window: Single<&mut Window, With<PrimaryWindow>>) {
 }
 
 fn shape_window(
+    mut shaped: Local<Option<(Resolution, Option<ScreenMode>)>>,
     settings: Res<DisplaySettings>,
     mut frame_rate: ResMut<FrameRate>,
     window: Single<&mut Window, With<PrimaryWindow>>,
@@ -103,6 +105,14 @@ fn shape_window(
         true => PresentMode::AutoVsync,
         false => PresentMode::AutoNoVsync,
     };
+    // What the user himself has made of the window stays until he chooses another size.
+    let shape = (
+        settings.resolution,
+        settings.fullscreen.then(|| settings.mode()),
+    );
+    if shaped.replace(shape) == Some(shape) {
+        return;
+    }
     window.mode = window_mode(&settings, present_monitor(&monitors));
     if window.mode == WindowMode::Windowed {
         let Resolution { width, height } = settings.resolution;
@@ -116,11 +126,7 @@ fn window_mode(settings: &DisplaySettings, monitor: Option<(Entity, &Monitor)>) 
         return WindowMode::Windowed;
     };
     let selection = MonitorSelection::Entity(entity);
-    let asked = ScreenMode {
-        resolution: settings.resolution,
-        refresh_rate: settings.refresh_rate,
-        color_depth: settings.color_depth,
-    };
+    let asked = settings.mode();
     let found = monitor
         .video_modes
         .iter()
@@ -406,6 +412,14 @@ mod tests {
         assert_eq!(shown.physical_size(), UVec2::new(800, 600));
         assert_eq!(shown.present_mode, PresentMode::AutoNoVsync);
         assert_eq!(app.world().get::<Msaa>(camera), Some(&Msaa::Sample4));
+
+        let mut shown = app.world_mut().get_mut::<Window>(window).unwrap();
+        shown.resolution.set(700.0, 500.0);
+        app.world_mut().resource_mut::<DisplaySettings>().vsync = true;
+        app.update();
+        let shown = app.world().get::<Window>(window).unwrap();
+        assert_eq!(shown.physical_size(), UVec2::new(700, 500));
+        assert_eq!(shown.present_mode, PresentMode::AutoVsync);
     }
 
     #[test]

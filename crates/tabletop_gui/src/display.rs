@@ -81,15 +81,6 @@ pub struct DisplayOffer {
     pub is_software: bool,
 }
 
-/// Who draws the pictures.
-#[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
-pub struct Renderer {
-    /// What the driver calls itself.
-    pub name: String,
-    /// Whether it draws on the processor, without a graphics card.
-    pub is_software: bool,
-}
-
 /// Sizes of windows, beside those of the screen's modes.
 const WINDOW_SIZES: [Resolution; 9] = [
     Resolution::new(800, 600),
@@ -207,7 +198,7 @@ impl Default for DisplaySettings {
 
 impl DisplaySettings {
     /// The mode of a screen that these settings ask for.
-    const fn mode(&self) -> ScreenMode {
+    pub const fn mode(&self) -> ScreenMode {
         ScreenMode {
             resolution: self.resolution,
             refresh_rate: self.refresh_rate,

@@ -53,7 +53,6 @@ impl Plugin for GuiPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Preferences>()
             .init_resource::<PresetSeeds>()
-            .init_resource::<display::Renderer>()
             .insert_resource(EguiGlobalSettings {
                 auto_create_primary_context: false,
                 ..default()

@@ -11,6 +11,8 @@ use bevy_egui::{
 };
 use tabletop_core::{KeyLetters, KeyboardFocus, Keys};
 
+use crate::display::DisplayDialog;
+
 pub(crate) fn plugin(app: &mut App) {
     app.add_message::<KeyboardInput>()
         .add_systems(
@@ -34,10 +36,17 @@ fn learn_letters(mut input: MessageReader<KeyboardInput>, mut letters: ResMut<Ke
     pressed.for_each(|input| letters.learn(input));
 }
 
-fn follow_panels(mut contexts: Query<&mut EguiContext>, mut focus: ResMut<KeyboardFocus>) {
-    let of_contexts = contexts
-        .iter_mut()
-        .map(|mut context| focus_of(context.get_mut()));
+fn follow_panels(
+    mut contexts: Query<(&mut EguiContext, Has<DisplayDialog>)>,
+    mut focus: ResMut<KeyboardFocus>,
+) {
+    let of_contexts = contexts.iter_mut().map(|(mut context, is_dialog)| {
+        // Where there are only the display settings, keys have nothing else to do.
+        match is_dialog {
+            true => KeyboardFocus::Text,
+            false => focus_of(context.get_mut()),
+        }
+    });
     focus.set_if_neq(of_contexts.max().unwrap_or_default());
 }
 

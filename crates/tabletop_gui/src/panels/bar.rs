@@ -9,7 +9,10 @@ use bevy_egui::{
 use tabletop_core::{Action, Keymap};
 
 use crate::{
-    panels::{arrangement::Panels, help::Help, messages::Notices, panel::Panel},
+    display::DisplayOffer,
+    panels::{
+        arrangement::Panels, display::DisplayOverlay, help::Help, messages::Notices, panel::Panel,
+    },
     scale::{ScaleStep, UiScale},
     widgets::{
         icon::{Icon, icon_button},
@@ -28,6 +31,8 @@ struct Model<'a> {
     /// How large everything is drawn.
     scale: f32,
     keymap: &'a Keymap,
+    /// Whether the display has settings.
+    has_display: bool,
 }
 
 /// What the user asks of the bar.
@@ -38,6 +43,7 @@ enum Request {
     Align,
     HideAll,
     Scale(ScaleStep),
+    Display,
     Help,
 }
 
@@ -61,6 +67,8 @@ fn show_bar(
     notices: Res<Notices>,
     keymap: Res<Keymap>,
     mut scale: ResMut<UiScale>,
+    offer: Option<Res<DisplayOffer>>,
+    mut display: ResMut<DisplayOverlay>,
     mut help: ResMut<Help>,
 ) {
     let Ok(context) = contexts.ctx_mut() else {
@@ -71,9 +79,17 @@ fn show_bar(
         unseen_faults: notices.unseen_faults().count(),
         scale: context.zoom_factor(),
         keymap: &keymap,
+        has_display: offer.is_some(),
     };
     if let Some(request) = show(context, &model) {
-        carry_out(request, context, &mut panels, &mut scale, &mut help);
+        carry_out(
+            request,
+            context,
+            &mut panels,
+            &mut scale,
+            &mut display,
+            &mut help,
+        );
     }
 }
 
@@ -82,6 +98,7 @@ fn carry_out(
     context: &Context,
     panels: &mut Panels,
     scale: &mut UiScale,
+    display: &mut DisplayOverlay,
     help: &mut Help,
 ) {
     match request {
@@ -93,6 +110,7 @@ fn carry_out(
         Request::Align => panels.align(),
         Request::HideAll => panels.set_all_open(false),
         Request::Scale(step) => scale.change(step, context.zoom_factor()),
+        Request::Display => display.open(),
         Request::Help => help.toggle(),
     }
 }
@@ -149,6 +167,11 @@ fn buttons(ui: &mut Ui, model: &Model) -> Option<Request> {
         button(text, action, step.name(), Request::Scale(step));
     }
     button("?", Action::ShowHelp, "Help", Request::Help);
+    if model.has_display {
+        let display = ui.button("Display");
+        let display = display.on_hover_text("Resolution, full screen, refresh rate, anti-aliasing");
+        when(display.clicked(), Request::Display);
+    }
     request
 }
 
@@ -188,6 +211,7 @@ mod tests {
                 unseen_faults: stage.unseen_faults,
                 scale: 1.25,
                 keymap: &stage.keymap,
+                has_display: true,
             };
             let request = show(ui.ctx(), &model);
             stage.request = request.or(stage.request);
@@ -272,23 +296,37 @@ mod tests {
         let context = Context::default();
         let mut panels = Panels::default();
         let mut scale = UiScale::default();
+        let mut display = DisplayOverlay::default();
         let mut help = Help::default();
-        let mut open_after = |request| {
-            carry_out(request, &context, &mut panels, &mut scale, &mut help);
+        let mut carried_out = |request| {
+            carry_out(
+                request,
+                &context,
+                &mut panels,
+                &mut scale,
+                &mut display,
+                &mut help,
+            );
             Panel::ALL.map(|panel| panels.is_open(panel))
         };
         let all = [true; Panel::ALL.len()];
         let none = [false; Panel::ALL.len()];
-        assert_eq!(open_after(Request::ShowAll), all);
-        assert_eq!(open_after(Request::Align), all);
-        assert_eq!(open_after(Request::HideAll), none);
+        assert_eq!(carried_out(Request::ShowAll), all);
+        assert_eq!(carried_out(Request::Align), all);
+        assert_eq!(carried_out(Request::HideAll), none);
         for (i, panel) in Panel::ALL.into_iter().enumerate() {
-            let open = open_after(Request::Show(panel));
+            let open = carried_out(Request::Show(panel));
             assert!(open[..=i].iter().all(|&is_open| is_open));
             assert!(open[i + 1..].iter().all(|&is_open| !is_open));
         }
-        carry_out(Request::Help, &context, &mut panels, &mut scale, &mut help);
-        assert!(help.is_open());
+        carried_out(Request::Display);
+        carried_out(Request::Help);
+        assert!(display.is_open() && help.is_open());
+    }
+
+    #[test]
+    fn the_display_settings_are_opened() {
+        assert_eq!(clicked("Display"), Some(Request::Display));
     }
 
     #[test]

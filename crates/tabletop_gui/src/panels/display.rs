@@ -7,15 +7,17 @@ use bevy::{
     prelude::*,
 };
 use bevy_egui::{
-    EguiContext, EguiSchedule,
+    EguiContext, EguiContexts, EguiPrimaryContextPass, EguiSchedule,
     egui::{
-        self, Button, CentralPanel, ComboBox, Grid, Key, LayerId, RichText, Ui, UiBuilder, Vec2,
-        vec2,
+        self, Button, CentralPanel, ComboBox, Grid, Key, LayerId, Modal, RichText, Ui, UiBuilder,
+        Vec2, vec2,
     },
 };
 
 use crate::{
-    display::{DisplayOffer, DisplaySettings, Renderer},
+    Preferences, Renderer,
+    display::{CONCERN, DisplayOffer, DisplaySettings},
+    panels::messages::{Notices, Tone},
     widgets::style::dress,
 };
 
@@ -39,7 +41,7 @@ struct Model<'a> {
     renderer: &'a Renderer,
 }
 
-/// What the user has decided.
+/// What the user has decided. Over the main window, to cancel means to leave it as it is.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DisplayRequest {
     /// To start with these settings.
@@ -73,7 +75,69 @@ struct DisplayDialogPass;
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_message::<DisplayRequest>()
-        .add_systems(DisplayDialogPass, show_dialog);
+        .init_resource::<DisplayOverlay>()
+        .add_systems(DisplayDialogPass, show_dialog)
+        .add_systems(
+            EguiPrimaryContextPass,
+            show_overlay.run_if(|overlay: Res<DisplayOverlay>| overlay.is_open),
+        );
+}
+
+/// The settings over the main window.
+#[derive(Resource, Default)]
+pub(crate) struct DisplayOverlay {
+    is_open: bool,
+    /// What the user has chosen, but not yet decided upon.
+    draft: Option<DisplaySettings>,
+}
+
+impl DisplayOverlay {
+    pub fn open(&mut self) {
+        self.is_open = true;
+    }
+
+    #[cfg(test)]
+    pub fn is_open(&self) -> bool {
+        self.is_open
+    }
+}
+
+fn show_overlay(
+    mut contexts: EguiContexts,
+    mut overlay: ResMut<DisplayOverlay>,
+    offer: If<Res<DisplayOffer>>,
+    renderer: If<Res<Renderer>>,
+    settings: If<ResMut<DisplaySettings>>,
+    preferences: Res<Preferences>,
+    mut notices: ResMut<Notices>,
+) {
+    let Ok(context) = contexts.ctx_mut() else {
+        return;
+    };
+    let mut settings = settings.0;
+    let model = Model {
+        offer: &offer,
+        renderer: &renderer,
+    };
+    let draft = overlay.draft.get_or_insert(*settings);
+    let id = egui::Id::new("display overlay");
+    context.move_to_top(Modal::default_area(id).layer());
+    let modal = Modal::new(id).show(context, |ui| {
+        ui.set_width(DisplayDialog::SIZE.0 as f32);
+        show(ui, model, draft)
+    });
+    let is_left = modal.should_close().then_some(DisplayRequest::Cancel);
+    match modal.inner.or(is_left) {
+        Some(DisplayRequest::Continue) => {
+            if let Err(error) = preferences.keep(CONCERN, draft) {
+                notices.add(Tone::Warning, &error.to_string());
+            }
+            settings.set_if_neq(*draft);
+            *overlay = default();
+        }
+        Some(DisplayRequest::Cancel) => *overlay = default(),
+        None => (),
+    }
 }
 
 fn show_dialog(
@@ -218,10 +282,10 @@ fn decision(ui: &mut Ui, are_keys_free: bool) -> Option<DisplayRequest> {
     let size = Vec2::from(BUTTON);
     let go_on = ui
         .add(Button::new("Continue").min_size(size))
-        .on_hover_text("Open the main window (Enter)");
+        .on_hover_text("Show the main window like this (Enter)");
     let cancel = ui
         .add(Button::new("Cancel").min_size(size))
-        .on_hover_text("Quit (Esc)");
+        .on_hover_text("Quit, or leave the window as it is (Esc)");
     let is_struck = |key| are_keys_free && ui.input(|input| input.key_pressed(key));
     if cancel.clicked() || is_struck(Key::Escape) {
         Some(DisplayRequest::Cancel)
