@@ -80,7 +80,7 @@ impl Pace {
     }
 }
 
-/// Simulate one tick, and pause. A simulation that runs is paused.
+/// Simulate one tick, and pause.
 #[derive(Message, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SingleStep;
 
@@ -115,15 +115,13 @@ fn make_steps(
     mut commands: MessageWriter<SimCommand>,
 ) {
     *steps += asked_for.read().count();
-    let has_stepped = std::mem::take(&mut *is_stepping);
-    if *steps > 0 && (paused.0 || has_stepped) {
+    let has_stepped = std::mem::replace(&mut *is_stepping, *steps > 0);
+    if *steps > 0 {
         *steps -= 1;
-        *is_stepping = true;
         if paused.0 {
             commands.write(SimCommand::SetPaused(false));
         }
-    } else if *steps > 0 || has_stepped {
-        *steps = 0;
+    } else if has_stepped {
         commands.write(SimCommand::SetPaused(true));
     }
 }
@@ -220,12 +218,12 @@ mod tests {
     }
 
     #[test]
-    fn a_step_pauses_what_runs() {
+    fn a_step_of_what_runs_is_its_last_tick() {
         let mut app = app(TimeUpdateStrategy::FixedTimesteps(1));
         (0..3).for_each(|_| app.update());
         app.world_mut().write_message(SingleStep);
         (0..5).for_each(|_| app.update());
-        assert_eq!(tick(&app), 3);
+        assert_eq!(tick(&app), 4);
         assert!(app.world().resource::<Paused>().0);
     }
 

@@ -9,7 +9,7 @@ pub use rows::{JointRow, StateRow};
 pub use segment::{RecordedFrame, RecordedSegment};
 
 use std::{
-    collections::BTreeMap,
+    collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
 
@@ -54,8 +54,8 @@ use crate::{
 ///         println!("tick {}: {}", frame.tick.0, frame.picture.display());
 ///     }
 /// }
-/// let ball = &recording.states_at(recording.last_tick())?["ball"];
-/// println!("In the end the ball is at {}.", ball.pose.location);
+/// let states = recording.states_at(recording.last_tick())?;
+/// println!("In the end the ball is at {}.", states["ball"].pose.location);
 /// # std::fs::remove_dir_all(folder)?;
 /// # Ok::<_, Box<dyn std::error::Error>>(())
 /// ```
@@ -149,7 +149,7 @@ impl RecordingReader {
 
     /// The frames of a segment that have pictures.
     fn frames(&self, segment: u32) -> Result<Vec<RecordedFrame>, RecorderError> {
-        let numbers: std::collections::BTreeSet<_> = self
+        let numbers: BTreeSet<_> = self
             .folder
             .pictured_frames(segment)?
             .into_iter()
