@@ -81,10 +81,9 @@ pub(crate) fn advance(
             None => orders.want_arm(arm, robot.angles(arm)),
         };
         motion.move_arm(arm, wants);
-        let gripper = RobotJoint::gripper(arm).index();
-        let opening = motion.positions[gripper];
+        let gripper = RobotJoint::gripper(arm);
+        let opens = orders.open(gripper, motion.positions[gripper.index()]);
         let closing = motion.move_fingers(arm, &orders);
-        let opens = motion.positions[gripper] > opening;
         actions.extend(known.decide(arm, opens, closing, &mut grips));
     }
 

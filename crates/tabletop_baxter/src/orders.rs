@@ -3,7 +3,7 @@
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
     Arm, Drive, JOINTS_PER_ARM, Markers, Paused, Robot, RobotJoint, RobotMode, SimCommand, SimFact,
-    TICK_SECONDS,
+    TICK_SECONDS, WIDEST_GRIP,
 };
 
 use crate::{reach, shown};
@@ -131,6 +131,17 @@ impl Orders {
         match self.now[joint.index()] {
             Some(Drive::Torque(torque)) => Some(torque),
             _ => None,
+        }
+    }
+
+    /// Whether a gripper with this opening is told to open, also where it cannot open any wider.
+    pub fn open(&self, gripper: RobotJoint, opening: f64) -> bool {
+        let is_wider = |there: f64| there > opening || there >= WIDEST_GRIP;
+        match self.now[gripper.index()] {
+            Some(Drive::Velocity(velocity)) => velocity > 0.0,
+            Some(Drive::Position(there) | Drive::Toward(there)) => is_wider(there),
+            Some(Drive::Torque(_)) => false,
+            None => self.goal(gripper).is_some_and(is_wider),
         }
     }
 
@@ -315,6 +326,31 @@ mod tests {
             orders(E1, Drive::Toward(-7.0)).toward[E1.index()],
             Some(-0.05)
         );
+    }
+
+    #[test]
+    fn a_gripper_opens_by_order_even_where_it_cannot_move() {
+        const GRIPPER: RobotJoint = RobotJoint::RightGripper;
+        for (drive, opening, opens) in [
+            (Drive::Velocity(0.1), WIDEST_GRIP, true),
+            (Drive::Velocity(0.1), 1.0, true),
+            (Drive::Velocity(0.0), 1.0, false),
+            (Drive::Velocity(-0.1), 1.0, false),
+            (Drive::Toward(WIDEST_GRIP), WIDEST_GRIP, true),
+            (Drive::Position(9.0), WIDEST_GRIP, true),
+            (Drive::Toward(1.1), 1.0, true),
+            (Drive::Toward(1.0), 1.0, false),
+            (Drive::Toward(0.0), 1.0, false),
+            (Drive::Position(1.9), WIDEST_GRIP, false),
+        ] {
+            let orders = orders(GRIPPER, drive);
+            assert_eq!(
+                orders.open(GRIPPER, opening),
+                opens,
+                "{drive:?} at {opening}"
+            );
+        }
+        assert!(!Orders::default().open(GRIPPER, WIDEST_GRIP));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use bevy::{
     prelude::*,
 };
 use bevy_rapier3d::rapier::prelude::SharedShape;
-use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, RobotJoint, UNITS_PER_METER};
+use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, RobotJoint, UNITS_PER_METER, WIDEST_GRIP};
 use tabletop_kinematics::{
     ArmChain, Frames, Geometry, JointId, JointValues, LinkId, Load, Model, ModelError, Shape,
 };
@@ -20,6 +20,13 @@ use crate::look::{LookError, figure_of};
 
 /// Extents of a finger across, along the opening and along the finger, in units: x, y, z of the end effector's frame.
 pub(crate) const FINGER: Vec3 = Vec3::new(0.3, 0.4, 1.5);
+
+/// How far a finger of a wide open gripper stands back, in units: more than the distance at which something counts as touched. So what
+/// is as wide as the opening is not jammed between the fingers.
+const PLAY: f32 = 0.015;
+
+/// From this share of the widest opening on, fingers begin to stand back.
+const ALMOST_OPEN: f32 = 0.99;
 
 /// From the end effector's axes to the wrist's, and back.
 pub(crate) const WRIST_TURNED: DMat3 = DMat3::from_cols(DVec3::NEG_Y, DVec3::NEG_X, DVec3::NEG_Z);
@@ -248,11 +255,14 @@ impl Skeleton {
         match body.carrier {
             Carrier::Link(link) => base * in_units(posture.frames[link]),
             Carrier::Gripper(arm, side) => {
-                let half_opening = posture.openings[arm as usize] as f32 / 2.0;
-                let out = f32::from(side) * (half_opening + FINGER.x / 2.0);
+                let opening = posture.openings[arm as usize] as f32;
+                let out = opening / 2.0 + play(opening) + FINGER.x / 2.0;
                 let inwards = if side < 0 { 0.0 } else { PI };
                 self.end_effector(arm, posture, base)
-                    * Pose::new(Vec3::X * out, Quat::from_rotation_z(inwards))
+                    * Pose::new(
+                        Vec3::X * f32::from(side) * out,
+                        Quat::from_rotation_z(inwards),
+                    )
             }
         }
     }
@@ -321,6 +331,12 @@ pub(crate) fn in_meters(pose: Pose) -> DAffine3 {
 
 fn cuboid(span: Vec3) -> SharedShape {
     SharedShape::cuboid(span.x / 2.0, span.y / 2.0, span.z / 2.0)
+}
+
+/// How far a finger stands back at an opening, in units.
+fn play(opening: f32) -> f32 {
+    let share = opening / WIDEST_GRIP as f32;
+    PLAY * ((share - ALMOST_OPEN) / (1.0 - ALMOST_OPEN)).clamp(0.0, 1.0)
 }
 
 /// The convex hull of a mesh, in the frame of the link that is touched by it.

@@ -7,8 +7,8 @@ use bevy::prelude::*;
 use kit::{Stage, block};
 use tabletop_baxter::STEEPEST_GRIP;
 use tabletop_core::{
-    Arm, Drive, LidBoxSpec, ObjectIndex, Part, Pose, Rgb, Robot, RobotJoint, SceneItem, SceneSpec,
-    Shape, SimCommand, SimFact, StepApp,
+    Arm, Drive, LidBoxSpec, ObjectIndex, Part, Pose, Rgb, Robot, RobotJoint, RobotMode, SceneItem,
+    SceneSpec, Shape, SimCommand, SimFact, StepApp,
 };
 
 const ARM: Arm = Arm::Right;
@@ -170,6 +170,108 @@ fn two_blocks_are_held_at_once_and_let_go_of_together() {
         Drive::Velocity(1.0),
     )]));
     assert_eq!(grip_facts(stage.facts_of(2)).len(), 2);
+    assert!(stage.robot().arm(ARM).holds.is_empty());
+}
+
+/// A gripper that has come down around a block that is as wide as it opens.
+fn around_wide_block(mut stage: Stage) -> Stage {
+    let place = Vec3::new(3.0, -2.0, 1.0);
+    let pose = Pose::from_degrees(place, Vec3::NEG_Z * 15.0);
+    stage.put("thing", block(Vec3::splat(2.0)), 1.0, pose);
+    stage.app.step(30);
+    for z in [3.5, 2.8, 2.2, 1.5] {
+        stage.reach(ARM, place.with_z(z), -15.0);
+    }
+    stage
+}
+
+#[test]
+fn a_block_as_wide_as_the_gripper_is_taken_carried_and_put_down() {
+    for mode in [RobotMode::Kinematic, RobotMode::Dynamic] {
+        let mut stage = around_wide_block(Stage::in_mode(mode));
+        let found = stage.place("thing").location;
+        let away = (found - Vec3::new(3.0, -2.0, 1.0)).length();
+        assert!(away < 0.05, "{mode:?}: {found}");
+        assert_eq!(grip_facts(close(&mut stage)), made(), "{mode:?}");
+        stage.reach(ARM, Vec3::new(3.0, -2.0, 3.0), -15.0);
+        stage.reach(ARM, Vec3::new(4.0, -1.0, 3.0), 0.0);
+        // A little above the table, before which the arm stops.
+        stage.reach(ARM, Vec3::new(4.0, -1.0, 1.7), 0.0);
+        stage.reach(ARM, Vec3::new(4.0, -1.0, 1.53), 0.0);
+        let put = stage.place("thing").location.with_z(1.0);
+
+        stage.tell(SimCommand::Drive(vec![(
+            RobotJoint::gripper(ARM),
+            Drive::Toward(2.0),
+        )]));
+        let released = SimFact::GripReleased {
+            arm: ARM,
+            id: "thing".into(),
+        };
+        assert_eq!(grip_facts(stage.facts_of(60)), [released], "{mode:?}");
+        let away = (stage.place("thing").location - put).length();
+        assert!(away < 0.005, "{mode:?}: {away}");
+        for z in [2.2, 2.8, 4.0] {
+            stage.reach(ARM, Vec3::new(4.0, -1.0, z), 0.0);
+        }
+        let away = (stage.place("thing").location - put).length();
+        // Arms with masses swing a little on their way up, and the fingers leave no more room than that.
+        let most = if mode == RobotMode::Dynamic {
+            0.02
+        } else {
+            0.005
+        };
+        assert!(away < most, "{mode:?}: {away}");
+        assert!(stage.robot().arm(ARM).holds.is_empty(), "{mode:?}");
+    }
+}
+
+#[test]
+fn every_order_to_open_releases_what_is_as_wide_as_the_gripper() {
+    for order in [
+        Drive::Velocity(0.01),
+        Drive::Toward(2.0),
+        Drive::Position(2.0),
+    ] {
+        let mut stage = around_wide_block(Stage::new());
+        close(&mut stage);
+        assert_eq!(stage.robot().arm(ARM).holds.len(), 1);
+        let gripper = RobotJoint::gripper(ARM);
+        stage.tell(SimCommand::Drive(vec![(gripper, order)]));
+        stage.app.step(1);
+        assert!(stage.robot().arm(ARM).holds.is_empty(), "{order:?}");
+    }
+}
+
+#[test]
+fn an_order_to_close_or_stay_releases_nothing() {
+    for order in [
+        Drive::Velocity(0.0),
+        Drive::Velocity(-1.0),
+        Drive::Toward(0.5),
+    ] {
+        let mut stage = around_wide_block(Stage::new());
+        close(&mut stage);
+        let gripper = RobotJoint::gripper(ARM);
+        stage.tell(SimCommand::Drive(vec![(gripper, order)]));
+        stage.app.step(10);
+        assert_eq!(stage.robot().arm(ARM).holds.len(), 1, "{order:?}");
+    }
+}
+
+#[test]
+fn a_gripper_that_cannot_open_releases_all_the_same() {
+    let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, Vec3::ZERO);
+    close(&mut stage);
+    for (id, x) in [("left wall", 1.82), ("right wall", 4.18)] {
+        let place = Pose::at(Vec3::new(x, -2.0, 0.5));
+        stage.put(id, unit_block(), 0.0, place);
+    }
+    stage.app.step(5);
+    let gripper = RobotJoint::gripper(ARM);
+    stage.tell(SimCommand::Drive(vec![(gripper, Drive::Toward(2.0))]));
+    stage.app.step(60);
+    assert!(stage.robot().joint(gripper).position < 1.1);
     assert!(stage.robot().arm(ARM).holds.is_empty());
 }
 

@@ -9,6 +9,9 @@ use crate::{seen::Seen, step::fault_of_vector};
 /// Ticks without any motion after which the robot is still: more than an arm waits for what it squeezes.
 pub(crate) const TICKS_TO_STILL: u64 = 15;
 
+/// Speed in rad/s, or units/s of a gripper, below which a joint is still: a motor that leans on something creeps for long.
+const STILL: f64 = 1e-4;
+
 /// One thing that the robot does. Positions of joints are in rad, openings of grippers in units, other angles in degrees.
 /// All motions but [`Set`](Self::Set) take their time; [`WaitUntilStill`](Self::WaitUntilStill) waits for their end.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -149,7 +152,8 @@ fn each(positions: &[(RobotJoint, f64)], drive: fn(f64) -> Drive) -> Vec<(RobotJ
 
 /// Whether nothing of the robot has moved in the last tick.
 pub(crate) fn is_still(robot: &Robot) -> bool {
-    robot.joints.iter().all(|joint| joint.velocity == 0.0)
+    let mut joints = robot.joints.iter();
+    joints.all(|joint| joint.velocity.abs() < STILL)
 }
 
 impl RobotCheck {
@@ -265,7 +269,10 @@ mod tests {
         let mut stage = Stage::new("Robot(WaitUntilStill(2))");
         assert_eq!(stage.finish() + 1, TICKS_TO_STILL);
         let mut stage = Stage::new("Robot(WaitUntilStill(2))");
-        stage.robot.joints[3].velocity = 0.1;
+        stage.robot.joints[3].velocity = -1e-5;
+        assert_eq!(stage.finish() + 1, TICKS_TO_STILL);
+        let mut stage = Stage::new("Robot(WaitUntilStill(2))");
+        stage.robot.joints[3].velocity = -0.1;
         assert!(stage.failure().contains("the robot to be still"));
     }
 
