@@ -35,7 +35,7 @@ pub struct InitReply {
     pub draw_markers: Vec<[f64; 3]>,
     /// Angles that the arms' joints shall have at first, in rad; not yet clamped to the limits.
     pub init_joint_angles: Option<[[f64; 7]; 2]>,
-    /// Whether the script is done already. It is still called back once.
+    /// Whether the script is done already: it is not called back.
     pub exit: bool,
 }
 

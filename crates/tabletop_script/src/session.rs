@@ -193,6 +193,9 @@ impl Session {
                 if let Some(note) = unreachable(&reply) {
                     news.note(&note);
                 }
+                if reply.exit {
+                    return Ok(Some(Answer::Exit));
+                }
                 self.called_at = **tick;
                 self.began_at = **tick;
                 self.stage = Stage::Idle;

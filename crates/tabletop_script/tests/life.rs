@@ -90,16 +90,54 @@ fn a_script_that_exits_leaves_nothing_behind() {
 }
 
 #[test]
-fn exit_in_init_lets_the_callback_run_once() {
+fn exit_in_init_ends_the_script_before_any_callback() {
     let folder = Folder::pair(
-        "aux.exit = 1;",
-        "disp('called'); motor.jointAngles = zeros(2, 7);",
+        "aux.exit = 1; aux.initJointAngles = zeros(2, 7); aux.drawMarkers = [1 2 3];",
+        "disp('called');",
     );
     let mut stage = Stage::start(folder.settings());
     stage.ticks_until(Stage::has_stopped);
-    assert_eq!(stage.printed(), "called");
+    assert_eq!(stage.agent(), &Agent::Off);
+    assert_eq!(stage.printed(), "");
     stage.assert_at_rest();
     assert_eq!(angles(stage.robot()), [[0.0; 7]; 2]);
+}
+
+/// Table 1 of the report, in the order S0, S1, E0, E1, W0, W1, W2: least and greatest angle in rad.
+const TABLE_1: [[f64; 7]; 2] = [
+    [-1.7, -2.147, -3.054, -0.050, -3.059, -FRAC_PI_2, -3.059],
+    [1.7, 1.047, 3.054, 2.618, 3.059, 2.094, 3.059],
+];
+
+#[test]
+fn a_script_reads_table_1_of_the_report_and_the_openings_of_the_grippers() {
+    let matrix = |row: [f64; 7]| {
+        format!(
+            "repmat([{}], 2, 1)",
+            row.map(|x| format!("{x:?}")).join(" ")
+        )
+    };
+    let [least, greatest] = TABLE_1.map(matrix);
+    let init = format!(
+        "assert(isequal(aux.minJointAngles, {least}));
+assert(isequal(aux.maxJointAngles, {greatest}));
+assert(isequal(aux.numLimbs, 2) && isequal(aux.numJoints, 7));
+assert(ischar(aux.path) && aux.path(end) == '/' && exist([aux.path 'testInit.m'], 'file') == 2);
+openings = [];
+"
+    );
+    let callback = "openings(end + 1, :) = sensor.gripperOpening;
+motor.gripperVelocities = [-60; -30];
+if rows(openings) == 3
+  assert(isequal(size(sensor.gripperOpening), [1 2]));
+  assert(abs(openings - [2 2; 1 1.5; 0 1]) < 1e-6);
+  aux.exit = 1;
+end
+";
+    let folder = Folder::pair(&init, callback);
+    let mut stage = Stage::start(folder.settings());
+    stage.ticks_until(|stage| stage.has_stopped() || stage.failure().is_some());
+    assert_eq!(stage.failure(), None);
 }
 
 #[test]
