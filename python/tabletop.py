@@ -62,6 +62,7 @@ except ImportError:
 MAGIC, VERSION = 0x31415454, 1
 DOUBLE, BYTES, TEXT, LOGICAL, PICTURE, MAP, TEXTS, OTHER = range(8)
 MOST_DIMENSIONS = 8
+GREATEST = 2**32 - 1  # extent of an array that can be told
 COUNTS = {"aux.numLimbs", "aux.numJoints"}
 COLUMNS = {"sensor.objects.mass", "sensor.contacts.impulse"}  # a number for each, also where there is only one
 WANTED = ("drawMarkers", "initJointAngles", "exit")  # what a script sets in aux
@@ -174,9 +175,9 @@ def _elements(value):
     if isinstance(value, str):
         value = value[:MOST]
         return TEXT, (1, len(value)), value.encode("utf-8", "replace")
-    shape = getattr(value, "shape", ())
-    if isinstance(shape, tuple) and len(shape) <= MOST_DIMENSIONS and _size(shape) > MOST:
-        return OTHER, shape + (1,) * (2 - len(shape)), b"double"
+    shape = _shape(value)
+    if _size(shape) > MOST:  # nobody wants that much: its size will do
+        return OTHER, tuple(min(extent, GREATEST) for extent in shape) + (1,) * (2 - len(shape)), b"double"
     value = _column(_lists(value))
     extents = _extents(value)
     if extents is None:
@@ -185,12 +186,24 @@ def _elements(value):
         return OTHER, (len(value), 1), kind.encode("utf-8")
     elements = _columns(value, extents)
     dims = extents + (1,) * (2 - len(extents))
-    if _size(extents) > MOST:  # nobody wants that much: its size will do
-        return OTHER, dims, b"double"
     strange = [type(element).__name__ for element in elements if not isinstance(element, numbers.Real)]
     if strange:
         return OTHER, dims, strange[0].encode("utf-8", "replace")
     return DOUBLE, dims, struct.pack("<%dd" % len(elements), *map(_double, elements))
+
+
+def _shape(value):
+    """The extents of an array, or of nested sequences as far as the first of each tells."""
+    shape = getattr(value, "shape", None)
+    if isinstance(shape, tuple) and len(shape) <= MOST_DIMENSIONS:
+        return shape
+    extents = ()
+    while len(extents) < MOST_DIMENSIONS and isinstance(value, Sequence) and not isinstance(value, (str, bytes)):
+        extents += (len(value),)
+        if not value:
+            break
+        value = value[0]
+    return extents
 
 
 def _size(extents):

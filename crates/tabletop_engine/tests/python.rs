@@ -287,6 +287,9 @@ fn what_is_too_large_is_told_by_its_size() {
     assert!(error.starts_with("ValueError: xxx"), "{}", error.len());
     let error = told("motor.jointVelocities = [[0.0] * 3000] * 3000");
     assert!(error.contains("is 3000x3000 double"), "{error}");
+    // So much that nobody can look at all of it.
+    let error = told("motor.jointVelocities = [range(10**12)] * 2");
+    assert!(error.contains("is 2x4294967295 double"), "{error}");
 }
 
 #[test]
@@ -427,7 +430,8 @@ fn hangs_exits_and_missing_files_are_told() {
     let exit =
         "def init(aux): aux.exit = False\ndef callback(sensor, motor, aux): aux.exit = None\n";
     let (_folder, session) = start(exit);
-    assert_eq!(session.init().unwrap().init_joint_angles, None);
+    let reply = session.init().unwrap();
+    assert_eq!((reply.init_joint_angles, reply.exit), (None, true));
     assert!(session.step(&Sensor::default()).unwrap().exit);
 }
 
