@@ -49,6 +49,7 @@ mod headless;
 pub mod replay;
 pub mod report;
 mod settings;
+pub mod shipped;
 pub mod task_files;
 #[cfg(test)]
 mod test_folder;
@@ -57,6 +58,7 @@ pub mod window;
 
 pub use headless::{headless_app, headless_app_with};
 pub use settings::RecordedSettingsPlugin;
+pub use shipped::ShippedFilesPlugin;
 
 use bevy::{app::PluginGroupBuilder, prelude::*};
 
@@ -74,7 +76,8 @@ pub mod prelude {
 /// Everything that simulates, nothing that shows: [`CorePlugin`](core::CorePlugin), [`XmlPlugin`](xml::XmlPlugin),
 /// [`PhysicsPlugin`](physics::PhysicsPlugin), [`ScenePlugin`](scene::ScenePlugin),
 /// [`DemonstratorPlugin`](demonstrator::DemonstratorPlugin), [`BaxterPlugin`](baxter::BaxterPlugin), [`CameraPlugin`](camera::CameraPlugin),
-/// [`RecorderPlugin`](recorder::RecorderPlugin), [`ScriptPlugin`](script::ScriptPlugin) and [`RecordedSettingsPlugin`].
+/// [`RecorderPlugin`](recorder::RecorderPlugin), [`ScriptPlugin`](script::ScriptPlugin), [`RecordedSettingsPlugin`] and
+/// [`ShippedFilesPlugin`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TabletopSimPlugins;
 
@@ -91,5 +94,6 @@ impl PluginGroup for TabletopSimPlugins {
             .add(recorder::RecorderPlugin::default())
             .add(script::ScriptPlugin::default())
             .add(RecordedSettingsPlugin)
+            .add(ShippedFilesPlugin)
     }
 }

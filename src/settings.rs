@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tabletop_baxter::{BaxterPlugin, Description, Source};
-use tabletop_core::{Robot, RobotMode, SimSystems, TickSystems};
+use tabletop_core::{Robot, RobotMode, SimFact, SimSystems, TickSystems, is_shipped};
 use tabletop_kinematics::ModelError;
 use tabletop_physics::PhysicsSettings;
 use tabletop_recorder::SessionSettings;
@@ -14,6 +14,7 @@ use tabletop_recorder::SessionSettings;
 /// Names of the settings in a session log.
 pub(crate) const PHYSICS: &str = "physics";
 pub(crate) const ROBOT: &str = "robot";
+const TASK_FILE: &str = "task_file";
 
 /// What a world must have been made with to go through the same states.
 #[derive(Clone, Debug, Serialize)]
@@ -86,7 +87,7 @@ impl RobotSettings {
     }
 }
 
-/// Writes the [`PhysicsSettings`] and the robot into the headers of recordings.
+/// Writes the [`PhysicsSettings`], the robot and the task file that was loaded last into the headers of recordings.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RecordedSettingsPlugin;
 
@@ -97,6 +98,7 @@ impl Plugin for RecordedSettingsPlugin {
             (
                 note_physics.run_if(resource_exists_and_changed::<PhysicsSettings>),
                 note_robot.run_if(resource_exists_and_changed::<Description>),
+                note_task_file,
             )
                 .chain()
                 .in_set(TickSystems)
@@ -116,9 +118,21 @@ fn value(settings: &impl Serialize) -> serde_json::Result<Value> {
     serde_json::from_str(&serde_json::to_string(settings)?)
 }
 
+fn note_task_file(mut facts: MessageReader<SimFact>, mut settings: ResMut<SessionSettings>) {
+    for fact in facts.read() {
+        if let SimFact::TaskLoaded { path, .. } = fact {
+            let path = path.to_string_lossy();
+            settings.0.insert(TASK_FILE.into(), path.into());
+        }
+    }
+}
+
 /// The same, wherever the program runs that replays it: its meshes are beside the file.
 fn from_everywhere(source: Source) -> Source {
-    let path = absolute(&source.path).unwrap_or(source.path);
+    let path = match is_shipped(&source.path) {
+        true => source.path,
+        false => absolute(&source.path).unwrap_or(source.path),
+    };
     Source { path, ..source }
 }
 

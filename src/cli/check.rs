@@ -3,16 +3,16 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use clap::Args;
-use tabletop::{report, xml::read_task};
+use tabletop::{report, shipped::read_task};
 
 use super::{Failure, Output, WRONG_INPUT, terminal::say};
 
 #[derive(Args)]
 pub(super) struct CheckArgs {
-    /// The task files
+    /// The task files; exit code 2 if there is a fault in one of them
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Print what each file puts on the table, as JSON
+    /// Print what each file puts on the table as JSON
     #[arg(long)]
     dump: bool,
 }

@@ -1,8 +1,10 @@
 //! What the program is told on the command line, and its exit codes: 0 done, 1 the run failed, 2 wrong usage or input.
 
 mod check;
+mod completions;
 #[cfg(feature = "window")]
 mod display;
+mod init;
 #[cfg(feature = "window")]
 mod keys;
 mod replay;
@@ -26,9 +28,10 @@ use terminal::say;
 
 /// A virtual demonstrator environment for robot imitation learning.
 ///
-/// Without a command, opens the window.
+/// Without a command, opens a window in which you show a task by moving objects on a table with the mouse, and drive a robot by hand
+/// or by scripts. The commands do the same without a window, many times faster than real time and with the same result.
 #[derive(Parser)]
-#[command(version)]
+#[command(version, after_long_help = MANUAL)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -38,18 +41,47 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Simulate a task file without a window, as fast as possible
+    /// Simulate a task file or a scenario without a window, as fast as possible
     Run(run::RunArgs),
-    /// Run a recording again, to verify it or to make its pictures anew
+    /// Run a recording again: watch it, verify it, or make its pictures anew
     Replay(replay::ReplayArgs),
-    /// Check task files: every fault with its place; exit code 2 if there is one
+    /// Check task files and name every fault with its place
     Check(check::CheckArgs),
-    /// Answer questions about the robot's joints and frames, a line of JSON each
+    /// Answer questions about the robot's joints and frames for other programs
     Robot(robot::RobotArgs),
     /// List the keys of the window and what they do
     #[cfg(feature = "window")]
     Keys(keys::KeysArgs),
+    /// Write the task files, scenarios and scripts that come with the program to a folder, for you to change
+    ///
+    /// Files that are there already and differ are never overwritten: then nothing is written, and they are named.
+    Init(init::InitArgs),
+    /// Print what your shell needs to complete commands and options
+    ///
+    /// For bash: tabletop completions bash > ~/.local/share/bash-completion/completions/tabletop
+    Completions(completions::CompletionsArgs),
 }
+
+/// What the long help says at its end.
+const MANUAL: &str = "\
+Examples:
+  tabletop                                      open the window
+  tabletop --setup tablesetup/chains.xml        open it with another scene
+  tabletop run scenarios/robot_stack.ron        let the robot build a tower, without a window
+  tabletop run scenarios/stack_two_blocks.ron --record demo
+                                                perform a demonstration and record it
+  tabletop replay demo --window                 watch the recording
+  tabletop run --script python --seconds 20     let a script drive the robot
+  tabletop init work                            write all shipped files to a folder, to change them
+
+Files:
+  Task files, scenarios, scripts and the robot come with the program. Where there is no file at a path such as
+  tablesetup/default.xml, the one that comes with the program is taken; shipped:tablesetup/default.xml always means that one.
+
+Exit codes:
+  0  done
+  1  the run failed: a step or check of a scenario, a script, a replay that differs, a file that cannot be written
+  2  wrong usage or input: an unknown option, a file that is missing or wrong";
 
 /// The task file that is loaded when none is named.
 const DEFAULT_SETUP: &str = "tablesetup/default.xml";
@@ -101,6 +133,8 @@ pub fn main() -> ExitCode {
         Some(Command::Robot(args)) => robot::robot(&args),
         #[cfg(feature = "window")]
         Some(Command::Keys(args)) => keys::list(&args),
+        Some(Command::Init(args)) => init::init(&args),
+        Some(Command::Completions(args)) => completions::completions(&args),
         None => window::open(cli.window),
     };
     result.unwrap_or_else(|failure| {

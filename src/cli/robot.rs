@@ -6,7 +6,10 @@ use bevy::math::{DAffine3, DQuat, DVec3};
 use clap::{Args, Subcommand};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Value, json};
-use tabletop::core::{Arm, JOINTS_PER_ARM, RobotJoint, Table, UNITS_PER_METER, robot_base};
+use tabletop::{
+    core::{Arm, JOINTS_PER_ARM, RobotJoint, Table, UNITS_PER_METER, robot_base},
+    shipped::read_text,
+};
 use tabletop_kinematics::{ArmChain, Model, ModelError, Target, Unreachable, baxter};
 
 use super::{Failure, Output, WRONG_INPUT};
@@ -15,16 +18,16 @@ use super::{Failure, Output, WRONG_INPUT};
 pub(super) struct RobotArgs {
     #[command(subcommand)]
     question: Question,
-    /// A robot in place of the embedded one: a URDF file with the same names of joints and hands
+    /// A robot description (URDF) in place of the Baxter that comes with the program, with the same names of joints and hands
     #[arg(long, value_name = "FILE", global = true)]
     robot: Option<PathBuf>,
 }
 
 #[derive(Subcommand)]
 enum Question {
-    /// Where the robot's frames are, for joint angles from standard input
+    /// Say where the robot's frames are, for joint angles from standard input
     Fk,
-    /// Which joint angles bring a hand somewhere, for poses from standard input
+    /// Say which joint angles bring a hand somewhere, for poses from standard input
     Ik,
 }
 
@@ -143,7 +146,7 @@ impl Answerer {
                 let at = |error: &dyn fmt::Display| {
                     Failure::input(format!("{}: {error}", file.display()))
                 };
-                let text = std::fs::read_to_string(file).map_err(|error| at(&error))?;
+                let text = read_text(file).map_err(|error| at(&error))?;
                 Model::from_urdf(&text).map_err(|error| at(&error))?
             }
         };

@@ -10,16 +10,17 @@ use tabletop::{
     baxter::{BaxterPlugin, Description, Source},
     core::RobotMode,
     script::{ENGINE_VARIABLE, EngineChoice, EngineKind, ScriptSettings, Surroundings, Tell},
+    shipped::{self, shipped_files, true_path},
 };
 
 use super::Failure;
 
 #[derive(Args, Clone)]
 pub(super) struct RobotOptions {
-    /// A robot description (URDF) in place of the Baxter that comes with the program: its arms must have the same joints
+    /// A robot description (URDF) in place of the Baxter that comes with the program; its arms must have the same joints
     #[arg(long, value_name = "FILE")]
     robot: Option<PathBuf>,
-    /// Move the arms by motors with limited torque, instead of exactly as told
+    /// Move the arms by motors with limited torque instead of exactly as told
     #[arg(long)]
     dynamic: bool,
 }
@@ -43,9 +44,9 @@ impl RobotOptions {
 
 fn describe(path: &Path) -> Result<Description, Failure> {
     let at = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", path.display()));
-    let urdf = std::fs::read_to_string(path).map_err(|error| at(&error))?;
+    let urdf = shipped::read_text(path).map_err(|error| at(&error))?;
     let source = Source {
-        path: path.to_owned(),
+        path: true_path(path),
         urdf,
     };
     Description::read(source).map_err(|error| at(&error))
@@ -56,18 +57,17 @@ const OTHER: &str = "other";
 
 #[derive(Args, Clone)]
 pub(super) struct EngineOptions {
-    /// What runs the scripts: `matlab`, `octave`, `python`, `auto`, or the path of a program [default: auto, or TABLETOP_ENGINE].
-    /// With `--script other`, the driver
+    /// What runs the script: `matlab`, `octave`, `python`, `auto`, or the path of a program; with `--script other`, of its driver
+    /// [default: TABLETOP_ENGINE, or auto]
     #[arg(long, value_name = "ENGINE")]
     engine: Option<String>,
-    /// Ticks from one picture that a script gets to the next, 60 a second [default: 15]
+    /// How many ticks pass between two pictures for the script, 60 a second [default: 15]
     #[arg(long, value_name = "N", value_parser = ticks, allow_negative_numbers = true)]
     picture_every: Option<u64>,
-    /// How long to wait for init, and for each call of the callback, before the engine is ended, in seconds [default: 120 and
-    /// 30]
+    /// How many seconds init and each call of the callback may take before the engine is ended [default: 120 and 30]
     #[arg(long, value_name = "S", value_parser = patience, allow_negative_numbers = true)]
     script_timeout: Option<Duration>,
-    /// Let scripts sense with the head camera and the joints alone: no `sensor.objects`, `contacts` and `held`
+    /// Let the script sense with the head camera and the joints alone, without `sensor.objects`, `contacts` and `held`
     #[arg(long)]
     no_objects: bool,
 }
@@ -78,7 +78,10 @@ impl EngineOptions {
     /// # Errors
     /// The engine that is wanted is not there, or does not run this language.
     pub fn settings(&self, script: Option<&str>) -> Result<ScriptSettings, Failure> {
-        let mut settings = ScriptSettings::default();
+        let mut settings = ScriptSettings {
+            shipped: shipped_files().clone(),
+            ..ScriptSettings::default()
+        };
         if self.engine.as_deref().map(parse) == Some(EngineChoice::Auto) {
             settings.surroundings.variable = None;
         }

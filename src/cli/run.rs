@@ -4,6 +4,7 @@ use std::{
     collections::BTreeSet,
     path::{Path, PathBuf},
     process::ExitCode,
+    time::Instant,
 };
 
 use bevy::{app::PluginGroupBuilder, ecs::message::MessageCursor, prelude::*};
@@ -11,15 +12,15 @@ use clap::Args;
 use serde_json::json;
 use tabletop::{
     TabletopSimPlugins,
-    core::{Recording, SceneSpec, SimCommand, SimFact, StepApp as _, TICKS_PER_SECOND},
+    core::{Recording, SceneSpec, SimCommand, SimFact, SimTick, StepApp as _, TICKS_PER_SECOND},
     headless_app_with,
     recorder::{RecorderPlugin, RehearsalPlugin},
     report,
     script::{ScriptPlugin, see_off},
+    shipped::{read_scenario, read_task, true_path},
     task_files::save_task,
-    xml::read_task,
 };
-use tabletop_scenario::{Outcome, Program, Scenario, ScenarioPlugin, ScenarioRun};
+use tabletop_scenario::{Outcome, Program, ScenarioPlugin, ScenarioRun};
 
 use super::{
     Failure, Output, WRONG_INPUT,
@@ -31,16 +32,16 @@ use super::{
 #[derive(Args)]
 #[command(mut_group("EngineOptions", |options| options.requires("script")))]
 pub(super) struct RunArgs {
-    /// A scenario (see docs/scenarios.md): exit code 1 if one of its steps fails
+    /// The scenario to perform (docs/scenarios.md); exit code 1 if one of its steps fails
     #[arg(value_name = "SCENARIO")]
     scenario: Option<PathBuf>,
-    /// The task file [default: tablesetup/default.xml, or the one that the scenario begins with]
+    /// The task file to begin with [default: tablesetup/default.xml, or the one that the scenario names]
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
-    /// How long to simulate, in seconds of simulated time; for a scenario the most that it may take [default: 10, or 600]
+    /// How many seconds to simulate [default: 10]; a scenario fails if it takes longer [default: 600]
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
-    /// Decides where a scenario places objects at random
+    /// What decides where a scenario places objects at random [default: 0]
     #[arg(
         long,
         value_name = "N",
@@ -49,27 +50,29 @@ pub(super) struct RunArgs {
         hide_default_value = true
     )]
     seed: u64,
-    /// Where a scenario's recordings are written; without it, nothing is recorded
+    /// The folder for the scenario's recording; without it, nothing is recorded
     #[arg(long, value_name = "DIR", requires = "scenario")]
     record: Option<PathBuf>,
-    /// Write where every object is in the end, as CSV (`id,x,y,z,rx,ry,rz`); `-` for standard output
+    /// Write the final pose of every object as CSV (`id,x,y,z,rx,ry,rz`); `-` for standard output
     #[arg(long, value_name = "FILE|-")]
     final_state: Option<Output>,
-    /// Write how the robot is in the end, as JSON; `-` for standard output
+    /// Write the robot's final state as JSON; `-` for standard output
     #[arg(long, value_name = "FILE|-")]
     final_robot: Option<Output>,
     /// Save the final state as a new task file
     #[arg(long, value_name = "FILE.xml")]
     save: Option<PathBuf>,
-    /// Let a script drive the robot: `matlab` (the scripts that matlab/agentBehavior.m names), `matlab:FOLDER`, `octave:FOLDER`,
-    /// `python:FILE`, or `other:FILE`, which the driver runs that `--engine` names. Without a scenario, the run ends with the
-    /// script
+    /// The script that drives the robot: `matlab` (the scripts that matlab/agentBehavior.m names), `matlab:FOLDER`, `octave:FOLDER`,
+    /// `python:FILE`, or `other:FILE` for the driver that `--engine` names. Without a scenario, the run ends with the script
     #[arg(long, value_name = "LANGUAGE[:PATH]", value_parser = script)]
     script: Option<String>,
     #[command(flatten)]
     engine: EngineOptions,
     #[command(flatten)]
     robot: RobotOptions,
+    /// Leave out the last line, which says what was done
+    #[arg(long, short)]
+    quiet: bool,
 }
 
 /// Reads a time of 0 to a year.
@@ -92,9 +95,11 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
             let setup = setup.unwrap_or(Path::new(super::DEFAULT_SETUP));
             let (mut app, result) = put_on_table(setup, plugins(args)?)?;
             app.add_systems(FixedLast, tell_what_stops_the_robot);
+            let start = Instant::now();
             let script = Script::start(&mut app, args.script.is_some());
             let script = script.run(&mut app, ticks(seconds.unwrap_or(10.0)));
             args.write_ends(&app)?;
+            args.sum_up(&true_path(setup), "", &app, start);
             script.and(Ok(result))
         }
     }
@@ -139,9 +144,9 @@ fn put_on_table(setup: &Path, plugins: PluginGroupBuilder) -> Result<(App, ExitC
 
 /// Performs a scenario until it is done or has failed.
 fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
-    let mut scenario = Scenario::read(scenario).map_err(Failure::input)?;
+    let mut scenario = read_scenario(scenario).map_err(Failure::input)?;
     if let Some(setup) = &args.setup {
-        scenario.begin_with(setup);
+        scenario.begin_with(&true_path(setup));
     }
     let mut program =
         Program::new(&scenario, read_faultless_task, args.seed).map_err(Failure::input)?;
@@ -152,6 +157,7 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     let mut app = headless_app_with((recording(plugins(args)?, args), ScenarioPlugin));
     app.insert_resource(ScenarioRun::new(program))
         .add_systems(FixedLast, tell_what_stops_the_robot);
+    let start = Instant::now();
     let mut script = Script::start(&mut app, args.script.is_some());
     let mut facts = MessageCursor::<SimFact>::default();
     let mut has_recorded = false;
@@ -166,7 +172,10 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
         match app.world().resource::<ScenarioRun>().outcome() {
             Outcome::Running => {}
             Outcome::Done => break Ok(ExitCode::SUCCESS),
-            Outcome::Failed(error) => break Err(Failure::run(error)),
+            Outcome::Failed(error) => {
+                say(format_args!("tabletop: {error}"));
+                break Err(Failure::silent());
+            }
         }
     };
     see_off(app.world_mut());
@@ -177,6 +186,15 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
             say("tabletop: nothing was recorded: the scenario has no Start");
         }
     }
+    let run = app.world().resource::<ScenarioRun>();
+    let done = run.steps_done() - usize::from(scenario.setup.is_some()).min(run.steps_done());
+    let done = match scenario.steps.len() {
+        all if done == all => counted(all, "step"),
+        all => format!("{done} of {}", counted(all, "step")),
+    };
+    let checks = counted(run.checks_passed(), "check");
+    let done = format!("{done} done, {checks} passed; ");
+    args.sum_up(&scenario.path, &done, &app, start);
     outcome.and_then(|done| script.result().and(Ok(done)))
 }
 
@@ -217,13 +235,16 @@ fn recording(plugins: PluginGroupBuilder, args: &RunArgs) -> PluginGroupBuilder 
     let Some(folder) = args.record.clone() else {
         return plugins.disable::<RecorderPlugin>().add(RehearsalPlugin);
     };
-    let settings = [
-        ("scenario".to_owned(), json!(args.scenario)),
-        ("seed".to_owned(), json!(args.seed)),
-    ];
+    let mut header = serde_json::Map::new();
+    let scenario = args.scenario.as_deref().map(true_path);
+    header.insert("scenario".into(), json!(scenario));
+    if let Some(setup) = &args.setup {
+        header.insert("setup".into(), json!(true_path(setup)));
+    }
+    header.insert("seed".into(), json!(args.seed));
     plugins.set(RecorderPlugin {
         folder,
-        header: settings.into_iter().collect(),
+        header,
         ..default()
     })
 }
@@ -238,6 +259,20 @@ impl RunArgs {
         }
         let mut outputs = self.final_state.iter().chain(&self.final_robot);
         outputs.try_for_each(Output::check)
+    }
+
+    /// Says what was done, since when, and with which file.
+    fn sum_up(&self, file: &Path, done: &str, app: &App, start: Instant) {
+        if self.quiet {
+            return;
+        }
+        let file = file.display();
+        let ticks = app.world().resource::<SimTick>().0;
+        let simulated = ticks as f64 / f64::from(TICKS_PER_SECOND);
+        let real = start.elapsed().as_secs_f64();
+        say(format_args!(
+            "tabletop: {file}: {done}{simulated:.2} s simulated in {real:.2} s"
+        ));
     }
 
     /// Writes what was asked for at the end of a run.
@@ -266,6 +301,14 @@ fn save(app: &App, path: &Path) -> Result<(), Failure> {
         say(format_args!("tabletop: {name}: {unsaid}"));
     }
     Ok(())
+}
+
+/// So many of something, in words.
+fn counted(count: usize, of_what: &str) -> String {
+    match count {
+        1 => format!("1 {of_what}"),
+        count => format!("{count} {of_what}s"),
+    }
 }
 
 /// The scene of a task file, or everything that is wrong with it.

@@ -88,7 +88,7 @@ fn a_mesh_that_is_not_there_is_told_once() {
     let path = scenario("no_mesh.ron", "Robot(Show), Start, Wait(0.5), Finish,");
     let folder = place("no_mesh");
     let [path, robot, folder] = [&path, &robot, &folder].map(|path| path.to_str().unwrap());
-    let output = tabletop(&["run", path, "--robot", robot, "--record", folder]);
+    let output = tabletop(&["run", path, "--robot", robot, "--record", folder, "--quiet"]);
     assert_eq!(output.status.code(), Some(0));
     let said = stderr(&output);
     let words = "WARN link left_wrist is shown by what it is touched by: missing.stl";

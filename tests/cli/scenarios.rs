@@ -19,7 +19,14 @@ fn run(scenario: &Path, arguments: &[&str]) -> Output {
 }
 
 fn passes(name: &str) {
-    let output = run(&shipped("scenarios", name), &[]);
+    passes_with(name, &[]);
+}
+
+fn passes_with(name: &str, options: &[&str]) {
+    let output = run(
+        &shipped("scenarios", name),
+        &[&["--quiet"], options].concat(),
+    );
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_eq!(stderr(&output), "");
 }
@@ -50,6 +57,45 @@ fn the_robot_builds_a_tower() {
 }
 
 #[test]
+fn the_robot_puts_down_a_block_as_wide_as_its_gripper() {
+    passes("robot_place.ron");
+    passes_with("robot_place.ron", &["--dynamic"]);
+}
+
+#[test]
+fn a_run_ends_with_what_was_done() {
+    let path = scenario(
+        "done.ron",
+        "Wait(1), Expect(Exists(\"RedBlock\")), Wait(1),",
+    );
+    let said = stderr(&run(&path, &[]));
+    let line = format!(
+        "tabletop: {}: 3 steps done, 1 check passed; 2.0",
+        path.display()
+    );
+    assert!(said.starts_with(&line), "{said}");
+    assert!(
+        said.contains(" s simulated in 0.") && said.lines().count() == 1,
+        "{said}"
+    );
+
+    let path = scenario(
+        "half_done.ron",
+        "Wait(1), Expect(Gone(\"RedBlock\")), Wait(1),",
+    );
+    let said = stderr(&run(&path, &[]));
+    let last = said.lines().last().unwrap();
+    assert!(
+        last.contains(": 1 of 3 steps done, 0 checks passed; 1.0"),
+        "{said}"
+    );
+
+    let said = stderr(&tabletop(&["run", "--seconds", "3"]));
+    let line = "tabletop: tablesetup/default.xml: 3.00 s simulated in ";
+    assert!(said.starts_with(line), "{said}");
+}
+
+#[test]
 fn every_shipped_scenario_has_its_test() {
     let files = fs::read_dir(shipped("scenarios", "")).unwrap();
     let mut names: Vec<_> = files
@@ -60,6 +106,7 @@ fn every_shipped_scenario_has_its_test() {
         "break_chain.ron",
         "build_letters.ron",
         "lidbox.ron",
+        "robot_place.ron",
         "robot_stack.ron",
         "stack_two_blocks.ron",
     ];
@@ -218,7 +265,7 @@ fn a_recording_that_cannot_go_on_ends_the_scenario() {
     let folder = place("scenario-small-files");
     let path = shipped("scenarios", "stack_two_blocks.ron");
     let [path, folder] = [&path, &folder].map(|path| path.to_str().unwrap());
-    let output = small_files(&["run", path, "--record", folder]);
+    let output = small_files(&["run", path, "--record", folder, "--quiet"]);
     assert_eq!(output.status.code(), Some(1));
     let said = stderr(&output);
     let words = format!(": the recording has ended: cannot write {folder}");
@@ -276,7 +323,10 @@ fn a_recording_ends_with_its_scenario() {
     ] {
         let folder = place(name);
         let scenario = scenario(&format!("{name}.ron"), steps);
-        let output = run(&scenario, &["--record", folder.to_str().unwrap()]);
+        let output = run(
+            &scenario,
+            &["--quiet", "--record", folder.to_str().unwrap()],
+        );
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         assert_eq!(stderr(&output), told);
         if told.is_empty() {
@@ -304,7 +354,7 @@ fn two_programs_do_not_record_into_one_folder() {
         assert_eq!(first.try_wait().unwrap(), None, "it ended too early");
     }
     let short = scenario("shared_short.ron", "Start, Wait(0.1), Finish,");
-    let output = run(&short, &["--record", into]);
+    let output = run(&short, &["--quiet", "--record", into]);
     first.kill().unwrap();
     first.wait().unwrap();
     assert_eq!(output.status.code(), Some(1));

@@ -457,7 +457,7 @@ fn what_is_printed_is_shown_while_the_script_runs() {
     let go = folder("progress").join("go");
     let wait = format!("print('halfway')\n    while not os.path.exists({go:?}): time.sleep(0.01)");
     let script = python("progress-script", &wait, "aux.exit = 1");
-    let mut run = command(&["run", "--script", &script])
+    let mut run = command(&["run", "--quiet", "--script", &script])
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
@@ -520,7 +520,7 @@ fn markers_nobody_can_see_are_the_scripts_fault_and_not_the_scenarios() {
     let scenario = scenario("far.ron", "Wait(0.2)");
     let reason = "aux.drawMarkers[1][1] is -1e39; it must be";
     for beside in [None, scenario.to_str()] {
-        let run = ["run", "--seconds", "1", "--script", &script];
+        let run = ["run", "--quiet", "--seconds", "1", "--script", &script];
         let output = command(&run).args(beside).output().unwrap();
         assert_eq!(output.status.code(), Some(1));
         let printed = stderr(&output);

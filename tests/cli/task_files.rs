@@ -127,6 +127,7 @@ fn five_faults_give_five_located_messages() {
 
     let run = tabletop(&[
         "run",
+        "--quiet",
         "--setup",
         path,
         "--seconds",

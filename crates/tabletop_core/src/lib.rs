@@ -43,6 +43,7 @@ mod robot_news;
 mod scene;
 mod sensor;
 mod shape;
+mod shipped;
 mod timeline;
 mod twist;
 mod user;
@@ -78,6 +79,7 @@ pub use robot::{
 pub use scene::{ChainSpec, Joint, JointKind, JointSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
 pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage};
 pub use shape::{Part, Primitive, Shape, Solid};
+pub use shipped::{ShippedFile, ShippedFiles, is_shipped, seen_from};
 pub use timeline::{
     Act, Actor, Timeline, TimelineGrip, TimelinePicture, TimelineSegment, TimelineStage, Verb,
 };

@@ -2,7 +2,7 @@
 
 use std::{
     env,
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::{
         Arc, Mutex, PoisonError,
         mpsc::{self, Receiver, Sender},
@@ -18,6 +18,7 @@ use crate::{
     error::EngineError,
     find::FoundEngine,
     motor::Motor,
+    private_folder::PrivateFolder,
     process::Killer,
     sensor::Sensor,
     worker::{Signal, Worker},
@@ -73,6 +74,8 @@ pub struct EngineConfig {
     pub display: bool,
     /// How much is kept of what the script prints.
     pub output: Output,
+    /// Where the agent is if its files come from the program; it goes with the last of those that need it.
+    written: Option<Arc<PrivateFolder>>,
 }
 
 impl EngineConfig {
@@ -96,7 +99,32 @@ impl EngineConfig {
             timeouts: Timeouts::default(),
             display: !unix || set("DISPLAY") || set("WAYLAND_DISPLAY"),
             output: Output::default(),
+            written: None,
         }
+    }
+
+    /// Takes an agent of which nothing is on disk: its files, by their paths, are written to a folder that is there as long as the
+    /// engine is. `agent` is the path of one of them, or of a folder.
+    ///
+    /// # Errors
+    /// They cannot be written anywhere.
+    pub fn write_agent<'a>(
+        &mut self,
+        agent: &Path,
+        files: impl IntoIterator<Item = (&'a str, &'a str)> + Clone,
+    ) -> Result<(), EngineError> {
+        let folder = PrivateFolder::filled(|folder| {
+            let mut files = files.clone().into_iter();
+            files.try_for_each(|(path, text)| folder.write(path, text.as_bytes()))
+        })?;
+        self.agent = folder.path().join(agent);
+        self.written = Some(Arc::new(folder));
+        Ok(())
+    }
+
+    /// Whether the agent goes with the engine.
+    pub(crate) fn is_agent_temporary(&self) -> bool {
+        self.written.is_some()
     }
 }
 

@@ -58,6 +58,7 @@ mod misuse;
 mod motor;
 mod output;
 mod places;
+mod private_folder;
 mod process;
 pub mod protocol;
 mod readiness;

@@ -40,6 +40,9 @@ const GRACE: Duration = Duration::from_secs(1);
 /// Figures are brought up to date at most this often.
 const DRAW_INTERVAL: Duration = Duration::from_millis(200);
 
+/// What the user should know of an agent that is not on disk.
+const TEMPORARY: &str = "the scripts that come with the program run in a temporary folder: what they save there goes with it";
+
 /// What the worker hears.
 #[derive(Debug)]
 pub(crate) enum Signal {
@@ -167,6 +170,9 @@ impl Running {
         let program = self.worker.config.engine.program.display();
         let description = format!("{engine} ({program})");
         drop(self.worker.outbox.send(Reply::Started { description }));
+        if self.worker.config.is_agent_temporary() {
+            self.note(TEMPORARY);
+        }
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use tabletop_core::{Random, SceneSpec, TICKS_PER_SECOND};
+use tabletop_core::{Random, SceneSpec, TICKS_PER_SECOND, seen_from};
 
 use crate::{LocatedStep, Scenario, ScenarioError, SourceLocation, Step, place::place_all};
 
@@ -51,7 +51,7 @@ impl Program {
         let steps = scenario.setup.iter().chain(&scenario.steps);
         let steps = steps.map(|LocatedStep { at, text, step }| {
             let action = match step {
-                Step::Load { file, place } => load(&folder.join(file))
+                Step::Load { file, place } => load(&seen_from(folder, file))
                     .and_then(|mut scene| {
                         place_all(&mut scene, place, &mut random)?;
                         Ok(Action::SetScene(Box::new(scene)))

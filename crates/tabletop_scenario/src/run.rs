@@ -4,7 +4,11 @@ use bevy::prelude::*;
 use tabletop_core::{Random, SimCommand, TICKS_PER_SECOND};
 
 use crate::{
-    Program, ScenarioError, act::Progress, program::ProgramStep, rest::Stillness, robot::is_still,
+    Program, ScenarioError, Step,
+    act::Progress,
+    program::{Action, ProgramStep},
+    rest::Stillness,
+    robot::is_still,
     seen::Seen,
 };
 
@@ -63,6 +67,18 @@ impl ScenarioRun {
     /// What is random.
     pub(crate) fn random(&mut self) -> &mut Random {
         &mut self.program.random
+    }
+
+    /// How many steps are done, with the one that loads the `setup`.
+    pub const fn steps_done(&self) -> usize {
+        self.next
+    }
+
+    /// How many of them were checks.
+    pub fn checks_passed(&self) -> usize {
+        let done = self.program.steps.iter().take(self.next);
+        done.filter(|step| matches!(step.action, Action::Do(Step::Expect(_))))
+            .count()
     }
 
     /// Takes the steps that are due in a tick: at most one of them gives a command. `refusal` is what the last tick's
@@ -197,6 +213,14 @@ mod tests {
             stage.failure(),
             "s.ron:1:17: Grasp(\"x\"): refused: no such object"
         );
+    }
+
+    #[test]
+    fn what_is_done_is_counted() {
+        let mut stage =
+            Stage::new("Clear, Expect(Gone(\"x\")), Clear, Expect(Exists(\"x\")), Clear");
+        stage.failure();
+        assert_eq!((stage.run.steps_done(), stage.run.checks_passed()), (3, 1));
     }
 
     #[test]

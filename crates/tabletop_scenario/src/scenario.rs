@@ -7,6 +7,7 @@ use std::{
 
 use ron::{Options, error::SpannedError, extensions::Extensions, value::RawValue};
 use serde::Deserialize;
+use tabletop_core::is_shipped;
 
 use crate::{ScenarioError, SourceLocation, Step};
 
@@ -97,7 +98,10 @@ impl Scenario {
     /// Lets it begin with this task file, which is relative to the working directory, in place of its own.
     pub fn begin_with(&mut self, task: &Path) {
         let at = SourceLocation::start_of(&self.path);
-        let task = std::path::absolute(task).unwrap_or(task.to_owned());
+        let task = match is_shipped(task) {
+            true => task.to_owned(),
+            false => std::path::absolute(task).unwrap_or(task.to_owned()),
+        };
         self.setup = Some(LocatedStep::setup(at, task));
     }
 }

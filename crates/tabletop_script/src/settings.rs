@@ -1,12 +1,13 @@
 //! What can be chosen about scripts.
 
 use std::{
+    ffi::OsStr,
     path::{Path, PathBuf},
     time::Duration,
 };
 
 use bevy::prelude::*;
-use tabletop_core::{AgentNews, TICKS_PER_SECOND};
+use tabletop_core::{AgentNews, ShippedFiles, TICKS_PER_SECOND};
 use tabletop_engine::{EngineChoice, EngineConfig, EngineError, Output, Surroundings, Timeouts};
 
 use crate::mentions::mention;
@@ -33,6 +34,8 @@ pub struct ScriptSettings {
     pub waiting: Waiting,
     /// Where engines are looked for.
     pub surroundings: Surroundings,
+    /// Agents of which nothing is on disk are taken from these files.
+    pub shipped: ShippedFiles,
     /// Gets the script's news as they come, also in the middle of a tick that waits for the script.
     pub overhear: Option<fn(&AgentNews)>,
 }
@@ -74,12 +77,19 @@ impl ScriptSettings {
     /// What the engine is started with.
     ///
     /// # Errors
-    /// The engine that is wanted is not there.
+    /// The engine that is wanted is not there, or scripts from the program cannot be written anywhere.
     pub fn engine_config(&self) -> Result<EngineConfig, EngineError> {
         let engine = self.surroundings.find(&self.engine)?;
         let mut config = EngineConfig::new(engine);
         if let Some(agent) = &self.agent {
             config.agent.clone_from(agent);
+        }
+        if let Some(agent) = self.shipped.resolve(&config.agent)
+            && let Some(folder) = agent.iter().next().and_then(OsStr::to_str)
+        {
+            let files = self.shipped.in_folder(folder);
+            let files: Vec<_> = files.map(|file| (file.path, file.text)).collect();
+            config.write_agent(&agent, files)?;
         }
         config.pair.clone_from(&self.pair);
         config.timeouts = self.timeouts;
@@ -102,6 +112,7 @@ impl Default for ScriptSettings {
             timeouts: Timeouts::default(),
             waiting: Waiting::Blocking,
             surroundings: Surroundings::system(),
+            shipped: ShippedFiles::default(),
             overhear: None,
         }
     }

@@ -1,37 +1,51 @@
 //! Task files in the simulation.
 
-use std::path::Path;
-
 use bevy::prelude::*;
-use tabletop_core::{SceneSpec, SimCommand, SimFact, SimSystems};
+use tabletop_core::{SceneSpec, ShippedFiles, SimCommand, SimFact, SimSystems};
 
-use crate::read_task;
+use crate::{ParsedTask, ReadError, parse, read_task};
 
 /// Carries out [`SimCommand::LoadTask`]: in [`SimSystems::Load`] the command becomes a [`SimCommand::SetScene`] with
 /// what the file says, in the same place of the order, and a [`SimFact::TaskLoaded`] tells its faults, which are
-/// logged, too. A file that cannot be read gives an empty table.
+/// logged, too. A file that cannot be read gives an empty table; one that is not there may be among the [`ShippedFiles`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct XmlPlugin;
 
 impl Plugin for XmlPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(FixedUpdate, load_tasks.in_set(SimSystems::Load));
+        app.init_resource::<ShippedFiles>()
+            .add_systems(FixedUpdate, load_tasks.in_set(SimSystems::Load));
     }
 }
 
-fn load_tasks(mut commands: MessageMutator<SimCommand>, mut facts: MessageWriter<SimFact>) {
+fn load_tasks(
+    mut commands: MessageMutator<SimCommand>,
+    mut facts: MessageWriter<SimFact>,
+    shipped: Res<ShippedFiles>,
+) {
     for command in commands.read() {
         if let SimCommand::LoadTask(path) = command {
             let path = std::mem::take(path);
-            let (scene, faults) = load(&path);
+            let (path, task) = match shipped.find(&path) {
+                Some(file) => {
+                    let name = file.name();
+                    let task = parse(&name, file.text.as_bytes());
+                    (name, Ok(task))
+                }
+                None => {
+                    let task = read_task(&path);
+                    (path, task)
+                }
+            };
+            let (scene, faults) = scene_and_faults(task);
             *command = SimCommand::SetScene(Box::new(scene));
             facts.write(SimFact::TaskLoaded { path, faults });
         }
     }
 }
 
-fn load(path: &Path) -> (SceneSpec, Vec<String>) {
-    match read_task(path) {
+fn scene_and_faults(task: Result<ParsedTask, ReadError>) -> (SceneSpec, Vec<String>) {
+    match task {
         Ok(task) => {
             let faults: Vec<String> = task.faults.iter().map(ToString::to_string).collect();
             for fault in &faults {
@@ -50,7 +64,7 @@ fn load(path: &Path) -> (SceneSpec, Vec<String>) {
 mod tests {
     use std::{fs, path::PathBuf};
 
-    use tabletop_core::{CorePlugin, Paused, StepApp as _};
+    use tabletop_core::{CorePlugin, Paused, ShippedFile, StepApp as _};
 
     use super::*;
 
@@ -124,6 +138,30 @@ mod tests {
             "{faults:?}"
         );
         fs::remove_file(path).unwrap();
+    }
+
+    #[test]
+    fn a_file_that_is_not_there_is_taken_from_the_program() {
+        const CUBE: ShippedFile = ShippedFile {
+            path: "tablesetup/plugin-cube.xml",
+            text: "<tabletop xmlns='http://synapse.cs.umd.edu/tabletop-xml' xspan='8'/>",
+        };
+        let mut app = app();
+        app.insert_resource(ShippedFiles::new([CUBE]));
+        app.world_mut()
+            .write_message(SimCommand::LoadTask(CUBE.path.into()));
+        app.step(1);
+        let seen = app.world().resource::<Seen>();
+        assert_eq!(
+            seen.facts,
+            [SimFact::TaskLoaded {
+                path: CUBE.name(),
+                faults: Vec::new(),
+            }]
+        );
+        assert!(
+            matches!(&seen.commands[..], [SimCommand::SetScene(scene)] if scene.table.xspan == 8.0)
+        );
     }
 
     #[test]

@@ -1,0 +1,91 @@
+//! `tabletop init`: a working folder with what is inside the program, to be changed.
+
+use std::{
+    fs,
+    io::ErrorKind,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+use clap::Args;
+use tabletop::{
+    core::ShippedFile,
+    shipped::{WORKING_FOLDERS, shipped_files},
+};
+
+use super::{Failure, Output};
+
+#[derive(Args)]
+pub(super) struct InitArgs {
+    /// The folder, which is made if it is not there; `.` for the current one
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+}
+
+/// What is at the place of a file.
+enum Found {
+    Nothing,
+    TheSame,
+    SomethingElse,
+}
+
+/// Writes the files that are not there, unless one is there and differs.
+pub(super) fn init(args: &InitArgs) -> Result<ExitCode, Failure> {
+    let mut missing = Vec::new();
+    let mut differing = Vec::new();
+    for folder in WORKING_FOLDERS {
+        for file in shipped_files().in_folder(folder) {
+            let path = args.folder.join(file.path);
+            match look_at(&path, file)? {
+                Found::Nothing => missing.push((path, file)),
+                Found::TheSame => {}
+                Found::SomethingElse => differing.push(path),
+            }
+        }
+    }
+    if !differing.is_empty() {
+        let lines = differing
+            .iter()
+            .map(|path| format!("\n  {}", path.display()));
+        return Err(Failure::run(format!(
+            "nothing was written, because these files are there and differ:{}",
+            lines.collect::<String>()
+        )));
+    }
+    for (path, file) in &missing {
+        let folder = path.parent().unwrap_or(&args.folder);
+        fs::create_dir_all(folder)
+            .and_then(|()| fs::write(path, file.text))
+            .map_err(|error| Failure::run(format!("{}: {error}", path.display())))?;
+    }
+    for folder in WORKING_FOLDERS {
+        let written = missing.iter().filter(|(_, file)| is_in(folder, file));
+        let written = written.count();
+        let there = shipped_files().in_folder(folder).count() - written;
+        let place = args.folder.join(folder);
+        let line = match (written, there) {
+            (written, 0) => format!("{}: {written} files written\n", place.display()),
+            (0, there) => format!("{}: {there} files there already\n", place.display()),
+            (written, there) => format!(
+                "{}: {written} files written, {there} there already\n",
+                place.display()
+            ),
+        };
+        Output::Stdout.write(line.as_bytes())?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn look_at(path: &Path, file: &ShippedFile) -> Result<Found, Failure> {
+    match fs::read(path) {
+        Ok(bytes) if bytes == file.text.as_bytes() => Ok(Found::TheSame),
+        Ok(_) => Ok(Found::SomethingElse),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Found::Nothing),
+        Err(error) if error.kind() == ErrorKind::IsADirectory => Ok(Found::SomethingElse),
+        Err(error) => Err(Failure::run(format!("{}: {error}", path.display()))),
+    }
+}
+
+fn is_in(folder: &str, file: &ShippedFile) -> bool {
+    Path::new(file.path).starts_with(folder)
+}

@@ -1,0 +1,180 @@
+//! What is inside the program, so that it can be started in any folder: task files, scenarios, scripts and robots.
+//!
+//! Where a path of the command line, a scenario or [`SimCommand::LoadTask`](tabletop_core::SimCommand::LoadTask) leads to nothing,
+//! the file of the same path is taken from here. Its own name, `shipped:tablesetup/default.xml`, means it in any case.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    sync::LazyLock,
+};
+
+use bevy::prelude::*;
+use include_dir::{Dir, include_dir};
+use tabletop_core::{ShippedFile, ShippedFiles};
+use tabletop_scenario::{Scenario, ScenarioError};
+use tabletop_xml::{ParsedTask, ReadError};
+
+/// The folders of a working folder.
+pub const WORKING_FOLDERS: [&str; 4] = ["tablesetup", "matlab", "scenarios", "python"];
+
+/// What is in them.
+static CONTENTS: [Dir; WORKING_FOLDERS.len()] = [
+    include_dir!("$CARGO_MANIFEST_DIR/tablesetup"),
+    include_dir!("$CARGO_MANIFEST_DIR/matlab"),
+    include_dir!("$CARGO_MANIFEST_DIR/scenarios"),
+    include_dir!("$CARGO_MANIFEST_DIR/python"),
+];
+
+/// The endings of their files; what else a script may have left there is not shipped.
+const ENDINGS: [&str; 5] = ["xml", "xsd", "m", "ron", "py"];
+
+/// The descriptions of robots; what they name is known to the program.
+const ROBOTS: [ShippedFile; 2] = [
+    ShippedFile {
+        path: "assets/baxter/baxter.urdf",
+        text: include_str!("../assets/baxter/baxter.urdf"),
+    },
+    ShippedFile {
+        path: "assets/baxter/baxter_smile.urdf",
+        text: include_str!("../assets/baxter/baxter_smile.urdf"),
+    },
+];
+
+/// All files that are inside the program.
+pub fn shipped_files() -> &'static ShippedFiles {
+    static FILES: LazyLock<ShippedFiles> = LazyLock::new(|| {
+        let folders = WORKING_FOLDERS.into_iter().zip(&CONTENTS);
+        let files = folders.flat_map(|(folder, contents)| {
+            contents.files().filter_map(move |file| {
+                let name = file.path().to_str()?;
+                let ending = file.path().extension()?.to_str()?;
+                ENDINGS.contains(&ending).then_some(ShippedFile {
+                    // Made once, and needed until the end.
+                    path: format!("{folder}/{name}").leak(),
+                    text: file.contents_utf8()?,
+                })
+            })
+        });
+        ShippedFiles::new(files.chain(ROBOTS))
+    });
+    &FILES
+}
+
+/// Lets [`LoadTask`](tabletop_core::SimCommand::LoadTask) find what is inside the program.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ShippedFilesPlugin;
+
+impl Plugin for ShippedFilesPlugin {
+    fn build(&self, app: &mut App) {
+        app.insert_resource(shipped_files().clone());
+    }
+}
+
+/// Reads a task file, from the folder or the program.
+///
+/// # Errors
+///
+/// It is in neither, or cannot be read.
+pub fn read_task(path: &Path) -> Result<ParsedTask, ReadError> {
+    match shipped_files().find(path) {
+        Some(file) => Ok(tabletop_xml::parse(&file.name(), file.text.as_bytes())),
+        None => tabletop_xml::read_task(path),
+    }
+}
+
+/// Reads a scenario, from the folder or the program. The task files that a shipped one names are shipped ones.
+///
+/// # Errors
+///
+/// It is in neither, cannot be read, or is wrong.
+pub fn read_scenario(path: &Path) -> Result<Scenario, ScenarioError> {
+    match shipped_files().find(path) {
+        Some(file) => Scenario::parse(file.name(), file.text),
+        None => Scenario::read(path),
+    }
+}
+
+/// Reads any text, from the folder or the program.
+///
+/// # Errors
+///
+/// It is in neither, or cannot be read.
+pub fn read_text(path: &Path) -> io::Result<String> {
+    match shipped_files().find(path) {
+        Some(file) => Ok(file.text.to_owned()),
+        None => fs::read_to_string(path),
+    }
+}
+
+/// The path that means the same file whatever is in the folder.
+pub fn true_path(path: &Path) -> PathBuf {
+    match shipped_files().find(path) {
+        Some(file) => file.name(),
+        None => path.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_file_of_the_working_folders_is_shipped_as_it_is() {
+        for folder in WORKING_FOLDERS {
+            let mut paths: Vec<_> = fs::read_dir(folder)
+                .unwrap()
+                .map(|entry| entry.unwrap().path())
+                .filter(|path| {
+                    let ending = path.extension().and_then(|ending| ending.to_str());
+                    ending.is_some_and(|ending| ENDINGS.contains(&ending))
+                })
+                .collect();
+            paths.sort();
+            let shipped: Vec<_> = shipped_files().in_folder(folder).collect();
+            let listed: Vec<_> = shipped.iter().map(|file| Path::new(file.path)).collect();
+            assert_eq!(listed, paths, "touch src/shipped.rs after a new file");
+            for file in shipped {
+                assert_eq!(
+                    fs::read_to_string(file.path).unwrap(),
+                    file.text,
+                    "{}",
+                    file.path
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn every_shipped_scenario_and_task_file_is_read_where_there_are_none() {
+        for file in shipped_files().in_folder("tablesetup") {
+            if file.path.ends_with(".xml") {
+                let task = read_task(&file.name()).unwrap();
+                assert_eq!(task.faults, [], "{}", file.path);
+            }
+        }
+        for file in shipped_files().in_folder("scenarios") {
+            let scenario = read_scenario(&file.name()).unwrap();
+            let program = tabletop_scenario::Program::new(
+                &scenario,
+                |path| {
+                    assert!(tabletop_core::is_shipped(path), "{}", path.display());
+                    let task = read_task(path).map_err(|error| error.to_string())?;
+                    Ok(task.scene)
+                },
+                0,
+            );
+            program.unwrap_or_else(|error| panic!("{error}"));
+        }
+    }
+
+    #[test]
+    fn a_file_of_the_folder_is_what_its_path_says() {
+        let path = Path::new("tablesetup/default.xml");
+        assert_eq!(true_path(path), path);
+        let shipped = Path::new("shipped:tablesetup/default.xml");
+        assert_eq!(true_path(shipped), shipped);
+        let missing = Path::new("tablesetup/missing.xml");
+        assert_eq!(true_path(missing), missing);
+    }
+}
