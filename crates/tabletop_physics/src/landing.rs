@@ -82,6 +82,8 @@ fn are_aligned(first: Quat, second: Quat) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::f32::consts::FRAC_PI_2;
+
     use super::*;
 
     #[test]
@@ -89,7 +91,7 @@ mod tests {
         let yawed = Quat::from_rotation_z(0.4);
         assert!(are_aligned(yawed, Quat::IDENTITY));
         assert!(are_aligned(
-            yawed * Quat::from_rotation_x(1.5708),
+            yawed * Quat::from_rotation_x(FRAC_PI_2),
             Quat::IDENTITY
         ));
         assert!(!are_aligned(
