@@ -73,3 +73,41 @@ fn every_line_of_a_table_is_proven_by_tests_that_exist() {
         }
     }
 }
+
+/// What is compiled of the program: its sources without their tests, but for the table of actions itself.
+fn sources() -> String {
+    fn read(folder: &Path, text: &mut String) {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() && !path.ends_with("keymap") {
+                read(&path, text);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                let source = fs::read_to_string(&path).unwrap();
+                let tests = source.find("#[cfg(test)]\nmod tests");
+                text.push_str(&source[..tests.unwrap_or(source.len())]);
+            }
+        }
+    }
+    let mut text = String::new();
+    read(&root().join("src"), &mut text);
+    for entry in fs::read_dir(root().join("crates")).unwrap() {
+        read(&entry.unwrap().path().join("src"), &mut text);
+    }
+    text
+}
+
+#[test]
+fn every_action_is_read_somewhere() {
+    let sources = sources();
+    let unread: Vec<_> = Action::ALL
+        .into_iter()
+        .filter(|action| {
+            let name = format!("{action:?}");
+            let (variant, _) = name.split_once('(').unwrap_or((&name, ""));
+            let named = format!("Action::{variant}");
+            let mut found = sources.match_indices(&named);
+            !found.any(|(at, _)| !sources[at + named.len()..].starts_with(char::is_alphanumeric))
+        })
+        .collect();
+    assert_eq!(unread, []);
+}
