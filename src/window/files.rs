@@ -8,7 +8,7 @@ mod reload;
 use std::path::Path;
 
 use bevy::{ecs::system::SystemState, prelude::*, window::FileDragAndDrop};
-use tabletop_core::{OpenRecording, SimCommand};
+use tabletop_core::{OpenRecording, ShippedFiles, SimCommand};
 use tabletop_gui::{FileRequest, Files, Notices, Purpose, TaskFile, Tone};
 
 use self::{
@@ -22,6 +22,7 @@ use crate::task_files::{TASK_FOLDER, save_task, task_files};
 pub(super) fn plugin(app: &mut App) {
     app.add_plugins((recent::plugin, reload::plugin))
         .init_resource::<Dialog>()
+        .init_resource::<ShippedFiles>()
         .add_systems(Startup, |mut requests: MessageWriter<FileRequest>| {
             requests.write(FileRequest::ListTasks);
         })
@@ -57,13 +58,25 @@ fn carry_out(world: &mut World, reader: &mut SystemState<MessageReader<FileReque
     Ok(())
 }
 
+/// Lists the files of the working folder, and those inside the program that have no namesake there.
 fn list_tasks(world: &mut World) {
-    let tasks = task_files(Path::new(TASK_FOLDER)).into_iter();
-    let tasks = tasks.map(|path| TaskFile {
-        name: name(&path),
-        path,
+    let own = task_files(Path::new(TASK_FOLDER));
+    let shipped = world.resource::<ShippedFiles>().in_folder(TASK_FOLDER);
+    let shipped = shipped.filter(|file| {
+        let path = Path::new(file.path);
+        path.extension().is_some_and(|ending| ending == "xml") && !own.iter().any(|own| own == path)
     });
-    world.resource_mut::<Files>().tasks = tasks.collect();
+    let shipped: Vec<_> = shipped
+        .map(|file| TaskFile {
+            name: format!("{} (shipped)", name(Path::new(file.path))),
+            path: file.name(),
+        })
+        .collect();
+    let own = own.iter().map(|path| TaskFile {
+        name: name(path),
+        path: path.clone(),
+    });
+    world.resource_mut::<Files>().tasks = own.chain(shipped).collect();
 }
 
 fn open(world: &mut World, path: &Path) {
@@ -116,7 +129,7 @@ mod tests {
         path::{Path, PathBuf},
     };
 
-    use tabletop_core::{CorePlugin, Recording, SimFact};
+    use tabletop_core::{CorePlugin, Recording, ShippedFile, SimFact};
     use tabletop_gui::{Browser, Preferences};
 
     use super::*;
@@ -208,6 +221,25 @@ mod tests {
             assert!(written::<SimCommand>(&other).is_empty());
             assert!(written::<OpenRecording>(&other).is_empty());
         }
+    }
+
+    #[test]
+    fn files_inside_the_program_are_listed_after_those_of_the_folder() {
+        let folder = folder("listed");
+        let mut app = app(&folder);
+        let shipped = [
+            "tablesetup/default.xml",
+            "tablesetup/mine.xml",
+            "tablesetup/a.xsd",
+        ];
+        let shipped = shipped.map(|path| ShippedFile { path, text: TASK });
+        app.insert_resource(ShippedFiles::new(shipped));
+        ask(&mut app, FileRequest::ListTasks);
+        let tasks = &app.world().resource::<Files>().tasks;
+        let names: Vec<_> = tasks.iter().map(|task| &*task.name).collect();
+        assert_eq!(names.last(), Some(&"mine.xml (shipped)"));
+        assert!(names.contains(&"default.xml") && !names.contains(&"default.xml (shipped)"));
+        assert_eq!(tasks.last().unwrap().path, shipped[1].name());
     }
 
     #[test]

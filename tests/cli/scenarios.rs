@@ -42,6 +42,11 @@ fn letters_are_built() {
 }
 
 #[test]
+fn presets_are_made_and_cleared() {
+    passes("presets.ron");
+}
+
+#[test]
 fn a_block_is_put_into_the_lid_box() {
     passes("lidbox.ron");
 }
@@ -106,6 +111,7 @@ fn every_shipped_scenario_has_its_test() {
         "break_chain.ron",
         "build_letters.ron",
         "lidbox.ron",
+        "presets.ron",
         "robot_place.ron",
         "robot_stack.ron",
         "stack_two_blocks.ron",
