@@ -34,7 +34,6 @@ mod widgets;
 pub use files::{FileRequest, Files, TaskFile};
 pub use panels::help::Help;
 pub use panels::messages::{Notices, Tone};
-pub use panels::status::Renderer;
 pub use panels::{Browser, Panel, Panels, Purpose};
 pub use picture::Picture;
 pub use preferences::Preferences;
@@ -66,49 +65,90 @@ impl Plugin for GuiPlugin {
                 PostUpdate,
                 EguiPostUpdateSet::PostProcessOutput.before(AssetEventSystems),
             )
-            .add_observer(draw_panels_over)
-            .add_plugins((picture::plugin, panels::display::plugin))
-            .add_plugins((
-                widgets::style::plugin,
-                input::focus::plugin,
-                input::keys::plugin,
-                input::history_keys::plugin,
-                input::pointer::plugin,
-                input::mouse::plugin,
-                input::plane::plugin,
-                input::turns::plugin,
-                panels::demo_tools::plugin,
-                panels::memory::plugin,
-                panels::bar::plugin,
-                panels::messages::plugin,
-                panels::toasts::plugin,
-                panels::pause::plugin,
-                scale::plugin,
-            ))
-            .add_plugins((
-                keymap_file::plugin,
-                input::object_keys::plugin,
-                panels::help::plugin,
-                input::jog::plugin,
-                input::robot_keys::plugin,
-                panels::messages::robot::plugin,
-                panels::robot::plugin,
-                input::script_control::plugin,
-                panels::status::plugin,
-                panels::head_view::plugin,
-                panels::timeline::plugin,
-                input::snapshot::plugin,
-                input::navigate::plugin,
-                panels::camera::plugin,
-            ))
-            .add_plugins((
-                files::plugin,
-                panels::objects::plugin,
-                panels::browser::plugin,
-            ));
+            .add_observer(draw_panels_over);
+        add_parts(app);
     }
+}
+
+/// All that does not need a renderer.
+fn add_parts(app: &mut App) {
+    app.add_plugins((
+        widgets::style::plugin,
+        input::focus::plugin,
+        input::keys::plugin,
+        input::history_keys::plugin,
+        input::pointer::plugin,
+        input::mouse::plugin,
+        input::plane::plugin,
+        input::turns::plugin,
+        panels::demo_tools::plugin,
+        panels::memory::plugin,
+        panels::bar::plugin,
+        panels::messages::plugin,
+        panels::toasts::plugin,
+        panels::pause::plugin,
+        scale::plugin,
+    ))
+    .add_plugins((
+        picture::plugin,
+        keymap_file::plugin,
+        input::object_keys::plugin,
+        panels::help::plugin,
+        input::jog::plugin,
+        input::robot_keys::plugin,
+        panels::messages::robot::plugin,
+        panels::robot::plugin,
+        input::script_control::plugin,
+        panels::status::plugin,
+        panels::head_view::plugin,
+        panels::timeline::plugin,
+        input::snapshot::plugin,
+        input::navigate::plugin,
+        panels::camera::plugin,
+    ))
+    .add_plugins((
+        panels::display::plugin,
+        files::plugin,
+        panels::objects::plugin,
+        panels::browser::plugin,
+    ));
 }
 
 fn draw_panels_over(camera: On<Add, UserCamera>, mut commands: Commands) {
     commands.entity(camera.entity).insert(PrimaryEguiContext);
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::{
+        app::RunFixedMainLoop,
+        ecs::schedule::{InternedScheduleLabel, ScheduleLabel as _},
+    };
+    use bevy_egui::EguiPrimaryContextPass;
+    use tabletop_core::CorePlugin;
+
+    use super::*;
+
+    #[test]
+    fn no_system_asks_for_the_same_thing_twice() {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .init_resource::<Preferences>();
+        add_parts(&mut app);
+        let schedules: [InternedScheduleLabel; 7] = [
+            Startup.intern(),
+            PreUpdate.intern(),
+            Update.intern(),
+            PostUpdate.intern(),
+            RunFixedMainLoop.intern(),
+            FixedUpdate.intern(),
+            EguiPrimaryContextPass.intern(),
+        ];
+        for label in schedules {
+            let world = app.world_mut();
+            // Bevy panics where a system's parameters exclude each other.
+            let built = world.schedule_scope(label, |world, schedule| schedule.initialize(world));
+            assert!(built.is_ok(), "{label:?}");
+        }
+    }
 }

@@ -46,3 +46,34 @@ pub(crate) fn aim(
         });
     pointer.is_panels = is_over_panel || wanted.wants_any_pointer_input();
 }
+
+#[cfg(test)]
+mod tests {
+    use bevy::ecs::system::RunSystemOnce as _;
+
+    use super::*;
+
+    #[test]
+    fn a_panel_is_hit_where_it_is_drawn_whatever_the_scale() {
+        let mut world = World::new();
+        world.init_resource::<Pointer>();
+        world.init_resource::<EguiWantsInput>();
+        let mut panels = EguiContext::default();
+        panels.get_mut().set_zoom_factor(2.0);
+        for _ in 0..3 {
+            let _output = panels.get_mut().run_ui(default(), |ui| {
+                let area = egui::Area::new(egui::Id::new("panel")).fixed_pos((100.0, 100.0));
+                area.show(ui.ctx(), |ui| ui.allocate_space(egui::vec2(50.0, 50.0)));
+            });
+        }
+        world.spawn((panels, PrimaryEguiContext));
+        let window = world.spawn((Window::default(), PrimaryWindow)).id();
+        for (cursor, expected) in [(90.0, false), (210.0, true), (290.0, true), (310.0, false)] {
+            let mut window = world.get_mut::<Window>(window).unwrap();
+            window.set_cursor_position(Some(Vec2::splat(cursor)));
+            world.run_system_once(aim).unwrap();
+            let pointer = world.resource::<Pointer>();
+            assert_eq!(pointer.is_panels, expected, "{cursor}");
+        }
+    }
+}

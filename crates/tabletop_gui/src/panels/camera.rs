@@ -87,6 +87,7 @@ fn steering(ui: &mut Ui, keymap: &Keymap) -> Steering {
     );
     let (ascends, descends) = ui
         .vertical(|ui| {
+            ui.spacing_mut().button_padding.x = 2.0;
             let size = vec2(
                 ui.spacing().interact_size.x,
                 (PAD - ui.spacing().item_spacing.y) / 2.0,

@@ -22,9 +22,12 @@ pub(crate) fn plugin(app: &mut App) {
 }
 
 fn show_overlay(mut contexts: EguiContexts, panels: Res<Panels>, keymap: Res<Keymap>) {
-    let Ok(context) = contexts.ctx_mut() else {
-        return;
-    };
+    if let Ok(context) = contexts.ctx_mut() {
+        show(context, &panels, &text(&keymap));
+    }
+}
+
+fn show(context: &egui::Context, panels: &Panels, text: &str) {
     let screen = context.viewport_rect();
     // The buttons of the timeline step through a pause.
     let order = match panels.is_open(Panel::Timeline) {
@@ -38,10 +41,13 @@ fn show_overlay(mut contexts: EguiContexts, panels: Res<Panels>, keymap: Res<Key
         .fixed_pos(screen.min)
         .fade_in(false)
         .show(context, |ui| {
-            ui.allocate_rect(screen, egui::Sense::click());
+            let overlay = ui.allocate_rect(screen, egui::Sense::click());
+            overlay.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::WidgetType::Other, true, "Simulation Paused")
+            });
             let painter = ui.painter();
             painter.rect_filled(screen, 0.0, DIMMING);
-            let text = painter.layout_job(centered(text(&keymap), screen.width()));
+            let text = painter.layout_job(centered(text.to_owned(), screen.width()));
             let top_center = screen.center() - egui::vec2(0.0, text.size().y / 2.0);
             painter.galley(top_center, text, egui::Color32::WHITE);
         });
@@ -63,11 +69,46 @@ fn centered(text: String, width: f32) -> egui::text::LayoutJob {
 
 #[cfg(test)]
 mod tests {
+    use egui_kittest::{Harness, kittest::Queryable as _};
+
     use super::*;
 
     #[test]
     fn the_text_names_the_keys() {
         let told = "Simulation Paused\n\nPress SPACE to resume\nPress ESC to quit";
         assert_eq!(text(&Keymap::default()), told);
+    }
+
+    /// How often a button in a panel of this order is clicked while the simulation is paused.
+    fn clicks_through(order: egui::Order, panels: Panels) -> u32 {
+        let frame = move |ui: &mut egui::Ui, clicks: &mut u32| {
+            let panel = egui::Area::new(egui::Id::new("panel")).order(order);
+            panel.show(ui.ctx(), |ui| {
+                *clicks += u32::from(ui.button("press me").clicked());
+            });
+            show(ui.ctx(), &panels, "Simulation Paused");
+        };
+        let mut harness = Harness::new_ui_state(frame, 0);
+        for _ in 0..2 {
+            harness.get_by_label("press me").click();
+            harness.run();
+        }
+        *harness.state()
+    }
+
+    #[test]
+    fn the_overlay_covers_panels_but_not_what_is_in_the_foreground() {
+        assert_eq!(clicks_through(egui::Order::Middle, Panels::default()), 0);
+        assert_eq!(
+            clicks_through(egui::Order::Foreground, Panels::default()),
+            2
+        );
+    }
+
+    #[test]
+    fn panels_can_be_used_with_the_timeline() {
+        let mut panels = Panels::default();
+        panels.set_open(Panel::Timeline, true);
+        assert_eq!(clicks_through(egui::Order::Middle, panels), 2);
     }
 }
