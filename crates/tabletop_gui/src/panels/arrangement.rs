@@ -35,12 +35,23 @@ impl Panels {
         self.open.contains(&panel)
     }
 
-    /// Opens or closes a panel.
+    /// Opens or closes a panel. One that is opened gets the place below those that are open, unless it has one beside them.
     pub fn set_open(&mut self, panel: Panel, is_open: bool) {
-        if is_open {
-            self.open.insert(panel);
-        } else {
+        if !is_open {
             self.open.remove(&panel);
+        } else if !self.is_open(panel) {
+            self.stack_below_open(panel);
+            self.open.insert(panel);
+        }
+    }
+
+    fn stack_below_open(&mut self, panel: Panel) {
+        let is_open = |other: &Panel| self.open.contains(other);
+        let below = self.stack.iter().rposition(is_open).map_or(0, |i| i + 1);
+        if let Some(at) = self.stack.iter().position(|&other| other == panel)
+            && at > below
+        {
+            self.stack[below..=at].rotate_right(1);
         }
     }
 
@@ -218,6 +229,20 @@ mod tests {
         assert!(order[2..].is_sorted());
         assert!(order.iter().all(|panel| place(panel).x == GAP));
         assert_eq!(place(&Panel::Robot).y, GAP);
+    }
+
+    #[test]
+    fn a_panel_is_opened_below_the_open_ones_and_comes_back_where_it_was() {
+        let mut panels = Panels::default();
+        let below = |rows: f32| pos2(GAP, GAP + rows * (200.0 + GAP));
+        panels.set_open(Panel::DemonstrationTools, true);
+        assert_eq!(place(&panels, Panel::DemonstrationTools), below(1.0));
+        panels.set_open(Panel::Status, false);
+        panels.set_open(Panel::Camera, true);
+        assert_eq!(place(&panels, Panel::DemonstrationTools), below(1.0));
+        assert_eq!(place(&panels, Panel::Camera), below(2.0));
+        panels.set_open(Panel::Status, true);
+        assert_eq!(place(&panels, Panel::Status), below(0.0));
     }
 
     #[test]
