@@ -34,6 +34,7 @@ mod widgets;
 pub use files::{FileRequest, Files, TaskFile};
 pub use panels::help::Help;
 pub use panels::messages::{Notices, Tone};
+pub use panels::status::Renderer;
 pub use panels::{Browser, Panel, Panels, Purpose};
 pub use picture::Picture;
 pub use preferences::Preferences;

@@ -13,7 +13,6 @@ use tabletop_core::{
 
 use crate::{
     Picture,
-    display::Renderer,
     panels::{Panel, Panels},
     widgets::style::WARNING,
 };
@@ -30,6 +29,15 @@ const NAME_WIDTH: f32 = 84.0;
 
 /// Ticks between two frames of a recording (report section 4.1: four images a second).
 const TICKS_PER_FRAME: u64 = TICKS_PER_SECOND as u64 / 4;
+
+/// What draws the window. Whoever opens the window sets it.
+#[derive(Resource, Clone, Debug, PartialEq, Eq)]
+pub struct Renderer {
+    /// What it calls itself.
+    pub name: String,
+    /// Whether it draws on the processor instead of a graphics card.
+    pub is_software: bool,
+}
 
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Speed>()
@@ -175,14 +183,13 @@ struct Sources<'w> {
 
 impl Sources<'_> {
     fn model(&self) -> Model {
-        let renderer = self.renderer.as_deref().cloned();
         Model {
             mean: self.speed.mean,
             tick: self.clock.tick,
             is_paused: self.paused.0,
             agent: self.agent.clone(),
             film: self.film(),
-            renderer: renderer.filter(|renderer| !renderer.name.is_empty()),
+            renderer: self.renderer.as_deref().cloned(),
         }
     }
 
