@@ -4,8 +4,8 @@ use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{
-        self, Button, CollapsingHeader, ComboBox, Label, RichText, Slider, Ui, WidgetInfo,
-        WidgetType,
+        self, Button, CollapsingHeader, ComboBox, Key, Label, Response, RichText, Slider, Ui,
+        WidgetInfo, WidgetType,
     },
 };
 use tabletop_core::{
@@ -278,12 +278,20 @@ fn goal(ui: &mut Ui, model: &Model, selection: &mut Selection, requests: &mut Ve
         .on_hover_text("Where the joint is to go")
         .on_disabled_hover_text(SCRIPT_MOVES);
     name(&slider, WidgetType::Slider, "Goal");
-    if value != shown {
+    // What is as wide as a gripper opens is released where the slider cannot go any farther.
+    let is_wide_open = joint.is_gripper() && state.position >= largest && value >= largest;
+    if value != shown || is_wide_open && is_confirmed(&slider) {
         selection.goal = Some(value);
         requests.push(Request::Go(joint, value));
     } else if state.velocity == 0.0 && !slider.is_pointer_button_down_on() {
         selection.goal = None;
     }
+}
+
+/// Whether the user has just let go of a slider, or has finished its number with Enter.
+fn is_confirmed(slider: &Response) -> bool {
+    let has_entered = || slider.ctx.input(|input| input.key_pressed(Key::Enter));
+    slider.drag_stopped() || slider.lost_focus() && has_entered()
 }
 
 /// The arms side by side.
@@ -601,6 +609,30 @@ mod tests {
             panic!("{:?}", harness.state().requests);
         };
         assert!((-0.2..0.2).contains(&goal), "{goal}");
+    }
+
+    #[test]
+    fn a_wide_open_gripper_is_told_to_open_by_its_slider() {
+        let joint = RobotJoint::LeftGripper;
+        let stage = || Stage {
+            selection: Selection { joint, goal: None },
+            ..default()
+        };
+        let mut harness = stage().harness();
+        let slider = harness.get_by_label("Goal").rect();
+        let end = slider.min + egui::vec2(TRACK_WIDTH - 2.0, slider.height() / 2.0);
+        harness.hover_at(end);
+        harness.drag_at(end);
+        harness.run();
+        harness.drop_at(end);
+        harness.run();
+        let widest = Request::Go(joint, joint.limits().1);
+        assert_eq!(harness.state().requests, [widest]);
+
+        let mut harness = stage().harness();
+        harness.hover_at(end);
+        harness.run();
+        assert_eq!(harness.state().requests, []);
     }
 
     #[test]
