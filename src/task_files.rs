@@ -9,15 +9,14 @@ use bevy::prelude::World;
 
 use crate::{
     scene::{PresentScene, present_scene},
-    shipped::shipped_files,
     xml::{MAX_FILE_BYTES, is_task, write},
 };
 
 /// The folder of the task files that the window lists, in the working folder.
 pub const TASK_FOLDER: &str = "tablesetup";
 
-/// The task files directly in a folder, by name, and those that the program holds for it: without those that only hold templates
-/// (`def-*.xml`), and without the `debug.xml` that the later program wrote.
+/// The task files directly in a folder, by name: without those that only hold templates (`def-*.xml`), and without the
+/// `debug.xml` that the later program wrote.
 ///
 /// ```
 /// use std::path::Path;
@@ -27,17 +26,15 @@ pub const TASK_FOLDER: &str = "tablesetup";
 /// assert!(files.contains(&Path::new(TASK_FOLDER).join("default.xml")));
 /// ```
 pub fn task_files(folder: &Path) -> Vec<PathBuf> {
-    let found = fs::read_dir(folder).into_iter().flatten().flatten();
-    let shipped = folder.to_str().into_iter();
-    let shipped = shipped.flat_map(|folder| shipped_files().in_folder(folder));
-    let shipped = shipped.filter(|file| file.path.ends_with(".xml"));
+    let Ok(found) = fs::read_dir(folder) else {
+        return Vec::new();
+    };
     let mut files: Vec<_> = found
+        .flatten()
         .map(|found| found.path())
         .filter(|path| is_listed(path))
-        .chain(shipped.map(|file| PathBuf::from(file.path)))
         .collect();
     files.sort();
-    files.dedup();
     files
 }
 
