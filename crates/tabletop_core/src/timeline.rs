@@ -35,7 +35,7 @@ pub enum TimelineStage {
     Running,
     /// It was made.
     Finished,
-    /// It is open, and its [`Playback`] can be told.
+    /// It is open, and its [`Playback`](crate::Playback) can be told.
     Open,
 }
 
