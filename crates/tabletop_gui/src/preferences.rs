@@ -117,11 +117,12 @@ impl Preferences {
     }
 }
 
-fn replace(path: &Path, text: &str) -> io::Result<()> {
+/// Writes all of a file, or leaves the old one.
+pub(crate) fn replace(path: &Path, text: &str) -> io::Result<()> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder)?;
     }
-    let new = path.with_extension("ron.new");
+    let new = path.with_added_extension("new");
     fs::write(&new, text)?;
     fs::rename(&new, path)
 }

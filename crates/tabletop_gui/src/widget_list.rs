@@ -1,17 +1,17 @@
 //! The widgets that are on the screen, as a file: for programs that use the window as a person does.
 
-use std::{fs, path::PathBuf};
+use std::{collections::HashMap, path::PathBuf};
 
 use bevy::prelude::*;
 use bevy_egui::{
     EguiContexts, EguiOutput, EguiPostUpdateSet, PrimaryEguiContext,
-    egui::{
-        Context,
-        accesskit::{Affine, Node, NodeId, Point, Rect, TreeUpdate},
-    },
+    egui::accesskit::{Affine, Node, NodeId, Point, Rect, TreeUpdate},
 };
 
-use crate::panels::messages::{Notices, Tone};
+use crate::{
+    panels::messages::{Notices, Tone},
+    preferences::replace,
+};
 
 /// Writes which widgets are on the screen whenever that changes.
 ///
@@ -30,7 +30,6 @@ impl Plugin for WidgetListPlugin {
             written: String::new(),
             has_failed: false,
         })
-        .add_systems(Startup, enable)
         .add_systems(
             PostUpdate,
             (enable, write)
@@ -48,12 +47,9 @@ struct WidgetList {
 }
 
 /// Lets the panels say what they consist of.
-fn enable(mut contexts: EguiContexts, mut is_enabled: Local<bool>) {
-    if let Ok(context) = contexts.ctx_mut()
-        && !*is_enabled
-    {
-        Context::enable_accesskit(context);
-        *is_enabled = true;
+fn enable(mut contexts: EguiContexts) {
+    if let Ok(context) = contexts.ctx_mut() {
+        context.enable_accesskit();
     }
 }
 
@@ -62,10 +58,9 @@ fn write(
     mut list: ResMut<WidgetList>,
     mut notices: ResMut<Notices>,
 ) {
-    let updates = outputs.iter();
-    let Some(tree) = updates
-        .filter_map(|output| output.platform_output.accesskit_update.as_ref())
-        .next()
+    let Some(tree) = outputs
+        .iter()
+        .find_map(|output| output.platform_output.accesskit_update.as_ref())
     else {
         return;
     };
@@ -73,9 +68,7 @@ fn write(
     if lines == list.written {
         return;
     }
-    // A reader sees all of it or nothing.
-    let new = list.file.with_extension("new");
-    let result = fs::write(&new, &lines).and_then(|()| fs::rename(&new, &list.file));
+    let result = replace(&list.file, &lines);
     list.written = lines;
     if let Err(error) = result
         && !list.has_failed
@@ -89,13 +82,14 @@ fn write(
 fn lines(tree: &TreeUpdate) -> String {
     let mut lines = String::new();
     if let Some(root) = &tree.tree {
-        describe(tree, root.root, Affine::IDENTITY, &mut lines);
+        let nodes = tree.nodes.iter().map(|(id, node)| (*id, node)).collect();
+        describe(&nodes, root.root, Affine::IDENTITY, &mut lines);
     }
     lines
 }
 
-fn describe(tree: &TreeUpdate, id: NodeId, outer: Affine, lines: &mut String) {
-    let Some((_, node)) = tree.nodes.iter().find(|(other, _)| *other == id) else {
+fn describe(nodes: &HashMap<NodeId, &Node>, id: NodeId, outer: Affine, lines: &mut String) {
+    let Some(node) = nodes.get(&id) else {
         return;
     };
     let to_pixels = node.transform().map_or(outer, |inner| outer * *inner);
@@ -107,7 +101,7 @@ fn describe(tree: &TreeUpdate, id: NodeId, outer: Affine, lines: &mut String) {
         lines.push_str(&line(node, name, value, to_pixels, bounds));
     }
     for child in node.children() {
-        describe(tree, *child, to_pixels, lines);
+        describe(nodes, *child, to_pixels, lines);
     }
 }
 
@@ -144,7 +138,7 @@ mod tests {
 
     #[test]
     fn each_widget_has_a_line_with_its_place_in_pixels() {
-        let context = Context::default();
+        let context = egui::Context::default();
         context.enable_accesskit();
         context.set_pixels_per_point(2.0);
         let draw = |ui: &mut egui::Ui| {
