@@ -1,15 +1,15 @@
 //! Pictures of the robot from four sides, drawn as the head camera draws: `cargo run --release --example robot_pictures`.
 //!
-//! Nothing is simulated: the description of the robot says where its links are, and `tabletop_baxter` what they look like.
+//! Nothing is simulated: the description of the robot says where its links are, and `tabletop_robot` what they look like.
 #![expect(clippy::print_stdout, reason = "an example shows what it does")]
 
 use std::{error::Error, fs::File, io::BufWriter, path::Path, sync::Arc};
 
 use bevy::prelude::*;
-use tabletop_baxter::look::{figure_of, merged, screen_with};
 use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Facets, Painter, Scene};
 use tabletop_core::{Face, Picture, Pose, Rgb, RobotJoint, Solid, Table, robot_base};
 use tabletop_kinematics::{Model, baxter};
+use tabletop_robot::look::{figure_of, merged, screen_with};
 
 /// Units in a metre.
 const UNITS: f64 = 10.0;

@@ -33,13 +33,13 @@
 //! assert!((pose.location - Vec3::new(2.0, 0.0, 1.0)).length() < 0.005);
 //! ```
 
-pub use tabletop_baxter as baxter;
 pub use tabletop_camera as camera;
 pub use tabletop_core as core;
 pub use tabletop_demonstrator as demonstrator;
 pub use tabletop_kinematics as kinematics;
 pub use tabletop_physics as physics;
 pub use tabletop_recorder as recorder;
+pub use tabletop_robot as baxter;
 pub use tabletop_scenario as scenario;
 pub use tabletop_scene as scene;
 pub use tabletop_script as script;

@@ -15,13 +15,13 @@ use std::{
 
 use bevy::{app::PluginGroupBuilder, ecs::message::MessageCursor, prelude::*};
 use serde::Deserialize as _;
-use tabletop_baxter::BaxterPlugin;
 use tabletop_core::{HeadCamera, SimCommand, SimFact, SimTick, StepApp as _, TICKS_PER_SECOND};
 use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
 use tabletop_recorder::{
     Channels, RecorderError, RecorderPlugin, RecordingReader, Session, SessionCommand,
     TICKS_PER_FRAME,
 };
+use tabletop_robot::BaxterPlugin;
 
 use crate::{
     TabletopSimPlugins, headless_app_with,

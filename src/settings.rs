@@ -5,11 +5,11 @@ use std::path::absolute;
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use tabletop_baxter::{BaxterPlugin, Description, Source};
 use tabletop_core::{Robot, RobotMode, SimFact, SimSystems, TickSystems, is_shipped};
 use tabletop_kinematics::ModelError;
 use tabletop_physics::PhysicsSettings;
 use tabletop_recorder::SessionSettings;
+use tabletop_robot::{BaxterPlugin, Description, Source};
 
 /// Names of the settings in a session log.
 pub(crate) const PHYSICS: &str = "physics";

@@ -18,7 +18,7 @@ const RULES: [Rule; 15] = [
     .with_rapier(),
     Rule::new("tabletop_kinematics", &[]),
     Rule::new(
-        "tabletop_baxter",
+        "tabletop_robot",
         &["tabletop_core", "tabletop_kinematics", "tabletop_physics"],
     )
     .with_rapier(),
@@ -38,7 +38,7 @@ const RULES: [Rule; 15] = [
             "tabletop_scene",
             "tabletop_demonstrator",
             "tabletop_kinematics",
-            "tabletop_baxter",
+            "tabletop_robot",
             "tabletop_script",
             "tabletop_camera",
             "tabletop_recorder",

@@ -10,7 +10,6 @@ use std::{
 };
 
 use bevy::{ecs::message::MessageCursor, prelude::*, time::TimeUpdateStrategy};
-use tabletop_baxter::BaxterPlugin;
 use tabletop_camera::CameraPlugin;
 use tabletop_core::{
     Agent, AgentNews, AgentOrder, CorePlugin, Markers, Robot, SimCommand, SimSystems, SimTick,
@@ -18,6 +17,7 @@ use tabletop_core::{
 };
 use tabletop_demonstrator::DemonstratorPlugin;
 use tabletop_physics::PhysicsPlugin;
+use tabletop_robot::BaxterPlugin;
 use tabletop_scene::ScenePlugin;
 use tabletop_script::{EngineChoice, ScriptPlugin, ScriptSettings, Waiting};
 

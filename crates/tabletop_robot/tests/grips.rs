@@ -5,11 +5,11 @@ mod kit;
 
 use bevy::prelude::*;
 use kit::{Stage, block};
-use tabletop_baxter::STEEPEST_GRIP;
 use tabletop_core::{
     Arm, Drive, LidBoxSpec, ObjectIndex, Part, Pose, Rgb, Robot, RobotJoint, RobotMode, SceneItem,
     SceneSpec, Shape, SimCommand, SimFact, StepApp,
 };
+use tabletop_robot::STEEPEST_GRIP;
 
 const ARM: Arm = Arm::Right;
 

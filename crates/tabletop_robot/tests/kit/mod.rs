@@ -5,10 +5,10 @@ pub mod motors;
 
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use bevy_rapier3d::{parry, prelude::Collider, rapier::prelude as rapier};
-use tabletop_baxter::{BaxterPlugin, RobotBody};
 use tabletop_core::*;
 use tabletop_demonstrator::DemonstratorPlugin;
 use tabletop_physics::PhysicsPlugin;
+use tabletop_robot::{BaxterPlugin, RobotBody};
 use tabletop_scene::ScenePlugin;
 
 pub struct Stage {

@@ -8,7 +8,7 @@
 //!
 //! ```
 //! use bevy::prelude::*;
-//! use tabletop_baxter::BaxterPlugin;
+//! use tabletop_robot::BaxterPlugin;
 //! use tabletop_core::prelude::*;
 //! use tabletop_physics::PhysicsPlugin;
 //!

@@ -6,8 +6,8 @@ mod kit;
 use bevy::prelude::*;
 use bevy_rapier3d::{prelude::Collider, rapier::prelude::SharedShape};
 use kit::Stage;
-use tabletop_baxter::{BaxterPlugin, Description, RobotBody, Source};
 use tabletop_core::{Face, Figure, SimCommand, StepApp};
+use tabletop_robot::{BaxterPlugin, Description, RobotBody, Source};
 
 /// Triangles of every body that is seen, by name.
 fn seen(stage: &mut Stage) -> Vec<(String, usize)> {
