@@ -5,13 +5,13 @@ use std::{
     io::{self, Write as _},
     iter,
     path::{Path, PathBuf},
-    time::SystemTime,
 };
 
 use bevy::{
     prelude::*,
     tasks::{IoTaskPool, Task, TaskPool, futures::check_ready},
 };
+use jiff::Timestamp;
 use tabletop_core::{OrderSystems, Picture, PictureDemand, SensorImage, SimSystems, SimTick};
 
 use crate::panels::messages::{Notices, Tone};
@@ -69,7 +69,7 @@ fn begin_writing(tick: Res<SimTick>, image: Res<SensorImage>, mut snapshots: Res
         objects: Vec::new(),
         ..image.picture.clone()
     };
-    let now = SystemTime::now();
+    let now = Timestamp::now();
     let pool = IoTaskPool::get_or_init(TaskPool::new);
     let task = pool.spawn(async move {
         match save(&picture, &folder, now) {
@@ -100,7 +100,7 @@ fn tell(mut snapshots: ResMut<Snapshots>, mut notices: ResMut<Notices>) {
 }
 
 /// Writes a picture to a new file, and tells which one it is.
-fn save(picture: &Picture, folder: &Path, now: SystemTime) -> io::Result<PathBuf> {
+fn save(picture: &Picture, folder: &Path, now: Timestamp) -> io::Result<PathBuf> {
     let png = encode(picture).map_err(io::Error::other)?;
     let path = write_new(&std::path::absolute(folder.join(name(now)))?, &png)?;
     Ok(path)
@@ -140,30 +140,8 @@ fn write_new(path: &Path, bytes: &[u8]) -> io::Result<PathBuf> {
 }
 
 /// Names a file after a time: `headcamyyyyMMdd-HHmmss.png`, UTC.
-fn name(time: SystemTime) -> String {
-    let seconds = time
-        .duration_since(SystemTime::UNIX_EPOCH)
-        .map_or(0, |since| since.as_secs());
-    let (year, month, day) = date(seconds / 86_400);
-    let (hour, minute, second) = (seconds / 3600 % 24, seconds / 60 % 60, seconds % 60);
-    format!("headcam{year:04}{month:02}{day:02}-{hour:02}{minute:02}{second:02}.png")
-}
-
-/// Year, month and day so many days after 1970-01-01. The years are counted from March on, so that a leap day is the last
-/// day of its year, and from a year that 400 divides.
-const fn date(days: u64) -> (u64, u64, u64) {
-    let days = days + 719_468;
-    let (cycle, day) = (days / 146_097, days % 146_097);
-    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
-    let day = day - (365 * year + year / 4 - year / 100);
-    let month = (5 * day + 2) / 153;
-    let day = day - (153 * month + 2) / 5 + 1;
-    let (month, next) = if month < 10 {
-        (month + 3, 0)
-    } else {
-        (month - 9, 1)
-    };
-    (400 * cycle + year + next, month, day)
+fn name(time: Timestamp) -> String {
+    time.strftime("headcam%Y%m%d-%H%M%S.png").to_string()
 }
 
 #[cfg(test)]
@@ -173,8 +151,8 @@ mod tests {
     use std::time::Duration;
     use tabletop_core::{CorePlugin, PictureSystems};
 
-    fn at(seconds: u64) -> SystemTime {
-        SystemTime::UNIX_EPOCH + Duration::from_secs(seconds)
+    fn at(seconds: i64) -> Timestamp {
+        Timestamp::from_second(seconds).unwrap()
     }
 
     #[test]
