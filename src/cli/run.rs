@@ -14,7 +14,7 @@ use tabletop::{
     TabletopSimPlugins,
     core::{Recording, SceneSpec, SimCommand, SimFact, SimTick, StepApp as _, TICKS_PER_SECOND},
     headless_app_with,
-    recorder::{RecorderPlugin, RehearsalPlugin},
+    recorder::{RecorderPlugin, UnrecordedPlugin},
     report,
     script::{ScriptPlugin, see_off},
     shipped::{read_scenario, read_task, true_path},
@@ -233,7 +233,7 @@ fn plugins(args: &RunArgs) -> Result<PluginGroupBuilder, Failure> {
 /// The same with a recorder, if one is wanted.
 fn recording(plugins: PluginGroupBuilder, args: &RunArgs) -> PluginGroupBuilder {
     let Some(folder) = args.record.clone() else {
-        return plugins.disable::<RecorderPlugin>().add(RehearsalPlugin);
+        return plugins.disable::<RecorderPlugin>().add(UnrecordedPlugin);
     };
     let mut header = serde_json::Map::new();
     let scenario = args.scenario.as_deref().map(true_path);

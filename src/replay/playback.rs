@@ -12,7 +12,7 @@ use tabletop_core::{
 };
 use tabletop_demonstrator::Snapshot;
 use tabletop_physics::{KeepRemoved, drop_removed};
-use tabletop_recorder::retell;
+use tabletop_recorder::set_earlier_commands;
 
 use super::{Player, Replay, player};
 use crate::settings::Settings;
@@ -138,7 +138,7 @@ fn try_open(world: &mut World, folder: PathBuf) -> Result<(), String> {
     begin_anew(world);
     world.insert_resource(replay.begin);
     world.insert_resource(replay.camera());
-    retell(world, replay.begin, &[]);
+    set_earlier_commands(world, replay.begin, &[]);
     let player = Player::new(&replay.session);
     let goal = Goal {
         tick: player.start(),
@@ -171,7 +171,7 @@ fn begin_anew(world: &mut World) {
     world.insert_resource(Paused(false));
     world.insert_resource(Markers::default());
     let tick = *world.resource::<SimTick>();
-    retell(world, tick, &[]);
+    set_earlier_commands(world, tick, &[]);
     drop_removed(world);
 }
 
@@ -313,7 +313,7 @@ fn jump(world: &mut World, tick: SimTick) {
         world.resource_mut::<Messages<SimCommand>>().clear();
         keyframe.world.restore(world);
         world.insert_resource(Paused(false));
-        retell(world, opened.replay.begin, keyframe.player.given());
+        set_earlier_commands(world, opened.replay.begin, keyframe.player.given());
         world.insert_resource(keyframe.player.clone());
     });
 }

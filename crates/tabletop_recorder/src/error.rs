@@ -93,7 +93,7 @@ pub enum RecorderError {
     /// A line of a session log is not what it should be.
     #[error(
         "{path}:{line}: {source}; expected a session log of format {format}, as this program writes it",
-        format = crate::session::FORMAT
+        format = crate::files::format::FORMAT
     )]
     Session {
         /// The session log.
@@ -106,7 +106,7 @@ pub enum RecorderError {
     /// A session log has another format.
     #[error(
         "{path}: a session log of format {found}, this program reads format {format}; read it with the program of the version that its first line names",
-        format = crate::session::FORMAT
+        format = crate::files::format::FORMAT
     )]
     Format {
         /// The session log.

@@ -26,102 +26,28 @@
 //! ```
 
 mod cause;
-mod change;
-mod chronicle;
-mod episode;
 mod error;
-mod event;
-mod extent;
-mod folder;
-mod frame;
-mod joints;
-mod log_file;
+mod files;
 mod order;
-mod picture;
-mod prelude;
-mod properties;
 mod reading;
-mod recorder;
-mod rehearsal;
-mod session;
-mod stage;
-mod states;
+mod recording;
 
 pub use error::RecorderError;
-pub use event::Event;
-pub use frame::{FRAMES_PER_SECOND, TICKS_PER_FRAME};
-pub use log_file::whole_lines;
+pub use files::{
+    channels::Channels,
+    event::Event,
+    frame::{FRAMES_PER_SECOND, TICKS_PER_FRAME},
+    log_file::whole_lines,
+    session::{
+        Session, SessionCommand, SessionHeader, SessionObject, SessionScene, SessionSettings,
+    },
+};
 pub use reading::{
-    JointRow, Occurrence, RecordedEvent, RecordedFrame, RecordedSegment, RecordingReader, StateRow,
+    event::{Occurrence, RecordedEvent},
+    recording_reader::RecordingReader,
+    rows::{JointRow, StateRow},
+    segment::{RecordedFrame, RecordedSegment},
 };
-pub use recorder::retell;
-pub use rehearsal::RehearsalPlugin;
-pub use session::{
-    Session, SessionCommand, SessionHeader, SessionObject, SessionScene, SessionSettings,
+pub use recording::{
+    recorder::set_earlier_commands, recorder_plugin::RecorderPlugin, unrecorded::UnrecordedPlugin,
 };
-
-use std::path::PathBuf;
-
-use bevy::prelude::*;
-use serde_json::{Map, Value};
-use tabletop_core::{PictureSystems, SimSystems, TickSystems};
-
-use crate::recorder::{Recorder, ask_for_picture, record, take_commands};
-
-/// Records the simulation into a folder from [`StartRecording`] to [`FinishRecording`], both ticks included.
-/// Needs [`CorePlugin`](tabletop_core::CorePlugin).
-///
-/// It keeps between the phases of a tick: before [`SimSystems::Ingest`] it logs the commands, after [`PictureSystems`]
-/// it writes what came of them. Both also happen while paused, so that nothing is missed that is done meanwhile.
-///
-/// [`StartRecording`]: tabletop_core::SimCommand::StartRecording
-/// [`FinishRecording`]: tabletop_core::SimCommand::FinishRecording
-#[derive(Clone, Debug)]
-pub struct RecorderPlugin {
-    /// The folder. What is there when a recording starts is moved aside.
-    pub folder: PathBuf,
-    /// What the [settings](SessionSettings) are to begin with.
-    pub header: Map<String, Value>,
-    /// What is written beside the pictures.
-    pub channels: Channels,
-}
-
-/// What is written of a frame beside its picture, of the same pixels, as PNG files of 16 bits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Channels {
-    /// `<frame>.depth.png`: how far away it is, in tenths of a millimetre along the axis of view; 0 where nothing is.
-    pub depth: bool,
-    /// `<frame>.ids.png`: what it is; 0 where nothing is, 1 for the table, n + 1 for the object of the recording's n-th `create`
-    /// line, 65535 for anything else.
-    pub ids: bool,
-}
-
-impl Default for RecorderPlugin {
-    fn default() -> Self {
-        Self {
-            folder: "demo".into(),
-            header: Map::new(),
-            channels: Channels::default(),
-        }
-    }
-}
-
-impl Plugin for RecorderPlugin {
-    fn build(&self, app: &mut App) {
-        app.insert_resource(Recorder::new(self.folder.clone(), self.channels))
-            .insert_resource(SessionSettings(self.header.clone()))
-            .add_systems(
-                FixedUpdate,
-                (
-                    take_commands
-                        .after(SimSystems::Load)
-                        .before(SimSystems::Ingest),
-                    ask_for_picture
-                        .after(SimSystems::Propagate)
-                        .before(SimSystems::Sense),
-                    record.after(PictureSystems).before(SimSystems::Record),
-                )
-                    .in_set(TickSystems),
-            );
-    }
-}

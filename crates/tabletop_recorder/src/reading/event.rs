@@ -5,7 +5,7 @@ use std::{path::Path, str::FromStr};
 use bevy::math::Vec3;
 use tabletop_core::Hand;
 
-use crate::{RecorderError, reading::damaged};
+use crate::{error::RecorderError, reading::fault::damaged};
 
 /// A line of a segment's text file.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,7 +134,7 @@ mod tests {
     use tabletop_core::{ObjectSpec, Pose, Rgb, Shape};
 
     use super::*;
-    use crate::Event;
+    use crate::files::event::Event;
 
     fn read_back(event: Event) -> Occurrence {
         let mut lines = csv::WriterBuilder::new()

@@ -6,9 +6,9 @@ use bevy::math::{Quat, Vec3};
 use tabletop_core::{JointState, Pose, RobotJoint, SimTick, Twist};
 
 use crate::{
-    RecorderError,
-    log_file::read_whole_lines,
-    reading::{damaged, event::number},
+    error::RecorderError,
+    files::log_file::read_whole_lines,
+    reading::{event::number, fault::damaged},
 };
 
 /// Where an object was at the end of a tick, and how fast.
@@ -111,7 +111,7 @@ fn numbers_of<T: std::str::FromStr + Copy, const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{joints, states};
+    use crate::files::{joints, states};
 
     fn file(name: &str, lines: &[Vec<String>]) -> std::path::PathBuf {
         let name = format!("tabletop_rows_{name}_{}", std::process::id());

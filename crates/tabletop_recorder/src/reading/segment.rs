@@ -5,8 +5,8 @@ use std::{collections::BTreeMap, path::PathBuf};
 use tabletop_core::{Act, Actor, Hand, Rgb, SimCommand, SimTick, TimelineSegment, Verb};
 
 use crate::{
-    SessionCommand,
-    reading::{Occurrence, RecordedEvent, RecordingReader},
+    files::session::SessionCommand,
+    reading::event::{Occurrence, RecordedEvent},
 };
 
 /// A segment of a recording.
@@ -92,31 +92,28 @@ pub(super) fn colors(segments: &[RecordedSegment]) -> BTreeMap<String, Rgb> {
     created.collect()
 }
 
-impl RecordingReader {
-    /// The tick in which a segment began with an act that a frame shows, and the commands after the one that it came of.
-    pub(super) fn begin_of<'c>(
-        &self,
-        act: &Act,
-        frame: u64,
-        commands: &'c [SessionCommand],
-    ) -> (SimTick, &'c [SessionCommand]) {
-        let last = self.tick_of_frame(frame);
-        let before = self.tick_of_frame(frame.saturating_sub(1));
-        let is_here = |command: &SessionCommand| {
-            let is_after = command.tick > before.0 || frame == 0;
-            is_after && command.tick <= last.0
-        };
-        let of = |is_cause: fn(&Act, &SimCommand) -> bool| {
-            let mut all = commands.iter();
-            all.position(|command| is_here(command) && is_cause(act, &command.command))
-        };
-        if let Some(at) = of(is_told) {
-            (SimTick(commands[at].tick), &commands[at + 1..])
-        } else if let Some(at) = of(is_forced) {
-            (SimTick(commands[at].tick), &commands[at..])
-        } else {
-            (last, commands)
-        }
+/// The tick in which a segment began with an act that came after one tick and not after another, and the commands after the one that
+/// it came of. In the first frame, `after` is `None`.
+pub(super) fn begin_of<'c>(
+    act: &Act,
+    after: Option<SimTick>,
+    last: SimTick,
+    commands: &'c [SessionCommand],
+) -> (SimTick, &'c [SessionCommand]) {
+    let is_here = |command: &SessionCommand| {
+        let tick = SimTick(command.tick);
+        after.is_none_or(|after| tick > after) && tick <= last
+    };
+    let of = |is_cause: fn(&Act, &SimCommand) -> bool| {
+        let mut all = commands.iter();
+        all.position(|command| is_here(command) && is_cause(act, &command.command))
+    };
+    if let Some(at) = of(is_told) {
+        (SimTick(commands[at].tick), &commands[at + 1..])
+    } else if let Some(at) = of(is_forced) {
+        (SimTick(commands[at].tick), &commands[at..])
+    } else {
+        (last, commands)
     }
 }
 

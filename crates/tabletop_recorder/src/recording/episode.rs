@@ -9,21 +9,26 @@ use tabletop_core::{
 };
 
 use crate::{
-    Channels, RecorderError, SessionHeader, SessionScene,
     cause::{Beginning, beginnings},
-    change::Tracked,
-    chronicle::{TimelineMark, TimelineTail},
-    event::Event,
-    folder::{Folder, create_folder},
-    frame::FrameClock,
-    joints::{self, Joints},
-    log_file::LogFile,
+    error::RecorderError,
+    files::{
+        channels::Channels,
+        event::Event,
+        folder::{Folder, create_folder},
+        frame::FrameClock,
+        joints::{self, Joints},
+        log_file::LogFile,
+        picture::{write_depth, write_ids, write_png},
+        session::{SessionHeader, SessionScene, command_line, session_line},
+        states,
+    },
     order::{in_order, is_about_recordings, turns_the_clock},
-    picture::{write_depth, write_ids, write_png},
-    prelude::Prelude,
-    session::{command_line, session_line},
-    stage::{Shown, Sight, Stage},
-    states,
+    recording::{
+        earlier_commands::EarlierCommands,
+        stage::{Shown, Sight, Stage},
+        timeline_mark::{TimelineMark, TimelineTail},
+        tracked::Tracked,
+    },
 };
 
 /// A running recording.
@@ -103,7 +108,7 @@ impl Episode {
         folder: &Path,
         header: &SessionHeader,
         scene: &SessionScene,
-        earlier: &Prelude,
+        earlier: &EarlierCommands,
         channels: Channels,
     ) -> Result<Self, RecorderError> {
         Folder::create(folder, |folder| {
@@ -115,7 +120,7 @@ impl Episode {
         folder: Folder,
         header: &SessionHeader,
         scene: &SessionScene,
-        earlier: &Prelude,
+        earlier: &EarlierCommands,
         channels: Channels,
     ) -> Result<Self, RecorderError> {
         let mut session = LogFile::create(folder.session())?;

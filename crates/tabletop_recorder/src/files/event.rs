@@ -2,7 +2,7 @@
 
 use tabletop_core::{Decimal, Hand, ObjectSpec, Pose};
 
-use crate::properties::properties;
+use crate::files::properties::properties;
 
 /// Something that a segment's text file tells, in one line.
 ///

@@ -4,7 +4,7 @@ use std::{fs, path::Path};
 
 use tabletop_core::Picture;
 
-use crate::RecorderError;
+use crate::error::RecorderError;
 
 /// Depths in a depth image are counted in tenths of a millimetre, of which a unit has this many.
 const DEPTHS_PER_UNIT: f32 = 1000.0;

@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
 use tabletop_core::{HeadCamera, JointSpec, ObjectSpec, Pose, SimCommand, Table};
 
-use crate::{RecorderError, log_file::read_whole_lines};
-
-/// Version of the format that is written here.
-pub(crate) const FORMAT: u32 = 2;
+use crate::{
+    error::RecorderError,
+    files::{format::FORMAT, log_file::read_whole_lines},
+};
 
 /// First line of a session log: who wrote it, and how.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

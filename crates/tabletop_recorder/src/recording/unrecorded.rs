@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use tabletop_core::{Recording, SimCommand, SimFact, SimSystems, TickSystems};
 
-use crate::recorder::{IS_RUNNING, NONE_IS_RUNNING, refused};
+use crate::recording::recorder::{IS_RUNNING, NONE_IS_RUNNING, refused};
 
 /// Stands in for [`RecorderPlugin`](crate::RecorderPlugin) where nothing is to be written: what is done between
 /// [`StartRecording`] and [`FinishRecording`] can be undone, and leaves no files.
@@ -12,9 +12,9 @@ use crate::recorder::{IS_RUNNING, NONE_IS_RUNNING, refused};
 /// [`StartRecording`]: SimCommand::StartRecording
 /// [`FinishRecording`]: SimCommand::FinishRecording
 #[derive(Clone, Copy, Debug, Default)]
-pub struct RehearsalPlugin;
+pub struct UnrecordedPlugin;
 
-impl Plugin for RehearsalPlugin {
+impl Plugin for UnrecordedPlugin {
     fn build(&self, app: &mut App) {
         app.add_systems(
             FixedUpdate,
@@ -64,7 +64,7 @@ mod tests {
     #[test]
     fn it_starts_and_finishes_what_is_not_there_to_be_read() {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default(), RehearsalPlugin))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), UnrecordedPlugin))
             .start();
         let mut told = |command: SimCommand| {
             app.world_mut().write_message(command);

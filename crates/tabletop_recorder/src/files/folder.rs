@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{RecorderError, log_file::is_locked};
+use crate::{error::RecorderError, files::log_file::is_locked};
 
 /// The folder of a recording.
 #[derive(Clone, Debug)]
@@ -194,7 +194,7 @@ fn is_taken(path: &Path) -> bool {
 mod tests {
     use super::*;
     #[cfg(unix)]
-    use crate::log_file::LogFile;
+    use crate::files::log_file::LogFile;
 
     #[test]
     fn earlier_recordings_are_moved_aside_to_the_first_free_number() {

@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 use tabletop_core::Pose;
 
-use crate::states::State;
+use crate::files::states::State;
 
 /// Square of the distance, in units, beyond which a move is reported.
 const REPORTED_DISTANCE_SQUARED: f32 = 0.001;

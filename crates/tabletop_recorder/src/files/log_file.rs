@@ -6,7 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::RecorderError;
+use crate::error::RecorderError;
 
 /// A file that grows by whole lines. What is appended is with the operating system when the call returns, so it outlives
 /// the program; what cannot be appended whole is not in the file.

@@ -9,10 +9,13 @@ use std::{
 use tabletop_core::{SimCommand, SimTick};
 
 use crate::{
-    RecorderError, Session,
-    folder::Folder,
-    frame::FrameClock,
-    log_file::{read_whole_lines, whole_lines},
+    error::RecorderError,
+    files::{
+        folder::Folder,
+        frame::FrameClock,
+        log_file::{read_whole_lines, whole_lines},
+        session::Session,
+    },
 };
 
 /// Lines of states and joints are shorter.

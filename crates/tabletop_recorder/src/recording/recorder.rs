@@ -9,8 +9,14 @@ use tabletop_core::{
 };
 
 use crate::{
-    Channels, RecorderError, SessionCommand, SessionHeader, TICKS_PER_FRAME, episode::Episode,
-    prelude::Prelude, session::FORMAT, stage::Stage,
+    error::RecorderError,
+    files::{
+        channels::Channels,
+        format::FORMAT,
+        frame::TICKS_PER_FRAME,
+        session::{SessionCommand, SessionHeader},
+    },
+    recording::{earlier_commands::EarlierCommands, episode::Episode, stage::Stage},
 };
 
 /// Why a recording cannot be started.
@@ -26,7 +32,7 @@ pub(crate) struct Recorder {
     channels: Channels,
     episode: Option<Episode>,
     is_finishing: bool,
-    prelude: Prelude,
+    earlier: EarlierCommands,
 }
 
 impl Recorder {
@@ -36,7 +42,7 @@ impl Recorder {
             channels,
             episode: None,
             is_finishing: false,
-            prelude: Prelude::default(),
+            earlier: EarlierCommands::default(),
         }
     }
 
@@ -51,14 +57,14 @@ impl Recorder {
             program: env!("CARGO_PKG_VERSION").to_owned(),
             ticks_per_second: TICKS_PER_SECOND,
             ticks_per_frame: TICKS_PER_FRAME,
-            begin_tick: self.prelude.begin().map(|tick| tick.0),
+            begin_tick: self.earlier.begin().map(|tick| tick.0),
             start_tick: tick.0,
-            earlier_commands: self.prelude.count(),
+            earlier_commands: self.earlier.count(),
             camera: stage.camera.as_deref().copied(),
             settings: stage.settings.0.clone(),
         };
         let scene = stage.scene();
-        let episode = Episode::begin(&self.folder, &header, &scene, &self.prelude, self.channels)?;
+        let episode = Episode::begin(&self.folder, &header, &scene, &self.earlier, self.channels)?;
         *timeline = episode.timeline();
         self.episode = Some(episode);
         self.is_finishing = false;
@@ -69,9 +75,9 @@ impl Recorder {
 
 /// Tells the recorder, if there is one, that the world is what these commands have made of an empty one since this tick: a player has
 /// put it back there. The next recording begins with them.
-pub fn retell(world: &mut World, begin: SimTick, commands: &[SessionCommand]) {
+pub fn set_earlier_commands(world: &mut World, begin: SimTick, commands: &[SessionCommand]) {
     if let Some(mut recorder) = world.get_resource_mut::<Recorder>() {
-        recorder.prelude = Prelude::told(begin, commands);
+        recorder.earlier = EarlierCommands::since(begin, commands);
     }
 }
 
@@ -112,17 +118,17 @@ pub(crate) fn take_commands(
         }
     }
     let Recorder {
-        episode, prelude, ..
+        episode, earlier, ..
     } = &mut *recorder;
     if let Some(episode) = episode {
         commands
             .iter()
-            .for_each(|command| prelude.note_lasting(command));
+            .for_each(|command| earlier.note_lasting(command));
         let result = episode.log_commands(*tick, &commands);
         recorder.stop_on_error(result, &mut recording, &mut facts);
     } else {
         let hands_are_empty = Hand::ALL.iter().all(|&hand| hands.held_by(hand).is_none());
-        prelude.note(*tick, &commands, hands_are_empty);
+        earlier.note(*tick, &commands, hands_are_empty);
     }
 }
 
@@ -223,7 +229,7 @@ impl Recorder {
     /// Ends the recording, of which these are the lines of its commands. Returns its folder.
     fn end(&mut self, commands: Option<&[u8]>, recording: &mut Recording) -> Option<PathBuf> {
         self.is_finishing = false;
-        self.prelude.append_recorded(commands);
+        self.earlier.append_recorded(commands);
         let episode = self.episode.take()?;
         recording.0 = false;
         Some(episode.folder().to_owned())
@@ -245,7 +251,7 @@ mod tests {
     use bevy::ecs::schedule::{LogLevel, ScheduleBuildSettings};
     use tabletop_core::{CorePlugin, HeadCamera, SimSystems, StepApp as _};
 
-    use crate::RecorderPlugin;
+    use crate::recording::recorder_plugin::RecorderPlugin;
 
     use super::*;
 

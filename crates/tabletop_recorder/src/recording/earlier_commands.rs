@@ -3,9 +3,8 @@
 use tabletop_core::{SimCommand, SimTick};
 
 use crate::{
-    SessionCommand,
+    files::session::{SessionCommand, command_line},
     order::{in_order, is_about_recordings},
-    session::command_line,
 };
 
 /// A longer log is not kept: some three hours of moving something without a break.
@@ -14,7 +13,7 @@ const MOST_BYTES: usize = 64 << 20;
 /// The commands since the world was last empty: since the program started, or since a scene was put on the table while no
 /// hand held anything and the robot had not been used.
 #[derive(Debug)]
-pub(crate) struct Prelude {
+pub(crate) struct EarlierCommands {
     /// The tick of the first command; `None` if they were too many to be kept.
     begin: Option<SimTick>,
     /// Their lines in a session log.
@@ -26,7 +25,7 @@ pub(crate) struct Prelude {
     has_used_robot: bool,
 }
 
-impl Default for Prelude {
+impl Default for EarlierCommands {
     fn default() -> Self {
         Self {
             begin: Some(SimTick(0)),
@@ -38,7 +37,7 @@ impl Default for Prelude {
     }
 }
 
-impl Prelude {
+impl EarlierCommands {
     pub(crate) fn begin(&self) -> Option<SimTick> {
         self.begin
     }
@@ -57,18 +56,18 @@ impl Prelude {
     }
 
     /// What was told since a tick before which the world was empty.
-    pub(crate) fn told(begin: SimTick, commands: &[SessionCommand]) -> Self {
-        let mut prelude = Self {
+    pub(crate) fn since(begin: SimTick, commands: &[SessionCommand]) -> Self {
+        let mut earlier = Self {
             begin: Some(begin),
             ..Self::default()
         };
         for SessionCommand { tick, command } in commands {
             if !is_about_recordings(command) {
-                prelude.append(&command_line(*tick, command).unwrap_or_default());
+                earlier.append(&command_line(*tick, command).unwrap_or_default());
             }
-            prelude.note_lasting(command);
+            earlier.note_lasting(command);
         }
-        prelude
+        earlier
     }
 
     /// Takes in the commands of a tick in which nothing is recorded.
@@ -144,30 +143,30 @@ mod tests {
         SimCommand::SetScene(Box::default())
     }
 
-    fn told(prelude: &Prelude) -> Vec<String> {
-        let lines = std::str::from_utf8(prelude.lines()).unwrap();
+    fn told(earlier: &EarlierCommands) -> Vec<String> {
+        let lines = std::str::from_utf8(earlier.lines()).unwrap();
         let told: Vec<_> = lines.lines().map(str::to_owned).collect();
-        assert_eq!(told.len(), prelude.count());
+        assert_eq!(told.len(), earlier.count());
         told
     }
 
     #[test]
     fn it_goes_back_to_the_last_scene_that_empties_the_world() {
-        let mut prelude = Prelude::default();
-        assert_eq!(prelude.begin(), Some(SimTick(0)));
-        prelude.note(
+        let mut earlier = EarlierCommands::default();
+        assert_eq!(earlier.begin(), Some(SimTick(0)));
+        earlier.note(
             SimTick(3),
             &[SimCommand::Release(Hand::Left), scene()],
             true,
         );
-        assert_eq!(prelude.begin(), Some(SimTick(3)));
-        let told_first = told(&prelude);
+        assert_eq!(earlier.begin(), Some(SimTick(3)));
+        let told_first = told(&earlier);
         assert!(told_first[0].contains("SetScene") && told_first[1].contains("Release"));
-        prelude.note(SimTick(5), &[scene()], false);
-        assert_eq!(prelude.begin(), Some(SimTick(3)));
-        assert_eq!(prelude.count(), 3);
-        prelude.note(SimTick(9), &[scene(), SimCommand::StartRecording], true);
-        assert_eq!((prelude.begin(), prelude.count()), (Some(SimTick(9)), 1));
+        earlier.note(SimTick(5), &[scene()], false);
+        assert_eq!(earlier.begin(), Some(SimTick(3)));
+        assert_eq!(earlier.count(), 3);
+        earlier.note(SimTick(9), &[scene(), SimCommand::StartRecording], true);
+        assert_eq!((earlier.begin(), earlier.count()), (Some(SimTick(9)), 1));
     }
 
     #[test]
@@ -178,12 +177,12 @@ mod tests {
             (5, scene()),
             (6, SimCommand::SetPaused(true)),
         ];
-        let mut noted = Prelude::default();
+        let mut noted = EarlierCommands::default();
         for (tick, command) in &commands {
             noted.note(SimTick(*tick), std::slice::from_ref(command), true);
         }
         let commands = commands.map(|(tick, command)| SessionCommand { tick, command });
-        let told_again = Prelude::told(SimTick(3), &commands);
+        let told_again = EarlierCommands::since(SimTick(3), &commands);
         assert_eq!(told_again.begin(), noted.begin());
         assert_eq!(told(&told_again), told(&noted));
         assert_eq!(told_again.is_paused(), noted.is_paused());
@@ -192,24 +191,24 @@ mod tests {
 
     #[test]
     fn a_pause_and_the_robot_outlive_a_scene() {
-        let mut prelude = Prelude::default();
-        prelude.note(SimTick(1), &[SimCommand::SetPaused(true)], true);
-        prelude.note(SimTick(1), &[scene()], true);
-        assert!(told(&prelude)[0].contains("SetPaused"));
-        prelude.note(SimTick(2), &[SimCommand::ShowRobot(true)], true);
-        prelude.note(SimTick(3), &[scene()], true);
-        assert_eq!((prelude.begin(), prelude.count()), (Some(SimTick(1)), 4));
+        let mut earlier = EarlierCommands::default();
+        earlier.note(SimTick(1), &[SimCommand::SetPaused(true)], true);
+        earlier.note(SimTick(1), &[scene()], true);
+        assert!(told(&earlier)[0].contains("SetPaused"));
+        earlier.note(SimTick(2), &[SimCommand::ShowRobot(true)], true);
+        earlier.note(SimTick(3), &[scene()], true);
+        assert_eq!((earlier.begin(), earlier.count()), (Some(SimTick(1)), 4));
     }
 
     #[test]
     fn too_long_a_log_is_dropped_until_the_next_scene() {
-        let mut prelude = Prelude::default();
-        prelude.append_recorded(Some(&vec![b'\n'; MOST_BYTES + 1]));
-        prelude.note(SimTick(8), &[SimCommand::ClearTable], true);
-        assert_eq!((prelude.begin(), prelude.count()), (None, 0));
-        prelude.note(SimTick(9), &[scene()], true);
-        assert_eq!((prelude.begin(), prelude.count()), (Some(SimTick(9)), 1));
-        prelude.append_recorded(None);
-        assert_eq!(prelude.begin(), None);
+        let mut earlier = EarlierCommands::default();
+        earlier.append_recorded(Some(&vec![b'\n'; MOST_BYTES + 1]));
+        earlier.note(SimTick(8), &[SimCommand::ClearTable], true);
+        assert_eq!((earlier.begin(), earlier.count()), (None, 0));
+        earlier.note(SimTick(9), &[scene()], true);
+        assert_eq!((earlier.begin(), earlier.count()), (Some(SimTick(9)), 1));
+        earlier.append_recorded(None);
+        assert_eq!(earlier.begin(), None);
     }
 }

@@ -6,7 +6,12 @@ use tabletop_core::{
 };
 
 use crate::{
-    SessionObject, SessionScene, SessionSettings, change::Tracked, joints::Joints, states::State,
+    files::{
+        joints::Joints,
+        session::{SessionObject, SessionScene, SessionSettings},
+        states::State,
+    },
+    recording::tracked::Tracked,
 };
 
 /// The world as recordings see it.

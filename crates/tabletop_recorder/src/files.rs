@@ -1,0 +1,13 @@
+//! The files of a recording.
+
+pub(crate) mod channels;
+pub(crate) mod event;
+pub(crate) mod folder;
+pub(crate) mod format;
+pub(crate) mod frame;
+pub(crate) mod joints;
+pub(crate) mod log_file;
+pub(crate) mod picture;
+pub(crate) mod properties;
+pub(crate) mod session;
+pub(crate) mod states;

@@ -1,0 +1,248 @@
+//! A recording in its folder, read.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
+
+use tabletop_core::{JointState, RobotJoint, SimTick, Timeline, TimelinePicture, TimelineStage};
+
+use crate::{
+    error::RecorderError,
+    files::{
+        folder::Folder,
+        log_file::read_whole_lines,
+        session::{Session, SessionHeader},
+    },
+    reading::{
+        event,
+        rows::{self, JointRow, StateRow},
+        segment::{self, Hands, RecordedFrame, RecordedSegment, begin_of},
+    },
+};
+
+/// A recording in its folder, to be read. What a recording that was cut off lacks is not there, and no error.
+///
+/// ```
+/// # use bevy::prelude::*;
+/// # use tabletop_core::prelude::*;
+/// # use tabletop_recorder::RecorderPlugin;
+/// # let folder = std::env::temp_dir().join(format!("tabletop_reading_{}", std::process::id()));
+/// # let recorder = RecorderPlugin { folder: folder.clone(), ..default() };
+/// # let mut app = App::new();
+/// # app.add_plugins((MinimalPlugins, CorePlugin::default(), recorder)).start();
+/// # let shape = Shape::Sphere { radius: 0.5, color: Rgb::GRAY };
+/// # let ball = ObjectSpec::new("ball", Pose::IDENTITY, 1.0, shape);
+/// # let entity = app.world_mut().spawn(ball).id();
+/// # app.world_mut().resource_mut::<ObjectIndex>().insert("ball", entity);
+/// # app.world_mut().write_message(SimCommand::StartRecording);
+/// # app.step(60);
+/// # app.world_mut().write_message(SimCommand::FinishRecording);
+/// # app.step(1);
+/// use tabletop_recorder::{Occurrence, RecordingReader};
+///
+/// let recording = RecordingReader::open(&folder)?;
+/// assert_eq!(recording.header().ticks_per_second, 60);
+/// assert_eq!(recording.first_tick().0, 0);
+/// assert_eq!(recording.last_tick().0, 60);
+/// for segment in recording.segments()? {
+///     for event in &segment.events {
+///         if let Occurrence::Move { id, location, .. } = &event.what {
+///             println!("frame {}: {id} is at {location}", event.frame);
+///         }
+///     }
+///     for frame in &segment.frames {
+///         println!("tick {}: {}", frame.tick.0, frame.picture.display());
+///     }
+/// }
+/// let states = recording.states_at(recording.last_tick())?;
+/// println!("In the end the ball is at {}.", states["ball"].pose.location);
+/// # std::fs::remove_dir_all(folder)?;
+/// # Ok::<_, Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct RecordingReader {
+    folder: Folder,
+    session: Session,
+    last_tick: SimTick,
+}
+
+impl RecordingReader {
+    /// Opens the recording in a folder.
+    ///
+    /// # Errors
+    /// The folder has no session log, or one that no recorder has written.
+    pub fn open(folder: impl AsRef<Path>) -> Result<Self, RecorderError> {
+        let folder = Folder::existing(folder.as_ref());
+        let session = Session::read(folder.session())?;
+        let end = session.commands.last().filter(|_| session.is_finished());
+        let last_tick = match end {
+            Some(end) => SimTick(end.tick),
+            None => session.last_tick(folder.path())?,
+        };
+        Ok(Self {
+            folder,
+            session,
+            last_tick,
+        })
+    }
+
+    /// The recording's folder.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// The session log: the commands, the scene at the beginning, the settings.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// Who wrote the recording, and how.
+    pub fn header(&self) -> &SessionHeader {
+        &self.session.header
+    }
+
+    /// The first recorded tick.
+    pub fn first_tick(&self) -> SimTick {
+        SimTick(self.session.header.start_tick)
+    }
+
+    /// The last recorded tick, as far as the files go.
+    pub fn last_tick(&self) -> SimTick {
+        self.last_tick
+    }
+
+    /// The tick in which the recording was cut off, if it was: the program was killed, or its disk was full.
+    pub fn cut_off_at(&self) -> Option<SimTick> {
+        (!self.session.is_finished()).then_some(self.last_tick)
+    }
+
+    /// The segments in their order.
+    ///
+    /// # Errors
+    /// A file cannot be read, or a line of it is none that a recorder writes; it is named.
+    pub fn segments(&self) -> Result<Vec<RecordedSegment>, RecorderError> {
+        let mut segments = Vec::new();
+        let mut hands = Hands::default();
+        let mut commands = &self.session.commands[..];
+        for number in 0.. {
+            let path = self.folder.text(number);
+            if !path.exists() {
+                break;
+            }
+            let events = event::read(&path, &read_whole_lines(&path)?)?;
+            let act = hands.follow(&events).filter(|_| number > 0);
+            let begun = act.as_ref().map(|(act, frame)| {
+                let before = frame
+                    .checked_sub(1)
+                    .map(|before| self.tick_of_frame(before));
+                let (tick, rest) = begin_of(act, before, self.tick_of_frame(*frame), commands);
+                commands = rest;
+                tick
+            });
+            segments.push(RecordedSegment {
+                number,
+                start: begun.unwrap_or(self.first_tick()),
+                act: act.map(|(act, _)| act),
+                frames: self.frames(number)?,
+                events,
+            });
+        }
+        Ok(segments)
+    }
+
+    /// The frames of a segment that have pictures.
+    fn frames(&self, segment: u32) -> Result<Vec<RecordedFrame>, RecorderError> {
+        let numbers: BTreeSet<_> = self
+            .folder
+            .pictured_frames(segment)?
+            .into_iter()
+            .map(|(number, _)| number)
+            .collect();
+        let frames = numbers.into_iter().map(|number| RecordedFrame {
+            number,
+            tick: self.tick_of_frame(number),
+            picture: self.folder.picture(segment, number),
+        });
+        Ok(frames.filter(|frame| frame.picture.exists()).collect())
+    }
+
+    /// The tick that a frame shows the end of.
+    fn tick_of_frame(&self, frame: u64) -> SimTick {
+        let header = &self.session.header;
+        let ticks = frame.saturating_mul(header.ticks_per_frame);
+        SimTick(header.start_tick.saturating_add(ticks)).min(self.last_tick)
+    }
+
+    /// Every row of the states, in the file's order: for every tick those objects that have moved in it.
+    ///
+    /// # Errors
+    /// The file cannot be read, or a line of it is none that a recorder writes; it is named.
+    pub fn states(&self) -> Result<Vec<StateRow>, RecorderError> {
+        rows::states(&self.folder.states())
+    }
+
+    /// Where every object was at the end of a tick, and how fast, by id. Objects that were deleted before are there with their last
+    /// state.
+    ///
+    /// # Errors
+    /// As for [`states`](Self::states).
+    pub fn states_at(&self, tick: SimTick) -> Result<BTreeMap<String, StateRow>, RecorderError> {
+        let rows = self.states()?.into_iter();
+        let until = rows.take_while(|row| row.tick <= tick);
+        Ok(until.map(|row| (row.id.clone(), row)).collect())
+    }
+
+    /// Every row of the joints, in the file's order: for every tick those joints that have moved in it.
+    ///
+    /// # Errors
+    /// The file cannot be read, or a line of it is none that a recorder writes; it is named.
+    pub fn joints(&self) -> Result<Vec<JointRow>, RecorderError> {
+        rows::joints(&self.folder.joints())
+    }
+
+    /// How every joint of the robot was at the end of a tick, in the order of [`RobotJoint::ALL`].
+    ///
+    /// # Errors
+    /// As for [`joints`](Self::joints).
+    pub fn joints_at(
+        &self,
+        tick: SimTick,
+    ) -> Result<[JointState; RobotJoint::ALL.len()], RecorderError> {
+        let mut joints = [JointState::default(); RobotJoint::ALL.len()];
+        let rows = self.joints()?.into_iter();
+        for row in rows.take_while(|row| row.tick <= tick) {
+            joints[row.joint.index()] = row.state;
+        }
+        Ok(joints)
+    }
+
+    /// What happens in it, along its time.
+    ///
+    /// # Errors
+    /// As for [`segments`](Self::segments).
+    pub fn timeline(&self) -> Result<Timeline, RecorderError> {
+        let segments = self.segments()?;
+        let colors = segment::colors(&segments);
+        let pictures = segments.iter().flat_map(|segment| &segment.frames);
+        Ok(Timeline {
+            stage: TimelineStage::Open,
+            folder: self.folder().to_owned(),
+            start: self.first_tick(),
+            end: self.last_tick,
+            pictures: pictures
+                .enumerate()
+                .map(|(serial, frame)| TimelinePicture {
+                    serial,
+                    tick: frame.tick,
+                    path: frame.picture.clone(),
+                })
+                .collect(),
+            segments: segments
+                .iter()
+                .map(|segment| segment.on_timeline(&colors))
+                .collect(),
+            grips: Vec::new(),
+        })
+    }
+}

@@ -1,0 +1,10 @@
+//! Making recordings.
+
+pub(crate) mod earlier_commands;
+pub(crate) mod episode;
+pub(crate) mod recorder;
+pub(crate) mod recorder_plugin;
+pub(crate) mod stage;
+pub(crate) mod timeline_mark;
+pub(crate) mod tracked;
+pub(crate) mod unrecorded;

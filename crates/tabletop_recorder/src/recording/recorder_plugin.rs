@@ -1,0 +1,60 @@
+//! The plugin that records.
+
+use std::path::PathBuf;
+
+use bevy::prelude::*;
+use serde_json::{Map, Value};
+use tabletop_core::{PictureSystems, SimSystems, TickSystems};
+
+use crate::{
+    files::{channels::Channels, session::SessionSettings},
+    recording::recorder::{Recorder, ask_for_picture, record, take_commands},
+};
+
+/// Records the simulation into a folder from [`StartRecording`] to [`FinishRecording`], both ticks included.
+/// Needs [`CorePlugin`](tabletop_core::CorePlugin).
+///
+/// It keeps between the phases of a tick: before [`SimSystems::Ingest`] it logs the commands, after [`PictureSystems`]
+/// it writes what came of them. Both also happen while paused, so that nothing is missed that is done meanwhile.
+///
+/// [`StartRecording`]: tabletop_core::SimCommand::StartRecording
+/// [`FinishRecording`]: tabletop_core::SimCommand::FinishRecording
+#[derive(Clone, Debug)]
+pub struct RecorderPlugin {
+    /// The folder. What is there when a recording starts is moved aside.
+    pub folder: PathBuf,
+    /// What the [settings](SessionSettings) are to begin with.
+    pub header: Map<String, Value>,
+    /// What is written beside the pictures.
+    pub channels: Channels,
+}
+
+impl Default for RecorderPlugin {
+    fn default() -> Self {
+        Self {
+            folder: "demo".into(),
+            header: Map::new(),
+            channels: Channels::default(),
+        }
+    }
+}
+
+impl Plugin for RecorderPlugin {
+    fn build(&self, app: &mut App) {
+        app.insert_resource(Recorder::new(self.folder.clone(), self.channels))
+            .insert_resource(SessionSettings(self.header.clone()))
+            .add_systems(
+                FixedUpdate,
+                (
+                    take_commands
+                        .after(SimSystems::Load)
+                        .before(SimSystems::Ingest),
+                    ask_for_picture
+                        .after(SimSystems::Propagate)
+                        .before(SimSystems::Sense),
+                    record.after(PictureSystems).before(SimSystems::Record),
+                )
+                    .in_set(TickSystems),
+            );
+    }
+}
