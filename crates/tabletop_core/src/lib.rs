@@ -37,9 +37,9 @@ mod preset;
 mod random;
 mod ray;
 mod recording;
-mod rewind;
 mod robot;
 mod robot_news;
+mod rollback;
 mod scene;
 mod sensor;
 mod shape;
@@ -71,11 +71,11 @@ pub use pose::{Pose, UNITS_PER_METER, degrees_from_quat, quat_from_degrees};
 pub use preset::Preset;
 pub use random::Random;
 pub use recording::{History, OpenRecording, Recording, Replaying};
-pub use rewind::{Remembered, Rewinds, Rewound};
 pub use robot::{
     Arm, ArmState, Drive, Face, Gripped, JOINTS_PER_ARM, JointState, Markers, Robot, RobotContact,
     RobotJoint, RobotMode, WIDEST_GRIP, robot_base,
 };
+pub use rollback::{ResourceSnapshot, Rollback, RollbackRegistry};
 pub use scene::{ChainSpec, Joint, JointKind, JointSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
 pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage};
 pub use shape::{Part, Primitive, Shape, Solid};
@@ -132,7 +132,7 @@ impl Plugin for CorePlugin {
             .init_resource::<Playback>()
             .init_resource::<Recording>()
             .init_resource::<Replaying>()
-            .init_resource::<Rewound>()
+            .init_resource::<RollbackRegistry>()
             .init_resource::<Robot>()
             .init_resource::<Steering>()
             .init_resource::<ObjectIndex>()
@@ -148,10 +148,10 @@ impl Plugin for CorePlugin {
                 RunFixedMainLoop,
                 KeySystems.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
             );
-        let mut rewound = app.world_mut().resource_mut::<Rewound>();
-        rewound.add::<Hands>();
-        rewound.add::<ObjectIndex>();
-        rewound.add::<SimTick>();
+        let mut registry = app.world_mut().resource_mut::<RollbackRegistry>();
+        registry.add::<Hands>();
+        registry.add::<ObjectIndex>();
+        registry.add::<SimTick>();
         clock::configure(app);
         if self.one_thread {
             clock::run_ticks_on_one_thread(app);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{Pose, Rewinds, Shape};
+use crate::{Pose, Rollback, Shape};
 
 /// What an object is: everything that physics, pictures and recordings need to know of it.
 ///
@@ -13,7 +13,7 @@ use crate::{Pose, Rewinds, Shape};
 /// while [`pose`](Self::pose) stays where it was put.
 #[derive(Component, Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[component(immutable)]
-#[require(Transform, Rewinds)]
+#[require(Transform, Rollback)]
 pub struct ObjectSpec {
     /// Its id. In a [`SceneSpec`](crate::SceneSpec) it is the id that the file asks for (empty: any), on the table it is unique.
     pub id: String,

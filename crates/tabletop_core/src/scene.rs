@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{ObjectSpec, Pose, Primitive, Rewinds, Rgb, Solid};
+use crate::{ObjectSpec, Pose, Primitive, Rgb, Rollback, Solid};
 
 /// The content of a task file, in the file's order, before ids are made unique.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -17,7 +17,7 @@ pub struct SceneSpec {
 /// The table: a white slab whose top lies in the XY plane, centred at the origin. As a component it marks the table's entity.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[component(immutable)]
-#[require(Transform, Rewinds)]
+#[require(Transform, Rollback)]
 pub struct Table {
     /// Extent along X in units.
     pub xspan: f32,
@@ -150,7 +150,7 @@ pub struct JointSpec {
 /// A joint on the table. Its entity is a child of the second object's, and is gone with either of the two.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 #[component(immutable)]
-#[require(Transform, Rewinds)]
+#[require(Transform, Rollback)]
 pub struct Joint {
     /// The two objects.
     pub objects: [Entity; 2],

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*, rapier::prelude as rapier};
 use tabletop_core::{Hand, Hands, Pose, TICK_SECONDS};
-use tabletop_physics::{Convex, convex_parts, drawn, nearby, nearest};
+use tabletop_physics::{Convex, convex_parts, nearby, nearest, pull_velocity};
 
 use crate::{
     grasp::{Carry, CarryTarget},
@@ -34,7 +34,7 @@ pub(crate) fn carry(
         };
         let here = Pose::from(&*transform);
         if let (Carry::AgainstJoints, Some(mut velocity)) = (carry, velocity) {
-            *velocity = drawn(here, target.0);
+            *velocity = pull_velocity(here, target.0);
             continue;
         }
         let Some(collider) = collider_of(&rapier, object) else {

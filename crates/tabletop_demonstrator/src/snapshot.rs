@@ -2,7 +2,7 @@
 
 use bevy::{ecs::entity_disabling::Disabled, prelude::*};
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Gripped, Held, Remembered, Rewinds, Rewound};
+use tabletop_core::{Gripped, Held, ResourceSnapshot, Rollback, RollbackRegistry};
 use tabletop_physics::{JustReleased, Parked, PhysicsSnapshot};
 
 use crate::grasp::{Carry, CarryTarget};
@@ -14,7 +14,7 @@ use crate::grasp::{Carry, CarryTarget};
 pub struct Snapshot {
     physics: Option<PhysicsSnapshot>,
     entities: Vec<(Entity, EntityState)>,
-    resources: Remembered,
+    resources: ResourceSnapshot,
 }
 
 /// What changes in an object, joint, table or link while it exists.
@@ -37,7 +37,7 @@ struct EntityState {
 impl Snapshot {
     /// The present state.
     pub fn take(world: &mut World) -> Self {
-        let mut simulated = world.query_filtered::<Entity, With<Rewinds>>();
+        let mut simulated = world.query_filtered::<Entity, With<Rollback>>();
         let entities: Vec<_> = simulated.iter(world).collect();
         Self {
             physics: PhysicsSnapshot::take(world),
@@ -45,13 +45,13 @@ impl Snapshot {
                 .into_iter()
                 .map(|entity| (entity, EntityState::of(world.entity(entity))))
                 .collect(),
-            resources: world.resource::<Rewound>().remember(world),
+            resources: world.resource::<RollbackRegistry>().remember(world),
         }
     }
 
     /// Puts the world back into this state. What has come since is disabled.
     pub fn restore(&self, world: &mut World) {
-        let mut simulated = world.query_filtered::<Entity, With<Rewinds>>();
+        let mut simulated = world.query_filtered::<Entity, With<Rollback>>();
         let present: Vec<_> = simulated.iter(world).collect();
         for entity in present {
             if !self.entities.iter().any(|(kept, _)| *kept == entity) {

@@ -3,21 +3,25 @@
 //! The solver is most of a tick. What stands alone needs few sub-steps; what is deep in a stack, or handled, needs many; what
 //! lands needs many sweeps.
 
+mod depth;
+mod engine;
+mod landing;
+mod substeps;
+mod touches;
+
 use bevy::prelude::*;
 use bevy_rapier3d::{
     prelude::*,
-    rapier::prelude::{
-        ColliderSet, ContactPair, DefaultBroadPhase, ImpulseJointSet, IntegrationParameters,
-        IslandManager, NarrowPhase, RigidBody, RigidBodySet,
-    },
+    rapier::prelude::{ColliderSet, ContactPair, IntegrationParameters, RigidBodySet},
 };
 
-use crate::{
-    JustReleased, PhysicsSettings,
-    landing::landing_speed,
-    substeps::{FEWEST_SUBSTEPS, MOST_SUBSTEPS, Situation},
-    touches::{Touches, bodies_of},
-};
+pub use engine::Engine;
+pub(crate) use substeps::{FEWEST_SUBSTEPS, SUBSTEPS_OF_FREE};
+
+use crate::{holding::JustReleased, settings::PhysicsSettings};
+use landing::landing_speed;
+use substeps::{MOST_SUBSTEPS, Situation};
+use touches::{Touches, bodies_of};
 
 /// How far ahead contacts are looked for, in units.
 pub(crate) const PREDICTION: f32 = 0.2;
@@ -71,26 +75,6 @@ const LANDING_SWEEPS: Sweeps = Sweeps {
 pub struct Care {
     handling: u32,
     landing: u32,
-}
-
-/// What effort depends on, and where it is set.
-pub struct Engine<'a> {
-    /// What holds for all bodies.
-    pub parameters: &'a mut IntegrationParameters,
-    /// Which bodies are awake.
-    pub islands: &'a IslandManager,
-    /// Which shapes are near each other.
-    pub broad_phase: &'a DefaultBroadPhase,
-    /// Which shapes touch each other.
-    pub narrow_phase: &'a NarrowPhase,
-    /// The bodies.
-    pub bodies: &'a mut RigidBodySet,
-    /// Their shapes.
-    pub colliders: &'a ColliderSet,
-    /// What holds them together.
-    pub joints: &'a ImpulseJointSet,
-    /// Downward acceleration in units/s².
-    pub gravity: f32,
 }
 
 pub(crate) fn spend_effort(
@@ -220,15 +204,6 @@ impl Mode {
         parameters.contact_recycling = self.recycles;
         parameters.contact_clustering = self.clusters;
         parameters.max_ccd_substeps = usize::from(self.is_continuous);
-    }
-}
-
-impl Engine<'_> {
-    /// An upper bound of the speed, in units/s, that a point of a body has at the end of a tick in which nothing stops it.
-    pub(crate) fn fastest_point(&self, body: &RigidBody) -> f32 {
-        const REACH: f32 = 2.0;
-        let falling = self.gravity * self.parameters.dt;
-        body.linvel().length() + falling + REACH * body.angvel().length()
     }
 }
 

@@ -14,10 +14,10 @@ pub struct JustReleased;
 /// How fast it sinks in that tick, in units/s.
 const SETTLING_SPEED: f32 = 1e-3;
 
-/// Part of the way to its target that a jointed object is drawn in a tick.
-const DRAWN_PER_TICK: f32 = 0.25;
+/// Part of the way to its target that a jointed object is pulled in a tick.
+const PULLED_PER_TICK: f32 = 0.25;
 
-/// Fastest that it is drawn, in units/s, and turned, in rad/s.
+/// Fastest that it is pulled, in units/s, and turned, in rad/s.
 const FASTEST: (f32, f32) = (40.0, 10.0);
 
 /// Makes an object go exactly where its [`Transform`] says, whatever acts on it.
@@ -52,9 +52,9 @@ pub fn let_fall(
     }
 }
 
-/// The velocity that draws a jointed object to its target.
-pub fn drawn(here: Pose, target: Pose) -> Velocity {
-    let per_second = DRAWN_PER_TICK / TICK_SECONDS;
+/// The velocity that pulls a jointed object to its target.
+pub fn pull_velocity(here: Pose, target: Pose) -> Velocity {
+    let per_second = PULLED_PER_TICK / TICK_SECONDS;
     let turn = (target.rotation * here.rotation.inverse()).to_scaled_axis();
     Velocity {
         linear: ((target.location - here.location) * per_second).clamp_length_max(FASTEST.0),

@@ -28,34 +28,20 @@
 //! assert!((height + 98.1 / 2.0).abs() < 1.0, "it fell to {height}");
 //! ```
 
-mod body;
-mod contact;
-mod convex;
-mod depth;
+mod bodies;
 mod effort;
+mod geometry;
 mod holding;
-mod joint;
-mod landing;
-mod mass;
-mod nearby;
-mod newcomers;
 mod parking;
-mod prism;
 mod settings;
 mod snapshot;
-mod substeps;
-mod touches;
 mod transforms;
 mod twist;
 
-pub use body::collider;
-pub use contact::contact;
-pub use convex::{Convex, Nearest, convex_parts, nearest, to_rapier};
+pub use bodies::{BodySystems, collider, mass_properties};
 pub use effort::{Care, Engine, impulse_share};
-pub use holding::{JustReleased, drawn, hold, let_fall, let_go};
-pub use mass::mass_properties;
-pub use nearby::{Nearby, nearby};
-pub use newcomers::BodySystems;
+pub use geometry::{Convex, Nearby, Nearest, contact, convex_parts, nearby, nearest, to_rapier};
+pub use holding::{JustReleased, hold, let_fall, let_go, pull_velocity};
 pub use parking::{KeepRemoved, Parked, drop_removed, remove_object};
 pub use settings::PhysicsSettings;
 pub use snapshot::{PhysicsSnapshot, renew_if_empty};
@@ -132,7 +118,7 @@ impl Plugin for PhysicsPlugin {
                     (transforms::propagate(), twist::note_twists).in_set(SimSystems::Propagate),
                 ),
             )
-            .add_plugins(newcomers::plugin);
+            .add_plugins(bodies::plugin);
     }
 }
 
@@ -172,7 +158,7 @@ pub fn integration_parameters() -> IntegrationParameters {
     IntegrationParameters {
         dt: TICK_SECONDS,
         length_unit: LENGTH_UNIT,
-        num_solver_iterations: substeps::FEWEST_SUBSTEPS,
+        num_solver_iterations: effort::FEWEST_SUBSTEPS,
         contact_softness: stiff_contacts,
         static_contact_softness: stiff_contacts,
         warmstart_joints: true,

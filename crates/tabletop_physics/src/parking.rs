@@ -1,7 +1,7 @@
 //! Removing objects so that a snapshot can bring them back.
 
 use bevy::{ecs::entity_disabling::Disabled, prelude::*};
-use tabletop_core::Rewinds;
+use tabletop_core::Rollback;
 
 use crate::snapshot::remove_body;
 
@@ -42,7 +42,7 @@ pub fn drop_removed(world: &mut World) {
     if keep.is_some_and(|keep| keep.is_on()) {
         return;
     }
-    let mut disabled = world.query_filtered::<Entity, (With<Rewinds>, With<Disabled>)>();
+    let mut disabled = world.query_filtered::<Entity, (With<Rollback>, With<Disabled>)>();
     for entity in disabled.iter(world).collect::<Vec<_>>() {
         world.try_despawn(entity).ok();
     }

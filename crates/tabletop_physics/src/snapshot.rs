@@ -6,7 +6,7 @@ use bevy_rapier3d::{
     rapier::prelude::{CCDSolver, DefaultBroadPhase, IslandManager, NarrowPhase, PhysicsPipeline},
 };
 
-use crate::Care;
+use crate::effort::Care;
 
 /// The physics engine's whole state: not poses alone, but contacts, sleep and everything else that decides what comes next.
 /// A world that is [restored](Self::restore) goes on bit for bit as the one that the snapshot was [taken](Self::take) of,

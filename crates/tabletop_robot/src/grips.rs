@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{GravityScale, Velocity};
 use tabletop_core::{Arm, Gripped, Held, Joint, ObjectSpec, Pose, Robot, SimFact};
-use tabletop_physics::{JustReleased, drawn, hold, let_go};
+use tabletop_physics::{JustReleased, hold, let_go, pull_velocity};
 
 use crate::grip::Touched;
 
@@ -24,7 +24,7 @@ pub(crate) struct Grip {
     pub pose: Pose,
     /// Where the left and the right finger touch it, in the end effector's frame.
     pub points: [Vec3; 2],
-    /// Whether joints hold it, too: then it is drawn along as far as they let it.
+    /// Whether joints hold it, too: then it is pull_velocity along as far as they let it.
     pub is_jointed: bool,
 }
 
@@ -95,7 +95,7 @@ pub(crate) fn draw_jointed(
         for grip in grips.of(arm).iter().filter(|grip| grip.is_jointed) {
             if let Ok((transform, mut velocity)) = objects.get_mut(grip.object) {
                 let target = robot.arm(arm).end_effector * grip.pose;
-                *velocity = drawn(Pose::from(transform), target);
+                *velocity = pull_velocity(Pose::from(transform), target);
             }
         }
     }

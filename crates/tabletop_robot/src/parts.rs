@@ -5,14 +5,14 @@ use bevy_rapier3d::{
     plugin::systems::{init_colliders, init_rigid_bodies},
     prelude::*,
 };
-use tabletop_core::{CarriesHeadCamera, Pose, Rewinds, Robot, Table, robot_base};
+use tabletop_core::{CarriesHeadCamera, Pose, Robot, Rollback, Table, robot_base};
 use tabletop_physics::to_rapier;
 
 use crate::skeleton::{Body, Place, Posture, Skeleton};
 
 /// A body of the robot: a link, or a finger of a gripper.
 #[derive(Component, Clone, Debug)]
-#[require(Transform, Rewinds)]
+#[require(Transform, Rollback)]
 pub struct RobotBody {
     /// What it is called.
     pub name: String,
@@ -55,7 +55,7 @@ pub(crate) fn spawn(world: &mut World) -> Result {
             ));
         }
         parts.push(part.id());
-        // One by one, before other newcomers: the order of bodies decides the last bits of their motion, and Bevy's tables have one
+        // One by one, before other pending bodies: the order of bodies decides the last bits of their motion, and Bevy's tables have one
         // of their own.
         world.run_system_cached(init_rigid_bodies)?;
         world.run_system_cached(init_colliders)?;

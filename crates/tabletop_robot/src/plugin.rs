@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 use tabletop_core::{
-    ActuateSystems, CommandSystems, HeadCamera, Rewound, Robot, RobotJoint, RobotMode, SimSystems,
-    Table,
+    ActuateSystems, CommandSystems, HeadCamera, Robot, RobotJoint, RobotMode, RollbackRegistry,
+    SimSystems, Table,
 };
 use tabletop_kinematics::{Model, ModelError};
 use tabletop_physics::BodySystems;
@@ -117,12 +117,12 @@ impl Plugin for BaxterPlugin {
             .init_resource::<HeadCamera>();
         let world = app.world_mut();
         world.resource_mut::<Robot>().mode = self.mode;
-        let mut rewound = world.resource_mut::<Rewound>();
-        rewound.add::<Robot>();
-        rewound.add::<Orders>();
-        rewound.add::<Parts>();
-        rewound.add::<Grips>();
-        rewound.add::<Motors>();
+        let mut registry = world.resource_mut::<RollbackRegistry>();
+        registry.add::<Robot>();
+        registry.add::<Orders>();
+        registry.add::<Parts>();
+        registry.add::<Grips>();
+        registry.add::<Motors>();
         app.add_systems(Startup, publish)
             .add_systems(
                 FixedUpdate,

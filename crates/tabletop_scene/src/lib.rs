@@ -42,7 +42,7 @@ pub use ids::IdAllocator;
 pub use present::{PresentScene, present_scene};
 
 use bevy::prelude::*;
-use tabletop_core::{Rewound, SimSystems};
+use tabletop_core::{RollbackRegistry, SimSystems};
 
 use crate::compound::Compounds;
 
@@ -55,9 +55,9 @@ impl Plugin for ScenePlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<IdAllocator>()
             .init_resource::<Compounds>();
-        let mut rewound = app.world_mut().resource_mut::<Rewound>();
-        rewound.add::<Compounds>();
-        rewound.add::<IdAllocator>();
+        let mut registry = app.world_mut().resource_mut::<RollbackRegistry>();
+        registry.add::<Compounds>();
+        registry.add::<IdAllocator>();
         app.add_systems(
             FixedUpdate,
             (

@@ -3,11 +3,17 @@
 //! Rapier's plugin would take them in the order of Bevy's tables, which depends on everything else in the app, and the
 //! order of bodies decides the last bits of their motion.
 
+mod body;
+mod joint;
+mod mass;
+mod prism;
+
+pub use body::collider;
+pub use mass::mass_properties;
+
 use bevy::prelude::*;
 use bevy_rapier3d::plugin::systems::{init_colliders, init_joints, init_rigid_bodies};
 use tabletop_core::{Joint, ObjectSpec, SimSystems, Table, TickSystems};
-
-use crate::{body, joint};
 
 /// Gives new objects, tables and joints their bodies, in [`FixedUpdate`] after
 /// [`SimSystems::Ingest`]. Runs while paused, too.
@@ -16,13 +22,13 @@ pub struct BodySystems;
 
 /// What has appeared and has no body yet.
 #[derive(Resource, Default)]
-struct Newcomers {
+struct PendingBodies {
     bodies: Vec<Entity>,
     joints: Vec<Entity>,
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Newcomers>()
+    app.init_resource::<PendingBodies>()
         .configure_sets(
             FixedUpdate,
             BodySystems
@@ -36,29 +42,30 @@ pub(crate) fn plugin(app: &mut App) {
         .add_observer(note_joint);
 }
 
-fn note_object(add: On<Add, ObjectSpec>, mut newcomers: ResMut<Newcomers>) {
-    newcomers.bodies.push(add.entity);
+fn note_object(add: On<Add, ObjectSpec>, mut pending: ResMut<PendingBodies>) {
+    pending.bodies.push(add.entity);
 }
 
-fn note_table(add: On<Add, Table>, mut newcomers: ResMut<Newcomers>) {
-    newcomers.bodies.push(add.entity);
+fn note_table(add: On<Add, Table>, mut pending: ResMut<PendingBodies>) {
+    pending.bodies.push(add.entity);
 }
 
-fn note_joint(add: On<Add, Joint>, mut newcomers: ResMut<Newcomers>) {
-    newcomers.joints.push(add.entity);
+fn note_joint(add: On<Add, Joint>, mut pending: ResMut<PendingBodies>) {
+    pending.joints.push(add.entity);
 }
 
-fn any(newcomers: Res<Newcomers>) -> bool {
-    !newcomers.bodies.is_empty() || !newcomers.joints.is_empty()
+fn any(pending: Res<PendingBodies>) -> bool {
+    !pending.bodies.is_empty() || !pending.joints.is_empty()
 }
 
 fn take_in(world: &mut World) -> Result {
-    let Newcomers { bodies, joints } = std::mem::take(&mut *world.resource_mut::<Newcomers>());
+    let PendingBodies { bodies, joints } =
+        std::mem::take(&mut *world.resource_mut::<PendingBodies>());
     for entity in bodies {
-        let Ok(newcomer) = world.get_entity(entity) else {
+        let Ok(body) = world.get_entity(entity) else {
             continue; // It has gone in the tick in which it came.
         };
-        if let Some(place) = newcomer.get::<Transform>().copied() {
+        if let Some(place) = body.get::<Transform>().copied() {
             world
                 .entity_mut(entity)
                 .insert(GlobalTransform::from(place));

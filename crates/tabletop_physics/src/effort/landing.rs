@@ -6,7 +6,7 @@ use bevy_rapier3d::{
     rapier::prelude::{ColliderHandle, QueryFilter, RigidBody, RigidBodyHandle},
 };
 
-use crate::{effort::Engine, substeps::speed};
+use super::{engine::Engine, substeps::speed};
 
 /// What is slower than this when it lands, in units/s and rad/s together, does not slide.
 const LANDING_SPEED: f32 = 1.0;

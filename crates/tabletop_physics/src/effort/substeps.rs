@@ -2,7 +2,7 @@
 
 use bevy_rapier3d::rapier::prelude::{RigidBody, RigidBodyHandle};
 
-use crate::{effort::Engine, touches::Touches};
+use super::{engine::Engine, touches::Touches};
 
 /// Sub-steps of every island, at least.
 pub(crate) const FEWEST_SUBSTEPS: usize = 4;

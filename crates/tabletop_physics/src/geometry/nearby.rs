@@ -8,7 +8,7 @@ use bevy_rapier3d::{
 };
 use tabletop_core::Pose;
 
-use crate::convex::{Convex, convex_parts};
+use super::convex::{Convex, convex_parts};
 
 /// A body that reaches into a box.
 pub struct Nearby<'a> {

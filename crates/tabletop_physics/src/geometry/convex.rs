@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::{parry::bounding_volume::BoundingVolume as _, rapier::prelude as rapier};
 use tabletop_core::Pose;
 
-use crate::contact::contact;
+use super::contact::contact;
 
 /// A convex solid with its pose in the frame of what it is a part of.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ use bevy_rapier3d::rapier::prelude::{
     ColliderSet, ContactPair, RigidBody, RigidBodyHandle, RigidBodySet,
 };
 
-use crate::{depth::Depths, effort::Engine};
+use super::{depth::Depths, engine::Engine};
 
 /// Masses of which one is more than this many times the other are uneven.
 const UNEVEN: f32 = 1.5;

@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use tabletop_core::{Joint, JointKind, ObjectSpec};
 
-use crate::PhysicsSettings;
+use crate::settings::PhysicsSettings;
 
 /// How fast dry friction takes up speed, in 1/s: within a tick.
 const FRICTION_RATE: f32 = 60.0;

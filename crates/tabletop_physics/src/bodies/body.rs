@@ -4,12 +4,10 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use tabletop_core::{ObjectSpec, Pose, Primitive, Shape, Solid, Table, Twist};
 
+use super::{mass::mass_properties, prism::Prism};
 use crate::{
-    PhysicsSettings,
-    effort::SOFT_CCD_PREDICTION,
-    mass::mass_properties,
-    prism::Prism,
-    substeps::{FEWEST_SUBSTEPS, SUBSTEPS_OF_FREE},
+    effort::{FEWEST_SUBSTEPS, SOFT_CCD_PREDICTION, SUBSTEPS_OF_FREE},
+    settings::PhysicsSettings,
 };
 
 /// Speeds below which an object falls asleep after half a second: 0.02 m/s and 0.2 rad/s.

@@ -1,0 +1,9 @@
+//! Where solids are and how far apart, without a step of the engine.
+
+mod contact;
+mod convex;
+mod nearby;
+
+pub use contact::contact;
+pub use convex::{Convex, Nearest, convex_parts, nearest, to_rapier};
+pub use nearby::{Nearby, nearby};
