@@ -1,11 +1,13 @@
 //! What is wrong with a task file, and where.
 
+mod position;
+
 use std::{
     fmt,
     path::{Path, PathBuf},
 };
 
-use crate::position::PositionCursor;
+use crate::fault::position::PositionCursor;
 
 /// The most faults of a file that are reported; one more fault then says that there are others.
 pub const MAX_FAULTS: usize = 200;

@@ -22,24 +22,12 @@
 //! assert_eq!(chain.links(), 12);
 //! ```
 
-mod angles;
-mod attributes;
-mod build;
-mod chain;
-mod decode;
-mod element;
+mod document;
+mod elements;
 mod fault;
-mod hollow;
-mod lidbox;
-mod object;
 mod parse;
 mod plugin;
-mod position;
-mod prolog;
 mod suggestion;
-mod syntax;
-mod tree;
-mod value;
 mod write;
 
 #[cfg(test)]

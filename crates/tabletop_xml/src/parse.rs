@@ -9,9 +9,9 @@ use std::{
 use tabletop_core::SceneSpec;
 
 use crate::{
-    build,
-    decode::decode,
-    element,
+    document::build,
+    document::decode::decode,
+    elements,
     fault::{Fault, Faults, Place},
 };
 
@@ -82,7 +82,7 @@ pub fn parse(file: &Path, text: &[u8]) -> ParsedTask {
     }
     let decoded = decode(text);
     let scene = match build::read(&decoded, &mut faults) {
-        Some(root) => element::scene(&root, &mut faults),
+        Some(root) => elements::scene(&root, &mut faults),
         None => SceneSpec::default(),
     };
     ParsedTask {

@@ -1,5 +1,7 @@
 //! Scenes as task files.
 
+pub(crate) mod angles;
+
 use std::fmt::Write as _;
 
 use bevy::math::{DVec3, Vec3};
@@ -8,7 +10,10 @@ use tabletop_core::{
     ChainSpec, LidBoxSpec, NAMED_COLORS, ObjectSpec, Part, Pose, Rgb, SceneItem, SceneSpec, Shape,
 };
 
-use crate::{NAMESPACE, angles::angles_of, decode::is_xml_character, value::is_id_character};
+use crate::{
+    NAMESPACE, document::decode::is_xml_character, elements::value::is_id_character,
+    write::angles::angles_of,
+};
 
 /// Writes a scene as a task file, which [reads](crate::parse()) back as the same scene: numbers exactly, colours to
 /// within their 8 bits a part, rotations exactly or, if they are no [rotation of a file](tabletop_core::quat_from_degrees), as the nearest

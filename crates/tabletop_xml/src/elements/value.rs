@@ -5,7 +5,7 @@ use std::{fmt, ops::RangeInclusive, str::FromStr};
 use bevy::math::{DVec3, Vec3};
 use tabletop_core::{NAMED_COLORS, Rgb};
 
-use crate::{fault::Excerpt, syntax::is_blank};
+use crate::{document::syntax::is_blank, fault::Excerpt};
 
 /// Extents, radii and thicknesses, in units.
 pub(crate) const SPANS: RangeInclusive<f32> = 0.001..=1000.0;

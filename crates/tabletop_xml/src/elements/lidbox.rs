@@ -4,12 +4,12 @@ use bevy::math::Vec3;
 use tabletop_core::LidBoxSpec;
 
 use crate::{
-    attributes::AttributeReader,
-    element::{DESCRIPTION, ElementReader},
-    hollow::check_hollow,
-    object::SPANS,
-    tree::Element,
-    value,
+    document::tree::Element,
+    elements::attributes::AttributeReader,
+    elements::hollow::check_hollow,
+    elements::object::SPANS,
+    elements::value,
+    elements::{DESCRIPTION, ElementReader},
 };
 
 impl ElementReader<'_> {

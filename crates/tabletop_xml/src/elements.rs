@@ -1,13 +1,20 @@
 //! Elements of the task file language as what they stand for (report section 6.2): the table, and what may stand where.
 
+mod attributes;
+mod chain;
+mod hollow;
+mod lidbox;
+mod object;
+pub(crate) mod value;
+
 use tabletop_core::{SceneItem, SceneSpec, Table};
 
 use crate::{
     NAMESPACE,
-    attributes::AttributeReader,
+    document::tree::{Element, Namespace},
+    elements::attributes::AttributeReader,
     fault::{Excerpt, Faults},
     suggestion::nearest,
-    tree::{Element, Namespace},
 };
 
 const ROOT: &str = "tabletop";

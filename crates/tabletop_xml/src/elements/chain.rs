@@ -4,10 +4,10 @@ use bevy::math::Vec3;
 use tabletop_core::ChainSpec;
 
 use crate::{
-    attributes::AttributeReader,
-    element::ElementReader,
-    tree::Element,
-    value::{self, LINK_COUNTS, PADDINGS},
+    document::tree::Element,
+    elements::ElementReader,
+    elements::attributes::AttributeReader,
+    elements::value::{self, LINK_COUNTS, PADDINGS},
 };
 
 impl ElementReader<'_> {

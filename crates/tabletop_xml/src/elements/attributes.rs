@@ -6,10 +6,10 @@ use bevy::math::{DVec3, Vec3};
 use tabletop_core::{Pose, Rgb};
 
 use crate::{
+    document::tree::{Attribute, Element},
+    elements::value::{self, LOCATIONS, MASSES, ROTATIONS, SPANS, ValueError},
     fault::{Faults, Place},
     suggestion::nearest,
-    tree::{Attribute, Element},
-    value::{self, LOCATIONS, MASSES, ROTATIONS, SPANS, ValueError},
 };
 
 /// Reads the attributes of one element. A read that fails notes a fault and gives the default;
@@ -188,7 +188,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::{build, decode::decode};
+    use crate::{document::build, document::decode::decode};
 
     fn read<T>(
         text: &str,

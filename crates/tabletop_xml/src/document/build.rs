@@ -8,10 +8,10 @@ use quick_xml::{
 
 use crate::{
     NAMESPACE,
-    decode::{Decoded, is_xml_character},
+    document::decode::{Decoded, is_xml_character},
+    document::syntax::{explain, explain_attribute, explain_reference, is_blank, is_name},
+    document::tree::{Attribute, Element, Namespace},
     fault::{Excerpt, Faults, Place},
-    syntax::{explain, explain_attribute, explain_reference, is_blank, is_name},
-    tree::{Attribute, Element, Namespace},
 };
 
 /// How deep elements can be nested.

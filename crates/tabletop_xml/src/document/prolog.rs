@@ -3,9 +3,9 @@
 use quick_xml::events::BytesDecl;
 
 use crate::{
-    build::Builder,
+    document::build::Builder,
+    document::syntax::{is_declaration, is_name},
     fault::{Excerpt, Place},
-    syntax::{is_declaration, is_name},
 };
 
 impl Builder<'_, '_> {

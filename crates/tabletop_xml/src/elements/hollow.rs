@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 
-use crate::attributes::AttributeReader;
+use crate::elements::attributes::AttributeReader;
 
 /// Notes a fault where the walls of a container leave no hollow.
 pub(crate) fn check_hollow(

@@ -63,8 +63,8 @@ mod tests {
     use super::*;
     use crate::{
         NAMESPACE,
-        build::{MAX_ELEMENTS, read},
-        decode::decode,
+        document::build::{MAX_ELEMENTS, read},
+        document::decode::decode,
         fault::Faults,
     };
 

@@ -4,11 +4,11 @@ use bevy::math::Vec3;
 use tabletop_core::{ObjectSpec, Part, Shape};
 
 use crate::{
-    attributes::AttributeReader,
-    element::{DESCRIPTION, ElementReader},
-    hollow::check_hollow,
-    tree::Element,
-    value::{self, SIDES},
+    document::tree::Element,
+    elements::attributes::AttributeReader,
+    elements::hollow::check_hollow,
+    elements::value::{self, SIDES},
+    elements::{DESCRIPTION, ElementReader},
 };
 
 const SHAPES: [&str; 5] = ["block", "cylinder", "sphere", "box", "composite"];
