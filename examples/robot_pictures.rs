@@ -6,7 +6,7 @@
 use std::{error::Error, fs::File, io::BufWriter, path::Path, sync::Arc};
 
 use bevy::prelude::*;
-use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Facets, Painter, Scene};
+use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Facets, Rasterizer, Scene};
 use tabletop_core::{Face, Picture, Pose, Rgb, RobotJoint, Solid, Table, robot_base};
 use tabletop_kinematics::{Model, baxter};
 use tabletop_robot::look::{figure_of, merged, screen_with};
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         figures: robot(&baxter()?)?,
         ..default()
     };
-    let (mut painter, mut picture) = (Painter::default(), Picture::default());
+    let (mut rasterizer, mut picture) = (Rasterizer::default(), Picture::default());
     for (path, from) in VIEWS {
         let place = Transform::from_translation(MIDDLE + from).looking_at(MIDDLE, Vec3::Z);
         let away = from.with_z(0.0).normalize();
@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             height: SIZE,
             antialiasing: true,
         };
-        painter.draw(&scene, &camera, &mut picture);
+        rasterizer.draw(&scene, &camera, &mut picture);
         write_png(&picture, Path::new(path))?;
         println!("{path}");
     }

@@ -7,7 +7,7 @@
 use std::{f32::consts::TAU, sync::Arc, time::Instant};
 
 use bevy::math::{Quat, Vec3};
-use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Facets, Painter, Scene};
+use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Facets, Rasterizer, Scene};
 use tabletop_core::{HeadCamera, Picture, Pose, Rgb, Solid, Table, Triangles};
 
 const TURNS: usize = 20;
@@ -45,12 +45,12 @@ fn main() {
 }
 
 fn pictures_a_second(scene: &Scene, camera: &Camera) -> String {
-    let (mut painter, mut picture) = (Painter::default(), Picture::default());
+    let (mut rasterizer, mut picture) = (Rasterizer::default(), Picture::default());
     let mut rates: Vec<f64> = (0..TURNS)
         .map(|_| {
             let (start, mut count) = (Instant::now(), 0);
             while start.elapsed().as_secs_f64() < SECONDS_PER_TURN {
-                painter.draw(scene, camera, &mut picture);
+                rasterizer.draw(scene, camera, &mut picture);
                 count += 1;
             }
             f64::from(count) / start.elapsed().as_secs_f64()

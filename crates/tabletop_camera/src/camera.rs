@@ -1,6 +1,8 @@
 //! Where a camera stands, what it takes in, and which ray goes through which point of its picture.
 
-use std::ops::{Add, Mul, Range};
+mod linear;
+
+use std::ops::Range;
 
 use bevy::{
     math::{Mat3, Vec2, Vec3},
@@ -8,7 +10,7 @@ use bevy::{
 };
 use tabletop_core::{HeadCamera, Pose, Table};
 
-use crate::row::Offset;
+pub(crate) use linear::{Linear, OnRow, Rays, SampleOffset};
 
 /// Nearest visible distance in units, along the axis of view (report section 4, "head camera").
 pub(crate) const NEAR: f32 = 0.01;
@@ -75,14 +77,6 @@ pub(crate) struct View {
 pub(crate) struct Window {
     pub columns: Range<u32>,
     pub rows: Range<u32>,
-}
-
-/// Directions that depend linearly on the point of the picture.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Rays {
-    pub first: Vec3,
-    pub right: Vec3,
-    pub down: Vec3,
 }
 
 impl View {
@@ -169,85 +163,6 @@ fn pixels_between(least: f32, most: f32, count: u32) -> Range<u32> {
     let first = (least - 0.5).floor().max(0.0) as u32;
     let last = (most + 0.5).ceil().max(-1.0);
     first..((last + 1.0) as u32).min(count)
-}
-
-impl Rays {
-    /// The direction of the ray through a point of the picture.
-    pub fn through(&self, x: f32, y: f32) -> Vec3 {
-        self.first + self.right * x + self.down * y
-    }
-
-    /// The directions along a row of samples.
-    pub fn on_row(&self, row: u32, offset: Offset) -> OnRow<Vec3> {
-        OnRow {
-            first: self.through(offset.x, row as f32 + offset.y),
-            step: self.right,
-        }
-    }
-
-    /// The same rays, each mapped by something linear.
-    pub fn map(&self, linear: impl Fn(Vec3) -> Vec3) -> Self {
-        Self {
-            first: linear(self.first),
-            right: linear(self.right),
-            down: linear(self.down),
-        }
-    }
-
-    /// The scalar product of each ray with a vector.
-    pub fn dot(&self, vector: Vec3) -> Linear {
-        Linear {
-            first: self.first.dot(vector),
-            right: self.right.dot(vector),
-            down: self.down.dot(vector),
-        }
-    }
-}
-
-/// A number that depends linearly on the point of the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Linear {
-    pub first: f32,
-    pub right: f32,
-    pub down: f32,
-}
-
-impl Linear {
-    pub const fn constant(value: f32) -> Self {
-        Self {
-            first: value,
-            right: 0.0,
-            down: 0.0,
-        }
-    }
-
-    /// Its value at a point of the picture.
-    pub fn at(&self, x: f32, y: f32) -> f32 {
-        self.first + self.right * x + self.down * y
-    }
-
-    /// Its values along a row of samples.
-    pub fn on_row(&self, row: u32, offset: Offset) -> OnRow<f32> {
-        OnRow {
-            first: self.first + self.down * (row as f32 + offset.y) + self.right * offset.x,
-            step: self.right,
-        }
-    }
-}
-
-/// What depends linearly on the column of a sample in its row.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct OnRow<T> {
-    first: T,
-    pub step: T,
-}
-
-impl<T: Copy + Add<Output = T> + Mul<f32, Output = T>> OnRow<T> {
-    /// Its value at a column.
-    #[inline]
-    pub fn at(&self, column: f32) -> T {
-        self.first + self.step * column
-    }
 }
 
 #[cfg(test)]

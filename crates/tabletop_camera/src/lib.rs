@@ -4,10 +4,10 @@
 //! on every run, however many threads draw. Objects are no meshes: faces are found row by row from the planes through the eye and their edges, cylinders
 //! and balls by meeting each ray with the exact surface, and only what is seen in the end is lit. (The rasteriser crate `euc`
 //! 0.5 draws the same blocks at a seventh of the speed.) Figures are triangles, lit at their corners.
-//! [`Painter`] draws any [`Scene`] for any [`Camera`]; it knows no ECS:
+//! [`Rasterizer`] draws any [`Scene`] for any [`Camera`]; it knows no ECS:
 //!
 //! ```
-//! use tabletop_camera::{Camera, DrawnSolid, Painter, Scene};
+//! use tabletop_camera::{Camera, DrawnSolid, Rasterizer, Scene};
 //! use tabletop_core::{HeadCamera, Picture, Table};
 //!
 //! let table = Table::default();
@@ -17,7 +17,7 @@
 //!     solids: vec![DrawnSolid::of_table(&table, 1)],
 //!     ..Scene::default()
 //! };
-//! Painter::default().draw(&scene, &camera, &mut picture);
+//! Rasterizer::default().draw(&scene, &camera, &mut picture);
 //!
 //! let straight_ahead = picture.index(99, 74).unwrap();
 //! assert_eq!(picture.objects[straight_ahead], 1);
@@ -42,24 +42,15 @@
 //! assert_eq!(image.shown_at(99, 74), Some(table));
 //! ```
 
-mod band;
 mod camera;
-mod face;
-mod facets;
-mod glass;
-mod painter;
-mod round;
-mod row;
+mod color;
+mod head_camera;
+mod raster;
 mod scene;
-mod seen;
-mod sense;
-mod surface;
-mod triangle;
 
 pub use camera::Camera;
-pub use facets::Facets;
-pub use painter::Painter;
-pub use scene::{DrawnFigure, DrawnSolid, Scene};
+pub use raster::Rasterizer;
+pub use scene::{DrawnFigure, DrawnSolid, Facets, Scene};
 
 use bevy::prelude::*;
 use tabletop_core::{HeadCamera, Markers, PictureDemand, PictureSystems, SensorImage};
@@ -75,10 +66,13 @@ impl Plugin for CameraPlugin {
             .init_resource::<Markers>()
             .init_resource::<PictureDemand>()
             .init_resource::<SensorImage>()
-            .init_resource::<sense::Eye>()
-            .add_observer(sense::note_looks)
-            .add_observer(sense::note_figure)
-            .add_observer(sense::forget_figure)
-            .add_systems(FixedUpdate, sense::take_picture.in_set(PictureSystems));
+            .init_resource::<head_camera::HeadCameraRenderer>()
+            .add_observer(head_camera::prepare_object)
+            .add_observer(head_camera::prepare_figure)
+            .add_observer(head_camera::remove_figure)
+            .add_systems(
+                FixedUpdate,
+                head_camera::render_head_camera.in_set(PictureSystems),
+            );
     }
 }

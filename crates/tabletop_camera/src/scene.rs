@@ -1,11 +1,14 @@
 //! What a camera looks at.
 
+mod facets;
+
 use std::sync::Arc;
 
 use bevy::math::Vec3;
 use tabletop_core::{Pose, Primitive, Rgb, Solid, Table};
 
-use crate::facets::Facets;
+pub use facets::Facets;
+pub(crate) use facets::Vertex;
 
 /// What a camera looks at.
 #[derive(Clone, Debug, Default)]

@@ -6,7 +6,7 @@ use bevy::{
     math::Vec3,
     tasks::{ComputeTaskPool, TaskPoolBuilder},
 };
-use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Facets, Painter, Scene};
+use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Facets, Rasterizer, Scene};
 use tabletop_core::{HeadCamera, Picture, Pose, Rgb, Solid, Table, Triangles};
 
 #[test]
@@ -19,7 +19,7 @@ fn threads_do_not_change_a_picture() {
 }
 
 fn pictures() -> Vec<Picture> {
-    let mut painter = Painter::default();
+    let mut rasterizer = Rasterizer::default();
     let mut draw = |(width, height), antialiasing| {
         let head = HeadCamera {
             width,
@@ -28,7 +28,7 @@ fn pictures() -> Vec<Picture> {
             ..HeadCamera::default()
         };
         let mut picture = Picture::default();
-        painter.draw(
+        rasterizer.draw(
             &scene(),
             &Camera::of_head(&head, &Table::default()),
             &mut picture,

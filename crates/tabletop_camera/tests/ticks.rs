@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use bevy::{prelude::*, time::TimeUpdateStrategy};
-use tabletop_camera::{Camera, CameraPlugin, DrawnFigure, DrawnSolid, Facets, Painter, Scene};
+use tabletop_camera::{Camera, CameraPlugin, DrawnFigure, DrawnSolid, Facets, Rasterizer, Scene};
 use tabletop_core::{
     Figure, HeadCamera, Markers, Picture, PictureDemand, SensorImage, Triangles, prelude::*,
 };
@@ -96,7 +96,7 @@ fn expected(solids: &[DrawnSolid], table: &Table) -> Picture {
 fn expected_of(scene: &Scene, table: &Table) -> Picture {
     let camera = Camera::of_head(&HeadCamera::default(), table);
     let mut picture = Picture::default();
-    Painter::default().draw(scene, &camera, &mut picture);
+    Rasterizer::default().draw(scene, &camera, &mut picture);
     picture
 }
 

@@ -2,7 +2,7 @@
 
 use bevy::math::{Quat, Vec3};
 use proptest::prelude::*;
-use tabletop_camera::{Camera, DrawnSolid, Painter};
+use tabletop_camera::{Camera, DrawnSolid, Rasterizer};
 use tabletop_core::{Picture, Pose, Rgb, Solid};
 
 use crate::scenes::{draw, head, mixed_scene, of_solids, smooth};
@@ -73,8 +73,8 @@ proptest! {
 }
 
 #[test]
-fn a_painter_forgets_the_picture_before() {
-    let (mut painter, mut picture) = (Painter::default(), Picture::default());
+fn a_rasterizer_forgets_the_picture_before() {
+    let (mut rasterizer, mut picture) = (Rasterizer::default(), Picture::default());
     let cameras = [
         smooth(head()),
         Camera {
@@ -87,7 +87,7 @@ fn a_painter_forgets_the_picture_before() {
     ];
     for camera in cameras {
         for scene in [mixed_scene(), Vec::new(), mixed_scene()] {
-            painter.draw(&of_solids(&scene), &camera, &mut picture);
+            rasterizer.draw(&of_solids(&scene), &camera, &mut picture);
             assert!(picture == draw(&scene, &camera), "{camera:?}");
         }
     }

@@ -1,7 +1,7 @@
 //! Scenes and cameras to look at them.
 
 use bevy::math::{Quat, Vec3};
-use tabletop_camera::{Camera, DrawnSolid, Painter, Scene};
+use tabletop_camera::{Camera, DrawnSolid, Rasterizer, Scene};
 use tabletop_core::{HeadCamera, Picture, Pose, Rgb, Solid, Table};
 
 pub fn draw(solids: &[DrawnSolid], camera: &Camera) -> Picture {
@@ -10,7 +10,7 @@ pub fn draw(solids: &[DrawnSolid], camera: &Camera) -> Picture {
 
 pub fn draw_scene(scene: &Scene, camera: &Camera) -> Picture {
     let mut picture = Picture::default();
-    Painter::default().draw(scene, camera, &mut picture);
+    Rasterizer::default().draw(scene, camera, &mut picture);
     picture
 }
 

@@ -1,9 +1,14 @@
 //! Surfaces and what they look like.
 
 use bevy::math::Vec3;
-use tabletop_core::{LIGHT, Rgb};
+use tabletop_core::LIGHT;
 
-use crate::{camera::Linear, round::Curve, row::Offset, scene::DrawnSolid};
+use crate::{
+    camera::{Linear, SampleOffset},
+    color::{nearest_byte, nearest_bytes, scaled_to_bytes},
+    raster::quadric::Curve,
+    scene::DrawnSolid,
+};
 
 /// A surface of one colour: one face of a cuboid, an end or the side of a cylinder, a ball, a triangle of a figure.
 #[derive(Clone, Copy, Debug)]
@@ -14,16 +19,16 @@ pub(crate) struct Surface {
     pub patch: u32,
     /// Red, green, blue in 0..=255.
     color: Vec3,
-    form: Form,
+    shading: Shading,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Form {
+enum Shading {
     /// What it shows of its colour.
     Flat(f32),
-    Round(Curve),
+    Curved(Curve),
     /// What the corners of a triangle show of its colour, divided by the depth, and linear in between.
-    Shaded(Linear),
+    Gouraud(Linear),
 }
 
 impl Surface {
@@ -32,68 +37,70 @@ impl Surface {
         object: 0,
         patch: 0,
         color: Vec3::ZERO,
-        form: Form::Flat(0.0),
+        shading: Shading::Flat(0.0),
     };
 
     /// A plane that faces this way.
     pub fn flat(drawn: &DrawnSolid, patch: u32, normal: Vec3) -> Self {
-        Self::of(drawn, patch, Form::Flat(LIGHT.share(normal)))
+        Self::of(drawn, patch, Shading::Flat(LIGHT.share(normal)))
     }
 
     /// A ball, or the side of a cylinder.
-    pub fn round(drawn: &DrawnSolid, patch: u32, curve: Curve) -> Self {
-        Self::of(drawn, patch, Form::Round(curve))
+    pub fn curved(drawn: &DrawnSolid, patch: u32, curve: Curve) -> Self {
+        Self::of(drawn, patch, Shading::Curved(curve))
     }
 
     /// A triangle of this colour, red, green and blue in 0..=255.
-    pub const fn shaded(object: u32, patch: u32, color: Vec3, share_by_depth: Linear) -> Self {
+    pub const fn gouraud(object: u32, patch: u32, color: Vec3, share_by_depth: Linear) -> Self {
         Self {
             object,
             patch,
             color,
-            form: Form::Shaded(share_by_depth),
+            shading: Shading::Gouraud(share_by_depth),
         }
     }
 
-    fn of(drawn: &DrawnSolid, patch: u32, form: Form) -> Self {
+    fn of(drawn: &DrawnSolid, patch: u32, shading: Shading) -> Self {
         Self {
             object: drawn.object,
             patch,
-            color: in_bytes(drawn.color),
-            form,
+            color: scaled_to_bytes(drawn.color),
+            shading,
         }
     }
 
     /// Red, green, blue in 0..=255 where it is met at this depth behind this point of the picture.
     pub fn shown(&self, x: f32, y: f32, depth: f32) -> Vec3 {
         self.color
-            * match self.form {
-                Form::Flat(share) => share,
-                Form::Round(curve) => LIGHT.share(curve.normal(curve.rays.through(x, y), depth)),
-                Form::Shaded(share_by_depth) => bounded(share_by_depth.at(x, y) * depth),
+            * match self.shading {
+                Shading::Flat(share) => share,
+                Shading::Curved(curve) => {
+                    LIGHT.share(curve.normal(curve.rays.through(x, y), depth))
+                }
+                Shading::Gouraud(share_by_depth) => clamp_share(share_by_depth.at(x, y) * depth),
             }
     }
 
     /// Colours a part of a row, from this column on, in which it is seen at these depths.
     pub fn paint(&self, row: u32, column: usize, depths: &[f32], rgb: &mut [u8]) {
-        match self.form {
-            Form::Flat(share) => {
-                let shown = bytes(self.color * share);
+        match self.shading {
+            Shading::Flat(share) => {
+                let shown = nearest_bytes(self.color * share);
                 for pixel in rgb.chunks_exact_mut(3) {
                     pixel.copy_from_slice(&shown);
                 }
             }
-            Form::Round(curve) => {
-                let ray = curve.rays.on_row(row, Offset::CENTER);
+            Shading::Curved(curve) => {
+                let ray = curve.rays.on_row(row, SampleOffset::CENTER);
                 self.paint_shares::<16>(column, depths, rgb, |x, depth| {
                     LIGHT.share(curve.normal(ray.at(x), depth))
                 });
             }
-            Form::Shaded(share_by_depth) => {
-                let share_by_depth = share_by_depth.on_row(row, Offset::CENTER);
+            Shading::Gouraud(share_by_depth) => {
+                let share_by_depth = share_by_depth.on_row(row, SampleOffset::CENTER);
                 // Triangles are small.
                 self.paint_shares::<4>(column, depths, rgb, |x, depth| {
-                    bounded(share_by_depth.at(x) * depth)
+                    clamp_share(share_by_depth.at(x) * depth)
                 });
             }
         }
@@ -129,23 +136,6 @@ impl Surface {
 }
 
 /// A share between those at the corners of a triangle, which rounding may bring a little beyond them.
-pub(crate) fn bounded(share: f32) -> f32 {
+pub(crate) fn clamp_share(share: f32) -> f32 {
     share.max(LIGHT.least()).min(1.0)
-}
-
-/// A colour as numbers of 0..=255.
-pub(crate) fn in_bytes(color: Rgb) -> Vec3 {
-    Vec3::new(color.red, color.green, color.blue).clamp(Vec3::ZERO, Vec3::ONE) * 255.0
-}
-
-/// The nearest bytes to numbers of 0..=255.
-pub(crate) fn bytes(shown: Vec3) -> [u8; 3] {
-    shown.to_array().map(|part| nearest_byte(part) as u8)
-}
-
-/// The nearest whole number to one of 0..=255.
-fn nearest_byte(number: f32) -> u32 {
-    // From 2^23 on there are only whole numbers, and the last bits of such a number count them.
-    const WHOLE: f32 = 8_388_608.0;
-    (number + WHOLE).to_bits() & 0xff
 }

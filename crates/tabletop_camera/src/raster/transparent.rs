@@ -4,19 +4,22 @@ use bevy::math::{Vec3, Vec4};
 use tabletop_core::{Markers, Pose, Solid};
 
 use crate::{
-    camera::View,
-    round::{Curve, Ends, Round},
-    row::{Offset, SampleRow},
+    camera::{SampleOffset, View},
+    color::nearest_bytes,
+    raster::{
+        bounds::corners_of_solid,
+        quadric::{Curve, Ends, Quadric},
+        scanline::SampleRow,
+        surface::Surface,
+    },
     scene::DrawnSolid,
-    seen::corners_of_solid,
-    surface::{Surface, bytes},
 };
 
-/// The transparent balls that a camera can see.
+/// The transparent spheres that a camera can see.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Glass {
-    /// The balls, the farthest first.
-    balls: Vec<Ball>,
+pub(crate) struct TransparentSpheres {
+    /// The spheres, the farthest first.
+    spheres: Vec<Sphere>,
 }
 
 /// The memory that it takes to blend them into a row.
@@ -28,52 +31,52 @@ pub(crate) struct Blend {
 }
 
 #[derive(Clone, Debug)]
-struct Ball {
+struct Sphere {
     distance: f32,
-    round: Round,
+    quadric: Quadric,
     surface: Surface,
 }
 
-impl Glass {
-    /// Forgets everything and looks at balls around these points.
-    pub fn look_at(&mut self, markers: &[Vec3], view: &View) {
-        self.balls.clear();
-        self.balls.extend(
+impl TransparentSpheres {
+    /// Forgets everything and looks at spheres around these points.
+    pub fn project(&mut self, markers: &[Vec3], view: &View) {
+        self.spheres.clear();
+        self.spheres.extend(
             markers
                 .iter()
-                .filter_map(|&center| Ball::seen(center, view)),
+                .filter_map(|&center| Sphere::seen(center, view)),
         );
-        self.balls
+        self.spheres
             .sort_by(|one, other| other.distance.total_cmp(&one.distance));
     }
 
-    /// Blends the balls into the colours of a row: where they are nearer than all else in these samples.
+    /// Blends the spheres into the colours of a row: where they are nearer than all else in these samples.
     pub fn blend(
         &self,
         view: &View,
         row: u32,
-        offsets: &[Offset],
+        offsets: &[SampleOffset],
         others: &[SampleRow],
         memory: &mut Blend,
         rgb: &mut [u8],
     ) {
         let Blend { samples, sums } = memory;
-        for ball in self
-            .balls
+        for sphere in self
+            .spheres
             .iter()
-            .filter(|ball| ball.round.window.rows.contains(&row))
+            .filter(|sphere| sphere.quadric.window.rows.contains(&row))
         {
-            let columns = &ball.round.window.columns;
+            let columns = &sphere.quadric.window.columns;
             sums.clear();
             sums.resize(columns.len(), Vec4::ZERO);
             for (&offset, other) in offsets.iter().zip(others) {
                 samples.clear(view.width);
-                ball.round.draw(row, offset, samples);
+                sphere.quadric.draw(row, offset, samples);
                 for (column, sum) in columns.clone().zip(sums.iter_mut()) {
-                    let nearness = samples.nearness[column as usize];
-                    if nearness > other.nearness[column as usize] {
+                    let inverse_depth = samples.inverse_depth[column as usize];
+                    if inverse_depth > other.inverse_depth[column as usize] {
                         let (x, y) = (column as f32 + offset.x, row as f32 + offset.y);
-                        let shown = ball.surface.shown(x, y, 1.0 / nearness);
+                        let shown = sphere.surface.shown(x, y, 1.0 / inverse_depth);
                         *sum += shown.extend(1.0);
                     }
                 }
@@ -85,14 +88,14 @@ impl Glass {
                     let pixel = &mut rgb[start..start + 3];
                     let behind = Vec3::from_slice(&[pixel[0], pixel[1], pixel[2]].map(f32::from));
                     let mixed = behind * (1.0 - weight * sum.w) + sum.truncate() * weight;
-                    pixel.copy_from_slice(&bytes(mixed));
+                    pixel.copy_from_slice(&nearest_bytes(mixed));
                 }
             }
         }
     }
 }
 
-impl Ball {
+impl Sphere {
     fn seen(center: Vec3, view: &View) -> Option<Self> {
         let drawn = DrawnSolid {
             pose: Pose::at(center),
@@ -104,8 +107,8 @@ impl Ball {
         let curve = Curve::around_point(view, center - view.eye, Markers::RADIUS);
         Some(Self {
             distance: center.distance(view.eye),
-            round: Round::new(curve, Ends::NONE, window, [1; 2]),
-            surface: Surface::round(&drawn, 1, curve),
+            quadric: Quadric::new(curve, Ends::NONE, window, [1; 2]),
+            surface: Surface::curved(&drawn, 1, curve),
         })
     }
 }

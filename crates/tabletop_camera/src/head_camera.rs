@@ -8,17 +8,17 @@ use tabletop_core::{
     Primitive, SensorImage, SimTick, Table,
 };
 
-use crate::{Camera, DrawnFigure, DrawnSolid, Facets, Painter, Scene};
+use crate::{Camera, DrawnFigure, DrawnSolid, Facets, Rasterizer, Scene};
 
 /// The solids that an object is drawn as, in its own frame: they are worked out once.
 #[derive(Component, Debug)]
 #[component(immutable)]
-pub(crate) struct Looks(Vec<Primitive>);
+pub(crate) struct ObjectSolids(Vec<Primitive>);
 
 /// A figure, made ready for being drawn.
 #[derive(Component, Clone, Debug)]
 #[component(immutable)]
-pub(crate) struct FigureLooks {
+pub(crate) struct DrawnFacets {
     facets: Arc<Facets>,
     /// How many figures there were before it.
     order: u64,
@@ -26,63 +26,65 @@ pub(crate) struct FigureLooks {
 
 /// What is kept from picture to picture.
 #[derive(Resource, Debug, Default)]
-pub(crate) struct Eye {
-    painter: Painter,
+pub(crate) struct HeadCameraRenderer {
+    rasterizer: Rasterizer,
     scene: Scene,
     /// So many figures there have been.
     figures: u64,
 }
 
 /// Works out what an object looks like as soon as it appears or becomes another.
-pub(crate) fn note_looks(
+pub(crate) fn prepare_object(
     insert: On<Insert, ObjectSpec>,
     objects: Query<&ObjectSpec>,
     mut commands: Commands,
 ) -> Result {
-    let looks = Looks(objects.get(insert.entity)?.shape.drawn());
-    commands.entity(insert.entity).try_insert(looks);
+    let solids = ObjectSolids(objects.get(insert.entity)?.shape.drawn());
+    commands.entity(insert.entity).try_insert(solids);
     Ok(())
 }
 
 /// Makes a figure ready as soon as it appears or changes.
-pub(crate) fn note_figure(
+pub(crate) fn prepare_figure(
     insert: On<Insert, Figure>,
-    figures: Query<(&Figure, Option<&FigureLooks>)>,
-    mut eye: ResMut<Eye>,
+    figures: Query<(&Figure, Option<&DrawnFacets>)>,
+    mut renderer: ResMut<HeadCameraRenderer>,
     mut commands: Commands,
 ) -> Result {
     let (figure, before) = figures.get(insert.entity)?;
-    let order = before.map_or(eye.figures, |looks| looks.order);
-    eye.figures = eye.figures.max(order + 1);
+    let order = before.map_or(renderer.figures, |drawn| drawn.order);
+    renderer.figures = renderer.figures.max(order + 1);
     let facets = Facets::from(&*figure.coarse).into();
     commands
         .entity(insert.entity)
-        .try_insert(FigureLooks { facets, order });
+        .try_insert(DrawnFacets { facets, order });
     Ok(())
 }
 
 /// What is no figure any more is not drawn.
-pub(crate) fn forget_figure(remove: On<Remove, Figure>, mut commands: Commands) {
-    commands.entity(remove.entity).try_remove::<FigureLooks>();
+pub(crate) fn remove_figure(remove: On<Remove, Figure>, mut commands: Commands) {
+    commands.entity(remove.entity).try_remove::<DrawnFacets>();
 }
 
 /// Draws what the head camera sees at this moment, if a picture was asked for.
-pub(crate) fn take_picture(
+pub(crate) fn render_head_camera(
     mut demand: ResMut<PictureDemand>,
     tick: Res<SimTick>,
     head: Res<HeadCamera>,
     index: Res<ObjectIndex>,
     tables: Query<(Entity, &Table)>,
-    objects: Query<(&Transform, &Looks), With<ObjectSpec>>,
-    figures: Query<(Entity, &GlobalTransform, &FigureLooks), Without<CarriesHeadCamera>>,
+    objects: Query<(&Transform, &ObjectSolids), With<ObjectSpec>>,
+    figures: Query<(Entity, &GlobalTransform, &DrawnFacets), Without<CarriesHeadCamera>>,
     markers: Res<Markers>,
-    mut eye: ResMut<Eye>,
+    mut renderer: ResMut<HeadCameraRenderer>,
     mut image: ResMut<SensorImage>,
 ) {
     if !demand.take() {
         return;
     }
-    let Eye { painter, scene, .. } = &mut *eye;
+    let HeadCameraRenderer {
+        rasterizer, scene, ..
+    } = &mut *renderer;
     let SensorImage { picture, shown, .. } = &mut *image;
     scene.solids.clear();
     scene.figures.clear();
@@ -95,28 +97,28 @@ pub(crate) fn take_picture(
             .push(DrawnSolid::of_table(table, shown.len() as u32));
     }
     for entity in index.iter() {
-        if let Ok((place, looks)) = objects.get(entity) {
+        if let Ok((place, ObjectSolids(primitives))) = objects.get(entity) {
             shown.push(entity);
             let number = shown.len() as u32;
-            let solids = looks.0.iter();
+            let solids = primitives.iter();
             scene
                 .solids
                 .extend(solids.map(|solid| DrawnSolid::of(place.into(), solid, number)));
         }
     }
     let mut in_order: Vec<_> = figures.iter().collect();
-    in_order.sort_by_key(|(_, _, looks)| looks.order);
-    for (entity, place, looks) in in_order {
+    in_order.sort_by_key(|(_, _, drawn)| drawn.order);
+    for (entity, place, drawn) in in_order {
         shown.push(entity);
         scene.figures.push(DrawnFigure {
             pose: (&place.compute_transform()).into(),
-            facets: Arc::clone(&looks.facets),
+            facets: Arc::clone(&drawn.facets),
             object: shown.len() as u32,
         });
     }
     scene.markers.clone_from(&markers.0);
     let table = table.map_or_else(Table::default, |(_, table)| *table);
     let camera = Camera::of_head(&head, &table);
-    painter.draw(scene, &camera, picture);
+    rasterizer.draw(scene, &camera, picture);
     image.tick = *tick;
 }

@@ -3,28 +3,31 @@
 use std::ops::Range;
 
 use bevy::math::{Mat3, Vec2, Vec3};
-use tabletop_core::{LIGHT, Pose, Solid};
+use tabletop_core::{LIGHT, Solid};
 
 use crate::{
-    camera::{Linear, View, Window},
-    face::{CUBOID, CUBOID_NORMALS, EDGE_ON, Face, first_column},
-    facets::Vertex,
-    round::{Curve, Ends, Round},
-    row::{Offset, SampleRow},
-    scene::{DrawnFigure, DrawnSolid, Scene},
-    surface::{Surface, bounded},
-    triangle::Triangle,
+    camera::{Linear, SampleOffset, View, Window},
+    raster::{
+        bounds::{corners_of_box, corners_of_solid},
+        edge_table::EdgeTable,
+        face::{CUBOID, CUBOID_NORMALS, EDGE_ON, Face, first_column},
+        quadric::{Curve, Ends, Quadric},
+        scanline::SampleRow,
+        surface::{Surface, clamp_share},
+        triangle::Triangle,
+    },
+    scene::{DrawnFigure, DrawnSolid, Scene, Vertex},
 };
 
 /// The surfaces that face a camera, and what they bound.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Seen {
+pub(crate) struct VisibleSurfaces {
     /// What the surfaces look like; the first stands for nothing.
     pub surfaces: Vec<Surface>,
     faces: Vec<Face>,
-    rounds: Vec<Round>,
+    quadrics: Vec<Quadric>,
     triangles: Vec<Triangle>,
-    coming_up: ComingUp,
+    edge_table: EdgeTable,
     /// So many patches there are.
     patches: u32,
     /// Where in the picture the vertices of a figure are.
@@ -33,19 +36,10 @@ pub(crate) struct Seen {
 
 /// What may be seen in a row, as indices.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct InRow {
+pub(crate) struct ActiveSurfaces {
     faces: Vec<usize>,
-    rounds: Vec<usize>,
+    quadrics: Vec<usize>,
     triangles: Vec<u32>,
-}
-
-/// In which order triangles come up from row to row.
-#[derive(Clone, Debug, Default)]
-struct ComingUp {
-    /// The triangles, by the first row in which they may be seen.
-    order: Vec<u32>,
-    /// Where those of each row start in the order, and where those of the last one end.
-    starts: Vec<u32>,
 }
 
 /// A corner of a triangle as it is seen.
@@ -57,14 +51,14 @@ struct Corner {
     share: f32,
 }
 
-impl Seen {
+impl VisibleSurfaces {
     /// Forgets everything and looks at this scene.
-    pub fn look_at(&mut self, scene: &Scene, view: &View) {
+    pub fn project(&mut self, scene: &Scene, view: &View) {
         self.surfaces.clear();
         self.surfaces.push(Surface::NOTHING);
         self.patches = 1;
         self.faces.clear();
-        self.rounds.clear();
+        self.quadrics.clear();
         self.triangles.clear();
         for drawn in &scene.solids {
             let corners = corners_of_solid(drawn, view);
@@ -84,7 +78,8 @@ impl Seen {
                 self.add_figure(drawn, view, &window);
             }
         }
-        self.coming_up.sort(&self.triangles, view.height);
+        let first_rows = self.triangles.iter().map(|triangle| triangle.rows.start);
+        self.edge_table.sort(first_rows, view.height);
     }
 
     fn add_cuboid(&mut self, drawn: &DrawnSolid, view: &View, window: Window, corners: &[Vec3; 8]) {
@@ -114,11 +109,11 @@ impl Seen {
         let curve = Curve::around_axis(view, center, axis, radius);
         let ends = Ends::of_cylinder(view, center, axis, yspan);
         let side = self.surfaces.len() as u32;
-        self.rounds
-            .push(Round::new(curve, ends, window, [side, side + 1]));
+        self.quadrics
+            .push(Quadric::new(curve, ends, window, [side, side + 1]));
         let patches = [self.next_patch(), self.next_patch()];
         self.surfaces.extend([
-            Surface::round(drawn, patches[0], curve),
+            Surface::curved(drawn, patches[0], curve),
             Surface::flat(drawn, patches[1], to_eye),
         ]);
     }
@@ -126,10 +121,10 @@ impl Seen {
     fn add_ball(&mut self, drawn: &DrawnSolid, view: &View, window: Window, radius: f32) {
         let curve = Curve::around_point(view, drawn.pose.location - view.eye, radius);
         let surface = self.surfaces.len() as u32;
-        self.rounds
-            .push(Round::new(curve, Ends::NONE, window, [surface; 2]));
+        self.quadrics
+            .push(Quadric::new(curve, Ends::NONE, window, [surface; 2]));
         let patch = self.next_patch();
-        self.surfaces.push(Surface::round(drawn, patch, curve));
+        self.surfaces.push(Surface::curved(drawn, patch, curve));
     }
 
     fn add_figure(&mut self, drawn: &DrawnFigure, view: &View, window: &Window) {
@@ -157,7 +152,7 @@ impl Seen {
             let surface = self.surfaces.len() as u32;
             self.triangles
                 .push(Triangle::seen(view, places, normal, rows, surface));
-            self.surfaces.push(Surface::shaded(
+            self.surfaces.push(Surface::gouraud(
                 drawn.object,
                 self.patches + facet.patch,
                 facet.color,
@@ -173,47 +168,54 @@ impl Seen {
     }
 
     /// Finds which triangles come up above a row, so that it can be taken next.
-    pub fn find_above(&self, row: u32, in_row: &mut InRow) {
-        in_row.triangles.clear();
-        in_row.triangles.extend(self.coming_up.above_row(row));
+    pub fn activate_above(&self, row: u32, active: &mut ActiveSurfaces) {
+        active.triangles.clear();
+        active.triangles.extend(self.edge_table.above_row(row));
     }
 
     /// Finds what may be seen in a row. Rows are taken one after the other.
-    pub fn find_in_row(&self, row: u32, in_row: &mut InRow) {
-        let InRow {
+    pub fn activate_row(&self, row: u32, active: &mut ActiveSurfaces) {
+        let ActiveSurfaces {
             faces,
-            rounds,
+            quadrics,
             triangles,
-        } = in_row;
+        } = active;
         faces.clear();
         faces.extend((0..self.faces.len()).filter(|&face| self.faces[face].rows.contains(&row)));
-        rounds.clear();
-        rounds.extend(
-            (0..self.rounds.len()).filter(|&round| self.rounds[round].window.rows.contains(&row)),
+        quadrics.clear();
+        quadrics.extend(
+            (0..self.quadrics.len())
+                .filter(|&quadric| self.quadrics[quadric].window.rows.contains(&row)),
         );
         triangles.retain(|&triangle| row < self.triangles[triangle as usize].rows.end);
-        triangles.extend(self.coming_up.in_row(row));
+        triangles.extend(self.edge_table.in_row(row));
     }
 
     /// Finds which surface is nearest at each of these samples of a row, in which no more may be seen than this.
-    pub fn sample(&self, in_row: &InRow, row: u32, offset: Offset, samples: &mut SampleRow) {
-        for &face in &in_row.faces {
+    pub fn sample(
+        &self,
+        active: &ActiveSurfaces,
+        row: u32,
+        offset: SampleOffset,
+        samples: &mut SampleRow,
+    ) {
+        for &face in &active.faces {
             self.faces[face].draw(row, offset, samples);
         }
-        for &round in &in_row.rounds {
-            self.rounds[round].draw(row, offset, samples);
+        for &quadric in &active.quadrics {
+            self.quadrics[quadric].draw(row, offset, samples);
         }
     }
 
     /// Finds where figures are nearer than what was found at each of these samples of a row.
     pub fn sample_figures<const N: usize>(
         &self,
-        in_row: &InRow,
+        active: &ActiveSurfaces,
         row: u32,
-        offsets: [Offset; N],
+        offsets: [SampleOffset; N],
         samples: &mut [SampleRow; N],
     ) {
-        for &triangle in &in_row.triangles {
+        for &triangle in &active.triangles {
             self.triangles[triangle as usize].draw(row, offsets, samples);
         }
     }
@@ -225,46 +227,11 @@ impl Seen {
     }
 }
 
-impl ComingUp {
-    fn sort(&mut self, triangles: &[Triangle], height: u32) {
-        let Self { order, starts } = self;
-        starts.clear();
-        starts.resize(height as usize + 1, 0);
-        for triangle in triangles {
-            starts[triangle.rows.start as usize + 1] += 1;
-        }
-        let mut sum = 0;
-        for start in starts.iter_mut() {
-            sum += *start;
-            *start = sum;
-        }
-        // While they are filled, what belongs to a row is where that of the row before ends.
-        order.clear();
-        order.resize(triangles.len(), 0);
-        for (triangle, i) in triangles.iter().zip(0..) {
-            let end = &mut starts[triangle.rows.start as usize];
-            order[*end as usize] = i;
-            *end += 1;
-        }
-        starts.rotate_right(1);
-        starts[0] = 0;
-    }
-
-    fn in_row(&self, row: u32) -> &[u32] {
-        let row = row as usize;
-        &self.order[self.starts[row] as usize..self.starts[row + 1] as usize]
-    }
-
-    fn above_row(&self, row: u32) -> &[u32] {
-        &self.order[..self.starts[row as usize] as usize]
-    }
-}
-
 impl Corner {
     fn of(vertex: &Vertex, location: Vec3, axes: &Mat3, view: &View) -> Self {
         Self {
             place: location + *axes * vertex.position - view.eye,
-            share: bounded(LIGHT.share(*axes * vertex.normal)),
+            share: clamp_share(LIGHT.share(*axes * vertex.normal)),
         }
     }
 }
@@ -299,27 +266,4 @@ fn share_by_depth(view: &View, corners: &[Corner; 3], normal: Vec3) -> Linear {
         slope += ((c - a).cross(a) * more_b + a.cross(b - a) * more_c) / volume;
     }
     view.rays.dot(slope)
-}
-
-/// The corners of the cuboid around a solid, relative to the eye, numbered as [`CUBOID`] has them.
-pub(crate) fn corners_of_solid(drawn: &DrawnSolid, view: &View) -> [Vec3; 8] {
-    let half = match drawn.solid {
-        Solid::Cuboid(span) => span / 2.0,
-        Solid::Cylinder { radius, yspan } => Vec3::new(radius, yspan / 2.0, radius),
-        Solid::Ball(radius) => Vec3::splat(radius),
-    };
-    let center = drawn.pose.location - view.eye;
-    let axes = Mat3::from_quat(drawn.pose.rotation);
-    std::array::from_fn(|corner| {
-        let side = |axis: usize| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
-        center + axes * (half * Vec3::new(side(0), side(1), side(2)))
-    })
-}
-
-/// The corners of a box with these least and largest coordinates in the frame of a body, relative to the eye.
-fn corners_of_box(body: Pose, bounds: [Vec3; 2], view: &View) -> [Vec3; 8] {
-    std::array::from_fn(|corner| {
-        let coordinate = |axis: usize| bounds[corner >> axis & 1][axis];
-        body * Vec3::new(coordinate(0), coordinate(1), coordinate(2)) - view.eye
-    })
 }

@@ -1,6 +1,6 @@
 //! Flat faces with straight edges.
 //!
-//! A face is a cone of rays from the eye, bounded by the planes through the eye and its edges, and it is cut off at the near
+//! A face is a cone of rays from the eye, clamp_share by the planes through the eye and its edges, and it is cut off at the near
 //! plane by one more. On each plane a linear function of the picture's coordinates changes its sign, so no corner is ever
 //! projected and nothing has to be clipped, wherever the corners are. One over the depth is a linear function, too.
 
@@ -9,8 +9,8 @@ use std::ops::Range;
 use bevy::math::Vec3;
 
 use crate::{
-    camera::{Linear, NEAR, View},
-    row::{Offset, SampleRow},
+    camera::{Linear, NEAR, SampleOffset, View},
+    raster::scanline::SampleRow,
 };
 
 /// Faces whose plane passes the eye nearer than this, in units, are seen edge-on: they are thinner than a pixel.
@@ -44,7 +44,7 @@ pub(crate) struct Face {
     /// The rows in which it may be seen.
     pub rows: Range<u32>,
     surface: u32,
-    nearness: Linear,
+    inverse_depth: Linear,
     edges: [Edge; 5],
 }
 
@@ -74,18 +74,18 @@ impl Face {
         if distance < EDGE_ON {
             return None;
         }
-        let nearness = view.rays.dot(normal / -distance);
+        let inverse_depth = view.rays.dot(normal / -distance);
         let behind_near_plane = Linear {
-            first: 1.0 / NEAR - nearness.first,
-            right: -nearness.right,
-            down: -nearness.down,
+            first: 1.0 / NEAR - inverse_depth.first,
+            right: -inverse_depth.right,
+            down: -inverse_depth.down,
         };
         let [a, b, c, d] = corners;
         let edge = |from: Vec3, to: Vec3| Edge::from(view.rays.dot(to.cross(from)));
         Some(Self {
             rows,
             surface,
-            nearness,
+            inverse_depth,
             edges: [
                 edge(a, b),
                 edge(b, c),
@@ -97,11 +97,11 @@ impl Face {
     }
 
     /// Puts it into the samples that see it and nothing nearer.
-    pub fn draw(&self, row: u32, offset: Offset, samples: &mut SampleRow) {
+    pub fn draw(&self, row: u32, offset: SampleOffset, samples: &mut SampleRow) {
         let y = row as f32 + offset.y;
         let columns = self.columns(y, offset.x, samples.surface.len());
-        let (nearness, surface) = (self.nearness.on_row(row, offset), self.surface);
-        samples.put(columns, |x| (nearness.at(x), surface));
+        let (inverse_depth, surface) = (self.inverse_depth.on_row(row, offset), self.surface);
+        samples.put(columns, |x| (inverse_depth.at(x), surface));
     }
 
     /// The samples of a row that lie inside all edges.
@@ -180,7 +180,7 @@ mod tests {
     }
 
     /// In how many faces of a cuboid each sample lies.
-    fn coverage(pose: Pose, span: Vec3, offset: Offset) -> Vec<u32> {
+    fn coverage(pose: Pose, span: Vec3, offset: SampleOffset) -> Vec<u32> {
         let corners = corners(pose, span);
         let mut coverage = vec![0; (WIDTH * HEIGHT) as usize];
         for (face, normal) in CUBOID.into_iter().zip(CUBOID_NORMALS) {
@@ -201,7 +201,7 @@ mod tests {
         coverage
     }
 
-    fn is_hit(pose: Pose, span: Vec3, offset: Offset, sample: usize) -> bool {
+    fn is_hit(pose: Pose, span: Vec3, offset: SampleOffset, sample: usize) -> bool {
         let (column, row) = (sample as u32 % WIDTH, sample as u32 / WIDTH);
         let ray = view()
             .rays
@@ -212,7 +212,7 @@ mod tests {
         enter < leave && enter > 0.0
     }
 
-    fn assert_covered_once(pose: Pose, span: Vec3, offset: Offset) {
+    fn assert_covered_once(pose: Pose, span: Vec3, offset: SampleOffset) {
         for (sample, faces) in coverage(pose, span, offset).into_iter().enumerate() {
             assert!(faces <= 1, "sample {sample} lies in {faces} faces");
             if is_hit(pose, span * 0.999, offset, sample) {
@@ -232,7 +232,7 @@ mod tests {
         let row = |row| {
             let mut samples = SampleRow::default();
             samples.clear(WIDTH);
-            face.draw(row, Offset::CENTER, &mut samples);
+            face.draw(row, SampleOffset::CENTER, &mut samples);
             samples.surface
         };
         (0..HEIGHT).flat_map(row).collect()
@@ -266,8 +266,8 @@ mod tests {
             which in 0..4_usize,
         ) {
             let pose = Pose::new(location.into(), Quat::from_scaled_axis(axis.into()));
-            assert_covered_once(pose, span.into(), Offset::CENTER);
-            assert_covered_once(pose, span.into(), Offset::SMOOTH[which]);
+            assert_covered_once(pose, span.into(), SampleOffset::CENTER);
+            assert_covered_once(pose, span.into(), SampleOffset::SMOOTH[which]);
         }
     }
 }

@@ -1,14 +1,27 @@
 //! Drawing a picture, in bands of rows that several threads may draw at once.
 
+mod band;
+mod bounds;
+mod edge_table;
+mod face;
+mod quadric;
+mod scanline;
+mod surface;
+mod transparent;
+mod triangle;
+mod visible;
+
 use bevy::tasks::ComputeTaskPool;
 use tabletop_core::Picture;
 
+use self::{
+    band::{Band, Frame, Pixels},
+    transparent::TransparentSpheres,
+    visible::VisibleSurfaces,
+};
 use crate::{
-    band::{Band, Pixels, Sight},
     camera::{Camera, View},
-    glass::Glass,
     scene::Scene,
-    seen::Seen,
 };
 
 /// So many rows are a band. The pictures are the same whatever it is.
@@ -19,27 +32,27 @@ const ROWS_IN_BAND: usize = 16;
 ///
 /// In an app, Bevy's compute threads help.
 #[derive(Clone, Debug, Default)]
-pub struct Painter {
-    seen: Seen,
-    glass: Glass,
+pub struct Rasterizer {
+    visible: VisibleSurfaces,
+    spheres: TransparentSpheres,
     bands: Vec<Band>,
 }
 
-impl Painter {
+impl Rasterizer {
     /// Draws what the camera sees. Of surfaces that are equally near, one of the first kind is seen (cuboids are before
     /// cylinders and balls, and these before figures), and of those the first in the scene.
     pub fn draw(&mut self, scene: &Scene, camera: &Camera, picture: &mut Picture) {
         let view = View::of(camera);
-        self.seen.look_at(scene, &view);
-        self.glass.look_at(&scene.markers, &view);
+        self.visible.project(scene, &view);
+        self.spheres.project(&scene.markers, &view);
         picture.resize(camera.width, camera.height);
         if picture.depth.is_empty() {
             return;
         }
-        let sight = &Sight {
+        let frame = &Frame {
             view: &view,
-            seen: &self.seen,
-            glass: &self.glass,
+            visible: &self.visible,
+            spheres: &self.spheres,
             is_smooth: camera.antialiasing,
         };
         let first_rows = || (0..camera.height).step_by(ROWS_IN_BAND);
@@ -50,11 +63,11 @@ impl Painter {
             Some(threads) => {
                 threads.scope(|tasks| {
                     for ((band, first_row), part) in bands {
-                        tasks.spawn(async move { band.draw(sight, first_row, part) });
+                        tasks.spawn(async move { band.draw(frame, first_row, part) });
                     }
                 });
             }
-            None => bands.for_each(|((band, first_row), part)| band.draw(sight, first_row, part)),
+            None => bands.for_each(|((band, first_row), part)| band.draw(frame, first_row, part)),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Triangles of figures, of which there are many and small ones.
 //!
-//! They are bounded like [`Face`](crate::face::Face)s, by planes through the eye and their edges, but several rows of samples
+//! They are clamp_share like [`Face`](super::face::Face)s, by planes through the eye and their edges, but several rows of samples
 //! are found at once and without branches. The near plane does not cut them.
 
 use std::ops::Range;
@@ -8,8 +8,8 @@ use std::ops::Range;
 use bevy::math::{Vec3, Vec4};
 
 use crate::{
-    camera::{Linear, View},
-    row::{Offset, SampleRow},
+    camera::{Linear, SampleOffset, View},
+    raster::scanline::SampleRow,
 };
 
 /// A triangle as it is seen.
@@ -18,7 +18,7 @@ pub(crate) struct Triangle {
     /// The rows in which it may be seen.
     pub rows: Range<u32>,
     surface: u32,
-    nearness: Linear,
+    inverse_depth: Linear,
     edges: [Edge; 3],
 }
 
@@ -51,7 +51,7 @@ impl Triangle {
         Self {
             rows,
             surface,
-            nearness: view.rays.dot(normal / normal.dot(corners[0])),
+            inverse_depth: view.rays.dot(normal / normal.dot(corners[0])),
             edges: std::array::from_fn(edge),
         }
     }
@@ -60,12 +60,15 @@ impl Triangle {
     pub fn draw<const N: usize>(
         &self,
         row: u32,
-        offsets: [Offset; N],
+        offsets: [SampleOffset; N],
         samples: &mut [SampleRow; N],
     ) {
         let lane = |i: usize| offsets[i.min(N - 1)];
-        let [x, y] = [|offset: Offset| offset.x, |offset: Offset| offset.y]
-            .map(|part| Vec4::from_array(std::array::from_fn(|i| part(lane(i)))));
+        let [x, y] = [
+            |offset: SampleOffset| offset.x,
+            |offset: SampleOffset| offset.y,
+        ]
+        .map(|part| Vec4::from_array(std::array::from_fn(|i| part(lane(i)))));
         let y = y + row as f32;
         let count = samples[0].surface.len();
         let width = Vec4::splat(count as f32);
@@ -77,9 +80,9 @@ impl Triangle {
         }
         let [starts, ends] = [starts.min(width), ends.max(Vec4::ZERO)].map(columns);
         for (i, samples) in samples.iter_mut().enumerate() {
-            let nearness = self.nearness.on_row(row, offsets[i]);
+            let inverse_depth = self.inverse_depth.on_row(row, offsets[i]);
             let end = ends[i].min(count);
-            samples.put_some(starts[i].min(end)..end, nearness, self.surface);
+            samples.put_some(starts[i].min(end)..end, inverse_depth, self.surface);
         }
     }
 }

@@ -1,16 +1,16 @@
 //! Balls and cylinders, each seen as the exact solid: for every sample the ray is met with the round surface.
 //!
 //! A point `eye + ray * depth`, relative to the centre and without its part along the axis of a cylinder, lies on the
-//! surface where its length is the radius. With nearness = 1 / depth this is a quadratic equation for the nearness. A
-//! cylinder is bounded by two more planes, for which the nearness is a linear function of the picture's coordinates. What
+//! surface where its length is the radius. With inverse_depth = 1 / depth this is a quadratic equation for the inverse_depth. A
+//! cylinder is clamp_share by two more planes, for which the inverse_depth is a linear function of the picture's coordinates. What
 //! is seen is where a ray enters: at the farthest of the surfaces that it has to be behind, if that is before the nearest of
 //! those that it has to be in front of.
 
 use bevy::math::Vec3;
 
 use crate::{
-    camera::{Linear, NEAR, Rays, View, Window},
-    row::{Offset, SampleRow},
+    camera::{Linear, NEAR, Rays, SampleOffset, View, Window},
+    raster::scanline::SampleRow,
 };
 
 /// A number so small that it stands for 0 where something is divided by it.
@@ -18,7 +18,7 @@ const TINY: f32 = 1e-12;
 
 /// A ball or cylinder as it is seen.
 #[derive(Clone, Debug)]
-pub(crate) struct Round {
+pub(crate) struct Quadric {
     /// Where it may be seen.
     pub window: Window,
     curve: Curve,
@@ -45,7 +45,7 @@ pub(crate) struct Curve {
     pub radius: f32,
 }
 
-/// Planes at the ends of a cylinder, as nearnesses.
+/// Planes at the ends of a cylinder, as inverse depths.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ends {
     /// Of the end that faces the eye: rays enter no nearer than this.
@@ -93,11 +93,11 @@ impl Ends {
         let mut ends = Self::NONE;
         for (outward, leave) in [axis, -axis].into_iter().zip(&mut ends.leave) {
             let eye_is_inside_by = not_zero(yspan / 2.0 + outward.dot(center));
-            let nearness = view.rays.dot(outward / eye_is_inside_by);
+            let inverse_depth = view.rays.dot(outward / eye_is_inside_by);
             if eye_is_inside_by < 0.0 {
-                ends.enter = nearness;
+                ends.enter = inverse_depth;
             } else {
-                *leave = nearness;
+                *leave = inverse_depth;
             }
         }
         ends
@@ -109,7 +109,7 @@ fn not_zero(number: f32) -> f32 {
     if number.abs() < TINY { TINY } else { number }
 }
 
-impl Round {
+impl Quadric {
     /// The solid within this curve and these ends. The surfaces are its side and the end that faces the eye.
     pub fn new(curve: Curve, ends: Ends, window: Window, [side, end]: [u32; 2]) -> Self {
         let power = curve.eye.length_squared() - curve.radius * curve.radius;
@@ -126,7 +126,7 @@ impl Round {
     }
 
     /// Puts it into the samples that see it and nothing nearer.
-    pub fn draw(&self, row: u32, offset: Offset, samples: &mut SampleRow) {
+    pub fn draw(&self, row: u32, offset: SampleOffset, samples: &mut SampleRow) {
         let curve = &self.curve;
         let (ray, miss) = (
             curve.rays.on_row(row, offset),

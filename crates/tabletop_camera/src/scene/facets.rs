@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 use tabletop_core::Triangles;
 
-use crate::surface::in_bytes;
+use crate::color::scaled_to_bytes;
 
 /// A surface of triangles, made ready for being drawn. Each triangle has the colour of its first corner.
 #[derive(Clone, Debug, Default)]
@@ -82,7 +82,7 @@ impl From<&Triangles> for Facets {
                 corners,
                 normal,
                 height: normal.dot(a),
-                color: in_bytes(*color),
+                color: scaled_to_bytes(*color),
                 patch: 0,
             });
         }

@@ -1,0 +1,121 @@
+//! What depends linearly on the point of the picture: rays, and numbers.
+
+use std::ops::{Add, Mul};
+
+use bevy::math::Vec3;
+
+/// Where in its row of pixels a row of samples lies, in pixels from the pixels' centres.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SampleOffset {
+    pub x: f32,
+    pub y: f32,
+}
+
+impl SampleOffset {
+    /// The pixels' centres.
+    pub const CENTER: Self = Self { x: 0.0, y: 0.0 };
+
+    /// The samples of smooth edges: no two of them in a row, column or diagonal of the pixel.
+    pub const SMOOTH: [Self; 4] = [
+        Self {
+            x: -0.125,
+            y: -0.375,
+        },
+        Self {
+            x: 0.375,
+            y: -0.125,
+        },
+        Self {
+            x: -0.375,
+            y: 0.125,
+        },
+        Self { x: 0.125, y: 0.375 },
+    ];
+}
+
+/// Directions that depend linearly on the point of the picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rays {
+    pub first: Vec3,
+    pub right: Vec3,
+    pub down: Vec3,
+}
+
+impl Rays {
+    /// The direction of the ray through a point of the picture.
+    pub fn through(&self, x: f32, y: f32) -> Vec3 {
+        self.first + self.right * x + self.down * y
+    }
+
+    /// The directions along a row of samples.
+    pub fn on_row(&self, row: u32, offset: SampleOffset) -> OnRow<Vec3> {
+        OnRow {
+            first: self.through(offset.x, row as f32 + offset.y),
+            step: self.right,
+        }
+    }
+
+    /// The same rays, each mapped by something linear.
+    pub fn map(&self, linear: impl Fn(Vec3) -> Vec3) -> Self {
+        Self {
+            first: linear(self.first),
+            right: linear(self.right),
+            down: linear(self.down),
+        }
+    }
+
+    /// The scalar product of each ray with a vector.
+    pub fn dot(&self, vector: Vec3) -> Linear {
+        Linear {
+            first: self.first.dot(vector),
+            right: self.right.dot(vector),
+            down: self.down.dot(vector),
+        }
+    }
+}
+
+/// A number that depends linearly on the point of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Linear {
+    pub first: f32,
+    pub right: f32,
+    pub down: f32,
+}
+
+impl Linear {
+    pub const fn constant(value: f32) -> Self {
+        Self {
+            first: value,
+            right: 0.0,
+            down: 0.0,
+        }
+    }
+
+    /// Its value at a point of the picture.
+    pub fn at(&self, x: f32, y: f32) -> f32 {
+        self.first + self.right * x + self.down * y
+    }
+
+    /// Its values along a row of samples.
+    pub fn on_row(&self, row: u32, offset: SampleOffset) -> OnRow<f32> {
+        OnRow {
+            first: self.first + self.down * (row as f32 + offset.y) + self.right * offset.x,
+            step: self.right,
+        }
+    }
+}
+
+/// What depends linearly on the column of a sample in its row.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OnRow<T> {
+    first: T,
+    pub step: T,
+}
+
+impl<T: Copy + Add<Output = T> + Mul<f32, Output = T>> OnRow<T> {
+    /// Its value at a column.
+    #[inline]
+    pub fn at(&self, column: f32) -> T {
+        self.first + self.step * column
+    }
+}
