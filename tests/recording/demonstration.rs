@@ -12,8 +12,28 @@ use tabletop::{
     headless_app_with,
     physics::PhysicsSettings,
     prelude::*,
-    recorder::RecorderPlugin,
+    recorder::{Channels, RecorderPlugin},
+    replay::Replay,
 };
+
+/// Where a test records; what an earlier run has left there is gone.
+pub fn fresh_folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _not_there = fs::remove_dir_all(&folder);
+    folder
+}
+
+/// The replay of a whole recording has the same bytes.
+pub fn assert_replays(folder: &Path) {
+    let replay = Replay::read(folder).unwrap();
+    assert_eq!(replay.cut_off_at(), None);
+    let name = folder.file_name().unwrap().to_string_lossy();
+    let replayed = fresh_folder(&format!("{name}_replayed"));
+    replay
+        .record(replayed.clone(), replay.camera(), Channels::default())
+        .unwrap();
+    assert_eq!(replay.first_difference(&replayed).unwrap(), None);
+}
 
 pub struct Demonstration {
     pub app: App,
@@ -26,8 +46,7 @@ impl Demonstration {
     }
 
     pub fn with_physics(name: &str, settings: PhysicsSettings) -> Self {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-        let _not_there = fs::remove_dir_all(&folder);
+        let folder = fresh_folder(name);
         let recorder = RecorderPlugin {
             folder: folder.clone(),
             ..default()

@@ -3,13 +3,9 @@
 use std::fs;
 
 use bevy::prelude::*;
-use tabletop::{
-    prelude::*,
-    recorder::Channels,
-    replay::{Replay, first_difference},
-};
+use tabletop::prelude::*;
 
-use crate::demonstration::Demonstration;
+use crate::demonstration::{Demonstration, assert_replays};
 
 #[test]
 fn a_block_that_was_let_fall_a_little_lies_where_it_came_to_rest() {
@@ -39,12 +35,5 @@ fn a_block_that_was_let_fall_a_little_lies_where_it_came_to_rest() {
     assert_eq!(height, place.translation.z, "{text}");
     assert!(height < 1.01, "{text}");
 
-    let replay = Replay::read(&demonstration.folder).unwrap();
-    let replayed = demonstration.folder.with_file_name("ending_replayed");
-    let _not_there = fs::remove_dir_all(&replayed);
-    replay
-        .record(replayed.clone(), replay.camera(), Channels::default())
-        .unwrap();
-    let difference = first_difference(&demonstration.folder, &replayed).unwrap();
-    assert_eq!(difference, None);
+    assert_replays(&demonstration.folder);
 }

@@ -10,3 +10,4 @@ mod robot;
 mod settings;
 mod slow_script;
 mod undo;
+mod window;

@@ -1,23 +1,21 @@
 //! Recordings that are opened while the simulator runs.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    time::Duration,
-};
+use std::{fs, path::Path};
 
-use bevy::{prelude::*, time::TimeUpdateStrategy};
+use bevy::prelude::*;
 use tabletop::{
     core::{
-        HeadCamera, OpenRecording, PacePlugin, Playback, PlaybackOrder, SingleStep, TICK_SECONDS,
-        Timeline, TimelineStage,
+        OpenRecording, PacePlugin, Playback, PlaybackOrder, SingleStep, Timeline, TimelineStage,
     },
     prelude::*,
-    recorder::{Channels, RecorderPlugin, RecordingReader},
-    replay::{PlaybackPlugin, Replay, first_difference},
+    recorder::RecordingReader,
+    replay::PlaybackPlugin,
 };
 
-use crate::demonstration::{Demonstration, bits};
+use crate::{
+    demonstration::{Demonstration, assert_replays, bits},
+    window::Window,
+};
 
 const HAND: Hand = Hand::Right;
 
@@ -48,85 +46,40 @@ fn task() -> SimCommand {
     SimCommand::LoadTask("tablesetup/default.xml".into())
 }
 
-/// A window without a picture, in which something was done already.
-struct Window {
-    app: App,
-    folder: PathBuf,
+/// A window that opens recordings, in which something was done already.
+fn used_window(name: &str) -> Window {
+    let playback = PlaybackPlugin {
+        task: "tablesetup/tower.xml".into(),
+    };
+    let mut window = Window::open(name, |plugins| plugins.add(PacePlugin).add(playback));
+    window.write(SimCommand::LoadTask("tablesetup/lidbox.xml".into()));
+    window.frames(20);
+    window.write(SimCommand::ShowRobot(true));
+    window.write(SimCommand::Grasp {
+        hand: Hand::Left,
+        object: "obj-lid".into(),
+    });
+    window.frames(20);
+    window
 }
 
 impl Window {
-    fn used(name: &str) -> Self {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-        let _not_there = fs::remove_dir_all(&folder);
-        let recorder = RecorderPlugin {
-            folder: folder.clone(),
-            ..default()
-        };
-        let mut app = App::new();
-        app.add_plugins((
-            MinimalPlugins,
-            TabletopSimPlugins.build().set(recorder),
-            PacePlugin,
-            PlaybackPlugin {
-                task: "tablesetup/tower.xml".into(),
-            },
-        ))
-        .insert_resource(HeadCamera {
-            width: 40,
-            height: 30,
-            ..default()
-        })
-        .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(
-            TICK_SECONDS,
-        )));
-        app.finish();
-        app.cleanup();
-        let mut window = Self { app, folder };
-        window.tell(SimCommand::LoadTask("tablesetup/lidbox.xml".into()));
-        window.frames(20);
-        window.tell(SimCommand::ShowRobot(true));
-        window.tell(SimCommand::Grasp {
-            hand: Hand::Left,
-            object: "obj-lid".into(),
-        });
-        window.frames(20);
-        window
-    }
-
-    fn tell<M: Message>(&mut self, message: M) {
-        self.app.world_mut().write_message(message);
-    }
-
-    fn frames(&mut self, frames: usize) {
-        (0..frames).for_each(|_| self.app.update());
-    }
-
-    fn open(&mut self, folder: &Path) {
-        self.tell(OpenRecording(folder.to_owned()));
+    fn open_recording(&mut self, folder: &Path) {
+        self.write(OpenRecording(folder.to_owned()));
         self.frames(1);
         self.arrive();
     }
 
-    /// Waits until the world is where it was told to go.
+    /// Waits until the world is where it was to go.
     fn arrive(&mut self) {
-        for _ in 0..10_000 {
-            if self.app.world().resource::<Playback>().goal.is_none() {
-                return;
-            }
-            self.app.update();
-        }
-        panic!("{:?}", self.app.world().resource::<Playback>());
+        self.frames_until(|world| world.resource::<Playback>().goal.is_none());
     }
 
     fn look_at(&mut self, tick: u64) {
-        self.tell(PlaybackOrder::StopAt(SimTick(tick)));
+        self.write(PlaybackOrder::StopAt(SimTick(tick)));
         self.frames(1);
         self.arrive();
         self.frames(3);
-    }
-
-    fn next_tick(&self) -> u64 {
-        self.app.world().resource::<SimTick>().0
     }
 
     /// Where every object is, as the recording has it.
@@ -160,8 +113,8 @@ fn the_world_goes_to_any_moment_and_is_as_it_was() {
     let demonstration = recording("moments");
     let reader = RecordingReader::open(&demonstration.folder).unwrap();
     let (start, end) = (reader.first_tick().0, reader.last_tick().0);
-    let mut window = Window::used("moments_window");
-    window.open(&demonstration.folder);
+    let mut window = used_window("moments_window");
+    window.open_recording(&demonstration.folder);
     for tick in [
         end,
         start,
@@ -184,41 +137,35 @@ fn the_world_goes_to_any_moment_and_is_as_it_was() {
 #[test]
 fn a_recording_that_is_opened_plays_to_its_end_and_the_user_goes_on_and_records() {
     let demonstration = recording("played");
-    let mut window = Window::used("played_window");
-    window.open(&demonstration.folder);
+    let mut window = used_window("played_window");
+    window.open_recording(&demonstration.folder);
     window.look_at(300);
     window.look_at(100);
-    window.tell(SimCommand::SetPaused(false));
-    window.tell(SimCommand::Release(HAND));
+    window.write(SimCommand::SetPaused(false));
+    window.write(SimCommand::Release(HAND));
     window.frames(450);
     assert!(window.app.world().resource::<Playback>().is_over);
-    window.tell(SimCommand::StartRecording);
+    window.write(SimCommand::StartRecording);
     window.frames(5);
     let timeline = window.app.world().resource::<Timeline>();
     assert_eq!(timeline.stage, TimelineStage::Running);
     assert_eq!(timeline.folder, window.folder);
     let object = "GreenBlock".to_owned();
-    window.tell(SimCommand::Grasp { hand: HAND, object });
+    window.write(SimCommand::Grasp { hand: HAND, object });
     window.frames(30);
-    window.tell(SimCommand::FinishRecording);
+    window.write(SimCommand::FinishRecording);
     window.frames(5);
 
-    let replay = Replay::read(&window.folder).unwrap();
-    let replayed = window.folder.with_file_name("played_again");
-    let _not_there = fs::remove_dir_all(&replayed);
-    replay
-        .record(replayed.clone(), replay.camera(), Channels::default())
-        .unwrap();
-    assert_eq!(first_difference(&window.folder, &replayed).unwrap(), None);
+    assert_replays(&window.folder);
 }
 
 #[test]
 fn what_is_put_away_leaves_a_fresh_task() {
     let demonstration = recording("put_away");
-    let mut window = Window::used("put_away_window");
-    window.open(&demonstration.folder);
+    let mut window = used_window("put_away_window");
+    window.open_recording(&demonstration.folder);
     window.look_at(200);
-    window.tell(PlaybackOrder::Close);
+    window.write(PlaybackOrder::Close);
     window.frames(30);
     let world = window.app.world();
     assert_eq!(world.resource::<Timeline>().stage, TimelineStage::Absent);
@@ -243,8 +190,8 @@ fn a_recording_that_ends_in_a_pause_is_gone_through() {
         (vec![SimCommand::SetPaused(true)], 3),
         (vec![SimCommand::FinishRecording], 1),
     ]);
-    let mut window = Window::used("ends_in_a_pause_window");
-    window.open(&demonstration.folder);
+    let mut window = used_window("ends_in_a_pause_window");
+    window.open_recording(&demonstration.folder);
     for _ in 0..2 {
         window.look_at(1000);
         assert!(window.app.world().resource::<Playback>().is_over);
@@ -257,14 +204,14 @@ fn a_recording_that_ends_in_a_pause_is_gone_through() {
 #[test]
 fn a_recording_that_loops_begins_again() {
     let demonstration = recording("looping");
-    let mut window = Window::used("looping_window");
-    window.open(&demonstration.folder);
+    let mut window = used_window("looping_window");
+    window.open_recording(&demonstration.folder);
     let (start, end) = {
         let timeline = window.app.world().resource::<Timeline>();
         (timeline.start.0, timeline.end.0)
     };
-    window.tell(PlaybackOrder::Loop(true));
-    window.tell(PlaybackOrder::GoTo(SimTick(end - 3)));
+    window.write(PlaybackOrder::Loop(true));
+    window.write(PlaybackOrder::GoTo(SimTick(end - 3)));
     window.frames(1);
     window.arrive();
     window.frames(20);
@@ -291,9 +238,9 @@ fn what_cannot_be_opened_is_told_in_one_line() {
         ),
         (&damaged.folder, "1.txt:1: expected a hand"),
     ] {
-        let mut window = Window::used("unopened_window");
+        let mut window = used_window("unopened_window");
         let before = window.poses();
-        window.tell(OpenRecording(folder.clone()));
+        window.write(OpenRecording(folder.clone()));
         window.frames(1);
         let facts = window.app.world().resource::<Messages<SimFact>>();
         let mut refusals = facts.iter_current_update_messages().filter_map(|fact| {
@@ -314,10 +261,10 @@ fn what_cannot_be_opened_is_told_in_one_line() {
 #[test]
 fn while_a_recording_is_made_none_is_opened() {
     let demonstration = recording("closed");
-    let mut window = Window::used("recording_window");
-    window.tell(SimCommand::StartRecording);
+    let mut window = used_window("recording_window");
+    window.write(SimCommand::StartRecording);
     window.frames(5);
-    window.tell(OpenRecording(demonstration.folder.clone()));
+    window.write(OpenRecording(demonstration.folder.clone()));
     window.frames(1);
     let timeline = window.app.world().resource::<Timeline>();
     assert_eq!(timeline.stage, TimelineStage::Running);
@@ -326,10 +273,10 @@ fn while_a_recording_is_made_none_is_opened() {
 
 #[test]
 fn a_recording_made_in_single_steps_replays_to_the_same_bytes() {
-    let mut window = Window::used("steps");
-    window.tell(SimCommand::StartRecording);
+    let mut window = used_window("steps");
+    window.write(SimCommand::StartRecording);
     window.frames(10);
-    window.tell(SimCommand::SetPaused(true));
+    window.write(SimCommand::SetPaused(true));
     window.frames(3);
     for steps in 1..20 {
         let before = window.next_tick();
@@ -340,19 +287,13 @@ fn a_recording_made_in_single_steps_replays_to_the_same_bytes() {
         window.frames(6);
         assert_eq!(window.next_tick(), before + (steps % 4) as u64);
         if steps == 9 {
-            window.tell(SimCommand::LoadTask("tablesetup/default.xml".into()));
+            window.write(SimCommand::LoadTask("tablesetup/default.xml".into()));
             window.frames(2);
         }
     }
-    window.tell(SimCommand::SetPaused(false));
+    window.write(SimCommand::SetPaused(false));
     window.frames(20);
-    window.tell(SimCommand::FinishRecording);
+    window.write(SimCommand::FinishRecording);
     window.frames(2);
-    let replay = Replay::read(&window.folder).unwrap();
-    let replayed = window.folder.with_file_name("steps_replayed");
-    let _not_there = fs::remove_dir_all(&replayed);
-    replay
-        .record(replayed.clone(), replay.camera(), Channels::default())
-        .unwrap();
-    assert_eq!(first_difference(&window.folder, &replayed).unwrap(), None);
+    assert_replays(&window.folder);
 }

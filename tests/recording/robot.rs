@@ -1,13 +1,8 @@
 //! Recordings of what the robot does.
 
-use tabletop::{
-    core::Drive,
-    prelude::*,
-    recorder::Channels,
-    replay::{Replay, first_difference},
-};
+use tabletop::{core::Drive, prelude::*};
 
-use crate::demonstration::Demonstration;
+use crate::demonstration::{Demonstration, assert_replays};
 
 #[test]
 fn what_the_robot_did_before_and_in_a_recording_is_done_again() {
@@ -28,12 +23,5 @@ fn what_the_robot_did_before_and_in_a_recording_is_done_again() {
         (vec![SimCommand::Release(hand)], 30),
         (vec![SimCommand::FinishRecording], 1),
     ]);
-    let replay = Replay::read(&demonstration.folder).unwrap();
-    let replayed = demonstration.folder.with_file_name("robot_replayed");
-    let _not_there = std::fs::remove_dir_all(&replayed);
-    replay
-        .record(replayed.clone(), replay.camera(), Channels::default())
-        .unwrap();
-    let difference = first_difference(&demonstration.folder, &replayed).unwrap();
-    assert_eq!(difference, None);
+    assert_replays(&demonstration.folder);
 }

@@ -1,14 +1,9 @@
 //! Recordings that were made with other settings.
 
 use bevy::prelude::*;
-use tabletop::{
-    physics::PhysicsSettings,
-    prelude::*,
-    recorder::Channels,
-    replay::{Replay, first_difference},
-};
+use tabletop::{physics::PhysicsSettings, prelude::*};
 
-use crate::demonstration::Demonstration;
+use crate::demonstration::{Demonstration, assert_replays};
 
 #[test]
 fn a_replay_has_the_settings_and_the_camera_of_its_recording() {
@@ -37,11 +32,5 @@ fn a_replay_has_the_settings_and_the_camera_of_its_recording() {
         (vec![SimCommand::Release(hand)], 120),
         (vec![SimCommand::FinishRecording], 1),
     ]);
-    let replay = Replay::read(&moon.folder).unwrap();
-    let replayed = moon.folder.with_file_name("moon_replayed");
-    let _not_there = std::fs::remove_dir_all(&replayed);
-    replay
-        .record(replayed.clone(), replay.camera(), Channels::default())
-        .unwrap();
-    assert_eq!(first_difference(&moon.folder, &replayed).unwrap(), None);
+    assert_replays(&moon.folder);
 }

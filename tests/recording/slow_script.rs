@@ -1,14 +1,17 @@
 //! Recordings of what is done while the simulation waits for a script, as it does in the window.
 
-use std::{fs, path::Path, time::Duration};
+use std::{fs, time::Duration};
 
-use bevy::{prelude::*, time::TimeUpdateStrategy};
+use bevy::prelude::*;
 use tabletop::{
-    core::{Agent, AgentOrder, HeadCamera, TICK_SECONDS},
+    core::{Agent, AgentOrder},
     prelude::*,
-    recorder::{Channels, RecorderPlugin},
-    replay::Replay,
     script::{EngineChoice, EngineKind, ScriptPlugin, ScriptSettings, Waiting},
+};
+
+use crate::{
+    demonstration::{assert_replays, fresh_folder},
+    window::Window,
 };
 
 /// A script of which every call takes several frames.
@@ -19,91 +22,53 @@ def callback(sensor, motor, aux):
     motor.jointVelocities = [[0.2] * 7] * 2
 ";
 
-struct Window {
-    app: App,
+fn is_waiting(world: &World) -> bool {
+    matches!(world.resource(), Agent::Waiting { .. })
+}
+
+fn is_online(world: &World) -> bool {
+    matches!(world.resource(), Agent::Online { .. })
 }
 
 impl Window {
-    fn open(folder: &Path, script: &Path) -> Self {
-        let recorder = RecorderPlugin {
-            folder: folder.to_owned(),
-            ..default()
-        };
-        let settings = ScriptSettings {
-            agent: Some(script.to_owned()),
-            engine: EngineChoice::Kind(EngineKind::Python),
-            waiting: Waiting::Frame(Duration::from_millis(1)),
-            ..default()
-        };
-        let plugins = TabletopSimPlugins.build();
-        let mut app = App::new();
-        app.add_plugins(MinimalPlugins)
-            .add_plugins(plugins.set(recorder).set(ScriptPlugin { settings }))
-            .insert_resource(HeadCamera {
-                width: 40,
-                height: 30,
-                ..default()
-            })
-            .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(
-                TICK_SECONDS,
-            )));
-        app.finish();
-        app.cleanup();
-        Self { app }
-    }
-
-    fn frames_until(&mut self, is_so: impl Fn(&Agent) -> bool) {
-        for _ in 0..10_000 {
-            if is_so(self.app.world().resource()) {
-                return;
-            }
-            self.app.update();
-        }
-        panic!("{:?}", self.app.world().resource::<Agent>());
-    }
-
-    /// Tells something while a call of the script is waited for, and lets so many frames go by.
-    fn tell_while_waiting(&mut self, command: SimCommand, frames: usize) {
-        self.frames_until(|agent| matches!(agent, Agent::Waiting { .. }));
-        self.app.world_mut().write_message(command);
-        (0..frames).for_each(|_| self.app.update());
+    /// Gives a command while a call of the script is waited for, and lets so many frames go by.
+    fn write_while_waiting(&mut self, command: SimCommand, frames: usize) {
+        self.frames_until(is_waiting);
+        self.write(command);
+        self.frames(frames);
     }
 }
 
 #[test]
-fn what_is_told_while_a_script_is_waited_for_is_recorded_in_its_tick() {
-    let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join("slow_script");
-    let _not_there = fs::remove_dir_all(&place);
+fn what_is_done_while_a_script_is_waited_for_is_recorded_in_its_tick() {
+    let place = fresh_folder("slow_script");
     fs::create_dir_all(&place).unwrap();
     let script = place.join("robot.py");
     fs::write(&script, SCRIPT).unwrap();
-    let folder = place.join("demo");
-    let mut window = Window::open(&folder, &script);
-    let world = window.app.world_mut();
-    world.write_message(SimCommand::LoadTask("tablesetup/default.xml".into()));
-    (0..10).for_each(|_| window.app.update());
-    window.app.world_mut().write_message(AgentOrder::Start);
-    window.frames_until(|agent| matches!(agent, Agent::Online { .. }));
+    let settings = ScriptSettings {
+        agent: Some(script),
+        engine: EngineChoice::Kind(EngineKind::Python),
+        waiting: Waiting::Frame(Duration::from_millis(1)),
+        ..default()
+    };
+    let mut window = Window::open("slow_script_demo", |plugins| {
+        plugins.set(ScriptPlugin { settings })
+    });
+    window.write(SimCommand::LoadTask("tablesetup/default.xml".into()));
+    window.frames(10);
+    window.write(AgentOrder::Start);
+    window.frames_until(is_online);
 
     let hand = Hand::Any;
     let object = "RedBlock".to_owned();
-    window.tell_while_waiting(SimCommand::StartRecording, 300);
-    window.tell_while_waiting(SimCommand::Grasp { hand, object }, 300);
-    window.tell_while_waiting(SimCommand::SetPaused(true), 60);
-    window
-        .app
-        .world_mut()
-        .write_message(SimCommand::SetPaused(false));
-    window.tell_while_waiting(SimCommand::Release(hand), 300);
-    window.tell_while_waiting(SimCommand::FinishRecording, 100);
-    let replay = Replay::read(&folder).unwrap();
-    assert_eq!(replay.cut_off_at(), None);
-    let replayed = place.join("replayed");
-    replay
-        .record(replayed.clone(), replay.camera(), Channels::default())
-        .unwrap();
-    assert_eq!(replay.first_difference(&replayed).unwrap(), None);
+    window.write_while_waiting(SimCommand::StartRecording, 300);
+    window.write_while_waiting(SimCommand::Grasp { hand, object }, 300);
+    window.write_while_waiting(SimCommand::SetPaused(true), 60);
+    window.write(SimCommand::SetPaused(false));
+    window.write_while_waiting(SimCommand::Release(hand), 300);
+    window.write_while_waiting(SimCommand::FinishRecording, 100);
+    assert_replays(&window.folder);
     for segment in ["0/0.png", "1.txt", "2.txt"] {
-        assert!(folder.join(segment).exists(), "{segment}");
+        assert!(window.folder.join(segment).exists(), "{segment}");
     }
 }

@@ -9,5 +9,6 @@ pub(crate) mod joints;
 pub(crate) mod log_file;
 pub(crate) mod picture;
 pub(crate) mod properties;
+pub(crate) mod recording_files;
 pub(crate) mod session;
 pub(crate) mod states;

@@ -2,6 +2,8 @@
 
 pub(crate) mod earlier_commands;
 pub(crate) mod episode;
+pub(crate) mod objects;
+pub(crate) mod progress;
 pub(crate) mod recorder;
 pub(crate) mod recorder_plugin;
 pub(crate) mod stage;

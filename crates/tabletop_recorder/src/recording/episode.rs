@@ -1,11 +1,11 @@
 //! A recording while it is made: one demonstration as a sequence of segments.
 
-use std::{collections::BTreeMap, path::Path};
+use std::path::Path;
 
 use bevy::prelude::warn;
 use tabletop_core::{
-    Act, Actor, ObjectSpec, Paused, Pose, Rgb, SensorImage, SimCommand, SimFact, SimTick, Timeline,
-    TimelineGrip, TimelinePicture, TimelineSegment, TimelineStage,
+    Act, Actor, Paused, Pose, SensorImage, SimCommand, SimFact, SimTick, Timeline, TimelineGrip,
+    TimelinePicture, TimelineSegment, TimelineStage,
 };
 
 use crate::{
@@ -14,19 +14,20 @@ use crate::{
     files::{
         channels::Channels,
         event::Event,
-        folder::{Folder, create_folder},
+        folder::Folder,
         frame::FrameClock,
         joints::{self, Joints},
-        log_file::LogFile,
         picture::{write_depth, write_ids, write_png},
-        session::{SessionHeader, SessionScene, command_line, session_line},
-        states,
+        recording_files::RecordingFiles,
+        session::{SessionHeader, SessionScene, command_line},
     },
     order::{in_order, is_about_recordings, turns_the_clock},
     recording::{
         earlier_commands::EarlierCommands,
-        stage::{Shown, Sight, Stage},
-        timeline_mark::{TimelineMark, TimelineTail},
+        objects::RecordedObjects,
+        progress::{Progress, SegmentStart, UndoneSegment},
+        stage::{Sight, Stage},
+        timeline_mark::TimelineMark,
         tracked::Tracked,
     },
 };
@@ -34,25 +35,16 @@ use crate::{
 /// A running recording.
 #[derive(Debug)]
 pub(crate) struct Episode {
-    folder: Folder,
+    files: RecordingFiles,
     clock: FrameClock,
-    session: LogFile,
-    states: LogFile,
-    joints: LogFile,
-    text: LogFile,
-    segment: u32,
-    objects: Vec<Tracked>,
+    objects: RecordedObjects,
     /// What there was to be seen at the last frame.
     sight: Sight,
     /// The robot's joints at the end of the tick before.
     last_joints: Option<Joints>,
-    /// How many `create` lines were written.
-    created: usize,
     /// Whether the simulation is paused where the session log ends.
     is_paused: bool,
     channels: Channels,
-    /// The objects of the first tick, until their `create` lines are written.
-    opening: Option<Vec<ObjectSpec>>,
     /// The tick before its commands were carried out; they may turn the clock.
     tick: SimTick,
     /// The commands of this tick, each with the length of the session log before it.
@@ -63,43 +55,8 @@ pub(crate) struct Episode {
     unlogged: Vec<SimCommand>,
     undoable: Vec<SegmentStart>,
     redoable: Vec<UndoneSegment>,
-    /// The colours of all objects that there were.
-    colors: BTreeMap<String, Rgb>,
     /// How many pictures were written, also of what was undone.
     pictures: usize,
-}
-
-/// How far a recording had come.
-#[derive(Clone, Debug)]
-struct Progress {
-    segment: u32,
-    objects: Vec<Tracked>,
-    sight: Sight,
-    created: usize,
-    text: u64,
-    session: u64,
-    states: u64,
-    joints: u64,
-    last_joints: Option<Joints>,
-    is_paused: bool,
-}
-
-/// The moment before a segment began.
-#[derive(Clone, Debug)]
-struct SegmentStart {
-    before: Progress,
-    timeline: TimelineMark,
-    /// What the session log must say more, if the recording goes on from here.
-    released: Vec<SimCommand>,
-    tick: SimTick,
-}
-
-/// A segment that can be brought back.
-#[derive(Clone, Debug)]
-struct UndoneSegment {
-    start: SegmentStart,
-    end: Progress,
-    timeline: TimelineTail,
 }
 
 impl Episode {
@@ -111,62 +68,31 @@ impl Episode {
         earlier: &EarlierCommands,
         channels: Channels,
     ) -> Result<Self, RecorderError> {
-        Folder::create(folder, |folder| {
-            Self::begin_in(folder, header, scene, earlier, channels)
-        })
-    }
-
-    fn begin_in(
-        folder: Folder,
-        header: &SessionHeader,
-        scene: &SessionScene,
-        earlier: &EarlierCommands,
-        channels: Channels,
-    ) -> Result<Self, RecorderError> {
-        let mut session = LogFile::create(folder.session())?;
-        session.lock();
-        for line in [session_line(header), session_line(scene)] {
-            let line =
-                line.map_err(|error| RecorderError::write(&folder.session())(error.into()))?;
-            session.append(&line)?;
-        }
-        session.append(earlier.lines())?;
-        let mut states = LogFile::create(folder.states())?;
-        states.append_records(&[states::header()])?;
-        let mut joints = LogFile::create(folder.joints())?;
-        joints.append_records(&[joints::header()])?;
-        create_folder(&folder.pictures(0))?;
-        let text = LogFile::create(folder.text(0))?;
+        let files = Folder::create(folder, |folder| {
+            RecordingFiles::create(folder, header, scene, earlier.lines())
+        })?;
         let objects = scene.objects.iter().map(|object| object.spec.clone());
         let start = SimTick(header.start_tick);
         Ok(Self {
-            folder,
             clock: FrameClock { start },
-            head: session.len(),
-            session,
-            states,
-            joints,
-            text,
-            segment: 0,
-            objects: Vec::new(),
+            head: files.session.len(),
+            files,
+            objects: RecordedObjects::opening(objects),
             sight: Sight::default(),
             last_joints: None,
-            created: 0,
             is_paused: earlier.is_paused(),
             channels,
-            opening: Some(objects.collect()),
             tick: start,
             logged: Vec::new(),
             unlogged: Vec::new(),
             undoable: Vec::new(),
             redoable: Vec::new(),
-            colors: BTreeMap::new(),
             pictures: 0,
         })
     }
 
     pub(crate) fn folder(&self) -> &Path {
-        self.folder.path()
+        self.files.folder.path()
     }
 
     /// The timeline of a recording that begins.
@@ -213,7 +139,7 @@ impl Episode {
     fn log(&mut self, commands: Vec<SimCommand>) -> Result<(), RecorderError> {
         let mut lines = Vec::new();
         for command in commands {
-            let before = self.session.len() + lines.len() as u64;
+            let before = self.files.session.len() + lines.len() as u64;
             if is_about_recordings(&command) {
                 continue;
             }
@@ -223,7 +149,7 @@ impl Episode {
             lines.extend(command_line(self.tick.0, &command).unwrap_or_default());
             self.logged.push((command, before));
         }
-        self.session.append(&lines)
+        self.files.session.append(&lines)
     }
 
     /// Writes what has happened in a tick.
@@ -245,8 +171,9 @@ impl Episode {
             } else {
                 self.redoable.last().map(|segment| &segment.end)
             };
-            let told = without_restored(&facts[..facts.len() - 1], restored);
-            self.write_events(told, stage, timeline)?;
+            let facts = &facts[..facts.len() - 1];
+            let reported = restored.map_or(facts, |restored| restored.without_restored(facts));
+            self.write_events(reported, stage, timeline)?;
             if is_undo {
                 self.undo(timeline)?;
             } else {
@@ -282,36 +209,26 @@ impl Episode {
             self.note_act(fact, timeline);
             let event = match fact {
                 SimFact::SegmentBegun => {
-                    lines.splice(..0, self.open(frame));
-                    self.text.append_records(&std::mem::take(&mut lines))?;
+                    lines.splice(..0, self.objects.open(frame));
+                    self.files
+                        .text
+                        .append_records(&std::mem::take(&mut lines))?;
                     self.begin_segment(beginnings.next().unwrap_or_default(), timeline)?;
                     continue;
                 }
-                SimFact::ObjectCreated { id, object } => {
+                SimFact::ObjectCreated { object, .. } => {
                     let Some(spec) = stage.spec(*object) else {
                         continue;
                     };
-                    if let Some(opening) = &mut self.opening {
-                        if opening.iter().all(|known| known.id != *id) {
-                            opening.push(spec.clone());
-                        }
+                    if !self.objects.create(spec) {
                         continue;
                     }
-                    if self.is_tracked(id) {
-                        continue;
-                    }
-                    self.track(spec);
                     Event::Create(spec)
                 }
                 SimFact::ObjectDeleted { id } => {
-                    if let Some(opening) = &mut self.opening {
-                        opening.retain(|known| known.id != *id);
+                    if !self.objects.delete(id) {
                         continue;
                     }
-                    if !self.is_tracked(id) {
-                        continue;
-                    }
-                    self.objects.retain(|object| object.id != *id);
                     Event::Delete { id }
                 }
                 SimFact::Grasped { hand, id } => Event::Grasp { hand: *hand, id },
@@ -321,26 +238,8 @@ impl Episode {
             };
             lines.push(event.fields(frame));
         }
-        lines.splice(..0, self.open(frame));
-        self.text.append_records(&lines)
-    }
-
-    /// The `create` lines of the objects that are there at the beginning.
-    fn open(&mut self, frame: u64) -> Vec<Vec<String>> {
-        let objects = self.opening.take().unwrap_or_default();
-        objects.iter().for_each(|spec| self.track(spec));
-        objects
-            .iter()
-            .map(|spec| Event::Create(spec).fields(frame))
-            .collect()
-    }
-
-    fn track(&mut self, spec: &ObjectSpec) {
-        self.created += 1;
-        self.objects.push(Tracked::new(&spec.id, self.created));
-        if let Some(solid) = spec.shape.drawn().first() {
-            self.colors.insert(spec.id.clone(), solid.color);
-        }
+        lines.splice(..0, self.objects.open(frame));
+        self.files.text.append_records(&lines)
     }
 
     /// Puts what hands and grippers do on the timeline.
@@ -354,17 +253,12 @@ impl Episode {
                 act,
             }),
             (Actor::Hand(_), [_, .., last]) if last.act.is_none() => {
-                let color = |id| self.colors.get(id).copied();
-                last.color = act.object.as_ref().and_then(color);
+                last.color = act.object.as_ref().and_then(|id| self.objects.color(id));
                 last.act = Some(act);
             }
             // What falls off the world is lost to its hand, in the middle of a segment.
             (Actor::Hand(_), _) => {}
         }
-    }
-
-    fn is_tracked(&self, id: &str) -> bool {
-        self.objects.iter().any(|object| object.id == id)
     }
 
     fn begin_segment(
@@ -374,7 +268,7 @@ impl Episode {
     ) -> Result<(), RecorderError> {
         let mut before = self.progress();
         if let Some(&(_, session)) = self.logged.get(beginning.before) {
-            before.session = session;
+            before.files.session = session;
         }
         let released = beginning.released.into_iter().map(SimCommand::Release);
         self.undoable.push(SegmentStart {
@@ -390,25 +284,16 @@ impl Episode {
         });
         if !self.redoable.is_empty() {
             self.redoable.clear();
-            self.drop_undone()?;
+            self.files.drop_undone()?;
         }
-        let segment = self.segment + 1;
-        create_folder(&self.folder.pictures(segment))?;
-        self.text = LogFile::create(self.folder.text(segment))?;
-        self.segment = segment;
-        Ok(())
+        self.files.begin_segment()
     }
 
     fn progress(&self) -> Progress {
         Progress {
-            segment: self.segment,
+            files: self.files.lengths(),
             objects: self.objects.clone(),
             sight: self.sight.clone(),
-            created: self.created,
-            text: self.text.len(),
-            session: self.session.len(),
-            states: self.states.len(),
-            joints: self.joints.len(),
             last_joints: self.last_joints,
             is_paused: self.is_paused,
         }
@@ -421,20 +306,12 @@ impl Episode {
             return Ok(());
         };
         let end = self.progress();
-        let away = self.folder.undone_segment(end.segment);
-        create_folder(away.path())?;
-        self.session
-            .cut_to_file(start.before.session, away.session())?;
-        self.states
-            .cut_to_file(start.before.states, away.states())?;
-        self.joints
-            .cut_to_file(start.before.joints, away.joints())?;
-        self.folder.move_segment(end.segment, &away)?;
+        let mut released = Vec::new();
         for command in &start.released {
-            let line = command_line(start.tick.0, command).unwrap_or_default();
-            self.session.append(&line)?;
+            released.extend(command_line(start.tick.0, command).unwrap_or_default());
         }
-        self.resume(start.before.clone())?;
+        self.files.put_away(start.before.files, &released)?;
+        self.resume(start.before.clone());
         let timeline = start.timeline.cut(timeline);
         self.redoable.push(UndoneSegment {
             start,
@@ -453,32 +330,19 @@ impl Episode {
         let UndoneSegment { start, end, .. } = undone;
         start.timeline.cut(timeline);
         undone.timeline.append_to(timeline);
-        let away = self.folder.undone_segment(end.segment);
-        self.folder
-            .remove_pictures(start.before.segment, self.clock.frame(start.tick))?;
-        self.text.cut(start.before.text)?;
-        self.session.cut(start.before.session)?;
-        self.session.append_file(&away.session())?;
-        self.states.cut(start.before.states)?;
-        self.states.append_file(&away.states())?;
-        self.joints.cut(start.before.joints)?;
-        self.joints.append_file(&away.joints())?;
-        away.move_segment(end.segment, &self.folder)?;
-        away.remove()?;
-        self.resume(end)?;
+        let first_frame = self.clock.frame(start.tick);
+        self.files
+            .bring_back(start.before.files, first_frame, end.files)?;
+        self.resume(end);
         self.undoable.push(start);
         Ok(())
     }
 
-    fn resume(&mut self, progress: Progress) -> Result<(), RecorderError> {
-        self.text = LogFile::reopen(self.folder.text(progress.segment), progress.text)?;
-        self.segment = progress.segment;
+    fn resume(&mut self, progress: Progress) {
         self.objects = progress.objects;
         self.sight = progress.sight;
-        self.created = progress.created;
         self.last_joints = progress.last_joints;
         self.is_paused = progress.is_paused;
-        Ok(())
     }
 
     /// Writes what the end of a tick brings: a row for each object that has moved, and at a frame the moves and a picture.
@@ -493,18 +357,11 @@ impl Episode {
         if self.clock.is_frame(tick) {
             self.write_frame(tick, Tracked::is_news, stage, image, timeline)?;
         }
-        let mut rows = Vec::new();
-        for object in &mut self.objects {
-            if let Some(state) = stage.state(&object.id)
-                && object.note(state)
-            {
-                rows.push(states::row(tick, &object.id, state));
-            }
-        }
-        self.states.append_records(&rows)?;
+        let rows = self.objects.moved_rows(tick, stage);
+        self.files.states.append_records(&rows)?;
         let rows = joints::rows(tick, self.last_joints.as_ref(), stage.joints());
         self.last_joints = Some(*stage.joints());
-        self.joints.append_records(&rows)
+        self.files.joints.append_records(&rows)
     }
 
     /// Writes a frame: a line for each object of which this is so, and a picture if there is such a line, or something else to be
@@ -519,7 +376,7 @@ impl Episode {
     ) -> Result<(), RecorderError> {
         let frame = self.clock.frame(tick);
         let mut moves = Vec::new();
-        for object in &mut self.objects {
+        for object in self.objects.tracked_mut() {
             if let Some(state) = stage.state(&object.id)
                 && is_told(object, state.pose)
             {
@@ -528,7 +385,7 @@ impl Episode {
                 moves.push(Event::Move { id, pose }.fields(frame));
             }
         }
-        let sight = stage.sight(&self.objects);
+        let sight = stage.sight(self.objects.tracked());
         let is_another = sight != self.sight;
         self.sight = sight;
         if (is_another || !moves.is_empty())
@@ -536,7 +393,7 @@ impl Episode {
         {
             self.write_image(frame, image, stage)?;
             self.pictures += 1;
-            let path = self.folder.picture(self.segment, frame);
+            let path = self.files.folder.picture(self.files.segment, frame);
             timeline.pictures.pop_if(|last| last.path == path);
             timeline.pictures.push(TimelinePicture {
                 tick,
@@ -544,7 +401,7 @@ impl Episode {
                 serial: self.pictures,
             });
         }
-        self.text.append_records(&moves)
+        self.files.text.append_records(&moves)
     }
 
     fn write_image(
@@ -553,31 +410,19 @@ impl Episode {
         image: &SensorImage,
         stage: &Stage,
     ) -> Result<(), RecorderError> {
-        let channel = |name| self.folder.channel(self.segment, frame, name);
+        let (folder, segment) = (&self.files.folder, self.files.segment);
+        let channel = |name| folder.channel(segment, frame, name);
         let picture = &image.picture;
-        write_png(picture, &self.folder.picture(self.segment, frame))?;
+        write_png(picture, &folder.picture(segment, frame))?;
         if self.channels.depth {
             write_depth(picture, &channel("depth"))?;
         }
         if self.channels.ids {
             let shown = image.shown.iter();
-            let numbers = shown.map(|&entity| self.number_of(stage.shown(entity)));
+            let numbers = shown.map(|&entity| self.objects.number_of(stage.shown(entity)));
             write_ids(picture, &numbers.collect::<Vec<_>>(), &channel("ids"))?;
         }
         Ok(())
-    }
-
-    /// What stands for something in an image of ids.
-    fn number_of(&self, shown: Shown) -> u16 {
-        let number = match shown {
-            Shown::Table => Some(1),
-            Shown::Object(spec) => {
-                let object = self.objects.iter().find(|object| object.id == spec.id);
-                object.and_then(|object| u16::try_from(object.number + 1).ok())
-            }
-            Shown::Other => None,
-        };
-        number.unwrap_or(u16::MAX)
     }
 
     /// Ends the recording with a last frame, after which every object is where its last `move` line says. If that does not fit on the
@@ -590,43 +435,24 @@ impl Episode {
         timeline: &mut Timeline,
     ) -> Result<Vec<u8>, RecorderError> {
         timeline.end = tick;
-        let commands = self.session.read_from(self.head)?;
-        let text = self.text.len();
+        let commands = self.files.session.read_from(self.head)?;
+        let text = self.files.text.len();
         let frame = self.clock.frame(tick);
         let line = command_line(tick.0, &SimCommand::FinishRecording).unwrap_or_default();
         let ended = self
             .write_frame(tick, Tracked::is_elsewhere, stage, image, timeline)
-            .and_then(|()| self.session.append(&line));
+            .and_then(|()| self.files.session.append(&line));
         if let Err(error) = ended {
             // What has failed is told; more cannot be done.
-            let _ = self.text.cut(text);
+            let _ = self.files.text.cut(text);
             if !self.clock.is_frame(tick) {
-                let _ = self.folder.remove_pictures(self.segment, frame);
+                let _ = self.files.folder.remove_pictures(self.files.segment, frame);
             }
             return Err(error);
         }
-        if let Err(error) = self.drop_undone() {
+        if let Err(error) = self.files.drop_undone() {
             warn!("what was undone is still there: {error}");
         }
         Ok(commands)
     }
-
-    /// Removes for good what was undone.
-    fn drop_undone(&self) -> Result<(), RecorderError> {
-        self.folder.undone().remove()
-    }
-}
-
-/// The facts without those at their end that only tell what turning the clock has brought back or taken away.
-fn without_restored<'f>(facts: &'f [SimFact], restored: Option<&Progress>) -> &'f [SimFact] {
-    let Some(restored) = restored else {
-        return facts;
-    };
-    let is_there = |id: &str| restored.objects.iter().any(|object| object.id == id);
-    let told = facts.iter().rposition(|fact| match fact {
-        SimFact::ObjectCreated { id, .. } => !is_there(id),
-        SimFact::ObjectDeleted { id } => is_there(id),
-        _ => true,
-    });
-    &facts[..told.map_or(0, |last| last + 1)]
 }

@@ -1,0 +1,54 @@
+//! How far a recording has come, for undo and redo.
+
+use tabletop_core::{SimCommand, SimFact, SimTick};
+
+use crate::{
+    files::{joints::Joints, recording_files::Lengths},
+    recording::{
+        objects::RecordedObjects,
+        stage::Sight,
+        timeline_mark::{TimelineMark, TimelineTail},
+    },
+};
+
+/// How far a recording had come.
+#[derive(Clone, Debug)]
+pub(crate) struct Progress {
+    pub(crate) files: Lengths,
+    pub(crate) objects: RecordedObjects,
+    /// What there was to be seen at the last frame.
+    pub(crate) sight: Sight,
+    pub(crate) last_joints: Option<Joints>,
+    pub(crate) is_paused: bool,
+}
+
+/// The moment before a segment began.
+#[derive(Clone, Debug)]
+pub(crate) struct SegmentStart {
+    pub(crate) before: Progress,
+    pub(crate) timeline: TimelineMark,
+    /// What the session log must say more, if the recording goes on from here.
+    pub(crate) released: Vec<SimCommand>,
+    pub(crate) tick: SimTick,
+}
+
+/// A segment that can be brought back.
+#[derive(Clone, Debug)]
+pub(crate) struct UndoneSegment {
+    pub(crate) start: SegmentStart,
+    pub(crate) end: Progress,
+    pub(crate) timeline: TimelineTail,
+}
+
+impl Progress {
+    /// The facts without those at their end that only tell what turning the clock to here has brought back or taken away.
+    pub(crate) fn without_restored<'f>(&self, facts: &'f [SimFact]) -> &'f [SimFact] {
+        let is_there = |id: &str| self.objects.has(id);
+        let reported = facts.iter().rposition(|fact| match fact {
+            SimFact::ObjectCreated { id, .. } => !is_there(id),
+            SimFact::ObjectDeleted { id } => is_there(id),
+            _ => true,
+        });
+        &facts[..reported.map_or(0, |last| last + 1)]
+    }
+}
