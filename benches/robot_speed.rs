@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 
 use bevy::prelude::*;
 use tabletop::{
-    baxter::BaxterPlugin,
     core::{Drive, RobotMode},
     prelude::*,
+    robot::RobotPlugin,
 };
 
 const TICKS_PER_TURN: u32 = 60;
@@ -51,7 +51,7 @@ struct Case {
 
 impl Case {
     fn new(name: &'static str, mode: RobotMode, is_shown: bool, moves: bool) -> Self {
-        let robot = BaxterPlugin { mode, ..default() };
+        let robot = RobotPlugin { mode, ..default() };
         let mut app = headless_app_with(TabletopSimPlugins.build().set(robot));
         let blocks = (0..10).map(|block| {
             let pose = Pose::at(Vec3::new(block as f32 * 1.5 - 7.0, 4.0, 0.5));

@@ -39,7 +39,7 @@ pub use tabletop_demonstrator as demonstrator;
 pub use tabletop_kinematics as kinematics;
 pub use tabletop_physics as physics;
 pub use tabletop_recorder as recorder;
-pub use tabletop_robot as baxter;
+pub use tabletop_robot as robot;
 pub use tabletop_scenario as scenario;
 pub use tabletop_scene as scene;
 pub use tabletop_script as script;
@@ -75,7 +75,7 @@ pub mod prelude {
 
 /// Everything that simulates, nothing that shows: [`CorePlugin`](core::CorePlugin), [`XmlPlugin`](xml::XmlPlugin),
 /// [`PhysicsPlugin`](physics::PhysicsPlugin), [`ScenePlugin`](scene::ScenePlugin),
-/// [`DemonstratorPlugin`](demonstrator::DemonstratorPlugin), [`BaxterPlugin`](baxter::BaxterPlugin), [`CameraPlugin`](camera::CameraPlugin),
+/// [`DemonstratorPlugin`](demonstrator::DemonstratorPlugin), [`RobotPlugin`](robot::RobotPlugin), [`CameraPlugin`](camera::CameraPlugin),
 /// [`RecorderPlugin`](recorder::RecorderPlugin), [`ScriptPlugin`](script::ScriptPlugin), [`RecordedSettingsPlugin`] and
 /// [`ShippedFilesPlugin`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -89,7 +89,7 @@ impl PluginGroup for TabletopSimPlugins {
             .add(physics::PhysicsPlugin::default())
             .add(scene::ScenePlugin)
             .add(demonstrator::DemonstratorPlugin)
-            .add(baxter::BaxterPlugin::default())
+            .add(robot::RobotPlugin::default())
             .add(camera::CameraPlugin)
             .add(recorder::RecorderPlugin::default())
             .add(script::ScriptPlugin::default())

@@ -21,7 +21,7 @@ use tabletop_recorder::{
     Channels, RecorderError, RecorderPlugin, RecordingReader, Session, SessionCommand,
     TICKS_PER_FRAME,
 };
-use tabletop_robot::BaxterPlugin;
+use tabletop_robot::RobotPlugin;
 
 use crate::{
     TabletopSimPlugins, headless_app_with,
@@ -77,7 +77,7 @@ pub struct Replay {
     session: Session,
     begin: SimTick,
     settings: Settings,
-    robot: BaxterPlugin,
+    robot: RobotPlugin,
 }
 
 impl Replay {

@@ -9,7 +9,7 @@ use tabletop_core::{Robot, RobotMode, SimFact, SimSystems, TickSystems, is_shipp
 use tabletop_kinematics::ModelError;
 use tabletop_physics::PhysicsSettings;
 use tabletop_recorder::SessionSettings;
-use tabletop_robot::{BaxterPlugin, Description, Source};
+use tabletop_robot::{Description, RobotPlugin, Source};
 
 /// Names of the settings in a session log.
 pub(crate) const PHYSICS: &str = "physics";
@@ -79,8 +79,8 @@ pub(crate) struct RobotSettings {
 
 impl RobotSettings {
     /// The plugin of this robot.
-    pub fn plugin(self) -> Result<BaxterPlugin, ModelError> {
-        Ok(BaxterPlugin {
+    pub fn plugin(self) -> Result<RobotPlugin, ModelError> {
+        Ok(RobotPlugin {
             description: self.description.map(Description::read).transpose()?,
             mode: self.mode,
         })

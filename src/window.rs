@@ -31,8 +31,8 @@ use tabletop_view::ViewPlugin;
 use self::opening::{Beginning, Opening};
 use crate::{
     TabletopSimPlugins,
-    baxter::BaxterPlugin,
     replay::{PlaybackPlugin, Replay},
+    robot::RobotPlugin,
     script::{ScriptPlugin, ScriptSettings, Waiting},
 };
 
@@ -42,7 +42,7 @@ pub struct WindowOptions {
     /// What is on the table.
     pub show: Show,
     /// The robot at the table; a replay has that of its recording.
-    pub robot: BaxterPlugin,
+    pub robot: RobotPlugin,
     /// The scripts that can drive the robot, and their engine.
     pub scripts: ScriptSettings,
     /// How it is shown.

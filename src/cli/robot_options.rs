@@ -7,8 +7,8 @@ use std::{
 
 use clap::Args;
 use tabletop::{
-    baxter::{BaxterPlugin, Description, Source},
     core::RobotMode,
+    robot::{Description, RobotPlugin, Source},
     script::{ENGINE_VARIABLE, EngineChoice, EngineKind, ScriptSettings, Surroundings, Tell},
     shipped::{self, shipped_files, true_path},
 };
@@ -27,12 +27,12 @@ pub(super) struct RobotOptions {
 
 impl RobotOptions {
     /// The plugin of this robot.
-    pub fn plugin(&self) -> Result<BaxterPlugin, Failure> {
+    pub fn plugin(&self) -> Result<RobotPlugin, Failure> {
         let description = match &self.robot {
             Some(path) => Some(describe(path)?),
             None => None,
         };
-        Ok(BaxterPlugin {
+        Ok(RobotPlugin {
             description,
             mode: match self.dynamic {
                 true => RobotMode::Dynamic,

@@ -78,13 +78,13 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
 #[cfg(feature = "window")]
 pub(super) fn play(replay: Replay, scripts: ScriptSettings) -> Result<ExitCode, Failure> {
     use tabletop::{
-        baxter::BaxterPlugin,
+        robot::RobotPlugin,
         window::{self, DisplayOptions, Show, WindowOptions},
     };
 
     let options = WindowOptions {
         show: Show::Replay(Box::new(replay)),
-        robot: BaxterPlugin::default(),
+        robot: RobotPlugin::default(),
         scripts,
         display: DisplayOptions {
             ask: Some(false),

@@ -8,13 +8,13 @@
 //!
 //! ```
 //! use bevy::prelude::*;
-//! use tabletop_robot::BaxterPlugin;
+//! use tabletop_robot::RobotPlugin;
 //! use tabletop_core::prelude::*;
 //! use tabletop_physics::PhysicsPlugin;
 //!
 //! let mut app = App::new();
 //! app.add_plugins((MinimalPlugins, CorePlugin::default(), PhysicsPlugin::default()))
-//!     .add_plugins(BaxterPlugin::default())
+//!     .add_plugins(RobotPlugin::default())
 //!     .start();
 //! let there = vec![(RobotJoint::RightE1, Drive::Toward(1.5))];
 //! app.world_mut().write_message(SimCommand::Drive(there));
@@ -23,31 +23,19 @@
 //! assert_eq!(robot.joint(RobotJoint::RightE1).position, 1.5);
 //! ```
 
-mod advance;
+mod articulation;
 mod clearance;
-mod contact;
-mod driven;
+mod command;
+mod contacts;
+mod description;
 mod dynamics;
-mod feel;
-mod figures;
-mod grip;
-mod grips;
+mod gripper;
 pub mod look;
-mod matrix;
-mod meeting;
 mod motion;
-mod motor;
-mod orders;
-mod pad;
-mod parts;
 mod plugin;
-mod reach;
-mod shown;
-mod skeleton;
-mod surroundings;
-mod touch;
 
-pub use grip::STEEPEST_GRIP;
-pub use orders::MANUAL_SPEED;
-pub use parts::RobotBody;
-pub use plugin::{BaxterPlugin, Description, Source};
+pub use articulation::link_entities::RobotBody;
+pub use command::joint_targets::MANUAL_SPEED;
+pub use description::{Description, Source};
+pub use gripper::closing::STEEPEST_GRIP;
+pub use plugin::RobotPlugin;

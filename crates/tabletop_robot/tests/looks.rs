@@ -7,7 +7,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::{prelude::Collider, rapier::prelude::SharedShape};
 use kit::Stage;
 use tabletop_core::{Face, Figure, SimCommand, StepApp};
-use tabletop_robot::{BaxterPlugin, Description, RobotBody, Source};
+use tabletop_robot::{Description, RobotBody, RobotPlugin, Source};
 
 /// Triangles of every body that is seen, by name.
 fn seen(stage: &mut Stage) -> Vec<(String, usize)> {
@@ -60,7 +60,7 @@ fn a_link_is_touched_by_the_hulls_of_its_meshes() {
             path: folder.join("my.urdf"),
             urdf: urdf.replacen(box_of_torso, &mesh, 1),
         };
-        let mut stage = Stage::with(BaxterPlugin {
+        let mut stage = Stage::with(RobotPlugin {
             description: Some(Description::read(source).unwrap()),
             ..default()
         });
@@ -117,7 +117,7 @@ fn what_has_no_mesh_is_shown_by_what_it_is_touched_by() {
         path: "my.urdf".into(),
         urdf,
     };
-    let robot = BaxterPlugin {
+    let robot = RobotPlugin {
         description: Some(Description::read(source).unwrap()),
         ..default()
     };

@@ -1,10 +1,10 @@
 //! What an arm loses to what it pushes and to what friction draws along.
 
-use crate::matrix::{Joints, dot};
+use crate::dynamics::matrix::{Joints, dot};
 
 /// Something free that an arm touches, as it is along the normal of the contact, which points to it. It is pushed without bouncing.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Touch {
+pub(crate) struct ContactLoad {
     /// How fast the arm comes nearer to it per rad/s of each joint, in m.
     pub lever: Joints,
     /// Its mass in kg.
@@ -16,12 +16,12 @@ pub(crate) struct Touch {
     /// Friction between the two: the largest part of what the arm pushes with that can draw along the surface.
     pub friction: f64,
     /// Directions along the surface.
-    pub slides: Vec<Slide>,
+    pub slides: Vec<FrictionAxis>,
 }
 
 /// A direction along the surface of something that an arm touches.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Slide {
+pub(crate) struct FrictionAxis {
     /// How fast the arm goes this way per rad/s of each joint, in m.
     pub lever: Joints,
     /// How fast the thing goes this way, in m/s.
@@ -31,9 +31,9 @@ pub(crate) struct Slide {
 }
 
 /// A slide with what can be drawn there.
-pub(super) struct Draw<'a> {
+pub(super) struct FrictionLoad<'a> {
     /// The direction.
-    pub slide: &'a Slide,
+    pub slide: &'a FrictionAxis,
     /// Mass of the thing, in kg.
     mass: f64,
     /// Largest momentum in N s.
@@ -49,7 +49,7 @@ const STANDSTILL: f64 = 0.005;
 /// Most momentum in N s that a touch can take by resistance.
 const IMMOVABLE: f64 = 1e3;
 
-impl Touch {
+impl ContactLoad {
     /// Whether an arm with these velocities pushes it in vain.
     pub fn withstands(&self, velocities: &Joints) -> bool {
         let speed = dot(&self.lever, velocities);
@@ -57,10 +57,10 @@ impl Touch {
     }
 
     /// What can be drawn along by friction when an arm pushes it as hard as it does with these velocities.
-    pub(super) fn draws(&self, velocities: &Joints) -> impl Iterator<Item = Draw<'_>> {
+    pub(super) fn draws(&self, velocities: &Joints) -> impl Iterator<Item = FrictionLoad<'_>> {
         let most = self.friction * self.push(dot(&self.lever, velocities));
         let slides = self.slides.iter().filter(move |_| most > 0.0);
-        slides.map(move |slide| Draw {
+        slides.map(move |slide| FrictionLoad {
             slide,
             mass: self.mass,
             most,
@@ -87,7 +87,7 @@ impl Touch {
     }
 }
 
-impl Draw<'_> {
+impl FrictionLoad<'_> {
     /// The momentum in N s that the arm loses if it goes along with this speed in m/s.
     pub(super) fn push(&self, speed: f64) -> f64 {
         self.needed(speed).clamp(-self.most, self.most)

@@ -10,7 +10,7 @@ use bevy::math::Vec3;
 use mesh_loader::Loader;
 use tabletop_core::{Figure, Rgb, Triangles};
 
-use super::{LookError, hull::Hull, parts::PARTS, shape_file::ShapeFile};
+use super::{error::LookError, hull::Hull, shape_file::ShapeFile, shipped::PARTS};
 
 /// How the shapes that are part of the program are named.
 const OUR_PACKAGE: &str = "package://tabletop/";

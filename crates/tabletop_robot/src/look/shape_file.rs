@@ -97,7 +97,7 @@ impl ShapeFile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::look::parts::PARTS;
+    use crate::look::shipped::PARTS;
 
     /// Bounds of the links of the real robot, in mm, in the frames of the files.
     const BOUNDS: [(&str, [i32; 3], [i32; 3]); 12] = [

@@ -8,7 +8,7 @@ use bevy_rapier3d::{parry, prelude::Collider, rapier::prelude as rapier};
 use tabletop_core::*;
 use tabletop_demonstrator::DemonstratorPlugin;
 use tabletop_physics::PhysicsPlugin;
-use tabletop_robot::{BaxterPlugin, RobotBody};
+use tabletop_robot::{RobotBody, RobotPlugin};
 use tabletop_scene::ScenePlugin;
 
 pub struct Stage {
@@ -27,7 +27,7 @@ pub fn block(span: Vec3) -> Shape {
 impl Stage {
     /// An empty table with the robot at it.
     pub fn new() -> Self {
-        Self::with(BaxterPlugin::default())
+        Self::with(RobotPlugin::default())
     }
 
     /// The same in dynamic mode.
@@ -37,14 +37,14 @@ impl Stage {
 
     /// The same in a mode.
     pub fn in_mode(mode: RobotMode) -> Self {
-        Self::with(BaxterPlugin {
+        Self::with(RobotPlugin {
             mode,
-            ..BaxterPlugin::default()
+            ..RobotPlugin::default()
         })
     }
 
     /// An empty table with this robot at it.
-    pub fn with(robot: BaxterPlugin) -> Self {
+    pub fn with(robot: RobotPlugin) -> Self {
         let mut app = App::new();
         app.add_plugins((
             MinimalPlugins,

@@ -17,7 +17,7 @@ use tabletop_core::{
 };
 use tabletop_demonstrator::DemonstratorPlugin;
 use tabletop_physics::PhysicsPlugin;
-use tabletop_robot::BaxterPlugin;
+use tabletop_robot::RobotPlugin;
 use tabletop_scene::ScenePlugin;
 use tabletop_script::{EngineChoice, ScriptPlugin, ScriptSettings, Waiting};
 
@@ -111,7 +111,7 @@ impl Stage {
         .add_plugins((
             ScenePlugin,
             DemonstratorPlugin,
-            BaxterPlugin::default(),
+            RobotPlugin::default(),
             CameraPlugin,
         ))
         .add_plugins(ScriptPlugin { settings })

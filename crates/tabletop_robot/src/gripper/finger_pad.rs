@@ -8,26 +8,26 @@ use tabletop_physics::{Convex, to_rapier};
 /// Half the extents of the inner face of a finger across and along the finger, in units.
 const HALF_FACE: Vec2 = Vec2::new(0.2, 0.75);
 
-/// Points across and along the face at which it feels.
-const FEELERS: (u32, u32) = (9, 31);
+/// Rays across and along the face, with which it probes what is in front of it.
+const PROBE_RAYS: (u32, u32) = (9, 31);
 
 /// How far the face yields to what presses on it, in units: what is nearer than this to the foremost point touches, too.
 const YIELD: f32 = 0.04;
 
-/// How far inside the finger feeling begins, in units, so that what has entered it a little is still felt.
+/// How far inside the finger the rays begin, in units, so that they meet what has entered it a little.
 const DEPTH: f32 = 0.1;
 
-/// One of the points at which a face feels: its number across and along.
-pub(crate) type Feeler = (u32, u32);
+/// One of the rays of a face: its number across and along.
+pub(crate) type ProbeRay = (u32, u32);
 
-/// The feeler of the other finger that faces this one: the faces are turned against each other about their z axes.
-pub(crate) const fn opposite(feeler: Feeler) -> Feeler {
-    (FEELERS.0 - 1 - feeler.0, feeler.1)
+/// The ray of the other finger that faces this one: the faces are turned against each other about their z axes.
+pub(crate) const fn opposite(ray: ProbeRay) -> ProbeRay {
+    (PROBE_RAYS.0 - 1 - ray.0, ray.1)
 }
 
 /// Something in front of a finger.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Touch {
+pub(crate) struct FingerTouch {
     /// How far the finger is from it, in units; negative inside.
     pub distance: f32,
     /// Centre of the area that the finger touches when it arrives, in the table's frame.
@@ -36,12 +36,12 @@ pub(crate) struct Touch {
 
 /// The inner face of a finger.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pad {
+pub(crate) struct FingerPad {
     /// Origin in the centre of the face, x inwards, z along the finger.
     pub pose: Pose,
 }
 
-impl Pad {
+impl FingerPad {
     /// The faces of a gripper's left and right finger.
     pub fn pair(end_effector: Pose, opening: f32) -> [Self; 2] {
         let turned = Quat::from_rotation_z(std::f32::consts::PI);
@@ -50,58 +50,58 @@ impl Pad {
         })
     }
 
-    /// How far each feeler of the face is from a body, no farther than `reach`.
-    pub fn feel<'a>(
+    /// How far each ray of the face goes to a body, no farther than `reach`.
+    pub fn probe<'a>(
         &'a self,
         body: &'a [Convex],
         reach: f32,
-    ) -> impl Iterator<Item = (Feeler, f32)> + 'a {
+    ) -> impl Iterator<Item = (ProbeRay, f32)> + 'a {
         let inwards = self.pose.rotation * Vec3::X;
-        feelers().filter_map(move |(feeler, at)| {
-            let ray = Ray::new(self.pose * (at - Vec3::X * DEPTH), inwards);
+        probe_rays().filter_map(move |(ray, at)| {
+            let line = Ray::new(self.pose * (at - Vec3::X * DEPTH), inwards);
             let nearest = body
                 .iter()
                 .filter_map(|part| {
                     let place = to_rapier(part.pose);
-                    part.shape.cast_ray(&place, &ray, reach + DEPTH, true)
+                    part.shape.cast_ray(&place, &line, reach + DEPTH, true)
                 })
                 .min_by(f32::total_cmp)?;
-            Some((feeler, nearest - DEPTH))
+            Some((ray, nearest - DEPTH))
         })
     }
 
     /// Where the finger touches a body first, moving inwards no farther than `reach`.
-    pub fn touch(&self, body: &[Convex], reach: f32) -> Option<Touch> {
-        let felt: Vec<_> = self.feel(body, reach).collect();
-        let distance = felt
+    pub fn touch(&self, body: &[Convex], reach: f32) -> Option<FingerTouch> {
+        let hits: Vec<_> = self.probe(body, reach).collect();
+        let distance = hits
             .iter()
             .map(|(_, distance)| *distance)
             .min_by(f32::total_cmp)?;
-        let area = felt.iter().filter(|(_, d)| *d <= distance + YIELD);
-        let (sum, count) = area.fold((Vec3::ZERO, 0.0), |(sum, count), (feeler, _)| {
-            (sum + place_of(*feeler), count + 1.0)
+        let area = hits.iter().filter(|(_, d)| *d <= distance + YIELD);
+        let (sum, count) = area.fold((Vec3::ZERO, 0.0), |(sum, count), (ray, _)| {
+            (sum + place_of(*ray), count + 1.0)
         });
-        Some(Touch {
+        Some(FingerTouch {
             distance,
             point: self.pose * (sum / count + Vec3::X * distance),
         })
     }
 }
 
-fn feelers() -> impl Iterator<Item = (Feeler, Vec3)> {
-    let (across, along) = FEELERS;
+fn probe_rays() -> impl Iterator<Item = (ProbeRay, Vec3)> {
+    let (across, along) = PROBE_RAYS;
     (0..across)
         .flat_map(move |x| (0..along).map(move |z| (x, z)))
-        .map(|feeler| (feeler, place_of(feeler)))
+        .map(|ray| (ray, place_of(ray)))
 }
 
-/// Where a feeler is, in the frame of the face.
-fn place_of(feeler: Feeler) -> Vec3 {
+/// Where a ray is, in the frame of the face.
+fn place_of(ray: ProbeRay) -> Vec3 {
     let from_middle = |i: u32, count: u32| 2.0 * i as f32 / (count - 1) as f32 - 1.0;
     Vec3::new(
         0.0,
-        from_middle(feeler.0, FEELERS.0) * HALF_FACE.x,
-        from_middle(feeler.1, FEELERS.1) * HALF_FACE.y,
+        from_middle(ray.0, PROBE_RAYS.0) * HALF_FACE.x,
+        from_middle(ray.1, PROBE_RAYS.1) * HALF_FACE.y,
     )
 }
 
@@ -120,8 +120,8 @@ mod tests {
     }
 
     #[test]
-    fn a_finger_feels_how_far_a_block_is_and_where_its_face_is() {
-        let [left, right] = Pad::pair(Pose::IDENTITY, 2.0);
+    fn a_finger_measures_how_far_a_block_is_and_where_its_face_is() {
+        let [left, right] = FingerPad::pair(Pose::IDENTITY, 2.0);
         let block = block(Vec3::ONE, Pose::at(Vec3::new(0.2, 0.0, 0.25)));
         let (left, right) = (left.touch(&block, 2.0), right.touch(&block, 2.0));
         let (left, right) = (left.unwrap(), right.unwrap());
@@ -139,7 +139,7 @@ mod tests {
 
     #[test]
     fn what_is_beside_the_fingers_is_not_touched() {
-        let [left, _] = Pad::pair(Pose::IDENTITY, 2.0);
+        let [left, _] = FingerPad::pair(Pose::IDENTITY, 2.0);
         let beside = block(Vec3::ONE, Pose::at(Vec3::new(0.0, 0.71, 0.0)));
         assert_eq!(left.touch(&beside, 2.0), None);
         let far = block(Vec3::ONE, Pose::at(Vec3::new(5.0, 0.0, 0.0)));
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn what_has_entered_a_finger_is_nearer_than_nothing() {
-        let [left, _] = Pad::pair(Pose::IDENTITY, 1.0);
+        let [left, _] = FingerPad::pair(Pose::IDENTITY, 1.0);
         let block = block(Vec3::ONE * 1.02, Pose::IDENTITY);
         let touch = left.touch(&block, 1.0).unwrap();
         assert!((touch.distance + 0.01).abs() < 1e-4, "{touch:?}");

@@ -1,20 +1,15 @@
-//! What the joints have been told.
+//! Where the joints are to go.
 
-use bevy::{ecs::system::SystemState, prelude::*};
-use tabletop_core::{
-    Arm, Drive, JOINTS_PER_ARM, Markers, Paused, Robot, RobotJoint, RobotMode, SimCommand, SimFact,
-    TICK_SECONDS, WIDEST_GRIP,
-};
-
-use crate::{reach, shown};
+use bevy::prelude::*;
+use tabletop_core::{Arm, Drive, JOINTS_PER_ARM, RobotJoint, TICK_SECONDS, WIDEST_GRIP};
 
 /// Speed of manual control, in rad/s, and units/s for grippers (report section 5.1).
 pub const MANUAL_SPEED: f64 = 1.0;
 
 /// What the joints are to do in this tick and later.
 #[derive(Resource, Clone, Debug, Default)]
-pub(crate) struct Orders {
-    /// Orders for this tick, by [`RobotJoint::index`].
+pub(crate) struct JointTargets {
+    /// JointTargets for this tick, by [`RobotJoint::index`].
     now: [Option<Drive>; 17],
     /// Where joints are on their way to.
     toward: [Option<f64>; 17],
@@ -31,14 +26,14 @@ const PATIENCE: u32 = 10;
 
 /// Where a joint is to be after this tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Want {
+pub(crate) enum Setpoint {
     /// There, by way of everything between.
     Move(f64),
     /// There at once.
     Jump(f64),
 }
 
-impl Want {
+impl Setpoint {
     /// The position itself.
     pub const fn position(self) -> f64 {
         match self {
@@ -47,9 +42,9 @@ impl Want {
     }
 }
 
-impl Orders {
+impl JointTargets {
     /// Takes an order for a joint, in place of all earlier ones for it.
-    fn take(&mut self, joint: RobotJoint, drive: Drive) {
+    pub fn take(&mut self, joint: RobotJoint, drive: Drive) {
         self.cancel(joint);
         match drive {
             Drive::Toward(position) => self.toward[joint.index()] = Some(joint.clamp(position)),
@@ -58,7 +53,7 @@ impl Orders {
     }
 
     /// Sends a joint to a position as fast as its motor can, in place of all earlier orders for it.
-    fn rush(&mut self, joint: RobotJoint, position: f64) {
+    pub fn rush(&mut self, joint: RobotJoint, position: f64) {
         self.cancel(joint);
         self.rush[joint.index()] = Some(joint.clamp(position));
     }
@@ -158,31 +153,35 @@ impl Orders {
     }
 
     /// Where a joint at `position` is to be after this tick, within its limits.
-    pub fn want(&self, joint: RobotJoint, position: f64) -> Want {
+    pub fn setpoint(&self, joint: RobotJoint, position: f64) -> Setpoint {
         let step = match self.now[joint.index()] {
             Some(Drive::Velocity(velocity)) => velocity * f64::from(TICK_SECONDS),
-            Some(Drive::Position(there)) => return Want::Jump(joint.clamp(there)),
+            Some(Drive::Position(there)) => return Setpoint::Jump(joint.clamp(there)),
             _ => match (self.toward[joint.index()], self.rush[joint.index()]) {
-                (_, Some(there)) => return Want::Jump(there),
+                (_, Some(there)) => return Setpoint::Jump(there),
                 (Some(there), _) => toward(position, there, MANUAL_SPEED),
                 (None, None) => 0.0,
             },
         };
-        Want::Move(joint.clamp(position + step))
+        Setpoint::Move(joint.clamp(position + step))
     }
 
     /// Where the joints of an arm at these angles are to be after this tick.
-    pub fn want_arm(&self, arm: Arm, angles: [f64; JOINTS_PER_ARM]) -> [Want; JOINTS_PER_ARM] {
+    pub fn arm_setpoints(
+        &self,
+        arm: Arm,
+        angles: [f64; JOINTS_PER_ARM],
+    ) -> [Setpoint; JOINTS_PER_ARM] {
         let joints = RobotJoint::of_arm(arm);
         let Some(goal) = self.reach[arm as usize] else {
-            return std::array::from_fn(|i| self.want(joints[i], angles[i]));
+            return std::array::from_fn(|i| self.setpoint(joints[i], angles[i]));
         };
         let farthest = (0..JOINTS_PER_ARM)
             .map(|i| (goal[i] - angles[i]).abs())
             .fold(0.0, f64::max);
         let ticks = (farthest / (MANUAL_SPEED * f64::from(TICK_SECONDS))).ceil();
         std::array::from_fn(|i| {
-            Want::Move(if ticks <= 1.0 {
+            Setpoint::Move(if ticks <= 1.0 {
                 goal[i]
             } else {
                 angles[i] + (goal[i] - angles[i]) / ticks
@@ -198,132 +197,44 @@ fn toward(position: f64, there: f64, speed: f64) -> f64 {
     way.clamp(-most, most)
 }
 
-/// Carries out the commands to the robot.
-pub(crate) fn obey(
-    world: &mut World,
-    reader: &mut SystemState<MessageReader<SimCommand>>,
-) -> Result {
-    let commands = SimCommand::unread(world, reader, |command| {
-        matches!(
-            command,
-            SimCommand::ShowRobot(_)
-                | SimCommand::Drive(_)
-                | SimCommand::ReachTo { .. }
-                | SimCommand::ShowFace(_)
-                | SimCommand::ShowMarkers(_)
-        )
-    })?;
-    for command in commands {
-        if let Err(reason) = carry_out(world, command) {
-            world.write_message(SimFact::Refused { reason });
-        }
-    }
-    Ok(())
-}
-
-fn carry_out(world: &mut World, command: SimCommand) -> Result<(), String> {
-    match command {
-        SimCommand::ShowRobot(show) => shown::show(world, show),
-        SimCommand::Drive(drives) => {
-            refuse_while_paused(world)?;
-            let mode = world.resource::<Robot>().mode;
-            for &(joint, drive) in &drives {
-                check(mode, joint, drive)?;
-            }
-            let mut orders = world.resource_mut::<Orders>();
-            for (joint, drive) in drives {
-                match drive {
-                    Drive::Position(there) if has_motor(mode, joint) => orders.rush(joint, there),
-                    _ => orders.take(joint, drive),
-                }
-            }
-        }
-        SimCommand::ReachTo { arm, pose } => {
-            refuse_while_paused(world)?;
-            let angles = reach::solve(world, arm, pose)?;
-            world.resource_mut::<Orders>().send(arm, angles);
-        }
-        SimCommand::ShowFace(face) => world.resource_mut::<Robot>().face = face,
-        SimCommand::ShowMarkers(points) => {
-            if let Some(point) = points.iter().find(|point| !point.is_finite()) {
-                return Err(format!("a marker cannot stand at {point}"));
-            }
-            world.resource_mut::<Markers>().0 = points;
-        }
-        _ => {}
-    }
-    Ok(())
-}
-
-fn refuse_while_paused(world: &World) -> Result<(), String> {
-    match world.resource::<Paused>().0 {
-        true => Err("the robot cannot move while the simulation is paused".into()),
-        false => Ok(()),
-    }
-}
-
-/// Whether a joint is moved by a motor with limited torque.
-fn has_motor(mode: RobotMode, joint: RobotJoint) -> bool {
-    mode == RobotMode::Dynamic && !joint.is_gripper() && joint != RobotJoint::HeadPan
-}
-
-/// Whether a joint can do what it is told.
-fn check(mode: RobotMode, joint: RobotJoint, drive: Drive) -> Result<(), String> {
-    let value = match drive {
-        Drive::Velocity(value)
-        | Drive::Position(value)
-        | Drive::Toward(value)
-        | Drive::Torque(value) => value,
-    };
-    if !value.is_finite() {
-        return Err(format!(
-            "joint {joint} cannot be told {drive:?}: not a number"
-        ));
-    }
-    match drive {
-        Drive::Torque(_) if !has_motor(mode, joint) => Err(format!(
-            "joint {joint} cannot be told a torque: only the joints of arms can, in dynamic mode"
-        )),
-        _ => Ok(()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use tabletop_core::Robot;
+
     use super::*;
-    use crate::parts::positions;
+    use crate::articulation::link_entities::positions;
 
     const E1: RobotJoint = RobotJoint::LeftE1;
 
-    fn orders(joint: RobotJoint, drive: Drive) -> Orders {
-        let mut orders = Orders::default();
-        orders.take(joint, drive);
-        orders
+    fn targets(joint: RobotJoint, drive: Drive) -> JointTargets {
+        let mut targets = JointTargets::default();
+        targets.take(joint, drive);
+        targets
     }
 
     #[test]
     fn a_velocity_holds_for_one_tick() {
-        let mut orders = orders(E1, Drive::Velocity(-1.5));
+        let mut targets = targets(E1, Drive::Velocity(-1.5));
         assert_eq!(
-            orders.want(E1, 1.0),
-            Want::Move(1.0 - 1.5 * f64::from(TICK_SECONDS))
+            targets.setpoint(E1, 1.0),
+            Setpoint::Move(1.0 - 1.5 * f64::from(TICK_SECONDS))
         );
-        orders.end_tick(&positions(&Robot::default()));
-        assert_eq!(orders.want(E1, 1.0), Want::Move(1.0));
+        targets.end_tick(&positions(&Robot::default()));
+        assert_eq!(targets.setpoint(E1, 1.0), Setpoint::Move(1.0));
     }
 
     #[test]
     fn limits_are_kept() {
         assert_eq!(
-            orders(E1, Drive::Velocity(1e9)).want(E1, 1.0),
-            Want::Move(2.618)
+            targets(E1, Drive::Velocity(1e9)).setpoint(E1, 1.0),
+            Setpoint::Move(2.618)
         );
         assert_eq!(
-            orders(E1, Drive::Position(-7.0)).want(E1, 1.0),
-            Want::Jump(-0.05)
+            targets(E1, Drive::Position(-7.0)).setpoint(E1, 1.0),
+            Setpoint::Jump(-0.05)
         );
         assert_eq!(
-            orders(E1, Drive::Toward(-7.0)).toward[E1.index()],
+            targets(E1, Drive::Toward(-7.0)).toward[E1.index()],
             Some(-0.05)
         );
     }
@@ -343,50 +254,50 @@ mod tests {
             (Drive::Toward(0.0), 1.0, false),
             (Drive::Position(1.9), WIDEST_GRIP, false),
         ] {
-            let orders = orders(GRIPPER, drive);
+            let targets = targets(GRIPPER, drive);
             assert_eq!(
-                orders.open(GRIPPER, opening),
+                targets.open(GRIPPER, opening),
                 opens,
                 "{drive:?} at {opening}"
             );
         }
-        assert!(!Orders::default().open(GRIPPER, WIDEST_GRIP));
+        assert!(!JointTargets::default().open(GRIPPER, WIDEST_GRIP));
     }
 
     #[test]
     fn a_joint_goes_on_towards_its_goal_and_stops_there() {
-        let mut orders = orders(E1, Drive::Toward(1.02));
+        let mut targets = targets(E1, Drive::Toward(1.02));
         let mut robot = Robot::default();
         robot.joints[E1.index()].position = 1.0;
         for _ in 0..2 {
-            let next = orders.want(E1, robot.joint(E1).position).position();
+            let next = targets.setpoint(E1, robot.joint(E1).position).position();
             robot.joints[E1.index()].position = next;
-            orders.end_tick(&positions(&robot));
+            targets.end_tick(&positions(&robot));
         }
         assert_eq!(robot.joint(E1).position, 1.02);
-        assert!(!orders.are_given());
+        assert!(!targets.are_given());
     }
 
     #[test]
     fn the_joints_of_an_arm_that_reaches_arrive_together() {
-        let mut orders = Orders::default();
+        let mut targets = JointTargets::default();
         let mut robot = Robot::default();
         let start = robot.angles(Arm::Right);
         let mut goal = start;
         goal[0] -= 1.0;
         goal[5] += 0.25;
-        orders.send(Arm::Right, goal);
+        targets.send(Arm::Right, goal);
         let mut ticks = 0;
-        while orders.is_under_way(Arm::Right) {
+        while targets.is_under_way(Arm::Right) {
             let now = robot.angles(Arm::Right);
             let slow = (now[5] - start[5]) / 0.25;
             let fast = (start[0] - now[0]) / 1.0;
             assert!((slow - fast).abs() < 1e-9);
-            let wants = orders.want_arm(Arm::Right, now);
-            for (joint, want) in RobotJoint::of_arm(Arm::Right).into_iter().zip(wants) {
-                robot.joints[joint.index()].position = want.position();
+            let setpoints = targets.arm_setpoints(Arm::Right, now);
+            for (joint, setpoint) in RobotJoint::of_arm(Arm::Right).into_iter().zip(setpoints) {
+                robot.joints[joint.index()].position = setpoint.position();
             }
-            orders.end_tick(&positions(&robot));
+            targets.end_tick(&positions(&robot));
             ticks += 1;
         }
         assert!((60..=61).contains(&ticks), "{ticks}");
@@ -395,22 +306,12 @@ mod tests {
 
     #[test]
     fn a_new_order_takes_the_place_of_the_old_one() {
-        let mut orders = Orders::default();
-        orders.send(Arm::Left, [0.0; 7]);
-        orders.take(E1, Drive::Velocity(0.0));
-        assert!(!orders.is_under_way(Arm::Left));
-        orders.take(E1, Drive::Toward(0.0));
-        orders.take(E1, Drive::Velocity(0.5));
-        assert!(!orders.is_under_way(Arm::Left));
-    }
-
-    #[test]
-    fn what_is_not_a_number_is_refused() {
-        for drive in [Drive::Velocity(f64::NAN), Drive::Position(f64::INFINITY)] {
-            assert!(check(RobotMode::Kinematic, E1, drive).is_err());
-        }
-        assert!(check(RobotMode::Kinematic, E1, Drive::Torque(1.0)).is_err());
-        assert!(check(RobotMode::Dynamic, E1, Drive::Torque(1.0)).is_ok());
-        assert!(check(RobotMode::Dynamic, RobotJoint::HeadPan, Drive::Torque(1.0)).is_err());
+        let mut targets = JointTargets::default();
+        targets.send(Arm::Left, [0.0; 7]);
+        targets.take(E1, Drive::Velocity(0.0));
+        assert!(!targets.is_under_way(Arm::Left));
+        targets.take(E1, Drive::Toward(0.0));
+        targets.take(E1, Drive::Velocity(0.5));
+        assert!(!targets.is_under_way(Arm::Left));
     }
 }

@@ -16,7 +16,7 @@ use tabletop_kinematics::{
 };
 use tabletop_physics::Convex;
 
-use crate::look::{LookError, figure_of};
+use crate::look::{error::LookError, figure::figure_of};
 
 /// Extents of a finger across, along the opening and along the finger, in units: x, y, z of the end effector's frame.
 pub(crate) const FINGER: Vec3 = Vec3::new(0.3, 0.4, 1.5);
@@ -44,7 +44,7 @@ pub(crate) struct Body {
     /// What carries it.
     pub carrier: Carrier,
     /// Where it is along the robot: bodies whose numbers are near each other cannot meet.
-    pub place: Place,
+    pub place: TreePosition,
     /// Its solids, in its own frame.
     pub parts: Vec<Convex>,
 }
@@ -60,7 +60,7 @@ pub(crate) enum Carrier {
 
 /// Where a body is along the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Place {
+pub(crate) enum TreePosition {
     /// It does not move.
     Trunk,
     /// It turns with the neck.
@@ -71,7 +71,7 @@ pub(crate) enum Place {
 
 /// The robot's model, and what of it the simulator moves.
 #[derive(Resource, Clone, Debug)]
-pub(crate) struct Skeleton {
+pub(crate) struct Articulation {
     model: Model,
     joints: [Option<JointId>; 15],
     end_effectors: [(LinkId, DAffine3); 2],
@@ -96,7 +96,7 @@ impl Posture {
     }
 }
 
-impl Skeleton {
+impl Articulation {
     /// Finds the robot's arms, grippers and head in a model.
     pub fn new(model: Model) -> Result<Self, ModelError> {
         let mut joints = [None; 15];
@@ -122,7 +122,7 @@ impl Skeleton {
             };
             Ok([link("s1")?, link("e1")?, link("w1")?])
         };
-        let mut skeleton = Self {
+        let mut articulation = Self {
             end_effectors,
             origins: [origins(Arm::Left)?, origins(Arm::Right)?],
             chains: [chain(Arm::Left)?, chain(Arm::Right)?],
@@ -130,8 +130,8 @@ impl Skeleton {
             bodies: Vec::new(),
             model,
         };
-        skeleton.bodies = skeleton.find_bodies();
-        Ok(skeleton)
+        articulation.bodies = articulation.find_bodies();
+        Ok(articulation)
     }
 
     /// Adds the convex hulls of the meshes by which links are touched, as coarse as the head camera sees them. `urdf` is the
@@ -179,7 +179,7 @@ impl Skeleton {
                 id: format!("{arm}-gripper-{name}-finger"),
                 name: format!("{name} finger of the {arm} gripper"),
                 carrier: Carrier::Gripper(arm, side),
-                place: Place::Arm(arm, JOINTS_PER_ARM + 1),
+                place: TreePosition::Arm(arm, JOINTS_PER_ARM + 1),
                 parts: vec![Convex {
                     pose: Pose::IDENTITY,
                     shape: cuboid(FINGER),
@@ -207,7 +207,7 @@ impl Skeleton {
     }
 
     /// How far along the robot a link is.
-    fn place(&self, link: LinkId) -> Place {
+    fn place(&self, link: LinkId) -> TreePosition {
         let carriers: Vec<_> = std::iter::successors(Some(link), |&link| self.model.parent(link))
             .filter_map(|link| self.model.link(link).joint)
             .collect();
@@ -216,16 +216,16 @@ impl Skeleton {
                 .is_some_and(|joint| carriers.contains(&joint))
         };
         if is_carrier(&RobotJoint::HeadPan) {
-            return Place::Head;
+            return TreePosition::Head;
         }
         Arm::BOTH
             .into_iter()
             .find_map(|arm| {
                 let joints = RobotJoint::of_arm(arm);
                 let count = joints.iter().filter(|joint| is_carrier(joint)).count();
-                (count > 0).then_some(Place::Arm(arm, count))
+                (count > 0).then_some(TreePosition::Arm(arm, count))
             })
-            .unwrap_or(Place::Trunk)
+            .unwrap_or(TreePosition::Trunk)
     }
 
     /// Where everything is when the joints are at these positions, by [`RobotJoint::index`].

@@ -7,10 +7,11 @@ use tabletop_core::{Face, Figure, Robot};
 use tabletop_kinematics::{Geometry, Link, Shape};
 
 use crate::{
-    look::{LookError, figure_of, merged, screen_with, stand_in},
-    parts::Parts,
-    plugin::Description,
-    skeleton::{Carrier, Skeleton, WRIST_TURNED},
+    articulation::link_entities::LinkEntities,
+    articulation::tree::{Articulation, Carrier, WRIST_TURNED},
+    description::Description,
+    look::error::LookError,
+    look::figure::{figure_of, merged, screen_with, stand_in},
 };
 
 /// The link whose face changes.
@@ -18,7 +19,7 @@ const SCREEN: &str = "screen";
 
 /// The looks of the robot's bodies, made when it is shown for the first time.
 #[derive(Resource, Default)]
-pub(crate) struct Figures {
+pub(crate) struct LinkFigures {
     bodies: Vec<Option<Figure>>,
     /// What is seen now: nothing, or this face on the robot whose first body is this one.
     shown: Option<(Face, Entity)>,
@@ -28,9 +29,9 @@ pub(crate) struct Figures {
 pub(crate) fn show_figures(
     robot: Res<Robot>,
     description: Res<Description>,
-    skeleton: Res<Skeleton>,
-    parts: Res<Parts>,
-    mut figures: ResMut<Figures>,
+    articulation: Res<Articulation>,
+    parts: Res<LinkEntities>,
+    mut figures: ResMut<LinkFigures>,
     mut commands: Commands,
 ) {
     let first = parts.0.first().copied().filter(|_| robot.is_shown);
@@ -39,10 +40,10 @@ pub(crate) fn show_figures(
         return;
     }
     if show.is_some() && figures.bodies.is_empty() {
-        figures.bodies = figures_of(&description, &skeleton);
+        figures.bodies = figures_of(&description, &articulation);
     }
     for (number, &part) in parts.0.iter().enumerate() {
-        let is_screen = matches!(skeleton.bodies[number].carrier, Carrier::Link(link)
+        let is_screen = matches!(articulation.bodies[number].carrier, Carrier::Link(link)
             if description.model.link(link).name == SCREEN);
         let mut part = commands.entity(part);
         let Some((face, first)) = show else {
@@ -65,9 +66,9 @@ pub(crate) fn show_figures(
 }
 
 /// What the bodies look like. A mesh that cannot be read is told once, whatever shows it.
-fn figures_of(description: &Description, skeleton: &Skeleton) -> Vec<Option<Figure>> {
+fn figures_of(description: &Description, articulation: &Articulation) -> Vec<Option<Figure>> {
     let mut told = BTreeSet::new();
-    let bodies = skeleton.bodies.iter();
+    let bodies = articulation.bodies.iter();
     bodies
         .map(|body| match body.carrier {
             Carrier::Link(link) => {

@@ -1,20 +1,20 @@
-//! What the robot feels: what its grippers hold, and what its bodies touch.
+//! What the grippers hold, and what the bodies touch.
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use tabletop_core::{Arm, ObjectIndex, Robot, RobotContact, Table};
 
 use crate::{
-    contact::{Contact, Thing, with_near, with_pressed},
-    grips::Grips,
-    parts::Parts,
-    skeleton::{Carrier, Skeleton},
+    articulation::link_entities::LinkEntities,
+    articulation::tree::{Articulation, Carrier},
+    contacts::contact::{Contact, Thing, with_near, with_pressed},
+    gripper::grips::Grips,
 };
 
 /// Notes what the grippers hold and what the robot touches.
-pub(crate) fn feel(
-    skeleton: Res<Skeleton>,
-    parts: Res<Parts>,
+pub(crate) fn sense_contacts(
+    articulation: Res<Articulation>,
+    parts: Res<LinkEntities>,
     grips: Res<Grips>,
     tables: Query<Entity, With<Table>>,
     index: Res<ObjectIndex>,
@@ -33,7 +33,7 @@ pub(crate) fn feel(
         let order: Vec<_> = tables.iter().chain(index.iter()).collect();
         let things = order.iter().filter_map(|&it| Thing::new(&rapier, it));
         let things: Vec<_> = things.collect();
-        for (body, part) in skeleton.bodies.iter().zip(&parts.0) {
+        for (body, part) in articulation.bodies.iter().zip(&parts.0) {
             let Some(&part) = rapier.colliders.entity2collider().get(part) else {
                 continue;
             };

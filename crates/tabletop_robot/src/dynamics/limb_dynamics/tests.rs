@@ -3,13 +3,14 @@
 use std::f64::consts::{PI, TAU};
 
 use super::*;
-use crate::motor::Task;
+use crate::dynamics::impulse::FrictionAxis;
+use crate::dynamics::motor::MotorTask;
 
 const SECONDS: f64 = 1.0 / 60.0;
 
-/// Joints that do not feel each other, each with this inertia in kg m².
-fn apart(inertia: f64) -> Masses {
-    Masses {
+/// Joints that do not act on each other, each with this inertia in kg m².
+fn apart(inertia: f64) -> LimbDynamics {
+    LimbDynamics {
         angles: [0.0; 7],
         velocities: [0.0; 7],
         inertia: from_fn(|i| from_fn(|j| if i == j { inertia } else { 0.0 })),
@@ -20,7 +21,7 @@ fn apart(inertia: f64) -> Masses {
     }
 }
 
-fn motors(task: Task) -> [Motor; 7] {
+fn motors(task: MotorTask) -> [Motor; 7] {
     [Motor {
         effort: 50.0,
         speed: 1.5,
@@ -28,15 +29,15 @@ fn motors(task: Task) -> [Motor; 7] {
     }; 7]
 }
 
-fn at(angle: f64) -> Task {
-    Task::Follow {
+fn at(angle: f64) -> MotorTask {
+    MotorTask::Follow {
         angle,
         velocity: 0.0,
         known: 0.0,
     }
 }
 
-fn go(masses: &mut Masses, motors: &[Motor; 7], seconds: f64) -> Step {
+fn go(masses: &mut LimbDynamics, motors: &[Motor; 7], seconds: f64) -> Step {
     let step = masses.step(motors, seconds);
     for (angle, velocity) in masses.angles.iter_mut().zip(step.velocities) {
         *angle += seconds * velocity;
@@ -56,7 +57,7 @@ fn a_pendulum_swings_with_its_period() {
         masses.bias = masses
             .angles
             .map(|angle| 2.0 * 9.81 * 0.4 * f64::sin(angle));
-        go(&mut masses, &motors(Task::Pull(0.0)), SECONDS);
+        go(&mut masses, &motors(MotorTask::Torque(0.0)), SECONDS);
         if before > 0.0 && masses.angles[0] <= 0.0 {
             let part = before / (before - masses.angles[0]);
             crossings.push((f64::from(tick) + part) * SECONDS);
@@ -77,7 +78,7 @@ fn damping_takes_speed_away() {
     masses.damping = [0.7; 7];
     masses.velocities = [1.0; 7];
     for _ in 0..120 {
-        go(&mut masses, &motors(Task::Pull(0.0)), SECONDS);
+        go(&mut masses, &motors(MotorTask::Torque(0.0)), SECONDS);
     }
     let expected = (-0.7 * 2.0_f64).exp();
     assert!(
@@ -92,8 +93,8 @@ fn a_torque_accelerates_coupled_joints_as_their_inertia_has_it() {
     let mut masses = apart(1.0);
     masses.inertia[0][1] = 0.5;
     masses.inertia[1][0] = 0.5;
-    let mut motors = motors(Task::Pull(0.0));
-    motors[0].task = Task::Pull(3.0);
+    let mut motors = motors(MotorTask::Torque(0.0));
+    motors[0].task = MotorTask::Torque(3.0);
     let step = masses.step(&motors, SECONDS);
     assert!((step.velocities[0] - 4.0 * SECONDS).abs() < 1e-12);
     assert!((step.velocities[1] + 2.0 * SECONDS).abs() < 1e-12);
@@ -151,11 +152,11 @@ fn a_stop_takes_the_speed_and_lets_the_joint_go_back() {
     let mut masses = apart(1.0);
     masses.stops = [[-1.0, 0.01]; 7];
     masses.velocities = [1.2; 7];
-    go(&mut masses, &motors(Task::Pull(4.0)), SECONDS);
+    go(&mut masses, &motors(MotorTask::Torque(4.0)), SECONDS);
     assert!((masses.angles[0] - 0.01).abs() < 1e-12);
-    let step = go(&mut masses, &motors(Task::Pull(4.0)), SECONDS);
+    let step = go(&mut masses, &motors(MotorTask::Torque(4.0)), SECONDS);
     assert!(step.velocities[0].abs() < 1e-9);
-    let step = go(&mut masses, &motors(Task::Pull(-4.0)), SECONDS);
+    let step = go(&mut masses, &motors(MotorTask::Torque(-4.0)), SECONDS);
     assert!((step.velocities[0] + 4.0 * SECONDS).abs() < 1e-9);
 }
 
@@ -166,7 +167,7 @@ fn a_light_thing_hardly_slows_the_arm_and_a_heavy_one_stalls_it() {
         masses.velocities = [0.5; 7];
         let mut lever = [0.0; 7];
         lever[0] = 0.5;
-        masses.touches.push(Touch {
+        masses.touches.push(ContactLoad {
             lever,
             mass,
             speed: 0.0,
@@ -174,7 +175,9 @@ fn a_light_thing_hardly_slows_the_arm_and_a_heavy_one_stalls_it() {
             friction: 0.0,
             slides: Vec::new(),
         });
-        masses.step(&motors(Task::Pull(50.0)), SECONDS).velocities[0]
+        masses
+            .step(&motors(MotorTask::Torque(50.0)), SECONDS)
+            .velocities[0]
     };
     let free = 0.5 + 50.0 * SECONDS;
     assert!(push(0.02) > 0.98 * free, "{}", push(0.02));
@@ -193,7 +196,7 @@ fn a_thing_that_lies_on_the_arm_weighs() {
     let mut masses = apart(1.0);
     let mut lever = [0.0; 7];
     lever[0] = 0.5;
-    masses.touches.push(Touch {
+    masses.touches.push(ContactLoad {
         lever,
         mass: 2.0,
         speed: -9.81 * SECONDS,
@@ -201,7 +204,7 @@ fn a_thing_that_lies_on_the_arm_weighs() {
         friction: 0.0,
         slides: Vec::new(),
     });
-    let step = masses.step(&motors(Task::Pull(0.0)), SECONDS);
+    let step = masses.step(&motors(MotorTask::Torque(0.0)), SECONDS);
     let expected = -2.0 * 9.81 * 0.5 / (1.0 + 2.0 * 0.25);
     assert!((step.velocities[0] / SECONDS - expected).abs() < 1e-9);
     for _ in 0..200 {
@@ -216,21 +219,21 @@ fn an_arm_does_not_slip_along_what_it_presses_on_until_friction_gives_way() {
     let slide = |torque: f64| {
         let mut masses = apart(1.0);
         let lever = |joint: usize| from_fn(|i| if i == joint { 1.0 } else { 0.0 });
-        masses.touches.push(Touch {
+        masses.touches.push(ContactLoad {
             lever: lever(0),
             mass: 1.0,
             speed: 0.0,
             resistance: f64::INFINITY,
             friction: 0.5,
-            slides: vec![Slide {
+            slides: vec![FrictionAxis {
                 lever: lever(1),
                 speed: 0.0,
                 resistance: f64::INFINITY,
             }],
         });
-        let mut motors = motors(Task::Pull(0.0));
-        motors[0].task = Task::Pull(20.0);
-        motors[1].task = Task::Pull(torque);
+        let mut motors = motors(MotorTask::Torque(0.0));
+        motors[0].task = MotorTask::Torque(20.0);
+        motors[1].task = MotorTask::Torque(torque);
         masses.step(&motors, SECONDS).velocities
     };
     assert!(slide(9.0)[1].abs() < 1e-4, "{:?}", slide(9.0));
@@ -264,7 +267,7 @@ fn what_the_joints_do_is_found_in_any_state() {
             effort: 50.0,
             speed: 1.5,
             task: if number() > 0.0 {
-                Task::Pull(50.0 * number())
+                MotorTask::Torque(50.0 * number())
             } else {
                 at(masses.angles[i] + 0.05 * number())
             },

@@ -5,7 +5,7 @@ use bevy_rapier3d::prelude::{GravityScale, Velocity};
 use tabletop_core::{Arm, Gripped, Held, Joint, ObjectSpec, Pose, Robot, SimFact};
 use tabletop_physics::{JustReleased, hold, let_go, pull_velocity};
 
-use crate::grip::Touched;
+use crate::gripper::closing::Touched;
 
 /// What the grippers hold, and how.
 #[derive(Resource, Clone, Debug, Default)]

@@ -16,13 +16,13 @@ use tabletop_core::{Arm, JOINTS_PER_ARM, TICK_SECONDS, UNITS_PER_METER};
 use tabletop_physics::impulse_share;
 
 use crate::{
+    articulation::link_entities::FRICTION,
+    articulation::tree::{TreePosition, in_meters},
     clearance::TOUCHING,
-    dynamics::{Slide, Touch},
-    matrix::Joints,
-    motion::Motion,
-    parts::FRICTION,
-    skeleton::{Place, in_meters},
-    surroundings::FreeThing,
+    dynamics::impulse::{ContactLoad, FrictionAxis},
+    dynamics::matrix::Joints,
+    motion::environment::FreeObject,
+    motion::sweep::Motion,
 };
 
 /// Cosine of the angle to a direction within which something fixed is straight ahead.
@@ -30,23 +30,23 @@ const AHEAD: f32 = 0.7;
 
 /// What an arm touches or is about to be touched by: each thing once, where it is nearest. `gravity` in units/s²; `is_mine` tells
 /// the robot's bodies and what it holds.
-pub(crate) fn touches(
+pub(crate) fn contact_loads(
     motion: &mut Motion,
     arm: Arm,
     rapier: &RapierContextMut,
     gravity: f32,
     is_mine: impl Fn(Entity) -> bool,
-) -> Vec<(Entity, Touch)> {
-    if motion.surroundings.free.is_empty() || !motion.is_shown {
+) -> Vec<(Entity, ContactLoad)> {
+    if motion.environment.free.is_empty() || !motion.is_shown {
         return Vec::new();
     }
     let here = motion.positions;
     let solids = motion.solids(arm, &here, &here);
-    motion.skeleton.update(&mut motion.scratch, &here);
-    let axes = motion.skeleton.axes(arm, &motion.scratch);
+    motion.articulation.update(&mut motion.scratch, &here);
+    let axes = motion.articulation.axes(arm, &motion.scratch);
     let to_robot = in_meters(motion.base).inverse();
     let mut touches = Vec::new();
-    for thing in &motion.surroundings.free {
+    for thing in &motion.environment.free {
         let Some(body) = body(rapier, thing.object) else {
             continue;
         };
@@ -73,9 +73,9 @@ pub(crate) fn touches(
         }
         // What weighs on the arm falls towards it; what lies elsewhere stays there.
         let falls = (Vec3::NEG_Z.dot(normal) * gravity * TICK_SECONDS).min(0.0);
-        let carriers = match motion.skeleton.bodies[number].place {
-            Place::Arm(_, joints) => joints.min(JOINTS_PER_ARM),
-            Place::Trunk | Place::Head => 0,
+        let carriers = match motion.articulation.bodies[number].place {
+            TreePosition::Arm(_, joints) => joints.min(JOINTS_PER_ARM),
+            TreePosition::Trunk | TreePosition::Head => 0,
         };
         let lever = |direction| lever(&axes[..carriers], to_robot, contact.point1, direction);
         let ahead = resistance(rapier, thing, normal, &is_mine);
@@ -83,13 +83,13 @@ pub(crate) fn touches(
         let slides = [along, across].map(|direction| {
             let speed = body.velocity_at_point(contact.point2).dot(direction);
             let resistance = resistance(rapier, thing, direction, &is_mine);
-            Slide {
+            FrictionAxis {
                 lever: lever(direction),
                 speed: f64::from(speed) / UNITS_PER_METER,
                 resistance: f64::from(resistance) / UNITS_PER_METER,
             }
         });
-        let touch = Touch {
+        let touch = ContactLoad {
             lever: lever(normal),
             mass: f64::from(body.mass()),
             speed: f64::from(speed + falls) / UNITS_PER_METER,
@@ -117,7 +117,7 @@ fn lever(carriers: &[(DVec3, DVec3)], to_robot: DAffine3, point: Vec3, direction
 /// and friction, by the impulses of the last tick.
 fn resistance(
     rapier: &RapierContextMut,
-    thing: &FreeThing,
+    thing: &FreeObject,
     direction: Vec3,
     is_mine: impl Fn(Entity) -> bool,
 ) -> f32 {
@@ -163,7 +163,7 @@ fn resistance(
 }
 
 /// Friction between a thing and the robot.
-fn friction(rapier: &RapierContextMut, thing: &FreeThing) -> f64 {
+fn friction(rapier: &RapierContextMut, thing: &FreeObject) -> f64 {
     let collider = rapier.colliders.entity2collider().get(&thing.object);
     let collider = collider.and_then(|handle| rapier.colliders.colliders.get(*handle));
     collider.map_or(0.0, |collider| f64::from(collider.friction() * FRICTION))

@@ -1,32 +1,12 @@
-//! What robots look like: Baxter's own shapes, faces on its screen, and the meshes of other robots.
-//!
-//! [`figure_of`] makes what is seen of a visual of a robot's description; a link with several of them has them [`merged`].
-//! Where that fails, [`stand_in`] shows what the link would be touched by. Descriptions are in metres, figures in units.
-
-mod axis;
-mod boxes;
-mod detail;
-mod error;
-mod extrusion;
-mod faces;
-mod hull;
-mod lathe;
-mod loft;
-mod meshes;
-mod palette;
-mod parts;
-mod shape_file;
-mod solids;
-mod tube;
-
-pub use error::LookError;
-pub use faces::face;
+//! The looks of a visual of a link.
 
 use std::{path::Path, sync::Arc};
 
 use bevy::math::{Affine3A, DAffine3, Vec3};
 use tabletop_core::{Face, Figure, Rgb, Triangles, UNITS_PER_METER};
 use tabletop_kinematics::{Geometry, Shape};
+
+use crate::look::{error::LookError, faces::face, meshes, solids};
 
 /// What a visual of a link looks like, in the frame of the link, in units. `urdf` is the file of the description, from
 /// which the meshes that it names are found; without it only Baxter's own are known (`package://tabletop/...`).

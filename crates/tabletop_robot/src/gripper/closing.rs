@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use tabletop_core::Pose;
 use tabletop_physics::Convex;
 
-use crate::pad::{Feeler, Pad, Touch, opposite};
+use crate::gripper::finger_pad::{FingerPad, FingerTouch, ProbeRay, opposite};
 
 /// The angle θ of figure 11 below which an object is held.
 pub const STEEPEST_GRIP: f32 = PI / 16.0;
@@ -44,7 +44,7 @@ pub(crate) struct Touched {
 
 /// What happens to a gripper that closes.
 pub(crate) fn close(end_effector: Pose, opening: f32, between: &[Candidate]) -> Closing {
-    let pads = Pad::pair(end_effector, opening);
+    let pads = FingerPad::pair(end_effector, opening);
     let mut closing = Closing {
         room: opening,
         touched: Vec::new(),
@@ -71,22 +71,22 @@ pub(crate) fn close(end_effector: Pose, opening: f32, between: &[Candidate]) -> 
 }
 
 /// The angle between the line from contact to contact and the normal of the fingers' inner faces.
-fn angle(left: Touch, right: Touch, end_effector: Pose) -> f32 {
+fn angle(left: FingerTouch, right: FingerTouch, end_effector: Pose) -> f32 {
     let across = right.point - left.point;
     across.angle_between(end_effector.rotation * Vec3::X)
 }
 
 /// Adds what an object takes of each line from finger to finger, so that objects behind each other add up.
 fn add_thickness(
-    thickness: &mut BTreeMap<Feeler, f32>,
-    [left, right]: [Pad; 2],
+    thickness: &mut BTreeMap<ProbeRay, f32>,
+    [left, right]: [FingerPad; 2],
     candidate: &Candidate,
     opening: f32,
 ) {
-    let from_right: BTreeMap<_, _> = right.feel(&candidate.parts, opening).collect();
-    for (feeler, from_left) in left.feel(&candidate.parts, opening) {
-        if let Some(from_right) = from_right.get(&opposite(feeler)) {
-            *thickness.entry(feeler).or_default() += opening - from_left - from_right;
+    let from_right: BTreeMap<_, _> = right.probe(&candidate.parts, opening).collect();
+    for (ray, from_left) in left.probe(&candidate.parts, opening) {
+        if let Some(from_right) = from_right.get(&opposite(ray)) {
+            *thickness.entry(ray).or_default() += opening - from_left - from_right;
         }
     }
 }

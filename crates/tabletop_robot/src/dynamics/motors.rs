@@ -1,6 +1,6 @@
 //! Dynamic mode: arms that motors with limited torque drive.
 //!
-//! Each motor pulls its joint along with a place that goes where orders send it, as a joint of kinematic mode would. It is
+//! Each motor pulls its joint along with a place that goes where targets send it, as a joint of kinematic mode would. It is
 //! never farther ahead than the motor can pull, so a joint that is held back does not wind up. Grippers and neck go as in
 //! kinematic mode. The arms' own weight is borne by springs, as in the real robot; the motors bear what the grippers hold.
 
@@ -11,12 +11,13 @@ use tabletop_core::{Arm, JOINTS_PER_ARM, Robot, RobotJoint, TICK_SECONDS, UNITS_
 use tabletop_kinematics::Load;
 
 use crate::{
-    dynamics::{Masses, Step, Touch},
-    matrix::{Joints, Matrix},
-    motion::Motion,
-    motor::{Motor, STRETCH, Task},
-    orders::{Orders, Want},
-    skeleton::Skeleton,
+    articulation::tree::Articulation,
+    command::joint_targets::{JointTargets, Setpoint},
+    dynamics::impulse::ContactLoad,
+    dynamics::limb_dynamics::{LimbDynamics, Step},
+    dynamics::matrix::{Joints, Matrix},
+    dynamics::motor::{Motor, MotorTask, STRETCH},
+    motion::sweep::Motion,
 };
 
 /// Share of a motor's torque with which a joint is slowed down before its goal.
@@ -34,13 +35,13 @@ const USUAL: [(f64, f64); 2] = [(50.0, 1.5), (15.0, 4.0)];
 /// What the motors have to remember from tick to tick.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct Motors {
-    arms: [Driven; 2],
+    arms: [LimbMotors; 2],
     was_shown: bool,
 }
 
 /// An arm that motors drive.
 #[derive(Clone, Debug, Default)]
-struct Driven {
+struct LimbMotors {
     /// Where the joints were when the motors left them, in rad.
     angles: Joints,
     /// How fast they were, in rad/s.
@@ -50,10 +51,10 @@ struct Driven {
 }
 
 /// A tick of an arm.
-pub(crate) struct Pull {
+pub(crate) struct LimbStep {
     /// What the arm touches, as the masses have it.
     touched: Vec<Entity>,
-    masses: Masses,
+    masses: LimbDynamics,
     motors: [Motor; 7],
     step: Step,
 }
@@ -65,7 +66,7 @@ impl Motors {
         for arm in Arm::BOTH {
             let (driven, angles) = (&mut self.arms[arm as usize], robot.angles(arm));
             if appears || driven.angles != angles {
-                *driven = Driven {
+                *driven = LimbMotors {
                     angles,
                     velocities: [0.0; 7],
                     places: angles,
@@ -78,24 +79,24 @@ impl Motors {
     pub fn pull(
         &self,
         motion: &mut Motion,
-        orders: &Orders,
+        targets: &JointTargets,
         gravity: f32,
-        mut touches: impl FnMut(&mut Motion, Arm) -> Vec<(Entity, Touch)>,
-    ) -> [Pull; 2] {
+        mut touches: impl FnMut(&mut Motion, Arm) -> Vec<(Entity, ContactLoad)>,
+    ) -> [LimbStep; 2] {
         let mut all_touches = Arm::BOTH.map(|arm| touches(motion, arm));
-        let skeleton = motion.skeleton;
-        skeleton.update(&mut motion.scratch, &motion.positions);
-        let (model, frames) = (skeleton.model(), motion.scratch.frames());
+        let articulation = motion.articulation;
+        articulation.update(&mut motion.scratch, &motion.positions);
+        let (model, frames) = (articulation.model(), motion.scratch.frames());
         let loads = Arm::BOTH.map(|arm| -> Vec<Load> {
             let carried = motion.carried[arm as usize].iter();
             carried
-                .map(|it| skeleton.load(arm, it.pose, it.mass))
+                .map(|it| articulation.load(arm, it.pose, it.mass))
                 .collect()
         });
         let all_loads = loads.concat();
         let mut velocities = model.zero();
         for arm in Arm::BOTH {
-            let chain = skeleton.chain(arm).0;
+            let chain = articulation.chain(arm).0;
             chain.set_angles(&self.arms[arm as usize].velocities, &mut velocities);
         }
         let inertia = model.inertia_matrix(frames, &all_loads);
@@ -104,10 +105,10 @@ impl Motors {
         let down = DVec3::NEG_Z * (f64::from(gravity) / UNITS_PER_METER);
         Arm::BOTH.map(|arm| {
             let driven = &self.arms[arm as usize];
-            let chain = skeleton.chain(arm).0;
+            let chain = articulation.chain(arm).0;
             let joints = *chain.joints();
             let inertia: Matrix = from_fn(|i| from_fn(|j| inertia[(joints[i], joints[j])]));
-            let axes = skeleton.axes(arm, &motion.scratch);
+            let axes = articulation.axes(arm, &motion.scratch);
             let weights: Joints = from_fn(|i| {
                 let (origin, axis) = axes[i];
                 let of_load = |load: &Load| {
@@ -116,11 +117,11 @@ impl Motors {
                 };
                 loads[arm as usize].iter().map(of_load).sum()
             });
-            let motors = driven.motors(skeleton, arm, orders, &inertia, &weights);
+            let motors = driven.motors(articulation, arm, targets, &inertia, &weights);
             let (touched, touches) = std::mem::take(&mut all_touches[arm as usize])
                 .into_iter()
                 .unzip();
-            let masses = Masses {
+            let masses = LimbDynamics {
                 angles: driven.angles,
                 velocities: driven.velocities,
                 inertia,
@@ -137,7 +138,7 @@ impl Motors {
             {
                 step.velocities = [0.0; 7];
             }
-            Pull {
+            LimbStep {
                 touched,
                 masses,
                 motors,
@@ -147,7 +148,7 @@ impl Motors {
     }
 
     /// Notes what has become of a tick: how far the arms have come, and with which torques.
-    pub fn note(&mut self, pulls: &[Pull; 2], motion: &mut Motion, robot: &mut Robot) {
+    pub fn note(&mut self, pulls: &[LimbStep; 2], motion: &mut Motion, robot: &mut Robot) {
         for (arm, pull) in Arm::BOTH.into_iter().zip(pulls) {
             let joints = RobotJoint::of_arm(arm);
             let angles = joints.map(|joint| motion.positions[joint.index()]);
@@ -164,10 +165,12 @@ impl Motors {
             let held_up_by = &mut motion.held_up_by[arm as usize];
             *held_up_by = held_up_by.or_else(|| pull.stalled_by());
             let places = from_fn(|i| match pull.motors[i].task {
-                Task::Follow { angle, .. } => angle.clamp(angles[i] - STRETCH, angles[i] + STRETCH),
-                Task::Pull(_) => angles[i],
+                MotorTask::Follow { angle, .. } => {
+                    angle.clamp(angles[i] - STRETCH, angles[i] + STRETCH)
+                }
+                MotorTask::Torque(_) => angles[i],
             });
-            self.arms[arm as usize] = Driven {
+            self.arms[arm as usize] = LimbMotors {
                 angles,
                 velocities,
                 places,
@@ -181,7 +184,7 @@ impl Motors {
         driven.places = driven.angles;
     }
 
-    /// How far orders have been carried out: to where the motors pull joints that have come to rest, and these positions
+    /// How far targets have been carried out: to where the motors pull joints that have come to rest, and these positions
     /// of all others.
     pub fn reached(&self, positions: &[f64; 17]) -> [f64; 17] {
         let mut reached = *positions;
@@ -198,20 +201,22 @@ impl Motors {
     }
 }
 
-impl Driven {
+impl LimbMotors {
     /// What the motors are to do in this tick. `inertia` in kg m², `weights` in N m.
     fn motors(
         &self,
-        skeleton: &Skeleton,
+        articulation: &Articulation,
         arm: Arm,
-        orders: &Orders,
+        targets: &JointTargets,
         inertia: &Matrix,
         weights: &Joints,
     ) -> [Motor; 7] {
         let joints = RobotJoint::of_arm(arm);
-        let wants = orders.want_arm(arm, self.places);
+        let setpoints = targets.arm_setpoints(arm, self.places);
         from_fn(|i| {
-            let joint = skeleton.model().joint(skeleton.chain(arm).0.joints()[i]);
+            let joint = articulation
+                .model()
+                .joint(articulation.chain(arm).0.joints()[i]);
             let usual = USUAL[usize::from(i > 3)];
             let effort = if joint.effort > 0.0 {
                 joint.effort
@@ -223,22 +228,22 @@ impl Driven {
             } else {
                 usual.1
             };
-            let task = match orders.torque(joints[i]) {
-                Some(torque) => Task::Pull(torque),
+            let task = match targets.torque(joints[i]) {
+                Some(torque) => MotorTask::Torque(torque),
                 None => {
-                    let way = wants[i].position() - self.places[i];
+                    let way = setpoints[i].position() - self.places[i];
                     // As fast as it can still stop where it is to go.
                     let brakes = BRAKES * effort / inertia[i][i].max(f64::MIN_POSITIVE);
-                    let left = orders
+                    let left = targets
                         .goal(joints[i])
                         .map(|goal| (goal - self.places[i]).abs());
                     let fastest =
                         left.map_or(speed, |left| speed.min((2.0 * brakes * left).sqrt()));
                     let most = fastest * f64::from(TICK_SECONDS);
                     let step = way.clamp(-most, most);
-                    Task::Follow {
+                    MotorTask::Follow {
                         angle: if step == way {
-                            wants[i].position()
+                            setpoints[i].position()
                         } else {
                             self.places[i] + step
                         },
@@ -256,13 +261,13 @@ impl Driven {
     }
 }
 
-impl Pull {
+impl LimbStep {
     /// Where the joints are to be after the tick.
-    pub fn wants(&self, arm: Arm) -> [Want; JOINTS_PER_ARM] {
+    pub fn setpoints(&self, arm: Arm) -> [Setpoint; JOINTS_PER_ARM] {
         let joints = RobotJoint::of_arm(arm);
         from_fn(|i| {
             let way = f64::from(TICK_SECONDS) * self.step.velocities[i];
-            Want::Move(joints[i].clamp(self.masses.angles[i] + way))
+            Setpoint::Move(joints[i].clamp(self.masses.angles[i] + way))
         })
     }
 

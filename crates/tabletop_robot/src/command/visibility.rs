@@ -5,10 +5,9 @@ use bevy_rapier3d::prelude::*;
 use tabletop_core::{Arm, Robot, SimFact};
 
 use crate::{
-    advance::leave_obstacles,
-    grips,
-    parts::{Parts, spawn},
-    plugin::stand_at_table,
+    articulation::link_entities::{LinkEntities, spawn},
+    gripper::grips,
+    motion::placement::{leave_obstacles, stand_at_table},
 };
 
 /// Puts the robot to the table, or takes it away; what its grippers hold is let go of before.
@@ -22,12 +21,12 @@ pub(crate) fn show(world: &mut World, show: bool) {
         }
     }
     world.resource_mut::<Robot>().is_shown = show;
-    if world.resource::<Parts>().0.is_empty()
+    if world.resource::<LinkEntities>().0.is_empty()
         && let Err(error) = spawn(world)
     {
         error!("the robot has no bodies: {error}");
     }
-    let parts = world.resource::<Parts>().clone();
+    let parts = world.resource::<LinkEntities>().clone();
     for part in parts.0 {
         let mut part = world.entity_mut(part);
         if !part.contains::<Collider>() {

@@ -19,12 +19,12 @@ pub(crate) struct Motor {
     /// Largest speed, in rad/s.
     pub speed: f64,
     /// What it is to do.
-    pub task: Task,
+    pub task: MotorTask,
 }
 
 /// What a motor is to do in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Task {
+pub(crate) enum MotorTask {
     /// Bring its joint to a place.
     Follow {
         /// Where the joint shall be at the tick's end, in rad.
@@ -35,7 +35,7 @@ pub(crate) enum Task {
         known: f64,
     },
     /// Pull with this torque, in N m.
-    Pull(f64),
+    Torque(f64),
 }
 
 impl Motor {
@@ -66,20 +66,20 @@ impl Motor {
     fn wish(&self, at: f64, is: f64) -> f64 {
         let (stiffness, damping) = self.gains();
         match self.task {
-            Task::Follow {
+            MotorTask::Follow {
                 angle,
                 velocity,
                 known,
             } => known + stiffness * (angle - at) + damping * (velocity - is),
-            Task::Pull(torque) => torque,
+            MotorTask::Torque(torque) => torque,
         }
     }
 
     /// Torque per rad that the joint is away from where it shall be, and per rad/s that it is too slow or too fast.
     fn gains(&self) -> (f64, f64) {
         match self.task {
-            Task::Follow { .. } => (self.effort / STRETCH, self.effort / STRETCH * SETTLING),
-            Task::Pull(_) => (0.0, 0.0),
+            MotorTask::Follow { .. } => (self.effort / STRETCH, self.effort / STRETCH * SETTLING),
+            MotorTask::Torque(_) => (0.0, 0.0),
         }
     }
 

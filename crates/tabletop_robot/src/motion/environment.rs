@@ -10,12 +10,12 @@ use bevy_rapier3d::{
 use tabletop_physics::{Convex, nearby};
 
 use crate::{
+    articulation::link_entities::RobotBody,
     clearance::{MARGIN, Owner, Solid, are_near},
-    parts::RobotBody,
 };
 
 /// Something free that the robot can push or take.
-pub(crate) struct FreeThing {
+pub(crate) struct FreeObject {
     /// The object.
     pub object: Entity,
     /// Its convex parts, in the table's frame.
@@ -26,7 +26,7 @@ pub(crate) struct FreeThing {
     pub is_sleeping: bool,
 }
 
-impl FreeThing {
+impl FreeObject {
     /// Its solids, where they are.
     pub fn solids(&self) -> impl Iterator<Item = Solid> {
         let parts = self.parts.iter().cloned();
@@ -35,14 +35,14 @@ impl FreeThing {
 }
 
 /// What is around the robot, as far as it is near.
-pub(crate) struct Surroundings {
+pub(crate) struct Environment {
     /// What it cannot pass.
     pub immovable: Vec<Solid>,
     /// What it pushes, in the order of its creation.
-    pub free: Vec<FreeThing>,
+    pub free: Vec<FreeObject>,
 }
 
-impl Surroundings {
+impl Environment {
     /// Looks at what is in this box. A hidden robot meets nothing.
     pub fn new(
         rapier: &RapierContextMut,
@@ -51,12 +51,12 @@ impl Surroundings {
         held: &BTreeSet<Entity>,
         is_shown: bool,
     ) -> Self {
-        let mut surroundings = Self {
+        let mut environment = Self {
             immovable: Vec::new(),
             free: Vec::new(),
         };
         if !is_shown {
-            return surroundings;
+            return environment;
         }
         let near = near.loosened(MARGIN);
         for thing in nearby(&rapier.colliders, &rapier.rigidbody_set, near) {
@@ -66,7 +66,7 @@ impl Surroundings {
             }
             let parts = thing.parts();
             if thing.body.is_dynamic() {
-                surroundings.free.push(FreeThing {
+                environment.free.push(FreeObject {
                     object,
                     parts,
                     bounds: thing.bounds,
@@ -76,14 +76,14 @@ impl Surroundings {
                 let solids = parts
                     .into_iter()
                     .map(|part| Solid::resting(part, Owner::Thing(object)));
-                surroundings.immovable.extend(solids);
+                environment.immovable.extend(solids);
             }
         }
-        surroundings
+        environment
     }
 }
 
-impl Surroundings {
+impl Environment {
     /// How deep a free thing, by its number, and what it pushes in turn, are squeezed into each other and into what cannot
     /// move, in units.
     pub fn squeeze(&self, pushed: usize) -> f32 {
@@ -112,7 +112,7 @@ impl Surroundings {
     }
 }
 
-fn depth_between(one: &FreeThing, other: &FreeThing) -> f32 {
+fn depth_between(one: &FreeObject, other: &FreeObject) -> f32 {
     one.solids()
         .flat_map(|one| other.solids().map(move |other| one.depth_in(&other)))
         .fold(0.0, f32::max)

@@ -5,8 +5,8 @@ use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, Robot, UNITS_PER_METER};
 use tabletop_kinematics::Target;
 
 use crate::{
-    parts::base,
-    skeleton::{Skeleton, in_meters},
+    articulation::link_entities::base,
+    articulation::tree::{Articulation, in_meters},
 };
 
 /// The angles of an arm that bring its end effector to a pose in the table's frame, near to those that it has now.
@@ -22,7 +22,7 @@ pub(crate) fn solve(
     }
     let base = base(world);
     let robot = world.resource::<Robot>();
-    let (chain, end_effector) = world.resource::<Skeleton>().chain(arm);
+    let (chain, end_effector) = world.resource::<Articulation>().chain(arm);
     let target = in_meters(base.inverse() * pose) * end_effector.inverse();
     chain
         .solve(&Target::Pose(target), &robot.angles(arm))

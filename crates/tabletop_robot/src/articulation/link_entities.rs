@@ -8,7 +8,7 @@ use bevy_rapier3d::{
 use tabletop_core::{CarriesHeadCamera, Pose, Robot, Rollback, Table, robot_base};
 use tabletop_physics::to_rapier;
 
-use crate::skeleton::{Body, Place, Posture, Skeleton};
+use crate::articulation::tree::{Articulation, Body, Posture, TreePosition};
 
 /// A body of the robot: a link, or a finger of a gripper.
 #[derive(Component, Clone, Debug)]
@@ -20,18 +20,18 @@ pub struct RobotBody {
 
 /// The robot's bodies, by their numbers; none before it is shown for the first time.
 #[derive(Resource, Clone, Debug, Default)]
-pub(crate) struct Parts(pub Vec<Entity>);
+pub(crate) struct LinkEntities(pub Vec<Entity>);
 
 /// Friction of the robot's surface. Two surfaces in contact have the product of theirs.
 pub(crate) const FRICTION: f32 = 1.0;
 
 /// Makes the bodies, disabled.
 pub(crate) fn spawn(world: &mut World) -> Result {
-    let skeleton = world.resource::<Skeleton>().clone();
-    let posture = skeleton.posture(&positions(world.resource::<Robot>()));
-    let poses = poses(&skeleton, &posture, base(world));
+    let articulation = world.resource::<Articulation>().clone();
+    let posture = articulation.posture(&positions(world.resource::<Robot>()));
+    let poses = poses(&articulation, &posture, base(world));
     let mut parts = Vec::new();
-    for (body, pose) in skeleton.bodies.iter().zip(poses) {
+    for (body, pose) in articulation.bodies.iter().zip(poses) {
         let place = Transform::from(pose);
         let mut part = world.spawn((
             RobotBody {
@@ -40,7 +40,7 @@ pub(crate) fn spawn(world: &mut World) -> Result {
             place,
             GlobalTransform::from(place),
         ));
-        if body.place == Place::Head {
+        if body.place == TreePosition::Head {
             part.insert(CarriesHeadCamera);
         }
         if let Some(collider) = collider(body) {
@@ -60,7 +60,7 @@ pub(crate) fn spawn(world: &mut World) -> Result {
         world.run_system_cached(init_rigid_bodies)?;
         world.run_system_cached(init_colliders)?;
     }
-    world.insert_resource(Parts(parts));
+    world.insert_resource(LinkEntities(parts));
     Ok(())
 }
 
@@ -94,11 +94,11 @@ pub(crate) fn base(world: &mut World) -> Pose {
 /// Puts the bodies where a posture has them, without pushing anything on the way.
 pub(crate) fn teleport(world: &mut World) -> Result {
     let posture = world
-        .resource::<Skeleton>()
+        .resource::<Articulation>()
         .posture(&positions(world.resource::<Robot>()));
     let base = base(world);
-    let poses = poses(world.resource::<Skeleton>(), &posture, base);
-    let parts = world.resource::<Parts>().clone();
+    let poses = poses(world.resource::<Articulation>(), &posture, base);
+    let parts = world.resource::<LinkEntities>().clone();
     for (&part, &pose) in parts.0.iter().zip(&poses) {
         if let Some(mut transform) = world.get_mut::<Transform>(part) {
             transform.set_if_neq(pose.into());
@@ -124,10 +124,10 @@ pub(crate) fn put(bodies: &mut RapierRigidBodySet, part: Entity, pose: Pose) {
 }
 
 /// Where the bodies are in a posture, by their numbers.
-pub(crate) fn poses(skeleton: &Skeleton, posture: &Posture, base: Pose) -> Vec<Pose> {
-    skeleton
+pub(crate) fn poses(articulation: &Articulation, posture: &Posture, base: Pose) -> Vec<Pose> {
+    articulation
         .bodies
         .iter()
-        .map(|body| skeleton.pose(body, posture, base))
+        .map(|body| articulation.pose(body, posture, base))
         .collect()
 }

@@ -4,8 +4,8 @@ use bevy::prelude::*;
 use tabletop_core::{Pose, RobotJoint};
 
 use crate::{
+    articulation::tree::{Articulation, Body, TreePosition},
     clearance::{Owner, Solid},
-    skeleton::{Place, Skeleton},
 };
 
 /// Joints between two bodies of an arm that can meet.
@@ -16,12 +16,12 @@ const ROUGH: f32 = 0.05;
 
 /// The bodies that can meet, as a table of all pairs.
 #[derive(Resource, Clone, Debug)]
-pub(crate) struct Meetings {
+pub(crate) struct SelfCollisionMatrix {
     bodies: usize,
     can_meet: Vec<bool>,
 }
 
-impl Meetings {
+impl SelfCollisionMatrix {
     /// Whether two bodies can meet, by their numbers.
     pub fn can_meet(&self, a: usize, b: usize) -> bool {
         self.can_meet[a * self.bodies + b]
@@ -29,36 +29,36 @@ impl Meetings {
 
     /// The pairs that are far enough from each other along the robot, without those whose solids overlap in poses that the
     /// real robot takes.
-    pub fn new(skeleton: &Skeleton) -> Self {
-        let bodies = skeleton.bodies.len();
-        let mut meetings = Self {
+    pub fn new(articulation: &Articulation) -> Self {
+        let bodies = articulation.bodies.len();
+        let mut self_collisions = Self {
             bodies,
             can_meet: vec![false; bodies * bodies],
         };
-        let postures = KNOWN.map(|angles| known_posture(skeleton, angles));
+        let postures = KNOWN.map(|angles| known_posture(articulation, angles));
         for a in 0..bodies {
             for b in 0..a {
-                let [place_a, place_b] = [a, b].map(|i| skeleton.bodies[i].place);
+                let [place_a, place_b] = [a, b].map(|i| articulation.bodies[i].place);
                 let can_meet = are_apart(place_a, place_b)
                     && !postures
                         .iter()
                         .any(|solids| overlap(&solids[a], &solids[b]));
-                meetings.can_meet[a * bodies + b] = can_meet;
-                meetings.can_meet[b * bodies + a] = can_meet;
+                self_collisions.can_meet[a * bodies + b] = can_meet;
+                self_collisions.can_meet[b * bodies + a] = can_meet;
             }
         }
-        meetings
+        self_collisions
     }
 }
 
 /// Whether bodies are far enough from each other along the robot to meet.
-const fn are_apart(a: Place, b: Place) -> bool {
+const fn are_apart(a: TreePosition, b: TreePosition) -> bool {
     match (a, b) {
-        (Place::Arm(a, i), Place::Arm(b, j)) if a as u8 == b as u8 => {
+        (TreePosition::Arm(a, i), TreePosition::Arm(b, j)) if a as u8 == b as u8 => {
             i.abs_diff(j) >= JOINTS_BETWEEN
         }
-        (Place::Arm(..), Place::Arm(..)) => true,
-        (Place::Arm(_, i), _) | (_, Place::Arm(_, i)) => i >= JOINTS_BETWEEN,
+        (TreePosition::Arm(..), TreePosition::Arm(..)) => true,
+        (TreePosition::Arm(_, i), _) | (_, TreePosition::Arm(_, i)) => i >= JOINTS_BETWEEN,
         _ => false,
     }
 }
@@ -74,17 +74,17 @@ const KNOWN: [[f64; 7]; 5] = [
 ];
 
 /// The solids of every body in a known pose.
-fn known_posture(skeleton: &Skeleton, angles: [f64; 7]) -> Vec<Vec<Solid>> {
+fn known_posture(articulation: &Articulation, angles: [f64; 7]) -> Vec<Vec<Solid>> {
     let positions = RobotJoint::ALL.map(|joint| match joint.arm() {
         Some(_) if !joint.is_gripper() => joint.mirror() * angles[joint.index() % angles.len()],
         _ => joint.home(),
     });
-    let posture = skeleton.posture(&positions);
-    let solids = |(number, body): (usize, &crate::skeleton::Body)| {
-        let pose = skeleton.pose(body, &posture, Pose::IDENTITY);
+    let posture = articulation.posture(&positions);
+    let solids = |(number, body): (usize, &Body)| {
+        let pose = articulation.pose(body, &posture, Pose::IDENTITY);
         Solid::moving(&body.parts, Owner::Body(number), pose, pose).collect()
     };
-    skeleton.bodies.iter().enumerate().map(solids).collect()
+    articulation.bodies.iter().enumerate().map(solids).collect()
 }
 
 fn overlap(a: &[Solid], b: &[Solid]) -> bool {
@@ -99,12 +99,12 @@ mod tests {
 
     #[test]
     fn neighbours_cannot_meet_and_arms_can() {
-        let arm = |i| Place::Arm(Arm::Left, i);
+        let arm = |i| TreePosition::Arm(Arm::Left, i);
         assert!(!are_apart(arm(2), arm(4)));
         assert!(are_apart(arm(2), arm(5)));
-        assert!(are_apart(arm(1), Place::Arm(Arm::Right, 1)));
-        assert!(!are_apart(Place::Trunk, arm(2)));
-        assert!(are_apart(Place::Head, arm(7)));
-        assert!(!are_apart(Place::Trunk, Place::Head));
+        assert!(are_apart(arm(1), TreePosition::Arm(Arm::Right, 1)));
+        assert!(!are_apart(TreePosition::Trunk, arm(2)));
+        assert!(are_apart(TreePosition::Head, arm(7)));
+        assert!(!are_apart(TreePosition::Trunk, TreePosition::Head));
     }
 }

@@ -1,0 +1,6 @@
+//! What the robot is commanded to do.
+
+pub(crate) mod joint_targets;
+pub(crate) mod obey;
+pub(crate) mod reach;
+pub(crate) mod visibility;

@@ -1,0 +1,4 @@
+//! What the robot touches.
+
+pub(crate) mod contact;
+pub(crate) mod sense;

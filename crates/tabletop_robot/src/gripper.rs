@@ -1,0 +1,5 @@
+//! Grippers, and what they hold.
+
+pub(crate) mod closing;
+pub(crate) mod finger_pad;
+pub(crate) mod grips;

@@ -1,0 +1,27 @@
+//! What robots look like: Baxter's own shapes, faces on its screen, and the meshes of other robots.
+//!
+//! [`figure_of`] makes what is seen of a visual of a robot's description; a link with several of them has them [`merged`].
+//! Where that fails, [`stand_in`] shows what the link would be touched by. Descriptions are in metres, figures in units.
+
+mod axis;
+mod boxes;
+mod detail;
+pub(crate) mod error;
+mod extrusion;
+mod faces;
+pub(crate) mod figure;
+mod hull;
+mod lathe;
+pub(crate) mod link_figures;
+mod loft;
+mod meshes;
+mod palette;
+
+mod shape_file;
+mod shipped;
+mod solids;
+mod tube;
+
+pub use error::LookError;
+pub use faces::face;
+pub use figure::{figure_of, merged, screen_with, stand_in};

@@ -1,0 +1,388 @@
+//! How far the joints can go: where they are told to, as far as nothing is in the way (report section 5).
+
+use std::rc::Rc;
+
+use bevy::prelude::*;
+use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
+use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, RobotJoint};
+use tabletop_physics::Convex;
+
+use crate::{
+    articulation::self_collision::SelfCollisionMatrix,
+    articulation::tree::{Articulation, Body, Carrier, Posture, TreePosition},
+    clearance::{Owner, Solid, are_near, part_left},
+    command::joint_targets::{JointTargets, Setpoint},
+    gripper::closing::{Candidate, Closing, close},
+    motion::environment::Environment,
+};
+
+/// Farthest a body goes, in units, before it is looked for what is in its way: less than a finger is thick.
+const STEP: f32 = 0.2;
+
+/// Most steps of a tick: what is faster is looked at less often.
+const MOST_STEPS: f32 = 400.0;
+
+/// Halvings of the last step, to come as near as possible.
+const HALVINGS: u32 = 6;
+
+/// Least part of a tick's way that is gone.
+const LEAST_PUSH: f64 = 0.05;
+
+/// How far from an end effector, in units, something may be between its fingers.
+const BETWEEN: f32 = 2.0;
+
+/// What a gripper holds, as the arm carries it.
+pub(crate) struct Carried {
+    /// The object.
+    pub object: Entity,
+    /// Its pose in the end effector's frame.
+    pub pose: Pose,
+    /// Its mass in kg.
+    pub mass: f64,
+    /// Its convex parts, in its own frame.
+    pub parts: Vec<Convex>,
+}
+
+/// Where the robot is at some positions of the joints.
+pub(crate) struct Poses {
+    positions: [f64; 17],
+    /// Its bodies.
+    bodies: Vec<Pose>,
+    end_effectors: [Pose; 2],
+}
+
+/// Answers that are remembered.
+const MOST_ASKED: usize = 4;
+
+/// The motion of a tick.
+pub(crate) struct Motion<'a> {
+    /// The robot.
+    pub articulation: &'a Articulation,
+    /// Which of its bodies can meet.
+    pub self_collisions: &'a SelfCollisionMatrix,
+    /// Where its torso stands.
+    pub base: Pose,
+    /// What is around it.
+    pub environment: Environment,
+    /// Whether its grippers hold anything.
+    pub holds: [bool; 2],
+    /// What its grippers hold rigidly.
+    pub carried: [Vec<Carried>; 2],
+    /// Positions of the joints, by [`RobotJoint::index`].
+    pub positions: [f64; 17],
+    /// What stopped each arm in this tick.
+    pub blocked_by: [Option<Owner>; 2],
+    /// What each arm has squeezed so much in this tick that it waited.
+    pub held_up_by: [Option<Entity>; 2],
+    /// Whether each arm was slowed in this tick by squeezing something free.
+    pub is_squeezing: [bool; 2],
+    /// Whether it can meet anything.
+    pub is_shown: bool,
+    /// The last answers to where it is.
+    pub asked: Vec<Rc<Poses>>,
+    /// A posture to compute with.
+    pub scratch: Posture,
+}
+
+impl Motion<'_> {
+    /// Turns the neck.
+    pub fn turn_head(&mut self, targets: &JointTargets) {
+        let position = &mut self.positions[RobotJoint::HeadPan.index()];
+        *position = targets.setpoint(RobotJoint::HeadPan, *position).position();
+    }
+
+    /// Moves the joints of an arm to where they are to be.
+    pub fn move_arm(&mut self, arm: Arm, setpoints: [Setpoint; JOINTS_PER_ARM]) {
+        let joints = RobotJoint::of_arm(arm);
+        let mut there = self.positions;
+        for (joint, setpoint) in joints.into_iter().zip(setpoints) {
+            there[joint.index()] = setpoint.position();
+        }
+        if there == self.positions {
+            return;
+        }
+        let jumps = setpoints
+            .iter()
+            .any(|setpoint| matches!(setpoint, Setpoint::Jump(_)));
+        if jumps
+            && self
+                .obstacle(arm, &self.positions.clone(), &there)
+                .is_none()
+        {
+            self.positions = there;
+            return;
+        }
+        let (part, pushed) = self.push(arm, &there);
+        self.is_squeezing[arm as usize] = pushed.is_some();
+        if part < LEAST_PUSH {
+            self.held_up_by[arm as usize] = pushed;
+            return;
+        }
+        self.blocked_by[arm as usize] = self.sweep(arm, lerp(&self.positions, &there, part));
+    }
+
+    /// Opens or closes a gripper. Returns what it has found between its fingers while closing.
+    pub fn move_fingers(&mut self, arm: Arm, targets: &JointTargets) -> Closing {
+        let joint = RobotJoint::gripper(arm);
+        let opening = self.positions[joint.index()];
+        let setpoint = targets.setpoint(joint, opening).position();
+        let mut closing = Closing::default();
+        let mut there = self.positions;
+        if setpoint > opening {
+            there[joint.index()] = setpoint;
+        } else if setpoint < opening && !self.holds[arm as usize] {
+            closing = close(self.end_effector(arm), opening as f32, &self.between(arm));
+            there[joint.index()] = setpoint.max(opening - f64::from(closing.room)).max(0.0);
+        }
+        let (part, _) = self.push(arm, &there);
+        if there != self.positions && part >= LEAST_PUSH {
+            self.sweep(arm, lerp(&self.positions, &there, part));
+        }
+        closing
+    }
+
+    /// Where an end effector is.
+    pub fn end_effector(&mut self, arm: Arm) -> Pose {
+        self.poses(&self.positions.clone()).end_effectors[arm as usize]
+    }
+
+    /// What may be between the fingers of a gripper.
+    fn between(&mut self, arm: Arm) -> Vec<Candidate> {
+        let at = self.end_effector(arm).location;
+        let near = Aabb::new(at - BETWEEN, at + BETWEEN);
+        let things = self.environment.free.iter();
+        things
+            .filter(|thing| are_near(&thing.bounds, &near))
+            .map(|thing| Candidate {
+                object: thing.object,
+                parts: thing.parts.clone(),
+            })
+            .collect()
+    }
+
+    /// Goes towards these positions, as far as nothing is in the way of an arm. Returns what is.
+    fn sweep(&mut self, arm: Arm, there: [f64; 17]) -> Option<Owner> {
+        let start = self.positions;
+        let between = |part: f64| lerp(&start, &there, part);
+        let steps = (self.way(arm, &start, &there) / STEP)
+            .ceil()
+            .clamp(1.0, MOST_STEPS);
+        for step in 1..=steps as u32 {
+            let ahead = f64::from(step) / f64::from(steps);
+            let Some(mut obstacle) = self.obstacle(arm, &self.positions.clone(), &between(ahead))
+            else {
+                self.positions = between(ahead);
+                continue;
+            };
+            let (mut free, mut blocked) = (f64::from(step - 1) / f64::from(steps), ahead);
+            for _ in 0..HALVINGS {
+                let middle = (free + blocked) / 2.0;
+                match self.obstacle(arm, &self.positions.clone(), &between(middle)) {
+                    None => free = middle,
+                    Some(nearer) => (blocked, obstacle) = (middle, nearer),
+                }
+            }
+            self.positions = between(free);
+            return Some(obstacle);
+        }
+        None
+    }
+
+    /// The part of the way to these positions that an arm can go in a tick with what it pushes, and what it squeezes most.
+    fn push(&mut self, arm: Arm, there: &[f64; 17]) -> (f64, Option<Entity>) {
+        if self.environment.free.is_empty() {
+            return (1.0, None);
+        }
+        let here = self.positions;
+        let solids = self.solids(arm, &here, there);
+        let (mut part, mut most_pushed) = (1.0, None);
+        for (i, thing) in self.environment.free.iter().enumerate() {
+            let approaches = solids
+                .iter()
+                .filter(|(_, solid)| solid.passes(&thing.bounds))
+                .flat_map(|(_, solid)| thing.solids().filter_map(|thing| solid.approach(&thing)));
+            let mut can_go = 1.0_f32;
+            let mut is_pushed = false;
+            for approach in approaches {
+                can_go = can_go.min(approach.part());
+                is_pushed |= approach.is_push();
+            }
+            if is_pushed {
+                can_go = can_go.min(part_left(self.environment.squeeze(i)));
+            }
+            if can_go < part {
+                (part, most_pushed) = (can_go, is_pushed.then_some(thing.object));
+            }
+        }
+        let least = if most_pushed.is_some() {
+            0.0
+        } else {
+            LEAST_PUSH
+        };
+        (f64::from(part).max(least), most_pushed)
+    }
+
+    /// About how far the bodies of an arm go between two positions, in units.
+    fn way(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> f32 {
+        let [from, to] = [from, to].map(|positions| self.poses(positions));
+        self.bodies_of(arm)
+            .map(|number| (from.bodies[number], to.bodies[number]))
+            .map(|(from, to)| {
+                from.location.distance(to.location) + from.rotation.angle_between(to.rotation)
+            })
+            .fold(0.0, f32::max)
+    }
+
+    /// The numbers of the bodies of an arm.
+    fn bodies_of(&self, arm: Arm) -> impl Iterator<Item = usize> {
+        let bodies = self.articulation.bodies.iter().enumerate();
+        bodies
+            .filter(move |(_, body)| is_of(body, arm))
+            .map(|(number, _)| number)
+    }
+
+    /// Where the robot is. The last few answers are remembered: most are asked for several times.
+    fn poses(&mut self, positions: &[f64; 17]) -> Rc<Poses> {
+        let is_asked = |poses: &&Rc<Poses>| poses.positions == *positions;
+        if let Some(poses) = self.asked.iter().find(is_asked) {
+            return Rc::clone(poses);
+        }
+        self.articulation.update(&mut self.scratch, positions);
+        let bodies = self.articulation.bodies.iter();
+        let poses = Rc::new(Poses {
+            positions: *positions,
+            bodies: bodies
+                .map(|body| self.articulation.pose(body, &self.scratch, self.base))
+                .collect(),
+            end_effectors: Arm::BOTH.map(|arm| {
+                self.articulation
+                    .end_effector(arm, &self.scratch, self.base)
+            }),
+        });
+        if self.asked.len() == MOST_ASKED {
+            self.asked.remove(0);
+        }
+        self.asked.push(Rc::clone(&poses));
+        poses
+    }
+
+    /// The solids of an arm and of what it holds, each with the number of a body that meets what it meets.
+    pub fn solids(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> Vec<(usize, Solid)> {
+        let [from, to] = [from, to].map(|positions| self.poses(positions));
+        let mut solids = Vec::new();
+        for number in self.bodies_of(arm) {
+            let parts = &self.articulation.bodies[number].parts;
+            let [from, to] = [&from, &to].map(|poses| poses.bodies[number]);
+            let moving = Solid::moving(parts, Owner::Body(number), from, to);
+            solids.extend(moving.map(|solid| (number, solid)));
+        }
+        let finger = self.finger(arm);
+        for carried in &self.carried[arm as usize] {
+            let [from, to] =
+                [&from, &to].map(|poses| poses.end_effectors[arm as usize] * carried.pose);
+            let moving = Solid::moving(&carried.parts, Owner::Thing(carried.object), from, to);
+            solids.extend(moving.map(|solid| (finger, solid)));
+        }
+        solids
+    }
+
+    /// The number of a finger of an arm.
+    fn finger(&self, arm: Arm) -> usize {
+        let is_finger = |body: &Body| matches!(body.carrier, Carrier::Gripper(of, _) if of == arm);
+        self.articulation
+            .bodies
+            .iter()
+            .position(is_finger)
+            .unwrap_or(0)
+    }
+
+    /// What an arm is inside of that it cannot pass.
+    pub fn is_inside(&mut self, arm: Arm) -> Option<Owner> {
+        let here = self.positions;
+        let solids = self.solids(arm, &here, &here);
+        let mut immovable = self.environment.immovable.iter();
+        immovable
+            .find(|obstacle| {
+                solids
+                    .iter()
+                    .any(|(_, solid)| solid.depth_in(obstacle) > 0.0)
+            })
+            .map(|obstacle| obstacle.owner)
+    }
+
+    /// What is in the way of an arm between two positions.
+    fn obstacle(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> Option<Owner> {
+        if !self.is_shown {
+            return None;
+        }
+        let solids = self.solids(arm, from, to);
+        let outside = solids.iter().find_map(|(_, solid)| {
+            let mut immovable = self.environment.immovable.iter();
+            immovable
+                .find(|obstacle| solid.collides_with(obstacle))
+                .map(|obstacle| obstacle.owner)
+        });
+        outside.or_else(|| self.own_body(arm, &solids))
+    }
+
+    /// The body of the robot that solids of an arm would run into.
+    fn own_body(&mut self, arm: Arm, solids: &[(usize, Solid)]) -> Option<Owner> {
+        for (i, (a, solid)) in solids.iter().enumerate() {
+            let met = solids[..i].iter().find(|(b, other)| {
+                self.self_collisions.can_meet(*a, *b) && solid.collides_with(other)
+            });
+            if let Some((_, other)) = met {
+                return Some(other.owner);
+            }
+        }
+        let here = self.poses(&self.positions.clone());
+        for (number, body) in self.articulation.bodies.iter().enumerate() {
+            if is_of(body, arm)
+                || !solids
+                    .iter()
+                    .any(|(a, _)| self.self_collisions.can_meet(*a, number))
+            {
+                continue;
+            }
+            let pose = here.bodies[number];
+            for other in Solid::moving(&body.parts, Owner::Body(number), pose, pose) {
+                let is_met = solids.iter().any(|(a, solid)| {
+                    self.self_collisions.can_meet(*a, number) && solid.collides_with(&other)
+                });
+                if is_met {
+                    return Some(other.owner);
+                }
+            }
+        }
+        None
+    }
+
+    /// The boxes around the solids of an arm where it is now.
+    pub fn bounds(&mut self, arm: Arm) -> Vec<Aabb> {
+        let here = self.positions;
+        let solids = self.solids(arm, &here, &here);
+        solids.iter().map(|(_, solid)| *solid.bounds()).collect()
+    }
+}
+
+/// A box around everything that the arms may meet in a tick.
+pub(crate) fn reach(poses: impl Iterator<Item = Vec3>) -> Aabb {
+    let mut bounds: Option<Aabb> = None;
+    for at in poses {
+        let around = Aabb::new(at - 5.0, at + 5.0);
+        bounds = Some(bounds.map_or(around, |bounds| bounds.merged(&around)));
+    }
+    bounds.unwrap_or_else(Aabb::new_invalid)
+}
+
+/// Positions on the way between others.
+fn lerp(from: &[f64; 17], to: &[f64; 17], part: f64) -> [f64; 17] {
+    std::array::from_fn(|i| match part < 1.0 {
+        true => from[i] + (to[i] - from[i]) * part,
+        false => to[i],
+    })
+}
+
+fn is_of(body: &Body, arm: Arm) -> bool {
+    matches!(body.place, TreePosition::Arm(of, _) if of == arm)
+}
