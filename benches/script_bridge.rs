@@ -17,7 +17,7 @@ use std::{
 
 use bevy::prelude::*;
 use tabletop::{
-    core::{Agent, AgentOrder, PictureDemand},
+    core::{Agent, PictureDemand, ScriptCommand},
     prelude::*,
     script::{EngineChoice, ScriptPlugin, ScriptSettings},
     xml::read_task,
@@ -97,7 +97,7 @@ impl Case {
         app.world_mut()
             .write_message(SimCommand::ShowRobot(is_shown));
         if script.is_some() {
-            app.world_mut().write_message(AgentOrder::Start);
+            app.world_mut().write_message(ScriptCommand::Start);
         }
         app.step(WARM_UP);
         let agent = app.world().resource::<Agent>();

@@ -8,7 +8,7 @@ use std::{error::Error, fs::File, io::BufWriter, path::Path, sync::Arc};
 use bevy::prelude::*;
 use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Facets, Rasterizer, Scene};
 use tabletop_core::{Face, Picture, Pose, Rgb, RobotJoint, Solid, Table, robot_base};
-use tabletop_kinematics::{Model, baxter};
+use tabletop_kinematics::{RobotModel, baxter};
 use tabletop_robot::look::{figure_of, merged, screen_with};
 
 /// Units in a metre.
@@ -59,7 +59,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// The links of the robot where they are when the program starts.
-fn robot(model: &Model) -> Result<Vec<DrawnFigure>, Box<dyn Error>> {
+fn robot(model: &RobotModel) -> Result<Vec<DrawnFigure>, Box<dyn Error>> {
     let mut configuration = model.zero();
     for joint in RobotJoint::ALL {
         match joint.arm().filter(|_| joint.is_gripper()) {

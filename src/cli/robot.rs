@@ -10,7 +10,7 @@ use tabletop::{
     core::{Arm, JOINTS_PER_ARM, RobotJoint, Table, UNITS_PER_METER, robot_base},
     shipped::read_text,
 };
-use tabletop_kinematics::{ArmChain, Model, ModelError, Target, Unreachable, baxter};
+use tabletop_kinematics::{ArmChain, ModelError, RobotModel, Target, Unreachable, baxter};
 
 use super::{Failure, Output, WRONG_INPUT};
 
@@ -133,7 +133,7 @@ struct Placed {
 }
 
 struct Answerer {
-    robot: Model,
+    robot: RobotModel,
     /// From the torso's frame (m) to the table's, in m as well.
     table_from_torso: DAffine3,
 }
@@ -147,7 +147,7 @@ impl Answerer {
                     Failure::input(format!("{}: {error}", file.display()))
                 };
                 let text = read_text(file).map_err(|error| at(&error))?;
-                Model::from_urdf(&text).map_err(|error| at(&error))?
+                RobotModel::from_urdf(&text).map_err(|error| at(&error))?
             }
         };
         let base = robot_base(&Table::default());

@@ -9,7 +9,9 @@ use clap::Args;
 use tabletop::{
     core::RobotMode,
     robot::{Description, RobotPlugin, Source},
-    script::{ENGINE_VARIABLE, EngineChoice, EngineKind, ScriptSettings, Surroundings, Tell},
+    script::{
+        ENGINE_VARIABLE, EngineChoice, EngineKind, EngineLocator, FieldPolicy, ScriptSettings,
+    },
     shipped::{self, shipped_files, true_path},
 };
 
@@ -83,15 +85,15 @@ impl EngineOptions {
             ..ScriptSettings::default()
         };
         if self.engine.as_deref().map(parse) == Some(EngineChoice::Auto) {
-            settings.surroundings.variable = None;
+            settings.locator.variable = None;
         }
         if let Some(script) = script {
             let (language, agent) = split(script);
             settings.agent = agent.map(PathBuf::from);
-            settings.engine = self.engine_for(language, &settings.surroundings)?;
+            settings.engine = self.engine_for(language, &settings.locator)?;
             if language == OTHER {
-                settings.objects = Tell::Always;
-                settings.trackers = Tell::Always;
+                settings.objects = FieldPolicy::Always;
+                settings.trackers = FieldPolicy::Always;
             }
         } else if let Some(engine) = &self.engine {
             settings.engine = parse(engine);
@@ -100,7 +102,7 @@ impl EngineOptions {
             settings.engine_config().map_err(Failure::input)?;
         }
         if self.no_objects {
-            settings.objects = Tell::Never;
+            settings.objects = FieldPolicy::Never;
         }
         if let Some(patience) = self.script_timeout {
             settings.timeouts.init = patience;
@@ -113,7 +115,7 @@ impl EngineOptions {
     }
 
     /// The engine that is named, if it runs scripts in this language; else any that does.
-    fn engine_for(&self, language: &str, there: &Surroundings) -> Result<EngineChoice, Failure> {
+    fn engine_for(&self, language: &str, there: &EngineLocator) -> Result<EngineChoice, Failure> {
         if language == OTHER {
             return match self.engine.as_deref() {
                 Some(driver) if matches!(parse(driver), EngineChoice::Program(_)) => {
@@ -156,7 +158,7 @@ impl EngineOptions {
     }
 
     /// The engine that is named, and what names it.
-    fn named_engine(&self, there: &Surroundings) -> Option<(EngineChoice, &'static str)> {
+    fn named_engine(&self, there: &EngineLocator) -> Option<(EngineChoice, &'static str)> {
         let names = [
             (&self.engine, "--engine"),
             (&there.variable, ENGINE_VARIABLE),

@@ -16,7 +16,7 @@ use tabletop::{
     headless_app_with,
     recorder::{RecorderPlugin, UnrecordedPlugin},
     report,
-    script::{ScriptPlugin, see_off},
+    script::{ScriptPlugin, shut_down},
     shipped::{read_scenario, read_task, true_path},
     task_files::save_task,
 };
@@ -178,7 +178,7 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
             }
         }
     };
-    see_off(app.world_mut());
+    shut_down(app.world_mut());
     args.write_ends(&app)?;
     if args.record.is_some() {
         finish_recording(&mut app);

@@ -2,8 +2,8 @@
 
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop::{
-    core::{AgentNews, AgentOrder, StepApp as _},
-    script::{ScriptSettings, see_off},
+    core::{ScriptCommand, ScriptEvent, StepApp as _},
+    script::{ScriptSettings, shut_down},
 };
 
 use super::{
@@ -22,14 +22,14 @@ pub(super) fn headless_settings(
     if script.is_some() {
         check_scripts(&settings)?;
     }
-    settings.overhear = Some(report);
+    settings.on_event = Some(report);
     Ok(settings)
 }
 
 /// The script that drives the robot, if one was asked for.
 pub(super) struct Script {
     is_wanted: bool,
-    news: MessageCursor<AgentNews>,
+    events: MessageCursor<ScriptEvent>,
     /// How it has ended, if it has.
     end: Option<Result<(), Failure>>,
 }
@@ -37,26 +37,27 @@ pub(super) struct Script {
 impl Script {
     pub fn start(app: &mut App, is_wanted: bool) -> Self {
         if is_wanted {
-            app.world_mut().write_message(AgentOrder::Start);
+            app.world_mut().write_message(ScriptCommand::Start);
         }
         Self {
             is_wanted,
-            news: MessageCursor::default(),
+            events: MessageCursor::default(),
             end: None,
         }
     }
 
-    /// Notes its end. The run ends if nobody hears what is said.
+    /// Notes its end. The run ends if nobody reads its output.
     pub fn listen(&mut self, app: &App) -> Result<(), Failure> {
-        for news in self
-            .news
-            .read(app.world().resource::<Messages<AgentNews>>())
+        for event in self
+            .events
+            .read(app.world().resource::<Messages<ScriptEvent>>())
         {
-            match news {
-                AgentNews::Stopped => self.end = Some(Ok(())),
-                AgentNews::Failed { .. } => self.end = Some(Err(Failure::silent())),
-                AgentNews::Started { .. } | AgentNews::Printed { .. } | AgentNews::Noted { .. } => {
-                }
+            match event {
+                ScriptEvent::Stopped => self.end = Some(Ok(())),
+                ScriptEvent::Failed { .. } => self.end = Some(Err(Failure::silent())),
+                ScriptEvent::Started { .. }
+                | ScriptEvent::Printed { .. }
+                | ScriptEvent::Noted { .. } => {}
             }
         }
         match is_unheard() {
@@ -79,7 +80,7 @@ impl Script {
     pub fn act(mut self, app: &mut App, ticks: u64) -> Result<(), Failure> {
         let mut left = 0..ticks;
         self.run_while(app, |_| left.next().is_some())?;
-        see_off(app.world_mut());
+        shut_down(app.world_mut());
         self.result()
     }
 
@@ -102,12 +103,12 @@ impl Script {
 }
 
 /// Says what becomes of the script when it does.
-fn report(news: &AgentNews) {
-    match news {
-        AgentNews::Started { engine } => say(format_args!("tabletop: {engine}")),
-        AgentNews::Printed { line, .. } => say(line),
-        AgentNews::Noted { line } => say(format_args!("tabletop: {line}")),
-        AgentNews::Failed { reason } => say(format_args!("tabletop: {reason}")),
-        AgentNews::Stopped => {}
+fn report(event: &ScriptEvent) {
+    match event {
+        ScriptEvent::Started { engine } => say(format_args!("tabletop: {engine}")),
+        ScriptEvent::Printed { line, .. } => say(line),
+        ScriptEvent::Noted { line } => say(format_args!("tabletop: {line}")),
+        ScriptEvent::Failed { reason } => say(format_args!("tabletop: {reason}")),
+        ScriptEvent::Stopped => {}
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop_core::{
-    Agent, AgentNews, Paused, Replaying, SimCommand, SimFact, SimSystems, SimTick, TickSystems,
+    Agent, Paused, Replaying, ScriptEvent, SimCommand, SimFact, SimSystems, SimTick, TickSystems,
 };
 use tabletop_recorder::{Session, SessionCommand};
 
@@ -133,7 +133,7 @@ fn play(
     mut commands: ResMut<Messages<SimCommand>>,
     mut seen: Local<MessageCursor<SimCommand>>,
     mut facts: MessageWriter<SimFact>,
-    mut news: MessageWriter<AgentNews>,
+    mut news: MessageWriter<ScriptEvent>,
     mut replaying: ResMut<Replaying>,
     agent: Res<Agent>,
     tick: Res<SimTick>,
@@ -157,7 +157,7 @@ fn play(
             SimCommand::Drive(_) if agent.is_on() => {
                 if !std::mem::replace(&mut player.is_watched, true) {
                     let line = WATCHES.into();
-                    news.write(AgentNews::Noted { line });
+                    news.write(ScriptEvent::Noted { line });
                 }
             }
             _ => {
@@ -280,7 +280,7 @@ mod tests {
             let mut found = tick(&mut app, &orders);
             news.extend(
                 app.world_mut()
-                    .resource_mut::<Messages<AgentNews>>()
+                    .resource_mut::<Messages<ScriptEvent>>()
                     .drain(),
             );
             found.sort_by_key(|command| carried_out.iter().position(|other| other == command));
@@ -289,7 +289,7 @@ mod tests {
         }
         assert_eq!(
             news,
-            [AgentNews::Noted {
+            [ScriptEvent::Noted {
                 line: WATCHES.into()
             }]
         );

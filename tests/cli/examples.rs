@@ -8,7 +8,7 @@ use std::{
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop::{
     camera::Camera,
-    core::{Agent, AgentNews, AgentOrder, HeadCamera, Markers},
+    core::{Agent, HeadCamera, Markers, ScriptCommand, ScriptEvent},
     prelude::*,
     scenario::{Outcome, Program, Scenario, ScenarioPlugin, ScenarioRun},
     script::{EngineChoice, ScriptPlugin, ScriptSettings},
@@ -20,7 +20,7 @@ use crate::{scripts::copy_of_matlab, support::shipped};
 /// A simulator whose robot is driven by an example.
 struct Stage {
     app: App,
-    news: MessageCursor<AgentNews>,
+    events: MessageCursor<ScriptEvent>,
     printed: String,
     is_over: bool,
 }
@@ -43,10 +43,10 @@ impl Stage {
             app.world_mut()
                 .write_message(SimCommand::SetScene(Box::default()));
         }
-        app.world_mut().write_message(AgentOrder::Start);
+        app.world_mut().write_message(ScriptCommand::Start);
         let mut stage = Self {
             app,
-            news: MessageCursor::default(),
+            events: MessageCursor::default(),
             printed: String::new(),
             is_over: false,
         };
@@ -67,13 +67,13 @@ impl Stage {
 
     fn tick(&mut self) {
         self.app.step(1);
-        let messages = self.app.world().resource::<Messages<AgentNews>>();
-        for news in self.news.read(messages) {
-            match news {
-                AgentNews::Printed { line, .. } => self.printed += &format!("{line}\n"),
-                AgentNews::Failed { reason } => panic!("{reason}"),
-                AgentNews::Stopped => self.is_over = true,
-                AgentNews::Started { .. } | AgentNews::Noted { .. } => {}
+        let messages = self.app.world().resource::<Messages<ScriptEvent>>();
+        for event in self.events.read(messages) {
+            match event {
+                ScriptEvent::Printed { line, .. } => self.printed += &format!("{line}\n"),
+                ScriptEvent::Failed { reason } => panic!("{reason}"),
+                ScriptEvent::Stopped => self.is_over = true,
+                ScriptEvent::Started { .. } | ScriptEvent::Noted { .. } => {}
             }
         }
     }

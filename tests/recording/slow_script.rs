@@ -4,7 +4,7 @@ use std::{fs, time::Duration};
 
 use bevy::prelude::*;
 use tabletop::{
-    core::{Agent, AgentOrder},
+    core::{Agent, ScriptCommand},
     prelude::*,
     script::{EngineChoice, EngineKind, ScriptPlugin, ScriptSettings, Waiting},
 };
@@ -56,7 +56,7 @@ fn what_is_done_while_a_script_is_waited_for_is_recorded_in_its_tick() {
     });
     window.write(SimCommand::LoadTask("tablesetup/default.xml".into()));
     window.frames(10);
-    window.write(AgentOrder::Start);
+    window.write(ScriptCommand::Start);
     window.frames_until(is_online);
 
     let hand = Hand::Any;

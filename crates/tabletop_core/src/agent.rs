@@ -4,19 +4,19 @@ use std::time::Duration;
 
 use bevy::prelude::*;
 
-/// What the script bridge is told. These are no commands to the simulation: a recording holds what the script has ordered, not
+/// A command to the script bridge. It is none to the simulation: a recording holds the commands that come of the script, not
 /// the script.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AgentOrder {
+pub enum ScriptCommand {
     /// Start the script engine and the script.
     Start,
     /// Stop the script.
     Stop,
 }
 
-/// What the script bridge tells.
+/// An event in the life of the script.
 #[derive(Message, Clone, Debug, PartialEq, Eq)]
-pub enum AgentNews {
+pub enum ScriptEvent {
     /// The engine is there and the init script runs.
     Started {
         /// The engine, with its version and program.
@@ -34,7 +34,7 @@ pub enum AgentNews {
         /// The line.
         line: String,
     },
-    /// The script has ended, by itself or because it was told to.
+    /// The script has ended, by itself or on command.
     Stopped,
     /// The script or its engine has failed, and is stopped.
     Failed {
@@ -75,13 +75,13 @@ impl Agent {
     }
 }
 
-/// Whether the simulation stands still because something outside of it is not ready: no part of a tick runs.
+/// Whether something outside of the simulation is not ready, so that it stands still: no part of a tick runs.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Standstill(pub bool);
+pub struct SimBlocked(pub bool);
 
-impl Standstill {
+impl SimBlocked {
     /// Run condition: nothing is waited for.
-    pub fn is_over(standstill: Res<Self>) -> bool {
-        !standstill.0
+    pub fn is_clear(blocked: Res<Self>) -> bool {
+        !blocked.0
     }
 }

@@ -9,7 +9,7 @@ use bevy::{
     prelude::*,
 };
 
-use crate::{PictureDemand, PictureSystems, SimCommand, Standstill};
+use crate::{PictureDemand, PictureSystems, SimBlocked, SimCommand};
 
 /// Ticks per second of simulated time.
 pub const TICKS_PER_SECOND: u32 = 60;
@@ -17,7 +17,8 @@ pub const TICKS_PER_SECOND: u32 = 60;
 /// Length of a tick in seconds.
 pub const TICK_SECONDS: f32 = 1.0 / TICKS_PER_SECOND as f32;
 
-/// Everything of a tick: whatever is in [`FixedUpdate`] and in none of the [`OrderSystems`]. Does not run at a [`Standstill`].
+/// Everything of a tick: whatever is in [`FixedUpdate`] and in none of the [`OrderSystems`]. Does not run while
+/// [`SimBlocked`] is set.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TickSystems;
 
@@ -90,7 +91,7 @@ impl Paused {
             SimCommand::SetPaused(pause) => Some(*pause),
             _ => None,
         });
-        // At a standstill, what was asked for in an earlier frame is still to be done.
+        // While the simulation is blocked, what was asked for in an earlier frame is still to be done.
         *asked_for = pauses.last().or(*asked_for).filter(|ask| *ask != paused.0);
         asked_for.unwrap_or(paused.0)
     }
@@ -124,10 +125,10 @@ pub(crate) fn configure(app: &mut App) {
         .configure_sets(
             FixedUpdate,
             (
-                OrderSystems::Scenario.run_if(Standstill::is_over),
-                OrderSystems::User.run_if(Standstill::is_over),
+                OrderSystems::Scenario.run_if(SimBlocked::is_clear),
+                OrderSystems::User.run_if(SimBlocked::is_clear),
                 OrderSystems::Script,
-                TickSystems.run_if(Standstill::is_over),
+                TickSystems.run_if(SimBlocked::is_clear),
             )
                 .chain(),
         )

@@ -48,7 +48,7 @@ mod timeline;
 mod twist;
 mod user;
 
-pub use agent::{Agent, AgentNews, AgentOrder, Standstill};
+pub use agent::{Agent, ScriptCommand, ScriptEvent, SimBlocked};
 pub use clock::{
     ActuateSystems, CommandSystems, OrderSystems, Paused, SimSystems, SimTick, StepApp,
     TICK_SECONDS, TICKS_PER_SECOND, TickSystems,
@@ -115,13 +115,13 @@ impl Plugin for CorePlugin {
     fn build(&self, app: &mut App) {
         app.add_message::<SimCommand>()
             .add_message::<SimFact>()
-            .add_message::<AgentOrder>()
-            .add_message::<AgentNews>()
+            .add_message::<ScriptCommand>()
+            .add_message::<ScriptEvent>()
             .add_message::<OpenRecording>()
             .add_message::<CameraMotion>()
             .add_message::<PlaybackOrder>()
             .init_resource::<Agent>()
-            .init_resource::<Standstill>()
+            .init_resource::<SimBlocked>()
             .init_resource::<DragPlane>()
             .init_resource::<Hands>()
             .init_resource::<History>()

@@ -10,8 +10,8 @@ use std::{
 };
 
 use tabletop_engine::{
-    Aux, EngineChoice, EngineConfig, EngineError, EngineHandle, EngineKind, Picture, Reply, Sensor,
-    Surroundings, Trigger,
+    Aux, EngineChoice, EngineConfig, EngineError, EngineHandle, EngineKind, EngineLocator, Reply,
+    RgbImage, Sensor, Trigger,
 };
 
 const CALLS: usize = 600;
@@ -35,7 +35,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         (EngineKind::Octave, Trigger::Poll),
         (EngineKind::Python, Trigger::Stdin),
     ] {
-        let mut config = EngineConfig::new(Surroundings::system().find(&EngineChoice::Kind(kind))?);
+        let mut config =
+            EngineConfig::new(EngineLocator::system().find(&EngineChoice::Kind(kind))?);
         config.trigger = trigger;
         if kind == EngineKind::Python {
             config.agent = folder.join("agent.py");
@@ -53,7 +54,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         };
         let pixels = (0..90_000u32).map(|place| place as u8).collect();
         let picture = Sensor {
-            picture: Picture::new(200, 150, pixels),
+            picture: RgbImage::new(200, 150, pixels),
             ..bare.clone()
         };
         let names = [

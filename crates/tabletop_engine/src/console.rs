@@ -7,13 +7,13 @@ use std::{
 };
 
 /// How much of the standard error is kept for the case that the engine dies.
-const LAST_WORDS: usize = 20;
-/// How long it takes until it is said again that lines were left out.
+const LAST_ERRORS: usize = 20;
+/// Time until the next note that lines were left out.
 const NOTE_INTERVAL: Duration = Duration::from_secs(1);
 
 /// How much is kept of what a script prints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Output {
+pub enum ConsoleLimit {
     /// As much as a person can look at: 200 lines a second.
     #[default]
     Readable,
@@ -21,7 +21,7 @@ pub enum Output {
     Whole,
 }
 
-impl Output {
+impl ConsoleLimit {
     fn lines_per_second(self) -> u32 {
         match self {
             Self::Readable => 200,
@@ -66,19 +66,19 @@ pub enum Stream {
     Note,
 }
 
-/// Lines on their way from an engine to whoever shows them.
+/// LineQueue on their way from an engine to whoever shows them.
 #[derive(Clone, Debug)]
 pub(crate) struct Console {
-    output: Output,
-    lines: Arc<Mutex<Lines>>,
+    limit: ConsoleLimit,
+    lines: Arc<Mutex<LineQueue>>,
 }
 
 #[derive(Debug, Default)]
-struct Lines {
+struct LineQueue {
     waiting: VecDeque<ConsoleLine>,
     waiting_bytes: usize,
     /// The last lines of the standard error that nobody has fetched.
-    last_words: VecDeque<String>,
+    last_errors: VecDeque<String>,
     left_out: u64,
     noted: Option<Instant>,
     second: Option<Instant>,
@@ -86,9 +86,9 @@ struct Lines {
 }
 
 impl Console {
-    pub(crate) fn new(output: Output) -> Self {
+    pub(crate) fn new(limit: ConsoleLimit) -> Self {
         Self {
-            output,
+            limit,
             lines: Arc::default(),
         }
     }
@@ -97,13 +97,13 @@ impl Console {
     pub(crate) fn splitter(&self) -> Splitter {
         Splitter {
             line: Vec::new(),
-            limit: 2 * self.output.line(),
+            limit: 2 * self.limit.line(),
         }
     }
 
     /// Takes a line, or counts it as left out.
     pub(crate) fn push(&self, stream: Stream, bytes: &[u8]) {
-        self.with(|lines| lines.push(self.output, stream, bytes));
+        self.with(|lines| lines.push(self.limit, stream, bytes));
     }
 
     /// All lines that wait.
@@ -111,7 +111,7 @@ impl Console {
         self.with(|lines| {
             lines.note_gap(NOTE_INTERVAL);
             lines.waiting_bytes = 0;
-            lines.last_words.clear();
+            lines.last_errors.clear();
             lines.waiting.drain(..).collect()
         })
     }
@@ -122,23 +122,23 @@ impl Console {
     }
 
     /// The last lines of the standard error that nobody has fetched. Nobody will.
-    pub(crate) fn take_last_words(&self) -> String {
+    pub(crate) fn take_last_errors(&self) -> String {
         self.with(|lines| {
-            let words: Vec<_> = lines.last_words.drain(..).collect();
-            let told =
+            let words: Vec<_> = lines.last_errors.drain(..).collect();
+            let reported =
                 |line: &ConsoleLine| line.stream == Stream::Error && words.contains(&line.text);
-            lines.waiting.retain(|line| !told(line));
+            lines.waiting.retain(|line| !reported(line));
             words.join("\n")
         })
     }
 
-    fn with<T>(&self, act: impl FnOnce(&mut Lines) -> T) -> T {
+    fn with<T>(&self, act: impl FnOnce(&mut LineQueue) -> T) -> T {
         act(&mut self.lines.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-impl Lines {
-    fn push(&mut self, output: Output, stream: Stream, bytes: &[u8]) {
+impl LineQueue {
+    fn push(&mut self, limit: ConsoleLimit, stream: Stream, bytes: &[u8]) {
         let over = |start: Instant| start.elapsed() >= Duration::from_secs(1);
         if self.second.is_none_or(over) {
             self.second = Some(Instant::now());
@@ -146,18 +146,18 @@ impl Lines {
         }
         self.in_second = self.in_second.saturating_add(1);
         let full =
-            self.in_second > output.lines_per_second() || self.waiting_bytes >= output.waiting();
+            self.in_second > limit.lines_per_second() || self.waiting_bytes >= limit.waiting();
         if full && stream == Stream::Out {
             self.left_out += 1;
             return;
         }
         let full = full && stream != Stream::Note;
-        let text = clean(bytes, output.line());
+        let text = clean(bytes, limit.line());
         if stream == Stream::Error {
-            if self.last_words.len() >= LAST_WORDS {
-                self.last_words.pop_front();
+            if self.last_errors.len() >= LAST_ERRORS {
+                self.last_errors.pop_front();
             }
-            self.last_words.push_back(text.clone());
+            self.last_errors.push_back(text.clone());
         }
         if full {
             self.left_out += 1;
@@ -168,7 +168,7 @@ impl Lines {
         self.waiting.push_back(ConsoleLine { stream, text });
     }
 
-    /// Says how many lines were left out, if that was not said just now.
+    /// Notes how many lines were left out, unless that was noted just now.
     fn note_gap(&mut self, interval: Duration) {
         if self.left_out == 0 || self.noted.is_some_and(|noted| noted.elapsed() < interval) {
             return;
@@ -277,7 +277,7 @@ mod tests {
     use super::*;
 
     fn pieces(chunks: &[&[u8]]) -> Vec<String> {
-        let mut splitter = Console::new(Output::Readable).splitter();
+        let mut splitter = Console::new(ConsoleLimit::Readable).splitter();
         let mut all = Vec::new();
         let mut each = |piece: Piece| match piece {
             Piece::Text(text) => all.push(String::from_utf8_lossy(text).into_owned()),
@@ -308,8 +308,8 @@ mod tests {
     }
 
     #[test]
-    fn a_flood_is_bounded_and_told_once_a_second() {
-        let console = Console::new(Output::Readable);
+    fn a_flood_is_bounded_and_noted_once_a_second() {
+        let console = Console::new(ConsoleLimit::Readable);
         let mut lines = Vec::new();
         for _ in 0..100 {
             for _ in 0..1000 {
@@ -325,12 +325,12 @@ mod tests {
         console.push(Stream::Out, b"one more");
         console.finish();
         lines.extend(console.drain());
-        let told = notes(&lines).into_iter().map(|note| {
+        let noted = notes(&lines).into_iter().map(|note| {
             let count = note.trim_start_matches('(').split(' ').next();
             count.unwrap().parse::<usize>().unwrap()
         });
-        let told: usize = told.sum();
-        assert_eq!(lines.len() - notes(&lines).len() + told, 100_001);
+        let noted: usize = noted.sum();
+        assert_eq!(lines.len() - notes(&lines).len() + noted, 100_001);
         let mut splitter = console.splitter();
         for _ in 0..1000 {
             splitter.feed(&[b'x'; 1000], |_| {});
@@ -340,9 +340,9 @@ mod tests {
 
     #[test]
     fn one_line_is_no_lines() {
-        let mut lines = Lines {
+        let mut lines = LineQueue {
             left_out: 1,
-            ..Lines::default()
+            ..LineQueue::default()
         };
         lines.note_gap(Duration::ZERO);
         assert_eq!(
@@ -353,7 +353,7 @@ mod tests {
 
     #[test]
     fn what_the_program_remarks_is_not_left_out() {
-        let console = Console::new(Output::Readable);
+        let console = Console::new(ConsoleLimit::Readable);
         for _ in 0..100_000 {
             console.push(Stream::Out, b"x");
         }
@@ -363,7 +363,7 @@ mod tests {
 
     #[test]
     fn all_is_kept_where_all_is_wanted() {
-        let console = Console::new(Output::Whole);
+        let console = Console::new(ConsoleLimit::Whole);
         for _ in 0..100_000 {
             console.push(Stream::Out, &[b'x'; 300]);
         }
@@ -371,13 +371,13 @@ mod tests {
     }
 
     #[test]
-    fn last_words_are_told_once() {
-        let console = Console::new(Output::Readable);
+    fn last_errors_are_reported_once() {
+        let console = Console::new(ConsoleLimit::Readable);
         console.push(Stream::Error, b"shown");
         assert_eq!(console.drain().len(), 1);
         console.push(Stream::Error, b"unseen");
         console.push(Stream::Out, b"result");
-        assert_eq!(console.take_last_words(), "unseen");
+        assert_eq!(console.take_last_errors(), "unseen");
         assert_eq!(console.drain().len(), 1);
     }
 

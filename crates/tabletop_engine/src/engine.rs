@@ -1,8 +1,6 @@
-//! An engine from outside: what it is started with, the handle to it, and what it replies.
+//! The handle to an engine: requests go in, replies and printed lines come out.
 
 use std::{
-    env,
-    path::{Path, PathBuf},
     sync::{
         Arc, Mutex, PoisonError,
         mpsc::{self, Receiver, Sender},
@@ -12,148 +10,13 @@ use std::{
 };
 
 use crate::{
-    agent::{Aux, InitReply},
-    choice::EngineKind,
-    console::{Console, ConsoleLine, Output},
+    config::EngineConfig,
+    console::{Console, ConsoleLine},
     error::EngineError,
-    find::FoundEngine,
-    motor::Motor,
-    private_folder::PrivateFolder,
-    process::Killer,
-    sensor::Sensor,
-    worker::{Signal, Worker},
+    reply::Reply,
+    variables::{auxiliary::Aux, sensor::Sensor},
+    worker::{Worker, process::Killer, signal::Signal},
 };
-
-/// How an engine learns of a request.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Trigger {
-    /// By a line on its standard input. Fast; not possible with MATLAB everywhere.
-    Stdin,
-    /// By a file that it looks at again and again. Not for Python and users' drivers.
-    Poll,
-}
-
-/// How long to wait for an engine. What takes longer is ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Timeouts {
-    /// For its start.
-    pub start: Duration,
-    /// For the init script.
-    pub init: Duration,
-    /// For a call of the callback script.
-    pub step: Duration,
-}
-
-impl Default for Timeouts {
-    fn default() -> Self {
-        Self {
-            start: Duration::from_secs(120),
-            init: Duration::from_secs(120),
-            step: Duration::from_secs(30),
-        }
-    }
-}
-
-/// What an engine is started with.
-#[derive(Clone, Debug)]
-pub struct EngineConfig {
-    /// The engine.
-    pub engine: FoundEngine,
-    /// How it learns of requests.
-    pub trigger: Trigger,
-    /// The folder that holds agentBehavior.m and the scripts that it names (MATLAB, Octave), or the file with the functions
-    /// `init` and `callback` (Python), or whatever a user's driver runs. A relative path is one from the working directory.
-    pub agent: PathBuf,
-    /// The names of an init and a callback script to run instead of those that agentBehavior.m names.
-    pub pair: Option<[String; 2]>,
-    /// The directory in which the engine runs.
-    pub working_dir: PathBuf,
-    /// How long to wait.
-    pub timeouts: Timeouts,
-    /// Whether there is a display that figures can appear on.
-    pub display: bool,
-    /// How much is kept of what the script prints.
-    pub output: Output,
-    /// Where the agent is if its files come from the program; it goes with the last of those that need it.
-    written: Option<Arc<PrivateFolder>>,
-}
-
-impl EngineConfig {
-    /// The usual: scripts of the folder "matlab" (or the file "python/example.py") in the current directory.
-    pub fn new(engine: FoundEngine) -> Self {
-        let set = |name| env::var_os(name).is_some_and(|value| !value.is_empty());
-        let unix = cfg!(unix) && !cfg!(target_os = "macos");
-        Self {
-            trigger: match engine.kind {
-                EngineKind::Matlab => Trigger::Poll,
-                EngineKind::Octave | EngineKind::Python | EngineKind::Driver => Trigger::Stdin,
-            },
-            agent: match engine.kind {
-                EngineKind::Python => "python/example.py".into(),
-                EngineKind::Driver => PathBuf::new(),
-                EngineKind::Matlab | EngineKind::Octave => "matlab".into(),
-            },
-            engine,
-            pair: None,
-            working_dir: ".".into(),
-            timeouts: Timeouts::default(),
-            display: !unix || set("DISPLAY") || set("WAYLAND_DISPLAY"),
-            output: Output::default(),
-            written: None,
-        }
-    }
-
-    /// Takes an agent of which nothing is on disk: its files, by their paths, are written to a folder that is there as long as the
-    /// engine is. `agent` is the path of one of them, or of a folder.
-    ///
-    /// # Errors
-    /// They cannot be written anywhere.
-    pub fn write_agent<'a>(
-        &mut self,
-        agent: &Path,
-        files: impl IntoIterator<Item = (&'a str, &'a str)> + Clone,
-    ) -> Result<(), EngineError> {
-        let folder = PrivateFolder::filled(|folder| {
-            let mut files = files.clone().into_iter();
-            files.try_for_each(|(path, text)| folder.write(path, text.as_bytes()))
-        })?;
-        self.agent = folder.path().join(agent);
-        self.written = Some(Arc::new(folder));
-        Ok(())
-    }
-
-    /// Whether the agent goes with the engine.
-    pub(crate) fn is_agent_temporary(&self) -> bool {
-        self.written.is_some()
-    }
-}
-
-/// What comes back from an engine: one for its start, one for each request, and one when it ends.
-#[derive(Clone, Debug)]
-pub enum Reply {
-    /// The engine is there.
-    Started {
-        /// Which one, with its version and program.
-        description: String,
-    },
-    /// The init script has run.
-    Init(InitReply),
-    /// The callback script has run.
-    Step(Box<StepReply>),
-    /// Something went wrong. If [`EngineError::is_fatal`], nothing more comes; else there may be another [`EngineHandle::init`].
-    Failed(EngineError),
-}
-
-/// What a callback script wants.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct StepReply {
-    /// What the robot shall do.
-    pub motor: Motor,
-    /// Whether the script is done.
-    pub exit: bool,
-    /// How long it took, from writing the request to having read the answer.
-    pub took: Duration,
-}
 
 /// How long an engine that is not needed any more may take to end by itself.
 const FAREWELL: Duration = Duration::from_secs(10);
@@ -181,7 +44,7 @@ impl EngineHandle {
     pub fn start(config: EngineConfig) -> Result<Self, EngineError> {
         let (inbox, signals) = mpsc::channel();
         let (outbox, replies) = mpsc::channel();
-        let console = Console::new(config.output);
+        let console = Console::new(config.console_limit);
         let killer = Killer::default();
         let worker = Worker {
             config,
@@ -253,7 +116,7 @@ impl EngineHandle {
     }
 
     fn send(&self, signal: Signal) {
-        // An engine that has ended has said so; requests to it have no effect.
+        // An engine that has ended has reported it; requests to it have no effect.
         drop(self.0.inbox.send(signal));
     }
 }

@@ -2,7 +2,7 @@
 
 use std::{fmt, io, path::PathBuf, time::Duration};
 
-use crate::{misuse::Misuse, protocol::ProtocolError};
+use crate::{protocol::ProtocolError, variables::invalid_field::InvalidField};
 
 /// Why an engine did not do what it was asked to.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -15,7 +15,7 @@ pub enum EngineError {
     Start {
         /// The engine's program.
         engine: PathBuf,
-        /// What the system said.
+        /// The system's reason.
         reason: String,
     },
     /// The session's folder cannot be written or read.
@@ -23,17 +23,17 @@ pub enum EngineError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's reason.
         reason: String,
     },
     /// The script failed.
     #[error("{0}")]
     Script(ScriptError),
     /// The script set a variable to what cannot be used.
-    #[error("{misuse}{}", in_script(.script.as_ref()))]
-    Misuse {
+    #[error("{field}{}", in_script(.script.as_ref()))]
+    InvalidField {
         /// What cannot be used.
-        misuse: Misuse,
+        field: InvalidField,
         /// The script, if it is known.
         script: Option<PathBuf>,
     },
@@ -42,7 +42,7 @@ pub enum EngineError {
         "no answer from {what} within {} s; the engine was ended{}{}",
         .limit.as_secs_f64(),
         way_to_wait(what),
-        places(.stack)
+        locations(.stack)
     )]
     Timeout {
         /// What did not answer: the engine's start, the init script or the callback script.
@@ -50,12 +50,12 @@ pub enum EngineError {
         /// How long it was waited for.
         limit: Duration,
         /// Where the script was then, innermost first, if the engine can say it.
-        stack: Vec<Place>,
+        stack: Vec<ScriptLocation>,
     },
     /// The engine ended by itself: it crashed, or the script called `exit`.
-    #[error("the engine ended ({status}){}{}", last_words(.stderr), way_to_end(status))]
+    #[error("the engine ended ({status}){}{}", last_errors(.stderr), way_to_end(status))]
     Died {
-        /// How it ended, as the system says it.
+        /// Its exit status.
         status: String,
         /// The last lines that it wrote to its standard error, as far as nobody has fetched them from the console.
         stderr: String,
@@ -71,7 +71,7 @@ pub enum EngineError {
 impl EngineError {
     /// Whether the engine is gone, so that only a new one can go on.
     pub fn is_fatal(&self) -> bool {
-        !matches!(self, Self::Script(_) | Self::Misuse { .. })
+        !matches!(self, Self::Script(_) | Self::InvalidField { .. })
     }
 
     pub(crate) fn file(path: impl Into<PathBuf>, error: &io::Error) -> Self {
@@ -88,7 +88,7 @@ fn in_script(script: Option<&PathBuf>) -> String {
     })
 }
 
-fn last_words(stderr: &str) -> String {
+fn last_errors(stderr: &str) -> String {
     if stderr.trim().is_empty() {
         String::new()
     } else {
@@ -117,10 +117,10 @@ fn way_to_end(status: &str) -> &'static str {
 pub struct ScriptError {
     /// The error's identifier ("Octave:undefined-function"); empty if it has none.
     pub id: String,
-    /// What the engine says.
+    /// The engine's message.
     pub message: String,
     /// Where, innermost first.
-    pub stack: Vec<Place>,
+    pub stack: Vec<ScriptLocation>,
 }
 
 /// How much of a message is shown, in letters.
@@ -128,14 +128,14 @@ const MAX_MESSAGE: usize = 4000;
 
 /// A line of a script.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct ScriptLocation {
     /// The script.
     pub file: PathBuf,
     /// The line, from 1; 0 if the engine does not know.
     pub line: u32,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for ScriptLocation {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
         write!(formatter, "{}", self.file.display())?;
         match self.line {
@@ -146,8 +146,8 @@ impl fmt::Display for Place {
 }
 
 impl ScriptError {
-    /// Where the error happened, as far as the engine says.
-    pub fn place(&self) -> Option<&Place> {
+    /// Where the error happened, as far as the engine reports it.
+    pub fn location(&self) -> Option<&ScriptLocation> {
         self.stack.first()
     }
 
@@ -161,10 +161,10 @@ impl ScriptError {
 
     /// An error from what a driver sends: the stack as lines of "line file".
     pub(crate) fn new(id: &str, message: &str, stack: &str) -> Self {
-        let syntax = place_in_message(message);
+        let syntax = location_in_message(message);
         let stack = syntax
             .into_iter()
-            .chain(stack.lines().filter_map(place_of_frame))
+            .chain(stack.lines().filter_map(location_of_frame))
             .collect();
         Self {
             id: id.to_owned(),
@@ -183,20 +183,20 @@ fn cut(message: &str) -> String {
 
 impl fmt::Display for ScriptError {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        write!(formatter, "{}{}", self.message, places(&self.stack))
+        write!(formatter, "{}{}", self.message, locations(&self.stack))
     }
 }
 
-fn places(stack: &[Place]) -> String {
+fn locations(stack: &[ScriptLocation]) -> String {
     stack
         .iter()
-        .map(|place| format!("\n  at {place}"))
+        .map(|location| format!("\n  at {location}"))
         .collect()
 }
 
-fn place_of_frame(frame: &str) -> Option<Place> {
+fn location_of_frame(frame: &str) -> Option<ScriptLocation> {
     let (line, file) = frame.trim().split_once(' ')?;
-    Some(Place {
+    Some(ScriptLocation {
         file: file.into(),
         // An engine that does not know the line says -1.
         line: line.parse::<i64>().ok()?.clamp(0, i64::from(u32::MAX)) as u32,
@@ -204,7 +204,7 @@ fn place_of_frame(frame: &str) -> Option<Place> {
 }
 
 /// The place that a message about wrong syntax names: "near line 3 of file x.m" (Octave) or "File: x.m Line: 3" (MATLAB).
-fn place_in_message(message: &str) -> Option<Place> {
+fn location_in_message(message: &str) -> Option<ScriptLocation> {
     let octave = || {
         let (line, rest) = message
             .split_once("near line ")?
@@ -217,7 +217,7 @@ fn place_in_message(message: &str) -> Option<Place> {
         Some((rest.split_whitespace().next()?, file))
     };
     let (line, file) = octave().or_else(matlab)?;
-    Some(Place {
+    Some(ScriptLocation {
         file: file.trim().into(),
         line: line.trim().parse().ok()?,
     })
@@ -228,20 +228,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_are_found_in_frames_and_messages() {
+    fn locations_are_found_in_frames_and_messages() {
         let error = ScriptError::new("a:b", "no\n", "2 /x y/helper.m\n-1 /x/top.m\n");
         assert_eq!(error.to_string(), "no\n  at /x y/helper.m:2\n  at /x/top.m");
         let octave = "parse error near line 3 of file /x/bad.m\n\n  syntax error\n";
         assert_eq!(
             ScriptError::new("", octave, "")
-                .place()
+                .location()
                 .unwrap()
                 .to_string(),
             "/x/bad.m:3"
         );
         let matlab = "Error: File: C:\\x\\bad.m Line: 12 Column: 5\nUnexpected operator.";
-        assert_eq!(ScriptError::new("", matlab, "").place().unwrap().line, 12);
-        assert_eq!(ScriptError::new("", "near line", "x\n\n7").place(), None);
+        assert_eq!(
+            ScriptError::new("", matlab, "").location().unwrap().line,
+            12
+        );
+        assert_eq!(ScriptError::new("", "near line", "x\n\n7").location(), None);
         let long = ScriptError::new("", &"ü".repeat(9000), "").message;
         assert_eq!(long.chars().count(), MAX_MESSAGE + 1);
     }

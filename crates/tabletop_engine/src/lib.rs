@@ -1,13 +1,13 @@
 //! Script engines: MATLAB, GNU Octave and Python as child processes that run the scripts of users (report section 5.2).
 //!
-//! An engine is found by [`Surroundings::find`] and started by [`EngineHandle::start`]. It lives on a thread of its own;
+//! An engine is found by [`EngineLocator::find`] and started by [`EngineHandle::start`]. It lives on a thread of its own;
 //! requests ([`init`](EngineHandle::init), [`step`](EngineHandle::step)) return at once, and each is answered by one [`Reply`].
 //! Whatever the script does, the caller never waits longer than it wants to, and a script's faults come as an
 //! [`EngineError`] that says where they are.
 //!
 //! ```
 //! use std::{env, fs, time::Duration};
-//! use tabletop_engine::{Aux, EngineChoice, EngineConfig, EngineHandle, Reply, Sensor, Surroundings};
+//! use tabletop_engine::{Aux, EngineChoice, EngineConfig, EngineHandle, Reply, Sensor, EngineLocator};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let folder = env::temp_dir().join(format!("tabletop-example-{}", std::process::id()));
@@ -16,7 +16,7 @@
 //! fs::write(folder.join("turnInit.m"), "speed = 0.5; aux.drawMarkers = [1 2 3];")?;
 //! fs::write(folder.join("turnCallback.m"), "motor.jointVelocities(2, 3) = speed; aux.exit = 1;")?;
 //!
-//! let octave = Surroundings::system().find(&"octave".parse::<EngineChoice>()?)?;
+//! let octave = EngineLocator::system().find(&"octave".parse::<EngineChoice>()?)?;
 //! let mut config = EngineConfig::new(octave);
 //! config.agent = folder.clone();
 //! let engine = EngineHandle::start(config)?;
@@ -44,38 +44,33 @@
 //! `docs/script-protocol.md`. An engine learns by a [`Trigger`] that there is something to do. Its process and all that it
 //! starts are a group of their own, which ends with the last [`EngineHandle`] or, on Unix, with this program, however that ends.
 
-mod agent;
-mod choice;
+mod config;
 mod console;
-mod driver;
+mod discovery;
 mod engine;
 mod error;
-mod find;
-mod frames;
-mod hint;
-mod launch;
-mod misuse;
-mod motor;
-mod output;
-mod places;
+mod kind;
+mod octave;
 mod private_folder;
-mod process;
 pub mod protocol;
-mod readiness;
-mod scripts;
-mod sensor;
-mod session;
-mod stand_ins;
-mod trigger;
+mod reply;
+mod variables;
 mod worker;
 
-pub use agent::{Aux, InitReply};
-pub use choice::{ENGINE_VARIABLE, EngineChoice, EngineKind};
-pub use console::{ConsoleLine, Output, Stream};
-pub use engine::{EngineConfig, EngineHandle, Reply, StepReply, Timeouts, Trigger};
-pub use error::{EngineError, Place, ScriptError};
-pub use find::{FoundEngine, Surroundings};
-pub use misuse::{Element, Misuse};
-pub use motor::Motor;
-pub use places::Platform;
-pub use sensor::{Picture, SensedContact, SensedObject, Sensor};
+pub use config::{EngineConfig, Timeouts, Trigger};
+pub use console::{ConsoleLimit, ConsoleLine, Stream};
+pub use discovery::{
+    choice::{ENGINE_VARIABLE, EngineChoice},
+    locator::{EngineLocator, FoundEngine},
+    platform::Platform,
+};
+pub use engine::EngineHandle;
+pub use error::{EngineError, ScriptError, ScriptLocation};
+pub use kind::EngineKind;
+pub use reply::{Reply, StepReply};
+pub use variables::{
+    auxiliary::{Aux, InitReply},
+    invalid_field::{InvalidField, MatrixElement},
+    motor::MotorCommand,
+    sensor::{RgbImage, SensedContact, SensedObject, Sensor},
+};

@@ -1,6 +1,13 @@
 //! The thread on which an engine lives.
 
+mod driver;
 mod ending;
+mod exchange_folder;
+mod launch;
+mod output;
+pub(crate) mod process;
+pub(crate) mod signal;
+mod trigger_file;
 
 use std::{
     collections::VecDeque,
@@ -11,27 +18,30 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crate::{
-    agent::{Aux, InitReply},
-    choice::EngineKind,
-    console::{Console, Stream},
-    driver,
-    engine::{EngineConfig, Reply, StepReply, Trigger},
-    error::{EngineError, ScriptError},
-    hint::hint,
+use self::{
+    exchange_folder::ExchangeFolder,
     launch::{command, preparation, quoted},
-    misuse::Misuse,
-    motor::Motor,
     output::read_output,
     process::{Killer, Process},
+    signal::Signal,
+    trigger_file::{Op, TriggerFile},
+};
+use crate::{
+    config::{EngineConfig, Trigger},
+    console::{Console, Stream},
+    error::{EngineError, ScriptError},
+    kind::EngineKind,
+    octave::hint::hint,
+    octave::script_folder::{self, Encoding},
     protocol::{Array, Arrays},
-    scripts::{self, Encoding},
-    sensor::Sensor,
-    session::Session,
-    trigger::{Op, TriggerFile},
+    reply::{Reply, StepReply},
+    variables::auxiliary::{Aux, InitReply},
+    variables::invalid_field::InvalidField,
+    variables::motor::MotorCommand,
+    variables::sensor::Sensor,
 };
 
-/// How often an engine that polls is told that this program is alive, and one that waits is looked after.
+/// How often an engine that polls is shown that this program is alive, and one that waits is looked after.
 const HEARTBEAT: Duration = Duration::from_secs(1);
 /// How often an engine that runs a script is looked after.
 const LOOK_AFTER: Duration = Duration::from_millis(50);
@@ -42,21 +52,6 @@ const DRAW_INTERVAL: Duration = Duration::from_millis(200);
 
 /// What the user should know of an agent that is not on disk.
 const TEMPORARY: &str = "the scripts that come with the program run in a temporary folder: what they save there goes with it";
-
-/// What the worker hears.
-#[derive(Debug)]
-pub(crate) enum Signal {
-    /// Run the init script.
-    Init(Box<Aux>),
-    /// Run the callback script.
-    Step(Box<Sensor>),
-    /// End, within this time.
-    Stop(Duration),
-    /// The engine has printed that a request is done.
-    Done(u32),
-    /// One of the engine's outputs has ended.
-    Closed,
-}
 
 /// The engine's side of the program.
 pub(crate) struct Worker {
@@ -87,19 +82,19 @@ struct Running {
     // The process and the open file go before the folder in which they are.
     process: Process,
     trigger_file: Option<TriggerFile>,
-    session: Session,
+    session: ExchangeFolder,
     waiting: VecDeque<Signal>,
     seq: u32,
     open_outputs: u32,
     last_drawn: Option<Instant>,
-    /// The script that is called back, if the engine has said which it is.
+    /// The script that is called back, if the engine has reported it.
     callback: Option<PathBuf>,
 }
 
 impl Running {
     fn start(worker: Worker) -> Result<Self, EngineError> {
         let config = &worker.config;
-        let session = Session::new(&driver::files(config.engine.kind))?;
+        let session = ExchangeFolder::new(&driver::files(config.engine.kind))?;
         let trigger_file = match config.trigger {
             Trigger::Poll => Some(TriggerFile::create(session.folder())?),
             Trigger::Stdin => None,
@@ -176,7 +171,7 @@ impl Running {
         Ok(())
     }
 
-    /// Serves requests until the engine ends. What is returned says why it did.
+    /// Serves requests until the engine ends, and returns why it did.
     fn serve(mut self) -> EngineError {
         loop {
             let signal = match self.waiting.pop_front() {
@@ -269,13 +264,13 @@ impl Running {
                 let notes = scripts
                     .iter()
                     .flatten()
-                    .filter_map(|file| scripts::note(file));
+                    .filter_map(|file| script_folder::note(file));
                 notes.for_each(|note| self.note(&note));
                 scripts
             }
         };
         self.callback = callback;
-        InitReply::read(&reply).map_err(|misuse| self.misuse(misuse, init))
+        InitReply::read(&reply).map_err(|field| self.invalid_field(field, init))
     }
 
     fn step(&mut self, sensor: &Sensor) -> Result<StepReply, EngineError> {
@@ -283,8 +278,8 @@ impl Running {
         self.session.write_request(&sensor.arrays())?;
         let limit = self.worker.config.timeouts.step;
         let reply = self.call(Op::Step, "the callback script", limit)?;
-        let motor =
-            Motor::read(&reply).map_err(|misuse| self.misuse(misuse, self.callback.clone()))?;
+        let motor = MotorCommand::read(&reply)
+            .map_err(|field| self.invalid_field(field, self.callback.clone()))?;
         Ok(StepReply {
             motor,
             exit: reply.get("aux.exit").is_some(),
@@ -293,9 +288,9 @@ impl Running {
     }
 
     /// What a script has set that cannot be used.
-    fn misuse(&self, misuse: Misuse, script: Option<PathBuf>) -> EngineError {
-        EngineError::Misuse {
-            misuse: misuse.written_for(self.worker.config.engine.kind),
+    fn invalid_field(&self, field: InvalidField, script: Option<PathBuf>) -> EngineError {
+        EngineError::InvalidField {
+            field: field.written_for(self.worker.config.engine.kind),
             script,
         }
     }
@@ -328,7 +323,7 @@ impl Running {
         Err(EngineError::Script(error))
     }
 
-    /// The error that a reply tells.
+    /// The error in a reply.
     fn script_error(&self, reply: &Arrays) -> Option<ScriptError> {
         reply.get("error.message")?;
         let text = |name| {
@@ -339,7 +334,7 @@ impl Running {
         Some(ScriptError::new(&id, &message, &stack))
     }
 
-    /// What an engine says, with the user's scripts in place of repaired copies that it may run.
+    /// A text of the engine, with the user's scripts in place of repaired copies that it may run.
     fn of_original(&self, text: &str) -> String {
         let copies = self.session.folder().join("repaired");
         let agent = self.worker.config.agent_path();
@@ -352,7 +347,7 @@ impl Running {
         original.replace(".m.sourced", ".m")
     }
 
-    /// Tells the user something beside what the script prints.
+    /// Adds a remark to what the script prints.
     fn note(&self, note: &str) {
         self.worker.console.push(Stream::Note, note.as_bytes());
     }

@@ -7,9 +7,9 @@ mod common;
 use std::path;
 
 use common::{Folder, Session, TRIGGERS};
-use tabletop_engine::{Motor, Sensor, Trigger};
+use tabletop_engine::{MotorCommand, Sensor, Trigger};
 
-fn motors(init: &str, callback: &str, trigger: Trigger) -> [Motor; 2] {
+fn motors(init: &str, callback: &str, trigger: Trigger) -> [MotorCommand; 2] {
     let folder = Folder::pair(init, callback);
     std::fs::write(folder.0.join("helper.m"), "motor.headVelocity = 2;").unwrap();
     let session = Session::octave(&folder.0, trigger);
@@ -59,9 +59,9 @@ fn a_motor_that_was_cleared_is_at_rest() {
             let callback = format!(
                 "{clear} motor.jointVelocities(2, 1) = 0.5; motor.gripperVelocities(1) = 1;"
             );
-            let mut expected = Motor {
+            let mut expected = MotorCommand {
                 gripper_velocities: [1.0, 0.0],
-                ..Motor::default()
+                ..MotorCommand::default()
             };
             expected.joint_velocities[1][0] = 0.5;
             assert_eq!(
@@ -82,7 +82,7 @@ fn what_was_cleared_may_be_declared_again() {
             let [_, motor] = motors(&heading, callback, trigger);
             assert_eq!(motor.head_velocity, Some(2.0));
             let [_, motor] = motors("", &heading, trigger);
-            assert_eq!(motor, Motor::default());
+            assert_eq!(motor, MotorCommand::default());
             let [_, motor] = motors("", &format!("{heading} {callback}"), trigger);
             assert_eq!(motor.head_velocity, Some(2.0), "{declare}");
         }

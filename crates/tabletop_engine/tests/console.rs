@@ -8,7 +8,7 @@ use std::{
 };
 
 use common::{Folder, Session, TRIGGERS, octave};
-use tabletop_engine::{Output, Picture, Sensor, Stream, Trigger};
+use tabletop_engine::{ConsoleLimit, RgbImage, Sensor, Stream, Trigger};
 
 #[test]
 fn what_scripts_print_arrives_apart_from_replies() {
@@ -56,7 +56,7 @@ fn all_that_is_printed_can_be_had() {
         "n = n + 1; printf('tick %d\\n', n); disp(repmat('x', 1, 9000));",
     );
     let mut config = octave(&folder.0, Trigger::Stdin);
-    config.output = Output::Whole;
+    config.console_limit = ConsoleLimit::Whole;
     let session = Session::start(config).unwrap();
     session.init().unwrap();
     for _ in 0..1200 {
@@ -74,7 +74,7 @@ fn all_that_is_printed_can_be_had() {
 }
 
 #[test]
-fn a_flood_is_told_now_and_then() {
+fn a_flood_is_noted_now_and_then() {
     let folder = Folder::pair("", "for k = 1:1000, printf('line %d\\n', k); end");
     let session = Session::octave(&folder.0, Trigger::Stdin);
     session.init().unwrap();
@@ -123,7 +123,7 @@ fn a_struct_shows_what_it_holds() {
             assert!(printed.contains(line), "{line}: {printed}");
         }
         let sensor = Sensor {
-            picture: Picture::new(200, 150, vec![9; 90_000]),
+            picture: RgbImage::new(200, 150, vec![9; 90_000]),
             tracker_loc: Some(vec![("l-S1".into(), [1.0, 2.0, 3.0])]),
             ..Sensor::default()
         };
@@ -206,7 +206,7 @@ fn nothing_is_said_of_what_the_driver_does() {
 }
 
 #[test]
-fn what_a_script_shadows_is_told() {
+fn what_a_script_shadows_is_noted() {
     let folder = Folder::pair("disp ready", "");
     fs::write(folder.0.join("cumsum.m"), "function cumsum, end").unwrap();
     let session = Session::octave(&folder.0, Trigger::Stdin);

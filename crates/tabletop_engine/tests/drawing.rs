@@ -55,9 +55,13 @@ fn that_no_file_is_made_is_said_once() {
     config.display = false;
     let session = Session::start(config).unwrap();
     session.init().unwrap();
-    for told in [1, 0] {
+    for reported in [1, 0] {
         session.step(&Sensor::default()).unwrap();
         let printed = session.printed("done");
-        assert_eq!(printed.matches("makes no file").count(), told, "{printed}");
+        assert_eq!(
+            printed.matches("makes no file").count(),
+            reported,
+            "{printed}"
+        );
     }
 }

@@ -1,4 +1,4 @@
-//! Engines that hang, crash or are stopped: each end is told as what it is, in time.
+//! Engines that hang, crash or are stopped: each end is reported as what it is, in time.
 
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 

@@ -10,7 +10,7 @@ use common::{
     Folder, Session, TRIGGERS, limits, octave,
     robot::{Robot, TICK},
 };
-use tabletop_engine::{Picture, Sensor, Trigger};
+use tabletop_engine::{RgbImage, Sensor, Trigger};
 
 /// A copy of the scripts, so that the files that they write go with it.
 fn scripts() -> Folder {
@@ -79,7 +79,7 @@ fn the_example_turns_every_joint() {
         let (robot, ticks) = run(&session, 300, |tick, _, sensor| {
             sensor.picture = tick
                 .is_multiple_of(15)
-                .then(|| Picture::new(200, 150, vec![9; 90_000]).unwrap());
+                .then(|| RgbImage::new(200, 150, vec![9; 90_000]).unwrap());
         });
         assert_eq!(ticks, 300);
         let limits = limits();
@@ -148,7 +148,7 @@ fn the_head_follows_red() {
         }
         sensor.picture = tick
             .is_multiple_of(15)
-            .then(|| Picture::new(200, 150, rgb).unwrap());
+            .then(|| RgbImage::new(200, 150, rgb).unwrap());
     });
     assert!(
         (robot.head - bearing(600)).abs() < 0.12,
@@ -225,7 +225,7 @@ fn demonstrations_become_pictures() {
         sensor.demo_cue = (5..20).contains(&tick);
         sensor.picture = tick
             .is_multiple_of(5)
-            .then(|| Picture::new(20, 10, vec![tick as u8; 600]).unwrap());
+            .then(|| RgbImage::new(20, 10, vec![tick as u8; 600]).unwrap());
     });
     let mut names: Vec<_> = fs::read_dir(folder.0.join("matlab/pictures"))
         .unwrap()

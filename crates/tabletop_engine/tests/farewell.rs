@@ -50,8 +50,8 @@ fn after_an_error_or_a_call_that_takes_too_long() {
             let (folder, session) = called(fault, trigger);
             session.engine.stop();
             let lines = last_lines(&session);
-            let told = |line: &ConsoleLine| line.text == "farewell";
-            assert!(lines.iter().any(told), "{trigger:?} {fault}: {lines:?}");
+            let reported = |line: &ConsoleLine| line.text == "farewell";
+            assert!(lines.iter().any(reported), "{trigger:?} {fault}: {lines:?}");
             assert_eq!(log(&folder.0), "written", "{trigger:?} {fault}");
         }
     }
@@ -65,8 +65,8 @@ fn after_a_loop_of_programs_that_get_the_interrupts() {
     ] {
         let (folder, session) = called(fault, Trigger::Stdin);
         let lines = last_lines(&session);
-        let told = |line: &ConsoleLine| line.text == "farewell";
-        assert!(lines.iter().any(told), "{fault}: {lines:?}");
+        let reported = |line: &ConsoleLine| line.text == "farewell";
+        assert!(lines.iter().any(reported), "{fault}: {lines:?}");
         assert_eq!(log(&folder.0), "written", "{fault}");
     }
 }
@@ -107,6 +107,7 @@ fn an_end_may_take_a_while_but_not_for_ever() {
     session.init().unwrap();
     session.engine.stop();
     let lines = last_lines(&session);
-    let told = |line: &ConsoleLine| line.text.contains("was cut off") && line.text.contains("10 s");
-    assert!(lines.iter().any(told), "{lines:?}");
+    let reported =
+        |line: &ConsoleLine| line.text.contains("was cut off") && line.text.contains("10 s");
+    assert!(lines.iter().any(reported), "{lines:?}");
 }

@@ -1,4 +1,4 @@
-//! Scripts that fail: each fault is told exactly, with its place.
+//! Scripts that fail: each fault is reported exactly, with its place.
 
 mod common;
 
@@ -81,7 +81,7 @@ fn errors_of_all_kinds_are_told() {
             error.id
         );
         assert_eq!(
-            error.place().unwrap().to_string(),
+            error.location().unwrap().to_string(),
             format!("{}:2", folder.0.join("testCallback.m").display())
         );
     }
@@ -114,7 +114,7 @@ fn wrong_syntax_is_told_with_its_place() {
                 .and_then(|_| session.step(&Sensor::default())),
         );
         assert!(error.message.contains("parse error"), "{error}");
-        let place = error.place().unwrap();
+        let place = error.location().unwrap();
         assert_eq!(place.file, folder.0.join("testCallback.m"));
         assert!(place.line >= 2, "{error}");
     }
@@ -155,7 +155,10 @@ fn a_folder_with_an_awkward_name_works() {
         session.init().unwrap();
         let error = script_error(session.step(&Sensor::default()));
         assert_eq!(
-            (error.message.as_str(), error.place().unwrap().file.clone()),
+            (
+                error.message.as_str(),
+                error.location().unwrap().file.clone()
+            ),
             ("ü", awkward.join("b.m"))
         );
     }

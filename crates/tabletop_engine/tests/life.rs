@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Folder, Session, TRIGGERS};
-use tabletop_engine::{Picture, Sensor};
+use tabletop_engine::{RgbImage, Sensor};
 
 #[test]
 fn scripts_share_the_base_workspace() {
@@ -50,7 +50,7 @@ fn pictures_and_all_else_arrive() {
     let mut rgb = vec![0; 18];
     rgb[15] = 51;
     let mut sensor = Sensor {
-        picture: Picture::new(3, 2, rgb),
+        picture: RgbImage::new(3, 2, rgb),
         ..Sensor::default()
     };
     sensor.joint_angles[1][6] = 0.75;

@@ -68,7 +68,7 @@ fn the_limits_of_sizes_are_named() {
 }
 
 #[test]
-fn a_list_of_motors_is_told_from_one() {
+fn a_list_of_motors_is_no_motor() {
     let message = message("", "motor(2).jointVelocities = 1;");
     assert!(
         message.starts_with("motor is 1x2 struct; it must be a struct of size 1x1"),
@@ -77,7 +77,7 @@ fn a_list_of_motors_is_told_from_one() {
 }
 
 #[test]
-fn a_misused_motor_is_told_with_its_script() {
+fn an_invalid_motor_is_reported_with_its_script() {
     let callback = "if true, motor.headVelocity = [1 2]; break, end";
     let folder = Folder::pair("", callback);
     let session = Session::octave(&folder.0, Trigger::Stdin);
@@ -131,13 +131,16 @@ fn an_error_without_a_place_is_in_the_script_that_ran() {
             "error without a message",
         ),
     ];
-    for (fault, told) in errors {
+    for (fault, reported) in errors {
         let folder = Folder::pair("", fault);
         let session = Session::octave(&folder.0, Trigger::Stdin);
         session.init().unwrap();
         let error = script_error(session.step(&Sensor::default())).to_string();
         let place = format!("\n  at {}", folder.0.join("testCallback.m").display());
-        assert!(error.contains(told) && error.ends_with(&place), "{error}");
+        assert!(
+            error.contains(reported) && error.ends_with(&place),
+            "{error}"
+        );
         fs::write(folder.0.join("testInit.m"), fault).unwrap();
         let error = script_error(session.init()).to_string();
         let place = format!("\n  at {}", folder.0.join("testInit.m").display());
@@ -150,7 +153,7 @@ fn an_error_without_a_place_is_in_the_script_that_ran() {
 }
 
 #[test]
-fn what_a_callback_has_cleared_or_spoilt_is_told() {
+fn what_a_callback_has_cleared_or_spoilt_is_reported() {
     let cleared = message("", "clear all\ndisp(sensor.timeElapsed)");
     assert!(cleared.contains("comes back in the next call"), "{cleared}");
     let spoilt = message("", "aux = 3;");
@@ -191,7 +194,7 @@ fn functions_of_their_own_variables_are_noted() {
 
 #[test]
 fn what_to_do_is_said() {
-    for (init, told) in [
+    for (init, reported) in [
         (
             "function testInit, disp(aux.path)",
             "global sensor motor aux",
@@ -201,7 +204,7 @@ fn what_to_do_is_said() {
         let folder = Folder::pair(init, "");
         let session = Session::octave(&folder.0, Trigger::Stdin);
         let error = session.init().unwrap_err().to_string();
-        assert!(error.contains(told), "{error}");
+        assert!(error.contains(reported), "{error}");
     }
     let folder = Folder::pair("x = 1;", "");
     let forgotten = "function [i, c] = agentBehavior()\ni = testInit;\nc = @testCallback;\nend";

@@ -12,12 +12,12 @@ use std::{
 
 use common::{Folder, Session, script_error};
 use tabletop_engine::{
-    EngineChoice, EngineConfig, EngineError, EngineKind, Picture, SensedContact, SensedObject,
-    Sensor, Surroundings,
+    EngineChoice, EngineConfig, EngineError, EngineKind, EngineLocator, RgbImage, SensedContact,
+    SensedObject, Sensor,
 };
 
 fn config(file: PathBuf) -> EngineConfig {
-    let found = Surroundings::system().find(&EngineChoice::Kind(EngineKind::Python));
+    let found = EngineLocator::system().find(&EngineChoice::Kind(EngineKind::Python));
     let found = found.unwrap_or_else(|error| panic!("these tests need python3: {error}"));
     let mut config = EngineConfig::new(found);
     config.agent = file;
@@ -75,7 +75,7 @@ fn everything_that_is_sensed_arrives() {
     let mut rgb = vec![0; 18];
     rgb[15] = 51;
     let mut sensor = Sensor {
-        picture: Picture::new(3, 2, rgb),
+        picture: RgbImage::new(3, 2, rgb),
         demo_cue: true,
         ..Sensor::default()
     };
@@ -178,13 +178,13 @@ fn what_led_to_an_error_is_told() {
     );
     session.init().unwrap();
     let robot = folder.0.join("robot.py").display().to_string();
-    let told = |link: &str, error: &str| {
+    let reported = |link: &str, error: &str| {
         format!("{error}\n{link} KeyError: 'hand' ({robot}:3)\n  at {robot}:4")
     };
     let error = session.step(&Sensor::default()).unwrap_err();
     assert_eq!(
         error.to_string(),
-        told("because of", "RuntimeError: no plan")
+        reported("because of", "RuntimeError: no plan")
     );
     let text = fs::read_to_string(&robot).unwrap();
     fs::write(&robot, text.replace(" from error", "")).unwrap();
@@ -192,7 +192,7 @@ fn what_led_to_an_error_is_told() {
     let error = session.step(&Sensor::default()).unwrap_err();
     assert_eq!(
         error.to_string(),
-        told("while handling", "RuntimeError: no plan")
+        reported("while handling", "RuntimeError: no plan")
     );
 }
 
@@ -228,7 +228,7 @@ fn an_interrupt_is_answered_with_its_place_also_in_the_background() {
     session.init().unwrap();
     let error = script_error(session.step(&Sensor::default()));
     assert_eq!(
-        (error.message.as_str(), error.place().unwrap().line),
+        (error.message.as_str(), error.location().unwrap().line),
         ("KeyboardInterrupt", 4)
     );
 }
@@ -274,7 +274,7 @@ fn a_misused_aux_names_the_script_and_a_typo_is_noted() {
 #[test]
 fn what_is_too_large_is_told_by_its_size() {
     let (folder, session) = start("def init(aux): pass\ndef callback(sensor, motor, aux): pass\n");
-    let told = |line: &str| {
+    let reported = |line: &str| {
         let script =
             format!("def init(aux): pass\ndef callback(sensor, motor, aux):\n    {line}\n");
         fs::write(folder.0.join("robot.py"), script).unwrap();
@@ -283,12 +283,12 @@ fn what_is_too_large_is_told_by_its_size() {
         assert!(!error.is_fatal(), "{error}");
         error.to_string()
     };
-    let error = told("raise ValueError('x' * 70_000_000)");
+    let error = reported("raise ValueError('x' * 70_000_000)");
     assert!(error.starts_with("ValueError: xxx"), "{}", error.len());
-    let error = told("motor.jointVelocities = [[0.0] * 3000] * 3000");
+    let error = reported("motor.jointVelocities = [[0.0] * 3000] * 3000");
     assert!(error.contains("is 3000x3000 double"), "{error}");
     // So much that nobody can look at all of it.
-    let error = told("motor.jointVelocities = [range(10**12)] * 2");
+    let error = reported("motor.jointVelocities = [range(10**12)] * 2");
     assert!(error.contains("is 2x4294967295 double"), "{error}");
 }
 
@@ -316,13 +316,13 @@ fn faults_are_told_with_their_place() {
     );
     let lines: Vec<_> = error.stack.iter().map(|place| place.line).collect();
     assert_eq!(
-        (lines, &error.place().unwrap().file),
+        (lines, &error.location().unwrap().file),
         (vec![5, 3], &folder.0.join("robot.py"))
     );
     fs::write(folder.0.join("robot.py"), "def init(aux):\n  x = = 3\n").unwrap();
     let error = script_error(session.init());
     assert_eq!(
-        error.place().unwrap().to_string(),
+        error.location().unwrap().to_string(),
         format!("{}:2", folder.0.join("robot.py").display())
     );
     for (callback, message) in [

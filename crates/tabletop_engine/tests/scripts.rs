@@ -7,7 +7,7 @@ mod common;
 use std::fs;
 
 use common::{Folder, Session, TRIGGERS, octave, robot::Robot};
-use tabletop_engine::{Picture, Sensor, Trigger};
+use tabletop_engine::{RgbImage, Sensor, Trigger};
 
 /// A copy of the scripts in a folder "scripts", with a file that Octave has not written.
 fn folder() -> Folder {
@@ -65,14 +65,14 @@ fn sensor() -> Sensor {
     let names = ["l-S1", "l-E1", "l-W1", "r-S1", "r-E1", "r-W1"];
     Sensor {
         time_elapsed: 0.02,
-        picture: Picture::new(4, 3, (0..36).collect()),
+        picture: RgbImage::new(4, 3, (0..36).collect()),
         tracker_loc: Some(names.map(|name| (name.to_owned(), [1.0, 2.0, 3.0])).into()),
         ..Sensor::default()
     }
 }
 
 /// Runs a pair until it exits, and says in which tick and with which motor it does.
-fn until_exit(name: &str) -> Vec<(usize, tabletop_engine::Motor)> {
+fn until_exit(name: &str) -> Vec<(usize, tabletop_engine::MotorCommand)> {
     let run = |trigger| {
         let folder = folder();
         let session = session(&folder, name, trigger);

@@ -2,14 +2,14 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::{JointId, JointKind, JointValues, LinkId, Model, ModelError};
+use crate::{JointId, JointType, JointValues, LinkId, ModelError, RobotModel};
 
 /// Joints of an arm.
 pub const ARM_JOINTS: usize = 7;
 
 /// How a body moves: the velocity of one of its points and its angular velocity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Twist {
+pub struct DTwist {
     /// Of the point, in m/s, or in m per rad of a joint.
     pub linear: DVec3,
     /// In rad/s, or in rad per rad of a joint.
@@ -51,7 +51,7 @@ impl ArmChain {
     /// # Errors
     ///
     /// There are no such links, or between them are not exactly seven turning joints that follow no other one.
-    pub fn between(model: &Model, base: &str, tip: &str) -> Result<Self, ModelError> {
+    pub fn between(model: &RobotModel, base: &str, tip: &str) -> Result<Self, ModelError> {
         Self::new(model, model.find_link(base)?, model.find_link(tip)?)
     }
 
@@ -60,7 +60,7 @@ impl ArmChain {
     /// # Errors
     ///
     /// Between them are not exactly seven turning joints that follow no other one.
-    pub fn new(model: &Model, base: LinkId, tip: LinkId) -> Result<Self, ModelError> {
+    pub fn new(model: &RobotModel, base: LinkId, tip: LinkId) -> Result<Self, ModelError> {
         let no_arm = |reason: String| ModelError::NoArm {
             base: model.link(base).name.clone(),
             tip: model.link(tip).name.clone(),
@@ -81,7 +81,7 @@ impl ArmChain {
         for id in way.into_iter().rev() {
             let joint = model.joint(id);
             rigid *= joint.origin;
-            if joint.kind == JointKind::Fixed {
+            if joint.kind == JointType::Fixed {
                 continue;
             }
             if !joint.kind.turns() || joint.mimic.is_some() {
@@ -152,14 +152,14 @@ impl ArmChain {
     }
 
     /// How the tip moves per rad of each joint (the geometric Jacobian), in the base's frame.
-    pub fn jacobian(&self, angles: &[f64; ARM_JOINTS]) -> [Twist; ARM_JOINTS] {
+    pub fn jacobian(&self, angles: &[f64; ARM_JOINTS]) -> [DTwist; ARM_JOINTS] {
         self.tip_and_jacobian(angles).1
     }
 
     pub(crate) fn tip_and_jacobian(
         &self,
         angles: &[f64; ARM_JOINTS],
-    ) -> (DAffine3, [Twist; ARM_JOINTS]) {
+    ) -> (DAffine3, [DTwist; ARM_JOINTS]) {
         let mut frame = DAffine3::IDENTITY;
         let axes = std::array::from_fn::<_, ARM_JOINTS, _>(|i| {
             let segment = &self.segments[i];
@@ -167,7 +167,7 @@ impl ArmChain {
             (frame.translation, frame.matrix3 * segment.axis)
         });
         let tip = frame * self.end;
-        let jacobian = axes.map(|(origin, axis)| Twist {
+        let jacobian = axes.map(|(origin, axis)| DTwist {
             linear: axis.cross(tip.translation - origin),
             angular: axis,
         });

@@ -1,6 +1,6 @@
 //! The robot of the report, embedded.
 
-use crate::{Model, ModelError};
+use crate::{ModelError, RobotModel};
 
 /// Baxter as it is built, with the simulator's grippers; the file is `assets/baxter/baxter.urdf`.
 ///
@@ -10,8 +10,8 @@ use crate::{Model, ModelError};
 /// # Errors
 ///
 /// Never: a test reads it.
-pub fn baxter() -> Result<Model, ModelError> {
-    Model::from_urdf(include_str!("../../../assets/baxter/baxter.urdf"))
+pub fn baxter() -> Result<RobotModel, ModelError> {
+    RobotModel::from_urdf(include_str!("../../../assets/baxter/baxter.urdf"))
 }
 
 /// Baxter as the report's simulator computed it, for comparison with its numbers: the origin of each arm has two of its
@@ -20,6 +20,6 @@ pub fn baxter() -> Result<Model, ModelError> {
 /// # Errors
 ///
 /// Never: a test reads it.
-pub fn baxter_smile() -> Result<Model, ModelError> {
-    Model::from_urdf(include_str!("../../../assets/baxter/baxter_smile.urdf"))
+pub fn baxter_smile() -> Result<RobotModel, ModelError> {
+    RobotModel::from_urdf(include_str!("../../../assets/baxter/baxter_smile.urdf"))
 }

@@ -6,7 +6,7 @@ use std::ops::Index;
 
 use glam::{DMat3, DVec3};
 
-use crate::{Frames, JointId, JointKind, JointValues, LinkId, Model};
+use crate::{Frames, JointId, JointType, JointValues, LinkId, RobotModel};
 
 /// A point mass that a link carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +37,7 @@ impl Index<(JointId, JointId)> for InertiaMatrix {
 
 /// A body in motion: how its frame's origin accelerates, and how it turns.
 #[derive(Clone, Copy, Default)]
-struct Motion {
+struct BodyMotion {
     acceleration: DVec3,
     spin: DVec3,
     spin_rate: DVec3,
@@ -50,7 +50,7 @@ struct Wrench {
     torque: DVec3,
 }
 
-impl Model {
+impl RobotModel {
     /// The torque (N m) or force (N) that each joint must have to hold the robot still.
     ///
     /// `gravity` is an acceleration in m/s² in the root's frame, such as `(0, 0, -9.81)`.
@@ -108,7 +108,7 @@ impl Model {
         let mut torques = self.zero();
         for (i, joint) in self.joints.iter().enumerate().rev() {
             let Wrench { force, torque } = wrenches[joint.child.index()];
-            if joint.kind != JointKind::Fixed {
+            if joint.kind != JointType::Fixed {
                 let axis = self.axis_in_root(frames, JointId(i));
                 let along = if joint.kind.turns() { torque } else { force };
                 let (leader, multiplier) = self.leader(JointId(i));
@@ -132,7 +132,7 @@ impl Model {
         let bodies = self.composite_bodies(frames, loads);
         for i in (0..joints).map(JointId) {
             let joint = self.joint(i);
-            if joint.kind == JointKind::Fixed {
+            if joint.kind == JointType::Fixed {
                 continue;
             }
             // What it takes to accelerate all that the joint carries by 1.
@@ -175,16 +175,16 @@ impl Model {
         velocities: &JointValues,
         accelerations: &JointValues,
         gravity: DVec3,
-    ) -> Vec<Motion> {
+    ) -> Vec<BodyMotion> {
         let mut motions = Vec::with_capacity(self.links.len());
-        motions.push(Motion {
+        motions.push(BodyMotion {
             acceleration: -gravity,
-            ..Motion::default()
+            ..BodyMotion::default()
         });
         for (i, joint) in self.joints.iter().enumerate() {
-            let parent: Motion = motions[joint.parent.index()];
+            let parent: BodyMotion = motions[joint.parent.index()];
             let arm = frames[joint.child].translation - frames[joint.parent].translation;
-            let mut motion = Motion {
+            let mut motion = BodyMotion {
                 acceleration: parent.acceleration_at(arm),
                 ..parent
             };
@@ -192,12 +192,12 @@ impl Model {
             let axis = self.axis_in_root(frames, JointId(i)) * multiplier;
             let (speed, rate) = (axis * velocities[leader], axis * accelerations[leader]);
             match joint.kind {
-                JointKind::Fixed => {}
-                JointKind::Revolute | JointKind::Continuous => {
+                JointType::Fixed => {}
+                JointType::Revolute | JointType::Continuous => {
                     motion.spin += speed;
                     motion.spin_rate += rate + parent.spin.cross(speed);
                 }
-                JointKind::Prismatic => {
+                JointType::Prismatic => {
                     motion.acceleration += rate + 2.0 * parent.spin.cross(speed);
                 }
             }
@@ -212,11 +212,11 @@ impl Model {
     }
 
     /// Each link with all that hangs on it, as one rigid body.
-    fn composite_bodies(&self, frames: &Frames, loads: &[Load]) -> Vec<Body> {
-        let mut bodies: Vec<Body> = (0..self.links.len())
+    fn composite_bodies(&self, frames: &Frames, loads: &[Load]) -> Vec<CompositeBody> {
+        let mut bodies: Vec<CompositeBody> = (0..self.links.len())
             .map(|i| {
                 let inertial = &self.links[i].inertial;
-                Body {
+                CompositeBody {
                     mass: inertial.mass,
                     center: frames[LinkId(i)].transform_point3(inertial.center),
                     inertia: self.inertia_in_root(frames, LinkId(i)),
@@ -224,7 +224,7 @@ impl Model {
             })
             .collect();
         for load in loads {
-            bodies[load.link.index()].add(&Body {
+            bodies[load.link.index()].add(&CompositeBody {
                 mass: load.mass,
                 center: frames[load.link].transform_point3(load.point),
                 inertia: DMat3::ZERO,
@@ -238,7 +238,7 @@ impl Model {
     }
 }
 
-impl Motion {
+impl BodyMotion {
     /// The acceleration of a point of the body, this far from its frame's origin.
     fn acceleration_at(&self, arm: DVec3) -> DVec3 {
         self.acceleration + self.spin_rate.cross(arm) + self.spin.cross(self.spin.cross(arm))
@@ -256,14 +256,14 @@ impl Motion {
 
 /// A rigid body in the root's frame.
 #[derive(Clone, Copy)]
-struct Body {
+struct CompositeBody {
     mass: f64,
     center: DVec3,
     /// About the centre.
     inertia: DMat3,
 }
 
-impl Body {
+impl CompositeBody {
     fn add(&mut self, other: &Self) {
         let mass = self.mass + other.mass;
         if mass <= 0.0 {

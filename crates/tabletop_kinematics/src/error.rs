@@ -85,7 +85,7 @@ pub enum ModelError {
     #[error(
         "line {line}: joint {joint}: {kind} joints are not supported: use fixed, revolute, continuous or prismatic"
     )]
-    JointKind {
+    JointType {
         /// Where the joint starts.
         line: usize,
         /// The joint.

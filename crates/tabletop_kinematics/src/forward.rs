@@ -4,7 +4,7 @@ use std::ops::Index;
 
 use glam::{DAffine3, DVec3};
 
-use crate::{JointId, JointValues, LinkId, Model, Twist};
+use crate::{DTwist, JointId, JointValues, LinkId, RobotModel};
 
 /// Where every link of a model is: from the link's frame to the root's, in m.
 #[derive(Clone, Debug, Default)]
@@ -18,7 +18,7 @@ impl Index<LinkId> for Frames {
     }
 }
 
-impl Model {
+impl RobotModel {
     /// Where the links are.
     ///
     /// ```
@@ -46,8 +46,8 @@ impl Model {
 
     /// How a point of a link moves per motion of each joint: one twist for each of [`joints`](Self::joints), in the root's
     /// frame, 0 for those that do not move it. The point is given in the link's frame, in m.
-    pub fn jacobian(&self, frames: &Frames, link: LinkId, point: DVec3) -> Vec<Twist> {
-        let mut jacobian = vec![Twist::default(); self.joints.len()];
+    pub fn jacobian(&self, frames: &Frames, link: LinkId, point: DVec3) -> Vec<DTwist> {
+        let mut jacobian = vec![DTwist::default(); self.joints.len()];
         let point = frames[link].transform_point3(point);
         for joint in self.carriers(link) {
             let (leader, multiplier) = self.leader(joint);

@@ -14,7 +14,7 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use thiserror::Error;
 
-use crate::{ARM_JOINTS, ArmChain, Twist};
+use crate::{ARM_JOINTS, ArmChain, DTwist};
 
 /// Where the tip of an arm shall be, in the frame of the arm's base, in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -199,13 +199,13 @@ impl ArmChain {
 
 impl Target {
     /// The motion from the tip to the target, as velocities for 1 s.
-    fn error(&self, tip: &DAffine3) -> Twist {
+    fn error(&self, tip: &DAffine3) -> DTwist {
         match self {
-            Self::Pose(pose) => Twist {
+            Self::Pose(pose) => DTwist {
                 linear: pose.translation - tip.translation,
                 angular: rotation_vector(pose.matrix3 * tip.matrix3.transpose()),
             },
-            Self::Point(point) => Twist {
+            Self::Point(point) => DTwist {
                 linear: *point - tip.translation,
                 angular: DVec3::ZERO,
             },
@@ -257,9 +257,9 @@ struct System {
 }
 
 impl System {
-    fn new(error: &Twist, jacobian: &[Twist; ARM_JOINTS], cost: f64, turns_count: bool) -> Self {
+    fn new(error: &DTwist, jacobian: &[DTwist; ARM_JOINTS], cost: f64, turns_count: bool) -> Self {
         let weight = if turns_count { METERS_PER_RAD } else { 0.0 };
-        let row = |twist: &Twist| {
+        let row = |twist: &DTwist| {
             let (v, w) = (twist.linear, twist.angular * weight);
             [v.x, v.y, v.z, w.x, w.y, w.z]
         };

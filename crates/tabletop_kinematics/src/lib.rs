@@ -4,10 +4,10 @@
 //! Everything here is in URDF's units: **metres, radians, kilograms, seconds**, in the frame of the model's root link
 //! (for Baxter: x forward, y left, z up), in `f64`. A unit of the simulator's table is 0.1 m.
 //!
-//! - [`Model`]: links and joints, read from URDF and checked; [`Model::frames`] and [`Model::jacobian`] are its forward
+//! - [`RobotModel`]: links and joints, read from URDF and checked; [`RobotModel::frames`] and [`RobotModel::jacobian`] are its forward
 //!   kinematics.
 //! - [`ArmChain`]: the seven joints from a base to a tip; [`ArmChain::solve`] is its inverse kinematics.
-//! - [`Model::gravity_torques`], [`Model::inverse_dynamics`], [`Model::inertia_matrix`]: its dynamics.
+//! - [`RobotModel::gravity_torques`], [`RobotModel::inverse_dynamics`], [`RobotModel::inertia_matrix`]: its dynamics.
 //! - [`baxter()`] and [`baxter_smile()`]: the robot of the report, embedded.
 //!
 //! ```
@@ -30,6 +30,7 @@ mod baxter;
 mod dynamics;
 mod error;
 mod forward;
+mod id;
 mod inverse;
 mod link;
 mod model;
@@ -37,12 +38,13 @@ mod outline;
 mod urdf;
 mod values;
 
-pub use arm::{ARM_JOINTS, ArmChain, Twist};
+pub use arm::{ARM_JOINTS, ArmChain, DTwist};
 pub use baxter::{baxter, baxter_smile};
 pub use dynamics::{InertiaMatrix, Load};
 pub use error::ModelError;
 pub use forward::Frames;
+pub use id::{JointId, LinkId};
 pub use inverse::{Miss, Target, Unreachable};
-pub use link::{Geometry, Inertial, Link, Shape};
-pub use model::{Joint, JointId, JointKind, LinkId, Mimic, Model};
+pub use link::{Geometry, Inertial, Link, LinkShape};
+pub use model::{JointType, Mimic, ModelJoint, RobotModel};
 pub use values::JointValues;

@@ -14,9 +14,9 @@ pub struct Link {
     /// Its mass and how that is spread.
     pub inertial: Inertial,
     /// What is seen of it.
-    pub visuals: Vec<Shape>,
+    pub visuals: Vec<LinkShape>,
     /// What is touched of it.
-    pub collisions: Vec<Shape>,
+    pub collisions: Vec<LinkShape>,
 }
 
 /// A mass and how it is spread, in the frame of its link. Without mass for links that are mere frames.
@@ -32,7 +32,7 @@ pub struct Inertial {
 
 /// A body in the frame of its link.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shape {
+pub struct LinkShape {
     /// From the body's own frame to the link's, in m.
     pub origin: DAffine3,
     /// What it is.

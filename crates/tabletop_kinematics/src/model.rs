@@ -2,33 +2,11 @@
 
 use glam::{DAffine3, DVec3};
 
-use crate::{JointValues, Link, ModelError};
-
-/// A link of a [`Model`], by its place in [`Model::links`]. It belongs to the model that it is from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct LinkId(pub(crate) usize);
-
-impl LinkId {
-    /// Its place in [`Model::links`].
-    pub const fn index(self) -> usize {
-        self.0
-    }
-}
-
-/// A joint of a [`Model`], by its place in [`Model::joints`]. It belongs to the model that it is from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct JointId(pub(crate) usize);
-
-impl JointId {
-    /// Its place in [`Model::joints`].
-    pub const fn index(self) -> usize {
-        self.0
-    }
-}
+use crate::{JointId, JointValues, Link, LinkId, ModelError};
 
 /// What a joint leaves free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum JointKind {
+pub enum JointType {
     /// Nothing.
     Fixed,
     /// A turn about its axis, within limits.
@@ -39,7 +17,7 @@ pub enum JointKind {
     Prismatic,
 }
 
-impl JointKind {
+impl JointType {
     /// Whether it turns about its axis.
     pub const fn turns(self) -> bool {
         matches!(self, Self::Revolute | Self::Continuous)
@@ -48,11 +26,11 @@ impl JointKind {
 
 /// A joint: how a link hangs on another one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Joint {
+pub struct ModelJoint {
     /// Its name, unique among joints.
     pub name: String,
     /// What it leaves free.
-    pub kind: JointKind,
+    pub kind: JointType,
     /// The link that it hangs on.
     pub parent: LinkId,
     /// The link that it carries.
@@ -61,7 +39,7 @@ pub struct Joint {
     pub origin: DAffine3,
     /// The unit vector that it turns about or slides along, in its child's frame.
     pub axis: DVec3,
-    /// Least and largest position, in rad or m; infinite for [`Continuous`](JointKind::Continuous) ones.
+    /// Least and largest position, in rad or m; infinite for [`Continuous`](JointType::Continuous) ones.
     pub limits: [f64; 2],
     /// Largest torque or force of its motor, in N m or N; 0 if the description names none.
     pub effort: f64,
@@ -73,15 +51,15 @@ pub struct Joint {
     pub mimic: Option<Mimic>,
 }
 
-impl Joint {
+impl ModelJoint {
     /// From the child's frame to the parent's, with the joint at a position in rad or m.
     pub fn motion(&self, position: f64) -> DAffine3 {
         match self.kind {
-            JointKind::Fixed => self.origin,
-            JointKind::Revolute | JointKind::Continuous => {
+            JointType::Fixed => self.origin,
+            JointType::Revolute | JointType::Continuous => {
                 self.origin * DAffine3::from_axis_angle(self.axis, position)
             }
-            JointKind::Prismatic => self.origin * DAffine3::from_translation(self.axis * position),
+            JointType::Prismatic => self.origin * DAffine3::from_translation(self.axis * position),
         }
     }
 }
@@ -99,15 +77,15 @@ pub struct Mimic {
 
 /// A robot: a tree of links and joints. Parents stand before their children.
 #[derive(Clone, Debug)]
-pub struct Model {
+pub struct RobotModel {
     pub(crate) name: String,
     /// The first one is the root.
     pub(crate) links: Vec<Link>,
     /// `joints[i]` carries `links[i + 1]`.
-    pub(crate) joints: Vec<Joint>,
+    pub(crate) joints: Vec<ModelJoint>,
 }
 
-impl Model {
+impl RobotModel {
     /// The robot's name.
     pub fn name(&self) -> &str {
         &self.name
@@ -119,7 +97,7 @@ impl Model {
     }
 
     /// The joints, in the order of the links that they carry.
-    pub fn joints(&self) -> &[Joint] {
+    pub fn joints(&self) -> &[ModelJoint] {
         &self.joints
     }
 
@@ -134,7 +112,7 @@ impl Model {
     }
 
     /// A joint.
-    pub fn joint(&self, joint: JointId) -> &Joint {
+    pub fn joint(&self, joint: JointId) -> &ModelJoint {
         &self.joints[joint.index()]
     }
 
@@ -168,7 +146,7 @@ impl Model {
     pub fn movable(&self) -> impl Iterator<Item = JointId> {
         let joints = self.joints.iter().enumerate();
         joints
-            .filter(|(_, joint)| joint.kind != JointKind::Fixed && joint.mimic.is_none())
+            .filter(|(_, joint)| joint.kind != JointType::Fixed && joint.mimic.is_none())
             .map(|(i, _)| JointId(i))
     }
 
@@ -202,6 +180,6 @@ impl Model {
     pub(crate) fn carriers(&self, link: LinkId) -> impl Iterator<Item = JointId> {
         let next = |joint: &JointId| self.link(self.joint(*joint).parent).joint;
         std::iter::successors(self.link(link).joint, next)
-            .filter(|&joint| self.joint(joint).kind != JointKind::Fixed)
+            .filter(|&joint| self.joint(joint).kind != JointType::Fixed)
     }
 }

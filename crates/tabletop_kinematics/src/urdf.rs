@@ -1,20 +1,20 @@
-//! From URDF to a [`Model`].
+//! From URDF to a [`RobotModel`].
 
 use std::collections::HashMap;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
-use urdf_rs::JointType;
 
 use crate::{
-    Geometry, Inertial, Joint, JointId, JointKind, Link, LinkId, Mimic, Model, ModelError, Shape,
+    Geometry, Inertial, JointId, JointType, Link, LinkId, LinkShape, Mimic, ModelError, ModelJoint,
+    RobotModel,
     outline::{Child, Outline, outline},
 };
 
-impl Model {
+impl RobotModel {
     /// Reads a robot from the text of a URDF file.
     ///
     /// ```
-    /// use tabletop_kinematics::Model;
+    /// use tabletop_kinematics::RobotModel;
     ///
     /// let text = r#"<robot name="door">
     ///   <link name="frame"/>
@@ -23,7 +23,7 @@ impl Model {
     ///     <parent link="frame"/> <child link="gate"/>
     ///   </joint>
     /// </robot>"#;
-    /// let error = Model::from_urdf(text).unwrap_err();
+    /// let error = RobotModel::from_urdf(text).unwrap_err();
     /// assert_eq!(error.to_string(), "line 4: joint hinge: there is no link gate");
     /// ```
     ///
@@ -93,7 +93,7 @@ impl Lines {
         self.joints.get(index).copied().unwrap_or(1)
     }
 
-    fn model(&self, robot: urdf_rs::Robot) -> Result<Model, ModelError> {
+    fn model(&self, robot: urdf_rs::Robot) -> Result<RobotModel, ModelError> {
         let link_of = self.names("link", robot.links.iter().map(|link| &link.name))?;
         let joint_of = self.names("joint", robot.joints.iter().map(|joint| &joint.name))?;
         let tree = Tree::new(self, &robot, &link_of)?;
@@ -122,7 +122,7 @@ impl Lines {
                 joints[joint_place[index]].mimic = Some(mimic);
             }
         }
-        Ok(Model {
+        Ok(RobotModel {
             name: robot.name,
             links,
             joints,
@@ -185,21 +185,21 @@ impl Lines {
         joint: &urdf_rs::Joint,
         parent: LinkId,
         child: LinkId,
-    ) -> Result<Joint, ModelError> {
+    ) -> Result<ModelJoint, ModelError> {
         let line = self.joint(index);
-        let unsupported = |kind| ModelError::JointKind {
+        let unsupported = |kind| ModelError::JointType {
             line,
             joint: joint.name.clone(),
             kind,
         };
         let kind = match joint.joint_type {
-            JointType::Fixed => JointKind::Fixed,
-            JointType::Revolute => JointKind::Revolute,
-            JointType::Continuous => JointKind::Continuous,
-            JointType::Prismatic => JointKind::Prismatic,
-            JointType::Floating => return Err(unsupported("floating")),
-            JointType::Planar => return Err(unsupported("planar")),
-            JointType::Spherical => return Err(unsupported("spherical")),
+            urdf_rs::JointType::Fixed => JointType::Fixed,
+            urdf_rs::JointType::Revolute => JointType::Revolute,
+            urdf_rs::JointType::Continuous => JointType::Continuous,
+            urdf_rs::JointType::Prismatic => JointType::Prismatic,
+            urdf_rs::JointType::Floating => return Err(unsupported("floating")),
+            urdf_rs::JointType::Planar => return Err(unsupported("planar")),
+            urdf_rs::JointType::Spherical => return Err(unsupported("spherical")),
         };
         let read = Numbers {
             line,
@@ -208,13 +208,13 @@ impl Lines {
         let axis = read.vector(*joint.axis.xyz, "its axis is not finite")?;
         let axis = match (axis.try_normalize(), kind) {
             (Some(axis), _) => axis,
-            (None, JointKind::Fixed) => DVec3::X,
+            (None, JointType::Fixed) => DVec3::X,
             (None, _) => return Err(read.fault("its axis has no direction")),
         };
         let (lower, upper) = (joint.limit.lower, joint.limit.upper);
         let limits = match kind {
-            JointKind::Fixed => [0.0; 2],
-            JointKind::Continuous => [f64::NEG_INFINITY, f64::INFINITY],
+            JointType::Fixed => [0.0; 2],
+            JointType::Continuous => [f64::NEG_INFINITY, f64::INFINITY],
             _ if lower <= upper => [lower, upper],
             _ => return Err(read.fault("its lower limit is above its upper one")),
         };
@@ -222,7 +222,7 @@ impl Lines {
             .dynamics
             .as_ref()
             .map_or(0.0, |dynamics| dynamics.damping);
-        Ok(Joint {
+        Ok(ModelJoint {
             name: joint.name.clone(),
             kind,
             parent,
@@ -264,7 +264,7 @@ impl Lines {
             };
             let Some(mimic) = &joint.mimic else {
                 return match joint.joint_type {
-                    JointType::Fixed => Err(fault(&joint.name, "that joint is fixed")),
+                    urdf_rs::JointType::Fixed => Err(fault(&joint.name, "that joint is fixed")),
                     _ => Ok(found),
                 };
             };
@@ -454,7 +454,7 @@ impl Numbers {
         origin: &urdf_rs::Pose,
         geometry: &urdf_rs::Geometry,
         color: Option<&urdf_rs::Color>,
-    ) -> Result<Shape, ModelError> {
+    ) -> Result<LinkShape, ModelError> {
         let geometry = match geometry {
             urdf_rs::Geometry::Box { size } => Geometry::Box {
                 size: DVec3::new(
@@ -484,7 +484,7 @@ impl Numbers {
                 });
             }
         };
-        Ok(Shape {
+        Ok(LinkShape {
             origin: self.pose(origin)?,
             geometry,
             color: color.map(|color| *color.rgba),

@@ -4,11 +4,11 @@ use std::ops::{Index, IndexMut};
 
 use crate::JointId;
 
-/// One number for every joint of a [`Model`](crate::Model): positions, velocities, accelerations or torques.
+/// One number for every joint of a [`RobotModel`](crate::RobotModel): positions, velocities, accelerations or torques.
 ///
 /// Positions are radians for turning joints and metres for sliding ones, torques N m and N. The numbers of fixed joints and of
 /// those that follow another one are ignored when read by the model, and 0 in what it returns. They belong
-/// to the model that made them ([`Model::zero`](crate::Model::zero)).
+/// to the model that made them ([`RobotModel::zero`](crate::RobotModel::zero)).
 ///
 /// ```
 /// let robot = tabletop_kinematics::baxter()?;
@@ -20,7 +20,7 @@ use crate::JointId;
 pub struct JointValues(pub(crate) Vec<f64>);
 
 impl JointValues {
-    /// The numbers in the order of [`Model::joints`](crate::Model::joints).
+    /// The numbers in the order of [`RobotModel::joints`](crate::RobotModel::joints).
     pub fn as_slice(&self) -> &[f64] {
         &self.0
     }

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::{DAffine3, DVec3};
 use tabletop_kinematics::{
-    ArmChain, Frames, Geometry, JointKind, JointValues, Model, Shape, baxter, baxter_smile,
+    ArmChain, Frames, Geometry, JointType, JointValues, LinkShape, RobotModel, baxter, baxter_smile,
 };
 
 const POSES: [(&str, [f64; 7]); 3] = [
@@ -15,7 +15,7 @@ const POSES: [(&str, [f64; 7]); 3] = [
 ];
 
 /// Both arms in mirror images of a posture of the left one: the joints whose axes stand upright turn the other way.
-fn posture(robot: &Model, left: [f64; 7]) -> JointValues {
+fn posture(robot: &RobotModel, left: [f64; 7]) -> JointValues {
     let mut configuration = robot.zero();
     for (side, sign) in [("left", 1.0), ("right", -1.0)] {
         let arm = ArmChain::between(robot, "torso", &format!("{side}_wrist")).unwrap();
@@ -42,7 +42,7 @@ fn limits_are_those_of_the_reports_table() {
                 let id = robot.find_joint(&format!("{side}_{name}")).unwrap();
                 let joint = robot.joint(id);
                 assert_eq!(joint.limits, limits, "{}", joint.name);
-                assert_eq!(joint.kind, JointKind::Revolute);
+                assert_eq!(joint.kind, JointType::Revolute);
                 assert_eq!(joint.effort, if i < 4 { effort } else { 15.0 });
                 assert_eq!(joint.velocity, if i < 4 { 1.5 } else { 4.0 });
                 assert_eq!(joint.damping, 0.7);
@@ -199,7 +199,7 @@ fn torso_and_head_meet_no_arm_in_the_usual_postures() {
 }
 
 /// What is touched of the robot, by link, and where it is.
-fn placed<'a>(robot: &'a Model, frames: &Frames) -> Vec<(&'a str, &'a Shape, DAffine3)> {
+fn placed<'a>(robot: &'a RobotModel, frames: &Frames) -> Vec<(&'a str, &'a LinkShape, DAffine3)> {
     let mut placed = Vec::new();
     for link in robot.links() {
         let frame = frames[robot.find_link(&link.name).unwrap()];
@@ -210,7 +210,7 @@ fn placed<'a>(robot: &'a Model, frames: &Frames) -> Vec<(&'a str, &'a Shape, DAf
 }
 
 /// Points all over a body's surface, at most about 2 cm apart, in its own frame.
-fn surface(shape: &Shape) -> impl Iterator<Item = DVec3> {
+fn surface(shape: &LinkShape) -> impl Iterator<Item = DVec3> {
     let points: Vec<DVec3> = match shape.geometry {
         Geometry::Cylinder { radius, length } => (0..=24)
             .flat_map(|i| (0..24).map(move |k| (f64::from(i) / 24.0, TAU * f64::from(k) / 24.0)))
@@ -235,7 +235,7 @@ fn surface(shape: &Shape) -> impl Iterator<Item = DVec3> {
     points.into_iter()
 }
 
-fn contains(shape: &Shape, point: DVec3) -> bool {
+fn contains(shape: &LinkShape, point: DVec3) -> bool {
     match shape.geometry {
         Geometry::Cylinder { radius, length } => {
             point.truncate().length() < radius && point.z.abs() < length / 2.0
@@ -246,7 +246,7 @@ fn contains(shape: &Shape, point: DVec3) -> bool {
 }
 
 /// The corners of a box, in its link's frame.
-fn corners(shape: &Shape) -> [DVec3; 8] {
+fn corners(shape: &LinkShape) -> [DVec3; 8] {
     let Geometry::Box { size } = shape.geometry else {
         panic!("a box has corners");
     };

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 use proptest::prelude::*;
-use tabletop_kinematics::{JointId, JointValues, LinkId, Load, Model, baxter};
+use tabletop_kinematics::{JointId, JointValues, LinkId, Load, RobotModel, baxter};
 
 const GRAVITY: DVec3 = DVec3::new(0.3, -0.2, -9.81);
 
@@ -24,11 +24,11 @@ const FOLLOWER: &str = r#"<robot name="follower">
     <origin xyz="1 0 0"/><axis xyz="0 1 0"/><mimic joint="lift" multiplier="-0.7" offset="0.2"/></joint>
 </robot>"#;
 
-fn robots() -> [Model; 2] {
-    [baxter().unwrap(), Model::from_urdf(FOLLOWER).unwrap()]
+fn robots() -> [RobotModel; 2] {
+    [baxter().unwrap(), RobotModel::from_urdf(FOLLOWER).unwrap()]
 }
 
-fn loads(robot: &Model) -> Vec<Load> {
+fn loads(robot: &RobotModel) -> Vec<Load> {
     let names = ["left_end_effector", "right_wrist", "jib"];
     let links = names
         .into_iter()
@@ -43,7 +43,7 @@ fn loads(robot: &Model) -> Vec<Load> {
 }
 
 /// Numbers between -1 and 1 for the movable joints.
-fn values(robot: &Model, numbers: &[f64]) -> JointValues {
+fn values(robot: &RobotModel, numbers: &[f64]) -> JointValues {
     let mut values = robot.zero();
     for (joint, number) in robot.movable().zip(numbers) {
         values[joint] = *number;
@@ -55,7 +55,7 @@ fn moved(
     configuration: &JointValues,
     velocities: &JointValues,
     seconds: f64,
-    robot: &Model,
+    robot: &RobotModel,
 ) -> JointValues {
     let mut moved = configuration.clone();
     for joint in robot.movable() {
@@ -65,7 +65,7 @@ fn moved(
 }
 
 /// Centres of mass, by link, with their masses.
-fn masses(robot: &Model, configuration: &JointValues, loads: &[Load]) -> Vec<(f64, DVec3)> {
+fn masses(robot: &RobotModel, configuration: &JointValues, loads: &[Load]) -> Vec<(f64, DVec3)> {
     let frames = robot.frames(configuration);
     let links = link_ids(robot).map(|id| {
         let inertial = &robot.link(id).inertial;
@@ -77,14 +77,14 @@ fn masses(robot: &Model, configuration: &JointValues, loads: &[Load]) -> Vec<(f6
     links.chain(loads).collect()
 }
 
-fn link_ids(robot: &Model) -> impl Iterator<Item = LinkId> {
+fn link_ids(robot: &RobotModel) -> impl Iterator<Item = LinkId> {
     robot
         .links()
         .iter()
         .map(|link| robot.find_link(&link.name).unwrap())
 }
 
-fn potential_energy(robot: &Model, configuration: &JointValues, loads: &[Load]) -> f64 {
+fn potential_energy(robot: &RobotModel, configuration: &JointValues, loads: &[Load]) -> f64 {
     let masses = masses(robot, configuration, loads);
     masses
         .iter()
@@ -94,7 +94,7 @@ fn potential_energy(robot: &Model, configuration: &JointValues, loads: &[Load]) 
 
 /// From the motion of the links, by differences.
 fn kinetic_energy(
-    robot: &Model,
+    robot: &RobotModel,
     configuration: &JointValues,
     velocities: &JointValues,
     loads: &[Load],
@@ -120,7 +120,7 @@ fn kinetic_energy(
 }
 
 fn product(
-    robot: &Model,
+    robot: &RobotModel,
     matrix: impl Fn(JointId, JointId) -> f64,
     by: &JointValues,
 ) -> JointValues {
@@ -134,7 +134,7 @@ fn product(
     product
 }
 
-fn assert_near(robot: &Model, found: &JointValues, expected: &JointValues, tolerance: f64) {
+fn assert_near(robot: &RobotModel, found: &JointValues, expected: &JointValues, tolerance: f64) {
     for joint in robot.movable() {
         let (found, expected) = (found[joint], expected[joint]);
         let name = &robot.joint(joint).name;

@@ -1,7 +1,7 @@
 //! Texts that are no robots: refused where the fault is, and never with a panic.
 
 use proptest::prelude::*;
-use tabletop_kinematics::{ArmChain, Model, ModelError, baxter};
+use tabletop_kinematics::{ArmChain, ModelError, RobotModel, baxter};
 
 /// A robot of two links and a joint, with something put into or instead of its parts. The joint stands in line 4.
 fn robot(joint: &str) -> String {
@@ -145,7 +145,7 @@ fn every_fault_is_told_with_its_place() {
         ),
     ];
     for (text, expected) in cases {
-        let error = Model::from_urdf(&text).unwrap_err();
+        let error = RobotModel::from_urdf(&text).unwrap_err();
         assert_eq!(error.to_string(), expected, "{text}");
     }
 }
@@ -176,7 +176,7 @@ fn what_the_reader_cannot_read_is_located() {
         (inertial("heavy", "1"), "line 2: link a: "),
     ];
     for (text, start) in cases {
-        let error = Model::from_urdf(&text).unwrap_err().to_string();
+        let error = RobotModel::from_urdf(&text).unwrap_err().to_string();
         assert!(error.starts_with(start), "{error}\n{text}");
     }
 }
@@ -203,10 +203,10 @@ fn texts_that_are_no_xml_are_refused() {
         nested(60),
         nested(100_000),
     ] {
-        let refused = Model::from_urdf(&text);
+        let refused = RobotModel::from_urdf(&text);
         assert!(refused.is_err(), "{text:.100}");
     }
-    let error = Model::from_urdf(&nested(100_000)).unwrap_err();
+    let error = RobotModel::from_urdf(&nested(100_000)).unwrap_err();
     assert!(
         matches!(error, ModelError::TooDeep { line: 1, .. }),
         "{error}"
@@ -223,7 +223,7 @@ fn a_long_chain_is_read() {
         );
     }
     text += "</robot>";
-    let robot = Model::from_urdf(&text).unwrap();
+    let robot = RobotModel::from_urdf(&text).unwrap();
     assert_eq!(robot.links().len(), 5001);
     let error = ArmChain::between(&robot, "0", "5000").unwrap_err();
     assert_eq!(
@@ -270,6 +270,6 @@ proptest! {
         let cut = cut.index(text.len());
         let end = (cut + length).min(text.len());
         let damaged = format!("{}{patch}{}", &text[..cut], &text[end..]);
-        let _ = Model::from_urdf(&damaged);
+        let _ = RobotModel::from_urdf(&damaged);
     }
 }

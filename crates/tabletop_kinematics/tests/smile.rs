@@ -2,7 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use glam::{DAffine3, DVec3};
-use tabletop_kinematics::{ArmChain, Model, baxter, baxter_smile};
+use tabletop_kinematics::{ArmChain, RobotModel, baxter, baxter_smile};
 
 /// Units of the table (0.1 m). The numbers were computed with 1.571 for a right angle.
 const TOLERANCE: f64 = 0.01;
@@ -16,7 +16,7 @@ fn mirrored(mut angles: [f64; 7]) -> [f64; 7] {
     angles
 }
 
-fn hand(robot: &Model, side: &str, angles: [f64; 7]) -> DAffine3 {
+fn hand(robot: &RobotModel, side: &str, angles: [f64; 7]) -> DAffine3 {
     let tip = format!("{side}_end_effector");
     ArmChain::between(robot, "torso", &tip)
         .unwrap()

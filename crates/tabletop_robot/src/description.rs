@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
-use tabletop_kinematics::{Model, ModelError};
+use tabletop_kinematics::{ModelError, RobotModel};
 
 use crate::articulation::tree::Articulation;
 
@@ -12,7 +12,7 @@ use crate::articulation::tree::Articulation;
 #[derive(Resource, Clone, Debug)]
 pub struct Description {
     /// Its model.
-    pub model: Model,
+    pub model: RobotModel,
     /// Where it was read from; `None` for the robot that comes with the program.
     pub source: Option<Source>,
 }
@@ -33,7 +33,7 @@ impl Description {
     ///
     /// The text is no URDF that can be used, or lacks joints or links that the robot's arms need; the error names them.
     pub fn read(source: Source) -> Result<Self, ModelError> {
-        let model = Model::from_urdf(&source.urdf)?;
+        let model = RobotModel::from_urdf(&source.urdf)?;
         Articulation::new(model.clone())?;
         Ok(Self {
             model,

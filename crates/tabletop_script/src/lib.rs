@@ -1,56 +1,58 @@
 //! The script bridge: a user's Matlab (or Octave, or Python) scripts sense and move the robot, a call a tick (report
 //! section 5.2).
 //!
-//! An [`AgentOrder`](tabletop_core::AgentOrder) starts and stops them; what they order becomes
-//! [`SimCommand`](tabletop_core::SimCommand)s, so a recording of what they do runs again without them. What becomes of them
-//! is told by [`AgentNews`](tabletop_core::AgentNews) and stands in [`Agent`](tabletop_core::Agent).
+//! A [`ScriptCommand`](tabletop_core::ScriptCommand) starts and stops them. Their replies become
+//! [`SimCommand`](tabletop_core::SimCommand)s, so a recording of what they do runs again without them.
+//! [`ScriptEvent`](tabletop_core::ScriptEvent)s report what becomes of them, and [`Agent`](tabletop_core::Agent) holds their
+//! state.
 //!
-//! The simulation waits for the script; what is drawn does not. At such a [`Standstill`] frames go by
+//! The simulation waits for the script; what is drawn does not. While [`SimBlocked`] is set, frames go by
 //! without ticks, each looks for the answer once, and messages are kept for the next tick. Without a window
-//! ([`Waiting::Blocking`]) a run is the same every time, and what the script orders is the same either way.
+//! ([`Waiting::Blocking`]) a run is the same every time, and the script's commands are the same either way.
 //!
-//! What takes time to tell is told to scripts that mention it ([`Tell`]). `docs/scripts.md` is written for those who write
-//! scripts.
+//! Fields of `sensor` that take time are sent only to scripts that mention them ([`FieldPolicy`]). `docs/scripts.md` is for
+//! those who write scripts.
 //!
 //! ```no_run
 //! use bevy::prelude::*;
-//! use tabletop_core::{prelude::*, AgentOrder};
+//! use tabletop_core::{prelude::*, ScriptCommand};
 //! use tabletop_script::{ScriptPlugin, ScriptSettings};
 //!
 //! let mut app = App::new();
 //! app.add_plugins((MinimalPlugins, CorePlugin::default()))
 //!     .add_plugins(ScriptPlugin { settings: ScriptSettings::default() })
 //!     .start();
-//! app.world_mut().write_message(AgentOrder::Start); // runs the scripts that matlab/agentBehavior.m names
+//! app.world_mut().write_message(ScriptCommand::Start); // runs the scripts that matlab/agentBehavior.m names
 //! app.step(600);
 //! ```
 
-mod act;
-mod agency;
+mod blocked;
+mod events;
 mod mentions;
-mod news;
+mod motor_commands;
+mod runner;
 mod sense;
 mod session;
 mod settings;
-mod standstill;
+mod simulation;
 
-pub use settings::{ScriptSettings, Tell, Waiting};
+pub use settings::{FieldPolicy, ScriptSettings, Waiting};
 pub use tabletop_engine::{
-    ENGINE_VARIABLE, EngineChoice, EngineConfig, EngineError, EngineKind, Surroundings, Timeouts,
+    ENGINE_VARIABLE, EngineChoice, EngineConfig, EngineError, EngineKind, EngineLocator, Timeouts,
 };
 
 use bevy::{ecs::system::RunSystemOnce as _, prelude::*};
 use tabletop_core::{
-    HeadCamera, ObjectIndex, OrderSystems, Paused, PictureDemand, SensorImage, Standstill,
+    HeadCamera, ObjectIndex, OrderSystems, Paused, PictureDemand, SensorImage, SimBlocked,
 };
 
-use agency::{Agency, call};
-use standstill::{drop_overstep, keep_messages, try_again};
+use blocked::{drop_overstep, keep_messages, try_again};
+use runner::{ScriptRunner, call};
 
-/// Ends the script, if there is one, and waits until its engine has ended. What it still prints is told.
-pub fn see_off(world: &mut World) {
+/// Ends the script, if there is one, and waits until its engine has ended. What it still prints becomes events.
+pub fn shut_down(world: &mut World) {
     // Without the plugin there is no script.
-    drop(world.run_system_once(agency::see_off));
+    drop(world.run_system_once(runner::shut_down));
 }
 
 /// Adds the script bridge. Needs [`CorePlugin`](tabletop_core::CorePlugin).
@@ -63,7 +65,7 @@ pub struct ScriptPlugin {
 impl Plugin for ScriptPlugin {
     fn build(&self, app: &mut App) {
         app.insert_resource(self.settings.clone())
-            .init_resource::<Agency>()
+            .init_resource::<ScriptRunner>()
             .init_resource::<HeadCamera>()
             .init_resource::<ObjectIndex>()
             .init_resource::<PictureDemand>()
@@ -71,10 +73,10 @@ impl Plugin for ScriptPlugin {
             .add_systems(
                 FixedUpdate,
                 (
-                    // A frame that begins at a standstill has no other tick even if the answer has come.
-                    drop_overstep.run_if(not(Standstill::is_over)),
+                    // A frame that begins while the simulation is blocked has no other tick even if the answer has come.
+                    drop_overstep.run_if(not(SimBlocked::is_clear)),
                     Paused::will_be.pipe(call),
-                    drop_overstep.run_if(not(Standstill::is_over)),
+                    drop_overstep.run_if(not(SimBlocked::is_clear)),
                 )
                     .chain()
                     .in_set(OrderSystems::Script),
@@ -82,7 +84,7 @@ impl Plugin for ScriptPlugin {
             .add_systems(
                 RunFixedMainLoop,
                 (try_again, keep_messages)
-                    .run_if(not(Standstill::is_over))
+                    .run_if(not(SimBlocked::is_clear))
                     .in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
             );
     }

@@ -7,23 +7,23 @@ use tabletop_core::{
     Arm, ObjectIndex, ObjectSpec, Pose, Recording, Replaying, Robot, RobotJoint, RobotMode,
     SensorImage, SimTick, TICK_SECONDS, Table,
 };
-use tabletop_engine::{Aux, Picture, SensedContact, SensedObject, Sensor};
+use tabletop_engine::{Aux, RgbImage, SensedContact, SensedObject, Sensor};
 
 use crate::ScriptSettings;
 
 /// How far fingers' ends are from the end effector: across and along it, in units. They do not follow the opening.
 const FINGER_ENDS: Vec2 = Vec2::new(1.15, 0.75);
 
-/// What a script gets to know beside what all scripts do.
+/// The fields of `sensor` that a script gets beside those that all scripts get.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Told {
+pub(crate) struct SensorFields {
     objects: bool,
     trackers: bool,
 }
 
-impl Told {
-    /// What this agent is told.
-    pub fn to(agent: &Path, settings: &ScriptSettings) -> Self {
+impl SensorFields {
+    /// Those that this agent gets.
+    pub fn of(agent: &Path, settings: &ScriptSettings) -> Self {
         let objects = &["objects", "contacts", "held"];
         Self {
             objects: settings.objects.holds_for(agent, objects),
@@ -60,7 +60,7 @@ impl Senses<'_, '_> {
     }
 
     /// What a callback script gets to know, so many ticks after it was called before.
-    pub fn sensor(&self, ticks: u64, picture: Option<Picture>, told: Told) -> Sensor {
+    pub fn sensor(&self, ticks: u64, picture: Option<RgbImage>, fields: SensorFields) -> Sensor {
         let robot = &self.robot;
         let of_arms = |value: fn(&Robot, RobotJoint) -> f64| {
             Arm::BOTH.map(|arm| RobotJoint::of_arm(arm).map(|joint| value(robot, joint)))
@@ -72,23 +72,23 @@ impl Senses<'_, '_> {
             end_eff_pos: Arm::BOTH.map(|arm| point(robot.arm(arm).end_effector.location)),
             gripper_opening: Arm::BOTH.map(|arm| robot.joint(RobotJoint::gripper(arm)).position),
             picture,
-            tracker_loc: told.trackers.then(|| self.trackers()),
+            tracker_loc: fields.trackers.then(|| self.trackers()),
             demo_cue: self.recording.0 || self.replaying.0,
             head_angle: Some(robot.joint(RobotJoint::HeadPan).position),
-            objects: told.objects.then(|| self.objects()),
-            contacts: told.objects.then(|| self.contacts()),
-            held: told.objects.then(|| self.held()),
+            objects: fields.objects.then(|| self.objects()),
+            contacts: fields.objects.then(|| self.contacts()),
+            held: fields.objects.then(|| self.held()),
             joint_torques: dynamic.then(|| of_arms(|robot, joint| robot.joint(joint).torque)),
         }
     }
 
     /// The picture of a tick, or of a later one, if it has been taken.
-    pub fn picture_since(&self, tick: SimTick) -> Option<Picture> {
+    pub fn picture_since(&self, tick: SimTick) -> Option<RgbImage> {
         let picture = &self.image.picture;
         if self.image.tick < tick || picture.rgb.is_empty() {
             return None;
         }
-        Picture::new(picture.width, picture.height, picture.rgb.clone())
+        RgbImage::new(picture.width, picture.height, picture.rgb.clone())
     }
 
     /// The points on the arms that the original program names.

@@ -3,43 +3,43 @@
 use std::time::{Duration, Instant};
 
 use bevy::prelude::*;
-use tabletop_core::{Agent, AgentNews, RobotMode, SimTick, Standstill};
+use tabletop_core::{Agent, RobotMode, ScriptEvent, SimBlocked, SimTick};
 use tabletop_engine::{EngineError, EngineHandle, Reply};
 
 use crate::{
-    act::{command_of_motor, commands_of_init, last_command, unreachable},
-    agency::Simulation,
-    sense::{Told, aux},
+    motor_commands::{command_of_motor, commands_of_init, last_command, unreachable},
+    sense::{SensorFields, aux},
     settings::{ScriptSettings, Waiting},
+    simulation::Simulation,
 };
 
 /// Longest time that one look for an answer takes while the simulation waits for the script anyway, and that what the script
-/// prints meanwhile waits to be told.
+/// prints meanwhile waits to be reported.
 const ONE_LOOK: Duration = Duration::from_millis(100);
 
 /// A script with its engine.
-pub(crate) struct Session {
+pub(crate) struct ScriptSession {
     pub engine: EngineHandle,
-    stage: Stage,
+    phase: Phase,
     /// When the engine was asked for what it has not answered yet.
     asked: Instant,
     /// The tick of the last call, or of the init script.
     called_at: SimTick,
     /// The tick in which the init script has run.
     began_at: SimTick,
-    /// What it gets to know.
-    told: Told,
+    /// The fields that it gets.
+    fields: SensorFields,
     /// An answer that came in a pause, after which it counts.
     answer: Option<Reply>,
     /// The tick of a picture that the script is to get next.
     picture: Option<SimTick>,
-    /// Whether it has been said that nothing obeys its torques.
+    /// Whether the note was given that nothing obeys its torques.
     torques_noted: bool,
 }
 
 /// What is expected of the engine next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Stage {
+enum Phase {
     /// That it comes up.
     Start,
     /// Nothing: the init script is due.
@@ -55,22 +55,22 @@ enum Stage {
 /// What came of an answer.
 pub(crate) enum Answer {
     /// The tick can begin.
-    Orders,
+    Commands,
     /// The script is done.
     Exit,
 }
 
-impl Session {
+impl ScriptSession {
     pub fn start(settings: &ScriptSettings, tick: SimTick) -> Result<Self, EngineError> {
         let config = settings.engine_config()?;
-        let told = Told::to(&config.agent, settings);
+        let fields = SensorFields::of(&config.agent, settings);
         Ok(Self {
             engine: EngineHandle::start(config)?,
-            stage: Stage::Start,
+            phase: Phase::Start,
             asked: Instant::now(),
             called_at: tick,
             began_at: tick,
-            told,
+            fields,
             answer: None,
             picture: None,
             torques_noted: false,
@@ -85,7 +85,7 @@ impl Session {
         simulation: &mut Simulation,
     ) -> Option<Result<Answer, EngineError>> {
         loop {
-            if will_be_paused && matches!(self.stage, Stage::Ready | Stage::Idle) {
+            if will_be_paused && matches!(self.phase, Phase::Ready | Phase::Idle) {
                 return None;
             }
             self.ask_what_is_due(simulation);
@@ -114,12 +114,12 @@ impl Session {
     }
 
     fn ask_what_is_due(&mut self, simulation: &Simulation) {
-        match self.stage {
-            Stage::Ready => {
+        match self.phase {
+            Phase::Ready => {
                 self.engine.init(aux());
-                self.expect(Stage::Init);
+                self.expect(Phase::Init);
             }
-            Stage::Idle => {
+            Phase::Idle => {
                 let tick = *simulation.tick;
                 let picture = self
                     .picture
@@ -127,16 +127,16 @@ impl Session {
                 self.picture.take_if(|_| picture.is_some());
                 let ticks = tick.0.saturating_sub(self.called_at.0).max(1);
                 self.called_at = tick;
-                let sensor = simulation.senses.sensor(ticks, picture, self.told);
+                let sensor = simulation.senses.sensor(ticks, picture, self.fields);
                 self.engine.step(sensor);
-                self.expect(Stage::Step);
+                self.expect(Phase::Step);
             }
-            Stage::Start | Stage::Init | Stage::Step => {}
+            Phase::Start | Phase::Init | Phase::Step => {}
         }
     }
 
-    fn expect(&mut self, stage: Stage) {
-        self.stage = stage;
+    fn expect(&mut self, phase: Phase) {
+        self.phase = phase;
         self.asked = Instant::now();
     }
 
@@ -144,23 +144,21 @@ impl Session {
     fn look(&mut self, will_be_paused: bool, simulation: &mut Simulation) -> Option<Reply> {
         let look = match simulation.settings.waiting {
             Waiting::Blocking => ONE_LOOK,
-            Waiting::Frame(_) if will_be_paused || self.stage == Stage::Start => Duration::ZERO,
+            Waiting::Frame(_) if will_be_paused || self.phase == Phase::Start => Duration::ZERO,
             Waiting::Frame(most) => most,
         };
         let kept = self.answer.take();
         let reply = kept.or_else(|| self.engine.recv_timeout(look));
-        simulation.news.print(&self.engine);
+        simulation.events.print(&self.engine);
         reply
     }
 
     /// Lets the simulation wait for the script. While the engine comes up, it goes on.
     fn let_wait(&self, will_be_paused: bool, simulation: &mut Simulation) {
-        if self.stage == Stage::Start {
+        if self.phase == Phase::Start {
             return;
         }
-        simulation
-            .standstill
-            .set_if_neq(Standstill(!will_be_paused));
+        simulation.blocked.set_if_neq(SimBlocked(!will_be_paused));
         *simulation.agent = Agent::Waiting {
             since: self.asked.elapsed(),
         };
@@ -177,33 +175,33 @@ impl Session {
             senses,
             agent,
             commands,
-            news,
+            events,
             ..
         } = simulation;
         match reply {
             Reply::Started { description } => {
-                news.tell(AgentNews::Started {
+                events.write(ScriptEvent::Started {
                     engine: description,
                 });
-                self.stage = Stage::Ready;
+                self.phase = Phase::Ready;
                 Ok(None)
             }
             Reply::Init(reply) => {
                 commands.write_batch(commands_of_init(&reply));
                 if let Some(note) = unreachable(&reply) {
-                    news.note(&note);
+                    events.note(&note);
                 }
                 if reply.exit {
                     return Ok(Some(Answer::Exit));
                 }
                 self.called_at = **tick;
                 self.began_at = **tick;
-                self.stage = Stage::Idle;
+                self.phase = Phase::Idle;
                 **agent = Agent::Online {
                     took: self.asked.elapsed(),
                 };
                 // The first call comes with the next tick, when the arms are where the init script wants them.
-                Ok(Some(Answer::Orders))
+                Ok(Some(Answer::Commands))
             }
             Reply::Step(reply) if reply.exit => {
                 commands.write_batch(last_command(&reply.motor));
@@ -214,12 +212,12 @@ impl Session {
                 let unheeded = reply.motor.joint_torques.is_some() && mode != RobotMode::Dynamic;
                 if unheeded && !self.torques_noted {
                     self.torques_noted = true;
-                    news.note("motor.jointTorques has no effect without --dynamic");
+                    events.note("motor.jointTorques has no effect without --dynamic");
                 }
                 commands.write(command_of_motor(&reply.motor, mode));
-                self.stage = Stage::Idle;
+                self.phase = Phase::Idle;
                 **agent = Agent::Online { took: reply.took };
-                Ok(Some(Answer::Orders))
+                Ok(Some(Answer::Commands))
             }
             Reply::Failed(error) => Err(error),
         }

@@ -7,8 +7,10 @@ use std::{
 };
 
 use bevy::prelude::*;
-use tabletop_core::{AgentNews, ShippedFiles, TICKS_PER_SECOND};
-use tabletop_engine::{EngineChoice, EngineConfig, EngineError, Output, Surroundings, Timeouts};
+use tabletop_core::{ScriptEvent, ShippedFiles, TICKS_PER_SECOND};
+use tabletop_engine::{
+    ConsoleLimit, EngineChoice, EngineConfig, EngineError, EngineLocator, Timeouts,
+};
 
 use crate::mentions::mention;
 
@@ -24,25 +26,25 @@ pub struct ScriptSettings {
     pub pair: Option<[String; 2]>,
     /// Ticks from one picture of the head camera to the next; 15 are the four a second of the original program.
     pub ticks_per_picture: u64,
-    /// Let scripts know of the objects, the contacts and what the grippers hold (`sensor.objects`, `contacts` and `held`).
-    pub objects: Tell,
-    /// Let scripts know where points of the arms are (`sensor.trackerLoc`). It costs Octave half a millisecond a tick.
-    pub trackers: Tell,
+    /// Whether scripts get the objects, the contacts and what the grippers hold (`sensor.objects`, `contacts` and `held`).
+    pub objects: FieldPolicy,
+    /// Whether scripts get the points on the arms (`sensor.trackerLoc`). They cost Octave half a millisecond a tick.
+    pub trackers: FieldPolicy,
     /// How long to wait for the engine before it is ended.
     pub timeouts: Timeouts,
     /// How the simulation waits for the script.
     pub waiting: Waiting,
     /// Where engines are looked for.
-    pub surroundings: Surroundings,
+    pub locator: EngineLocator,
     /// Agents of which nothing is on disk are taken from these files.
     pub shipped: ShippedFiles,
-    /// Gets the script's news as they come, also in the middle of a tick that waits for the script.
-    pub overhear: Option<fn(&AgentNews)>,
+    /// Is called with each event of the script at once, also in the middle of a tick that waits for the script.
+    pub on_event: Option<fn(&ScriptEvent)>,
 }
 
-/// Whether scripts are told something that costs time.
+/// Whether scripts get fields of `sensor` that cost time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Tell {
+pub enum FieldPolicy {
     /// If its name is in a script: an `.m` file in the agent's folder, or a `.py` file beside the agent's, or one up to three
     /// folders below. The files are read whenever the agent starts.
     #[default]
@@ -53,8 +55,8 @@ pub enum Tell {
     Never,
 }
 
-impl Tell {
-    /// Whether this agent is told what has these names.
+impl FieldPolicy {
+    /// Whether this agent gets the fields of these names.
     pub(crate) fn holds_for(self, agent: &Path, names: &[&str]) -> bool {
         match self {
             Self::Auto => mention(agent, names),
@@ -79,7 +81,7 @@ impl ScriptSettings {
     /// # Errors
     /// The engine that is wanted is not there, or scripts from the program cannot be written anywhere.
     pub fn engine_config(&self) -> Result<EngineConfig, EngineError> {
-        let engine = self.surroundings.find(&self.engine)?;
+        let engine = self.locator.find(&self.engine)?;
         let mut config = EngineConfig::new(engine);
         if let Some(agent) = &self.agent {
             config.agent.clone_from(agent);
@@ -94,7 +96,7 @@ impl ScriptSettings {
         config.pair.clone_from(&self.pair);
         config.timeouts = self.timeouts;
         if self.waiting == Waiting::Blocking {
-            config.output = Output::Whole;
+            config.console_limit = ConsoleLimit::Whole;
         }
         Ok(config)
     }
@@ -107,13 +109,13 @@ impl Default for ScriptSettings {
             agent: None,
             pair: None,
             ticks_per_picture: u64::from(TICKS_PER_SECOND / 4),
-            objects: Tell::Auto,
-            trackers: Tell::Auto,
+            objects: FieldPolicy::Auto,
+            trackers: FieldPolicy::Auto,
             timeouts: Timeouts::default(),
             waiting: Waiting::Blocking,
-            surroundings: Surroundings::system(),
+            locator: EngineLocator::system(),
             shipped: ShippedFiles::default(),
-            overhear: None,
+            on_event: None,
         }
     }
 }

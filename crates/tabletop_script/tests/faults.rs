@@ -7,7 +7,7 @@ mod kit;
 use std::{fs, os::unix::fs::PermissionsExt as _, time::Duration};
 
 use kit::{Folder, Stage};
-use tabletop_core::{Agent, AgentNews, AgentOrder};
+use tabletop_core::{Agent, ScriptCommand, ScriptEvent};
 use tabletop_script::{EngineChoice, ScriptSettings};
 
 const INIT: &str = "aux.drawMarkers = [1 2 3];\ncalls = 0;\n";
@@ -21,7 +21,7 @@ fn failure(settings: ScriptSettings) -> String {
     stage.ticks_until(|stage| stage.failure().is_some());
     assert_eq!(stage.agent(), &Agent::Failed);
     stage.assert_at_rest();
-    assert!(!stage.news.contains(&AgentNews::Stopped));
+    assert!(!stage.events.contains(&ScriptEvent::Stopped));
     stage.failure().unwrap().to_owned()
 }
 
@@ -152,7 +152,7 @@ fn after_an_error_the_mended_script_can_be_started() {
     let mut stage = Stage::start(folder.settings());
     stage.ticks_until(|stage| stage.failure().is_some());
     folder.write("testCallback.m", GOOD);
-    stage.order(AgentOrder::Start);
+    stage.script(ScriptCommand::Start);
     stage.ticks_until(Stage::is_online);
     stage.ticks(10);
     assert!(stage.is_online());

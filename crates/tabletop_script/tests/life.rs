@@ -7,7 +7,7 @@ use std::{f64::consts::FRAC_PI_2, path};
 
 use kit::{Folder, Stage, octave};
 use tabletop_core::{
-    Agent, AgentNews, AgentOrder, Arm, Robot, RobotJoint, SimCommand, TICK_SECONDS,
+    Agent, Arm, Robot, RobotJoint, ScriptCommand, ScriptEvent, SimCommand, TICK_SECONDS,
 };
 
 const TICK: f64 = TICK_SECONDS as f64;
@@ -150,12 +150,12 @@ fn a_script_that_is_stopped_leaves_nothing_behind_and_starts_afresh() {
         stage.ticks(30);
         assert_eq!(stage.markers(), 2);
         assert_ne!(angles(stage.robot()), before, "a hidden robot moves, too");
-        stage.order(AgentOrder::Stop);
+        stage.script(ScriptCommand::Stop);
         stage.ticks(1);
         assert!(stage.has_stopped());
         assert_eq!(stage.agent(), &Agent::Off);
         stage.assert_at_rest();
-        stage.order(AgentOrder::Start);
+        stage.script(ScriptCommand::Start);
     }
 }
 
@@ -163,20 +163,20 @@ fn a_script_that_is_stopped_leaves_nothing_behind_and_starts_afresh() {
 fn a_second_start_and_a_stop_of_nothing_do_nothing() {
     let folder = Folder::pair("disp('init'); calls = 0;", MOVING);
     let mut stage = Stage::start(folder.settings());
-    stage.order(AgentOrder::Start);
+    stage.script(ScriptCommand::Start);
     stage.ticks(3);
-    stage.order(AgentOrder::Start);
+    stage.script(ScriptCommand::Start);
     stage.ticks(3);
     assert_eq!(stage.printed(), "init");
-    stage.order(AgentOrder::Stop);
-    stage.order(AgentOrder::Stop);
+    stage.script(ScriptCommand::Stop);
+    stage.script(ScriptCommand::Stop);
     stage.ticks(1);
-    stage.order(AgentOrder::Stop);
+    stage.script(ScriptCommand::Stop);
     stage.ticks(1);
     let ends = stage
-        .news
+        .events
         .iter()
-        .filter(|news| **news == AgentNews::Stopped);
+        .filter(|event| **event == ScriptEvent::Stopped);
     assert_eq!(ends.count(), 1);
 }
 
@@ -191,13 +191,13 @@ fn while_paused_there_are_no_calls() {
     let mut stage = Stage::start(folder.settings());
     stage.ticks(15);
     // The pause comes in the tick whose picture the script is to get.
-    stage.tell(SimCommand::SetPaused(true));
+    stage.command(SimCommand::SetPaused(true));
     stage.ticks(5);
     let before = angles(stage.robot());
     stage.ticks(20);
     assert_eq!(angles(stage.robot()), before);
     assert_eq!(stage.markers(), 2);
-    stage.tell(SimCommand::SetPaused(false));
+    stage.command(SimCommand::SetPaused(false));
     stage.ticks(10);
     let printed = stage.printed();
     let numbers: Vec<f64> = printed
@@ -215,10 +215,10 @@ fn while_paused_there_are_no_calls() {
 fn a_script_that_is_started_in_a_pause_begins_after_it() {
     let folder = Folder::pair("aux.initJointAngles = 0.25 * ones(2, 7);", "");
     let mut stage = Stage::start(folder.settings());
-    stage.tell(SimCommand::SetPaused(true));
+    stage.command(SimCommand::SetPaused(true));
     stage.ticks(3);
     assert_eq!(stage.agent(), &Agent::Starting);
-    stage.tell(SimCommand::SetPaused(false));
+    stage.command(SimCommand::SetPaused(false));
     stage.ticks(1);
     assert_eq!(stage.robot().joint(RobotJoint::LeftS0).position, 0.25);
 }
@@ -227,9 +227,9 @@ fn a_script_that_is_started_in_a_pause_begins_after_it() {
 fn without_an_engine_the_message_says_how_to_get_one() {
     let mut settings = Folder::pair("", "").settings();
     settings.engine = Default::default();
-    settings.surroundings.path.clear();
-    settings.surroundings.variable = None;
-    settings.surroundings.root = "/there is nothing".into();
+    settings.locator.path.clear();
+    settings.locator.variable = None;
+    settings.locator.root = "/there is nothing".into();
     let mut stage = Stage::start(settings);
     stage.ticks(1);
     assert_eq!(stage.agent(), &Agent::Failed);

@@ -6,7 +6,7 @@ mod kit;
 use bevy::prelude::*;
 use kit::{Folder, Stage};
 use tabletop_core::{Arm, ObjectSpec, Pose, Rgb, Shape, SimCommand};
-use tabletop_script::{ScriptSettings, Tell};
+use tabletop_script::{FieldPolicy, ScriptSettings};
 
 const NAMES: &str =
     "if ~exist('shown', 'var'), shown = fieldnames(sensor)'; disp(strjoin(sort(shown))); end\n";
@@ -32,14 +32,14 @@ fn scripts_get_what_they_mention() {
     let all = "contacts demoCue endEffPos gripperOpening headAngle held jointAngles objects rgbVision timeElapsed";
     assert_eq!(fields(folder.settings()), all);
     let never = ScriptSettings {
-        objects: Tell::Never,
+        objects: FieldPolicy::Never,
         ..folder.settings()
     };
     assert_eq!(fields(never), BARE);
     let folder = Folder::pair("", NAMES);
     let always = ScriptSettings {
-        objects: Tell::Always,
-        trackers: Tell::Always,
+        objects: FieldPolicy::Always,
+        trackers: FieldPolicy::Always,
         ..folder.settings()
     };
     assert_eq!(fields(always), format!("{all} trackerLoc"));
@@ -112,7 +112,7 @@ end
 ",
     );
     let mut stage = Stage::start(folder.settings());
-    stage.tell(SimCommand::ShowRobot(true));
+    stage.command(SimCommand::ShowRobot(true));
     let pose = Pose::at(Vec3::new(4.4, -5.58, 6.65));
     let spec = ObjectSpec {
         id: "plate".into(),
@@ -189,7 +189,7 @@ fn pictures_show_the_markers_and_not_the_past() {
     let mut settings = folder.settings();
     settings.ticks_per_picture = 1;
     let mut stage = Stage::start(settings);
-    stage.tell(SimCommand::ShowRobot(false));
+    stage.command(SimCommand::ShowRobot(false));
     stage.ticks_until(Stage::has_stopped);
     let printed = stage.printed();
     let numbers: Vec<f32> = printed

@@ -8,7 +8,7 @@ use std::time::Duration;
 use bevy::{prelude::*, time::TimeUpdateStrategy};
 use kit::{Folder, Stage};
 use tabletop_core::{
-    Agent, AgentOrder, Drive, Face, RobotJoint, SimCommand, Standstill, TICK_SECONDS,
+    Agent, Drive, Face, RobotJoint, ScriptCommand, SimBlocked, SimCommand, TICK_SECONDS,
 };
 use tabletop_script::{ScriptSettings, Waiting};
 
@@ -132,13 +132,13 @@ fn nothing_that_is_told_meanwhile_gets_lost() {
         let goal = 0.3 + f64::from(call) / 10.0;
         let face = if call == 1 { Face::Happy } else { Face::Asleep };
         let drive = (RobotJoint::HeadPan, Drive::Position(goal));
-        stage.tell(SimCommand::Drive(vec![drive]));
-        stage.tell(SimCommand::ShowFace(face));
+        stage.command(SimCommand::Drive(vec![drive]));
+        stage.command(SimCommand::ShowFace(face));
         for _ in 0..10 {
             stage.frame();
         }
         assert_eq!(stage.tick(), tick);
-        assert!(stage.app.world().resource::<Standstill>().0);
+        assert!(stage.app.world().resource::<SimBlocked>().0);
         folder.write(&format!("go{call}"), "");
         stage.frames_until(|stage| stage.tick() > tick);
         assert_eq!(stage.robot().joint(RobotJoint::HeadPan).position, goal);
@@ -156,11 +156,11 @@ fn the_simulation_goes_on_while_the_engine_comes_up_and_can_be_stopped_then() {
     let tick = stage.tick();
     stage.frame();
     assert_eq!(stage.tick(), tick + 1);
-    stage.order(AgentOrder::Stop);
+    stage.script(ScriptCommand::Stop);
     stage.frame();
     assert!(stage.has_stopped());
     assert_eq!(stage.agent(), &Agent::Off);
-    stage.order(AgentOrder::Start);
+    stage.script(ScriptCommand::Start);
     stage.frames_until(Stage::is_online);
     assert_eq!(stage.failure(), None);
     assert_eq!(stage.markers(), 1);
@@ -172,7 +172,7 @@ fn an_endless_loop_is_ended_by_a_stop() {
     let mut stage = Stage::start(framewise(&folder));
     stage.frames_until(|stage| waits(stage) && waited(stage) > Duration::from_millis(100));
     let tick = stage.tick();
-    stage.order(AgentOrder::Stop);
+    stage.script(ScriptCommand::Stop);
     stage.frames_until(Stage::has_stopped);
     assert_eq!(stage.agent(), &Agent::Off);
     stage.frames_until(|stage| stage.tick() > tick + 10);
@@ -201,7 +201,7 @@ fn an_endless_init_is_ended_by_a_stop() {
     let folder = Folder::pair("while true, end", "");
     let mut stage = Stage::start(framewise(&folder));
     stage.frames_until(|stage| waits(stage) && waited(stage) > Duration::from_millis(50));
-    stage.order(AgentOrder::Stop);
+    stage.script(ScriptCommand::Stop);
     stage.frames_until(Stage::has_stopped);
 }
 
@@ -210,7 +210,7 @@ fn a_pause_can_be_made_while_a_script_is_waited_for() {
     let folder = Folder::pair("calls = 0;", SLOW);
     let mut stage = Stage::start(framewise(&folder));
     stage.frames_until(|stage| waits(stage) && stage.track().len() >= 2);
-    stage.tell(SimCommand::SetPaused(true));
+    stage.command(SimCommand::SetPaused(true));
     stage.frames_until(Stage::is_online);
     for _ in 0..5 {
         stage.frame();
@@ -221,7 +221,7 @@ fn a_pause_can_be_made_while_a_script_is_waited_for() {
         assert!(stage.is_online());
     }
     assert_eq!(stage.tick(), tick);
-    stage.tell(SimCommand::SetPaused(false));
+    stage.command(SimCommand::SetPaused(false));
     stage.frames_until(|stage| stage.track().len() >= 6);
 
     let mut blocking = Stage::start(folder.settings());
@@ -234,11 +234,11 @@ fn in_a_pause_nothing_waits_for_a_script() {
     let folder = Folder::pair("calls = 0;", GATED);
     let mut stage = Stage::start(framewise(&folder));
     stage.frames_until(waits);
-    stage.tell(SimCommand::SetPaused(true));
-    stage.tell(SimCommand::ShowFace(Face::Asleep));
+    stage.command(SimCommand::SetPaused(true));
+    stage.command(SimCommand::ShowFace(Face::Asleep));
     stage.frame();
     assert_eq!(stage.robot().face, Face::Asleep);
-    assert!(waits(&stage) && !stage.app.world().resource::<Standstill>().0);
-    stage.order(AgentOrder::Stop);
+    assert!(waits(&stage) && !stage.app.world().resource::<SimBlocked>().0);
+    stage.script(ScriptCommand::Stop);
     stage.frames_until(Stage::has_stopped);
 }

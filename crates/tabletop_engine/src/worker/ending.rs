@@ -5,12 +5,12 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::{GRACE, LOOK_AFTER, Running, Signal};
+use super::{GRACE, LOOK_AFTER, Running};
 use crate::{
-    choice::EngineKind,
-    engine::Trigger,
-    error::{EngineError, Place},
-    trigger::Op,
+    config::Trigger,
+    error::{EngineError, ScriptLocation},
+    kind::EngineKind,
+    worker::{signal::Signal, trigger_file::Op},
 };
 
 /// How long the last output of an engine that has ended is waited for.
@@ -22,9 +22,9 @@ const CLEANUP: Duration = Duration::from_millis(200);
 const INTERRUPTS: Duration = Duration::from_millis(40);
 
 impl Running {
-    /// Lets the engine leave the script, if it does within a while. Python tells where that was; Octave and MATLAB have left it all
-    /// when they hear again.
-    pub(super) fn interrupt(&mut self) -> Vec<Place> {
+    /// Lets the engine leave the script, if it does within a while. Python reports where that was; Octave and MATLAB have left it
+    /// all when they answer again.
+    pub(super) fn interrupt(&mut self) -> Vec<ScriptLocation> {
         self.worker.killer.interrupt();
         let config = &self.worker.config;
         match (config.engine.kind, config.trigger) {
@@ -46,7 +46,7 @@ impl Running {
         }
     }
 
-    /// Whether the engine says within a while that it has left the script. A program that Octave's script has started may have got
+    /// Whether the engine reports within a while that it has left the script. A program that Octave's script has started may have got
     /// the interrupt in its place, so there are more; Python's `finally` is let be.
     fn leaves_script(&mut self) -> bool {
         let repeats = self.worker.config.engine.kind == EngineKind::Octave;
@@ -76,21 +76,21 @@ impl Running {
             Some(status) => self.died(status),
             None => EngineError::Died {
                 status: "it closed its input".into(),
-                stderr: self.worker.console.take_last_words(),
+                stderr: self.worker.console.take_last_errors(),
             },
         }
     }
 
     pub(super) fn died(&mut self, status: ExitStatus) -> EngineError {
-        self.hear_out();
+        self.drain_output();
         EngineError::Died {
             status: status.to_string(),
-            stderr: self.worker.console.take_last_words(),
+            stderr: self.worker.console.take_last_errors(),
         }
     }
 
     /// Waits for the last output of an engine that has ended.
-    fn hear_out(&mut self) {
+    fn drain_output(&mut self) {
         let start = Instant::now();
         while self.open_outputs > 0 {
             let rest = LAST_OUTPUT.saturating_sub(start.elapsed());
@@ -111,7 +111,7 @@ impl Running {
         self.process.close_input();
         let limit = self.wait_for_end(limit);
         if self.process.ended().is_some() {
-            self.hear_out();
+            self.drain_output();
             return;
         }
         let note = format!(
@@ -121,7 +121,7 @@ impl Running {
         self.note(&note);
     }
 
-    /// Waits until the engine has ended, for at most `limit`, or less if it is told to stop in less. That is returned.
+    /// Waits until the engine has ended, for at most `limit`, or less if a stop allows less. Returns the limit that held.
     fn wait_for_end(&mut self, mut limit: Duration) -> Duration {
         let start = Instant::now();
         while start.elapsed() < limit && self.process.wait(LOOK_AFTER).is_none() {

@@ -13,8 +13,8 @@ use std::{
 };
 
 use tabletop_engine::{
-    Aux, EngineChoice, EngineConfig, EngineError, EngineHandle, EngineKind, InitReply, Reply,
-    ScriptError, Sensor, StepReply, Surroundings, Timeouts, Trigger,
+    Aux, EngineChoice, EngineConfig, EngineError, EngineHandle, EngineKind, EngineLocator,
+    InitReply, Reply, ScriptError, Sensor, StepReply, Timeouts, Trigger,
 };
 
 /// Longer than anything takes here.
@@ -57,7 +57,7 @@ impl Drop for Folder {
 
 /// An Octave that polls or not, for the scripts of a folder.
 pub fn octave(agent: &Path, trigger: Trigger) -> EngineConfig {
-    let found = Surroundings::system().find(&EngineChoice::Kind(EngineKind::Octave));
+    let found = EngineLocator::system().find(&EngineChoice::Kind(EngineKind::Octave));
     let found =
         found.unwrap_or_else(|error| panic!("these tests need GNU Octave (octave-cli): {error}"));
     let mut config = EngineConfig::new(found);

@@ -1,6 +1,6 @@
 //! A robot that turns its joints as it is told and knows where its hands are.
 
-use tabletop_engine::{Aux, InitReply, Motor, Sensor};
+use tabletop_engine::{Aux, InitReply, MotorCommand, Sensor};
 use tabletop_kinematics::{ArmChain, baxter};
 
 use super::limits;
@@ -48,7 +48,7 @@ impl Robot {
         }
     }
 
-    pub fn obey(&mut self, motor: &Motor) {
+    pub fn obey(&mut self, motor: &MotorCommand) {
         for side in 0..2 {
             for joint in 0..7 {
                 let angle = match &motor.joint_angles {

@@ -1,12 +1,12 @@
 //! Starting and stopping the script that drives the robot (report section 5.2), and what it says.
 
 use bevy::prelude::*;
-use tabletop_core::{Action, Agent, AgentNews, AgentOrder, KeySystems, was_struck};
+use tabletop_core::{Action, Agent, KeySystems, ScriptCommand, ScriptEvent, was_struck};
 
 use crate::panels::messages::{Notices, Tone};
 
 pub(crate) fn plugin(app: &mut App) {
-    app.add_systems(Update, note_news).add_systems(
+    app.add_systems(Update, note_events).add_systems(
         RunFixedMainLoop,
         toggle
             .run_if(was_struck(Action::RunScript))
@@ -14,31 +14,31 @@ pub(crate) fn plugin(app: &mut App) {
     );
 }
 
-fn toggle(agent: Res<Agent>, mut orders: MessageWriter<AgentOrder>) {
+fn toggle(agent: Res<Agent>, mut orders: MessageWriter<ScriptCommand>) {
     orders.write(toggled(&agent));
 }
 
 /// The order that starts a script, or stops the one that runs.
-pub(crate) fn toggled(agent: &Agent) -> AgentOrder {
+pub(crate) fn toggled(agent: &Agent) -> ScriptCommand {
     match agent.is_on() {
-        true => AgentOrder::Stop,
-        false => AgentOrder::Start,
+        true => ScriptCommand::Stop,
+        false => ScriptCommand::Start,
     }
 }
 
-fn note_news(mut news: MessageReader<AgentNews>, mut notices: ResMut<Notices>) {
-    for news in news.read() {
-        match news {
-            AgentNews::Started { engine } => {
+fn note_events(mut events: MessageReader<ScriptEvent>, mut notices: ResMut<Notices>) {
+    for event in events.read() {
+        match event {
+            ScriptEvent::Started { engine } => {
                 notices.append(Tone::News, &format!("{engine} is online"));
             }
-            AgentNews::Printed { line, is_error } => {
+            ScriptEvent::Printed { line, is_error } => {
                 let tone = if *is_error { Tone::Warning } else { Tone::News };
                 notices.log(tone, line);
             }
-            AgentNews::Noted { line } => notices.append(Tone::Warning, line),
-            AgentNews::Failed { reason } => notices.append(Tone::Fault, reason),
-            AgentNews::Stopped => notices.append(Tone::News, "the script has ended"),
+            ScriptEvent::Noted { line } => notices.append(Tone::Warning, line),
+            ScriptEvent::Failed { reason } => notices.append(Tone::Fault, reason),
+            ScriptEvent::Stopped => notices.append(Tone::News, "the script has ended"),
         }
     }
 }
@@ -63,16 +63,16 @@ mod tests {
     #[test]
     fn the_key_starts_a_script_and_stops_the_one_that_runs() {
         for (agent, expected) in [
-            (Agent::Off, AgentOrder::Start),
-            (Agent::Failed, AgentOrder::Start),
-            (Agent::Starting, AgentOrder::Stop),
+            (Agent::Off, ScriptCommand::Start),
+            (Agent::Failed, ScriptCommand::Start),
+            (Agent::Starting, ScriptCommand::Stop),
         ] {
             let mut app = app();
             app.insert_resource(agent);
             let mut keys = app.world_mut().resource_mut::<ButtonInput<KeyCode>>();
             keys.press(KeyCode::KeyM);
             app.update();
-            let orders = app.world().resource::<Messages<AgentOrder>>();
+            let orders = app.world().resource::<Messages<ScriptCommand>>();
             let orders: Vec<_> = orders.iter_current_update_messages().copied().collect();
             assert_eq!(orders, [expected]);
         }
@@ -81,13 +81,13 @@ mod tests {
     #[test]
     fn what_a_script_prints_is_told_as_often_as_it_prints_it() {
         let mut app = app();
-        let line = AgentNews::Printed {
+        let line = ScriptEvent::Printed {
             line: "once more".into(),
             is_error: false,
         };
         app.world_mut().write_message(line.clone());
         app.world_mut().write_message(line);
-        app.world_mut().write_message(AgentNews::Failed {
+        app.world_mut().write_message(ScriptEvent::Failed {
             reason: "undefined\n  at a.m:2".into(),
         });
         app.update();

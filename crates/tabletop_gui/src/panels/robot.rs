@@ -9,8 +9,8 @@ use bevy_egui::{
     },
 };
 use tabletop_core::{
-    Action, Agent, AgentOrder, Arm, Drive, Face, Keymap, ObjectSpec, Robot, RobotJoint, SimCommand,
-    Way,
+    Action, Agent, Arm, Drive, Face, Keymap, ObjectSpec, Robot, RobotJoint, ScriptCommand,
+    SimCommand, Way,
 };
 
 use crate::{
@@ -127,7 +127,7 @@ fn show_panel(
     mut head_view: ResMut<HeadView>,
     mut jog: ResMut<Jog>,
     mut commands: MessageWriter<SimCommand>,
-    mut orders: MessageWriter<AgentOrder>,
+    mut orders: MessageWriter<ScriptCommand>,
 ) {
     let Ok(context) = contexts.ctx_mut() else {
         return;

@@ -12,7 +12,8 @@ use bevy::{
 use bevy_rapier3d::rapier::prelude::SharedShape;
 use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, RobotJoint, UNITS_PER_METER, WIDEST_GRIP};
 use tabletop_kinematics::{
-    ArmChain, Frames, Geometry, JointId, JointValues, LinkId, Load, Model, ModelError, Shape,
+    ArmChain, Frames, Geometry, JointId, JointValues, LinkId, LinkShape, Load, ModelError,
+    RobotModel,
 };
 use tabletop_physics::Convex;
 
@@ -72,7 +73,7 @@ pub(crate) enum TreePosition {
 /// The robot's model, and what of it the simulator moves.
 #[derive(Resource, Clone, Debug)]
 pub(crate) struct Articulation {
-    model: Model,
+    model: RobotModel,
     joints: [Option<JointId>; 15],
     end_effectors: [(LinkId, DAffine3); 2],
     origins: [[LinkId; 3]; 2],
@@ -98,7 +99,7 @@ impl Posture {
 
 impl Articulation {
     /// Finds the robot's arms, grippers and head in a model.
-    pub fn new(model: Model) -> Result<Self, ModelError> {
+    pub fn new(model: RobotModel) -> Result<Self, ModelError> {
         let mut joints = [None; 15];
         for joint in RobotJoint::ALL.into_iter().take(joints.len()) {
             joints[joint.index()] = match joint {
@@ -155,7 +156,7 @@ impl Articulation {
     }
 
     /// The model.
-    pub const fn model(&self) -> &Model {
+    pub const fn model(&self) -> &RobotModel {
         &self.model
     }
 
@@ -299,7 +300,7 @@ impl Articulation {
 }
 
 /// The frame of an end effector, on the link that carries it.
-fn end_effector(model: &Model, arm: Arm) -> Result<(LinkId, DAffine3), ModelError> {
+fn end_effector(model: &RobotModel, arm: Arm) -> Result<(LinkId, DAffine3), ModelError> {
     if let Ok(link) = model.find_link(&format!("{arm}_end_effector")) {
         return Ok((link, DAffine3::IDENTITY));
     }
@@ -340,7 +341,7 @@ fn play(opening: f32) -> f32 {
 }
 
 /// The convex hull of a mesh, in the frame of the link that is touched by it.
-fn hull_of(mesh: &Shape, file: &str, urdf: Option<&Path>) -> Result<Convex, LookError> {
+fn hull_of(mesh: &LinkShape, file: &str, urdf: Option<&Path>) -> Result<Convex, LookError> {
     let points = &figure_of(mesh, urdf)?.coarse.positions;
     let hull = SharedShape::convex_hull(points);
     let shape = hull.ok_or_else(|| LookError::Empty { path: file.into() })?;
@@ -351,7 +352,7 @@ fn hull_of(mesh: &Shape, file: &str, urdf: Option<&Path>) -> Result<Convex, Look
 }
 
 /// The solid of a link's collision geometry, in the link's frame; of a mesh, [`hull_of`] knows it.
-fn convex(shape: &Shape) -> Option<Convex> {
+fn convex(shape: &LinkShape) -> Option<Convex> {
     let origin = in_units(shape.origin);
     let scale = UNITS_PER_METER as f32;
     Some(match &shape.geometry {

@@ -4,7 +4,7 @@ use std::{path::Path, sync::Arc};
 
 use bevy::math::{Affine3A, DAffine3, Vec3};
 use tabletop_core::{Face, Figure, Rgb, Triangles, UNITS_PER_METER};
-use tabletop_kinematics::{Geometry, Shape};
+use tabletop_kinematics::{Geometry, LinkShape};
 
 use crate::look::{error::LookError, faces::face, meshes, solids};
 
@@ -14,7 +14,7 @@ use crate::look::{error::LookError, faces::face, meshes, solids};
 /// # Errors
 ///
 /// If a mesh cannot be found or read.
-pub fn figure_of(visual: &Shape, urdf: Option<&Path>) -> Result<Figure, LookError> {
+pub fn figure_of(visual: &LinkShape, urdf: Option<&Path>) -> Result<Figure, LookError> {
     let color = visual.color.map_or(Rgb::GRAY, |color| {
         let [red, green, blue, _] = color.map(|part| part as f32);
         Rgb::new(red, green, blue)
@@ -28,7 +28,7 @@ pub fn figure_of(visual: &Shape, urdf: Option<&Path>) -> Result<Figure, LookErro
 
 /// What shows that a link is there whose looks are not known: the bodies that it would be touched by, in grey, in the frame
 /// of the link, in units. `None` if there are none but meshes.
-pub fn stand_in(collisions: &[Shape]) -> Option<Figure> {
+pub fn stand_in(collisions: &[LinkShape]) -> Option<Figure> {
     let solids = collisions
         .iter()
         .filter(|shape| !matches!(shape.geometry, Geometry::Mesh { .. }));
@@ -53,7 +53,11 @@ pub fn merged(figures: impl IntoIterator<Item = Figure>) -> Option<Figure> {
 /// # Errors
 ///
 /// If the visual cannot be found or read.
-pub fn screen_with(shown: Face, visual: &Shape, urdf: Option<&Path>) -> Result<Figure, LookError> {
+pub fn screen_with(
+    shown: Face,
+    visual: &LinkShape,
+    urdf: Option<&Path>,
+) -> Result<Figure, LookError> {
     let screen = figure_of(visual, urdf)?;
     let face = Arc::new(face(shown));
     let face = Figure {
@@ -64,7 +68,7 @@ pub fn screen_with(shown: Face, visual: &Shape, urdf: Option<&Path>) -> Result<F
 }
 
 /// A figure, made in the frame of a visual, in the frame of its link.
-fn placed(mut figure: Figure, visual: &Shape) -> Figure {
+fn placed(mut figure: Figure, visual: &LinkShape) -> Figure {
     let DAffine3 {
         matrix3,
         translation,

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use bevy::{math::DAffine3, prelude::*};
 use tabletop_core::{Face, Figure, Robot};
-use tabletop_kinematics::{Geometry, Link, Shape};
+use tabletop_kinematics::{Geometry, Link, LinkShape};
 
 use crate::{
     articulation::link_entities::LinkEntities,
@@ -104,18 +104,18 @@ fn screen(description: &Description, face: Face) -> Option<Figure> {
     }
 }
 
-fn seen(visual: &Shape, description: &Description) -> Result<Figure, LookError> {
+fn seen(visual: &LinkShape, description: &Description) -> Result<Figure, LookError> {
     figure_of(visual, description.path())
 }
 
 /// Whether a visual is one of the program's own shapes.
-fn is_ours(visual: &Shape) -> bool {
+fn is_ours(visual: &LinkShape) -> bool {
     matches!(&visual.geometry, Geometry::Mesh { file, .. } if file.starts_with("package://tabletop/"))
 }
 
 /// The visual of a finger. Its shape has the axes of a wrist.
-fn finger() -> Shape {
-    Shape {
+fn finger() -> LinkShape {
+    LinkShape {
         origin: DAffine3::from_mat3(WRIST_TURNED),
         geometry: Geometry::Mesh {
             file: "package://tabletop/finger.shape.json".into(),

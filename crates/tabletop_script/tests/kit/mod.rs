@@ -12,7 +12,7 @@ use std::{
 use bevy::{ecs::message::MessageCursor, prelude::*, time::TimeUpdateStrategy};
 use tabletop_camera::CameraPlugin;
 use tabletop_core::{
-    Agent, AgentNews, AgentOrder, CorePlugin, Markers, Robot, SimCommand, SimSystems, SimTick,
+    Agent, CorePlugin, Markers, Robot, ScriptCommand, ScriptEvent, SimCommand, SimSystems, SimTick,
     StepApp as _, TICK_SECONDS,
 };
 use tabletop_demonstrator::DemonstratorPlugin;
@@ -74,7 +74,7 @@ pub fn octave(folder: &Path) -> ScriptSettings {
         agent: Some(folder.to_owned()),
         ..ScriptSettings::default()
     };
-    let there = settings.surroundings.find(&settings.engine);
+    let there = settings.locator.find(&settings.engine);
     there.unwrap_or_else(|error| panic!("these tests need GNU Octave (octave-cli): {error}"));
     settings.timeouts.start = PATIENCE;
     settings.timeouts.init = PATIENCE;
@@ -94,8 +94,8 @@ fn note(agent: Res<Agent>, robot: Res<Robot>, mut track: ResMut<Track>) {
 
 pub struct Stage {
     pub app: App,
-    cursor: MessageCursor<AgentNews>,
-    pub news: Vec<AgentNews>,
+    cursor: MessageCursor<ScriptEvent>,
+    pub events: Vec<ScriptEvent>,
 }
 
 impl Stage {
@@ -123,9 +123,9 @@ impl Stage {
         let mut stage = Self {
             app,
             cursor: MessageCursor::default(),
-            news: Vec::new(),
+            events: Vec::new(),
         };
-        stage.tell(SimCommand::SetScene(Box::default()));
+        stage.command(SimCommand::SetScene(Box::default()));
         if in_frames {
             stage.app.finish();
             stage.app.cleanup();
@@ -133,16 +133,16 @@ impl Stage {
         } else {
             stage.app.start().step(1);
         }
-        stage.order(AgentOrder::Start);
+        stage.script(ScriptCommand::Start);
         stage
     }
 
-    pub fn tell(&mut self, command: SimCommand) {
+    pub fn command(&mut self, command: SimCommand) {
         self.app.world_mut().write_message(command);
     }
 
-    pub fn order(&mut self, order: AgentOrder) {
-        self.app.world_mut().write_message(order);
+    pub fn script(&mut self, command: ScriptCommand) {
+        self.app.world_mut().write_message(command);
     }
 
     /// Simulates so many ticks.
@@ -177,7 +177,7 @@ impl Stage {
                 start.elapsed() < PATIENCE,
                 "{:?} {:?}",
                 self.agent(),
-                self.news
+                self.events
             );
             step(self);
             steps += 1;
@@ -186,8 +186,8 @@ impl Stage {
     }
 
     fn listen(&mut self) {
-        let messages = self.app.world().resource::<Messages<AgentNews>>();
-        self.news.extend(self.cursor.read(messages).cloned());
+        let messages = self.app.world().resource::<Messages<ScriptEvent>>();
+        self.events.extend(self.cursor.read(messages).cloned());
     }
 
     pub fn agent(&self) -> &Agent {
@@ -216,8 +216,8 @@ impl Stage {
 
     /// What the script has printed, and what was noted about it.
     pub fn printed(&self) -> String {
-        let lines = self.news.iter().filter_map(|news| match news {
-            AgentNews::Printed { line, .. } | AgentNews::Noted { line } => Some(line.as_str()),
+        let lines = self.events.iter().filter_map(|event| match event {
+            ScriptEvent::Printed { line, .. } | ScriptEvent::Noted { line } => Some(line.as_str()),
             _ => None,
         });
         lines.collect::<Vec<_>>().join("\n")
@@ -225,14 +225,14 @@ impl Stage {
 
     /// Why the script has failed.
     pub fn failure(&self) -> Option<&str> {
-        self.news.iter().find_map(|news| match news {
-            AgentNews::Failed { reason } => Some(reason.as_str()),
+        self.events.iter().find_map(|event| match event {
+            ScriptEvent::Failed { reason } => Some(reason.as_str()),
             _ => None,
         })
     }
 
     pub fn has_stopped(&self) -> bool {
-        self.news.contains(&AgentNews::Stopped)
+        self.events.contains(&ScriptEvent::Stopped)
     }
 
     /// Nothing is left of a script: no marker, no motion; and the simulation goes on.

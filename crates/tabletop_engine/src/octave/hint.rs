@@ -2,7 +2,7 @@
 
 use crate::{
     error::ScriptError,
-    scripts::{SHARED, holds_function, is_function_file},
+    octave::script_folder::{SHARED, holds_function, is_function_file},
 };
 
 /// What a message says that a struct lacks, and when it is there.
@@ -15,16 +15,16 @@ const FIELDS: [(&str, &str); 6] = [
         "trackerLoc",
         "sensor.trackerLoc is there only if this word stands in a file of the scripts' folder; a comment will do",
     ),
-    ("objects", TOLD_TOGETHER),
-    ("contacts", TOLD_TOGETHER),
-    ("held", TOLD_TOGETHER),
+    ("objects", SENT_TOGETHER),
+    ("contacts", SENT_TOGETHER),
+    ("held", SENT_TOGETHER),
     (
         "jointTorques",
         "sensor.jointTorques is there only with --dynamic",
     ),
 ];
 
-const TOLD_TOGETHER: &str = "sensor.objects, contacts and held are there only if one of these words stands in a file of the scripts' \
+const SENT_TOGETHER: &str = "sensor.objects, contacts and held are there only if one of these words stands in a file of the scripts' \
     folder, and not with --no-objects";
 
 /// What is there in every call of the callback.
@@ -60,9 +60,9 @@ pub(crate) fn hint(error: &ScriptError, in_init: bool) -> Option<&'static str> {
         return Some("a handle is named without .m, as in init = @myInit");
     }
     if SHARED.iter().any(|name| is_undefined(name, message)) {
-        let place = error.place();
+        let location = error.location();
         return Some(
-            match place.is_some_and(|place| !is_function_file(&place.file)) {
+            match location.is_some_and(|location| !is_function_file(&location.file)) {
                 true => "it was cleared here; it comes back in the next call",
                 false => "a function must say \"global sensor motor aux\"",
             },
@@ -86,7 +86,7 @@ fn is_call_in_agent_behavior(error: &ScriptError) -> bool {
         .stack
         .iter()
         .take(2)
-        .any(|place| place.file.file_stem() == Some("agentBehavior".as_ref()));
+        .any(|location| location.file.file_stem() == Some("agentBehavior".as_ref()));
     let calls = ["script", "too many output", "value on the right hand side"];
     in_agent_behavior && calls.iter().any(|call| message.contains(call))
 }
@@ -100,9 +100,9 @@ fn is_of_own_script(error: &ScriptError) -> bool {
     let Some((name, _)) = name else {
         return false;
     };
-    error
-        .place()
-        .is_some_and(|place| !is_function_file(&place.file) && holds_function(&place.file, name))
+    error.location().is_some_and(|location| {
+        !is_function_file(&location.file) && holds_function(&location.file, name)
+    })
 }
 
 /// Whether there is no such variable, as Octave or MATLAB say it.
@@ -124,11 +124,11 @@ fn missing_field(message: &str, in_init: bool) -> Option<&'static str> {
         let quoted = |mark| message.contains(&format!("{mark}{field}{mark}"));
         quoted('\'') || quoted('"')
     };
-    let told = FIELDS.iter().find(|(field, _)| lacks(field));
-    if in_init && (told.is_some() || ALWAYS.iter().any(|field| lacks(field))) {
+    let missing = FIELDS.iter().find(|(field, _)| lacks(field));
+    if in_init && (missing.is_some() || ALWAYS.iter().any(|field| lacks(field))) {
         return Some("sensor is empty in the init script; the callback gets it");
     }
-    told.map(|(_, hint)| *hint)
+    missing.map(|(_, hint)| *hint)
 }
 
 #[cfg(test)]

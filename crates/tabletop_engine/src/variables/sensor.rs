@@ -15,7 +15,7 @@ pub struct Sensor {
     /// How far the grippers are open, in units.
     pub gripper_opening: [f64; 2],
     /// What the head camera sees, if there is a fresh picture.
-    pub picture: Option<Picture>,
+    pub picture: Option<RgbImage>,
     /// Points on the arms by name, in units. A map costs Octave half a millisecond, so leave it out where nobody asks for it.
     pub tracker_loc: Option<Vec<(String, [f64; 3])>>,
     /// Whether a demonstration is going on: one that is being recorded or replayed.
@@ -34,13 +34,13 @@ pub struct Sensor {
 
 /// A picture: rows from the top, pixels from the left, red, green and blue of each.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Picture {
+pub struct RgbImage {
     width: u32,
     height: u32,
     rgb: Vec<u8>,
 }
 
-impl Picture {
+impl RgbImage {
     /// A picture of `width` × `height` pixels, or nothing if `rgb` has not three bytes for each.
     pub fn new(width: u32, height: u32, rgb: Vec<u8>) -> Option<Self> {
         let expected = (width as usize)
@@ -171,14 +171,14 @@ mod tests {
 
     #[test]
     fn a_picture_is_turned_into_columns() {
-        let picture = Picture::new(2, 1, vec![1, 2, 3, 4, 5, 6]).unwrap();
+        let picture = RgbImage::new(2, 1, vec![1, 2, 3, 4, 5, 6]).unwrap();
         let array = picture.array();
         assert_eq!(array.dims, [1, 2, 3]);
         assert_eq!(array.data, Data::Picture(vec![1, 4, 2, 5, 3, 6]));
-        assert!(Picture::new(2, 2, vec![0; 6]).is_none());
-        assert!(Picture::new(u32::MAX, u32::MAX, Vec::new()).is_none());
+        assert!(RgbImage::new(2, 2, vec![0; 6]).is_none());
+        assert!(RgbImage::new(u32::MAX, u32::MAX, Vec::new()).is_none());
         assert_eq!(
-            Picture::new(0, 3, Vec::new()).unwrap().array().dims,
+            RgbImage::new(0, 3, Vec::new()).unwrap().array().dims,
             [3, 0, 3]
         );
     }

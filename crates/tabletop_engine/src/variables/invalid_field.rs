@@ -2,14 +2,14 @@
 
 use std::fmt;
 
-use crate::choice::EngineKind;
+use crate::kind::EngineKind;
 
 /// The largest coordinate that a marker may have, in units.
 pub(crate) const FARTHEST: f64 = 1e6;
 
 /// Why a variable that a script has set cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Misuse {
+pub enum InvalidField {
     /// A variable is missing or is no struct.
     #[error("{name} is {found}; it must be {expected}")]
     NoStruct {
@@ -34,7 +34,7 @@ pub enum Misuse {
     #[error("{element} is {found}; it must be a finite number")]
     NotFinite {
         /// Which one.
-        element: Element,
+        element: MatrixElement,
         /// NaN, Inf or -Inf.
         found: &'static str,
     },
@@ -42,7 +42,7 @@ pub enum Misuse {
     #[error("{element} is {found:e}; it must be between -{FARTHEST:e} and {FARTHEST:e}")]
     TooFar {
         /// Which coordinate of which marker.
-        element: Element,
+        element: MatrixElement,
         /// What it is.
         found: f64,
     },
@@ -58,7 +58,7 @@ pub enum Misuse {
     },
 }
 
-impl Misuse {
+impl InvalidField {
     /// The same, with indices as the scripts of this engine write them.
     #[must_use]
     pub(crate) fn written_for(mut self, kind: EngineKind) -> Self {
@@ -71,7 +71,7 @@ impl Misuse {
 
 /// An element of a matrix.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Element {
+pub struct MatrixElement {
     field: String,
     rows: usize,
     columns: usize,
@@ -80,7 +80,7 @@ pub struct Element {
     is_python: bool,
 }
 
-impl Element {
+impl MatrixElement {
     pub(crate) fn new(field: &str, dims: &[u32], place: usize) -> Self {
         let extent = |dim: usize| dims.get(dim).map_or(1, |extent| *extent as usize).max(1);
         Self {
@@ -93,7 +93,7 @@ impl Element {
     }
 }
 
-impl fmt::Display for Element {
+impl fmt::Display for MatrixElement {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
         let Self { field, .. } = self;
         let (row, column) = (self.place % self.rows, self.place / self.rows);

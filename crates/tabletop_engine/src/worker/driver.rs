@@ -1,10 +1,10 @@
 //! The engines' side of the bridge: files that are embedded in the program and written to a session's folder.
 
-use crate::{choice::EngineKind, stand_ins};
+use crate::{kind::EngineKind, octave::stubs};
 
 macro_rules! files {
     ($($name:literal),* $(,)?) => {
-        &[$(($name, include_str!(concat!("../matlab/", $name)))),*]
+        &[$(($name, include_str!(concat!("../../matlab/", $name)))),*]
     };
 }
 
@@ -52,7 +52,10 @@ const MATLAB: &[(&str, &str)] = files![
 ];
 
 /// The driver for Python.
-const PYTHON: &[(&str, &str)] = &[("tabletop.py", include_str!("../../../python/tabletop.py"))];
+const PYTHON: &[(&str, &str)] = &[(
+    "tabletop.py",
+    include_str!("../../../../python/tabletop.py"),
+)];
 
 /// The files of the driver for an engine: names and texts.
 pub(crate) fn files(kind: EngineKind) -> Vec<(String, String)> {
@@ -65,13 +68,7 @@ pub(crate) fn files(kind: EngineKind) -> Vec<(String, String)> {
         .iter()
         .map(|(name, text)| ((*name).to_owned(), (*text).to_owned()));
     match kind {
-        EngineKind::Octave => files.chain(stand_ins::files()).collect(),
+        EngineKind::Octave => files.chain(stubs::files()).collect(),
         _ => files.collect(),
     }
-}
-
-/// Whether a function is one of the driver's, by its name.
-pub(crate) fn is_own(function: &str) -> bool {
-    let file = function.split('>').next().unwrap_or_default();
-    file.starts_with("tabletop_") || file == "savepath" || stand_ins::warns(file)
 }

@@ -1,9 +1,9 @@
 //! What scripts and the program tell each other about the robot: the script's `aux` variable (report section 5.2).
 
 use crate::{
-    misuse::Misuse,
-    motor::{joints, no_struct, points},
     protocol::{Array, Arrays},
+    variables::invalid_field::InvalidField,
+    variables::motor::{joints, no_struct, points},
 };
 
 /// What an init script gets to know. Rows are in the order left, right; joints in the order S0, S1, E0, E1, W0, W1, W2.
@@ -41,7 +41,7 @@ pub struct InitReply {
 
 impl InitReply {
     /// Reads the fields "aux.…" of an engine's reply.
-    pub(crate) fn read(arrays: &Arrays) -> Result<Self, Misuse> {
+    pub(crate) fn read(arrays: &Arrays) -> Result<Self, InvalidField> {
         let mut reply = Self::default();
         for (name, array) in arrays.iter() {
             match name {

@@ -33,7 +33,7 @@ impl Op {
     }
 }
 
-/// The files by which an engine that polls and this program tell each other what is to do and what is done.
+/// The files by which an engine that polls and this program exchange what is to do and what is done.
 #[derive(Debug)]
 pub(crate) struct TriggerFile {
     path: PathBuf,
@@ -78,11 +78,11 @@ impl TriggerFile {
         self.write()
     }
 
-    /// Says that this program is alive.
+    /// Shows that this program is alive.
     pub(crate) fn beat(&mut self) {
         let [.., beat] = &mut self.words;
         *beat = beat.wrapping_add(1);
-        // The next request tells whether the file is there.
+        // If the file is gone, the next request reports it.
         drop(self.write());
     }
 

@@ -1,4 +1,4 @@
-//! Functions of Octave that cannot do here what they do elsewhere, and others in their place.
+//! Stubs in place of Octave's functions that need a person, a debugger or a display.
 
 /// What would wait for somebody, in Octave, where commands come in on the standard input; and what nobody can do.
 const UNANSWERED: [(&str, &str); 5] = [
@@ -117,8 +117,8 @@ fn computed(name: &str) -> String {
 /// A function that says, once, that it makes no file.
 fn unprinted(name: &str) -> String {
     format!(
-        "function varargout = {name}(varargin)\npersistent told\nvarargout = num2cell(ones(1, nargout));\n\
-         if isempty(told), warning('tabletop:undrawn', '{name} makes no file here: there is no display to draw on'); end\n\
-         told = true;\nend\n"
+        "function varargout = {name}(varargin)\npersistent warned\nvarargout = num2cell(ones(1, nargout));\n\
+         if isempty(warned), warning('tabletop:undrawn', '{name} makes no file here: there is no display to draw on'); end\n\
+         warned = true;\nend\n"
     )
 }

@@ -1,14 +1,14 @@
 //! What the robot shall do: the script's `motor` variable (report section 5.2), checked before anybody uses it.
 
 use crate::{
-    misuse::{Element, FARTHEST, Misuse},
     protocol::{Array, Arrays, Data},
+    variables::invalid_field::{FARTHEST, InvalidField, MatrixElement},
 };
 
 /// What a script orders for one tick. Rows and pairs are in the order left, right; joints in the order S0, S1, E0, E1, W0, W1,
 /// W2.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Motor {
+pub struct MotorCommand {
     /// Velocities of the arms' joints, in rad/s.
     pub joint_velocities: [[f64; 7]; 2],
     /// How fast the grippers open (positive) or close, in units/s.
@@ -29,12 +29,12 @@ const FIELDS: [&str; 5] = [
     "headVelocity",
 ];
 
-impl Motor {
+impl MotorCommand {
     /// Reads the fields "motor.…" of an engine's reply. What is missing is at rest.
     ///
     /// # Errors
     /// A field is unknown, has another size or class than it must, or holds what is no number.
-    pub fn read(arrays: &Arrays) -> Result<Self, Misuse> {
+    pub fn read(arrays: &Arrays) -> Result<Self, InvalidField> {
         let mut motor = Self::default();
         for (name, array) in arrays.iter() {
             let Some(field) = name.strip_prefix("motor") else {
@@ -54,8 +54,8 @@ impl Motor {
     }
 }
 
-pub(crate) fn no_struct(name: &str, array: &Array) -> Misuse {
-    Misuse::NoStruct {
+pub(crate) fn no_struct(name: &str, array: &Array) -> InvalidField {
+    InvalidField::NoStruct {
         name: name.to_owned(),
         found: array.describe(),
         expected: match array.data.class() {
@@ -65,12 +65,12 @@ pub(crate) fn no_struct(name: &str, array: &Array) -> Misuse {
     }
 }
 
-fn unknown(field: &str, name: &str) -> Misuse {
+fn unknown(field: &str, name: &str) -> InvalidField {
     let known = FIELDS
         .iter()
         .map(|known| (common_prefix(known, name), *known));
     let nearest = known.max_by_key(|(letters, _)| *letters);
-    Misuse::Unknown {
+    InvalidField::Unknown {
         field: field.to_owned(),
         known: FIELDS.join(", "),
         suggestion: nearest.and_then(|(letters, known)| (letters > "joint".len()).then_some(known)),
@@ -83,7 +83,7 @@ fn common_prefix(known: &str, name: &str) -> usize {
 }
 
 /// A matrix of two rows of joints.
-pub(crate) fn joints(field: &str, array: &Array) -> Result<[[f64; 7]; 2], Misuse> {
+pub(crate) fn joints(field: &str, array: &Array) -> Result<[[f64; 7]; 2], InvalidField> {
     let numbers = numbers(field, array, &[2, 7], "2x7 double")?;
     let mut rows = [[0.0; 7]; 2];
     for (place, number) in numbers.iter().enumerate() {
@@ -92,14 +92,14 @@ pub(crate) fn joints(field: &str, array: &Array) -> Result<[[f64; 7]; 2], Misuse
     Ok(rows)
 }
 
-fn pair(field: &str, array: &Array) -> Result<[f64; 2], Misuse> {
+fn pair(field: &str, array: &Array) -> Result<[f64; 2], InvalidField> {
     match numbers(field, array, &[2, 1], "2x1 double")? {
         [left, right] => Ok([*left, *right]),
         _ => Err(size(field, array, "2x1 double")),
     }
 }
 
-fn number(field: &str, array: &Array) -> Result<f64, Misuse> {
+fn number(field: &str, array: &Array) -> Result<f64, InvalidField> {
     match numbers(field, array, &[1, 1], "1x1 double")? {
         [number] => Ok(*number),
         _ => Err(size(field, array, "1x1 double")),
@@ -110,7 +110,7 @@ fn number(field: &str, array: &Array) -> Result<f64, Misuse> {
 const MOST_POINTS: u32 = 100_000;
 
 /// Points in space, one in each row.
-pub(crate) fn points(field: &str, array: &Array) -> Result<Vec<[f64; 3]>, Misuse> {
+pub(crate) fn points(field: &str, array: &Array) -> Result<Vec<[f64; 3]>, InvalidField> {
     let expected = "Nx3 double, N at most 100000";
     let rows = match array.dims[..] {
         [_, 0] | [0, _] => 0,
@@ -125,8 +125,8 @@ pub(crate) fn points(field: &str, array: &Array) -> Result<Vec<[f64; 3]>, Misuse
     };
     let numbers = numbers(field, array, &dims, expected)?;
     if let Some(place) = numbers.iter().position(|number| number.abs() > FARTHEST) {
-        return Err(Misuse::TooFar {
-            element: Element::new(field, &dims, place),
+        return Err(InvalidField::TooFar {
+            element: MatrixElement::new(field, &dims, place),
             found: numbers.get(place).copied().unwrap_or_default(),
         });
     }
@@ -148,7 +148,7 @@ fn numbers<'a>(
     array: &'a Array,
     dims: &[u32],
     expected: &'static str,
-) -> Result<&'a [f64], Misuse> {
+) -> Result<&'a [f64], InvalidField> {
     let Data::Double(numbers) = &array.data else {
         return Err(size(field, array, expected));
     };
@@ -159,8 +159,8 @@ fn numbers<'a>(
         return Ok(numbers);
     };
     let number = numbers.get(place).copied().unwrap_or(f64::NAN);
-    Err(Misuse::NotFinite {
-        element: Element::new(field, dims, place),
+    Err(InvalidField::NotFinite {
+        element: MatrixElement::new(field, dims, place),
         found: match number {
             _ if number.is_nan() => "NaN",
             _ if number > 0.0 => "Inf",
@@ -169,8 +169,8 @@ fn numbers<'a>(
     })
 }
 
-fn size(field: &str, array: &Array, expected: &'static str) -> Misuse {
-    Misuse::Size {
+fn size(field: &str, array: &Array, expected: &'static str) -> InvalidField {
+    InvalidField::Size {
         field: field.to_owned(),
         found: array.describe(),
         expected,
@@ -184,7 +184,7 @@ mod tests {
     fn fault(field: &str, array: Array) -> String {
         let mut arrays = Arrays::default();
         arrays.put(field, array);
-        Motor::read(&arrays).unwrap_err().to_string()
+        MotorCommand::read(&arrays).unwrap_err().to_string()
     }
 
     #[test]
@@ -196,7 +196,7 @@ mod tests {
         arrays.put("motor.gripperVelocities", Array::column(vec![1.0, -1.0]));
         arrays.put("motor.headVelocity", Array::scalar(0.25));
         arrays.put("aux.exit", Array::scalar(1.0));
-        let motor = Motor::read(&arrays).unwrap();
+        let motor = MotorCommand::read(&arrays).unwrap();
         assert_eq!(motor.joint_velocities, rows);
         assert_eq!(motor.gripper_velocities, [1.0, -1.0]);
         assert_eq!(

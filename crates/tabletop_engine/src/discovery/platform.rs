@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::choice::EngineKind;
+use crate::kind::EngineKind;
 
 /// A platform with habits of its own about where programs are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

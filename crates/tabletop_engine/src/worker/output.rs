@@ -4,8 +4,8 @@ use std::{io::Read, sync::mpsc::Sender};
 
 use crate::{
     console::{Console, Piece, Stream},
-    frames::Frames,
-    worker::Signal,
+    octave::warning_stack::WarningStack,
+    worker::signal::Signal,
 };
 
 /// Reads what an engine prints until it ends.
@@ -16,7 +16,7 @@ pub(crate) fn read_output(
     inbox: &Sender<Signal>,
 ) {
     let mut splitter = console.splitter();
-    let mut frames = Frames::default();
+    let mut frames = WarningStack::default();
     let mut each = |piece: Piece| match piece {
         Piece::Text(text) if stream == Stream::Error => {
             frames.feed(text, |line| console.push(stream, line));

@@ -17,11 +17,11 @@ const LEAST_ROOM: usize = 1 << 20;
 
 /// A private folder with an engine's driver in it.
 #[derive(Debug)]
-pub(crate) struct Session {
+pub(crate) struct ExchangeFolder {
     folder: PrivateFolder,
 }
 
-impl Session {
+impl ExchangeFolder {
     /// Makes the folder, with the driver's files in "driver".
     pub(crate) fn new(driver: &[(String, String)]) -> Result<Self, EngineError> {
         let folder = PrivateFolder::filled(|folder| {
@@ -44,7 +44,7 @@ impl Session {
         self.folder().join("driver")
     }
 
-    /// Writes a request, for the engine to read when it is told to.
+    /// Writes a request, which the engine reads on its trigger.
     pub(crate) fn write_request(&self, arrays: &Arrays) -> Result<(), EngineError> {
         let path = self.folder().join("request.bin");
         let bytes = arrays.encode()?;

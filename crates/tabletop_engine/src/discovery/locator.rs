@@ -1,4 +1,4 @@
-//! Where the engine is that runs the scripts.
+//! Finds the engine that runs the scripts.
 
 use std::{
     env,
@@ -6,9 +6,10 @@ use std::{
 };
 
 use crate::{
-    choice::{ENGINE_VARIABLE, EngineChoice, EngineKind},
+    discovery::choice::{ENGINE_VARIABLE, EngineChoice},
+    discovery::platform::{Platform, is_program, matching},
     error::EngineError,
-    places::{Platform, is_program, matching},
+    kind::EngineKind,
 };
 
 /// An engine that is there.
@@ -20,20 +21,20 @@ pub struct FoundEngine {
     pub program: PathBuf,
 }
 
-/// Where engines are looked for.
+/// Finds engines: in the folders of PATH, then where each platform usually has them.
 #[derive(Clone, Debug)]
-pub struct Surroundings {
+pub struct EngineLocator {
     /// The platform.
     pub platform: Platform,
     /// The folders of PATH.
     pub path: Vec<PathBuf>,
-    /// What the variable `TABLETOP_ENGINE` says.
+    /// The value of the variable `TABLETOP_ENGINE`.
     pub variable: Option<String>,
     /// The root of the file system, under which the usual places are.
     pub root: PathBuf,
 }
 
-impl Surroundings {
+impl EngineLocator {
     /// Those of this process.
     pub fn system() -> Self {
         let platform = Platform::here();
@@ -224,8 +225,8 @@ mod tests {
             Self(root)
         }
 
-        fn surroundings(&self, platform: Platform) -> Surroundings {
-            Surroundings {
+        fn surroundings(&self, platform: Platform) -> EngineLocator {
+            EngineLocator {
                 platform,
                 path: vec![self.0.join("path")],
                 variable: None,

@@ -7,7 +7,7 @@ use std::{fs, os::unix::fs::PermissionsExt as _};
 
 use common::{Folder, Session, limits};
 use tabletop_engine::{
-    EngineChoice, EngineConfig, EngineKind, Platform, Sensor, Surroundings, Trigger,
+    EngineChoice, EngineConfig, EngineKind, EngineLocator, Platform, Sensor, Trigger,
 };
 
 #[test]
@@ -16,7 +16,7 @@ fn a_matlab_on_the_path_is_started_and_driven() {
     let bin = Folder::new(&[("matlab", stand_in)]);
     let program = bin.0.join("matlab");
     fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
-    let surroundings = Surroundings {
+    let surroundings = EngineLocator {
         platform: Platform::Linux,
         path: vec![bin.0.clone()],
         variable: None,
@@ -51,7 +51,7 @@ fn a_program_that_is_no_engine_is_told() {
     )]);
     let program = bin.0.join("matlab");
     fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
-    let found = Surroundings::system()
+    let found = EngineLocator::system()
         .find(&EngineChoice::Program(program))
         .unwrap();
     let error = Session::start(EngineConfig::new(found))

@@ -14,10 +14,10 @@ const REAP_LIMIT: Duration = Duration::from_secs(2);
 
 /// Ends a process from any thread, also one that has not been started yet.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Killer(Arc<Mutex<Target>>);
+pub(crate) struct Killer(Arc<Mutex<KillTarget>>);
 
 #[derive(Debug, Default)]
-struct Target {
+struct KillTarget {
     pid: Option<u32>,
     cancelled: bool,
 }
@@ -111,7 +111,7 @@ impl Process {
         stdin.flush()
     }
 
-    /// Says that no more lines will come.
+    /// Closes its standard input.
     pub(crate) fn close_input(&mut self) {
         self.stdin = None;
     }

@@ -1,4 +1,4 @@
-//! Scripts that do with their variables what they should not: they run on, or are told what is wrong.
+//! Scripts that do with their variables what they should not: they run on, or are reported what is wrong.
 
 mod common;
 
@@ -81,7 +81,7 @@ fn a_callback_may_be_changed_on_the_way() {
 }
 
 #[test]
-fn a_misused_motor_is_told() {
+fn an_invalid_motor_is_told() {
     let faults = [
         (
             "motor.jointVelocities = zeros(3, 7);",

@@ -1,10 +1,10 @@
-//! What a script orders, as commands.
+//! A script's replies as commands of the simulation.
 
 use bevy::prelude::*;
 use tabletop_core::{Arm, Drive, RobotJoint, RobotMode, SimCommand};
-use tabletop_engine::{InitReply, Motor};
+use tabletop_engine::{InitReply, MotorCommand};
 
-/// The commands for what an init script wants.
+/// The commands of an init script.
 pub(crate) fn commands_of_init(reply: &InitReply) -> Vec<SimCommand> {
     let markers = reply.draw_markers.iter();
     let markers = markers.map(|point| Vec3::from_array(point.map(|x| x as f32)));
@@ -31,8 +31,8 @@ pub(crate) fn unreachable(reply: &InitReply) -> Option<String> {
     ))
 }
 
-/// The command for what a callback script orders for a tick.
-pub(crate) fn command_of_motor(motor: &Motor, mode: RobotMode) -> SimCommand {
+/// The command of a callback script for one tick.
+pub(crate) fn command_of_motor(motor: &MotorCommand, mode: RobotMode) -> SimCommand {
     let torques = motor.joint_torques.filter(|_| mode == RobotMode::Dynamic);
     let mut drives = match (torques, &motor.joint_angles) {
         (_, Some(angles)) => at_once(angles),
@@ -48,7 +48,7 @@ pub(crate) fn command_of_motor(motor: &Motor, mode: RobotMode) -> SimCommand {
 }
 
 /// The last command of a script that ends in a tick: velocities are zero from then on.
-pub(crate) fn last_command(motor: &Motor) -> Option<SimCommand> {
+pub(crate) fn last_command(motor: &MotorCommand) -> Option<SimCommand> {
     let angles = motor.joint_angles.as_ref();
     angles.map(|angles| SimCommand::Drive(at_once(angles)))
 }
@@ -68,10 +68,10 @@ fn each_joint<T>(values: &[[f64; 7]; 2], each: impl Fn(f64) -> T) -> Vec<(RobotJ
 mod tests {
     use super::*;
 
-    fn motor() -> Motor {
-        let mut motor = Motor {
+    fn motor() -> MotorCommand {
+        let mut motor = MotorCommand {
             gripper_velocities: [0.5, -1.0],
-            ..Motor::default()
+            ..MotorCommand::default()
         };
         motor.joint_velocities[1][6] = 2.0;
         motor
@@ -112,14 +112,14 @@ mod tests {
 
     #[test]
     fn angles_take_the_place_of_velocities_and_torques_need_motors() {
-        let torques = Motor {
+        let torques = MotorCommand {
             joint_torques: Some([[1.0; 7]; 2]),
             ..motor()
         };
-        let first = |motor: &Motor, mode| drives(command_of_motor(motor, mode))[0].1;
+        let first = |motor: &MotorCommand, mode| drives(command_of_motor(motor, mode))[0].1;
         assert_eq!(first(&torques, RobotMode::Kinematic), Drive::Velocity(0.0));
         assert_eq!(first(&torques, RobotMode::Dynamic), Drive::Torque(1.0));
-        let angles = Motor {
+        let angles = MotorCommand {
             joint_angles: Some([[0.25; 7]; 2]),
             ..torques
         };
@@ -127,8 +127,8 @@ mod tests {
     }
 
     #[test]
-    fn the_head_turns_only_if_it_is_told_to() {
-        let turning = Motor {
+    fn the_head_turns_only_on_command() {
+        let turning = MotorCommand {
             head_velocity: Some(0.1),
             ..motor()
         };

@@ -6,13 +6,13 @@ use std::{
 };
 
 use crate::{
-    choice::EngineKind,
-    engine::{EngineConfig, Trigger},
-    session::Session,
+    config::{EngineConfig, Trigger},
+    kind::EngineKind,
+    worker::exchange_folder::ExchangeFolder,
 };
 
 /// The command that starts an engine.
-pub(crate) fn command(config: &EngineConfig, session: &Session) -> Result<Command, String> {
+pub(crate) fn command(config: &EngineConfig, session: &ExchangeFolder) -> Result<Command, String> {
     let mut command = Command::new(&config.engine.program);
     command.current_dir(&config.working_dir);
     let poll = || {
@@ -63,7 +63,7 @@ pub(crate) fn command(config: &EngineConfig, session: &Session) -> Result<Comman
 
 /// What MATLAB and Octave are told first. The user's own startup file may have gone to another folder, and where it waits for
 /// keys it takes some of the spaces. What the driver shadows is nobody's business.
-pub(crate) fn preparation(config: &EngineConfig, session: &Session) -> String {
+pub(crate) fn preparation(config: &EngineConfig, session: &ExchangeFolder) -> String {
     let home = absolute(&config.working_dir).unwrap_or_else(|_| config.working_dir.clone());
     format!(
         "        if exist('OCTAVE_VERSION', 'builtin'), warning('off', 'Octave:shadowed-function'); end, addpath({}); cd({});",

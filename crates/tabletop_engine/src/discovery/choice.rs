@@ -1,33 +1,11 @@
 //! Which engine runs the scripts.
 
-use std::{convert::Infallible, fmt, path::PathBuf, str::FromStr};
+use std::{convert::Infallible, path::PathBuf, str::FromStr};
+
+use crate::kind::EngineKind;
 
 /// The variable that names the engine where nobody else does: "matlab", "octave", "python" or a program's path.
 pub const ENGINE_VARIABLE: &str = "TABLETOP_ENGINE";
-
-/// A kind of engine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EngineKind {
-    /// MATLAB, R2007b and later.
-    Matlab,
-    /// GNU Octave, 6 and later.
-    Octave,
-    /// Python 3.
-    Python,
-    /// A user's own program for scripts in another language.
-    Driver,
-}
-
-impl fmt::Display for EngineKind {
-    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        formatter.write_str(match self {
-            Self::Matlab => "MATLAB",
-            Self::Octave => "GNU Octave",
-            Self::Python => "Python",
-            Self::Driver => "a driver",
-        })
-    }
-}
 
 /// What was asked for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

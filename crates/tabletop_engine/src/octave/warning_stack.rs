@@ -1,16 +1,16 @@
 //! The places that Octave adds to a warning, without those in the driver.
 
-use crate::driver;
+use crate::octave::stubs;
 
 /// Looks through the lines of the standard error.
 #[derive(Debug, Default)]
-pub(crate) struct Frames {
+pub(crate) struct WarningStack {
     /// The line before the places, while there has been none of the script's.
     title: Option<Vec<u8>>,
     listing: bool,
 }
 
-impl Frames {
+impl WarningStack {
     /// Takes a line and calls `each` for what is left of it.
     pub(crate) fn feed(&mut self, line: &[u8], mut each: impl FnMut(&[u8])) {
         if line.ends_with(b": called from") {
@@ -19,7 +19,7 @@ impl Frames {
             return;
         }
         let function = function(line).filter(|_| self.listing);
-        if function.is_some_and(driver::is_own) {
+        if function.is_some_and(is_of_driver) {
             return;
         }
         if function.is_some()
@@ -41,12 +41,18 @@ fn function(line: &[u8]) -> Option<&str> {
     function.strip_prefix("    ")
 }
 
+/// Whether a function is one of the driver's, by its name.
+fn is_of_driver(function: &str) -> bool {
+    let file = function.split('>').next().unwrap_or_default();
+    file.starts_with("tabletop_") || file == "savepath" || stubs::warns(file)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn left(lines: &[&str]) -> Vec<String> {
-        let mut frames = Frames::default();
+        let mut frames = WarningStack::default();
         let mut all = Vec::new();
         for line in lines {
             frames.feed(line.as_bytes(), |line| {
