@@ -4,11 +4,11 @@
 use bevy::prelude::*;
 use tabletop_core::{DragPlane, Hands, ObjectSpec, Paused, SimCommand, Table};
 
-use crate::input::{drag::Drag, pick::Pickable, pointer::Pointer};
-
-/// Reading the mouse, once a frame before its ticks.
-#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(crate) struct MouseSystems;
+use crate::input::{
+    drag::Drag,
+    pick::Pickable,
+    pointer::{MouseSystems, Pointer},
+};
 
 /// What the pressed button is about.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]

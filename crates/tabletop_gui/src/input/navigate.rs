@@ -11,8 +11,8 @@ use bevy::{
 use tabletop_core::{CameraMotion, UserCamera};
 
 use crate::input::{
-    mouse::MouseSystems,
     pick::Pickable,
+    pointer::MouseSystems,
     pointer::{Pointer, aim},
 };
 

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use tabletop_core::{Action, CameraMotion, DragPlane, Hand, Hands, Keys, Paused, UserCamera};
 
-use crate::input::mouse::{MouseSystems, Press};
+use crate::input::{mouse::Press, pointer::MouseSystems};
 
 /// Speed of the plane in radians a second.
 const SPEED: f32 = 0.3;

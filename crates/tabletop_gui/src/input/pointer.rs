@@ -4,7 +4,9 @@ use bevy::{prelude::*, window::PrimaryWindow};
 use bevy_egui::{EguiContext, PrimaryEguiContext, egui, input::EguiWantsInput};
 use tabletop_core::UserCamera;
 
-use crate::input::mouse::MouseSystems;
+/// Reading the mouse, once a frame before its ticks.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct MouseSystems;
 
 /// Where the mouse cursor is; nowhere while it is outside the window.
 #[derive(Resource, Clone, Copy, Debug, Default)]

@@ -2,23 +2,24 @@
 
 mod axis;
 mod film;
+mod model;
 mod orders;
 mod pictures;
 mod track;
 mod transport;
-
-use std::path::PathBuf;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{self, Ui},
 };
-use tabletop_core::{
-    History, Keymap, Pace, Paused, Playback, SimTick, Timeline, TimelineSegment, TimelineStage,
-};
+use tabletop_core::{History, Keymap, Paused, Playback, SimTick, Timeline, TimelineStage};
 
-use self::{axis::Axis, pictures::Pictures};
+use self::{
+    axis::Axis,
+    model::{Model, Moment, Request},
+    pictures::Pictures,
+};
 use crate::panels::{Panel, Panels};
 
 /// What to do where there is no recording.
@@ -31,39 +32,6 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(EguiPrimaryContextPass, show_panel);
 }
 
-/// What the panel shows.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Model<'a> {
-    pub timeline: &'a Timeline,
-    pub playback: Playback,
-    /// The tick whose end the world shows.
-    pub shown: SimTick,
-    pub is_paused: bool,
-    pub pace: Pace,
-    pub history: History,
-    pub keymap: &'a Keymap,
-}
-
-/// What the user asks for.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Request {
-    Play,
-    Pause,
-    /// Simulate one tick.
-    Step,
-    /// Show the end of this tick, and play on if it plays.
-    GoTo(SimTick),
-    /// Show the end of this tick, and stand still.
-    StopAt(SimTick),
-    SetPace(Pace),
-    Loop(bool),
-    /// Undo so many segments.
-    Undo(usize),
-    Redo,
-    Open(PathBuf),
-    Close,
-}
-
 /// What the panel remembers.
 #[derive(Resource, Default)]
 pub(crate) struct View {
@@ -72,48 +40,6 @@ pub(crate) struct View {
     /// The moment under the mouse while it drags.
     dragged_to: Option<SimTick>,
     pictures: Pictures,
-}
-
-impl Model<'_> {
-    fn is_open(&self) -> bool {
-        self.timeline.stage == TimelineStage::Open
-    }
-
-    /// Where the playhead is.
-    fn playhead(&self) -> SimTick {
-        let Timeline { start, end, .. } = *self.timeline;
-        self.shown.clamp(start, end.max(start))
-    }
-
-    /// A moment in seconds from the beginning.
-    fn time(&self, tick: SimTick) -> String {
-        axis::seconds(tick.0.saturating_sub(self.timeline.start.0))
-    }
-
-    /// Where it has come to, or where it is going.
-    fn progress(&self) -> String {
-        match self.playback.goal {
-            Some(goal) => format!("going to {} …", self.time(goal)),
-            None => format!(
-                "{} of {}",
-                self.time(self.playhead()),
-                self.time(self.timeline.end)
-            ),
-        }
-    }
-
-    /// The sentence of a segment.
-    fn sentence(&self, number: usize) -> String {
-        let act = self
-            .segment(number)
-            .and_then(|segment| segment.act.as_ref());
-        let act = act.map_or_else(|| "Beginning".into(), ToString::to_string);
-        format!("Segment {number}: {act}")
-    }
-
-    fn segment(&self, number: usize) -> Option<&TimelineSegment> {
-        self.timeline.segments.get(number)
-    }
 }
 
 /// Shows the panel's contents, and returns what the user asks for.
@@ -149,15 +75,6 @@ pub(crate) fn show(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> 
     }
     requests.extend(show_segment(ui, model, view));
     requests
-}
-
-/// A moment that the user points out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Moment {
-    /// The mouse drags over it.
-    Dragged(SimTick),
-    /// It was clicked, or the mouse let go there.
-    Chosen(SimTick),
 }
 
 /// The segment of the playhead, or of the moment that the user looks at.

@@ -6,7 +6,12 @@ use bevy_egui::egui::{
 };
 use tabletop_core::{SimTick, TimelinePicture};
 
-use super::{Model, Moment, axis::Axis, pictures::Pictures, track};
+use super::{
+    axis::Axis,
+    model::{Model, Moment},
+    pictures::Pictures,
+    track,
+};
 
 /// Sizes in points.
 const SMALL: Vec2 = vec2(80.0, 60.0);

@@ -6,7 +6,7 @@ use tabletop_core::{
     SingleStep, was_struck,
 };
 
-use super::Request;
+use super::model::Request;
 
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<PendingUndos>()

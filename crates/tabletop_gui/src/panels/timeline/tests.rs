@@ -2,7 +2,9 @@ use std::fs::File;
 
 use bevy_egui::egui::{Pos2, Vec2, vec2};
 use egui_kittest::{Harness, kittest::Queryable as _};
-use tabletop_core::{Act, Actor, Arm, Hand, Rgb, TimelineGrip, TimelinePicture, Verb};
+use tabletop_core::{
+    Act, Actor, Arm, Hand, Pace, Rgb, TimelineGrip, TimelinePicture, TimelineSegment, Verb,
+};
 
 use super::*;
 

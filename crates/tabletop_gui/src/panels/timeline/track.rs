@@ -6,7 +6,10 @@ use bevy_egui::egui::{
 };
 use tabletop_core::{Act, Rgb, SimTick, TimelineSegment, Verb};
 
-use super::{Model, Moment, axis::Axis};
+use super::{
+    axis::Axis,
+    model::{Model, Moment},
+};
 
 /// Heights in points.
 const RULER: f32 = 16.0;

@@ -3,7 +3,7 @@
 use bevy_egui::egui::{Button, Response, Ui, WidgetInfo, WidgetType};
 use tabletop_core::{Action, Pace, SimTick, TimelineStage};
 
-use super::{Model, Request};
+use super::model::{Model, Request};
 
 /// Ticks from one frame of a recording to the next.
 const FRAME: u64 = 15;

@@ -1,0 +1,93 @@
+//! What the Timeline shows, and what the user asks of it.
+
+use std::path::PathBuf;
+
+use tabletop_core::{
+    History, Keymap, Pace, Playback, SimTick, Timeline, TimelineSegment, TimelineStage,
+};
+
+use super::axis::seconds;
+
+/// What the panel shows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Model<'a> {
+    pub timeline: &'a Timeline,
+    pub playback: Playback,
+    /// The tick whose end the world shows.
+    pub shown: SimTick,
+    pub is_paused: bool,
+    pub pace: Pace,
+    pub history: History,
+    pub keymap: &'a Keymap,
+}
+
+/// What the user asks for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Request {
+    Play,
+    Pause,
+    /// Simulate one tick.
+    Step,
+    /// Show the end of this tick, and play on if it plays.
+    GoTo(SimTick),
+    /// Show the end of this tick, and stand still.
+    StopAt(SimTick),
+    SetPace(Pace),
+    Loop(bool),
+    /// Undo so many segments.
+    Undo(usize),
+    Redo,
+    Open(PathBuf),
+    Close,
+}
+
+impl Model<'_> {
+    pub fn is_open(&self) -> bool {
+        self.timeline.stage == TimelineStage::Open
+    }
+
+    /// Where the playhead is.
+    pub fn playhead(&self) -> SimTick {
+        let Timeline { start, end, .. } = *self.timeline;
+        self.shown.clamp(start, end.max(start))
+    }
+
+    /// A moment in seconds from the beginning.
+    pub fn time(&self, tick: SimTick) -> String {
+        seconds(tick.0.saturating_sub(self.timeline.start.0))
+    }
+
+    /// Where it has come to, or where it is going.
+    pub fn progress(&self) -> String {
+        match self.playback.goal {
+            Some(goal) => format!("going to {} …", self.time(goal)),
+            None => format!(
+                "{} of {}",
+                self.time(self.playhead()),
+                self.time(self.timeline.end)
+            ),
+        }
+    }
+
+    /// The sentence of a segment.
+    pub fn sentence(&self, number: usize) -> String {
+        let act = self
+            .segment(number)
+            .and_then(|segment| segment.act.as_ref());
+        let act = act.map_or_else(|| "Beginning".into(), ToString::to_string);
+        format!("Segment {number}: {act}")
+    }
+
+    pub fn segment(&self, number: usize) -> Option<&TimelineSegment> {
+        self.timeline.segments.get(number)
+    }
+}
+
+/// A moment that the user points out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Moment {
+    /// The mouse drags over it.
+    Dragged(SimTick),
+    /// It was clicked, or the mouse let go there.
+    Chosen(SimTick),
+}
