@@ -72,8 +72,10 @@ pub use preset::Preset;
 pub use random::Random;
 pub use recording::{History, OpenRecording, Recording, Replaying};
 pub use robot::{
-    Arm, ArmState, Drive, Face, Gripped, JOINTS_PER_ARM, JointState, Markers, Robot, RobotContact,
-    RobotJoint, RobotMode, WIDEST_GRIP, robot_base,
+    Arm, ArmState, BaseLayout, CameraLayout, Drive, Face, FingerLook, Gripped, GripperKind,
+    GripperLayout, JOINTS_PER_ARM, JointId, JointLayout, JointName, JointRole, JointState,
+    LayoutError, LayoutFile, LimbId, LimbLayout, LimbName, LinkFrame, Markers, Robot, RobotContact,
+    RobotJoint, RobotLayout, RobotMode, WIDEST_GRIP, robot_base,
 };
 pub use rollback::{ResourceSnapshot, Rollback, RollbackRegistry};
 pub use scene::{ChainSpec, Joint, JointKind, JointSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
@@ -134,6 +136,7 @@ impl Plugin for CorePlugin {
             .init_resource::<Replaying>()
             .init_resource::<RollbackRegistry>()
             .init_resource::<Robot>()
+            .init_resource::<RobotLayout>()
             .init_resource::<Steering>()
             .init_resource::<ObjectIndex>()
             .init_resource::<Timeline>()

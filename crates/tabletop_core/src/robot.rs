@@ -1,5 +1,16 @@
 //! The robot: its joints, what they are told, and what is known of it.
 
+mod layout;
+mod layout_file;
+mod name;
+
+pub use layout::{
+    BaseLayout, CameraLayout, FingerLook, GripperKind, GripperLayout, JointId, JointLayout,
+    JointRole, LimbId, LimbLayout, LinkFrame, RobotLayout,
+};
+pub use layout_file::{LayoutError, LayoutFile};
+pub use name::{JointName, LimbName};
+
 use std::{f64::consts::FRAC_PI_2, fmt};
 
 use bevy::prelude::*;

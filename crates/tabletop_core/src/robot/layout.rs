@@ -1,0 +1,394 @@
+//! Which limbs and joints the robot has.
+
+use std::sync::LazyLock;
+
+use bevy::prelude::*;
+use serde::Deserialize;
+
+use crate::{
+    Binding, Pose, Table,
+    robot::{
+        layout_file::LayoutFile,
+        name::{JointName, LimbName},
+    },
+};
+
+/// A joint of the robot, by its place in [`RobotLayout::joints`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct JointId(pub u16);
+
+impl JointId {
+    /// Its place in [`RobotLayout::joints`].
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A limb of the robot, by its place in [`RobotLayout::limbs`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LimbId(pub u8);
+
+impl LimbId {
+    /// Its place in [`RobotLayout::limbs`].
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Which limbs and joints the robot has. It is read from a `robot.ron` (`docs/robot.md`) and a URDF and never changes while the
+/// program runs.
+#[derive(Resource, Clone, Debug, PartialEq)]
+pub struct RobotLayout {
+    /// What the robot is called.
+    pub name: String,
+    /// All joints, by [`JointId`]: those of the limbs, one limb after the other from its base to its tip, then the neck, then the
+    /// openings of the grippers.
+    pub joints: Vec<JointLayout>,
+    /// The limbs, by [`LimbId`]: the order of rows in scripts.
+    pub limbs: Vec<LimbLayout>,
+    /// The joint that turns the head and its camera.
+    pub neck: Option<JointId>,
+    /// Where the robot stands.
+    pub base: BaseLayout,
+    /// Where its camera is.
+    pub camera: CameraLayout,
+    /// The link whose front shows a face.
+    pub screen: Option<String>,
+    /// Positions of the limbs' joints in poses that the real robot takes. Solids of links that overlap in one of them are rough there:
+    /// these links never stop each other.
+    pub known_postures: Vec<Vec<f64>>,
+    /// Links, by name, that never stop each other.
+    pub may_touch: Vec<(String, String)>,
+}
+
+/// A joint of the robot, or the opening of a gripper.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointLayout {
+    /// Its name in files, commands and, but for openings, in the URDF.
+    pub name: JointName,
+    /// Its name on the screen, beside that of its limb: `E1`.
+    pub label: String,
+    /// What it moves.
+    pub role: JointRole,
+    /// Least and largest position, in rad, units for the opening of a gripper.
+    pub limits: [f64; 2],
+    /// Where it stands when the program starts.
+    pub home: f64,
+    /// 1, or -1 for a joint that manual control turns the other way, so that limbs move as mirror images.
+    pub sign: f64,
+    /// Largest torque of its motor, in N m, if the URDF names none.
+    pub effort: f64,
+    /// Largest speed of its motor, in rad/s, if the URDF names none.
+    pub speed: f64,
+    /// The keys that move it up, and those that move it down, unless the user binds others.
+    pub keys: [Vec<Binding>; 2],
+}
+
+impl JointLayout {
+    /// The value nearest to this one that is within the limits.
+    pub const fn clamp(&self, value: f64) -> f64 {
+        value.clamp(self.limits[0], self.limits[1])
+    }
+
+    /// Whether it is the opening of a gripper, in units, and not an angle.
+    pub const fn is_gripper(&self) -> bool {
+        matches!(self.role, JointRole::Gripper(_))
+    }
+
+    /// The limb that it belongs to; `None` for the neck.
+    pub const fn limb(&self) -> Option<LimbId> {
+        match self.role {
+            JointRole::Limb { limb, .. } | JointRole::Gripper(limb) => Some(limb),
+            JointRole::Neck => None,
+        }
+    }
+}
+
+/// What a joint moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointRole {
+    /// A limb.
+    Limb {
+        /// The limb.
+        limb: LimbId,
+        /// How many joints are between it and the limb's base.
+        place: usize,
+    },
+    /// The head.
+    Neck,
+    /// The fingers of a limb's gripper.
+    Gripper(LimbId),
+}
+
+/// A limb of the robot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LimbLayout {
+    /// Its name in files and commands: `left`.
+    pub name: LimbName,
+    /// Its name on the screen: `Left`.
+    pub label: String,
+    /// How the names of its tracked points begin for scripts: `l`.
+    pub prefix: String,
+    /// Its joints from the base to the tip.
+    pub joints: Vec<JointId>,
+    /// Its gripper.
+    pub gripper: GripperLayout,
+    /// Where the point midway between the fingers is: on the first of these links that the URDF has.
+    pub end_effector: Vec<LinkFrame>,
+    /// The joints whose origins scripts may track.
+    pub trackers: Vec<JointId>,
+}
+
+/// A gripper of the robot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GripperLayout {
+    /// Its opening.
+    pub joint: JointId,
+    /// How its fingers move.
+    pub kind: GripperKind,
+    /// Extents of a finger across and along the opening and along the finger, in units: x, y, z of the end effector's frame.
+    pub finger: Vec3,
+    /// What a finger looks like; without it, the simulator draws what it is touched by.
+    pub look: Option<FingerLook>,
+    /// The joints of the URDF that fingers have there; each moves by half of the opening. Only frames follow them.
+    pub finger_joints: Vec<String>,
+}
+
+impl GripperLayout {
+    /// How far the fingers' ends of a wide open gripper are from the end effector: across and along it, in units. `widest` is the
+    /// largest opening.
+    pub fn finger_ends(&self, widest: f64) -> Vec2 {
+        Vec2::new(
+            widest as f32 / 2.0 + self.finger.x / 2.0,
+            self.finger.z / 2.0,
+        )
+    }
+}
+
+/// How the fingers of a gripper move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub enum GripperKind {
+    /// Two fingers move against each other and stay parallel.
+    Parallel,
+}
+
+/// A frame on a link.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LinkFrame {
+    /// The link's name in the URDF.
+    pub link: String,
+    /// The frame's origin, in m in the link's frame.
+    #[serde(default)]
+    pub at: [f64; 3],
+    /// The frame's x, y and z axis in the link's frame.
+    #[serde(default = "unturned")]
+    pub axes: [[f64; 3]; 3],
+}
+
+/// What a finger looks like.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FingerLook {
+    /// Its shape: a file that a URDF could name.
+    pub file: String,
+    /// The shape's x, y and z axis in the finger's frame: x towards the other finger, z along the finger, back to the wrist.
+    #[serde(default = "unturned")]
+    pub axes: [[f64; 3]; 3],
+}
+
+const fn unturned() -> [[f64; 3]; 3] {
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+}
+
+/// Where the robot stands before the table.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BaseLayout {
+    /// From the table's near edge back to the origin of the URDF's root link, in units.
+    pub behind_edge: f32,
+    /// That origin above the table's top, in units.
+    pub height: f32,
+}
+
+impl BaseLayout {
+    /// The frame of the URDF's root link before a table: x forward, along the table's Y, y left, z up.
+    pub fn pose(&self, table: &Table) -> Pose {
+        Pose::from_degrees(
+            Vec3::new(0.0, -(table.yspan / 2.0 + self.behind_edge), self.height),
+            Vec3::new(0.0, 0.0, 90.0),
+        )
+    }
+}
+
+/// Where the head camera is on the robot. Lengths in units, in axes like the table's: x right, y forward, z up.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CameraLayout {
+    /// The axis of the neck, from the robot's origin.
+    pub neck: Vec3,
+    /// The camera, from the axis of the neck.
+    pub at: Vec3,
+    /// How far below the horizon it looks, in rad.
+    pub tilt: f64,
+}
+
+impl RobotLayout {
+    /// The Baxter of the report, with the limits of its table 1.
+    pub fn baxter() -> &'static Self {
+        static BAXTER: LazyLock<RobotLayout> = LazyLock::new(|| {
+            let text = include_str!("../../../../assets/baxter/robot.ron");
+            let layout = LayoutFile::read(text).and_then(|file| file.layout(|_| None));
+            layout.unwrap_or_else(|error| {
+                error!("assets/baxter/robot.ron: {error}");
+                RobotLayout::empty()
+            })
+        });
+        &BAXTER
+    }
+
+    fn empty() -> Self {
+        Self {
+            name: String::new(),
+            joints: Vec::new(),
+            limbs: Vec::new(),
+            neck: None,
+            base: BaseLayout {
+                behind_edge: 0.0,
+                height: 0.0,
+            },
+            camera: CameraLayout {
+                neck: Vec3::ZERO,
+                at: Vec3::ZERO,
+                tilt: 0.0,
+            },
+            screen: None,
+            known_postures: Vec::new(),
+            may_touch: Vec::new(),
+        }
+    }
+
+    /// A joint.
+    pub fn joint(&self, joint: JointId) -> &JointLayout {
+        &self.joints[joint.index()]
+    }
+
+    /// A limb.
+    pub fn limb(&self, limb: LimbId) -> &LimbLayout {
+        &self.limbs[limb.index()]
+    }
+
+    /// All joints.
+    pub fn joint_ids(&self) -> impl ExactSizeIterator<Item = JointId> + use<> {
+        (0..self.joints.len() as u16).map(JointId)
+    }
+
+    /// All limbs.
+    pub fn limb_ids(&self) -> impl ExactSizeIterator<Item = LimbId> + use<> {
+        (0..self.limbs.len() as u8).map(LimbId)
+    }
+
+    /// The joint of this name.
+    pub fn find_joint(&self, name: JointName) -> Option<JointId> {
+        let found = self.joints.iter().position(|joint| joint.name == name)?;
+        Some(JointId(found as u16))
+    }
+
+    /// The limb of this name.
+    pub fn find_limb(&self, name: LimbName) -> Option<LimbId> {
+        let found = self.limbs.iter().position(|limb| limb.name == name)?;
+        Some(LimbId(found as u8))
+    }
+
+    /// A joint's name on the screen, with that of its limb: `Left E1`, `Left gripper`, `Head H0`.
+    pub fn label_of(&self, joint: JointId) -> String {
+        let JointLayout { label, role, .. } = self.joint(joint);
+        match *role {
+            JointRole::Limb { limb, .. } | JointRole::Gripper(limb) => {
+                let limb = &self.limb(limb).label;
+                [&**limb, label].join(" ").trim().to_owned()
+            }
+            JointRole::Neck => label.clone(),
+        }
+    }
+
+    /// Most joints that a limb has: the number of columns in scripts.
+    pub fn most_joints_of_a_limb(&self) -> usize {
+        let counts = self.limbs.iter().map(|limb| limb.joints.len());
+        counts.max().unwrap_or(0)
+    }
+}
+
+impl Default for RobotLayout {
+    /// [Baxter](Self::baxter).
+    fn default() -> Self {
+        Self::baxter().clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn joints_are_those_of_the_limbs_then_the_neck_then_the_grippers() {
+        let baxter = RobotLayout::baxter();
+        let names: Vec<_> = baxter.joints.iter().map(|it| it.name.as_str()).collect();
+        assert_eq!(
+            names,
+            [
+                "left_s0",
+                "left_s1",
+                "left_e0",
+                "left_e1",
+                "left_w0",
+                "left_w1",
+                "left_w2",
+                "right_s0",
+                "right_s1",
+                "right_e0",
+                "right_e1",
+                "right_w0",
+                "right_w1",
+                "right_w2",
+                "head_pan",
+                "left_gripper",
+                "right_gripper",
+            ]
+        );
+        for id in baxter.joint_ids() {
+            let joint = baxter.joint(id);
+            assert_eq!(baxter.find_joint(joint.name), Some(id));
+            let limb = joint.limb().map(|limb| baxter.limb(limb).name.as_str());
+            let prefix = joint.name.as_str().split_once('_').unwrap().0;
+            assert_eq!(limb, Some(prefix).filter(|prefix| *prefix != "head"));
+        }
+        assert_eq!(baxter.neck, Some(JointId(14)));
+        assert_eq!(baxter.label_of(JointId(3)), "Left E1");
+        assert_eq!(baxter.label_of(JointId(14)), "Head H0");
+        assert_eq!(baxter.label_of(JointId(16)), "Right gripper");
+    }
+
+    #[test]
+    fn home_is_within_the_limits_and_the_same_for_both_arms() {
+        let baxter = RobotLayout::baxter();
+        for joint in &baxter.joints {
+            assert_eq!(joint.clamp(joint.home), joint.home, "{}", joint.name);
+        }
+        let [left, right] = &baxter.limbs[..] else {
+            panic!("{} limbs", baxter.limbs.len())
+        };
+        for (left, right) in left.joints.iter().zip(&right.joints) {
+            let (left, right) = (baxter.joint(*left), baxter.joint(*right));
+            assert_eq!(left.home.to_bits(), (right.sign * right.home).to_bits());
+            assert_eq!(left.limits, right.limits);
+        }
+    }
+
+    #[test]
+    fn the_fingers_ends_are_where_the_report_has_them() {
+        let baxter = RobotLayout::baxter();
+        let gripper = &baxter.limbs[0].gripper;
+        assert_eq!(gripper.finger_ends(2.0), Vec2::new(1.15, 0.75));
+    }
+}

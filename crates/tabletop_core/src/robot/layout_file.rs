@@ -1,0 +1,356 @@
+//! `robot.ron`: what a URDF does not say of a robot.
+
+use std::fmt;
+
+use bevy::prelude::*;
+use ron::{Options, error::SpannedError, extensions::Extensions};
+use serde::Deserialize;
+use thiserror::Error;
+
+use crate::{
+    Binding, BindingError, Modifiers,
+    robot::{
+        layout::{
+            BaseLayout, CameraLayout, FingerLook, GripperKind, GripperLayout, JointId, JointLayout,
+            JointRole, LimbId, LimbLayout, LinkFrame, RobotLayout,
+        },
+        name::{JointName, LimbName},
+    },
+};
+
+/// What a `robot.ron` says; `docs/robot.md` explains it field by field.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, rename = "Robot")]
+pub struct LayoutFile {
+    name: String,
+    /// The URDF, beside the file.
+    pub urdf: String,
+    base: BaseLayout,
+    camera: CameraLayout,
+    limbs: Vec<LimbEntry>,
+    #[serde(default)]
+    neck: Option<JointEntry>,
+    #[serde(default)]
+    screen: Option<String>,
+    #[serde(default)]
+    known_postures: Vec<Vec<f64>>,
+    #[serde(default)]
+    may_touch: Vec<(String, String)>,
+}
+
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LimbEntry {
+    name: String,
+    label: String,
+    prefix: String,
+    joints: Vec<JointEntry>,
+    gripper: GripperEntry,
+    end_effector: Vec<LinkFrame>,
+    #[serde(default)]
+    trackers: Vec<String>,
+}
+
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct JointEntry {
+    name: String,
+    label: String,
+    #[serde(default)]
+    limits: Option<[f64; 2]>,
+    #[serde(default)]
+    home: f64,
+    #[serde(default = "forward")]
+    sign: f64,
+    #[serde(default)]
+    effort: f64,
+    #[serde(default)]
+    speed: f64,
+    #[serde(default)]
+    key: Option<String>,
+}
+
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct GripperEntry {
+    name: String,
+    kind: GripperKind,
+    opening: [f64; 2],
+    finger: Vec3,
+    #[serde(default)]
+    look: Option<FingerLook>,
+    #[serde(default)]
+    finger_joints: Vec<String>,
+    #[serde(default)]
+    open_key: Option<String>,
+    #[serde(default)]
+    close_key: Option<String>,
+}
+
+const fn forward() -> f64 {
+    1.0
+}
+
+/// Why a `robot.ron` cannot be used.
+#[derive(Debug, Error)]
+pub enum LayoutError {
+    /// It is not written as it should be.
+    #[error("{0}")]
+    Syntax(#[from] Box<SpannedError>),
+    /// A key has no such name.
+    #[error("joint {joint}: {source}")]
+    Key {
+        /// The joint.
+        joint: String,
+        /// What is wrong.
+        source: BindingError,
+    },
+    /// What it says makes no sense.
+    #[error("{0}")]
+    Fault(String),
+}
+
+fn fault(text: impl fmt::Display) -> LayoutError {
+    LayoutError::Fault(text.to_string())
+}
+
+impl LayoutFile {
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    ///
+    /// The first thing that is wrong with how it is written, with its place.
+    pub fn read(text: &str) -> Result<Self, LayoutError> {
+        let options = Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
+        Ok(options.from_str(text).map_err(Box::new)?)
+    }
+
+    /// The layout. `limits` knows those of the URDF's joints, which count where the file has none.
+    ///
+    /// # Errors
+    ///
+    /// What the file says makes no sense; the error names what it is about.
+    pub fn layout(
+        &self,
+        limits: impl Fn(&str) -> Option<[f64; 2]>,
+    ) -> Result<RobotLayout, LayoutError> {
+        let mut joints = Vec::new();
+        for (i, limb) in self.limbs.iter().enumerate() {
+            for (place, joint) in limb.joints.iter().enumerate() {
+                let limb = LimbId(i as u8);
+                joints.push(joint.layout(JointRole::Limb { limb, place }, &limits)?);
+            }
+        }
+        let neck = self.neck.as_ref().map(|neck| {
+            joints.push(neck.layout(JointRole::Neck, &limits)?);
+            Ok::<_, LayoutError>(JointId(joints.len() as u16 - 1))
+        });
+        let neck = neck.transpose()?;
+        let mut limbs = Vec::new();
+        let mut first = 0;
+        for (i, limb) in self.limbs.iter().enumerate() {
+            let gripper = JointId(joints.len() as u16);
+            joints.push(limb.gripper.opening(LimbId(i as u8))?);
+            limbs.push(limb.layout(first, gripper)?);
+            first += limb.joints.len() as u16;
+        }
+        if limbs.is_empty() {
+            return Err(fault("there are no limbs"));
+        }
+        if limbs.len() > usize::from(u8::MAX) || joints.len() > usize::from(u16::MAX) {
+            return Err(fault("there are too many limbs or joints"));
+        }
+        let layout = RobotLayout {
+            name: self.name.clone(),
+            joints,
+            limbs,
+            neck,
+            base: self.base,
+            camera: self.camera,
+            screen: self.screen.clone(),
+            known_postures: self.known_postures.clone(),
+            may_touch: self.may_touch.clone(),
+        };
+        for (i, joint) in layout.joints.iter().enumerate() {
+            if layout.find_joint(joint.name) != Some(JointId(i as u16)) {
+                return Err(fault(format!("there are two joints {}", joint.name)));
+            }
+        }
+        for (i, limb) in layout.limbs.iter().enumerate() {
+            if layout.find_limb(limb.name) != Some(LimbId(i as u8)) {
+                return Err(fault(format!("there are two limbs {}", limb.name)));
+            }
+        }
+        Ok(layout)
+    }
+}
+
+impl LimbEntry {
+    fn layout(&self, first: u16, gripper: JointId) -> Result<LimbLayout, LayoutError> {
+        if self.joints.is_empty() {
+            return Err(fault(format!("limb {}: it has no joints", self.name)));
+        }
+        let joints: Vec<_> = (first..).map(JointId).take(self.joints.len()).collect();
+        let trackers = self.trackers.iter().map(|name| {
+            let place = self.joints.iter().position(|joint| joint.name == *name);
+            place.map(|place| joints[place]).ok_or_else(|| {
+                let limb = &self.name;
+                fault(format!("limb {limb}: trackers: it has no joint {name}"))
+            })
+        });
+        Ok(LimbLayout {
+            name: LimbName::new(&self.name),
+            label: self.label.clone(),
+            prefix: self.prefix.clone(),
+            trackers: trackers.collect::<Result<_, _>>()?,
+            joints,
+            gripper: GripperLayout {
+                joint: gripper,
+                kind: self.gripper.kind,
+                finger: self.gripper.finger,
+                look: self.gripper.look.clone(),
+                finger_joints: self.gripper.finger_joints.clone(),
+            },
+            end_effector: self.end_effector.clone(),
+        })
+    }
+}
+
+impl JointEntry {
+    fn layout(
+        &self,
+        role: JointRole,
+        limits: impl Fn(&str) -> Option<[f64; 2]>,
+    ) -> Result<JointLayout, LayoutError> {
+        let Self { name, home, .. } = self;
+        let limits = self.limits.or_else(|| limits(name)).ok_or_else(|| {
+            fault(format!(
+                "joint {name}: neither this file nor the URDF says its limits"
+            ))
+        })?;
+        check_limits(name, limits, *home)?;
+        if self.sign.abs() != 1.0 {
+            return Err(fault(format!("joint {name}: its sign is neither 1 nor -1")));
+        }
+        let key = binding(name, self.key.as_deref())?;
+        let back = key.map(|key| Binding::new(Modifiers::SHIFT, key.key));
+        Ok(JointLayout {
+            name: JointName::new(name),
+            label: self.label.clone(),
+            role,
+            limits,
+            home: *home,
+            sign: self.sign,
+            effort: self.effort,
+            speed: self.speed,
+            keys: [key, back].map(|key| key.into_iter().collect()),
+        })
+    }
+}
+
+impl GripperEntry {
+    /// Its opening as a joint.
+    fn opening(&self, limb: LimbId) -> Result<JointLayout, LayoutError> {
+        let Self { name, opening, .. } = self;
+        let [least, widest] = *opening;
+        check_limits(name, *opening, widest)?;
+        if least < 0.0 || widest <= least {
+            return Err(fault(format!(
+                "gripper {name}: it cannot open from {least} to {widest} units"
+            )));
+        }
+        if !self.finger.is_finite() || self.finger.min_element() <= 0.0 {
+            return Err(fault(format!(
+                "gripper {name}: its fingers have no extents"
+            )));
+        }
+        let keys = [&self.open_key, &self.close_key].map(|key| binding(name, key.as_deref()));
+        let [open, close] = keys;
+        Ok(JointLayout {
+            name: JointName::new(name),
+            label: "gripper".to_owned(),
+            role: JointRole::Gripper(limb),
+            limits: *opening,
+            home: widest,
+            sign: 1.0,
+            effort: 0.0,
+            speed: 0.0,
+            keys: [open?, close?].map(|key| key.into_iter().collect()),
+        })
+    }
+}
+
+fn check_limits(joint: &str, [least, largest]: [f64; 2], home: f64) -> Result<(), LayoutError> {
+    if !(least.is_finite() && largest.is_finite() && least <= largest) {
+        return Err(fault(format!(
+            "joint {joint}: it cannot go from {least} to {largest}"
+        )));
+    }
+    if !(least..=largest).contains(&home) {
+        return Err(fault(format!(
+            "joint {joint}: its home {home} is not within {least} and {largest}"
+        )));
+    }
+    Ok(())
+}
+
+fn binding(joint: &str, key: Option<&str>) -> Result<Option<Binding>, LayoutError> {
+    let parsed = key.map(str::parse).transpose();
+    parsed.map_err(|source| LayoutError::Key {
+        joint: joint.to_owned(),
+        source,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = include_str!("../../../../assets/baxter/robot.ron");
+
+    fn error(text: &str) -> String {
+        let layout = LayoutFile::read(text).and_then(|file| file.layout(|_| None));
+        layout.unwrap_err().to_string()
+    }
+
+    #[test]
+    fn limits_of_the_urdf_count_where_the_file_has_none() {
+        let text = TEXT.replacen("limits: (-1.7, 1.7), ", "", 1);
+        assert_eq!(
+            error(&text),
+            "joint left_s0: neither this file nor the URDF says its limits"
+        );
+        let file = LayoutFile::read(&text).unwrap();
+        let layout = file.layout(|joint| (joint == "left_s0").then_some([-1.0, 0.5]));
+        assert_eq!(layout.unwrap().joints[0].limits, [-1.0, 0.5]);
+    }
+
+    #[test]
+    fn faults_name_what_they_are_about() {
+        for (from, to, expected) in [
+            ("home: 0.25", "home: 2.5", "joint left_s0: its home 2.5"),
+            ("\"Quote\"", "\"Quot\"", "joint left_s0: "),
+            (
+                "\"left_s1\"",
+                "\"left_s0\"",
+                "limb left: trackers: it has no joint left_s1",
+            ),
+            ("sign: -1", "sign: -2", "its sign is neither 1 nor -1"),
+            (
+                "opening: (0, 2)",
+                "opening: (2, 0)",
+                "cannot go from 2 to 0",
+            ),
+            (
+                "name: \"right\"",
+                "name: \"left\"",
+                "there are two limbs left",
+            ),
+            ("limits:", "limit:", "limit"),
+        ] {
+            assert!(TEXT.contains(from), "{from}");
+            let error = error(&TEXT.replacen(from, to, 1));
+            assert!(error.contains(expected), "{from}: {error}");
+        }
+    }
+}
