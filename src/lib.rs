@@ -7,7 +7,8 @@
 //! | [`xml`] | task files |
 //! | [`physics`] | Rapier, configured |
 //! | [`scene`] | the table and what comes and goes on it |
-//! | [`demonstrator`] | the invisible hands, undo and redo |
+//! | [`history`] | undo and redo |
+//! | [`demonstrator`] | the invisible hands |
 //! | [`baxter`] | the robot: how it looks, moves and grips |
 //! | [`kinematics`] | robots as URDF describes them |
 //! | [`camera`] | what the robot's head camera sees |
@@ -36,6 +37,7 @@
 pub use tabletop_camera as camera;
 pub use tabletop_core as core;
 pub use tabletop_demonstrator as demonstrator;
+pub use tabletop_history as history;
 pub use tabletop_kinematics as kinematics;
 pub use tabletop_physics as physics;
 pub use tabletop_recorder as recorder;
@@ -73,7 +75,7 @@ pub mod prelude {
     pub use tabletop_core::prelude::*;
 }
 
-/// Everything that simulates, nothing that shows: [`CorePlugin`](core::CorePlugin), [`XmlPlugin`](xml::XmlPlugin),
+/// Everything that simulates, nothing that shows: [`CorePlugin`](core::CorePlugin), [`HistoryPlugin`](history::HistoryPlugin), [`XmlPlugin`](xml::XmlPlugin),
 /// [`PhysicsPlugin`](physics::PhysicsPlugin), [`ScenePlugin`](scene::ScenePlugin),
 /// [`DemonstratorPlugin`](demonstrator::DemonstratorPlugin), [`RobotPlugin`](robot::RobotPlugin), [`CameraPlugin`](camera::CameraPlugin),
 /// [`RecorderPlugin`](recorder::RecorderPlugin), [`ScriptPlugin`](script::ScriptPlugin), [`RecordedSettingsPlugin`] and
@@ -85,6 +87,7 @@ impl PluginGroup for TabletopSimPlugins {
     fn build(self) -> PluginGroupBuilder {
         PluginGroupBuilder::start::<Self>()
             .add(core::CorePlugin::default())
+            .add(history::HistoryPlugin::default())
             .add(xml::XmlPlugin)
             .add(physics::PhysicsPlugin::default())
             .add(scene::ScenePlugin)

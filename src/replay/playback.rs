@@ -10,8 +10,7 @@ use tabletop_core::{
     Act, Actor, HeadCamera, Markers, OpenRecording, Paused, Playback, PlaybackOrder, Recording,
     Replaying, SimCommand, SimFact, SimTick, TICKS_PER_SECOND, Timeline, TimelineGrip,
 };
-use tabletop_demonstrator::Snapshot;
-use tabletop_physics::{KeepRemoved, drop_removed};
+use tabletop_history::{KeepRemoved, WorldSnapshot, drop_removed};
 use tabletop_recorder::set_earlier_commands;
 
 use super::{Player, Replay, player};
@@ -60,7 +59,7 @@ struct FreshTask(PathBuf);
 /// The world before its first tick.
 #[derive(Resource)]
 struct Beginning {
-    world: Snapshot,
+    world: WorldSnapshot,
     camera: Option<HeadCamera>,
 }
 
@@ -79,7 +78,7 @@ struct Opened {
 struct Keyframe {
     /// The tick that comes next.
     tick: SimTick,
-    world: Snapshot,
+    world: WorldSnapshot,
     player: Player,
 }
 
@@ -94,7 +93,7 @@ struct Goal {
 
 fn remember_beginning(world: &mut World) {
     let beginning = Beginning {
-        world: Snapshot::take(world),
+        world: WorldSnapshot::take(world),
         camera: world.get_resource().copied(),
     };
     world.insert_resource(beginning);
@@ -332,7 +331,7 @@ fn note_keyframe(world: &mut World) {
 fn keep_keyframe(world: &mut World) {
     let keyframe = Keyframe {
         tick: *world.resource::<SimTick>(),
-        world: Snapshot::take(world),
+        world: WorldSnapshot::take(world),
         player: world.resource::<Player>().clone(),
     };
     let mut opened = world.resource_mut::<Opened>();

@@ -9,25 +9,35 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// What each of our crates may depend on of ours, and whether it may name Rapier and enable what draws or opens windows.
-const RULES: [Rule; 15] = [
+const RULES: [Rule; 16] = [
     Rule::new("tabletop_core", &[]),
     Rule::new("tabletop_xml", &["tabletop_core"]),
-    Rule::new("tabletop_physics", &["tabletop_core"]).with_rapier(),
-    Rule::new("tabletop_scene", &["tabletop_core", "tabletop_physics"]).with_rapier(),
+    Rule::new("tabletop_history", &["tabletop_core"]),
+    Rule::new("tabletop_physics", &["tabletop_core", "tabletop_history"]).with_rapier(),
+    Rule::new(
+        "tabletop_scene",
+        &["tabletop_core", "tabletop_history", "tabletop_physics"],
+    )
+    .with_rapier(),
     Rule::new(
         "tabletop_demonstrator",
-        &["tabletop_core", "tabletop_physics"],
+        &["tabletop_core", "tabletop_history", "tabletop_physics"],
     )
     .with_rapier(),
     Rule::new("tabletop_kinematics", &[]),
     Rule::new(
         "tabletop_robot",
-        &["tabletop_core", "tabletop_kinematics", "tabletop_physics"],
+        &[
+            "tabletop_core",
+            "tabletop_history",
+            "tabletop_kinematics",
+            "tabletop_physics",
+        ],
     )
     .with_rapier(),
     Rule::new("tabletop_engine", &[]),
     Rule::new("tabletop_script", &["tabletop_core", "tabletop_engine"]),
-    Rule::new("tabletop_camera", &["tabletop_core"]),
+    Rule::new("tabletop_camera", &["tabletop_core", "tabletop_history"]),
     Rule::new("tabletop_recorder", &["tabletop_core"]),
     Rule::new("tabletop_scenario", &["tabletop_core"]),
     Rule::new("tabletop_view", &["tabletop_core"]).with_window(),
@@ -40,6 +50,7 @@ const RULES: [Rule; 15] = [
             "tabletop_physics",
             "tabletop_scene",
             "tabletop_demonstrator",
+            "tabletop_history",
             "tabletop_kinematics",
             "tabletop_robot",
             "tabletop_script",

@@ -7,6 +7,7 @@ mod playback;
 mod random;
 mod rest;
 mod robot;
+mod rollback;
 mod settings;
 mod slow_script;
 mod undo;

@@ -82,6 +82,39 @@ fn undo_leaves_no_trace() {
 }
 
 #[test]
+fn what_one_object_was_released_for_is_undone_and_it_falls_as_before() {
+    let begin = [
+        (
+            vec![SimCommand::LoadTask("tablesetup/default.xml".into())],
+            1,
+        ),
+        (vec![SimCommand::StartRecording], 1),
+        (vec![grasp(Hand::Left, "RedBlock")], 1),
+        (vec![move_to(Hand::Left, (2.0, 0.0, 4.0))], 18),
+    ];
+    for pause in [false, true] {
+        let mut straight = Demonstration::new("released");
+        let mut with_detour = Demonstration::new("handed_over");
+        straight.act(&begin);
+        with_detour.act(&begin);
+        with_detour.tick(&[grasp(Hand::Left, "GreenBlock")]);
+        if pause {
+            with_detour.tick(&[SimCommand::SetPaused(true), SimCommand::Undo]);
+            with_detour.tick(&[]);
+            with_detour.tick(&[SimCommand::SetPaused(false)]);
+        } else {
+            with_detour.tick(&[SimCommand::Undo]);
+        }
+        straight.tick(&[SimCommand::Release(Hand::Left)]);
+        for tick in 0..30 {
+            assert_eq!(with_detour.bits(), straight.bits(), "{tick} ticks later");
+            straight.tick(&[]);
+            with_detour.tick(&[]);
+        }
+    }
+}
+
+#[test]
 fn redo_brings_back_what_was_undone() {
     for seed in 1000..1020 {
         let script = script(&mut Random(seed), 80);

@@ -54,6 +54,7 @@ pub use scene::{DrawnFigure, DrawnSolid, Facets, Scene};
 
 use bevy::prelude::*;
 use tabletop_core::{HeadCamera, Markers, PictureDemand, PictureSystems, SensorImage};
+use tabletop_history::RollbackApp;
 
 /// Takes the head camera's picture when it is asked for: of [`HeadCamera`], on [`PictureDemand`], into [`SensorImage`].
 /// Needs [`CorePlugin`](tabletop_core::CorePlugin).
@@ -67,6 +68,7 @@ impl Plugin for CameraPlugin {
             .init_resource::<PictureDemand>()
             .init_resource::<SensorImage>()
             .init_resource::<head_camera::HeadCameraRenderer>()
+            .derived_component::<head_camera::DrawnFacets>()
             .add_observer(head_camera::prepare_object)
             .add_observer(head_camera::prepare_figure)
             .add_observer(head_camera::remove_figure)

@@ -57,7 +57,9 @@ pub enum OrderSystems {
 /// Who carries out commands on what [`SimSystems::Ingest`] has brought, in this order. Runs while paused, too.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CommandSystems {
-    /// The demonstrator's hands, undo and redo.
+    /// Undo and redo.
+    History,
+    /// The demonstrator's hands.
     Hands,
     /// The robot.
     Robot,
@@ -136,6 +138,7 @@ pub(crate) fn configure(app: &mut App) {
             FixedUpdate,
             (
                 SimSystems::Ingest,
+                CommandSystems::History,
                 CommandSystems::Hands,
                 CommandSystems::Robot,
                 SimSystems::Actuate,

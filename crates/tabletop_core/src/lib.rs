@@ -77,7 +77,7 @@ pub use robot::{
     LayoutError, LayoutFile, LimbId, LimbLayout, LimbName, LinkFrame, Markers, Robot, RobotContact,
     RobotJoint, RobotLayout, RobotMode, WIDEST_GRIP, robot_base,
 };
-pub use rollback::{ResourceSnapshot, Rollback, RollbackRegistry};
+pub use rollback::Rollback;
 pub use scene::{ChainSpec, Joint, JointKind, JointSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
 pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage};
 pub use shape::{Part, Primitive, Shape, Solid};
@@ -134,7 +134,6 @@ impl Plugin for CorePlugin {
             .init_resource::<Playback>()
             .init_resource::<Recording>()
             .init_resource::<Replaying>()
-            .init_resource::<RollbackRegistry>()
             .init_resource::<Robot>()
             .init_resource::<RobotLayout>()
             .init_resource::<Steering>()
@@ -151,10 +150,6 @@ impl Plugin for CorePlugin {
                 RunFixedMainLoop,
                 KeySystems.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
             );
-        let mut registry = app.world_mut().resource_mut::<RollbackRegistry>();
-        registry.add::<Hands>();
-        registry.add::<ObjectIndex>();
-        registry.add::<SimTick>();
         clock::configure(app);
         if self.one_thread {
             clock::run_ticks_on_one_thread(app);

@@ -19,6 +19,10 @@ pub struct History {
     pub undoable: usize,
     /// How many segments can be redone.
     pub redoable: usize,
+    /// The memory, in bytes, that the snapshots of the world take.
+    pub bytes: usize,
+    /// The most memory, in bytes, that they may take; when there is more, the oldest segment can no longer be undone.
+    pub most_bytes: usize,
 }
 
 /// The window is to open the recording in this folder and to play it. Whoever replays recordings reads it.

@@ -5,9 +5,10 @@ use bevy_rapier3d::prelude::*;
 use tabletop_core::{
     Hand, Hands, Held, Joint, ObjectIndex, ObjectSpec, Paused, Pose, SimCommand, SimFact,
 };
+use tabletop_history::begin_segment;
 use tabletop_physics::{JustReleased, hold, let_go, remove_object};
 
-use crate::{history, rules};
+use crate::rules;
 
 /// Where a held object is to be.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
@@ -98,7 +99,7 @@ fn grasp(world: &mut World, hand: Hand, id: &str) {
         release(world, other);
     }
 
-    history::begin_segment(world);
+    begin_segment(world);
     let is_jointed = world
         .query::<&Joint>()
         .iter(world)
@@ -129,7 +130,7 @@ fn release(world: &mut World, hand: Hand) {
     let Some((object, id)) = held_by(world, hand) else {
         return;
     };
-    history::begin_segment(world);
+    begin_segment(world);
     world.resource_mut::<Hands>().set_held(hand, None);
     let mut body = world.entity_mut(object);
     body.remove::<(Held, CarryTarget, Carry)>();
@@ -142,7 +143,7 @@ fn destroy(world: &mut World, hand: Hand) {
         refuse(world, format!("{hand} holds nothing that it could destroy"));
         return;
     };
-    history::begin_segment(world);
+    begin_segment(world);
     world.resource_mut::<Hands>().set_held(hand, None);
     world
         .entity_mut(object)

@@ -40,39 +40,31 @@
 
 mod carry;
 mod grasp;
-mod history;
 mod obstacles;
 mod rules;
-mod snapshot;
 
 pub use grasp::{Carry, CarryTarget};
-pub use snapshot::Snapshot;
 
 use bevy::prelude::*;
-use tabletop_core::{ActuateSystems, CommandSystems, Paused};
-use tabletop_physics::{BodySystems, let_fall};
+use tabletop_core::{ActuateSystems, CommandSystems};
+use tabletop_history::{RollbackApp, is_rolling_back};
 
-/// Adds the hands. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin).
+/// Adds the hands. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin); with
+/// [`HistoryPlugin`](tabletop_history::HistoryPlugin), what they do can be undone.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DemonstratorPlugin;
 
 impl Plugin for DemonstratorPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<history::Snapshots>()
+        app.rollback_component::<CarryTarget>()
+            .rollback_component::<Carry>()
             .add_systems(
                 FixedUpdate,
                 (
-                    (
-                        history::undo_and_redo,
-                        let_fall.run_if(Paused::is_running),
-                        grasp::obey,
-                    )
-                        .chain()
-                        .after(BodySystems)
-                        .in_set(CommandSystems::Hands),
+                    grasp::obey.in_set(CommandSystems::Hands),
                     carry::carry.in_set(ActuateSystems::Hands),
                 ),
             )
-            .add_observer(grasp::note_lost);
+            .add_observer(grasp::note_lost.run_if(not(is_rolling_back)));
     }
 }

@@ -13,7 +13,7 @@ pub use mass::mass_properties;
 
 use bevy::prelude::*;
 use bevy_rapier3d::plugin::systems::{init_colliders, init_joints, init_rigid_bodies};
-use tabletop_core::{Joint, ObjectSpec, SimSystems, Table, TickSystems};
+use tabletop_core::{CommandSystems, Joint, ObjectSpec, SimSystems, Table, TickSystems};
 
 /// Gives new objects, tables and joints their bodies, in [`FixedUpdate`] after
 /// [`SimSystems::Ingest`]. Runs while paused, too.
@@ -34,7 +34,7 @@ pub(crate) fn plugin(app: &mut App) {
             BodySystems
                 .in_set(TickSystems)
                 .after(SimSystems::Ingest)
-                .before(SimSystems::Actuate),
+                .before(CommandSystems::History),
         )
         .add_systems(FixedUpdate, take_in.run_if(any).in_set(BodySystems))
         .add_observer(note_object)

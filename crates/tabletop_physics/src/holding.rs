@@ -2,14 +2,17 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{ObjectSpec, Pose, TICK_SECONDS};
+use tabletop_core::{ObjectSpec, Pose, SimTick, TICK_SECONDS};
 
 /// An object that was let go of in this tick.
 ///
 /// Rapier finds out what a body lies on when it has moved, so an object that was let go of at rest would fall freely for a
 /// tick, into what is below it. Instead it sinks for a tick by next to nothing, and falls from then on.
 #[derive(Component, Clone, Copy, Debug)]
-pub struct JustReleased;
+pub struct JustReleased {
+    /// The tick.
+    pub at: SimTick,
+}
 
 /// How fast it sinks in that tick, in units/s.
 const SETTLING_SPEED: f32 = 1e-3;
@@ -32,23 +35,27 @@ pub fn let_go(mut object: EntityWorldMut) {
     if is_fixed {
         object.insert(RigidBody::Fixed);
     } else {
+        let at = *object.world().resource::<SimTick>();
         object.insert((
             RigidBody::Dynamic,
             GravityScale(0.0),
             Velocity::linear(Vec3::NEG_Z * SETTLING_SPEED),
-            JustReleased,
+            JustReleased { at },
         ));
     }
 }
 
-/// Lets fall what was let go of in the tick before.
-pub fn let_fall(
-    mut released: Query<(Entity, &mut GravityScale), With<JustReleased>>,
+/// Lets fall what was let go of in the tick before. What undo has put back into the tick in which it was let go of waits.
+pub(crate) fn let_fall(
+    mut released: Query<(Entity, &JustReleased, &mut GravityScale)>,
+    tick: Res<SimTick>,
     mut commands: Commands,
 ) {
-    for (object, mut gravity) in &mut released {
-        gravity.0 = 1.0;
-        commands.entity(object).remove::<JustReleased>();
+    for (object, released, mut gravity) in &mut released {
+        if released.at < *tick {
+            gravity.0 = 1.0;
+            commands.entity(object).remove::<JustReleased>();
+        }
     }
 }
 

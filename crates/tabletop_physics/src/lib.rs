@@ -32,7 +32,6 @@ mod bodies;
 mod effort;
 mod geometry;
 mod holding;
-mod parking;
 mod settings;
 mod snapshot;
 mod transforms;
@@ -41,10 +40,9 @@ mod twist;
 pub use bodies::{BodySystems, collider, mass_properties};
 pub use effort::{Care, Engine, impulse_share};
 pub use geometry::{Convex, Nearby, Nearest, contact, convex_parts, nearby, nearest, to_rapier};
-pub use holding::{JustReleased, hold, let_fall, let_go, pull_velocity};
-pub use parking::{KeepRemoved, Parked, drop_removed, remove_object};
+pub use holding::{JustReleased, hold, let_go, pull_velocity};
 pub use settings::PhysicsSettings;
-pub use snapshot::{PhysicsSnapshot, renew_if_empty};
+pub use snapshot::{PhysicsSnapshot, remove_object, renew_if_empty};
 
 use bevy::{ecs::schedule::ScheduleConfigs, ecs::system::ScheduleSystem, prelude::*};
 use bevy_rapier3d::{
@@ -52,7 +50,8 @@ use bevy_rapier3d::{
     prelude::*,
     rapier::dynamics::{IntegrationParameters, SpringCoefficients},
 };
-use tabletop_core::{SimSystems, TICK_SECONDS};
+use tabletop_core::{CommandSystems, Paused, SimSystems, TICK_SECONDS, TickSystems, Twist};
+use tabletop_history::RollbackApp;
 
 /// What Rapier scales its tolerances to. The parameters name them in units; a greater number would only fatten the boxes
 /// in which it looks for contacts.
@@ -74,8 +73,7 @@ impl Plugin for PhysicsPlugin {
         app.add_message::<CollisionEvent>()
             .add_message::<ContactForceEvent>()
             .add_message::<MassModifiedEvent>();
-        app.init_resource::<KeepRemoved>()
-            .init_resource::<Care>()
+        app.init_resource::<Care>()
             .insert_resource(self.settings)
             .insert_resource(TimestepMode::Fixed {
                 dt: TICK_SECONDS,
@@ -118,7 +116,24 @@ impl Plugin for PhysicsPlugin {
                     (transforms::propagate(), twist::note_twists).in_set(SimSystems::Propagate),
                 ),
             )
-            .add_plugins(bodies::plugin);
+            .add_plugins(bodies::plugin)
+            .add_systems(
+                FixedUpdate,
+                holding::let_fall
+                    .run_if(Paused::is_running)
+                    .after(BodySystems)
+                    .before(CommandSystems::History)
+                    .in_set(TickSystems),
+            )
+            .rollback_component::<Velocity>()
+            .rollback_component::<Sleeping>()
+            .rollback_component::<RigidBody>()
+            .rollback_component::<GravityScale>()
+            .rollback_component::<RigidBodyDisabled>()
+            .rollback_component::<JustReleased>()
+            .rollback_resource::<Care>()
+            .rollback_state::<PhysicsSnapshot>()
+            .derived_component::<Twist>();
     }
 }
 

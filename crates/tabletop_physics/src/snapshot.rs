@@ -1,26 +1,48 @@
 //! The state of the physics engine at a moment.
 
+use std::sync::Arc;
+
 use bevy::prelude::*;
 use bevy_rapier3d::{
     prelude::*,
-    rapier::prelude::{CCDSolver, DefaultBroadPhase, IslandManager, NarrowPhase, PhysicsPipeline},
+    rapier::prelude::{
+        CCDSolver, Collider, ContactManifold, ContactPair, DefaultBroadPhase, ImpulseJoint,
+        IslandManager, NarrowPhase, PhysicsPipeline, RigidBody,
+    },
 };
+use tabletop_history::{RollbackState, Since, despawn_or_park};
 
 use crate::effort::Care;
 
 /// The physics engine's whole state: not poses alone, but contacts, sleep and everything else that decides what comes next.
-/// A world that is [restored](Self::restore) goes on bit for bit as the one that the snapshot was [taken](Self::take) of,
-/// if the entities of its bodies have their components of that moment, too.
+/// A world that is [restored](RollbackState::restore) goes on bit for bit as the one that was [saved](RollbackState::save), if the
+/// entities of its bodies have their components of that moment, too.
 #[derive(Clone, Default)]
 pub struct PhysicsSnapshot {
-    bodies: RapierRigidBodySet,
-    colliders: RapierContextColliders,
-    joints: RapierContextJoints,
+    bodies: Arc<RapierRigidBodySet>,
+    colliders: Arc<RapierContextColliders>,
+    joints: Arc<RapierContextJoints>,
+    simulation: Arc<Simulation>,
+}
+
+/// What of a [`RapierContextSimulation`] decides what comes next.
+#[derive(Default)]
+struct Simulation {
     islands: IslandManager,
     broad_phase: DefaultBroadPhase,
     narrow_phase: NarrowPhase,
     ccd_solver: CCDSolver,
-    care: Care,
+}
+
+impl From<&RapierContextSimulation> for Simulation {
+    fn from(simulation: &RapierContextSimulation) -> Self {
+        Self {
+            islands: simulation.islands.clone(),
+            broad_phase: simulation.broad_phase.clone(),
+            narrow_phase: simulation.narrow_phase.clone(),
+            ccd_solver: simulation.ccd_solver.clone(),
+        }
+    }
 }
 
 /// The parts of Rapier's context.
@@ -31,27 +53,39 @@ type Context = (
     &'static mut RapierContextJoints,
 );
 
-impl PhysicsSnapshot {
-    /// The present state; `None` in a world without physics.
-    pub fn take(world: &mut World) -> Option<Self> {
-        let care = *world.get_resource()?;
-        let mut contexts = world.query_filtered::<Context, With<DefaultRapierContext>>();
-        let (simulation, bodies, colliders, joints) = contexts.single_mut(world).ok()?;
+impl RollbackState for PhysicsSnapshot {
+    fn save(world: &mut World, earlier: Option<(&Self, Since)>) -> Option<Self> {
+        let mut contexts = world.query_filtered::<EntityRef, With<DefaultRapierContext>>();
+        let context = contexts.single(world).ok()?;
         Some(Self {
-            bodies: bodies.clone(),
-            colliders: colliders.clone(),
-            joints: joints.clone(),
-            islands: simulation.islands.clone(),
-            broad_phase: simulation.broad_phase.clone(),
-            narrow_phase: simulation.narrow_phase.clone(),
-            ccd_solver: simulation.ccd_solver.clone(),
-            care,
+            bodies: save(
+                context,
+                earlier,
+                |snapshot| &snapshot.bodies,
+                RapierRigidBodySet::clone,
+            )?,
+            colliders: save(
+                context,
+                earlier,
+                |snapshot| &snapshot.colliders,
+                RapierContextColliders::clone,
+            )?,
+            joints: save(
+                context,
+                earlier,
+                |snapshot| &snapshot.joints,
+                RapierContextJoints::clone,
+            )?,
+            simulation: save(
+                context,
+                earlier,
+                |snapshot| &snapshot.simulation,
+                |simulation: &RapierContextSimulation| simulation.into(),
+            )?,
         })
     }
 
-    /// Puts the engine back into this state.
-    pub fn restore(&self, world: &mut World) {
-        world.insert_resource(self.care);
+    fn restore(&self, world: &mut World) {
         let mut contexts = world.query_filtered::<Context, With<DefaultRapierContext>>();
         let Ok((mut simulation, mut bodies, mut colliders, mut joints)) =
             contexts.single_mut(world)
@@ -61,12 +95,80 @@ impl PhysicsSnapshot {
         bodies.clone_from(&self.bodies);
         colliders.clone_from(&self.colliders);
         joints.clone_from(&self.joints);
-        simulation.islands = self.islands.clone();
-        simulation.broad_phase = self.broad_phase.clone();
-        simulation.narrow_phase = self.narrow_phase.clone();
-        simulation.ccd_solver = self.ccd_solver.clone();
+        simulation.islands = self.simulation.islands.clone();
+        simulation.broad_phase = self.simulation.broad_phase.clone();
+        simulation.narrow_phase = self.simulation.narrow_phase.clone();
+        simulation.ccd_solver = self.simulation.ccd_solver.clone();
         simulation.pipeline = PhysicsPipeline::new();
     }
+
+    fn bytes(&self, besides: Option<&Self>) -> usize {
+        fn own<T>(own: &Arc<T>, other: Option<&Arc<T>>, bytes: impl FnOnce(&T) -> usize) -> usize {
+            match other {
+                Some(other) if Arc::ptr_eq(own, other) => 0,
+                _ => size_of::<T>() + bytes(own),
+            }
+        }
+        own(
+            &self.bodies,
+            besides.map(|other| &other.bodies),
+            bytes_of_bodies,
+        ) + own(
+            &self.colliders,
+            besides.map(|other| &other.colliders),
+            bytes_of_colliders,
+        ) + own(
+            &self.joints,
+            besides.map(|other| &other.joints),
+            bytes_of_joints,
+        ) + own(
+            &self.simulation,
+            besides.map(|other| &other.simulation),
+            bytes_of_simulation,
+        )
+    }
+}
+
+/// A part of the engine, or what was saved of it if it has not changed since.
+fn save<C: Component, S>(
+    context: EntityRef,
+    earlier: Option<(&PhysicsSnapshot, Since)>,
+    part: impl Fn(&PhysicsSnapshot) -> &Arc<S>,
+    copy: impl FnOnce(&C) -> S,
+) -> Option<Arc<S>> {
+    let ticks = context.get_change_ticks::<C>()?;
+    match earlier {
+        Some((snapshot, since)) if !since.has_changed(ticks) => Some(part(snapshot).clone()),
+        _ => Some(Arc::new(copy(context.get()?))),
+    }
+}
+
+/// An entry of the maps from entities to handles and back, and of poses by handle.
+const BYTES_PER_ENTRY: usize = 2 * size_of::<Entity>() + size_of::<GlobalTransform>();
+
+fn bytes_of_bodies(set: &RapierRigidBodySet) -> usize {
+    set.bodies.len() * (size_of::<RigidBody>() + BYTES_PER_ENTRY)
+}
+
+fn bytes_of_colliders(set: &RapierContextColliders) -> usize {
+    set.colliders.len() * (size_of::<Collider>() + BYTES_PER_ENTRY)
+}
+
+fn bytes_of_joints(set: &RapierContextJoints) -> usize {
+    set.impulse_joints.len() * (size_of::<ImpulseJoint>() + BYTES_PER_ENTRY)
+}
+
+fn bytes_of_simulation(simulation: &Simulation) -> usize {
+    let manifold = |manifold: &ContactManifold| {
+        size_of::<ContactManifold>()
+            + size_of_val(&*manifold.points)
+            + size_of_val(&*manifold.data.solver_contacts)
+    };
+    let pair = |pair: &ContactPair| {
+        let manifolds = pair.manifolds.iter().chain(&pair.solver_clusters);
+        size_of::<ContactPair>() + manifolds.map(manifold).sum::<usize>()
+    };
+    simulation.narrow_phase.contact_pairs().map(pair).sum()
 }
 
 /// Makes the engine as new if it has no bodies: which places they had would decide the last bits of what comes next.
@@ -74,11 +176,19 @@ pub fn renew_if_empty(world: &mut World) {
     let mut bodies = world.query_filtered::<&RapierRigidBodySet, With<DefaultRapierContext>>();
     if bodies.single(world).is_ok_and(|set| set.bodies.is_empty()) {
         PhysicsSnapshot::default().restore(world);
+        world.insert_resource(Care::default());
     }
 }
 
+/// Removes an object from the world, for good or until undo brings it back. Its body goes at once, so that it makes no difference to
+/// the others whether the object is kept.
+pub fn remove_object(world: &mut World, object: Entity) {
+    remove_body(world, object);
+    despawn_or_park(world, object);
+}
+
 /// Takes an entity's body, with its colliders and joints, out of the engine, and leaves the entity as it is.
-pub fn remove_body(world: &mut World, entity: Entity) {
+fn remove_body(world: &mut World, entity: Entity) {
     let mut contexts = world.query_filtered::<Context, With<DefaultRapierContext>>();
     let Ok((mut simulation, mut bodies, mut colliders, mut joints)) = contexts.single_mut(world)
     else {

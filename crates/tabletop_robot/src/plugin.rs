@@ -2,10 +2,10 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    ActuateSystems, CommandSystems, HeadCamera, Robot, RobotJoint, RobotMode, RollbackRegistry,
+    ActuateSystems, CommandSystems, Figure, Gripped, HeadCamera, Robot, RobotJoint, RobotMode,
     SimSystems,
 };
-use tabletop_physics::BodySystems;
+use tabletop_history::{RollbackApp, is_rolling_back};
 
 use crate::{
     articulation::{
@@ -63,15 +63,15 @@ impl Plugin for RobotPlugin {
             .init_resource::<LinkEntities>()
             .init_resource::<Grips>()
             .init_resource::<Motors>()
-            .init_resource::<HeadCamera>();
-        let world = app.world_mut();
-        world.resource_mut::<Robot>().mode = self.mode;
-        let mut registry = world.resource_mut::<RollbackRegistry>();
-        registry.add::<Robot>();
-        registry.add::<JointTargets>();
-        registry.add::<LinkEntities>();
-        registry.add::<Grips>();
-        registry.add::<Motors>();
+            .init_resource::<HeadCamera>()
+            .rollback_component::<Gripped>()
+            .derived_component::<Figure>()
+            .rollback_resource::<Robot>()
+            .rollback_resource::<JointTargets>()
+            .rollback_resource::<LinkEntities>()
+            .rollback_resource::<Grips>()
+            .rollback_resource::<Motors>();
+        app.world_mut().resource_mut::<Robot>().mode = self.mode;
         app.add_systems(Startup, publish)
             .add_systems(
                 FixedUpdate,
@@ -82,7 +82,6 @@ impl Plugin for RobotPlugin {
                         grips::give_to_hands,
                     )
                         .chain()
-                        .after(BodySystems)
                         .in_set(CommandSystems::Robot),
                     (advance, grips::draw_jointed, turn_camera)
                         .chain()
@@ -93,7 +92,7 @@ impl Plugin for RobotPlugin {
                         .in_set(SimSystems::Propagate),
                 ),
             )
-            .add_observer(grips::note_lost);
+            .add_observer(grips::note_lost.run_if(not(is_rolling_back)));
     }
 }
 

@@ -1,9 +1,12 @@
 //! From what a task file says to the bodies and joints it stands for.
 
+mod chain;
+mod lidbox;
+
 use serde::Serialize;
 use tabletop_core::{JointSpec, ObjectSpec, SceneItem, SceneSpec, Table};
 
-use crate::{IdAllocator, chain, lidbox};
+use crate::ids::IdAllocator;
 
 /// Everything that a scene puts on the table: single objects with unique ids, and the joints between them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -42,8 +45,16 @@ impl Assembly {
                 id: ids.unique(&spec.id),
                 ..spec.clone()
             }),
-            SceneItem::Chain(spec) => chain::build(spec, ids, self),
-            SceneItem::LidBox(spec) => lidbox::build(spec, ids, self),
+            SceneItem::Chain(spec) => {
+                let (objects, joints) = chain::build(spec, ids);
+                self.objects.extend(objects);
+                self.joints.extend(joints);
+            }
+            SceneItem::LidBox(spec) => {
+                let (objects, joint) = lidbox::build(spec, ids);
+                self.objects.extend(objects);
+                self.joints.push(joint);
+            }
         }
     }
 }

@@ -29,11 +29,9 @@
 //! ```
 
 mod assembly;
-mod chain;
 mod compound;
 mod ids;
-mod lidbox;
-mod life;
+mod lifecycle;
 mod present;
 mod preset;
 
@@ -42,7 +40,8 @@ pub use ids::IdAllocator;
 pub use present::{PresentScene, present_scene};
 
 use bevy::prelude::*;
-use tabletop_core::{RollbackRegistry, SimSystems};
+use tabletop_core::SimSystems;
+use tabletop_history::{RollbackApp, is_rolling_back};
 
 use crate::compound::Compounds;
 
@@ -54,19 +53,18 @@ pub struct ScenePlugin;
 impl Plugin for ScenePlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<IdAllocator>()
-            .init_resource::<Compounds>();
-        let mut registry = app.world_mut().resource_mut::<RollbackRegistry>();
-        registry.add::<Compounds>();
-        registry.add::<IdAllocator>();
-        app.add_systems(
-            FixedUpdate,
-            (
-                life::carry_out_commands.in_set(SimSystems::Ingest),
-                life::remove_fallen.in_set(SimSystems::Sense),
-            ),
-        )
-        .add_observer(life::note_created)
-        .add_observer(life::note_despawned)
-        .add_observer(life::note_parked);
+            .init_resource::<Compounds>()
+            .rollback_resource::<Compounds>()
+            .rollback_resource::<IdAllocator>()
+            .add_systems(
+                FixedUpdate,
+                (
+                    lifecycle::carry_out_commands.in_set(SimSystems::Ingest),
+                    lifecycle::remove_fallen.in_set(SimSystems::Sense),
+                ),
+            )
+            .add_observer(lifecycle::note_created.run_if(not(is_rolling_back)))
+            .add_observer(lifecycle::note_despawned.run_if(not(is_rolling_back)))
+            .add_observer(lifecycle::note_parked.run_if(not(is_rolling_back)));
     }
 }

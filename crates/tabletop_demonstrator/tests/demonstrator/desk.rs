@@ -4,6 +4,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
 use tabletop_core::prelude::*;
 use tabletop_demonstrator::DemonstratorPlugin;
+use tabletop_history::HistoryPlugin;
 use tabletop_physics::PhysicsPlugin;
 use tabletop_scene::ScenePlugin;
 
@@ -23,6 +24,7 @@ impl Desk {
         app.add_plugins((
             MinimalPlugins,
             CorePlugin::default(),
+            HistoryPlugin::default(),
             PhysicsPlugin::default(),
             ScenePlugin,
             DemonstratorPlugin,

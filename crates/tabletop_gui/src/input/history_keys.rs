@@ -45,6 +45,7 @@ mod tests {
             test.app.insert_resource(History {
                 undoable: 1,
                 redoable: 1,
+                ..default()
             });
             test.keys().release_all();
             keys.iter().for_each(|&key| test.keys().press(key));

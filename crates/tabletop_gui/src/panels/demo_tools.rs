@@ -327,7 +327,11 @@ mod tests {
         fn recording(undoable: usize, redoable: usize) -> Self {
             Self {
                 is_recording: true,
-                history: History { undoable, redoable },
+                history: History {
+                    undoable,
+                    redoable,
+                    ..default()
+                },
                 ..default()
             }
         }

@@ -430,6 +430,7 @@ mod tests {
             app.insert_resource(History {
                 undoable,
                 redoable: 0,
+                ..default()
             });
             let film = |sources: Sources| sources.film();
             app.world_mut().run_system_once(film).unwrap()

@@ -39,6 +39,7 @@ impl Desk {
             history: History {
                 undoable: 2,
                 redoable: 1,
+                ..default()
             },
             keymap: Keymap::default(),
             view: View::default(),

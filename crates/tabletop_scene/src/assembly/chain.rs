@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use tabletop_core::{ChainSpec, JointKind, JointSpec, ObjectSpec, Pose, Rgb, Shape};
 
-use crate::{IdAllocator, assembly::Assembly};
+use crate::ids::IdAllocator;
 
 /// Edge of the fixed cube at each end, in units.
 const END_SPAN: f32 = 0.1;
@@ -11,7 +11,9 @@ const END_SPAN: f32 = 0.1;
 /// Distance of the first and last joint from the centre of the cube at that end, in units.
 const END_PIVOT: f32 = 0.1;
 
-pub(crate) fn build(spec: &ChainSpec, ids: &mut IdAllocator, assembly: &mut Assembly) {
+/// The objects and joints of a chain, from its start on.
+pub(super) fn build(spec: &ChainSpec, ids: &mut IdAllocator) -> (Vec<ObjectSpec>, Vec<JointSpec>) {
+    let (mut objects, mut joints) = (Vec::new(), Vec::new());
     let id = ids.unique(&spec.id);
     let along = (spec.end - spec.start).normalize_or(Vec3::Y);
     let rotation = Quat::from_rotation_arc(Vec3::Y, along);
@@ -19,7 +21,7 @@ pub(crate) fn build(spec: &ChainSpec, ids: &mut IdAllocator, assembly: &mut Asse
     let mut add = |suffix: &str, pose, mass, shape| {
         let id = ids.unique(&format!("{id}-{suffix}"));
         let object = ObjectSpec::new(&id, pose, mass, shape);
-        assembly.objects.push(object);
+        objects.push(object);
         id
     };
     let end_cube = Shape::Block {
@@ -27,7 +29,7 @@ pub(crate) fn build(spec: &ChainSpec, ids: &mut IdAllocator, assembly: &mut Asse
         color: Rgb::WHITE,
     };
     let mut joint = |first: &str, pivot, second: &str, second_pivot| {
-        assembly.joints.push(JointSpec {
+        joints.push(JointSpec {
             objects: [first.to_owned(), second.to_owned()],
             frames: [Pose::at(pivot), Pose::at(second_pivot)],
             kind: JointKind::Ball,
@@ -52,6 +54,7 @@ pub(crate) fn build(spec: &ChainSpec, ids: &mut IdAllocator, assembly: &mut Asse
     }
     let end = add("end", Pose::at(spec.end), 0.0, end_cube);
     joint(&end, -along * END_PIVOT, &previous, pivot);
+    (objects, joints)
 }
 
 #[cfg(test)]
@@ -59,7 +62,7 @@ mod tests {
     use tabletop_core::{SceneItem, SceneSpec};
 
     use super::*;
-    use crate::assemble;
+    use crate::{Assembly, assemble};
 
     fn chain(link_count: u32) -> Assembly {
         let spec = ChainSpec {

@@ -3,12 +3,13 @@
 use bevy::prelude::*;
 use tabletop_core::{JointKind, JointSpec, LidBoxSpec, ObjectSpec, Pose, Shape};
 
-use crate::{IdAllocator, assembly::Assembly};
+use crate::ids::IdAllocator;
 
 /// Friction between lid and box: that of two ordinary surfaces.
 const LID_FRICTION: f32 = 0.25;
 
-pub(crate) fn build(spec: &LidBoxSpec, ids: &mut IdAllocator, assembly: &mut Assembly) {
+/// The box, the lid, and the joint between them.
+pub(super) fn build(spec: &LidBoxSpec, ids: &mut IdAllocator) -> ([ObjectSpec; 2], JointSpec) {
     let id = ids.unique(&spec.id);
     let top = Pose::at(Vec3::Z * spec.span.z / 2.0);
     let lid_bottom = Pose::at(Vec3::NEG_Z * spec.thickness / 2.0);
@@ -36,15 +37,15 @@ pub(crate) fn build(spec: &LidBoxSpec, ids: &mut IdAllocator, assembly: &mut Ass
         },
         descriptions: Vec::new(),
     };
-    assembly.joints.push(JointSpec {
+    let joint = JointSpec {
         objects: [body.id.clone(), lid.id.clone()],
         frames: [top, lid_bottom],
         kind: JointKind::Slider {
             travel: spec.span.x,
             friction: LID_FRICTION,
         },
-    });
-    assembly.objects.extend([body, lid]);
+    };
+    ([body, lid], joint)
 }
 
 #[cfg(test)]

@@ -1,11 +1,9 @@
-//! Removing objects so that a snapshot can bring them back.
+//! Removing entities so that a snapshot can bring them back.
 
 use bevy::{ecs::entity_disabling::Disabled, prelude::*};
 use tabletop_core::Rollback;
 
-use crate::snapshot::remove_body;
-
-/// Whether, and what for, removed objects are kept as disabled entities, because a snapshot may bring them back.
+/// Whether, and what for, removed entities are kept, disabled, because a snapshot may bring them back.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct KeepRemoved {
     /// What was done can be undone.
@@ -21,18 +19,17 @@ impl KeepRemoved {
     }
 }
 
-/// Marks an object that was removed from the world while removed objects are [kept](KeepRemoved).
+/// Marks an entity that was removed from the world while removed entities are [kept](KeepRemoved).
 #[derive(Component, Clone, Copy, Debug)]
 pub struct Parked;
 
-/// Removes an object from the world. Its body goes at once, so that it makes no difference to the others whether the object is kept.
-pub fn remove_object(world: &mut World, object: Entity) {
-    remove_body(world, object);
+/// Removes an entity from the world: for good, or until a snapshot brings it back.
+pub fn despawn_or_park(world: &mut World, entity: Entity) {
     let keep = world.get_resource::<KeepRemoved>();
     if keep.is_some_and(|keep| keep.is_on()) {
-        world.entity_mut(object).insert(Parked).insert(Disabled);
+        world.entity_mut(entity).insert(Parked).insert(Disabled);
     } else {
-        world.despawn(object);
+        world.despawn(entity);
     }
 }
 

@@ -10,7 +10,8 @@ use bevy::{
 use tabletop_core::{
     Gripped, Held, Joint, ObjectIndex, ObjectSpec, SceneSpec, SimCommand, SimFact, Table,
 };
-use tabletop_physics::{Parked, remove_object, renew_if_empty};
+use tabletop_history::Parked;
+use tabletop_physics::{remove_object, renew_if_empty};
 
 use crate::{Assembly, IdAllocator, compound::Compounds, preset};
 

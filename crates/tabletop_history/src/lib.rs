@@ -1,0 +1,81 @@
+//! Undo and redo: the world as it was when a segment of a recording began, bit for bit.
+//!
+//! Each plugin says what of its own rolls back, as in `bevy_ggrs`: components of the entities marked [`Rollback`](tabletop_core::Rollback),
+//! resources, and whatever else decides what comes next ([`RollbackState`]). While a recording runs, [`begin_segment`]
+//! keeps a [`WorldSnapshot`]; [`SimCommand::Undo`](tabletop_core::SimCommand::Undo) and
+//! [`Redo`](tabletop_core::SimCommand::Redo) go back and forth between them. Snapshots share what did not change.
+//!
+//! ```
+//! use bevy::prelude::*;
+//! use tabletop_core::{Recording, Rollback, prelude::*};
+//! use tabletop_history::{HistoryPlugin, RollbackApp, begin_segment};
+//!
+//! #[derive(Component, Clone, Copy, Debug, PartialEq)]
+//! struct Switch(bool);
+//!
+//! let mut app = App::new();
+//! app.add_plugins((MinimalPlugins, CorePlugin::default(), HistoryPlugin::default()))
+//!     .rollback_component::<Switch>()
+//!     .start();
+//! app.insert_resource(Recording(true));
+//! let switch = app.world_mut().spawn((Rollback, Switch(false))).id();
+//!
+//! begin_segment(app.world_mut());
+//! app.world_mut().entity_mut(switch).insert(Switch(true));
+//! app.world_mut().write_message(SimCommand::Undo);
+//! app.step(1);
+//! assert_eq!(app.world().get(switch), Some(&Switch(false)));
+//! ```
+
+mod removal;
+mod rollback;
+mod segments;
+mod snapshot;
+
+pub use removal::{KeepRemoved, Parked, despawn_or_park, drop_removed};
+pub use rollback::{
+    RollbackApp, RollbackRegistry, RollbackState, RollingBack, Since, is_rolling_back,
+};
+pub use segments::begin_segment;
+pub use snapshot::WorldSnapshot;
+
+use bevy::{prelude::*, transform::components::TransformTreeChanged};
+use tabletop_core::{CommandSystems, Hands, Held, ObjectIndex, SimTick};
+
+use crate::segments::{Segments, undo_and_redo};
+
+/// Adds undo and redo. Needs [`CorePlugin`](tabletop_core::CorePlugin), for whose types it says what rolls back.
+#[derive(Clone, Copy, Debug)]
+pub struct HistoryPlugin {
+    /// Most memory, in bytes, that snapshots take; when there is more, the oldest segment can no longer be undone.
+    pub most_bytes: usize,
+}
+
+impl HistoryPlugin {
+    /// 512 MB.
+    pub const DEFAULT: Self = Self {
+        most_bytes: 512 * 1024 * 1024,
+    };
+}
+
+impl Default for HistoryPlugin {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+impl Plugin for HistoryPlugin {
+    fn build(&self, app: &mut App) {
+        app.insert_resource(Segments::new(self.most_bytes))
+            .init_resource::<KeepRemoved>()
+            .rollback_component::<Transform>()
+            .rollback_component::<GlobalTransform>()
+            .rollback_component::<Held>()
+            .derived_component::<Children>()
+            .derived_component::<TransformTreeChanged>()
+            .rollback_resource::<Hands>()
+            .rollback_resource::<ObjectIndex>()
+            .rollback_resource::<SimTick>()
+            .add_systems(FixedUpdate, undo_and_redo.in_set(CommandSystems::History));
+    }
+}

@@ -1,0 +1,117 @@
+//! What rolls back, as those say who own it.
+
+mod component;
+mod resource;
+mod saved;
+mod state;
+
+pub use saved::Since;
+pub(crate) use saved::{Earlier, Saved};
+pub use state::RollbackState;
+
+use std::any::TypeId;
+
+use bevy::prelude::*;
+
+/// Says what of a plugin rolls back.
+pub trait RollbackApp {
+    /// Undo and redo put this component of entities marked [`Rollback`](tabletop_core::Rollback) back, and remove it where it was not.
+    fn rollback_component<C: Component + Clone>(&mut self) -> &mut Self;
+
+    /// This component of entities that roll back is computed anew from what does, before anything reads it.
+    fn derived_component<C: Component>(&mut self) -> &mut Self;
+
+    /// Undo and redo put this resource back.
+    fn rollback_resource<R: Resource + Clone>(&mut self) -> &mut Self;
+
+    /// Undo and redo put back what is neither. It is put back after all components and resources.
+    fn rollback_state<S: RollbackState>(&mut self) -> &mut Self;
+}
+
+impl RollbackApp for App {
+    fn rollback_component<C: Component + Clone>(&mut self) -> &mut Self {
+        registry(self).add(Kind::Component, TypeId::of::<C>(), component::save::<C>);
+        self
+    }
+
+    fn derived_component<C: Component>(&mut self) -> &mut Self {
+        registry(self).derived.push(TypeId::of::<C>());
+        self
+    }
+
+    fn rollback_resource<R: Resource + Clone>(&mut self) -> &mut Self {
+        registry(self).add(Kind::Resource, TypeId::of::<R>(), resource::save::<R>);
+        self
+    }
+
+    fn rollback_state<S: RollbackState>(&mut self) -> &mut Self {
+        registry(self).add(Kind::State, TypeId::of::<S>(), state::save::<S>);
+        self
+    }
+}
+
+fn registry(app: &mut App) -> Mut<'_, RollbackRegistry> {
+    app.init_resource::<RollingBack>()
+        .world_mut()
+        .get_resource_or_init()
+}
+
+/// What rolls back.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct RollbackRegistry {
+    /// In the order in which they are put back.
+    parts: Vec<Part>,
+    derived: Vec<TypeId>,
+}
+
+/// One thing that rolls back.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part {
+    kind: Kind,
+    of: TypeId,
+    pub save: Save,
+}
+
+/// Copies a part of the world with these entities, or shares it with what was saved earlier.
+type Save = fn(&mut World, &[Entity], Option<Earlier>) -> Box<dyn Saved>;
+
+/// In the order in which they are put back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Resource,
+    Component,
+    State,
+}
+
+impl RollbackRegistry {
+    fn add(&mut self, kind: Kind, of: TypeId, save: Save) {
+        if self
+            .parts
+            .iter()
+            .all(|part| (part.kind, part.of) != (kind, of))
+        {
+            self.parts.push(Part { kind, of, save });
+            self.parts.sort_by_key(|part| part.kind);
+        }
+    }
+
+    pub(crate) fn parts(&self) -> impl Iterator<Item = Part> {
+        self.parts.iter().copied()
+    }
+
+    /// Whether undo takes care of a component: it is put back, or derived from what is.
+    pub fn covers(&self, component: TypeId) -> bool {
+        let is_put_back = |part: &Part| part.kind == Kind::Component && part.of == component;
+        self.parts.iter().any(is_put_back) || self.derived.contains(&component)
+    }
+}
+
+/// Whether the world is being put back to another moment. Observers of what rolls back do not act meanwhile: what they would do
+/// is put back as well.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RollingBack(pub(crate) bool);
+
+/// Run condition for observers: the world is being put back to another moment.
+pub fn is_rolling_back(rolling_back: Option<Res<RollingBack>>) -> bool {
+    rolling_back.is_some_and(|rolling_back| rolling_back.0)
+}

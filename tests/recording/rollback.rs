@@ -1,0 +1,141 @@
+//! What changes in a tick on an entity that rolls back is put back by undo, or derived from what is.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::Path,
+};
+
+use bevy::{
+    ecs::{change_detection::Tick, component::ComponentId, world::EntityRef},
+    prelude::*,
+};
+use tabletop::{
+    core::{RobotMode, Rollback},
+    headless_app_with,
+    history::RollbackRegistry,
+    prelude::*,
+    recorder::RecorderPlugin,
+    robot::RobotPlugin,
+    scenario::{Outcome, Program, Scenario, ScenarioPlugin, ScenarioRun},
+    xml::read_task,
+};
+
+use crate::{
+    demonstration::Demonstration,
+    random::{Random, scene, script},
+};
+
+/// The components of the entities that roll back, after a tick.
+struct Composition {
+    entities: BTreeMap<Entity, BTreeSet<ComponentId>>,
+    at: Tick,
+}
+
+impl Composition {
+    fn of(world: &mut World) -> Self {
+        let mut entities = world.query_filtered::<EntityRef, With<Rollback>>();
+        let components =
+            |entity: EntityRef| entity.archetype().components().iter().copied().collect();
+        Self {
+            entities: entities
+                .iter(world)
+                .map(|entity| (entity.id(), components(entity)))
+                .collect(),
+            at: world.increment_change_tick(),
+        }
+    }
+
+    /// The names of the components that have changed, come or gone since, and of which undo knows nothing.
+    fn forgotten(&self, world: &mut World) -> BTreeSet<String> {
+        let now = Self::of(world);
+        let registry = world.resource::<RollbackRegistry>();
+        let mut forgotten = BTreeSet::new();
+        for (&entity, components) in &now.entities {
+            let Some(before) = self.entities.get(&entity) else {
+                continue;
+            };
+            let entity = world.entity(entity);
+            let has_changed = |&&component: &&ComponentId| {
+                entity
+                    .get_change_ticks_by_id(component)
+                    .is_some_and(|ticks| ticks.is_changed(self.at, now.at))
+            };
+            let changed = components.iter().filter(has_changed);
+            for component in changed.chain(components.symmetric_difference(before)) {
+                let info = world.components().get_info(*component).unwrap();
+                if !info.type_id().is_some_and(|id| registry.covers(id)) {
+                    forgotten.insert(info.name().to_string());
+                }
+            }
+        }
+        forgotten
+    }
+}
+
+/// Simulates a tick, and adds the names of the components that undo forgets.
+fn watch(app: &mut App, forgotten: &mut BTreeSet<String>) {
+    let before = Composition::of(app.world_mut());
+    app.step(1);
+    forgotten.extend(before.forgotten(app.world_mut()));
+}
+
+#[test]
+fn no_component_that_a_random_demonstration_changes_is_forgotten() {
+    let mut forgotten = BTreeSet::new();
+    for seed in 0..4 {
+        let mut demonstration = Demonstration::new("watched");
+        demonstration.tick(&[
+            scene(),
+            SimCommand::ShowRobot(true),
+            SimCommand::StartRecording,
+        ]);
+        for commands in script(&mut Random(seed), 300) {
+            for command in commands {
+                demonstration.app.world_mut().write_message(command);
+            }
+            watch(&mut demonstration.app, &mut forgotten);
+        }
+    }
+    assert!(
+        forgotten.is_empty(),
+        "register these with rollback_component or derived_component: {forgotten:#?}"
+    );
+}
+
+#[test]
+fn no_component_that_a_shipped_scenario_changes_is_forgotten() {
+    let mut forgotten = BTreeSet::new();
+    for entry in fs::read_dir("scenarios").unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|ending| ending == "ron") {
+            for mode in [RobotMode::Kinematic, RobotMode::Dynamic] {
+                perform(&path, mode, &mut forgotten);
+            }
+        }
+    }
+    assert!(
+        forgotten.is_empty(),
+        "register these with rollback_component or derived_component: {forgotten:#?}"
+    );
+}
+
+/// Performs a scenario.
+fn perform(path: &Path, mode: RobotMode, forgotten: &mut BTreeSet<String>) {
+    let text = fs::read_to_string(path).unwrap();
+    let scenario = Scenario::parse(path, &text).unwrap();
+    let read = |path: &Path| Ok(read_task(path).unwrap().scene);
+    let program = Program::new(&scenario, read, 0).unwrap();
+    let recorder = RecorderPlugin {
+        folder: Path::new(env!("CARGO_TARGET_TMPDIR")).join("watched_scenario"),
+        ..default()
+    };
+    let _not_there = fs::remove_dir_all(&recorder.folder);
+    let robot = RobotPlugin { mode, ..default() };
+    let plugins = TabletopSimPlugins.build().set(recorder).set(robot);
+    let mut app = headless_app_with((plugins, ScenarioPlugin));
+    app.insert_resource(ScenarioRun::new(program));
+    while *app.world().resource::<ScenarioRun>().outcome() == Outcome::Running {
+        watch(&mut app, forgotten);
+    }
+}
