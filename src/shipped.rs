@@ -13,7 +13,7 @@ use bevy::prelude::*;
 use include_dir::{Dir, include_dir};
 use tabletop_core::{ShippedFile, ShippedFiles};
 use tabletop_scenario::{Scenario, ScenarioError};
-use tabletop_xml::{ParsedTask, ReadError};
+use tabletop_xml::{ParsedTask, ReadError, TaskReader};
 
 /// The folders of a working folder.
 pub const WORKING_FOLDERS: [&str; 4] = ["tablesetup", "matlab", "scenarios", "python"];
@@ -77,10 +77,12 @@ impl Plugin for ShippedFilesPlugin {
 ///
 /// It is in neither, or cannot be read.
 pub fn read_task(path: &Path) -> Result<ParsedTask, ReadError> {
-    match shipped_files().find(path) {
-        Some(file) => Ok(tabletop_xml::parse(&file.name(), file.text.as_bytes())),
-        None => tabletop_xml::read_task(path),
-    }
+    task_reader().read(path)
+}
+
+/// Reads task files, from the folder or the program.
+pub fn task_reader() -> TaskReader<'static> {
+    TaskReader::with_shipped(shipped_files())
 }
 
 /// Reads a scenario, from the folder or the program. The task files that a shipped one names are shipped ones.

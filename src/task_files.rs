@@ -38,16 +38,24 @@ pub fn task_files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
+/// Whether a file is one to be loaded, by its name and what it holds.
+pub(crate) fn is_task_file(path: &Path, text: &[u8]) -> bool {
+    is_task_name(path) && is_task(text)
+}
+
+fn is_task_name(path: &Path) -> bool {
+    let name = path.file_name().and_then(|name| name.to_str());
+    name.is_some_and(|name| {
+        name.ends_with(".xml") && !name.starts_with("def-") && name != "debug.xml"
+    })
+}
+
 fn is_listed(path: &Path) -> bool {
-    let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
-        return false;
-    };
-    let is_task_name = name.ends_with(".xml") && !name.starts_with("def-") && name != "debug.xml";
     let is_file = |path: &Path| {
         path.metadata()
             .is_ok_and(|file| file.is_file() && file.len() <= MAX_FILE_BYTES as u64)
     };
-    is_task_name && is_file(path) && fs::read(path).is_ok_and(|text| is_task(&text))
+    is_task_name(path) && is_file(path) && fs::read(path).is_ok_and(|text| is_task(&text))
 }
 
 /// Saves what is on the table as a task file, which is replaced if it is there. Returns what a task file cannot say of it.

@@ -1,9 +1,15 @@
 //! `tabletop check`: task files without a simulation.
 
-use std::{path::PathBuf, process::ExitCode};
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
 use clap::Args;
-use tabletop::{report, shipped::read_task};
+use tabletop::{
+    report,
+    shipped::{read_task, task_reader},
+};
 
 use super::{Failure, Output, WRONG_INPUT, terminal::say};
 
@@ -15,11 +21,18 @@ pub(super) struct CheckArgs {
     /// Print what each file puts on the table as JSON
     #[arg(long)]
     dump: bool,
+    /// Print each file with everything put in: without <include>, <def>, <instance>, <var> and expressions
+    #[arg(long, conflicts_with = "dump")]
+    expand: bool,
 }
 
 pub(super) fn check(args: &CheckArgs) -> Result<ExitCode, Failure> {
     let mut sound = true;
     for file in &args.files {
+        if args.expand {
+            sound &= expand(file)?;
+            continue;
+        }
         let task = match read_task(file) {
             Ok(task) => task,
             Err(error) => {
@@ -44,4 +57,20 @@ pub(super) fn check(args: &CheckArgs) -> Result<ExitCode, Failure> {
         true => ExitCode::SUCCESS,
         false => ExitCode::from(WRONG_INPUT),
     })
+}
+
+/// Prints a task file with everything put in, and says whether it has no faults.
+fn expand(file: &Path) -> Result<bool, Failure> {
+    let task = match task_reader().expand(file) {
+        Ok(task) => task,
+        Err(error) => {
+            say(error);
+            return Ok(false);
+        }
+    };
+    for fault in &task.faults {
+        say(fault);
+    }
+    Output::Stdout.write(task.text.as_bytes())?;
+    Ok(task.faults.is_empty())
 }

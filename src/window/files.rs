@@ -17,7 +17,7 @@ use self::{
     recent::remember,
     reload::{Watch, keep_setting},
 };
-use crate::task_files::{TASK_FOLDER, save_task, task_files};
+use crate::task_files::{TASK_FOLDER, is_task_file, save_task, task_files};
 
 pub(super) fn plugin(app: &mut App) {
     app.add_plugins((recent::plugin, reload::plugin))
@@ -64,7 +64,7 @@ fn list_tasks(world: &mut World) {
     let shipped = world.resource::<ShippedFiles>().in_folder(TASK_FOLDER);
     let shipped = shipped.filter(|file| {
         let path = Path::new(file.path);
-        path.extension().is_some_and(|ending| ending == "xml") && !own.iter().any(|own| own == path)
+        is_task_file(path, file.text.as_bytes()) && !own.iter().any(|own| own == path)
     });
     let shipped: Vec<_> = shipped
         .map(|file| TaskFile {

@@ -1,6 +1,6 @@
 //! Elements of the task file language as what they stand for (report section 6.2): the table, and what may stand where.
 
-mod attributes;
+pub(crate) mod attributes;
 mod chain;
 mod hollow;
 mod lidbox;
@@ -11,13 +11,12 @@ use tabletop_core::{SceneItem, SceneSpec, Table};
 
 use crate::{
     NAMESPACE,
-    document::tree::{Element, Namespace},
+    document::{ROOT, tree::Element},
     elements::attributes::AttributeReader,
     fault::{Excerpt, Faults},
     suggestion::nearest,
 };
 
-const ROOT: &str = "tabletop";
 pub(crate) const DESCRIPTION: &str = "description";
 const ITEMS: [&str; 7] = [
     "block",
@@ -29,14 +28,10 @@ const ITEMS: [&str; 7] = [
     "lidbox",
 ];
 /// Elements that only the later program has.
-const OF_THE_LATER_PROGRAM: [&str; 13] = [
+const OF_THE_LATER_PROGRAM: [&str; 9] = [
     "frustum",
     "ring",
     "custom",
-    "include",
-    "def",
-    "var",
-    "instance",
     "sliderJoint",
     "toggleSwitch",
     "indicatorLights",
@@ -45,42 +40,20 @@ const OF_THE_LATER_PROGRAM: [&str; 13] = [
     "hostBondPoint",
 ];
 
+/// Elements that are replaced before the others are read.
+const TEMPLATES: [&str; 3] = ["include", "def", "instance"];
+
 /// Reads what the root element stands for.
 pub(crate) fn scene(root: &Element, faults: &mut Faults) -> SceneSpec {
-    if root.name != ROOT {
-        let problem = "it is not the root of a task file";
-        faults.report(root.place(), problem, "<tabletop>");
-        if nearest(root.name, &[ROOT]).is_none() {
-            return SceneSpec::default();
-        }
-    }
-    if root.namespace != Namespace::Task {
-        let expected = format_args!("xmlns=\"{NAMESPACE}\" on <{ROOT}>");
-        faults.report(root.place(), namespace_problem(root.namespace), expected);
-    }
-    let mut reader = ElementReader {
-        namespace: root.namespace,
-        faults,
-    };
+    let mut reader = ElementReader { faults };
     SceneSpec {
         table: reader.table(root),
         items: reader.items(root),
     }
 }
 
-/// What is wrong with a namespace that is not that of task files.
-const fn namespace_problem(namespace: Namespace) -> &'static str {
-    match namespace {
-        Namespace::Undeclared => "its prefix is not declared",
-        Namespace::Absent => "it has no namespace",
-        Namespace::Task | Namespace::Other => "it is of another namespace",
-    }
-}
-
 /// Reads elements, and notes what is wrong with them.
 pub(crate) struct ElementReader<'f> {
-    /// The namespace of the root element.
-    namespace: Namespace,
     pub faults: &'f mut Faults,
 }
 
@@ -119,9 +92,9 @@ impl ElementReader<'_> {
 
     /// Whether an element may stand in its parent; a fault says why not.
     pub fn is_allowed(&mut self, element: &Element, parent: &str, allowed: &[&str]) -> bool {
-        if !self.is_of_the_language(element) {
+        if !element.is_of_the_language() {
             let expected = format_args!("the namespace {NAMESPACE}");
-            let problem = namespace_problem(element.namespace);
+            let problem = element.namespace.problem();
             self.faults.report(element.place(), problem, expected);
             return false;
         }
@@ -139,22 +112,14 @@ impl ElementReader<'_> {
         } else {
             "it is not known".to_owned()
         };
-        let expected = match nearest(name, allowed) {
+        let known = [allowed, &TEMPLATES].concat();
+        let expected = match nearest(name, &known) {
             Some(known) => format!("<{known}>"),
             None if allowed.is_empty() => format!("no element in <{}>", Excerpt(parent)),
             None => format!("one of {}", allowed.join(", ")),
         };
         self.faults.report(element.place(), problem, expected);
         false
-    }
-
-    /// Whether an element belongs to the language of task files.
-    pub fn is_of_the_language(&self, element: &Element) -> bool {
-        match element.namespace {
-            Namespace::Task => true,
-            Namespace::Undeclared => false,
-            namespace => namespace == self.namespace,
-        }
     }
 }
 

@@ -1,13 +1,10 @@
 //! What is wrong with a task file, and where.
 
-mod position;
+pub(crate) mod position;
 
-use std::{
-    fmt,
-    path::{Path, PathBuf},
-};
+use std::{fmt, path::PathBuf};
 
-use crate::fault::position::PositionCursor;
+use crate::origin::{Origin, Sources};
 
 /// The most faults of a file that are reported; one more fault then says that there are others.
 pub const MAX_FAULTS: usize = 200;
@@ -25,6 +22,8 @@ pub const MAX_FAULTS: usize = 200;
 ///     attribute: Some("color".into()),
 ///     problem: "`reed` is not a colour".into(),
 ///     expected: "#rrggbb".into(),
+///     instances: Vec::new(),
+///     repeats: 0,
 /// };
 /// assert_eq!(
 ///     fault.to_string(),
@@ -47,10 +46,33 @@ pub struct Fault {
     pub problem: String,
     /// What should be there instead.
     pub expected: String,
+    /// The instances of templates that brought the element, the innermost first.
+    pub instances: Vec<Position>,
+    /// How many other instances have the same fault at the same place.
+    pub repeats: usize,
+}
+
+/// A place in a file.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Position {
+    /// The file.
+    pub file: PathBuf,
+    /// The line, from 1.
+    pub line: usize,
+    /// The column in characters, from 1.
+    pub column: usize,
+}
+
+impl fmt::Display for Position {
+    /// Writes `file:line:column`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}:{}", self.file.display(), self.line, self.column)
+    }
 }
 
 impl fmt::Display for Fault {
-    /// Writes `file:line:column: element, attribute: what is wrong, expected what should be there`, on one line.
+    /// Writes `file:line:column: element, attribute: what is wrong, expected what should be there`, on one line; then
+    /// ` (in the instance at file:line:column)` if it is in one.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             file,
@@ -60,6 +82,8 @@ impl fmt::Display for Fault {
             attribute,
             problem,
             expected,
+            instances,
+            repeats,
         } = self;
         write!(f, "{}:{line}:{column}: ", file.display())?;
         match (element, attribute) {
@@ -68,8 +92,31 @@ impl fmt::Display for Fault {
             (None, Some(attribute)) => write!(f, "{attribute}: ")?,
             (None, None) => {}
         }
-        write!(f, "{problem}, expected {expected}")
+        write!(f, "{problem}, expected {expected}")?;
+        write_instances(f, instances, *repeats)
     }
+}
+
+fn write_instances(
+    f: &mut fmt::Formatter<'_>,
+    instances: &[Position],
+    repeats: usize,
+) -> fmt::Result {
+    const MOST_SHOWN: usize = 4;
+    let [innermost, outer @ ..] = instances else {
+        return Ok(());
+    };
+    write!(f, " (in the instance at {innermost}")?;
+    if instances.len() > MOST_SHOWN {
+        f.write_str(", …")?;
+    }
+    for instance in &outer[outer.len().saturating_sub(MOST_SHOWN - 1)..] {
+        write!(f, ", in that at {instance}")?;
+    }
+    if repeats > 0 {
+        write!(f, ", and in {repeats} more")?;
+    }
+    f.write_str(")")
 }
 
 impl std::error::Error for Fault {}
@@ -77,16 +124,20 @@ impl std::error::Error for Fault {}
 /// A place in the text of a task file.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place<'a> {
-    pub offset: usize,
+    pub origin: Origin,
     pub element: Option<&'a str>,
     pub attribute: Option<&'a str>,
 }
 
 impl Place<'_> {
     /// A place in no element.
-    pub const fn outside(offset: usize) -> Self {
+    pub const fn outside(source: usize, offset: usize) -> Self {
         Self {
-            offset,
+            origin: Origin {
+                source,
+                offset,
+                instance: None,
+            },
             element: None,
             attribute: None,
         }
@@ -97,16 +148,29 @@ impl Place<'_> {
 #[derive(Debug, Default)]
 pub(crate) struct Faults {
     found: Vec<Found>,
-    first_left_out: Option<usize>,
+    first_left_out: Option<Origin>,
 }
 
 #[derive(Debug)]
 struct Found {
-    offset: usize,
+    origin: Origin,
     element: Option<String>,
     attribute: Option<String>,
     problem: String,
     expected: String,
+    repeats: usize,
+}
+
+impl Found {
+    /// Whether it is the same fault, brought by another instance.
+    fn is_repeated_by(&self, other: &Self) -> bool {
+        let (mine, others) = (self.origin, other.origin);
+        mine.instance.is_some()
+            && others.instance.is_some()
+            && (mine.source, mine.offset) == (others.source, others.offset)
+            && self.attribute == other.attribute
+            && self.problem == other.problem
+    }
 }
 
 impl Faults {
@@ -123,48 +187,69 @@ impl Faults {
         expected: impl fmt::Display,
     ) {
         if self.is_full() {
-            self.first_left_out.get_or_insert(place.offset);
+            self.first_left_out.get_or_insert(place.origin);
             return;
         }
         let name = |name: &str| Excerpt(name).to_string();
-        self.found.push(Found {
-            offset: place.offset,
+        let fault = Found {
+            origin: place.origin,
             element: place.element.map(name),
             attribute: place.attribute.map(name),
             problem: problem.to_string(),
             expected: expected.to_string(),
-        });
+            repeats: 0,
+        };
+        match self
+            .found
+            .iter_mut()
+            .find(|found| found.is_repeated_by(&fault))
+        {
+            Some(found) => found.repeats += 1,
+            None => self.found.push(fault),
+        }
     }
 
-    /// The faults in the order of the text.
-    pub fn locate(mut self, file: &Path, text: &str) -> Vec<Fault> {
-        self.found.sort_by_key(|found| found.offset);
-        if let Some(offset) = self.first_left_out {
-            let last = self.found.last().map_or(0, |found| found.offset);
+    /// The faults in the order of the files and their texts.
+    pub fn locate(mut self, sources: &Sources) -> Vec<Fault> {
+        self.found
+            .sort_by_key(|found| (found.origin.source, found.origin.offset));
+        if let Some(origin) = self.first_left_out {
+            let last = self.found.last().map_or(origin, |found| found.origin);
             self.found.push(Found {
-                offset: offset.max(last),
+                origin: Origin {
+                    instance: None,
+                    ..origin.max(last)
+                },
                 element: None,
                 attribute: None,
                 problem: "more faults follow".into(),
                 expected: format!("at most {MAX_FAULTS}"),
+                repeats: 0,
             });
         }
-        let mut cursor = PositionCursor::new(text);
-        self.found
-            .into_iter()
-            .map(|found| {
-                let (line, column) = cursor.advance_to(found.offset);
-                Fault {
-                    file: file.to_path_buf(),
-                    line,
-                    column,
-                    element: found.element,
-                    attribute: found.attribute,
-                    problem: found.problem,
-                    expected: found.expected,
-                }
-            })
-            .collect()
+        let origins = self.found.iter().flat_map(|found| {
+            std::iter::once(found.origin).chain(sources.instances_of(found.origin))
+        });
+        let positions = sources.positions(origins);
+        let position = |origin: Origin| {
+            let position = positions.get(&(origin.source, origin.offset));
+            position.cloned().unwrap_or_default()
+        };
+        let located = |found: Found| {
+            let Position { file, line, column } = position(found.origin);
+            Fault {
+                file,
+                line,
+                column,
+                element: found.element,
+                attribute: found.attribute,
+                problem: found.problem,
+                expected: found.expected,
+                instances: sources.instances_of(found.origin).map(position).collect(),
+                repeats: found.repeats,
+            }
+        };
+        self.found.into_iter().map(located).collect()
     }
 }
 
@@ -190,42 +275,88 @@ impl fmt::Display for Excerpt<'_> {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
+
+    fn lines(faults: Faults, sources: &Sources) -> Vec<String> {
+        let faults = faults.locate(sources);
+        faults.iter().map(ToString::to_string).collect()
+    }
 
     #[test]
     fn faults_are_sorted_and_located() {
+        let mut sources = Sources::default();
+        sources.add(Path::new("f.xml"), "a\nbc");
+        sources.add(Path::new("g.xml"), "a");
         let mut faults = Faults::default();
-        faults.report(Place::outside(3), "late", "x");
+        faults.report(Place::outside(1, 0), "last", "z");
+        faults.report(Place::outside(0, 3), "late", "x");
         faults.report(
             Place {
-                offset: 1,
                 element: Some("box"),
-                attribute: None,
+                ..Place::outside(0, 1)
             },
             "early",
             "y",
         );
-        let lines: Vec<_> = faults
-            .locate(Path::new("f.xml"), "a\nbc")
-            .iter()
-            .map(Fault::to_string)
-            .collect();
         assert_eq!(
-            lines,
+            lines(faults, &sources),
             [
                 "f.xml:1:2: box: early, expected y",
-                "f.xml:2:2: late, expected x"
+                "f.xml:2:2: late, expected x",
+                "g.xml:1:1: last, expected z",
             ]
         );
     }
 
     #[test]
+    fn a_fault_names_the_instances_that_brought_it() {
+        let text = "x".repeat(20);
+        let mut sources = Sources::default();
+        sources.add(Path::new("f"), &text);
+        let at = |offset, instance| Origin {
+            source: 0,
+            offset,
+            instance,
+        };
+        let mut faults = Faults::default();
+        for column in [10, 12] {
+            let outer = sources.add_instance(at(column, None));
+            let inner = sources.add_instance(at(5, Some(outer)));
+            let place = Place {
+                origin: at(0, Some(inner)),
+                ..Place::outside(0, 0)
+            };
+            faults.report(place, "p", "e");
+        }
+        assert_eq!(
+            lines(faults, &sources),
+            ["f:1:1: p, expected e (in the instance at f:1:6, in that at f:1:11, and in 1 more)"]
+        );
+        let deep = Fault {
+            instances: vec![Position::default(); 100],
+            ..bare_fault()
+        };
+        assert!(deep.to_string().len() < 200, "{deep}");
+    }
+
+    fn bare_fault() -> Fault {
+        let mut faults = Faults::default();
+        faults.report(Place::outside(0, 0), "p", "e");
+        faults.locate(&Sources::default()).remove(0)
+    }
+
+    #[test]
     fn faults_beyond_the_limit_are_counted_as_one() {
+        let text = "x".repeat(1000);
+        let mut sources = Sources::default();
+        sources.add(Path::new("f"), &text);
         let mut faults = Faults::default();
         for offset in (0..1000).rev() {
-            faults.report(Place::outside(offset), "p", "e");
+            faults.report(Place::outside(0, offset), "p", "e");
         }
-        let faults = faults.locate(Path::new("f"), &"x".repeat(1000));
+        let faults = faults.locate(&sources);
         assert_eq!(faults.len(), MAX_FAULTS + 1);
         assert_eq!(faults[MAX_FAULTS].problem, "more faults follow");
         assert!(faults.is_sorted_by_key(|fault| fault.column));

@@ -24,18 +24,23 @@
 
 mod document;
 mod elements;
+mod expansion;
 mod fault;
+mod files;
+mod origin;
 mod parse;
 mod plugin;
+mod reader;
 mod suggestion;
 mod write;
 
 #[cfg(test)]
 mod test_support;
 
-pub use fault::{Fault, MAX_FAULTS};
-pub use parse::{MAX_FILE_BYTES, ParsedTask, ReadError, is_task, parse, read_task};
+pub use fault::{Fault, MAX_FAULTS, Position};
+pub use parse::{ExpandedTask, MAX_FILE_BYTES, ParsedTask, expand, is_task, parse};
 pub use plugin::XmlPlugin;
+pub use reader::{ReadError, TaskReader, read_task};
 pub use write::write;
 
 /// The XML namespace of task files.

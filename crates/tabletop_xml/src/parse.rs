@@ -1,21 +1,20 @@
 //! Task files as scenes.
 
-use std::{
-    fs::File,
-    io::{self, Read as _},
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use tabletop_core::SceneSpec;
 
 use crate::{
-    document::build,
-    document::decode::decode,
+    document::{ROOT, build, decode::decode, tree::Element},
     elements,
+    expansion::{self, Inclusion},
     fault::{Fault, Faults, Place},
+    files::{Arena, FileTree, TaskPath},
+    origin::Sources,
+    write::expanded::write_expanded,
 };
 
-/// The most bytes that a task file can have: 16 MiB.
+/// The most bytes that a task file can have, with all that it includes: 16 MiB.
 pub const MAX_FILE_BYTES: usize = 16 << 20;
 
 /// What a task file says, and what is wrong with it.
@@ -23,34 +22,19 @@ pub const MAX_FILE_BYTES: usize = 16 << 20;
 pub struct ParsedTask {
     /// The table and what stands on it, without the elements that have a fault.
     pub scene: SceneSpec,
-    /// The faults, in the order of the file.
+    /// The faults, in the order of the files.
     pub faults: Vec<Fault>,
+    /// The files that were read: the task file, then what it includes. A change of any of them can change the scene.
+    pub files: Vec<PathBuf>,
 }
 
-/// Why a task file cannot be read at all.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ReadError {
-    /// The operating system does not give it, because it is not there for instance.
-    #[error("{path}: it cannot be read: {source}, expected a task file", path = path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// What the operating system says.
-        source: io::Error,
-    },
-    /// It is a folder, a device or a pipe.
-    #[error("{path}: it is not a file, expected a task file", path = path.display())]
-    NotAFile {
-        /// The path.
-        path: PathBuf,
-    },
-    /// It has more than [`MAX_FILE_BYTES`].
-    #[error("{path}: it is too large, expected at most {MAX_FILE_BYTES} bytes", path = path.display())]
-    TooLarge {
-        /// The file.
-        path: PathBuf,
-    },
+/// A task file with everything put in: without `<include>`, `<def>`, `<instance>`, `<var>` and expressions.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ExpandedTask {
+    /// The text, which [reads](parse) as the same scene. What is broken, so that nothing comes of it, is left out.
+    pub text: String,
+    /// The faults of the task file.
+    pub faults: Vec<Fault>,
 }
 
 /// Reads the content of a task file (report section 6.2). It never fails: what has a fault is skipped, and there is
@@ -71,97 +55,112 @@ pub enum ReadError {
 /// );
 /// ```
 pub fn parse(file: &Path, text: &[u8]) -> ParsedTask {
-    let mut faults = Faults::default();
-    if text.len() > MAX_FILE_BYTES {
-        let expected = format_args!("at most {MAX_FILE_BYTES} bytes");
-        faults.report(Place::outside(0), "the file is too large", expected);
-        return ParsedTask {
-            scene: SceneSpec::default(),
-            faults: faults.locate(file, ""),
-        };
+    let tree = FileTree::Absent;
+    Task::read(&tree, &tree.task(file), text.to_vec(), &Arena::default()).parsed()
+}
+
+/// Puts everything into the content of a task file. It includes nothing: a text has no folder.
+///
+/// ```
+/// use std::path::Path;
+///
+/// let text = br#"<tabletop xmlns="http://synapse.cs.umd.edu/tabletop-xml">
+///   <def name="cube">
+///     <var name="side" value="2"/>
+///     <block location="($x$,0,$side/2$)" xspan="$side$" yspan="$side$" zspan="$side$"/>
+///   </def>
+///   <instance def="cube"><var name="x" value="-3"/></instance>
+/// </tabletop>"#;
+/// let task = tabletop_xml::expand(Path::new("task.xml"), text);
+/// assert!(task.faults.is_empty());
+/// assert!(task.text.contains(r#"<block location="(-3,0,1)" xspan="2" yspan="2" zspan="2"/>"#));
+/// ```
+pub fn expand(file: &Path, text: &[u8]) -> ExpandedTask {
+    let tree = FileTree::Absent;
+    Task::read(&tree, &tree.task(file), text.to_vec(), &Arena::default()).expanded()
+}
+
+/// A task with everything put in.
+pub(crate) struct Task<'a> {
+    root: Option<Element<'a>>,
+    sources: Sources<'a>,
+    faults: Faults,
+}
+
+impl<'a> Task<'a> {
+    pub fn read(tree: &FileTree, path: &TaskPath, bytes: Vec<u8>, arena: &'a Arena) -> Self {
+        let mut sources = Sources::default();
+        let mut faults = Faults::default();
+        if bytes.len() > MAX_FILE_BYTES {
+            let source = sources.add(&path.shown, "");
+            let expected = format_args!("at most {MAX_FILE_BYTES} bytes");
+            faults.report(Place::outside(source, 0), "the file is too large", expected);
+            return Self {
+                root: None,
+                sources,
+                faults,
+            };
+        }
+        let inclusion = Inclusion::new(arena, tree, path, &mut sources, &mut faults);
+        let root = inclusion
+            .task(arena.keep(bytes))
+            .map(|root| expansion::expand(root, &mut sources, &mut faults));
+        Self {
+            root,
+            sources,
+            faults,
+        }
     }
-    let decoded = decode(text);
-    let scene = match build::read(&decoded, &mut faults) {
-        Some(root) => elements::scene(&root, &mut faults),
-        None => SceneSpec::default(),
-    };
-    ParsedTask {
-        scene,
-        faults: faults.locate(file, decoded.text),
+
+    pub fn parsed(mut self) -> ParsedTask {
+        let scene = match &self.root {
+            Some(root) => elements::scene(root, &mut self.faults),
+            None => SceneSpec::default(),
+        };
+        ParsedTask {
+            scene,
+            faults: self.faults.locate(&self.sources),
+            files: self.sources.files(),
+        }
+    }
+
+    pub fn expanded(mut self) -> ExpandedTask {
+        if let Some(root) = &self.root {
+            elements::scene(root, &mut self.faults);
+        }
+        ExpandedTask {
+            text: write_expanded(self.root.as_ref(), &self.sources),
+            faults: self.faults.locate(&self.sources),
+        }
     }
 }
 
-/// Whether a file is meant to be loaded, whatever is wrong with it: its root is `<tabletop>`, and it holds more than the templates that
-/// the later program had (`<def>`), which only other files use.
+/// Whether a file is meant to be loaded, whatever is wrong with it: its root is `<tabletop>`, and it is more than a file of `<def>`s,
+/// which others include.
 ///
 /// ```
-/// assert!(tabletop_xml::is_task(b"<tabletop><cube/></tabletop>"));
-/// assert!(!tabletop_xml::is_task(b"<tabletop><def name='lid'/></tabletop>"));
-/// assert!(!tabletop_xml::is_task(b"<robot/>"));
+/// use tabletop_xml::is_task;
+///
+/// assert!(is_task(b"<tabletop><cube/></tabletop>"));
+/// assert!(!is_task(b"<tabletop><def name='lid'/></tabletop>"));
+/// assert!(is_task(b"<tabletop><def name='lid'/><instance def='lid'/></tabletop>"));
+/// assert!(!is_task(b"<robot/>"));
 /// ```
 pub fn is_task(text: &[u8]) -> bool {
-    let root = build::read(&decode(text), &mut Faults::default());
+    let root = build::read(&decode(text), 0, &mut Faults::default());
     root.is_some_and(|root| {
-        let is_of_templates = |name| matches!(name, "def" | "include");
+        let has = |name| root.children.iter().any(|child| child.name == name);
         let has_more = root
             .children
             .iter()
-            .any(|child| !is_of_templates(child.name));
-        root.name == "tabletop" && (root.children.is_empty() || has_more)
+            .any(|child| !matches!(child.name, "def" | "include"));
+        root.name == ROOT && (has_more || !has("def"))
     })
-}
-
-/// Reads a task file from the disk.
-///
-/// # Errors
-///
-/// There is no such file, it is not a file, it cannot be read, or it is larger than [`MAX_FILE_BYTES`].
-pub fn read_task(path: &Path) -> Result<ParsedTask, ReadError> {
-    let failed = |source| ReadError::Io {
-        path: path.to_path_buf(),
-        source,
-    };
-    let metadata = path.metadata().map_err(failed)?;
-    if !metadata.is_file() {
-        return Err(ReadError::NotAFile {
-            path: path.to_path_buf(),
-        });
-    }
-    let mut text = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(MAX_FILE_BYTES as u64 + 1).read_to_end(&mut text))
-        .map_err(failed)?;
-    if text.len() > MAX_FILE_BYTES {
-        return Err(ReadError::TooLarge {
-            path: path.to_path_buf(),
-        });
-    }
-    Ok(parse(path, &text))
 }
 
 #[cfg(test)]
 mod tests {
-    use std::fs;
-
     use super::*;
-
-    #[test]
-    fn a_file_that_cannot_be_read_is_one_clear_error() {
-        let folder = std::env::temp_dir().join(format!("tabletop_xml_{}", std::process::id()));
-        fs::create_dir_all(&folder).unwrap();
-        let message = |path: &Path| read_task(path).unwrap_err().to_string();
-
-        let missing = folder.join("missing.xml");
-        assert!(
-            message(&missing).starts_with(&format!("{}: it cannot be read: ", missing.display()))
-        );
-        assert!(message(&folder).contains("it is not a file"));
-        let large = folder.join("large.xml");
-        File::create(&large).unwrap().set_len(20 << 20).unwrap();
-        assert!(message(&large).ends_with("it is too large, expected at most 16777216 bytes"));
-
-        fs::remove_dir_all(&folder).unwrap();
-    }
 
     #[test]
     fn a_text_that_is_too_large_is_one_fault() {

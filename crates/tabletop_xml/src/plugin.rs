@@ -1,9 +1,9 @@
 //! Task files in the simulation.
 
 use bevy::prelude::*;
-use tabletop_core::{SceneSpec, ShippedFiles, SimCommand, SimFact, SimSystems};
+use tabletop_core::{SceneSpec, ShippedFile, ShippedFiles, SimCommand, SimFact, SimSystems};
 
-use crate::{ParsedTask, ReadError, parse, read_task};
+use crate::{ParsedTask, ReadError, TaskReader};
 
 /// Carries out [`SimCommand::LoadTask`]: in [`SimSystems::Load`] the command becomes a [`SimCommand::SetScene`] with
 /// what the file says, in the same place of the order, and a [`SimFact::TaskLoaded`] tells its faults, which are
@@ -26,17 +26,8 @@ fn load_tasks(
     for command in commands.read() {
         if let SimCommand::LoadTask(path) = command {
             let path = std::mem::take(path);
-            let (path, task) = match shipped.find(&path) {
-                Some(file) => {
-                    let name = file.name();
-                    let task = parse(&name, file.text.as_bytes());
-                    (name, Ok(task))
-                }
-                None => {
-                    let task = read_task(&path);
-                    (path, task)
-                }
-            };
+            let task = TaskReader::with_shipped(&shipped).read(&path);
+            let path = shipped.find(&path).map_or(path, ShippedFile::name);
             let (scene, faults) = scene_and_faults(task);
             *command = SimCommand::SetScene(Box::new(scene));
             facts.write(SimFact::TaskLoaded { path, faults });
@@ -64,7 +55,7 @@ fn scene_and_faults(task: Result<ParsedTask, ReadError>) -> (SceneSpec, Vec<Stri
 mod tests {
     use std::{fs, path::PathBuf};
 
-    use tabletop_core::{CorePlugin, Paused, ShippedFile, StepApp as _};
+    use tabletop_core::{CorePlugin, Paused, StepApp as _};
 
     use super::*;
 

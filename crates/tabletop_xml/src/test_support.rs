@@ -4,7 +4,7 @@ use std::path::Path;
 
 use tabletop_core::{SceneItem, SceneSpec};
 
-use crate::{Fault, NAMESPACE, parse};
+use crate::{Fault, NAMESPACE, fault::Faults, origin::Sources, parse};
 
 fn file(attributes: &str, content: &str) -> String {
     format!("<tabletop xmlns='{NAMESPACE}' {attributes}>{content}</tabletop>")
@@ -34,4 +34,11 @@ pub(crate) fn lines_of(content: &str) -> Vec<String> {
         .iter()
         .map(|fault| line(fault).trim_start().to_owned())
         .collect()
+}
+
+/// Faults of a text, with their places in a file named `f`.
+pub(crate) fn located(faults: Faults, text: &str) -> Vec<Fault> {
+    let mut sources = Sources::default();
+    sources.add(Path::new("f"), text);
+    faults.locate(&sources)
 }

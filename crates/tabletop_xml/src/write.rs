@@ -1,6 +1,7 @@
 //! Scenes as task files.
 
 pub(crate) mod angles;
+pub(crate) mod expanded;
 
 use std::fmt::Write as _;
 
@@ -163,7 +164,7 @@ impl Writer {
         for (name, value) in descriptions {
             self.open("description");
             self.attribute("name", &as_id(name));
-            self.attribute("value", &as_attribute(value));
+            self.attribute("value", &as_attribute(&as_literal(value)));
             self.close();
         }
     }
@@ -248,6 +249,14 @@ fn element_name(shape: &Shape) -> &'static str {
 
 fn as_id(text: &str) -> String {
     text.replace(|character| !is_id_character(character), "_")
+}
+
+/// A text without expressions. A single dollar sign needs no other: older programs then read it, too.
+fn as_literal(text: &str) -> String {
+    match text.matches('$').count() {
+        0 | 1 => text.to_owned(),
+        _ => text.replace('$', "$$"),
+    }
 }
 
 /// A text as the value of an attribute; what XML does not allow becomes U+FFFD.

@@ -10,12 +10,13 @@ use tabletop_core::{
 };
 use tabletop_xml::read_task;
 
-const NAMES: [&str; 13] = [
+const NAMES: [&str; 14] = [
     "chain",
     "chains",
     "cylinders",
     "default",
     "empty",
+    "gates",
     "hammer",
     "letters",
     "lidbox",

@@ -114,6 +114,16 @@ fn schema_and_parser_accept_the_same() {
         "<chain start=\"(0,0,1)\" end=\"(5,0,1)\" linkCount=\"+5\" linkPadding=\"0\"/>",
         "<lidbox location=\"(0,0,1)\" lidMass=\"0\" handleThickness=\"0.1\"/>",
         "<!-- nothing --><?nothing at all?>",
+        "<def name=\"my cube\"><var name=\"side\" value=\"1\"/><var name=\"half\" value=\"$side/2$\" derived=\"1\"/>\
+         <block location=\"(0,0,$half$)\" xspan=\"$side$\" color=\"$color$\" id=\"b$side$\" mass=\"$2*side$\" pointable=\"$p$\">\
+         <description name=\"$n$\" value=\"$half$\"/></block></def>\
+         <instance def=\"my cube\"><var name=\"color\" value=\"red\"/><var name=\"p\" value=\"false\"/>\
+         <var name=\"n\" value=\"half\"/></instance>",
+        "<def name=\"parts\"><sphere location=\"(0,0,0)\"/></def><def name=\"note\"><description name=\"a\" value=\"b\"/></def>\
+         <composite location=\"(0,0,1)\"><description name=\"c\" value=\"d\"/><instance def=\"note\"/><instance def=\"parts\"/>\
+         <composite location=\"(0,0,0)\"><instance def=\"parts\"/></composite></composite>\
+         <sphere location=\"(0,0,1)\"><instance def=\"note\"/></sphere>",
+        "<def name=\"nothing\"/><block location=\"($1+2*3$,0,1)\"/>",
     ]
     .map(file)
     .to_vec();
@@ -164,6 +174,17 @@ fn schema_and_parser_reject_the_same() {
         "<chain start=\"(0,0,1)\" end=\"(5,0,1)\" linkPadding=\"-1\"/>",
         "<lidbox location=\"(0,0,1)\" handleXspan=\"0\"/>",
         "<ring location=\"(0,0,1)\"/>",
+        "<include/>",
+        "<def/>",
+        "<def name=\"\"/>",
+        "<instance/>",
+        "<def name=\"a\"/><instance def=\"a\" x=\"1\"/>",
+        "<def name=\"a\"/><instance def=\"a\"><var name=\"b\"/></instance>",
+        "<def name=\"a\"/><instance def=\"a\"><var value=\"b\"/></instance>",
+        "<def name=\"a\"/><instance def=\"a\"><sphere location=\"(0,0,1)\"/></instance>",
+        "<def name=\"a\"/><instance def=\"a\"><var name=\"b\" value=\"1\" derived=\"yes\"/></instance>",
+        "<var name=\"a\" value=\"b\"/>",
+        "<composite location=\"(0,0,1)\"><def name=\"a\"/></composite>",
         "<cube location=\"(0,0,1)\"/>",
         "<tabletop/>",
         "text",

@@ -14,18 +14,24 @@ use crate::{
     fault::{Excerpt, Faults, Place},
 };
 
-/// How deep elements can be nested.
-const MAX_DEPTH: usize = 100;
-/// How many elements a file can have.
-pub(crate) const MAX_ELEMENTS: usize = 10_000;
+/// How deep elements can be nested, also those of a task with everything put in.
+pub(crate) const MAX_DEPTH: usize = 100;
+/// How many elements a file can have, also a task with everything put in.
+pub(crate) const MAX_ELEMENTS: usize = 100_000;
 /// How many attributes an element can have.
 const MAX_ATTRIBUTES: usize = 100;
 
 const INSTANCE_NAMESPACE: &str = "http://www.w3.org/2001/XMLSchema-instance";
 
 /// Reads the root element, with everything that is complete before the first error.
-pub(crate) fn read<'a>(decoded: &Decoded<'a>, faults: &mut Faults) -> Option<Element<'a>> {
+/// `source` is the index of the file.
+pub(crate) fn read<'a>(
+    decoded: &Decoded<'a>,
+    source: usize,
+    faults: &mut Faults,
+) -> Option<Element<'a>> {
     let mut builder = Builder {
+        source,
         text: decoded.text,
         faults,
         namespaces: NamespaceResolver::default(),
@@ -43,7 +49,11 @@ pub(crate) fn read<'a>(decoded: &Decoded<'a>, faults: &mut Faults) -> Option<Ele
     let root = builder.root;
     if root.is_none() && end == End::OfFile {
         let problem = "there is no element";
-        faults.report(Place::outside(decoded.text.len()), problem, "<tabletop>");
+        faults.report(
+            Place::outside(source, decoded.text.len()),
+            problem,
+            "<tabletop>",
+        );
     }
     root
 }
@@ -56,6 +66,7 @@ enum End {
 }
 
 pub(crate) struct Builder<'a, 'f> {
+    pub source: usize,
     pub text: &'a str,
     pub faults: &'f mut Faults,
     namespaces: NamespaceResolver,
@@ -147,7 +158,7 @@ impl<'a> Builder<'a, '_> {
             false => None,
         };
         let mut element = Element {
-            offset,
+            origin: Place::outside(self.source, offset).origin,
             name: local_name.unwrap_or(full_name),
             namespace: Namespace::Absent,
             attributes: Vec::new(),
@@ -197,10 +208,7 @@ impl<'a> Builder<'a, '_> {
                 Err(error) => {
                     element.is_broken = true;
                     let (offset, problem, expected) = explain_attribute(&error);
-                    let place = Place {
-                        offset: content_offset + offset,
-                        ..element.place()
-                    };
+                    let place = element.place_at(content_offset + offset);
                     self.faults.report(place, problem, expected);
                     break;
                 }
@@ -243,9 +251,8 @@ impl<'a> Builder<'a, '_> {
         }
         for (problem, expected) in &faults_of_syntax {
             let place = Place {
-                offset,
-                element: Some(element.name),
                 attribute: Some(name),
+                ..element.place_at(offset)
             };
             self.faults.report(place, problem, expected);
         }
@@ -319,9 +326,8 @@ impl<'a> Builder<'a, '_> {
     /// A place in the innermost open element.
     pub fn place(&self, offset: usize) -> Place<'a> {
         Place {
-            offset,
             element: self.open.last().map(|element| element.name),
-            attribute: None,
+            ..Place::outside(self.source, offset)
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::{
 
 impl Builder<'_, '_> {
     pub fn check_declaration(&mut self, offset: usize, declaration: &BytesDecl) {
-        let place = Place::outside(offset);
+        let place = Place::outside(self.source, offset);
         if offset > 0 {
             let problem = "the XML declaration is not at the beginning";
             self.faults.report(place, problem, "nothing before it");

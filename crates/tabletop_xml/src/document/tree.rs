@@ -2,13 +2,13 @@
 
 use std::borrow::Cow;
 
-use crate::fault::Place;
+use crate::{fault::Place, origin::Origin};
 
 /// An element of a file.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Element<'a> {
     /// Where its tag begins.
-    pub offset: usize,
+    pub origin: Origin,
     /// Its name without prefix.
     pub name: &'a str,
     /// The namespace of its name.
@@ -22,7 +22,7 @@ pub(crate) struct Element<'a> {
 }
 
 /// An attribute of an element.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Attribute<'a> {
     /// Where its name begins.
     pub offset: usize,
@@ -45,34 +45,84 @@ pub(crate) enum Namespace {
     Undeclared,
 }
 
-impl Element<'_> {
+impl Namespace {
+    /// What is wrong with it, if it is not that of task files.
+    pub const fn problem(self) -> &'static str {
+        match self {
+            Self::Undeclared => "its prefix is not declared",
+            Self::Absent => "it has no namespace",
+            Self::Task | Self::Other => "it is of another namespace",
+        }
+    }
+}
+
+impl<'a> Element<'a> {
     /// Its place.
     pub fn place(&self) -> Place<'_> {
         Place {
-            offset: self.offset,
+            origin: self.origin,
             element: Some(self.name),
             attribute: None,
         }
+    }
+
+    /// A place in its tag.
+    pub fn place_at(&self, offset: usize) -> Place<'_> {
+        Place {
+            origin: Origin {
+                offset,
+                ..self.origin
+            },
+            ..self.place()
+        }
+    }
+
+    /// The place of an attribute of this name: its own or, where it is absent, the element's.
+    pub fn place_of<'p>(&'p self, name: &'p str) -> Place<'p> {
+        let place = match self.attribute(name) {
+            Some(attribute) => self.place_at(attribute.offset),
+            None => self.place(),
+        };
+        Place {
+            attribute: Some(name),
+            ..place
+        }
+    }
+
+    /// Whether it belongs to the language of task files.
+    pub fn is_of_the_language(&self) -> bool {
+        self.namespace == Namespace::Task
+    }
+
+    /// How many elements it is, with those in it.
+    pub fn count(&self) -> usize {
+        1 + self.children.iter().map(Element::count).sum::<usize>()
+    }
+
+    /// The attribute of this name.
+    pub fn attribute(&self, name: &str) -> Option<&Attribute<'a>> {
+        self.attributes
+            .iter()
+            .find(|attribute| attribute.name == name)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
     use crate::{
         NAMESPACE,
         document::build::{MAX_ELEMENTS, read},
         document::decode::decode,
         fault::Faults,
+        test_support::located,
     };
 
     fn read_all(text: &str) -> (Option<Element<'_>>, Vec<String>) {
         let decoded = decode(text.as_bytes());
         let mut faults = Faults::default();
-        let root = read(&decoded, &mut faults);
-        let faults = faults.locate(Path::new("f"), decoded.text);
+        let root = read(&decoded, 0, &mut faults);
+        let faults = located(faults, decoded.text);
         (root, faults.iter().map(ToString::to_string).collect())
     }
 
@@ -253,9 +303,9 @@ mod tests {
         ] {
             let decoded = decode(text);
             let mut faults = Faults::default();
-            let root = read(&decoded, &mut faults).unwrap();
+            let root = read(&decoded, 0, &mut faults).unwrap();
             assert_eq!(root.children.len(), 1);
-            let faults = faults.locate(Path::new("f"), decoded.text);
+            let faults = located(faults, decoded.text);
             assert_eq!(faults.len(), 1);
             assert_eq!((faults[0].line, faults[0].column), (2, 1));
         }
@@ -275,7 +325,7 @@ mod tests {
 
     #[test]
     fn sizes_are_bounded() {
-        let many = format!("<r>{}</r>", "<a/>".repeat(10_000));
+        let many = format!("<r>{}</r>", "<a/>".repeat(MAX_ELEMENTS));
         let (root, faults_of_many) = read_all(&many);
         assert_eq!(root.unwrap().children.len(), MAX_ELEMENTS - 1);
         assert!(faults_of_many[0].contains("too many elements"));

@@ -8,7 +8,7 @@ use tabletop_core::{Pose, Rgb};
 use crate::{
     document::tree::{Attribute, Element},
     elements::value::{self, LOCATIONS, MASSES, ROTATIONS, SPANS, ValueError},
-    fault::{Faults, Place},
+    fault::Faults,
     suggestion::nearest,
 };
 
@@ -138,13 +138,7 @@ impl<'e, 'a, 'f> AttributeReader<'e, 'a, 'f> {
     /// Notes a fault of an attribute, at the attribute or, where it is absent, at the element.
     pub fn fault(&mut self, name: &str, problem: impl fmt::Display, expected: impl fmt::Display) {
         self.is_faulty = true;
-        let place = Place {
-            offset: self
-                .find(name)
-                .map_or(self.element.offset, |found| found.offset),
-            element: Some(self.element.name),
-            attribute: Some(name),
-        };
+        let place = self.element.place_of(name);
         self.faults.report(place, problem, expected);
     }
 
@@ -176,19 +170,14 @@ impl<'e, 'a, 'f> AttributeReader<'e, 'a, 'f> {
 
     fn find(&self, name: &str) -> Option<&'e Attribute<'a>> {
         let element = self.element;
-        element
-            .attributes
-            .iter()
-            .find(|attribute| attribute.name == name)
+        element.attribute(name)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
-    use crate::{document::build, document::decode::decode};
+    use crate::{document::build, document::decode::decode, test_support::located};
 
     fn read<T>(
         text: &str,
@@ -196,11 +185,11 @@ mod tests {
     ) -> (Option<T>, Vec<String>) {
         let decoded = decode(text.as_bytes());
         let mut faults = Faults::default();
-        let element = build::read(&decoded, &mut faults).unwrap();
+        let element = build::read(&decoded, 0, &mut faults).unwrap();
         let mut reader = AttributeReader::of(&element, &mut faults);
         let value = read(&mut reader);
         let value = reader.finish(Some(value));
-        let faults = faults.locate(Path::new("f"), decoded.text);
+        let faults = located(faults, decoded.text);
         (value, faults.iter().map(ToString::to_string).collect())
     }
 

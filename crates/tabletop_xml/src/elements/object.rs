@@ -85,7 +85,7 @@ impl ElementReader<'_> {
     pub fn descriptions(&mut self, element: &Element) -> Vec<(String, String)> {
         let mut descriptions = Vec::new();
         for child in &element.children {
-            if child.name == DESCRIPTION && self.is_of_the_language(child) {
+            if child.name == DESCRIPTION && child.is_of_the_language() {
                 self.forbid_children(child);
                 let mut attributes = AttributeReader::of(child, self.faults);
                 let description = (

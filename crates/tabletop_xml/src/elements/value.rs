@@ -30,7 +30,7 @@ pub(crate) struct ValueError {
 }
 
 impl ValueError {
-    fn new(text: &str, problem: impl fmt::Display, expected: impl fmt::Display) -> Self {
+    pub fn new(text: &str, problem: impl fmt::Display, expected: impl fmt::Display) -> Self {
         Self {
             problem: format!("`{}` {problem}", Excerpt(text)),
             expected: expected.to_string(),
@@ -158,7 +158,7 @@ fn bare_triple<T: FromStr>(text: &str) -> Option<[T; 3]> {
 }
 
 /// A decimal number; infinite if it is too large for its type, which is out of every range.
-fn finite_or_huge<T: FromStr>(text: &str) -> Option<T> {
+pub(crate) fn finite_or_huge<T: FromStr>(text: &str) -> Option<T> {
     let number = trim(text);
     let is_decimal = |byte: u8| byte.is_ascii_digit() || b"+-.eE".contains(&byte);
     match number.bytes().all(is_decimal) {

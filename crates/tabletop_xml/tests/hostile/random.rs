@@ -1,9 +1,11 @@
 //! Files that are wrong at random, and scenes that are written and read again.
 
+use std::path::Path;
+
 use bevy::math::{Quat, Vec3};
 use proptest::prelude::*;
 use tabletop_core::{ObjectSpec, Pose, Rgb, SceneItem, SceneSpec, Shape, Table};
-use tabletop_xml::{NAMESPACE, write};
+use tabletop_xml::{NAMESPACE, expand, write};
 
 use crate::{SAMPLE, read, scenes::scenes};
 
@@ -16,6 +18,10 @@ fn check(text: &[u8]) {
     let again = read(&written);
     assert_eq!(again.faults, [], "{written}");
     assert_same(again.scene, &task.scene);
+    let expanded = expand(Path::new("f.xml"), text);
+    let again = read(&expanded.text);
+    assert_eq!(again.scene, task.scene, "{}", expanded.text);
+    assert_eq!(expanded.faults, task.faults);
     let line_count = String::from_utf8_lossy(text).split(['\n', '\r']).count();
     for fault in &task.faults {
         assert!(
@@ -69,6 +75,33 @@ enum Mutation {
     Repeat(usize),
     Insert(&'static str),
 }
+
+const TEMPLATE_TOKENS: [&str; 24] = [
+    "<def name='a'>",
+    "<def name='b'>",
+    "</def>",
+    "<instance def='a'>",
+    "<instance def='b'/>",
+    "<instance def='$x$'/>",
+    "</instance>",
+    "<var name='x' value='$y$'/>",
+    "<var name='y' value='$x+1$'/>",
+    "<var name='x' value='2'/>",
+    "<var name='y' value='a' derived='true'/>",
+    "<var name='y' value='$x$$x$'/>",
+    "<include file='a.xml'/>",
+    "<block location='($x$,$y$,1)'/>",
+    "<block location='(0,0,1)' id='$y$'/>",
+    "<block location='(0,0,1)' xspan='$x/2*(y-1)$'/>",
+    "<sphere location='(0,0,1)' radius='$1/0$'/>",
+    "<sphere location='(0,0,1)'><description name='n' value='$$ $ $x$'/></sphere>",
+    "<composite location='(0,0,1)'>",
+    "</composite>",
+    "<sphere location='(0,0,1)'/>",
+    "$x$",
+    "<x>",
+    "&",
+];
 
 fn mutations() -> impl Strategy<Value = Vec<(f64, Mutation)>> {
     const TOKENS: [&str; 22] = [
@@ -136,6 +169,13 @@ proptest! {
     fn any_marks_of_xml_are_read(text in "[<>/!?&;='\"\\[\\]() \\-a:xmlns#0-9,.\\n]{0,80}") {
         check(text.as_bytes());
         check(format!("<tabletop xmlns='{NAMESPACE}'>{text}</tabletop>").as_bytes());
+    }
+
+    #[test]
+    fn any_templates_are_read(tokens in prop::collection::vec(prop::sample::select(&TEMPLATE_TOKENS[..]), 0..30)) {
+        let text = format!("<tabletop xmlns='{NAMESPACE}'>{}</tabletop>", tokens.concat());
+        check(text.as_bytes());
+        check(tokens.concat().as_bytes());
     }
 
     #[test]
