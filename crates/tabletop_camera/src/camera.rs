@@ -155,6 +155,13 @@ impl View {
     }
 }
 
+impl Window {
+    /// The columns as indices.
+    pub fn columns(&self) -> Range<usize> {
+        self.columns.start as usize..self.columns.end as usize
+    }
+}
+
 /// Corners that are farther away than this along any axis, in units, are not drawn: numbers are too coarse there.
 const FARTHEST: f32 = 1e9;
 

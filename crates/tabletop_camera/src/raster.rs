@@ -2,10 +2,13 @@
 
 mod band;
 mod bounds;
+mod coverage;
 mod edge_table;
 mod face;
 mod quadric;
-mod scanline;
+mod resolve;
+mod samples;
+mod span;
 mod surface;
 mod transparent;
 mod triangle;
@@ -15,7 +18,9 @@ use bevy::tasks::ComputeTaskPool;
 use tabletop_core::Picture;
 
 use self::{
-    band::{Band, Frame, Pixels},
+    band::{Band, Frame},
+    face::ROWS,
+    resolve::Pixels,
     transparent::TransparentSpheres,
     visible::VisibleSurfaces,
 };
@@ -23,9 +28,6 @@ use crate::{
     camera::{Camera, View},
     scene::Scene,
 };
-
-/// So many rows are a band. The pictures are the same whatever it is.
-const ROWS_IN_BAND: usize = 16;
 
 /// Draws pictures, one after the other. It keeps its memory, so that it allocates next to nothing once it has drawn a picture of
 /// the same size and a scene of the same length.
@@ -55,9 +57,9 @@ impl Rasterizer {
             spheres: &self.spheres,
             is_smooth: camera.antialiasing,
         };
-        let first_rows = || (0..camera.height).step_by(ROWS_IN_BAND);
+        let first_rows = || (0..camera.height).step_by(ROWS);
         self.bands.resize_with(first_rows().len(), Band::default);
-        let parts = Pixels::of(picture).parts(ROWS_IN_BAND * camera.width as usize);
+        let parts = Pixels::of(picture).parts(ROWS * camera.width as usize);
         let bands = self.bands.iter_mut().zip(first_rows()).zip(parts);
         match ComputeTaskPool::try_get() {
             Some(threads) => {

@@ -8,7 +8,6 @@ use bevy::math::Vec3;
 use tabletop_core::{Pose, Primitive, Rgb, Solid, Table};
 
 pub use facets::Facets;
-pub(crate) use facets::Vertex;
 
 /// What a camera looks at.
 #[derive(Clone, Debug, Default)]

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Mul};
 
-use bevy::math::Vec3;
+use bevy::math::{Vec3, Vec4};
 
 /// Where in its row of pixels a row of samples lies, in pixels from the pixels' centres.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +14,9 @@ pub(crate) struct SampleOffset {
 impl SampleOffset {
     /// The pixels' centres.
     pub const CENTER: Self = Self { x: 0.0, y: 0.0 };
+
+    /// How far the samples of a pixel are from its centre, to the right and down, at most.
+    pub const REACH: f32 = 0.375;
 
     /// The samples of smooth edges: no two of them in a row, column or diagonal of the pixel.
     pub const SMOOTH: [Self; 4] = [
@@ -31,6 +34,14 @@ impl SampleOffset {
         },
         Self { x: 0.125, y: 0.375 },
     ];
+
+    /// How far to the right in their pixels the smooth samples of a row are, and how far down in the picture.
+    #[inline]
+    pub fn smooth_on_row(row: u32) -> (Vec4, Vec4) {
+        let x = Vec4::from_array(Self::SMOOTH.map(|offset| offset.x));
+        let y = Vec4::from_array(Self::SMOOTH.map(|offset| offset.y));
+        (x, y + row as f32)
+    }
 }
 
 /// Directions that depend linearly on the point of the picture.

@@ -1,15 +1,20 @@
-//! Drawing a band of rows of a picture, row by row.
+//! Drawing a band of rows of a picture.
+//!
+//! Faces come first. Most pixels see one face with all their samples; these are found as spans and need no samples. Where that is
+//! not clear, and where quadrics, figures or transparent spheres may be seen, the nearest surface is found sample by sample.
 
-use bevy::math::Vec3;
-use tabletop_core::Picture;
+use std::ops::Range;
 
 use crate::{
-    camera::{SampleOffset, View},
-    color::nearest_bytes,
+    camera::{SampleOffset, View, Window},
     raster::{
-        scanline::SampleRow,
+        coverage::Coverage,
+        face::ROWS,
+        resolve::{Pixels, RowResolver},
+        samples::{CenterSamples, SmoothOnRow, SmoothSamples},
+        span::{Sees, SpanList},
         transparent::{Blend, TransparentSpheres},
-        visible::{ActiveSurfaces, VisibleSurfaces},
+        visible::VisibleSurfaces,
     },
 };
 
@@ -22,134 +27,253 @@ pub(crate) struct Frame<'a> {
     pub is_smooth: bool,
 }
 
-/// Pixels of a picture, one after the other.
-#[derive(Debug)]
-pub(crate) struct Pixels<'a> {
-    pub rgb: &'a mut [u8],
-    pub depth: &'a mut [f32],
-    pub objects: &'a mut [u32],
-}
-
 /// The memory that it takes to draw a band.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Band {
-    active: ActiveSurfaces,
-    centers: [SampleRow; 1],
-    smooth: [SampleRow; 4],
+    coverages: Vec<Coverage>,
+    rows: Vec<Row>,
+    centers: CenterSamples,
+    smooth: SmoothSamples,
+    /// One row of one sample a pixel.
+    single: CenterSamples,
     blend: Blend,
 }
 
-impl<'a> Pixels<'a> {
-    /// All of a picture.
-    pub fn of(picture: &'a mut Picture) -> Self {
-        Self {
-            rgb: &mut picture.rgb,
-            depth: &mut picture.depth,
-            objects: &mut picture.objects,
-        }
-    }
-
-    /// Parts of so many pixels, the last one with what is left.
-    pub fn parts(self, pixels: usize) -> impl Iterator<Item = Self> {
-        let rgb = self.rgb.chunks_mut(3 * pixels);
-        let depth = self.depth.chunks_mut(pixels);
-        let objects = self.objects.chunks_mut(pixels);
-        rgb.zip(depth)
-            .zip(objects)
-            .map(|((rgb, depth), objects)| Self {
-                rgb,
-                depth,
-                objects,
-            })
-    }
+/// A row of the band.
+#[derive(Clone, Debug, Default)]
+struct Row {
+    faces: SpanList,
+    /// The pixels in which more than faces may be seen.
+    dense: Range<u32>,
 }
 
 impl Band {
-    /// Draws what is seen in these whole rows.
+    /// Draws what is seen in these whole rows, at most [`ROWS`].
     pub fn draw(&mut self, frame: &Frame, first_row: u32, pixels: Pixels) {
+        let width = frame.view.width as usize;
+        let count = pixels.depth.len() / width;
+        let rows = first_row..first_row + count as u32;
+        self.rows.resize_with(ROWS, Row::default);
+        self.centers.resize(width, ROWS);
+        if frame.is_smooth {
+            self.smooth.resize(width, ROWS);
+        }
+        self.find_faces(frame, rows.clone());
+        self.find_dense(frame, rows.clone());
+        for row in rows.clone() {
+            self.sample_faces(frame, row, first_row);
+        }
+        self.draw_quadrics(frame, rows.clone());
+        self.draw_triangles(frame, rows.clone());
+        for (row, mut pixels) in rows.zip(pixels.parts(width)) {
+            let i = (row - first_row) as usize;
+            self.paint_row(frame, row, i, &mut pixels);
+            self.blend_row(frame, row, i, pixels.rgb);
+        }
+    }
+
+    /// Finds which parts of the rows see which faces.
+    fn find_faces(&mut self, frame: &Frame, rows: Range<u32>) {
         let Frame { view, visible, .. } = *frame;
-        visible.activate_above(first_row, &mut self.active);
-        for (row, mut pixels) in (first_row..).zip(pixels.parts(view.width as usize)) {
-            visible.activate_row(row, &mut self.active);
-            self.draw_row(frame, row, &mut pixels);
+        self.coverages.clear();
+        for (number, face) in (0..).zip(&visible.faces) {
+            if face.rows.start < rows.end && rows.start < face.rows.end {
+                let coverage = Coverage::new(number, face, rows.start, view.width, frame.is_smooth);
+                self.coverages.push(coverage);
+            }
+        }
+        for (row, Row { faces, .. }) in rows.zip(&mut self.rows) {
+            faces.clear(view.width);
+            for added in self.coverages.iter().filter_map(|face| face.in_row(row)) {
+                faces.insert(&added, row, frame.is_smooth, |face| {
+                    &visible.faces[face as usize].plane
+                });
+            }
+        }
+    }
+
+    /// Finds where more than faces may be seen.
+    fn find_dense(&mut self, frame: &Frame, rows: Range<u32>) {
+        for row in &mut self.rows {
+            row.dense = 0..0;
+        }
+        let quadrics = frame.visible.quadrics.iter().map(|quadric| &quadric.window);
+        let figures = frame.visible.figures.iter();
+        for window in quadrics.chain(figures).chain(frame.spheres.windows()) {
+            let Range { start, end } = window.columns;
+            for row in rows_of(window, &rows) {
+                let dense = &mut self.rows[(row - rows.start) as usize].dense;
+                *dense = match dense.start == dense.end {
+                    true => start..end,
+                    false => dense.start.min(start)..dense.end.max(end),
+                };
+            }
+        }
+    }
+
+    /// Finds which face is nearest at each of the samples that have to be known.
+    fn sample_faces(&mut self, frame: &Frame, row: u32, first_row: u32) {
+        let i = (row - first_row) as usize;
+        let dense = self.rows[i].dense.clone();
+        let mut centers = self.centers.center_row(i);
+        for span in self.rows[i].faces.spans() {
+            match span.sees {
+                Sees::Face(face) => {
+                    let columns = span.start.max(dense.start)..span.end.min(dense.end);
+                    if columns.is_empty() {
+                        continue;
+                    }
+                    let columns = columns.start as usize..columns.end as usize;
+                    let face = &frame.visible.faces[face as usize];
+                    let inverse_depth = &face.plane.inverse_depth;
+                    let on_row = inverse_depth.on_row(row, SampleOffset::CENTER);
+                    centers.fill(columns.clone(), on_row, face.surface);
+                    if frame.is_smooth {
+                        let on_row = SmoothOnRow::of(inverse_depth, row);
+                        self.smooth
+                            .smooth_row(i)
+                            .fill(columns, on_row, face.surface);
+                    }
+                }
+                Sees::Several => {
+                    let columns = span.start as usize..span.end as usize;
+                    let mut smooth = frame.is_smooth.then(|| self.smooth.smooth_row(i));
+                    centers.clear(columns.clone());
+                    if let Some(smooth) = &mut smooth {
+                        smooth.clear(columns.clone());
+                    }
+                    for coverage in &self.coverages {
+                        let Some(columns) = coverage.outer_columns(row, columns.clone()) else {
+                            continue;
+                        };
+                        let face = &frame.visible.faces[coverage.face as usize];
+                        let inverse_depth = &face.plane.inverse_depth;
+                        let on_row = inverse_depth.on_row(row, SampleOffset::CENTER);
+                        let inner = coverage.center_columns(row, columns.clone());
+                        centers.put(inner, |x| (on_row.at(x), face.surface));
+                        if let Some(smooth) = &mut smooth
+                            && let Some(ends) = coverage.smooth_columns(row)
+                        {
+                            let on_row = SmoothOnRow::of(inverse_depth, row);
+                            smooth.put(columns, ends, on_row, face.surface);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Finds where balls and cylinders are nearer than faces.
+    fn draw_quadrics(&mut self, frame: &Frame, rows: Range<u32>) {
+        for quadric in &frame.visible.quadrics {
+            let columns = quadric.window.columns();
+            for row in rows_of(&quadric.window, &rows) {
+                let i = (row - rows.start) as usize;
+                quadric.draw(row, SampleOffset::CENTER, &mut self.centers.center_row(i));
+                if frame.is_smooth {
+                    self.single.resize(frame.view.width as usize, 1);
+                    let mut single = self.single.center_row(0);
+                    let mut smooth = self.smooth.smooth_row(i);
+                    for (sample, offset) in SampleOffset::SMOOTH.into_iter().enumerate() {
+                        single.clear(columns.clone());
+                        quadric.draw(row, offset, &mut single);
+                        smooth.merge(sample, columns.clone(), &single);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Finds where figures are nearer than all else.
+    fn draw_triangles(&mut self, frame: &Frame, rows: Range<u32>) {
+        for triangle in frame.visible.triangles_in_band(rows.start / ROWS as u32) {
+            let first = triangle.rows.start.max(rows.start);
+            let end = triangle.rows.end.min(rows.end);
+            for row in (first..end).step_by(4) {
+                let four = row..end.min(row + 4);
+                triangle.draw_centers(four, rows.start, &mut self.centers);
+            }
             if frame.is_smooth {
-                self.smooth_row(frame, row, pixels.rgb);
+                for row in first..end {
+                    triangle.draw_smooth(row, rows.start, &mut self.smooth);
+                }
             }
-            self.blend_row(frame, row, pixels.rgb);
         }
     }
 
-    /// Draws a row as it is seen through the centres of its pixels.
-    fn draw_row(&mut self, frame: &Frame, row: u32, pixels: &mut Pixels) {
-        let Frame { view, visible, .. } = *frame;
-        let Self {
-            active, centers, ..
-        } = self;
-        centers[0].clear(view.width);
-        visible.sample(active, row, SampleOffset::CENTER, &mut centers[0]);
-        visible.sample_figures(active, row, [SampleOffset::CENTER], centers);
-        let [centers] = centers;
-        for (depth, inverse_depth) in pixels.depth.iter_mut().zip(&centers.inverse_depth) {
-            *depth = 1.0 / inverse_depth;
-        }
-        let mut start = 0;
-        for run in centers.surface.chunk_by(|one, next| one == next) {
-            let end = start + run.len();
-            let surface = &visible.surfaces[run[0] as usize];
-            pixels.objects[start..end].fill(surface.object);
-            let (depths, rgb) = (
-                &pixels.depth[start..end],
-                &mut pixels.rgb[3 * start..3 * end],
-            );
-            surface.paint(row, start, depths, rgb);
-            start = end;
-        }
-    }
-
-    /// Mixes the colours of those pixels of a row in which more than one surface is visible.
-    fn smooth_row(&mut self, frame: &Frame, row: u32, rgb: &mut [u8]) {
-        let Frame { view, visible, .. } = *frame;
-        for (offset, samples) in SampleOffset::SMOOTH.into_iter().zip(&mut self.smooth) {
-            samples.clear(view.width);
-            visible.sample(&self.active, row, offset, samples);
-        }
-        visible.sample_figures(&self.active, row, SampleOffset::SMOOTH, &mut self.smooth);
-        let pixels = rgb.chunks_exact_mut(3);
-        let [a, b, c, d] = self.smooth.each_ref().map(|samples| samples.surface.iter());
-        let surfaces = a.zip(b).zip(c.zip(d)).zip(&self.centers[0].surface);
-        for (column, (pixel, (((a, b), (c, d)), center))) in pixels.zip(surfaces).enumerate() {
-            let is_one_surface = (a ^ center) | (b ^ center) | (c ^ center) | (d ^ center) == 0;
-            if !is_one_surface && visible.is_edge_between([*center, *a, *b, *c, *d]) {
-                pixel.copy_from_slice(&nearest_bytes(self.mixed(frame, row, column)));
+    /// Paints what is seen in a row.
+    fn paint_row(&mut self, frame: &Frame, row: u32, i: usize, pixels: &mut Pixels) {
+        let Row { faces, dense } = &self.rows[i];
+        let mut row = RowResolver {
+            visible: frame.visible,
+            row,
+            centers: self.centers.center_row(i),
+            smooth: frame.is_smooth.then(|| self.smooth.smooth_row(i)),
+            pixels,
+        };
+        // Neighbouring pixels whose samples are known are painted together.
+        let mut sampled = 0..0;
+        for span in faces.spans() {
+            let Range { start, end } = match span.sees {
+                Sees::Face(_) => {
+                    dense.start.clamp(span.start, span.end)..dense.end.clamp(span.start, span.end)
+                }
+                Sees::Several => span.start..span.end,
+            };
+            if let Sees::Face(face) = span.sees
+                && span.start < start
+            {
+                row.paint_samples(std::mem::take(&mut sampled));
+                row.paint_face(face, span.start as usize..start as usize);
+            }
+            if start < end {
+                let first = if sampled.is_empty() {
+                    start as usize
+                } else {
+                    sampled.start
+                };
+                sampled = first..end as usize;
+            }
+            if let Sees::Face(face) = span.sees
+                && end < span.end
+            {
+                row.paint_samples(std::mem::take(&mut sampled));
+                row.paint_face(face, end as usize..span.end as usize);
             }
         }
+        row.paint_samples(sampled);
     }
 
     /// Blends what is transparent into the colours of a row.
-    fn blend_row(&mut self, frame: &Frame, row: u32, rgb: &mut [u8]) {
-        let Self {
-            centers,
-            smooth,
-            blend,
-            ..
-        } = self;
-        let (offsets, samples): (&[SampleOffset], &[SampleRow]) = match frame.is_smooth {
-            true => (&SampleOffset::SMOOTH, smooth),
-            false => (&[SampleOffset::CENTER], centers),
-        };
-        frame
-            .spheres
-            .blend(frame.view, row, offsets, samples, blend, rgb);
-    }
-
-    /// The mean colour of the smooth samples of a pixel.
-    fn mixed(&self, frame: &Frame, row: u32, column: usize) -> Vec3 {
-        let mut sum = Vec3::ZERO;
-        for (offset, samples) in SampleOffset::SMOOTH.into_iter().zip(&self.smooth) {
-            let surface = &frame.visible.surfaces[samples.surface[column] as usize];
-            let (x, y) = (column as f32 + offset.x, row as f32 + offset.y);
-            sum += surface.shown(x, y, 1.0 / samples.inverse_depth[column]);
+    fn blend_row(&mut self, frame: &Frame, row: u32, i: usize, rgb: &mut [u8]) {
+        let Frame { view, spheres, .. } = *frame;
+        if frame.is_smooth {
+            let samples = self.smooth.smooth_row(i);
+            let nearest = |sample, column: usize| samples.inverse_depth[column][sample];
+            spheres.blend(
+                view,
+                row,
+                &SampleOffset::SMOOTH,
+                nearest,
+                &mut self.blend,
+                rgb,
+            );
+        } else {
+            let samples = self.centers.center_row(i);
+            let nearest = |_, column: usize| samples.inverse_depth[column];
+            spheres.blend(
+                view,
+                row,
+                &[SampleOffset::CENTER],
+                nearest,
+                &mut self.blend,
+                rgb,
+            );
         }
-        sum / 4.0
     }
+}
+
+/// The rows of a window that are among these.
+fn rows_of(window: &Window, rows: &Range<u32>) -> Range<u32> {
+    window.rows.start.max(rows.start)..window.rows.end.min(rows.end)
 }

@@ -10,7 +10,7 @@ use bevy::math::Vec3;
 
 use crate::{
     camera::{Linear, NEAR, SampleOffset, View},
-    raster::scanline::SampleRow,
+    raster::{span::Plane, surface::FlatLook},
 };
 
 /// Faces whose plane passes the eye nearer than this, in units, are seen edge-on: they are thinner than a pixel.
@@ -38,14 +38,25 @@ pub(crate) const CUBOID_NORMALS: [Vec3; 6] = [
     Vec3::Z,
 ];
 
+/// Rows that are looked at together.
+pub(crate) const ROWS: usize = 8;
+
 /// A face as it is seen.
 #[derive(Clone, Debug)]
 pub(crate) struct Face {
     /// The rows in which it may be seen.
     pub rows: Range<u32>,
-    surface: u32,
-    inverse_depth: Linear,
+    pub surface: u32,
+    pub plane: Plane,
+    pub look: FlatLook,
     edges: [Edge; 5],
+}
+
+/// From which column on, and up to which one, a face has the samples of some rows, as whole numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Columns {
+    pub starts: [f32; ROWS],
+    pub ends: [f32; ROWS],
 }
 
 /// Where the samples of a row have to be to lie on the inner side of an edge. For the two faces that share an edge these
@@ -61,6 +72,18 @@ enum Edge {
 }
 
 impl Face {
+    /// What is behind all else.
+    pub const NOTHING: Self = Self {
+        rows: 0..0,
+        surface: 0,
+        plane: Plane::NOTHING,
+        look: FlatLook::NOTHING,
+        edges: [Edge::Level {
+            first: 0.0,
+            down: 0.0,
+        }; 5],
+    };
+
     /// The face with these corners, given relative to the eye and counter-clockwise as seen from outside, and with this
     /// normal of unit length; none if it is not seen from outside.
     pub fn seen(
@@ -69,6 +92,7 @@ impl Face {
         normal: Vec3,
         rows: Range<u32>,
         surface: u32,
+        look: impl FnOnce() -> FlatLook,
     ) -> Option<Self> {
         let distance = -normal.dot(corners[0]);
         if distance < EDGE_ON {
@@ -85,7 +109,8 @@ impl Face {
         Some(Self {
             rows,
             surface,
-            inverse_depth,
+            look: look(),
+            plane: Plane::new(inverse_depth, view.width, view.height),
             edges: [
                 edge(a, b),
                 edge(b, c),
@@ -96,35 +121,62 @@ impl Face {
         })
     }
 
-    /// Puts it into the samples that see it and nothing nearer.
-    pub fn draw(&self, row: u32, offset: SampleOffset, samples: &mut SampleRow) {
-        let y = row as f32 + offset.y;
-        let columns = self.columns(y, offset.x, samples.surface.len());
-        let (inverse_depth, surface) = (self.inverse_depth.on_row(row, offset), self.surface);
-        samples.put(columns, |x| (inverse_depth.at(x), surface));
-    }
-
-    /// The samples of a row that lie inside all edges.
-    fn columns(&self, y: f32, x_offset: f32, width: usize) -> Range<usize> {
-        let (mut start, mut end) = (0, width);
+    /// The samples of some rows, from this one on, that lie inside all edges.
+    pub fn columns(&self, first_row: u32, offset: SampleOffset, width: u32) -> Columns {
+        let mut columns = Columns {
+            starts: [0.0; ROWS],
+            ends: [width as f32; ROWS],
+        };
+        let y: [f32; ROWS] =
+            std::array::from_fn(|i| (first_row as i32 + i as i32) as f32 + offset.y);
         for edge in &self.edges {
-            match *edge {
-                Edge::From { slope, offset } => {
-                    start = start.max(first_column(slope * y + offset - x_offset, width));
+            edge.bound(&y, offset.x, &mut columns);
+        }
+        for ends in [&mut columns.starts, &mut columns.ends] {
+            for column in ends {
+                *column = not_left_of(*column, width as f32);
+            }
+        }
+        columns
+    }
+}
+
+impl Edge {
+    // Simple comparisons, so that the compiler does several rows at once; a number that is none is as 0.
+    fn bound(&self, y: &[f32; ROWS], x_offset: f32, columns: &mut Columns) {
+        match *self {
+            Self::From { slope, offset } => {
+                for (start, y) in columns.starts.iter_mut().zip(y) {
+                    let x = slope * y + offset - x_offset;
+                    *start = if x > *start { x } else { *start };
                 }
-                Edge::Before { slope, offset } => {
-                    end = end.min(first_column(slope * y + offset - x_offset, width));
+            }
+            Self::Before { slope, offset } => {
+                for (end, y) in columns.ends.iter_mut().zip(y) {
+                    let x = slope * y + offset - x_offset;
+                    let x = if x > 0.0 { x } else { 0.0 };
+                    *end = if x < *end { x } else { *end };
                 }
-                Edge::Level { first, down } => {
+            }
+            Self::Level { first, down } => {
+                for (end, y) in columns.ends.iter_mut().zip(y) {
                     let value = first + down * y;
-                    if value < 0.0 || (value == 0.0 && down < 0.0) {
-                        end = 0;
-                    }
+                    let is_out = (value < 0.0) | ((value == 0.0) & (down < 0.0));
+                    *end = if is_out { 0.0 } else { *end };
                 }
             }
         }
-        start.min(end)..end
     }
+}
+
+/// The first column that is not left of x, from 0 to the width.
+#[inline]
+fn not_left_of(x: f32, width: f32) -> f32 {
+    // From 2^23 on there are only whole numbers.
+    const WHOLE: f32 = 8_388_608.0;
+    let x = if x < width { x } else { width };
+    let nearest = x + WHOLE - WHOLE;
+    nearest + if x > nearest { 1.0 } else { 0.0 }
 }
 
 /// The first column that is not left of x.
@@ -179,6 +231,12 @@ mod tests {
         })
     }
 
+    fn columns_in(face: &Face, row: u32, offset: SampleOffset) -> Range<usize> {
+        let columns = face.columns(row, offset, WIDTH);
+        let (start, end) = (columns.starts[0] as usize, columns.ends[0] as usize);
+        start.min(end)..end
+    }
+
     /// In how many faces of a cuboid each sample lies.
     fn coverage(pose: Pose, span: Vec3, offset: SampleOffset) -> Vec<u32> {
         let corners = corners(pose, span);
@@ -186,15 +244,14 @@ mod tests {
         for (face, normal) in CUBOID.into_iter().zip(CUBOID_NORMALS) {
             let corners = face.map(|corner| corners[corner]);
             let normal = pose.rotation * normal;
-            let Some(face) = Face::seen(&view(), corners, normal, 0..HEIGHT, 1) else {
+            let Some(face) =
+                Face::seen(&view(), corners, normal, 0..HEIGHT, 1, || FlatLook::NOTHING)
+            else {
                 continue;
             };
             for (row, covered) in (0..HEIGHT).zip(coverage.chunks_mut(WIDTH as usize)) {
-                let mut samples = SampleRow::default();
-                samples.clear(WIDTH);
-                face.draw(row, offset, &mut samples);
-                for (covered, surface) in covered.iter_mut().zip(samples.surface) {
-                    *covered += surface;
+                for covered in &mut covered[columns_in(&face, row, offset)] {
+                    *covered += 1;
                 }
             }
         }
@@ -228,12 +285,12 @@ mod tests {
     fn samples_in(corners: [Vec3; 4]) -> Vec<u32> {
         let normal = (corners[1] - corners[0]).cross(corners[3] - corners[0]);
         let normal = normal.normalize();
-        let face = Face::seen(&view(), corners, normal, 0..HEIGHT, 1).expect("it faces the eye");
+        let face = Face::seen(&view(), corners, normal, 0..HEIGHT, 1, || FlatLook::NOTHING)
+            .expect("it faces the eye");
         let row = |row| {
-            let mut samples = SampleRow::default();
-            samples.clear(WIDTH);
-            face.draw(row, SampleOffset::CENTER, &mut samples);
-            samples.surface
+            let mut samples = [0; WIDTH as usize];
+            samples[columns_in(&face, row, SampleOffset::CENTER)].fill(1);
+            samples
         };
         (0..HEIGHT).flat_map(row).collect()
     }

@@ -10,7 +10,7 @@ use bevy::math::Vec3;
 
 use crate::{
     camera::{Linear, NEAR, Rays, SampleOffset, View, Window},
-    raster::scanline::SampleRow,
+    raster::samples::CenterRow,
 };
 
 /// A number so small that it stands for 0 where something is divided by it.
@@ -125,8 +125,8 @@ impl Quadric {
         }
     }
 
-    /// Puts it into the samples that see it and nothing nearer.
-    pub fn draw(&self, row: u32, offset: SampleOffset, samples: &mut SampleRow) {
+    /// Puts it into the samples that see it and nothing nearer; they lie so in their pixels.
+    pub fn draw(&self, row: u32, offset: SampleOffset, samples: &mut CenterRow) {
         let curve = &self.curve;
         let (ray, miss) = (
             curve.rays.on_row(row, offset),
@@ -139,8 +139,7 @@ impl Quadric {
         let (scale, eye_is_outside) = (1.0 / self.power, self.power > 0.0);
         let (side, end) = (self.side, self.end);
 
-        let columns = self.window.columns.start as usize..self.window.columns.end as usize;
-        samples.put(columns, |x| {
+        samples.put(self.window.columns(), |x| {
             let discriminant = square * ray.at(x).length_squared() - miss.at(x).length_squared();
             let root = greater(discriminant, 0.0).sqrt();
             let enter_curve = if eye_is_outside {

@@ -15,11 +15,18 @@ use crate::{
 pub(crate) struct Surface {
     /// The number of its object.
     pub object: u32,
-    /// Surfaces of the same patch are parts of a smooth surface, and between them is no edge.
-    pub patch: u32,
     /// Red, green, blue in 0..=255.
     color: Vec3,
     shading: Shading,
+}
+
+/// What a surface shows that is the same everywhere.
+#[derive(Clone, Debug)]
+pub(crate) struct FlatLook {
+    /// The number of its object.
+    pub object: u32,
+    /// So many pixels as are copied at once.
+    rgb: [u8; 48],
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -31,39 +38,69 @@ enum Shading {
     Gouraud(Linear),
 }
 
+impl FlatLook {
+    /// What is seen where nothing is.
+    pub const NOTHING: Self = Self {
+        object: 0,
+        rgb: [0; 48],
+    };
+
+    /// Of a surface that shows this share of its colour.
+    fn new(object: u32, color: Vec3, share: f32) -> Self {
+        let shown = nearest_bytes(color * share);
+        Self {
+            object,
+            rgb: std::array::from_fn(|i| shown[i % 3]),
+        }
+    }
+
+    /// A plane that faces this way.
+    pub fn of(drawn: &DrawnSolid, normal: Vec3) -> Self {
+        let color = scaled_to_bytes(drawn.color);
+        Self::new(drawn.object, color, LIGHT.share(normal))
+    }
+
+    /// Colours some pixels.
+    pub fn paint(&self, rgb: &mut [u8]) {
+        let mut pixels = rgb.chunks_exact_mut(self.rgb.len());
+        for pixels in &mut pixels {
+            pixels.copy_from_slice(&self.rgb);
+        }
+        let rest = pixels.into_remainder();
+        rest.copy_from_slice(&self.rgb[..rest.len()]);
+    }
+}
+
 impl Surface {
     /// What is seen where nothing is.
     pub const NOTHING: Self = Self {
         object: 0,
-        patch: 0,
         color: Vec3::ZERO,
         shading: Shading::Flat(0.0),
     };
 
     /// A plane that faces this way.
-    pub fn flat(drawn: &DrawnSolid, patch: u32, normal: Vec3) -> Self {
-        Self::of(drawn, patch, Shading::Flat(LIGHT.share(normal)))
+    pub fn flat(drawn: &DrawnSolid, normal: Vec3) -> Self {
+        Self::of(drawn, Shading::Flat(LIGHT.share(normal)))
     }
 
     /// A ball, or the side of a cylinder.
-    pub fn curved(drawn: &DrawnSolid, patch: u32, curve: Curve) -> Self {
-        Self::of(drawn, patch, Shading::Curved(curve))
+    pub fn curved(drawn: &DrawnSolid, curve: Curve) -> Self {
+        Self::of(drawn, Shading::Curved(curve))
     }
 
     /// A triangle of this colour, red, green and blue in 0..=255.
-    pub const fn gouraud(object: u32, patch: u32, color: Vec3, share_by_depth: Linear) -> Self {
+    pub const fn gouraud(object: u32, color: Vec3, share_by_depth: Linear) -> Self {
         Self {
             object,
-            patch,
             color,
             shading: Shading::Gouraud(share_by_depth),
         }
     }
 
-    fn of(drawn: &DrawnSolid, patch: u32, shading: Shading) -> Self {
+    fn of(drawn: &DrawnSolid, shading: Shading) -> Self {
         Self {
             object: drawn.object,
-            patch,
             color: scaled_to_bytes(drawn.color),
             shading,
         }
@@ -99,9 +136,12 @@ impl Surface {
             Shading::Gouraud(share_by_depth) => {
                 let share_by_depth = share_by_depth.on_row(row, SampleOffset::CENTER);
                 // Triangles are small.
-                self.paint_shares::<4>(column, depths, rgb, |x, depth| {
-                    clamp_share(share_by_depth.at(x) * depth)
-                });
+                for (x, (depth, pixel)) in
+                    (column as i32..).zip(depths.iter().zip(rgb.chunks_exact_mut(3)))
+                {
+                    let share = clamp_share(share_by_depth.at(x as f32) * depth);
+                    pixel.copy_from_slice(&nearest_bytes(self.color * share));
+                }
             }
         }
     }
@@ -137,5 +177,6 @@ impl Surface {
 
 /// A share between those at the corners of a triangle, which rounding may bring a little beyond them.
 pub(crate) fn clamp_share(share: f32) -> f32 {
-    share.max(LIGHT.least()).min(1.0)
+    const LEAST: f32 = LIGHT.least();
+    share.max(LEAST).min(1.0)
 }

@@ -4,12 +4,12 @@ use bevy::math::{Vec3, Vec4};
 use tabletop_core::{Markers, Pose, Solid};
 
 use crate::{
-    camera::{SampleOffset, View},
+    camera::{SampleOffset, View, Window},
     color::nearest_bytes,
     raster::{
         bounds::corners_of_solid,
         quadric::{Curve, Ends, Quadric},
-        scanline::SampleRow,
+        samples::CenterSamples,
         surface::Surface,
     },
     scene::DrawnSolid,
@@ -25,7 +25,7 @@ pub(crate) struct TransparentSpheres {
 /// The memory that it takes to blend them into a row.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blend {
-    samples: SampleRow,
+    samples: CenterSamples,
     /// Sum of the colours of the samples in each pixel of a row, and how many these are.
     sums: Vec<Vec4>,
 }
@@ -50,13 +50,19 @@ impl TransparentSpheres {
             .sort_by(|one, other| other.distance.total_cmp(&one.distance));
     }
 
-    /// Blends the spheres into the colours of a row: where they are nearer than all else in these samples.
+    /// The windows in which they may be seen.
+    pub fn windows(&self) -> impl Iterator<Item = &Window> {
+        self.spheres.iter().map(|sphere| &sphere.quadric.window)
+    }
+
+    /// Blends the spheres into the colours of a row: where they are nearer than all else in these samples. `nearest` says for a sample
+    /// and a column one over the depth of what is nearest there.
     pub fn blend(
         &self,
         view: &View,
         row: u32,
         offsets: &[SampleOffset],
-        others: &[SampleRow],
+        nearest: impl Fn(usize, usize) -> f32,
         memory: &mut Blend,
         rgb: &mut [u8],
     ) {
@@ -69,19 +75,21 @@ impl TransparentSpheres {
             let columns = &sphere.quadric.window.columns;
             sums.clear();
             sums.resize(columns.len(), Vec4::ZERO);
-            for (&offset, other) in offsets.iter().zip(others) {
-                samples.clear(view.width);
-                sphere.quadric.draw(row, offset, samples);
+            samples.resize(view.width as usize, 1);
+            let mut samples = samples.center_row(0);
+            for (sample, &offset) in offsets.iter().enumerate() {
+                samples.clear(sphere.quadric.window.columns());
+                sphere.quadric.draw(row, offset, &mut samples);
                 for (column, sum) in columns.clone().zip(sums.iter_mut()) {
                     let inverse_depth = samples.inverse_depth[column as usize];
-                    if inverse_depth > other.inverse_depth[column as usize] {
+                    if inverse_depth > nearest(sample, column as usize) {
                         let (x, y) = (column as f32 + offset.x, row as f32 + offset.y);
                         let shown = sphere.surface.shown(x, y, 1.0 / inverse_depth);
                         *sum += shown.extend(1.0);
                     }
                 }
             }
-            let weight = Markers::OPACITY / others.len() as f32;
+            let weight = Markers::OPACITY / offsets.len() as f32;
             for (column, sum) in columns.clone().zip(sums.iter()) {
                 if sum.w > 0.0 {
                     let start = 3 * column as usize;
@@ -108,7 +116,7 @@ impl Sphere {
         Some(Self {
             distance: center.distance(view.eye),
             quadric: Quadric::new(curve, Ends::NONE, window, [1; 2]),
-            surface: Surface::curved(&drawn, 1, curve),
+            surface: Surface::curved(&drawn, curve),
         })
     }
 }

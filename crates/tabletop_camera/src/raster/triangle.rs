@@ -1,6 +1,6 @@
 //! Triangles of figures, of which there are many and small ones.
 //!
-//! They are clamp_share like [`Face`](super::face::Face)s, by planes through the eye and their edges, but several rows of samples
+//! They are bounded like [`Face`](super::face::Face)s, by planes through the eye and their edges, but several rows of samples
 //! are found at once and without branches. The near plane does not cut them.
 
 use std::ops::Range;
@@ -8,8 +8,8 @@ use std::ops::Range;
 use bevy::math::{Vec3, Vec4};
 
 use crate::{
-    camera::{Linear, SampleOffset, View},
-    raster::scanline::SampleRow,
+    camera::{Linear, Rays, SampleOffset, View},
+    raster::samples::{CenterSamples, SmoothOnRow, SmoothSamples, column},
 };
 
 /// A triangle as it is seen.
@@ -19,19 +19,19 @@ pub(crate) struct Triangle {
     pub rows: Range<u32>,
     surface: u32,
     inverse_depth: Linear,
-    edges: [Edge; 3],
+    edges: Edges,
 }
 
-/// Where the samples of a row have to be to lie on the inner side of an edge: not left of `slope * y + offset`, or left of
-/// it. For the two triangles that share an edge these numbers are the same to the last bit.
+/// Where the samples of a row have to be to lie on the inner sides of three edges: not left of `slope * y + offset`, or left of
+/// it. For the two triangles that share an edge these numbers are the same to the last bit. The fourth lanes mean nothing.
 #[derive(Clone, Copy, Debug)]
-struct Edge {
-    slope: f32,
-    offset: f32,
+struct Edges {
+    slope: Vec4,
+    offset: Vec4,
     /// 0 if samples must not be left of it, otherwise minus infinity.
-    not_from: f32,
+    not_from: Vec4,
     /// 0 if samples must be left of it, otherwise infinity.
-    not_before: f32,
+    not_before: Vec4,
 }
 
 impl Triangle {
@@ -44,74 +44,96 @@ impl Triangle {
         rows: Range<u32>,
         surface: u32,
     ) -> Self {
-        let edge = |i: usize| {
-            let (from, to) = (corners[i], corners[(i + 1) % 3]);
-            Edge::from(view.rays.dot(to.cross(from)))
-        };
         Self {
             rows,
             surface,
             inverse_depth: view.rays.dot(normal / normal.dot(corners[0])),
-            edges: std::array::from_fn(edge),
+            edges: Edges::of(view, corners),
         }
     }
 
-    /// Puts it into the samples of a row of pixels that see it and nothing nearer.
-    pub fn draw<const N: usize>(
-        &self,
-        row: u32,
-        offsets: [SampleOffset; N],
-        samples: &mut [SampleRow; N],
-    ) {
-        let lane = |i: usize| offsets[i.min(N - 1)];
-        let [x, y] = [
-            |offset: SampleOffset| offset.x,
-            |offset: SampleOffset| offset.y,
-        ]
-        .map(|part| Vec4::from_array(std::array::from_fn(|i| part(lane(i)))));
-        let y = y + row as f32;
-        let count = samples[0].surface.len();
-        let width = Vec4::splat(count as f32);
+    /// Puts it into the samples in the middle of the pixels that see it and nothing nearer, in up to four rows.
+    pub fn draw_centers(&self, rows: Range<u32>, first_row: u32, samples: &mut CenterSamples) {
+        const LANES: Vec4 = Vec4::new(0.0, 1.0, 2.0, 3.0);
+        let width = samples.width();
+        let [starts, ends] = self.columns(LANES + rows.start as f32, Vec4::ZERO, width);
+        for (row, (start, end)) in rows.zip(starts.to_array().into_iter().zip(ends.to_array())) {
+            if start < end {
+                let inverse_depth = self.inverse_depth.on_row(row, SampleOffset::CENTER);
+                let mut samples = samples.center_row((row - first_row) as usize);
+                samples.put_some([start, end], inverse_depth, self.surface);
+            }
+        }
+    }
+
+    /// Puts it into the smooth samples of a row of pixels that see it and nothing nearer.
+    pub fn draw_smooth(&self, row: u32, first_row: u32, samples: &mut SmoothSamples) {
+        let (x, y) = SampleOffset::smooth_on_row(row);
+        let width = samples.width();
+        let [starts, ends] = self.columns(y, x, width);
+        let is_any = starts.cmplt(ends);
+        let first = Vec4::select(is_any, starts, width).min_element();
+        let end = Vec4::select(is_any, ends, Vec4::ZERO).max_element();
+        if first < end {
+            let inverse_depth = SmoothOnRow::of(&self.inverse_depth, row);
+            let columns = column(first)..column(end);
+            let mut samples = samples.smooth_row((row - first_row) as usize);
+            samples.put(columns, [starts, ends], inverse_depth, self.surface);
+        }
+    }
+
+    /// From which column on, and up to which one, it has samples that are so far down, and so far to the right in their pixels.
+    fn columns(&self, down: Vec4, right: Vec4, width: Vec4) -> [Vec4; 2] {
         let (mut starts, mut ends) = (Vec4::ZERO, width);
-        for edge in &self.edges {
-            let at = y * edge.slope + edge.offset - x;
-            starts = starts.max(at + edge.not_from);
-            ends = ends.min(at + edge.not_before);
+        let Edges {
+            slope,
+            offset,
+            not_from,
+            not_before,
+        } = self.edges;
+        for i in 0..3 {
+            let at = down * slope[i] + offset[i] - right;
+            starts = starts.max(at + not_from[i]);
+            ends = ends.min(at + not_before[i]);
         }
-        let [starts, ends] = [starts.min(width), ends.max(Vec4::ZERO)].map(columns);
-        for (i, samples) in samples.iter_mut().enumerate() {
-            let inverse_depth = self.inverse_depth.on_row(row, offsets[i]);
-            let end = ends[i].min(count);
-            samples.put_some(starts[i].min(end)..end, inverse_depth, self.surface);
-        }
+        let [starts, ends] = [starts.min(width), ends.max(Vec4::ZERO)].map(half_right);
+        [starts, ends.min(width)]
     }
 }
 
-impl From<Linear> for Edge {
-    /// Where this is positive.
-    fn from(Linear { first, right, down }: Linear) -> Self {
-        /// Where the edge is level, this stands for 0: it meets rows very far out, on the one or on the other side.
-        const LEVEL: f32 = 1e-30;
-        let right = if right == 0.0 { LEVEL } else { right };
-        let (not_from, not_before) = if right > 0.0 {
-            (0.0, f32::INFINITY)
-        } else {
-            (f32::NEG_INFINITY, 0.0)
+impl Edges {
+    /// Those from each corner to the next one: where the ray's product with the normal of the plane through the eye and the edge
+    /// is positive. As many at once as the processor can do.
+    fn of(view: &View, [a, b, c]: [Vec3; 3]) -> Self {
+        /// Where an edge is level, this stands for 0: it meets rows very far out, on the one or on the other side.
+        const LEVEL: Vec4 = Vec4::splat(1e-30);
+        let lanes = |part: fn(Vec3) -> f32| {
+            let [a, b, c] = [a, b, c].map(part);
+            (Vec4::new(a, b, c, a), Vec4::new(b, c, a, b))
         };
+        let ((from_x, to_x), (from_y, to_y)) = (lanes(|at| at.x), lanes(|at| at.y));
+        let (from_z, to_z) = lanes(|at| at.z);
+        let normal_x = to_y * from_z - from_y * to_z;
+        let normal_y = to_z * from_x - from_z * to_x;
+        let normal_z = to_x * from_y - from_x * to_y;
+        let dot = |ray: Vec3| normal_x * ray.x + normal_y * ray.y + normal_z * ray.z;
+        let Rays { first, right, down } = view.rays;
+        let (first, right, down) = (dot(first), dot(right), dot(down));
+        let right = Vec4::select(right.cmpeq(Vec4::ZERO), LEVEL, right);
+        let is_from = right.cmpgt(Vec4::ZERO);
         Self {
             slope: -down / right,
             offset: -first / right,
-            not_from,
-            not_before,
+            not_from: Vec4::select(is_from, Vec4::ZERO, Vec4::NEG_INFINITY),
+            not_before: Vec4::select(is_from, Vec4::INFINITY, Vec4::ZERO),
         }
     }
 }
 
 /// The columns that are nearest to half a column right of these places, which are at least 0.
-fn columns(x: Vec4) -> [usize; 4] {
-    // From 2^23 on there are only whole numbers, and the last bits of such a number count them.
+#[inline]
+fn half_right(x: Vec4) -> Vec4 {
+    // From 2^23 on there are only whole numbers.
     const WHOLE: f32 = 8_388_608.0;
-    (x + 0.5 + WHOLE)
-        .to_array()
-        .map(|column| (column.to_bits() & 0x007f_ffff) as usize)
+    x + 0.5 + WHOLE - WHOLE
 }

@@ -1,67 +1,13 @@
-//! How many pictures a second one core draws.
-//!
-//! `cargo bench -p tabletop -p tabletop_camera --bench pictures` prints it for the two blocks of `default.xml` with ten more,
-//! for these with two arms of 2304 triangles over them, and for a table of balls and cylinders, plain and with smooth edges.
-#![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
+//! What the benchmark draws.
 
-use std::{f32::consts::TAU, sync::Arc, time::Instant};
+use std::{f32::consts::TAU, sync::Arc};
 
 use bevy::math::{Quat, Vec3};
-use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Facets, Rasterizer, Scene};
-use tabletop_core::{HeadCamera, Picture, Pose, Rgb, Solid, Table, Triangles};
-
-const TURNS: usize = 20;
-const SECONDS_PER_TURN: f64 = 0.1;
-
-fn main() {
-    println!("scene                  size      plain      smooth   pictures/s, median (best)");
-    let without_arms = |solids| Scene {
-        solids,
-        ..Scene::default()
-    };
-    let with_arms = Scene {
-        solids: blocks(),
-        figures: arms(),
-        ..Scene::default()
-    };
-    for (name, scene) in [
-        ("default and 10 blocks", without_arms(blocks())),
-        ("the same with two arms", with_arms),
-        ("20 balls and cylinders", without_arms(rounds())),
-    ] {
-        for (width, height) in [(200, 150), (640, 480), (1024, 600)] {
-            let [plain, smooth] = [false, true].map(|antialiasing| {
-                let head = HeadCamera {
-                    width,
-                    height,
-                    antialiasing,
-                    ..HeadCamera::default()
-                };
-                pictures_a_second(&scene, &Camera::of_head(&head, &Table::default()))
-            });
-            println!("{name:22} {width:4}x{height:<4} {plain}  {smooth}");
-        }
-    }
-}
-
-fn pictures_a_second(scene: &Scene, camera: &Camera) -> String {
-    let (mut rasterizer, mut picture) = (Rasterizer::default(), Picture::default());
-    let mut rates: Vec<f64> = (0..TURNS)
-        .map(|_| {
-            let (start, mut count) = (Instant::now(), 0);
-            while start.elapsed().as_secs_f64() < SECONDS_PER_TURN {
-                rasterizer.draw(scene, camera, &mut picture);
-                count += 1;
-            }
-            f64::from(count) / start.elapsed().as_secs_f64()
-        })
-        .collect();
-    rates.sort_by(f64::total_cmp);
-    format!("{:6.0} ({:.0})", rates[TURNS / 2], rates[TURNS - 1])
-}
+use tabletop_camera::{DrawnFigure, DrawnSolid, Facets};
+use tabletop_core::{Pose, Rgb, Solid, Table, Triangles};
 
 /// The blocks of `tablesetup/default.xml`, and ten more around them.
-fn blocks() -> Vec<DrawnSolid> {
+pub fn blocks() -> Vec<DrawnSolid> {
     let turned = |degrees: f32| Quat::from_rotation_z(degrees.to_radians());
     let cube = |number: u32, location: Vec3, degrees: f32, span: f32, color| DrawnSolid {
         pose: Pose::new(location, turned(degrees)),
@@ -101,7 +47,7 @@ fn blocks() -> Vec<DrawnSolid> {
 }
 
 /// Ten balls and ten cylinders that lie in all directions.
-fn rounds() -> Vec<DrawnSolid> {
+pub fn rounds() -> Vec<DrawnSolid> {
     let mut scene = vec![DrawnSolid::of_table(&Table::default(), 1)];
     scene.extend((0..20u32).map(|number| {
         let (column, row) = (number % 5, number / 5);
@@ -124,7 +70,7 @@ fn rounds() -> Vec<DrawnSolid> {
 }
 
 /// Two arms of twelve links that hang over the near half of the table.
-fn arms() -> Vec<DrawnFigure> {
+pub fn arms() -> Vec<DrawnFigure> {
     let facets = Arc::new(Facets::from(&drum()));
     let links = [-1.0, 1.0].into_iter().flat_map(|side: f32| {
         (0..12u16).map(move |link| {

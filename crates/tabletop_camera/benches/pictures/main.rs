@@ -1,0 +1,64 @@
+//! How many pictures a second one core draws.
+//!
+//! `cargo bench -p tabletop -p tabletop_camera --bench pictures` prints it for the two blocks of `default.xml` with ten more,
+//! for these with two arms of 2304 triangles over them, and for a table of balls and cylinders, plain and with smooth edges.
+#![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
+
+mod scenes;
+
+use std::time::Instant;
+
+use tabletop_camera::{Camera, Rasterizer, Scene};
+use tabletop_core::{HeadCamera, Picture, Table};
+
+use scenes::{arms, blocks, rounds};
+
+const TURNS: usize = 20;
+const SECONDS_PER_TURN: f64 = 0.1;
+
+fn main() {
+    println!("scene                  size      plain      smooth   pictures/s, median (best)");
+    let without_arms = |solids| Scene {
+        solids,
+        ..Scene::default()
+    };
+    let with_arms = Scene {
+        solids: blocks(),
+        figures: arms(),
+        ..Scene::default()
+    };
+    for (name, scene) in [
+        ("default and 10 blocks", without_arms(blocks())),
+        ("the same with two arms", with_arms),
+        ("20 balls and cylinders", without_arms(rounds())),
+    ] {
+        for (width, height) in [(200, 150), (640, 480), (1024, 600)] {
+            let [plain, smooth] = [false, true].map(|antialiasing| {
+                let head = HeadCamera {
+                    width,
+                    height,
+                    antialiasing,
+                    ..HeadCamera::default()
+                };
+                pictures_a_second(&scene, &Camera::of_head(&head, &Table::default()))
+            });
+            println!("{name:22} {width:4}x{height:<4} {plain}  {smooth}");
+        }
+    }
+}
+
+fn pictures_a_second(scene: &Scene, camera: &Camera) -> String {
+    let (mut rasterizer, mut picture) = (Rasterizer::default(), Picture::default());
+    let mut rates: Vec<f64> = (0..TURNS)
+        .map(|_| {
+            let (start, mut count) = (Instant::now(), 0);
+            while start.elapsed().as_secs_f64() < SECONDS_PER_TURN {
+                rasterizer.draw(scene, camera, &mut picture);
+                count += 1;
+            }
+            f64::from(count) / start.elapsed().as_secs_f64()
+        })
+        .collect();
+    rates.sort_by(f64::total_cmp);
+    format!("{:6.0} ({:.0})", rates[TURNS / 2], rates[TURNS - 1])
+}

@@ -1,0 +1,127 @@
+//! From samples to the pixels of a row.
+
+use std::ops::Range;
+
+use bevy::math::Vec3;
+use tabletop_core::Picture;
+
+use crate::{
+    camera::SampleOffset,
+    color::nearest_bytes,
+    raster::{
+        samples::{CenterRow, SmoothRow},
+        visible::VisibleSurfaces,
+    },
+};
+
+/// Pixels of a picture, one after the other.
+#[derive(Debug)]
+pub(crate) struct Pixels<'a> {
+    pub rgb: &'a mut [u8],
+    pub depth: &'a mut [f32],
+    pub objects: &'a mut [u32],
+}
+
+/// A row of pixels and what its samples see.
+#[derive(Debug)]
+pub(crate) struct RowResolver<'a, 'b> {
+    pub visible: &'a VisibleSurfaces,
+    pub row: u32,
+    pub centers: CenterRow<'a>,
+    pub smooth: Option<SmoothRow<'a>>,
+    pub pixels: &'a mut Pixels<'b>,
+}
+
+impl<'a> Pixels<'a> {
+    /// All of a picture.
+    pub fn of(picture: &'a mut Picture) -> Self {
+        Self {
+            rgb: &mut picture.rgb,
+            depth: &mut picture.depth,
+            objects: &mut picture.objects,
+        }
+    }
+
+    /// Parts of so many pixels, the last one with what is left.
+    pub fn parts(self, pixels: usize) -> impl Iterator<Item = Self> {
+        let rgb = self.rgb.chunks_mut(3 * pixels);
+        let depth = self.depth.chunks_mut(pixels);
+        let objects = self.objects.chunks_mut(pixels);
+        rgb.zip(depth)
+            .zip(objects)
+            .map(|((rgb, depth), objects)| Self {
+                rgb,
+                depth,
+                objects,
+            })
+    }
+}
+
+impl RowResolver<'_, '_> {
+    /// Paints these columns, in which all samples see one face.
+    pub fn paint_face(&mut self, face: u32, columns: Range<usize>) {
+        let face = &self.visible.faces[face as usize];
+        let inverse_depth = face.plane.inverse_depth;
+        let inverse_depth = inverse_depth.on_row(self.row, SampleOffset::CENTER);
+        let depths = &mut self.pixels.depth[columns.clone()];
+        for (x, depth) in (columns.start as i32..).zip(depths) {
+            *depth = 1.0 / inverse_depth.at(x as f32);
+        }
+        self.pixels.objects[columns.clone()].fill(face.look.object);
+        face.look
+            .paint(&mut self.pixels.rgb[3 * columns.start..3 * columns.end]);
+    }
+
+    /// Paints these columns as their samples say.
+    pub fn paint_samples(&mut self, columns: Range<usize>) {
+        let Self {
+            visible,
+            centers,
+            pixels,
+            ..
+        } = self;
+        let inverse_depths = &centers.inverse_depth[columns.clone()];
+        for (depth, inverse_depth) in pixels.depth[columns.clone()].iter_mut().zip(inverse_depths) {
+            *depth = 1.0 / inverse_depth;
+        }
+        let mut start = columns.start;
+        for run in centers.surface[columns.clone()].chunk_by(|one, next| one == next) {
+            let end = start + run.len();
+            let surface = &visible.surfaces[run[0] as usize];
+            pixels.objects[start..end].fill(surface.object);
+            let (depths, rgb) = (
+                &pixels.depth[start..end],
+                &mut pixels.rgb[3 * start..3 * end],
+            );
+            surface.paint(self.row, start, depths, rgb);
+            start = end;
+        }
+        self.smooth(columns);
+    }
+
+    /// Mixes the colours of those of these columns in which more than one surface is seen.
+    fn smooth(&mut self, columns: Range<usize>) {
+        let Some(smooth) = &self.smooth else {
+            return;
+        };
+        for column in columns {
+            let (center, samples) = (self.centers.surface[column], smooth.surface[column]);
+            let [a, b, c, d] = samples;
+            if samples != [center; 4] && self.visible.is_edge_between([center, a, b, c, d]) {
+                let mixed = nearest_bytes(self.mixed(smooth, column));
+                self.pixels.rgb[3 * column..3 * column + 3].copy_from_slice(&mixed);
+            }
+        }
+    }
+
+    /// The mean colour of the smooth samples of a pixel.
+    fn mixed(&self, smooth: &SmoothRow, column: usize) -> Vec3 {
+        let mut sum = Vec3::ZERO;
+        for (i, offset) in SampleOffset::SMOOTH.into_iter().enumerate() {
+            let surface = &self.visible.surfaces[smooth.surface[column][i] as usize];
+            let (x, y) = (column as f32 + offset.x, self.row as f32 + offset.y);
+            sum += surface.shown(x, y, 1.0 / smooth.inverse_depth[column][i]);
+        }
+        sum / 4.0
+    }
+}
