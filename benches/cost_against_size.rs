@@ -53,7 +53,7 @@ fn costs(size: usize) -> [Duration; 5] {
     };
     let mut app = simulator(awake);
     let set = time(|| {
-        app.world_mut().write_message(scene(size));
+        app.world_mut().write_command(scene(size));
         app.step(1);
     });
     app.step(5);
@@ -62,7 +62,7 @@ fn costs(size: usize) -> [Duration; 5] {
     });
 
     let mut app = simulator(PhysicsSettings::default());
-    app.world_mut().write_message(scene(size));
+    app.world_mut().write_command(scene(size));
     app.step(60);
     let rest = median(|| {
         app.step(1);
@@ -71,14 +71,14 @@ fn costs(size: usize) -> [Duration; 5] {
         app.world().resource::<PictureDemand>().ask();
         app.step(1);
     });
-    app.world_mut().write_message(SimCommand::StartRecording);
+    app.world_mut().write_command(RecordingCommand::Start);
     app.step(1);
     let mut hands = [Hand::Left, Hand::Right].into_iter().cycle();
     let grasp = median(|| {
         if let Some(hand) = hands.next() {
             let object = "block4".to_owned();
             app.world_mut()
-                .write_message(SimCommand::Grasp { hand, object });
+                .write_command(HandCommand::Grasp { hand, object });
         }
         app.step(1);
     });
@@ -110,13 +110,13 @@ fn scene(size: usize) -> SimCommand {
         let id = format!("block{block}");
         SceneItem::Object(ObjectSpec::new(id, Pose::at(location), 1.0, shape))
     });
-    SimCommand::SetScene(Box::new(SceneSpec {
+    SimCommand::Scene(SceneCommand::Set(Box::new(SceneSpec {
         table: Table {
             xspan: span,
             yspan: span,
         },
         items: items.collect(),
-    }))
+    })))
 }
 
 fn time(work: impl FnOnce()) -> Duration {

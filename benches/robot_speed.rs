@@ -66,9 +66,8 @@ impl Case {
             ..default()
         };
         app.world_mut()
-            .write_message(SimCommand::SetScene(Box::new(scene)));
-        app.world_mut()
-            .write_message(SimCommand::ShowRobot(is_shown));
+            .write_command(SceneCommand::Set(Box::new(scene)));
+        app.world_mut().write_command(RobotCommand::Show(is_shown));
         app.step(60);
         Self {
             name,
@@ -99,7 +98,7 @@ impl Case {
         let drives = joints.map(|joint| (joint, Drive::Velocity(-joint.mirror() * speed)));
         self.app
             .world_mut()
-            .write_message(SimCommand::Drive(drives.collect()));
+            .write_command(RobotCommand::Drive(drives.collect()));
     }
 
     fn median(&mut self) -> Duration {

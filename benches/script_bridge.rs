@@ -93,9 +93,8 @@ impl Case {
         let mut app = headless_app_with(plugins);
         let scene = read_task(Path::new("tablesetup/default.xml"))?.scene;
         app.world_mut()
-            .write_message(SimCommand::SetScene(Box::new(scene)));
-        app.world_mut()
-            .write_message(SimCommand::ShowRobot(is_shown));
+            .write_command(SceneCommand::Set(Box::new(scene)));
+        app.world_mut().write_command(RobotCommand::Show(is_shown));
         if script.is_some() {
             app.world_mut().write_message(ScriptCommand::Start);
         }

@@ -28,7 +28,7 @@ fn main() -> AppExit {
         .run()
 }
 
-fn set_up(mut commands: Commands, mut orders: MessageWriter<SimCommand>) {
+fn set_up(mut commands: Commands, mut orders: CommandWriter) {
     commands.spawn((
         Camera3d::default(),
         bevy::core_pipeline::tonemapping::Tonemapping::None,
@@ -41,7 +41,7 @@ fn set_up(mut commands: Commands, mut orders: MessageWriter<SimCommand>) {
         },
         Transform::from_xyz(-4.0, -6.0, 10.0).looking_at(Vec3::ZERO, Vec3::Z),
     ));
-    orders.write(SimCommand::LoadTask(TASKS[0].into()));
+    orders.write(Actor::App, SceneCommand::Load(TASKS[0].into()));
 }
 
 fn press_keys(
@@ -49,11 +49,11 @@ fn press_keys(
     objects: Query<&ObjectSpec>,
     index: Res<ObjectIndex>,
     mut next: Local<usize>,
-    mut orders: MessageWriter<SimCommand>,
+    mut orders: CommandWriter,
 ) {
     if keys.just_pressed(KeyCode::Space) {
         *next = (*next + 1) % TASKS.len();
-        orders.write(SimCommand::LoadTask(TASKS[*next].into()));
+        orders.write(Actor::App, SceneCommand::Load(TASKS[*next].into()));
     }
     let first = index
         .iter()
@@ -63,14 +63,20 @@ fn press_keys(
         && keys.just_pressed(KeyCode::KeyG)
     {
         let hand = Hand::Any;
-        orders.write(SimCommand::Grasp {
-            hand,
-            object: first.id.clone(),
-        });
-        orders.write(SimCommand::MoveBy {
-            hand,
-            offset: Vec3::Z * 3.0,
-        });
+        orders.write(
+            Actor::App,
+            HandCommand::Grasp {
+                hand,
+                object: first.id.clone(),
+            },
+        );
+        orders.write(
+            Actor::App,
+            HandCommand::MoveBy {
+                hand,
+                offset: Vec3::Z * 3.0,
+            },
+        );
     }
 }
 

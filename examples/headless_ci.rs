@@ -24,32 +24,35 @@ fn main() -> Result {
     let object = "RedBlock".to_owned();
     let on_top = Vec3::new(-2.0, 0.0, 3.0);
     for (command, ticks) in [
-        (SimCommand::LoadTask("tablesetup/default.xml".into()), 60),
-        (SimCommand::Grasp { hand, object }, 1),
         (
-            SimCommand::MoveBy {
+            SimCommand::Scene(SceneCommand::Load("tablesetup/default.xml".into())),
+            60,
+        ),
+        (SimCommand::Hand(HandCommand::Grasp { hand, object }), 1),
+        (
+            SimCommand::Hand(HandCommand::MoveBy {
                 hand,
                 offset: Vec3::Z * 4.0,
-            },
+            }),
             30,
         ),
         (
-            SimCommand::MoveTo {
+            SimCommand::Hand(HandCommand::MoveTo {
                 hand,
                 location: on_top + Vec3::Z * 2.0,
-            },
+            }),
             30,
         ),
         (
-            SimCommand::MoveTo {
+            SimCommand::Hand(HandCommand::MoveTo {
                 hand,
                 location: on_top,
-            },
+            }),
             30,
         ),
-        (SimCommand::Release(hand), 120),
+        (SimCommand::Hand(HandCommand::Release(hand)), 120),
     ] {
-        app.world_mut().write_message(command);
+        app.world_mut().write_command(command);
         app.step(ticks);
     }
 

@@ -25,7 +25,7 @@
 //! let mut app = App::new();
 //! app.add_plugins((MinimalPlugins, TabletopSimPlugins)).start();
 //! app.world_mut()
-//!     .write_message(SimCommand::LoadTask("tablesetup/default.xml".into()));
+//!     .write_command(SceneCommand::Load("tablesetup/default.xml".into()));
 //! app.step(60);
 //!
 //! let index = app.world().resource::<ObjectIndex>();

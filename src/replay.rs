@@ -15,7 +15,10 @@ use std::{
 
 use bevy::{app::PluginGroupBuilder, ecs::message::MessageCursor, prelude::*};
 use serde::Deserialize as _;
-use tabletop_core::{HeadCamera, SimCommand, SimFact, SimTick, StepApp as _, TICKS_PER_SECOND};
+use tabletop_core::{
+    Actor, HeadCamera, RecordingCommand, SimCommand, SimFact, SimTick, StepApp as _,
+    TICKS_PER_SECOND,
+};
 use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
 use tabletop_recorder::{
     Channels, RecorderError, RecorderPlugin, RecordingReader, Session, SessionCommand,
@@ -130,7 +133,8 @@ impl Replay {
             .commands
             .extend(cut_off_at.map(|tick| SessionCommand {
                 tick: tick.0,
-                command: SimCommand::FinishRecording,
+                actor: Actor::Replay,
+                command: SimCommand::Recording(RecordingCommand::Finish),
             }));
         Ok(Self {
             recording,

@@ -1,6 +1,6 @@
 //! What is inside the program, so that it can be started in any folder: task files, scenarios, scripts and robots.
 //!
-//! Where a path of the command line, a scenario or [`SimCommand::LoadTask`](tabletop_core::SimCommand::LoadTask) leads to nothing,
+//! Where a path of the command line, a scenario or [`SceneCommand::Load`](tabletop_core::SceneCommand::Load) leads to nothing,
 //! the file of the same path is taken from here. Its own name, `shipped:tablesetup/default.xml`, means it in any case.
 
 use std::{
@@ -61,7 +61,7 @@ pub fn shipped_files() -> &'static ShippedFiles {
     &FILES
 }
 
-/// Lets [`LoadTask`](tabletop_core::SimCommand::LoadTask) find what is inside the program.
+/// Lets [`SceneCommand::Load`](tabletop_core::SceneCommand::Load) find what is inside the program.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShippedFilesPlugin;
 

@@ -158,7 +158,7 @@ mod tests {
         for file in task_files(Path::new(TASK_FOLDER)) {
             let mut app = headless_app();
             app.world_mut()
-                .write_message(SimCommand::LoadTask(file.clone()));
+                .write_command(SceneCommand::Load(file.clone()));
             app.step(90);
             let present = present_scene(app.world()).scene;
             let first = saved(&app, &path);

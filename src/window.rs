@@ -22,7 +22,7 @@ use bevy::{
     prelude::*,
     render::RenderPlugin,
 };
-use tabletop_core::{OpenRecording, PacePlugin, SimCommand};
+use tabletop_core::{Actor, CommandWriter, OpenRecording, PacePlugin, SceneCommand};
 use tabletop_gui::{
     GuiPlugin, Preferences, PresetSeeds, WidgetListPlugin, keymap_file::KeymapFile,
 };
@@ -144,8 +144,8 @@ fn build(options: WindowOptions) -> App {
     .insert_resource(Opening::Begun(beginning));
     match options.show {
         Show::Task(setup) => {
-            let load = move |mut commands: MessageWriter<SimCommand>| {
-                commands.write(SimCommand::LoadTask(setup.clone()));
+            let load = move |mut commands: CommandWriter| {
+                commands.write(Actor::Panel, SceneCommand::Load(setup.clone()));
             };
             app.add_systems(Startup, load);
         }

@@ -18,7 +18,7 @@ const FILES: [&str; 5] = [
 
 fn command(file: &str) -> SimCommand {
     let path = Path::new("tablesetup").join(file);
-    SimCommand::SetScene(Box::new(read_task(&path).unwrap().scene))
+    SimCommand::Scene(SceneCommand::Set(Box::new(read_task(&path).unwrap().scene)))
 }
 
 /// Every bit of every object's pose and velocity.
@@ -41,7 +41,7 @@ fn bits(world: &World) -> Vec<(String, Vec<u32>)> {
 
 fn stepped(file: &str) -> Vec<(String, Vec<u32>)> {
     let mut app = headless_app();
-    app.world_mut().write_message(command(file));
+    app.world_mut().write_command(command(file));
     app.step(TICKS);
     bits(app.world())
 }
@@ -58,7 +58,7 @@ fn in_frames(file: &str, ticks_a_frame: u32) -> Vec<(String, Vec<u32>)> {
         .set_max_delta(Duration::from_secs(1));
     app.update();
     assert_eq!(app.world().resource::<SimTick>().0, 0);
-    app.world_mut().write_message(command(file));
+    app.world_mut().write_command(command(file));
     for _ in 0..TICKS / u64::from(ticks_a_frame) {
         app.update();
     }
@@ -89,14 +89,14 @@ fn frames_of_one_and_three_ticks_end_in_the_same_bits() {
 fn a_scene_after_another_ends_in_the_same_bits() {
     for file in FILES {
         let mut app = headless_app();
-        app.world_mut().write_message(command("logs.xml"));
+        app.world_mut().write_command(command("logs.xml"));
         app.step(100);
-        app.world_mut().write_message(command(file));
+        app.world_mut().write_command(command(file));
         app.step(TICKS);
         let mut app_again = headless_app();
-        app_again.world_mut().write_message(command("logs.xml"));
+        app_again.world_mut().write_command(command("logs.xml"));
         app_again.step(100);
-        app_again.world_mut().write_message(command(file));
+        app_again.world_mut().write_command(command(file));
         app_again.step(TICKS);
         assert_eq!(bits(app.world()), bits(app_again.world()), "{file}");
     }
@@ -114,7 +114,7 @@ fn what_else_is_in_the_app_does_not_matter() {
         app.insert_resource(Other::<0>).insert_resource(Other::<1>);
         app.insert_resource(Other::<2>);
         app.world_mut().spawn(Transform::default());
-        app.world_mut().write_message(command(file));
+        app.world_mut().write_command(command(file));
         app.step(TICKS);
         assert_eq!(bits(app.world()), expected, "{file}");
     }

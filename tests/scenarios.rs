@@ -15,7 +15,7 @@ fn every_shipped_scene_keeps_its_objects_on_the_table() {
         let mut app = headless_app();
         let scene = read_task(&path).unwrap().scene;
         app.world_mut()
-            .write_message(SimCommand::SetScene(Box::new(scene)));
+            .write_command(SceneCommand::Set(Box::new(scene)));
         app.step(1);
         let before = app.world().resource::<ObjectIndex>().len();
         app.step(600);

@@ -36,6 +36,6 @@ pub fn simulator(settings: PhysicsSettings, locations: impl Iterator<Item = Vec3
         .collect();
     let scene = SceneSpec { items, ..default() };
     app.world_mut()
-        .write_message(SimCommand::SetScene(Box::new(scene)));
+        .write_command(SceneCommand::Set(Box::new(scene)));
     app
 }

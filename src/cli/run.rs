@@ -12,7 +12,10 @@ use clap::Args;
 use serde_json::json;
 use tabletop::{
     TabletopSimPlugins,
-    core::{Recording, SceneSpec, SimCommand, SimFact, SimTick, StepApp as _, TICKS_PER_SECOND},
+    core::{
+        ClockCommand, Recording, RecordingCommand, SceneCommand, SceneSpec, SimFact, SimTick,
+        StepApp as _, TICKS_PER_SECOND, WriteCommand as _,
+    },
     headless_app_with,
     recorder::{RecorderPlugin, UnrecordedPlugin},
     report,
@@ -121,7 +124,7 @@ pub(super) fn simulate(
 /// Simulates so many ticks. If there are none, all is put on the table nevertheless.
 pub(super) fn pass(app: &mut App, ticks: u64) {
     if ticks == 0 {
-        app.world_mut().write_message(SimCommand::SetPaused(true));
+        app.world_mut().write_command(ClockCommand::SetPaused(true));
     }
     app.step(ticks.max(1));
 }
@@ -134,7 +137,7 @@ fn put_on_table(setup: &Path, plugins: PluginGroupBuilder) -> Result<(App, ExitC
     }
     let mut app = headless_app_with(plugins);
     app.world_mut()
-        .write_message(SimCommand::SetScene(Box::new(task.scene)));
+        .write_command(SceneCommand::Set(Box::new(task.scene)));
     let result = match task.faults.is_empty() {
         true => ExitCode::SUCCESS,
         false => ExitCode::from(WRONG_INPUT),
@@ -201,7 +204,7 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
 /// Ends the recording that a scenario has not ended.
 fn finish_recording(app: &mut App) {
     if app.world().resource::<Recording>().0 {
-        app.world_mut().write_message(SimCommand::FinishRecording);
+        app.world_mut().write_command(RecordingCommand::Finish);
         app.step(1);
     }
 }

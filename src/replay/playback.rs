@@ -7,8 +7,9 @@ use std::{
 
 use bevy::{app::FixedMain, ecs::system::SystemState, prelude::*};
 use tabletop_core::{
-    Act, Actor, HeadCamera, Markers, OpenRecording, Paused, Playback, PlaybackOrder, Recording,
-    Replaying, SimCommand, SimFact, SimTick, TICKS_PER_SECOND, Timeline, TimelineGrip,
+    Act, Actor, ClockCommand, HeadCamera, IssuedCommand, Manipulator, Markers, OpenRecording,
+    Paused, Playback, PlaybackOrder, Recording, Replaying, SceneCommand, SimCommand, SimFact,
+    SimTick, TICKS_PER_SECOND, Timeline, TimelineGrip, WriteCommand as _,
 };
 use tabletop_history::{KeepRemoved, WorldSnapshot, drop_removed};
 use tabletop_recorder::set_earlier_commands;
@@ -113,7 +114,10 @@ fn open(world: &mut World, reader: &mut SystemState<MessageReader<OpenRecording>
         return Ok(());
     };
     if let Err(reason) = try_open(world, folder) {
-        world.write_message(SimFact::Refused { reason });
+        world.write_message(SimFact::Refused {
+            cause: None,
+            reason,
+        });
     }
     Ok(())
 }
@@ -160,7 +164,7 @@ fn try_open(world: &mut World, folder: PathBuf) -> Result<(), String> {
 /// Puts the world back to before its first tick. What was open is put away.
 fn begin_anew(world: &mut World) {
     put_away(world);
-    world.resource_mut::<Messages<SimCommand>>().clear();
+    world.resource_mut::<Messages<IssuedCommand>>().clear();
     world.resource_scope(|world, beginning: Mut<Beginning>| {
         beginning.world.restore(world);
         if let Some(camera) = beginning.camera {
@@ -213,7 +217,7 @@ fn obey(world: &mut World, reader: &mut SystemState<MessageReader<PlaybackOrder>
                 begin_anew(world);
                 world.insert_resource(Timeline::default());
                 let task = world.resource::<FreshTask>().0.clone();
-                world.write_message(SimCommand::LoadTask(task));
+                world.write_command_of(Actor::Replay, SceneCommand::Load(task));
             }
         }
     }
@@ -270,8 +274,8 @@ fn go_on(world: &mut World) {
 fn approach(world: &mut World, mut goal: Goal) {
     let deadline = Instant::now() + BUDGET;
     world.resource_mut::<Time<Virtual>>().pause();
-    for command in world.resource_mut::<Messages<SimCommand>>().drain() {
-        if let SimCommand::SetPaused(pause) = command {
+    for issued in world.resource_mut::<Messages<IssuedCommand>>().drain() {
+        if let SimCommand::Clock(ClockCommand::SetPaused(pause)) = issued.command {
             goal.stops = pause;
         }
     }
@@ -281,17 +285,17 @@ fn approach(world: &mut World, mut goal: Goal) {
     while !is_there(world) && Instant::now() < deadline {
         let has_paused = world.resource::<Player>().has_paused();
         if world.resource::<Paused>().0 && !has_paused {
-            world.write_message(SimCommand::SetPaused(false));
+            world.write_command_of(Actor::Replay, ClockCommand::SetPaused(false));
         }
         world.run_schedule(FixedMain);
-        world.resource_mut::<Messages<SimCommand>>().update();
+        world.resource_mut::<Messages<IssuedCommand>>().update();
         world.resource_mut::<Messages<SimFact>>().update();
     }
     if is_there(world) {
         world.resource_mut::<Opened>().goal = None;
         world.resource_mut::<Time<Virtual>>().unpause();
         if goal.stops != world.resource::<Paused>().0 {
-            world.write_message(SimCommand::SetPaused(goal.stops));
+            world.write_command_of(Actor::Replay, ClockCommand::SetPaused(goal.stops));
         }
     }
 }
@@ -309,7 +313,7 @@ fn jump(world: &mut World, tick: SimTick) {
         let Some(keyframe) = keyframe.filter(|keyframe| now > tick || keyframe.tick > now) else {
             return;
         };
-        world.resource_mut::<Messages<SimCommand>>().clear();
+        world.resource_mut::<Messages<IssuedCommand>>().clear();
         keyframe.world.restore(world);
         world.insert_resource(Paused(false));
         set_earlier_commands(world, opened.replay.begin, keyframe.player.given());
@@ -357,7 +361,7 @@ fn note_grips(
     let recording = opened.replay.recording();
     let is_recorded = (recording.first_tick()..=recording.last_tick()).contains(&tick);
     for act in facts.read().filter_map(Act::of) {
-        if !is_recorded || matches!(act.actor, Actor::Hand(_)) {
+        if !is_recorded || is_of_hand(&act) {
             continue;
         }
         let grip = TimelineGrip { tick, act };
@@ -365,6 +369,13 @@ fn note_grips(
             let place = timeline.grips.partition_point(|other| other.tick <= tick);
             timeline.grips.insert(place, grip);
         }
+    }
+}
+
+fn is_of_hand(act: &Act) -> bool {
+    match act.manipulator {
+        Manipulator::Hand(_) => true,
+        Manipulator::Gripper(_) => false,
     }
 }
 

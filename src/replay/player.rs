@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop_core::{
-    Agent, Paused, Replaying, ScriptEvent, SimCommand, SimFact, SimSystems, SimTick, TickSystems,
+    Actor, Agent, ClockCommand, CommandWriter, HandCommand, IssuedCommand, Paused,
+    RecordingCommand, Replaying, RobotCommand, ScriptEvent, SimCommand, SimFact, SimSystems,
+    SimTick, TickSystems,
 };
 use tabletop_recorder::{Session, SessionCommand};
 
@@ -52,7 +54,8 @@ impl Player {
     pub(crate) fn recording(session: &Session) -> Self {
         let start = SessionCommand {
             tick: session.header.start_tick,
-            command: SimCommand::StartRecording,
+            actor: Actor::Replay,
+            command: SimCommand::Recording(RecordingCommand::Start),
         };
         let earlier = session.earlier.iter().cloned();
         let commands = earlier
@@ -90,31 +93,37 @@ impl Player {
         self.start
     }
 
-    /// The commands that are due. What was told in one tick at several moments of a pause is told at several moments.
-    fn due(&mut self, tick: SimTick) -> Vec<SimCommand> {
+    /// The commands that are due. What was given in one tick at several moments of a pause is given at several moments.
+    fn due(&mut self, tick: SimTick) -> Vec<SessionCommand> {
         let mut due = Vec::new();
         while let Some(next) = self.commands.get(self.given) {
-            let begins_moment = matches!(
-                next.command,
-                SimCommand::StartRecording
-                    | SimCommand::SetPaused(false)
-                    | SimCommand::LoadTask(_)
-                    | SimCommand::SetScene(_)
-                    | SimCommand::ClearTable
-                    | SimCommand::Make { .. }
-            );
-            if next.tick > tick.0 || begins_moment && self.has_paused && !due.is_empty() {
+            let has_moment = begins_moment(&next.command) && self.has_paused && !due.is_empty();
+            if next.tick > tick.0 || has_moment {
                 break;
             }
-            if let SimCommand::SetPaused(paused) = next.command {
+            if let SimCommand::Clock(ClockCommand::SetPaused(paused)) = next.command {
                 self.has_paused = paused;
             }
             self.given += 1;
-            if self.records || next.command != SimCommand::FinishRecording {
-                due.push(next.command.clone());
+            if self.records || next.command != RecordingCommand::Finish.into() {
+                due.push(next.clone());
             }
         }
         due
+    }
+}
+
+/// Whether a command that comes after another one in a pause was given at another moment of it: it would be carried out before.
+fn begins_moment(command: &SimCommand) -> bool {
+    match command {
+        SimCommand::Recording(RecordingCommand::Start)
+        | SimCommand::Clock(ClockCommand::SetPaused(false))
+        | SimCommand::Scene(_) => true,
+        SimCommand::Recording(RecordingCommand::Finish)
+        | SimCommand::Clock(ClockCommand::SetPaused(true))
+        | SimCommand::History(_)
+        | SimCommand::Hand(_)
+        | SimCommand::Robot(_) => false,
     }
 }
 
@@ -130,8 +139,8 @@ pub(crate) fn plugin(app: &mut App) {
 
 fn play(
     mut player: ResMut<Player>,
-    mut commands: ResMut<Messages<SimCommand>>,
-    mut seen: Local<MessageCursor<SimCommand>>,
+    mut commands: ParamSet<(ResMut<Messages<IssuedCommand>>, CommandWriter)>,
+    mut seen: Local<MessageCursor<IssuedCommand>>,
     mut facts: MessageWriter<SimFact>,
     mut news: MessageWriter<ScriptEvent>,
     mut replaying: ResMut<Replaying>,
@@ -146,57 +155,72 @@ fn play(
     }
     let mut is_held_up = paused.0 && !player.has_paused;
     let mut kept = Vec::new();
-    for command in seen.read(&commands) {
-        match command {
-            SimCommand::SetPaused(pause) => {
-                is_held_up = *pause;
-                kept.push(command.clone());
+    let given: Vec<_> = seen.read(&commands.p0()).cloned().collect();
+    for issued in given {
+        match issued.command {
+            SimCommand::Clock(ClockCommand::SetPaused(pause)) => {
+                is_held_up = pause;
+                kept.push(issued);
             }
-            SimCommand::SelectHand(_) => {}
-            SimCommand::ShowMarkers(_) => kept.push(command.clone()),
-            SimCommand::Drive(_) if agent.is_on() => {
+            SimCommand::Hand(HandCommand::Select(_)) => {}
+            SimCommand::Robot(RobotCommand::ShowMarkers(_)) => kept.push(issued),
+            SimCommand::Robot(RobotCommand::Drive(_)) if agent.is_on() => {
                 if !std::mem::replace(&mut player.is_watched, true) {
                     let line = WATCHES.into();
                     news.write(ScriptEvent::Noted { line });
                 }
             }
-            _ => {
+            SimCommand::Recording(_)
+            | SimCommand::Scene(_)
+            | SimCommand::History(_)
+            | SimCommand::Hand(_)
+            | SimCommand::Robot(_) => {
                 facts.write(SimFact::Refused {
+                    cause: Some(issued.id),
                     reason: "a recording is replayed; only it can act until it is over".into(),
                 });
             }
         }
     }
-    commands.clear();
-    commands.write_batch(kept);
+    let mut waiting = commands.p0();
+    waiting.clear();
+    waiting.write_batch(kept);
     if !is_held_up {
-        commands.write_batch(player.due(*tick));
+        let mut writer = commands.p1();
+        for SessionCommand { actor, command, .. } in player.due(*tick) {
+            writer.write(actor, command);
+        }
     }
-    seen.clear(&commands);
+    seen.clear(&commands.p0());
 }
 
 #[cfg(test)]
 mod tests {
     use std::{slice, time::Duration};
 
-    use tabletop_core::{CorePlugin, Hand, StepApp as _};
+    use tabletop_core::{CorePlugin, Hand, SceneCommand, StepApp as _, WriteCommand as _};
 
     use super::*;
 
     fn player(commands: &[(u64, SimCommand)]) -> Player {
         let commands = commands.iter().cloned();
-        let commands = commands.map(|(tick, command)| SessionCommand { tick, command });
+        let commands = commands.map(|(tick, command)| SessionCommand {
+            tick,
+            actor: Actor::Mouse,
+            command,
+        });
         Player::of(commands.collect(), SimTick(0))
     }
 
     #[test]
     fn commands_are_due_at_their_tick() {
-        let [left, right] = [Hand::Left, Hand::Right].map(SimCommand::Release);
+        let [left, right] =
+            [Hand::Left, Hand::Right].map(|hand| SimCommand::from(HandCommand::Release(hand)));
         let mut player = player(&[
             (1, left.clone()),
             (1, right.clone()),
             (3, left.clone()),
-            (4, SimCommand::FinishRecording),
+            (4, SimCommand::Recording(RecordingCommand::Finish)),
         ]);
         let given: Vec<_> = (0..4).map(|tick| player.due(SimTick(tick)).len()).collect();
         assert_eq!(given, [0, 2, 0, 1]);
@@ -205,9 +229,11 @@ mod tests {
         assert!(player.is_over());
     }
 
-    /// Simulates a tick in which the user tells something, and says what was carried out.
-    fn tick(app: &mut App, told: &[SimCommand]) -> Vec<SimCommand> {
-        app.world_mut().write_message_batch(told.to_vec());
+    /// Simulates a tick in which the user gives commands, and says what was carried out.
+    fn tick(app: &mut App, given: &[SimCommand]) -> Vec<SimCommand> {
+        for command in given {
+            app.world_mut().write_command(command.clone());
+        }
         app.step(1);
         let mut carried_out = app.world_mut().resource_mut::<CarriedOut>();
         std::mem::take(&mut carried_out.0)
@@ -217,10 +243,13 @@ mod tests {
     struct CarriedOut(Vec<SimCommand>);
 
     fn note_carried_out(
-        mut commands: MessageReader<SimCommand>,
+        mut commands: MessageReader<IssuedCommand>,
         mut carried_out: ResMut<CarriedOut>,
     ) {
-        carried_out.0.extend(commands.read().cloned());
+        let issued = commands.read();
+        carried_out
+            .0
+            .extend(issued.map(|issued| issued.command.clone()));
     }
 
     #[test]
@@ -230,8 +259,9 @@ mod tests {
             .init_resource::<CarriedOut>()
             .add_systems(FixedUpdate, note_carried_out.in_set(SimSystems::Ingest))
             .start();
-        let [left, right] = [Hand::Left, Hand::Right].map(SimCommand::Release);
-        let pause = SimCommand::SetPaused;
+        let [left, right] =
+            [Hand::Left, Hand::Right].map(|hand| SimCommand::from(HandCommand::Release(hand)));
+        let pause = |pause| SimCommand::from(ClockCommand::SetPaused(pause));
         player(&[
             (0, left.clone()),
             (1, pause(true)),
@@ -241,7 +271,7 @@ mod tests {
         ])
         .play_in(&mut app);
         assert_eq!(
-            tick(&mut app, &[SimCommand::ClearTable]),
+            tick(&mut app, &[SimCommand::Scene(SceneCommand::Clear)]),
             slice::from_ref(&left)
         );
         assert_eq!(tick(&mut app, &[pause(true)]), [pause(true)]);
@@ -260,19 +290,25 @@ mod tests {
             .init_resource::<CarriedOut>()
             .add_systems(FixedUpdate, note_carried_out.in_set(SimSystems::Ingest))
             .start();
-        let left = SimCommand::Release(Hand::Left);
-        let mut player = player(&[(0, SimCommand::ClearTable), (2, left.clone())]);
+        let left = SimCommand::Hand(HandCommand::Release(Hand::Left));
+        let mut player = player(&[
+            (0, SimCommand::Scene(SceneCommand::Clear)),
+            (2, left.clone()),
+        ]);
         player.start = SimTick(1);
         player.play_in(&mut app);
         app.insert_resource(Agent::Online {
             took: Duration::ZERO,
         });
-        let drive = SimCommand::Drive(Vec::new());
-        let markers = SimCommand::ShowMarkers(vec![Vec3::Z]);
+        let drive = SimCommand::Robot(RobotCommand::Drive(Vec::new()));
+        let markers = SimCommand::Robot(RobotCommand::ShowMarkers(vec![Vec3::Z]));
         let orders = [drive.clone(), markers.clone()];
         let mut news = Vec::new();
         for (carried_out, is_replaying) in [
-            ([SimCommand::ClearTable, markers.clone()].to_vec(), false),
+            (
+                [SimCommand::Scene(SceneCommand::Clear), markers.clone()].to_vec(),
+                false,
+            ),
             (vec![markers.clone()], true),
             ([markers.clone(), left].to_vec(), true),
             (orders.to_vec(), false),
@@ -298,10 +334,10 @@ mod tests {
     #[test]
     fn what_was_told_in_a_pause_is_told_in_a_pause() {
         let mut player = player(&[
-            (1, SimCommand::SetPaused(true)),
-            (1, SimCommand::Release(Hand::Left)),
-            (1, SimCommand::SetPaused(false)),
-            (1, SimCommand::Release(Hand::Right)),
+            (1, SimCommand::Clock(ClockCommand::SetPaused(true))),
+            (1, SimCommand::Hand(HandCommand::Release(Hand::Left))),
+            (1, SimCommand::Clock(ClockCommand::SetPaused(false))),
+            (1, SimCommand::Hand(HandCommand::Release(Hand::Right))),
         ]);
         assert_eq!(player.due(SimTick(1)).len(), 2);
         assert_eq!(player.due(SimTick(1)).len(), 2);

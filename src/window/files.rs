@@ -8,7 +8,7 @@ mod reload;
 use std::path::Path;
 
 use bevy::{ecs::system::SystemState, prelude::*, window::FileDragAndDrop};
-use tabletop_core::{OpenRecording, ShippedFiles, SimCommand};
+use tabletop_core::{Actor, OpenRecording, SceneCommand, ShippedFiles, WriteCommand as _};
 use tabletop_gui::{FileRequest, Files, Notices, Purpose, TaskFile, Tone};
 
 use self::{
@@ -83,7 +83,7 @@ fn open(world: &mut World, path: &Path) {
     let path = std::path::absolute(path).unwrap_or(path.to_owned());
     match Kind::of(&path) {
         Ok(Kind::Task) => {
-            world.write_message(SimCommand::LoadTask(path.clone()));
+            world.write_command_of(Actor::Panel, SceneCommand::Load(path.clone()));
             remember(world, path);
         }
         Ok(Kind::Recording(folder)) => {
@@ -129,7 +129,9 @@ mod tests {
         path::{Path, PathBuf},
     };
 
-    use tabletop_core::{CorePlugin, Recording, ShippedFile, SimFact};
+    use tabletop_core::{
+        CommandId, CorePlugin, IssuedCommand, Recording, ShippedFile, SimCommand, SimFact,
+    };
     use tabletop_gui::{Browser, Preferences};
 
     use super::*;
@@ -183,6 +185,11 @@ mod tests {
         messages.get_cursor().read(messages).cloned().collect()
     }
 
+    fn commands_of(app: &App) -> Vec<SimCommand> {
+        let issued = written::<IssuedCommand>(app);
+        issued.into_iter().map(|issued| issued.command).collect()
+    }
+
     fn told(app: &App) -> Vec<String> {
         let notices = app.world().resource::<Notices>();
         notices.iter().map(str::to_owned).collect()
@@ -205,8 +212,10 @@ mod tests {
         let mut task = app(&folder);
         drop(&mut task, "task.xml");
         assert_eq!(
-            written::<SimCommand>(&task),
-            [SimCommand::LoadTask(folder.join("task.xml"))]
+            commands_of(&task),
+            [SimCommand::Scene(SceneCommand::Load(
+                folder.join("task.xml")
+            ))]
         );
         for path in ["demo", "demo/session.jsonl", "demo/0/15.png"] {
             let mut recording = app(&folder);
@@ -218,7 +227,7 @@ mod tests {
             let mut other = app(&folder);
             drop(&mut other, path);
             assert_eq!(told(&other).len(), 1, "{path}");
-            assert!(written::<SimCommand>(&other).is_empty());
+            assert!(commands_of(&other).is_empty());
             assert!(written::<OpenRecording>(&other).is_empty());
         }
     }
@@ -284,6 +293,7 @@ mod tests {
         app.world_mut().resource_mut::<Files>().reloads = reloads;
         app.world_mut().resource_mut::<Recording>().0 = is_recording;
         app.world_mut().write_message(SimFact::TaskLoaded {
+            cause: CommandId(0),
             path: path.clone(),
             faults: Vec::new(),
         });
@@ -297,15 +307,14 @@ mod tests {
     fn a_task_file_that_changes_is_loaded_anew_if_the_user_wants_it() {
         let folder = folder("reload");
         let larger = TASK.replace("(0,0,1)", "(0,0,10)");
-        let load = [SimCommand::LoadTask(folder.join("task.xml"))];
-        assert_eq!(
-            written::<SimCommand>(&changed(&folder, &larger, false, false)),
-            []
-        );
+        let load = [SimCommand::Scene(SceneCommand::Load(
+            folder.join("task.xml"),
+        ))];
+        assert_eq!(commands_of(&changed(&folder, &larger, false, false)), []);
         let mut app = changed(&folder, TASK, true, false);
-        assert_eq!(written::<SimCommand>(&app), load);
+        assert_eq!(commands_of(&app), load);
         app.world_mut().run_system_cached(reload::reload).unwrap();
-        assert_eq!(written::<SimCommand>(&app), load, "it is loaded once");
+        assert_eq!(commands_of(&app), load, "it is loaded once");
     }
 
     #[test]
@@ -318,7 +327,7 @@ mod tests {
         ] {
             fs::write(folder.join("task.xml"), TASK).unwrap();
             let app = changed(&folder, text, true, is_recording);
-            assert_eq!(written::<SimCommand>(&app), []);
+            assert_eq!(commands_of(&app), []);
             let told = told(&app);
             assert!(told.len() == 1 && told[0].contains(words), "{told:?}");
         }

@@ -41,7 +41,7 @@ impl Stage {
             app.insert_resource(ScenarioRun::new(Program::new(&scenario, read, 0).unwrap()));
         } else {
             app.world_mut()
-                .write_message(SimCommand::SetScene(Box::default()));
+                .write_command(SceneCommand::Set(Box::default()));
         }
         app.world_mut().write_message(ScriptCommand::Start);
         let mut stage = Self {

@@ -71,7 +71,7 @@ impl Demonstration {
     pub fn act(&mut self, acts: &[(Vec<SimCommand>, u64)]) {
         for (commands, ticks) in acts {
             for command in commands {
-                self.app.world_mut().write_message(command.clone());
+                self.app.world_mut().write_command(command.clone());
             }
             self.app.step(*ticks);
         }

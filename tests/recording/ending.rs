@@ -15,14 +15,22 @@ fn a_block_that_was_let_fall_a_little_lies_where_it_came_to_rest() {
     let location = Vec3::new(0.0, 3.0, 1.02);
     demonstration.act(&[
         (
-            vec![SimCommand::LoadTask("tablesetup/default.xml".into())],
+            vec![SimCommand::Scene(SceneCommand::Load(
+                "tablesetup/default.xml".into(),
+            ))],
             60,
         ),
-        (vec![SimCommand::StartRecording], 10),
-        (vec![SimCommand::Grasp { hand, object }], 1),
-        (vec![SimCommand::MoveTo { hand, location }], 30),
-        (vec![SimCommand::Release(hand)], 5),
-        (vec![SimCommand::FinishRecording], 1),
+        (vec![SimCommand::Recording(RecordingCommand::Start)], 10),
+        (
+            vec![SimCommand::Hand(HandCommand::Grasp { hand, object })],
+            1,
+        ),
+        (
+            vec![SimCommand::Hand(HandCommand::MoveTo { hand, location })],
+            30,
+        ),
+        (vec![SimCommand::Hand(HandCommand::Release(hand))], 5),
+        (vec![SimCommand::Recording(RecordingCommand::Finish)], 1),
     ]);
     let text = fs::read_to_string(demonstration.folder.join("2.txt")).unwrap();
     let mut lines = text.lines();

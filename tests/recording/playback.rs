@@ -27,23 +27,26 @@ fn recording(name: &str) -> Demonstration {
     let location = Vec3::new(-1.8, 0.1, 3.4);
     demonstration.act(&[
         (vec![task()], 30),
-        (vec![SimCommand::StartRecording], 20),
-        (vec![SimCommand::Grasp { hand: HAND, object }], 5),
+        (vec![SimCommand::Recording(RecordingCommand::Start)], 20),
         (
-            vec![SimCommand::MoveTo {
+            vec![SimCommand::Hand(HandCommand::Grasp { hand: HAND, object })],
+            5,
+        ),
+        (
+            vec![SimCommand::Hand(HandCommand::MoveTo {
                 hand: HAND,
                 location,
-            }],
+            })],
             60,
         ),
-        (vec![SimCommand::Release(HAND)], 400),
-        (vec![SimCommand::FinishRecording], 1),
+        (vec![SimCommand::Hand(HandCommand::Release(HAND))], 400),
+        (vec![SimCommand::Recording(RecordingCommand::Finish)], 1),
     ]);
     demonstration
 }
 
 fn task() -> SimCommand {
-    SimCommand::LoadTask("tablesetup/default.xml".into())
+    SimCommand::Scene(SceneCommand::Load("tablesetup/default.xml".into()))
 }
 
 /// A window that opens recordings, in which something was done already.
@@ -52,10 +55,10 @@ fn used_window(name: &str) -> Window {
         task: "tablesetup/tower.xml".into(),
     };
     let mut window = Window::open(name, |plugins| plugins.add(PacePlugin).add(playback));
-    window.write(SimCommand::LoadTask("tablesetup/lidbox.xml".into()));
+    window.give(SceneCommand::Load("tablesetup/lidbox.xml".into()));
     window.frames(20);
-    window.write(SimCommand::ShowRobot(true));
-    window.write(SimCommand::Grasp {
+    window.give(RobotCommand::Show(true));
+    window.give(HandCommand::Grasp {
         hand: Hand::Left,
         object: "obj-lid".into(),
     });
@@ -141,19 +144,19 @@ fn a_recording_that_is_opened_plays_to_its_end_and_the_user_goes_on_and_records(
     window.open_recording(&demonstration.folder);
     window.look_at(300);
     window.look_at(100);
-    window.write(SimCommand::SetPaused(false));
-    window.write(SimCommand::Release(HAND));
+    window.give(ClockCommand::SetPaused(false));
+    window.give(HandCommand::Release(HAND));
     window.frames(450);
     assert!(window.app.world().resource::<Playback>().is_over);
-    window.write(SimCommand::StartRecording);
+    window.give(RecordingCommand::Start);
     window.frames(5);
     let timeline = window.app.world().resource::<Timeline>();
     assert_eq!(timeline.stage, TimelineStage::Running);
     assert_eq!(timeline.folder, window.folder);
     let object = "GreenBlock".to_owned();
-    window.write(SimCommand::Grasp { hand: HAND, object });
+    window.give(HandCommand::Grasp { hand: HAND, object });
     window.frames(30);
-    window.write(SimCommand::FinishRecording);
+    window.give(RecordingCommand::Finish);
     window.frames(5);
 
     assert_replays(&window.folder);
@@ -186,9 +189,9 @@ fn a_recording_that_ends_in_a_pause_is_gone_through() {
     let mut demonstration = Demonstration::new("ends_in_a_pause");
     demonstration.act(&[
         (vec![task()], 30),
-        (vec![SimCommand::StartRecording], 20),
-        (vec![SimCommand::SetPaused(true)], 3),
-        (vec![SimCommand::FinishRecording], 1),
+        (vec![SimCommand::Recording(RecordingCommand::Start)], 20),
+        (vec![SimCommand::Clock(ClockCommand::SetPaused(true))], 3),
+        (vec![SimCommand::Recording(RecordingCommand::Finish)], 1),
     ]);
     let mut window = used_window("ends_in_a_pause_window");
     window.open_recording(&demonstration.folder);
@@ -244,7 +247,7 @@ fn what_cannot_be_opened_is_told_in_one_line() {
         window.frames(1);
         let facts = window.app.world().resource::<Messages<SimFact>>();
         let mut refusals = facts.iter_current_update_messages().filter_map(|fact| {
-            let SimFact::Refused { reason } = fact else {
+            let SimFact::Refused { reason, .. } = fact else {
                 return None;
             };
             Some(reason)
@@ -262,7 +265,7 @@ fn what_cannot_be_opened_is_told_in_one_line() {
 fn while_a_recording_is_made_none_is_opened() {
     let demonstration = recording("closed");
     let mut window = used_window("recording_window");
-    window.write(SimCommand::StartRecording);
+    window.give(RecordingCommand::Start);
     window.frames(5);
     window.write(OpenRecording(demonstration.folder.clone()));
     window.frames(1);
@@ -274,9 +277,9 @@ fn while_a_recording_is_made_none_is_opened() {
 #[test]
 fn a_recording_made_in_single_steps_replays_to_the_same_bytes() {
     let mut window = used_window("steps");
-    window.write(SimCommand::StartRecording);
+    window.give(RecordingCommand::Start);
     window.frames(10);
-    window.write(SimCommand::SetPaused(true));
+    window.give(ClockCommand::SetPaused(true));
     window.frames(3);
     for steps in 1..20 {
         let before = window.next_tick();
@@ -287,13 +290,13 @@ fn a_recording_made_in_single_steps_replays_to_the_same_bytes() {
         window.frames(6);
         assert_eq!(window.next_tick(), before + (steps % 4) as u64);
         if steps == 9 {
-            window.write(SimCommand::LoadTask("tablesetup/default.xml".into()));
+            window.give(SceneCommand::Load("tablesetup/default.xml".into()));
             window.frames(2);
         }
     }
-    window.write(SimCommand::SetPaused(false));
+    window.give(ClockCommand::SetPaused(false));
     window.frames(20);
-    window.write(SimCommand::FinishRecording);
+    window.give(RecordingCommand::Finish);
     window.frames(2);
     assert_replays(&window.folder);
 }

@@ -116,31 +116,34 @@ pub fn scene() -> SimCommand {
             descriptions: Vec::new(),
         }),
     ]);
-    SimCommand::SetScene(Box::new(SceneSpec { items, ..default() }))
+    SimCommand::Scene(SceneCommand::Set(Box::new(SceneSpec {
+        items,
+        ..default()
+    })))
 }
 
 fn hand_command(random: &mut Random) -> SimCommand {
     let hand = random.of(&Hand::ALL);
     match random.below(8) {
-        0..=2 => SimCommand::Grasp {
+        0..=2 => SimCommand::Hand(HandCommand::Grasp {
             hand,
             object: random.of(&IDS).into(),
-        },
-        3 => SimCommand::Turn {
+        }),
+        3 => SimCommand::Hand(HandCommand::Turn {
             hand,
             axis: random.of(&[Vec3::X, Vec3::Y, Vec3::Z]),
             degrees: random.between(-90.0, 90.0),
-        },
-        4 => SimCommand::Release(hand),
-        5 if random.below(3) == 0 => SimCommand::Destroy(hand),
-        _ => SimCommand::MoveTo {
+        }),
+        4 => SimCommand::Hand(HandCommand::Release(hand)),
+        5 if random.below(3) == 0 => SimCommand::Hand(HandCommand::Destroy(hand)),
+        _ => SimCommand::Hand(HandCommand::MoveTo {
             hand,
             location: Vec3::new(
                 random.between(-9.0, 9.0),
                 random.between(-5.0, 5.0),
                 random.between(-1.0, 7.0),
             ),
-        },
+        }),
     }
 }
 
@@ -149,30 +152,33 @@ fn robot_command(random: &mut Random) -> SimCommand {
     let speed = f64::from(random.between(-3.0, 3.0));
     let arm = random.of(&Arm::BOTH);
     match random.below(8) {
-        0 => SimCommand::ShowRobot(random.below(4) != 0),
-        1 => SimCommand::Drive(vec![(joint, Drive::Velocity(speed))]),
-        2 => SimCommand::Drive(vec![(joint, Drive::Position(speed))]),
-        3 => SimCommand::Drive(vec![(RobotJoint::gripper(arm), Drive::Toward(0.0))]),
-        4 | 5 => SimCommand::ReachTo {
+        0 => SimCommand::Robot(RobotCommand::Show(random.below(4) != 0)),
+        1 => SimCommand::Robot(RobotCommand::Drive(vec![(joint, Drive::Velocity(speed))])),
+        2 => SimCommand::Robot(RobotCommand::Drive(vec![(joint, Drive::Position(speed))])),
+        3 => SimCommand::Robot(RobotCommand::Drive(vec![(
+            RobotJoint::gripper(arm),
+            Drive::Toward(0.0),
+        )])),
+        4 | 5 => SimCommand::Robot(RobotCommand::ReachTo {
             arm,
             pose: Pose::at(Vec3::new(
                 random.between(-5.0, 5.0),
                 random.between(-5.0, -1.0),
                 random.between(0.9, 3.0),
             )),
-        },
-        _ => SimCommand::Drive(vec![(joint, Drive::Toward(speed))]),
+        }),
+        _ => SimCommand::Robot(RobotCommand::Drive(vec![(joint, Drive::Toward(speed))])),
     }
 }
 
 fn scene_command(random: &mut Random) -> SimCommand {
     let preset = random.of(&[Preset::BigBlock, Preset::Stack(2), Preset::BoxContainer]);
     match random.below(8) {
-        0 => SimCommand::ClearTable,
-        _ => SimCommand::Make {
+        0 => SimCommand::Scene(SceneCommand::Clear),
+        _ => SimCommand::Scene(SceneCommand::Make {
             preset,
             seed: random.below(1000) as u64,
-        },
+        }),
     }
 }
 

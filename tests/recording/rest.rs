@@ -104,7 +104,7 @@ fn every_shipped_scene_is_at_rest_after_a_quarter_of_a_minute() {
     for file in task_files() {
         let name = file.display().to_string();
         let mut app = headless_app();
-        app.world_mut().write_message(SimCommand::LoadTask(file));
+        app.world_mut().write_command(SceneCommand::Load(file));
         assert_rests(&name, &mut app);
     }
 }
@@ -119,7 +119,7 @@ fn every_example_of_the_report_is_at_rest_after_a_quarter_of_a_minute() {
         assert!(!scene.items.is_empty());
         let mut app = headless_app();
         app.world_mut()
-            .write_message(SimCommand::SetScene(Box::new(scene)));
+            .write_command(SceneCommand::Set(Box::new(scene)));
         assert_rests(name, &mut app);
     }
 }
@@ -129,9 +129,15 @@ fn a_recording_of_what_is_at_rest_has_no_line_after_its_first_frame() {
     for file in task_files() {
         let mut untouched = Demonstration::new("untouched");
         untouched.act(&[
-            (vec![SimCommand::LoadTask(file.clone())], 15 * 60),
-            (vec![SimCommand::StartRecording], 45 * 60),
-            (vec![SimCommand::FinishRecording], 1),
+            (
+                vec![SimCommand::Scene(SceneCommand::Load(file.clone()))],
+                15 * 60,
+            ),
+            (
+                vec![SimCommand::Recording(RecordingCommand::Start)],
+                45 * 60,
+            ),
+            (vec![SimCommand::Recording(RecordingCommand::Finish)], 1),
         ]);
         let events = fs::read_to_string(untouched.folder.join("0.txt")).unwrap();
         let late = events.lines().find(|line| !line.starts_with("0,"));
@@ -154,7 +160,7 @@ fn a_scene_settles_while_something_is_moved_far_away() {
             let mover = ObjectSpec::new("mover", pose, 1.0, shape);
             scene.items.push(SceneItem::Object(mover));
         }
-        SimCommand::SetScene(Box::new(scene))
+        SimCommand::Scene(SceneCommand::Set(Box::new(scene)))
     };
     let hammer = |app: &App| {
         bits(app)
@@ -165,17 +171,17 @@ fn a_scene_settles_while_something_is_moved_far_away() {
 
     let mut app = headless_app();
     let hand = Hand::Any;
-    app.world_mut().write_message(scene(true));
+    app.world_mut().write_command(scene(true));
     app.step(1);
     let object = "mover".to_owned();
     app.world_mut()
-        .write_message(SimCommand::Grasp { hand, object });
+        .write_command(HandCommand::Grasp { hand, object });
     let mut resting = None;
     for tick in 0..30 * 60 {
         let angle = tick as f32 / 20.0;
         let location = Vec3::new(-8.0 + angle.cos(), 4.0 + angle.sin(), 2.0);
         app.world_mut()
-            .write_message(SimCommand::MoveTo { hand, location });
+            .write_command(HandCommand::MoveTo { hand, location });
         app.step(1);
         if tick == 5 * 60 {
             resting = Some(hammer(&app));

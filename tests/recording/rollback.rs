@@ -87,12 +87,12 @@ fn no_component_that_a_random_demonstration_changes_is_forgotten() {
         let mut demonstration = Demonstration::new("watched");
         demonstration.tick(&[
             scene(),
-            SimCommand::ShowRobot(true),
-            SimCommand::StartRecording,
+            SimCommand::Robot(RobotCommand::Show(true)),
+            SimCommand::Recording(RecordingCommand::Start),
         ]);
         for commands in script(&mut Random(seed), 300) {
             for command in commands {
-                demonstration.app.world_mut().write_message(command);
+                demonstration.app.world_mut().write_command(command);
             }
             watch(&mut demonstration.app, &mut forgotten);
         }

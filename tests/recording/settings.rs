@@ -17,20 +17,25 @@ fn a_replay_has_the_settings_and_the_camera_of_its_recording() {
     let object = "RedBlock".to_owned();
     moon.act(&[
         (
-            vec![SimCommand::LoadTask("tablesetup/default.xml".into())],
+            vec![SimCommand::Scene(SceneCommand::Load(
+                "tablesetup/default.xml".into(),
+            ))],
             30,
         ),
-        (vec![SimCommand::Grasp { hand, object }], 1),
         (
-            vec![SimCommand::MoveTo {
+            vec![SimCommand::Hand(HandCommand::Grasp { hand, object })],
+            1,
+        ),
+        (
+            vec![SimCommand::Hand(HandCommand::MoveTo {
                 hand,
                 location: Vec3::new(-1.2, 0.3, 6.0),
-            }],
+            })],
             40,
         ),
-        (vec![SimCommand::StartRecording], 10),
-        (vec![SimCommand::Release(hand)], 120),
-        (vec![SimCommand::FinishRecording], 1),
+        (vec![SimCommand::Recording(RecordingCommand::Start)], 10),
+        (vec![SimCommand::Hand(HandCommand::Release(hand))], 120),
+        (vec![SimCommand::Recording(RecordingCommand::Finish)], 1),
     ]);
     assert_replays(&moon.folder);
 }

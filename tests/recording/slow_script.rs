@@ -32,9 +32,9 @@ fn is_online(world: &World) -> bool {
 
 impl Window {
     /// Gives a command while a call of the script is waited for, and lets so many frames go by.
-    fn write_while_waiting(&mut self, command: SimCommand, frames: usize) {
+    fn give_while_waiting(&mut self, command: impl Into<SimCommand>, frames: usize) {
         self.frames_until(is_waiting);
-        self.write(command);
+        self.give(command);
         self.frames(frames);
     }
 }
@@ -54,19 +54,19 @@ fn what_is_done_while_a_script_is_waited_for_is_recorded_in_its_tick() {
     let mut window = Window::open("slow_script_demo", |plugins| {
         plugins.set(ScriptPlugin { settings })
     });
-    window.write(SimCommand::LoadTask("tablesetup/default.xml".into()));
+    window.give(SceneCommand::Load("tablesetup/default.xml".into()));
     window.frames(10);
     window.write(ScriptCommand::Start);
     window.frames_until(is_online);
 
     let hand = Hand::Any;
     let object = "RedBlock".to_owned();
-    window.write_while_waiting(SimCommand::StartRecording, 300);
-    window.write_while_waiting(SimCommand::Grasp { hand, object }, 300);
-    window.write_while_waiting(SimCommand::SetPaused(true), 60);
-    window.write(SimCommand::SetPaused(false));
-    window.write_while_waiting(SimCommand::Release(hand), 300);
-    window.write_while_waiting(SimCommand::FinishRecording, 100);
+    window.give_while_waiting(RecordingCommand::Start, 300);
+    window.give_while_waiting(HandCommand::Grasp { hand, object }, 300);
+    window.give_while_waiting(ClockCommand::SetPaused(true), 60);
+    window.give(ClockCommand::SetPaused(false));
+    window.give_while_waiting(HandCommand::Release(hand), 300);
+    window.give_while_waiting(RecordingCommand::Finish, 100);
     assert_replays(&window.folder);
     for segment in ["0/0.png", "1.txt", "2.txt"] {
         assert!(window.folder.join(segment).exists(), "{segment}");

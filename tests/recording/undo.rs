@@ -15,7 +15,7 @@ const TICKS: u64 = 150;
 fn begun(name: &str) -> Demonstration {
     let mut demonstration = Demonstration::new(name);
     demonstration.tick(&[scene()]);
-    demonstration.tick(&[SimCommand::StartRecording]);
+    demonstration.tick(&[SimCommand::Recording(RecordingCommand::Start)]);
     demonstration
 }
 
@@ -26,7 +26,10 @@ fn assert_same_files(expected: &Demonstration, found: &Demonstration, seed: u64)
 
 /// What comes and goes in the tick of an undo does so before it, and is undone with the rest.
 fn is_carried_out_before_undo(command: &SimCommand) -> bool {
-    matches!(command, SimCommand::Make { .. } | SimCommand::ClearTable)
+    matches!(
+        command,
+        SimCommand::Scene(SceneCommand::Make { .. }) | SimCommand::Scene(SceneCommand::Clear)
+    )
 }
 
 #[test]
@@ -51,10 +54,10 @@ fn undo_leaves_no_trace() {
                 continue 'seeds;
             }
             let before = with_detour.undoable();
-            with_detour.tick(&[SimCommand::Grasp {
+            with_detour.tick(&[SimCommand::Hand(HandCommand::Grasp {
                 hand: Hand::Both,
                 object: "ball".into(),
-            }]);
+            })]);
             if with_detour.undoable() == before {
                 continue 'seeds; // The ball is in these hands already, or gone.
             }
@@ -63,7 +66,7 @@ fn undo_leaves_no_trace() {
                 with_detour.tick(commands);
             }
             let undos = with_detour.undoable() - before;
-            let mut last = vec![SimCommand::Undo; undos];
+            let mut last = vec![SimCommand::History(HistoryCommand::Undo); undos];
             last.extend_from_slice(commands);
             with_detour.tick(&last);
             assert_eq!(
@@ -74,7 +77,7 @@ fn undo_leaves_no_trace() {
         }
         assert_eq!(with_detour.bits(), straight.bits(), "seed {seed}");
         for demonstration in [&mut straight, &mut with_detour] {
-            demonstration.tick(&[SimCommand::FinishRecording]);
+            demonstration.tick(&[SimCommand::Recording(RecordingCommand::Finish)]);
         }
         assert_same_files(&straight, &with_detour, seed);
     }
@@ -85,10 +88,12 @@ fn undo_leaves_no_trace() {
 fn what_one_object_was_released_for_is_undone_and_it_falls_as_before() {
     let begin = [
         (
-            vec![SimCommand::LoadTask("tablesetup/default.xml".into())],
+            vec![SimCommand::Scene(SceneCommand::Load(
+                "tablesetup/default.xml".into(),
+            ))],
             1,
         ),
-        (vec![SimCommand::StartRecording], 1),
+        (vec![SimCommand::Recording(RecordingCommand::Start)], 1),
         (vec![grasp(Hand::Left, "RedBlock")], 1),
         (vec![move_to(Hand::Left, (2.0, 0.0, 4.0))], 18),
     ];
@@ -99,13 +104,16 @@ fn what_one_object_was_released_for_is_undone_and_it_falls_as_before() {
         with_detour.act(&begin);
         with_detour.tick(&[grasp(Hand::Left, "GreenBlock")]);
         if pause {
-            with_detour.tick(&[SimCommand::SetPaused(true), SimCommand::Undo]);
+            with_detour.tick(&[
+                SimCommand::Clock(ClockCommand::SetPaused(true)),
+                SimCommand::History(HistoryCommand::Undo),
+            ]);
             with_detour.tick(&[]);
-            with_detour.tick(&[SimCommand::SetPaused(false)]);
+            with_detour.tick(&[SimCommand::Clock(ClockCommand::SetPaused(false))]);
         } else {
-            with_detour.tick(&[SimCommand::Undo]);
+            with_detour.tick(&[SimCommand::History(HistoryCommand::Undo)]);
         }
-        straight.tick(&[SimCommand::Release(Hand::Left)]);
+        straight.tick(&[SimCommand::Hand(HandCommand::Release(Hand::Left))]);
         for tick in 0..30 {
             assert_eq!(with_detour.bits(), straight.bits(), "{tick} ticks later");
             straight.tick(&[]);
@@ -127,8 +135,8 @@ fn redo_brings_back_what_was_undone() {
         let segments = world.undoable();
 
         // A tick that undoes everything and brings it back simulates one tick more.
-        let mut there_and_back = vec![SimCommand::Undo; segments];
-        there_and_back.extend(vec![SimCommand::Redo; segments]);
+        let mut there_and_back = vec![SimCommand::History(HistoryCommand::Undo); segments];
+        there_and_back.extend(vec![SimCommand::History(HistoryCommand::Redo); segments]);
         world.tick(&there_and_back);
         expected.tick(&[]);
         for _ in 0..40 {
@@ -142,7 +150,7 @@ fn redo_brings_back_what_was_undone() {
         }
         assert_eq!(world.undoable(), segments);
         for demonstration in [&mut expected, &mut world] {
-            demonstration.tick(&[SimCommand::FinishRecording]);
+            demonstration.tick(&[SimCommand::Recording(RecordingCommand::Finish)]);
         }
         assert_same_files(&expected, &world, seed);
     }
@@ -173,17 +181,17 @@ fn a_recording_changes_nothing() {
 type Act = (Vec<SimCommand>, u64);
 
 fn grasp(hand: Hand, object: &str) -> SimCommand {
-    SimCommand::Grasp {
+    SimCommand::Hand(HandCommand::Grasp {
         hand,
         object: object.into(),
-    }
+    })
 }
 
 fn move_to(hand: Hand, location: (f32, f32, f32)) -> SimCommand {
-    SimCommand::MoveTo {
+    SimCommand::Hand(HandCommand::MoveTo {
         hand,
         location: location.into(),
-    }
+    })
 }
 
 /// What is done before and after the detour, which begins in the middle of a fall.
@@ -192,19 +200,21 @@ fn way() -> [Vec<Act>; 2] {
     [
         vec![
             (
-                vec![SimCommand::LoadTask("tablesetup/default.xml".into())],
+                vec![SimCommand::Scene(SceneCommand::Load(
+                    "tablesetup/default.xml".into(),
+                ))],
                 40,
             ),
-            (vec![SimCommand::StartRecording], 7),
+            (vec![SimCommand::Recording(RecordingCommand::Start)], 7),
             (vec![grasp(Right, "RedBlock")], 5),
             (vec![move_to(Right, (-1.5, 0.2, 5.0))], 40),
-            (vec![SimCommand::Release(Right)], 9),
+            (vec![SimCommand::Hand(HandCommand::Release(Right))], 9),
         ],
         vec![
             (vec![grasp(Left, "GreenBlock")], 1),
             (vec![move_to(Left, (4.0, 2.0, 3.0))], 45),
-            (vec![SimCommand::Release(Left)], 80),
-            (vec![SimCommand::FinishRecording], 1),
+            (vec![SimCommand::Hand(HandCommand::Release(Left))], 80),
+            (vec![SimCommand::Recording(RecordingCommand::Finish)], 1),
         ],
     ]
 }
@@ -214,7 +224,7 @@ fn detour() -> Vec<Act> {
         (vec![grasp(Hand::Left, "RedBlock")], 20),
         (vec![move_to(Hand::Left, (-5.0, -4.0, 2.0))], 33),
         (vec![grasp(Hand::Both, "GreenBlock")], 3),
-        (vec![SimCommand::Destroy(Hand::Both)], 28),
+        (vec![SimCommand::Hand(HandCommand::Destroy(Hand::Both))], 28),
     ]
 }
 
@@ -233,7 +243,10 @@ fn what_was_undone_left_no_trace_on_disk() {
     assert!(undone >= 3, "only {undone} segments were begun");
     // In the tick that undoes, the way goes on.
     let commands = &mut after[0].0;
-    commands.splice(0..0, vec![SimCommand::Undo; undone]);
+    commands.splice(
+        0..0,
+        vec![SimCommand::History(HistoryCommand::Undo); undone],
+    );
     with_detour.act(&after);
 
     let text = fs::read_to_string(straight.folder.join("3.txt")).unwrap();
@@ -245,7 +258,7 @@ fn what_was_undone_left_no_trace_on_disk() {
 #[test]
 fn what_was_undone_and_redone_is_there_again() {
     let [before, _] = way();
-    let finish = [(vec![SimCommand::FinishRecording], 1)];
+    let finish = [(vec![SimCommand::Recording(RecordingCommand::Finish)], 1)];
     let mut straight = Demonstration::new("straight_on");
     straight.act(&before);
     straight.act(&detour());
@@ -255,9 +268,9 @@ fn what_was_undone_and_redone_is_there_again() {
     there_and_back.act(&before);
     there_and_back.act(&detour());
     let undone = 3;
-    let mut commands = vec![SimCommand::Undo; undone];
-    commands.extend(vec![SimCommand::Redo; undone]);
-    commands.push(SimCommand::FinishRecording);
+    let mut commands = vec![SimCommand::History(HistoryCommand::Undo); undone];
+    commands.extend(vec![SimCommand::History(HistoryCommand::Redo); undone]);
+    commands.push(SimCommand::Recording(RecordingCommand::Finish));
     there_and_back.act(&[(commands, 1)]);
 
     let difference = first_difference(&straight.folder, &there_and_back.folder).unwrap();

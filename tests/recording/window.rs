@@ -42,6 +42,10 @@ impl Window {
         Self { app, folder }
     }
 
+    pub fn give(&mut self, command: impl Into<SimCommand>) {
+        self.app.world_mut().write_command(command);
+    }
+
     pub fn write<M: Message>(&mut self, message: M) {
         self.app.world_mut().write_message(message);
     }

@@ -9,7 +9,7 @@ use bevy::{
     prelude::*,
 };
 
-use crate::{PictureDemand, PictureSystems, SimBlocked, SimCommand};
+use crate::{ClockCommand, IssuedCommand, PictureDemand, PictureSystems, SimBlocked};
 
 /// Ticks per second of simulated time.
 pub const TICKS_PER_SECOND: u32 = 60;
@@ -54,9 +54,16 @@ pub enum OrderSystems {
     Script,
 }
 
-/// Who carries out commands on what [`SimSystems::Ingest`] has brought, in this order. Runs while paused, too.
-#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// The phases in which commands are carried out, in this order, after [`SimSystems::Load`] and before [`SimSystems::Actuate`].
+/// [`SimCommand::phase`](crate::SimCommand::phase) says which command has which. They run while paused, too.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum CommandSystems {
+    /// Recordings begin.
+    Recording,
+    /// The clock is stopped, or runs on.
+    Clock,
+    /// Objects appear and go. It is part of [`SimSystems::Ingest`].
+    Scene,
     /// Undo and redo.
     History,
     /// The demonstrator's hands.
@@ -85,13 +92,13 @@ pub struct Paused(pub bool);
 impl Paused {
     /// Whether the tick that begins is one of a pause, which may have been asked for just now: for systems that give orders.
     pub fn will_be(
-        mut commands: MessageReader<SimCommand>,
+        mut commands: MessageReader<IssuedCommand>,
         mut asked_for: Local<Option<bool>>,
         paused: Res<Self>,
     ) -> bool {
-        let pauses = commands.read().filter_map(|command| match command {
-            SimCommand::SetPaused(pause) => Some(*pause),
-            _ => None,
+        let commands = commands.read().filter_map(IssuedCommand::of_kind);
+        let pauses = commands.map(|(_, command)| match command {
+            ClockCommand::SetPaused(pause) => *pause,
         });
         // While the simulation is blocked, what was asked for in an earlier frame is still to be done.
         *asked_for = pauses.last().or(*asked_for).filter(|ask| *ask != paused.0);
@@ -137,6 +144,9 @@ pub(crate) fn configure(app: &mut App) {
         .configure_sets(
             FixedUpdate,
             (
+                SimSystems::Load,
+                CommandSystems::Recording,
+                CommandSystems::Clock,
                 SimSystems::Ingest,
                 CommandSystems::History,
                 CommandSystems::Hands,
@@ -145,6 +155,10 @@ pub(crate) fn configure(app: &mut App) {
             )
                 .chain()
                 .in_set(TickSystems),
+        )
+        .configure_sets(
+            FixedUpdate,
+            CommandSystems::Scene.in_set(SimSystems::Ingest),
         )
         .configure_sets(
             FixedUpdate,
@@ -207,7 +221,7 @@ impl StepApp for App {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::CorePlugin;
+    use crate::{CorePlugin, SceneCommand, WriteCommand as _};
 
     #[test]
     fn a_pause_stops_the_clock_and_not_the_commands() {
@@ -215,10 +229,11 @@ mod tests {
         app.add_plugins((MinimalPlugins, CorePlugin::default()))
             .start();
         app.step(3);
-        app.world_mut().write_message(SimCommand::SetPaused(true));
+        app.world_mut().write_command(ClockCommand::SetPaused(true));
         app.step(5);
         assert_eq!(app.world().resource::<SimTick>().0, 3);
-        app.world_mut().write_message(SimCommand::SetPaused(false));
+        app.world_mut()
+            .write_command(ClockCommand::SetPaused(false));
         app.step(2);
         assert_eq!(app.world().resource::<SimTick>().0, 5);
     }
@@ -229,10 +244,10 @@ mod tests {
         app.add_plugins((MinimalPlugins, CorePlugin::default()))
             .start();
         for _ in 0..10 {
-            app.world_mut().write_message(SimCommand::ClearTable);
+            app.world_mut().write_command(SceneCommand::Clear);
             app.step(1);
         }
-        let kept = app.world().resource::<Messages<SimCommand>>().len();
+        let kept = app.world().resource::<Messages<IssuedCommand>>().len();
         assert!(kept <= 2, "{kept} messages are kept");
     }
 }

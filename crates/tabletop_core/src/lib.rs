@@ -1,7 +1,7 @@
 //! The vocabulary that the parts of the tabletop simulator share.
 //!
 //! Here stands what two parts that must not know each other both need: what an object is ([`ObjectSpec`], [`Shape`]),
-//! what a task file says ([`SceneSpec`]), what the simulation is told and tells ([`SimCommand`], [`SimFact`]) and when
+//! what a task file says ([`SceneSpec`]), what the simulation is to do and what has happened ([`SimCommand`], [`SimFact`]) and when
 //! things happen in a tick ([`SimSystems`]).
 //!
 //! The world is right-handed with its origin at the centre of the table's top: X to the right, Y away from the robot,
@@ -21,11 +21,12 @@
 mod agent;
 mod clock;
 mod color;
+mod command;
+mod fact;
 mod figure;
 mod hand;
 mod keymap;
 mod light;
-mod message;
 mod mount;
 mod navigation;
 mod number;
@@ -54,6 +55,12 @@ pub use clock::{
     TICK_SECONDS, TICKS_PER_SECOND, TickSystems,
 };
 pub use color::{ColorError, NAMED_COLORS, Rgb};
+pub use command::{
+    Actor, Cause, ClockCommand, CommandId, CommandKind, CommandWriter, HandCommand, HistoryCommand,
+    IssuedCommand, RecordingCommand, RobotCommand, SceneCommand, SimCommand, WriteCommand,
+    carry_out,
+};
+pub use fact::SimFact;
 pub use figure::{CarriesHeadCamera, Figure, Triangles};
 pub use hand::{Hand, Hands, Held};
 pub use keymap::{
@@ -61,7 +68,6 @@ pub use keymap::{
     Situation, Way, was_struck,
 };
 pub use light::{LIGHT, Light};
-pub use message::{SimCommand, SimFact};
 pub use navigation::{CameraMotion, CameraView, Steering};
 pub use number::Decimal;
 pub use object::{ObjectIndex, ObjectSpec};
@@ -83,7 +89,7 @@ pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage
 pub use shape::{Part, Primitive, Shape, Solid};
 pub use shipped::{ShippedFile, ShippedFiles, is_shipped, seen_from};
 pub use timeline::{
-    Act, Actor, Timeline, TimelineGrip, TimelinePicture, TimelineSegment, TimelineStage, Verb,
+    Act, Manipulator, Timeline, TimelineGrip, TimelinePicture, TimelineSegment, TimelineStage, Verb,
 };
 pub use twist::Twist;
 pub use user::{DragPlane, KeySystems, UserCamera};
@@ -94,9 +100,10 @@ use bevy::prelude::*;
 pub mod prelude {
     #[doc(hidden)]
     pub use crate::{
-        Arm, CorePlugin, Drive, Hand, Hands, ObjectIndex, ObjectSpec, Paused, Pose, Preset, Rgb,
-        Robot, RobotJoint, SceneItem, SceneSpec, Shape, SimCommand, SimFact, SimSystems, SimTick,
-        StepApp, Table,
+        Actor, Arm, ClockCommand, CommandWriter, CorePlugin, Drive, Hand, HandCommand, Hands,
+        HistoryCommand, IssuedCommand, ObjectIndex, ObjectSpec, Paused, Pose, Preset,
+        RecordingCommand, Rgb, Robot, RobotCommand, RobotJoint, SceneCommand, SceneItem, SceneSpec,
+        Shape, SimCommand, SimFact, SimSystems, SimTick, StepApp, Table, WriteCommand,
     };
 }
 
@@ -115,7 +122,7 @@ impl Default for CorePlugin {
 
 impl Plugin for CorePlugin {
     fn build(&self, app: &mut App) {
-        app.add_message::<SimCommand>()
+        app.add_message::<IssuedCommand>()
             .add_message::<SimFact>()
             .add_message::<ScriptCommand>()
             .add_message::<ScriptEvent>()
@@ -123,6 +130,8 @@ impl Plugin for CorePlugin {
             .add_message::<CameraMotion>()
             .add_message::<PlaybackOrder>()
             .init_resource::<Agent>()
+            .init_resource::<Cause>()
+            .init_resource::<command::NextCommandId>()
             .init_resource::<SimBlocked>()
             .init_resource::<DragPlane>()
             .init_resource::<Hands>()
@@ -141,10 +150,7 @@ impl Plugin for CorePlugin {
             .init_resource::<Timeline>()
             .add_systems(
                 FixedUpdate,
-                set_paused
-                    .after(SimSystems::Load)
-                    .before(SimSystems::Ingest)
-                    .in_set(TickSystems),
+                command::carry_out_clock.in_set(CommandSystems::Clock),
             )
             .configure_sets(
                 RunFixedMainLoop,
@@ -153,14 +159,6 @@ impl Plugin for CorePlugin {
         clock::configure(app);
         if self.one_thread {
             clock::run_ticks_on_one_thread(app);
-        }
-    }
-}
-
-fn set_paused(mut commands: MessageReader<SimCommand>, mut paused: ResMut<Paused>) {
-    for command in commands.read() {
-        if let SimCommand::SetPaused(pause) = command {
-            paused.0 = *pause;
         }
     }
 }

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use bevy::prelude::*;
 
-use crate::{OrderSystems, Paused, SimCommand, SimTick, TICK_SECONDS};
+use crate::{Actor, ClockCommand, CommandWriter, OrderSystems, Paused, SimTick, TICK_SECONDS};
 
 /// How long the ticks of a frame may take together, so that pictures keep coming whatever the pace.
 const LONGEST_TICKS: Duration = Duration::from_millis(50);
@@ -112,17 +112,17 @@ fn make_steps(
     mut steps: Local<usize>,
     mut is_stepping: Local<bool>,
     paused: Res<Paused>,
-    mut commands: MessageWriter<SimCommand>,
+    mut commands: CommandWriter,
 ) {
     *steps += asked_for.read().count();
     let has_stepped = std::mem::replace(&mut *is_stepping, *steps > 0);
     if *steps > 0 {
         *steps -= 1;
         if paused.0 {
-            commands.write(SimCommand::SetPaused(false));
+            commands.write(Actor::Panel, ClockCommand::SetPaused(false));
         }
     } else if has_stepped {
-        commands.write(SimCommand::SetPaused(true));
+        commands.write(Actor::Panel, ClockCommand::SetPaused(true));
     }
 }
 
@@ -182,7 +182,7 @@ mod tests {
     use bevy::time::TimeUpdateStrategy;
 
     use super::*;
-    use crate::CorePlugin;
+    use crate::{CorePlugin, WriteCommand as _};
 
     fn app(frame: TimeUpdateStrategy) -> App {
         let mut app = App::new();
@@ -202,7 +202,7 @@ mod tests {
     fn a_step_is_a_tick_however_many_a_frame_has() {
         for ticks_a_frame in [1, 3] {
             let mut app = app(TimeUpdateStrategy::FixedTimesteps(ticks_a_frame));
-            app.world_mut().write_message(SimCommand::SetPaused(true));
+            app.world_mut().write_command(ClockCommand::SetPaused(true));
             app.update();
             assert_eq!(tick(&app), 0);
             for steps in 1..4 {

@@ -20,7 +20,20 @@ impl SimFact {
                 format!("the {arm} arm is stopped by the table")
             }
             Self::ArmBlocked { arm, by } => format!("the {arm} arm is stopped by {by}"),
-            _ => return None,
+            Self::TaskLoaded { .. }
+            | Self::ObjectCreated { .. }
+            | Self::ObjectDeleted { .. }
+            | Self::SegmentBegun { .. }
+            | Self::Grasped { .. }
+            | Self::Released { .. }
+            | Self::Destroyed { .. }
+            | Self::RecordingStarted { .. }
+            | Self::RecordingFinished { .. }
+            | Self::RecordingFailed { .. }
+            | Self::Undone { .. }
+            | Self::Redone { .. }
+            | Self::RobotShown { .. }
+            | Self::Refused { .. } => return None,
         })
     }
 }
@@ -28,7 +41,7 @@ impl SimFact {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Arm;
+    use crate::{Arm, CommandId};
 
     #[test]
     fn facts_of_the_robot_have_words() {
@@ -65,6 +78,7 @@ mod tests {
         ] {
             assert_eq!(fact.robot_news().as_deref(), Some(expected));
         }
-        assert_eq!(SimFact::Undone.robot_news(), None);
+        let cause = CommandId(0);
+        assert_eq!(SimFact::Undone { cause }.robot_news(), None);
     }
 }

@@ -70,20 +70,20 @@ pub struct TimelineGrip {
     pub act: Act,
 }
 
-/// Who did what to which object.
+/// What was done to which object, and with what.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Act {
-    /// Who.
-    pub actor: Actor,
+    /// With what.
+    pub manipulator: Manipulator,
     /// What.
     pub verb: Verb,
     /// Id of the object, if it is known.
     pub object: Option<String>,
 }
 
-/// Who acts on objects.
+/// What takes objects and lets go of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Actor {
+pub enum Manipulator {
     /// A hand of the demonstrator.
     Hand(Hand),
     /// A gripper of the robot.
@@ -128,28 +128,28 @@ impl Timeline {
 impl Act {
     /// What somebody has done to an object, if that is what has happened.
     pub fn of(fact: &SimFact) -> Option<Self> {
-        let (actor, verb, id) = match fact {
-            SimFact::Grasped { hand, id } => (Actor::Hand(*hand), Verb::Grasp, id),
-            SimFact::Released { hand, id } => (Actor::Hand(*hand), Verb::Release, id),
-            SimFact::Destroyed { hand, id } => (Actor::Hand(*hand), Verb::Destroy, id),
-            SimFact::GripMade { arm, id } => (Actor::Gripper(*arm), Verb::Grasp, id),
-            SimFact::GripReleased { arm, id } => (Actor::Gripper(*arm), Verb::Release, id),
+        let (manipulator, verb, id) = match fact {
+            SimFact::Grasped { hand, id, .. } => (Manipulator::Hand(*hand), Verb::Grasp, id),
+            SimFact::Released { hand, id, .. } => (Manipulator::Hand(*hand), Verb::Release, id),
+            SimFact::Destroyed { hand, id, .. } => (Manipulator::Hand(*hand), Verb::Destroy, id),
+            SimFact::GripMade { arm, id } => (Manipulator::Gripper(*arm), Verb::Grasp, id),
+            SimFact::GripReleased { arm, id } => (Manipulator::Gripper(*arm), Verb::Release, id),
             SimFact::TaskLoaded { .. }
             | SimFact::ObjectCreated { .. }
             | SimFact::ObjectDeleted { .. }
-            | SimFact::SegmentBegun
+            | SimFact::SegmentBegun { .. }
             | SimFact::RecordingStarted { .. }
             | SimFact::RecordingFinished { .. }
             | SimFact::RecordingFailed { .. }
-            | SimFact::Undone
-            | SimFact::Redone
-            | SimFact::RobotShown(_)
+            | SimFact::Undone { .. }
+            | SimFact::Redone { .. }
+            | SimFact::RobotShown { .. }
             | SimFact::GripRefused { .. }
             | SimFact::ArmBlocked { .. }
             | SimFact::Refused { .. } => return None,
         };
         Some(Self {
-            actor,
+            manipulator,
             verb,
             object: Some(id.clone()),
         })
@@ -167,7 +167,7 @@ impl Verb {
     }
 }
 
-impl fmt::Display for Actor {
+impl fmt::Display for Manipulator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Hand(hand) => write!(f, "{hand}"),
@@ -179,7 +179,7 @@ impl fmt::Display for Actor {
 impl fmt::Display for Act {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let object = self.object.as_deref().unwrap_or("what it held");
-        write!(f, "{} {} {object}", self.actor, self.verb.name())
+        write!(f, "{} {} {object}", self.manipulator, self.verb.name())
     }
 }
 
@@ -231,22 +231,22 @@ mod tests {
 
     #[test]
     fn an_act_is_a_sentence() {
-        let act = |actor, verb, object: Option<&str>| {
+        let act = |manipulator, verb, object: Option<&str>| {
             let object = object.map(str::to_owned);
             Act {
-                actor,
+                manipulator,
                 verb,
                 object,
             }
             .to_string()
         };
-        let left = Actor::Hand(Hand::Left);
+        let left = Manipulator::Hand(Hand::Left);
         assert_eq!(act(left, Verb::Grasp, Some("red")), "LeftHand grasps red");
         assert_eq!(
             act(left, Verb::Release, None),
             "LeftHand releases what it held"
         );
-        let gripper = Actor::Gripper(Arm::Right);
+        let gripper = Manipulator::Gripper(Arm::Right);
         assert_eq!(
             act(gripper, Verb::Destroy, Some("a")),
             "right gripper destroys a"

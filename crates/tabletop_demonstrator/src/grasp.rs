@@ -3,7 +3,8 @@
 use bevy::{ecs::system::SystemState, prelude::*};
 use bevy_rapier3d::prelude::*;
 use tabletop_core::{
-    Hand, Hands, Held, Joint, ObjectIndex, ObjectSpec, Paused, Pose, SimCommand, SimFact,
+    Cause, CommandId, Hand, HandCommand, Hands, Held, IssuedCommand, Joint, ObjectIndex,
+    ObjectSpec, Paused, Pose, SimFact, carry_out,
 };
 use tabletop_history::begin_segment;
 use tabletop_physics::{JustReleased, hold, let_go, remove_object};
@@ -26,80 +27,73 @@ pub enum Carry {
 /// Carries out the commands to hands, one after the other.
 pub(crate) fn obey(
     world: &mut World,
-    reader: &mut SystemState<MessageReader<SimCommand>>,
+    reader: &mut SystemState<MessageReader<IssuedCommand>>,
 ) -> Result {
-    let commands = SimCommand::unread(world, reader, |command| {
-        is_for_hands(command) || matches!(command, SimCommand::SelectHand(_))
-    })?;
-    let is_paused = world.resource::<Paused>().0;
-    for command in commands {
-        if is_paused && is_for_hands(&command) {
-            refuse(
-                world,
-                "hands cannot act while the simulation is paused".into(),
-            );
-            continue;
+    carry_out(world, reader, |world, cause, command| match command {
+        HandCommand::Select(hand) => {
+            world.resource_mut::<Hands>().selected = hand;
+            Ok(())
         }
-        match command {
-            SimCommand::SelectHand(hand) => world.resource_mut::<Hands>().selected = hand,
-            SimCommand::Grasp { hand, object } => grasp(world, hand, &object),
-            SimCommand::MoveTo { hand, location } => {
-                retarget(world, hand, location, |_, location| location);
-            }
-            SimCommand::MoveBy { hand, offset } => {
-                retarget(world, hand, offset, |location, offset| location + offset);
-            }
-            SimCommand::Turn {
-                hand,
-                axis,
-                degrees,
-            } => turn(world, hand, axis, degrees),
-            SimCommand::Release(hand) => release(world, hand),
-            SimCommand::Destroy(hand) => destroy(world, hand),
-            _ => {}
+        HandCommand::Grasp { hand, object } => {
+            refuse_while_paused(world)?;
+            grasp(world, cause, hand, &object)
         }
+        HandCommand::MoveTo { hand, location } => {
+            refuse_while_paused(world)?;
+            retarget(world, hand, |_| location)
+        }
+        HandCommand::MoveBy { hand, offset } => {
+            refuse_while_paused(world)?;
+            retarget(world, hand, |location| location + offset)
+        }
+        HandCommand::Turn {
+            hand,
+            axis,
+            degrees,
+        } => {
+            refuse_while_paused(world)?;
+            turn(world, hand, axis, degrees)
+        }
+        HandCommand::Release(hand) => {
+            refuse_while_paused(world)?;
+            release(world, cause, hand);
+            Ok(())
+        }
+        HandCommand::Destroy(hand) => {
+            refuse_while_paused(world)?;
+            destroy(world, cause, hand)
+        }
+    })
+}
+
+fn refuse_while_paused(world: &World) -> Result<(), String> {
+    match world.resource::<Paused>().0 {
+        true => Err("hands cannot act while the simulation is paused".into()),
+        false => Ok(()),
     }
-    Ok(())
 }
 
-/// Whether a command makes a hand act.
-fn is_for_hands(command: &SimCommand) -> bool {
-    matches!(
-        command,
-        SimCommand::Grasp { .. }
-            | SimCommand::MoveTo { .. }
-            | SimCommand::MoveBy { .. }
-            | SimCommand::Turn { .. }
-            | SimCommand::Release(_)
-            | SimCommand::Destroy(_)
-    )
-}
-
-fn grasp(world: &mut World, hand: Hand, id: &str) {
+fn grasp(world: &mut World, cause: CommandId, hand: Hand, id: &str) -> Result<(), String> {
     let Some(object) = world.resource::<ObjectIndex>().get(id) else {
-        refuse(
-            world,
-            format!("{hand} cannot grasp `{id}`: there is no such object"),
-        );
-        return;
+        return Err(format!(
+            "{hand} cannot grasp `{id}`: there is no such object"
+        ));
     };
     let hands = world.resource::<Hands>();
     if hands.held_by(hand) == Some(object) {
-        return;
+        return Ok(());
     }
     let Ok(letting_go) = rules::letting_go_for(hand, hands) else {
-        refuse(
-            world,
-            format!("{hand} cannot grasp `{id}`: both hands are occupied"),
-        );
-        return;
+        return Err(format!(
+            "{hand} cannot grasp `{id}`: both hands are occupied"
+        ));
     };
     let handing_off = hands.holder_of(object);
     for other in letting_go.into_iter().chain(handing_off) {
-        release(world, other);
+        release(world, cause, other);
     }
 
-    begin_segment(world);
+    begin_segment(world, cause);
     let is_jointed = world
         .query::<&Joint>()
         .iter(world)
@@ -121,35 +115,38 @@ fn grasp(world: &mut World, hand: Hand, id: &str) {
     }
     world.resource_mut::<Hands>().set_held(hand, Some(object));
     world.write_message(SimFact::Grasped {
+        cause,
         hand,
         id: id.to_owned(),
     });
+    Ok(())
 }
 
-fn release(world: &mut World, hand: Hand) {
+fn release(world: &mut World, cause: CommandId, hand: Hand) {
     let Some((object, id)) = held_by(world, hand) else {
         return;
     };
-    begin_segment(world);
+    begin_segment(world, cause);
     world.resource_mut::<Hands>().set_held(hand, None);
     let mut body = world.entity_mut(object);
     body.remove::<(Held, CarryTarget, Carry)>();
     let_go(body);
-    world.write_message(SimFact::Released { hand, id });
+    let cause = Some(cause);
+    world.write_message(SimFact::Released { cause, hand, id });
 }
 
-fn destroy(world: &mut World, hand: Hand) {
+fn destroy(world: &mut World, cause: CommandId, hand: Hand) -> Result<(), String> {
     let Some((object, id)) = held_by(world, hand) else {
-        refuse(world, format!("{hand} holds nothing that it could destroy"));
-        return;
+        return Err(format!("{hand} holds nothing that it could destroy"));
     };
-    begin_segment(world);
+    begin_segment(world, cause);
     world.resource_mut::<Hands>().set_held(hand, None);
     world
         .entity_mut(object)
         .remove::<(Held, CarryTarget, Carry)>();
     remove_object(world, object);
-    world.write_message(SimFact::Destroyed { hand, id });
+    world.write_message(SimFact::Destroyed { cause, hand, id });
+    Ok(())
 }
 
 /// What a hand holds, and its id.
@@ -158,52 +155,43 @@ fn held_by(world: &World, hand: Hand) -> Option<(Entity, String)> {
     Some((object, world.get::<ObjectSpec>(object)?.id.clone()))
 }
 
-fn retarget(world: &mut World, hand: Hand, by: Vec3, change: impl FnOnce(Vec3, Vec3) -> Vec3) {
-    let target = world
-        .resource::<Hands>()
-        .held_by(hand)
-        .and_then(|object| world.get_mut::<CarryTarget>(object));
-    let Some(mut target) = target else {
-        refuse(world, format!("{hand} holds nothing that it could move"));
-        return;
+fn retarget(world: &mut World, hand: Hand, to: impl FnOnce(Vec3) -> Vec3) -> Result<(), String> {
+    let Some(mut target) = target_of(world, hand) else {
+        return Err(format!("{hand} holds nothing that it could move"));
     };
-    let location = change(target.0.location, by);
-    if location.is_finite() {
-        target.0.location = location;
-    } else {
-        refuse(world, format!("{hand} cannot move anything to {location}"));
+    let location = to(target.0.location);
+    if !location.is_finite() {
+        return Err(format!("{hand} cannot move anything to {location}"));
     }
+    target.0.location = location;
+    Ok(())
 }
 
-fn turn(world: &mut World, hand: Hand, axis: Vec3, degrees: f32) {
-    let target = world
-        .resource::<Hands>()
-        .held_by(hand)
-        .and_then(|object| world.get_mut::<CarryTarget>(object));
-    let Some(mut target) = target else {
-        refuse(world, format!("{hand} holds nothing that it could turn"));
-        return;
+fn turn(world: &mut World, hand: Hand, axis: Vec3, degrees: f32) -> Result<(), String> {
+    let Some(mut target) = target_of(world, hand) else {
+        return Err(format!("{hand} holds nothing that it could turn"));
     };
-    match axis.try_normalize() {
-        Some(axis) if degrees.is_finite() => {
-            let turn = Quat::from_axis_angle(axis, degrees.to_radians());
-            target.0.rotation = (turn * target.0.rotation).normalize();
-        }
-        _ => refuse(
-            world,
-            format!("{hand} cannot turn anything by {degrees}° about {axis}"),
-        ),
-    }
+    let Some(direction) = axis.try_normalize().filter(|_| degrees.is_finite()) else {
+        return Err(format!(
+            "{hand} cannot turn anything by {degrees}° about {axis}"
+        ));
+    };
+    let turn = Quat::from_axis_angle(direction, degrees.to_radians());
+    target.0.rotation = (turn * target.0.rotation).normalize();
+    Ok(())
 }
 
-fn refuse(world: &mut World, reason: String) {
-    world.write_message(SimFact::Refused { reason });
+/// Where what a hand holds is to be.
+fn target_of(world: &mut World, hand: Hand) -> Option<Mut<'_, CarryTarget>> {
+    let object = world.resource::<Hands>().held_by(hand)?;
+    world.get_mut(object)
 }
 
 /// A hand whose object goes without it (off the edge of the world, or despawned by someone) is empty.
 pub(crate) fn note_lost(
     remove: On<Remove, Held>,
     objects: Query<&ObjectSpec>,
+    cause: Res<Cause>,
     mut hands: ResMut<Hands>,
     mut facts: MessageWriter<SimFact>,
 ) {
@@ -213,6 +201,7 @@ pub(crate) fn note_lost(
     hands.set_held(hand, None);
     if let Ok(spec) = objects.get(remove.entity) {
         facts.write(SimFact::Released {
+            cause: cause.0,
             hand,
             id: spec.id.clone(),
         });

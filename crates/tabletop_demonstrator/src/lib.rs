@@ -25,13 +25,13 @@
 //!     descriptions: vec![],
 //! };
 //! let scene = SceneSpec { items: vec![SceneItem::Object(block)], ..default() };
-//! app.world_mut().write_message(SimCommand::SetScene(Box::new(scene)));
+//! app.world_mut().write_command(SceneCommand::Set(Box::new(scene)));
 //! app.step(1);
 //!
 //! let hand = Hand::Right;
 //! let location = Vec3::new(3.0, 1.0, 4.0);
-//! app.world_mut().write_message(SimCommand::Grasp { hand, object: "block".into() });
-//! app.world_mut().write_message(SimCommand::MoveTo { hand, location });
+//! app.world_mut().write_command(HandCommand::Grasp { hand, object: "block".into() });
+//! app.world_mut().write_command(HandCommand::MoveTo { hand, location });
 //! app.step(60);
 //!
 //! let block = app.world().resource::<Hands>().held_by(hand).unwrap();

@@ -1,7 +1,7 @@
 //! What makes the presets of the user random.
 
 use bevy::prelude::*;
-use tabletop_core::{Preset, Random, SimCommand};
+use tabletop_core::{Preset, Random, SceneCommand};
 
 /// Draws the seeds of the presets that keys and panels make: the same series in every run with the same seed.
 #[derive(Resource, Clone, Debug, PartialEq, Eq)]
@@ -17,9 +17,9 @@ impl PresetSeeds {
     }
 
     /// The command that makes a preset with the next seed.
-    pub fn make(&mut self, preset: Preset) -> SimCommand {
+    pub fn make(&mut self, preset: Preset) -> SceneCommand {
         let seed = self.0.bits();
-        SimCommand::Make { preset, seed }
+        SceneCommand::Make { preset, seed }
     }
 }
 

@@ -2,7 +2,8 @@
 
 use bevy::{prelude::*, time::TimeUpdateStrategy};
 use tabletop_core::{
-    CorePlugin, Hands, ObjectIndex, ObjectSpec, Pose, Rgb, Shape, SimCommand, Table, UserCamera,
+    CorePlugin, Hands, IssuedCommand, ObjectIndex, ObjectSpec, Pose, Rgb, Shape, SimCommand, Table,
+    UserCamera,
 };
 
 use crate::input::pointer::Pointer;
@@ -110,13 +111,14 @@ impl TestWorld {
     fn frame(&mut self) -> Vec<SimCommand> {
         self.app
             .world_mut()
-            .resource_mut::<Messages<SimCommand>>()
+            .resource_mut::<Messages<IssuedCommand>>()
             .clear();
         self.app.update();
         self.buttons().clear();
         self.keys().clear();
-        let messages = self.app.world().resource::<Messages<SimCommand>>();
-        messages.iter_current_update_messages().cloned().collect()
+        let messages = self.app.world().resource::<Messages<IssuedCommand>>();
+        let issued = messages.iter_current_update_messages();
+        issued.map(|issued| issued.command.clone()).collect()
     }
 }
 

@@ -2,12 +2,12 @@
 //!
 //! Each plugin says what of its own rolls back, as in `bevy_ggrs`: components of the entities marked [`Rollback`](tabletop_core::Rollback),
 //! resources, and whatever else decides what comes next ([`RollbackState`]). While a recording runs, [`begin_segment`]
-//! keeps a [`WorldSnapshot`]; [`SimCommand::Undo`](tabletop_core::SimCommand::Undo) and
-//! [`Redo`](tabletop_core::SimCommand::Redo) go back and forth between them. Snapshots share what did not change.
+//! keeps a [`WorldSnapshot`]; [`HistoryCommand`](tabletop_core::HistoryCommand)s
+//! go back and forth between them. Snapshots share what did not change.
 //!
 //! ```
 //! use bevy::prelude::*;
-//! use tabletop_core::{Recording, Rollback, prelude::*};
+//! use tabletop_core::{CommandId, Recording, Rollback, prelude::*};
 //! use tabletop_history::{HistoryPlugin, RollbackApp, begin_segment};
 //!
 //! #[derive(Component, Clone, Copy, Debug, PartialEq)]
@@ -20,9 +20,9 @@
 //! app.insert_resource(Recording(true));
 //! let switch = app.world_mut().spawn((Rollback, Switch(false))).id();
 //!
-//! begin_segment(app.world_mut());
+//! begin_segment(app.world_mut(), CommandId(0));
 //! app.world_mut().entity_mut(switch).insert(Switch(true));
-//! app.world_mut().write_message(SimCommand::Undo);
+//! app.world_mut().write_command(HistoryCommand::Undo);
 //! app.step(1);
 //! assert_eq!(app.world().get(switch), Some(&Switch(false)));
 //! ```

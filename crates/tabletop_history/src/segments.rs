@@ -6,7 +6,9 @@ use bevy::{
     ecs::{change_detection::Tick, system::SystemState},
     prelude::*,
 };
-use tabletop_core::{History, Recording, SimCommand, SimFact};
+use tabletop_core::{
+    CommandId, History, HistoryCommand, IssuedCommand, Recording, SimFact, carry_out,
+};
 
 use crate::{
     removal::{KeepRemoved, drop_removed},
@@ -68,10 +70,10 @@ impl Segments {
     }
 }
 
-/// Tells that a hand is about to act, and remembers the world before it if a recording is running, so that it can be undone. Without
+/// Reports that a hand is about to act because of a command, and remembers the world before it if a recording is running, so that it can be undone. Without
 /// [`HistoryPlugin`](crate::HistoryPlugin), nothing can.
-pub fn begin_segment(world: &mut World) {
-    world.write_message(SimFact::SegmentBegun);
+pub fn begin_segment(world: &mut World, cause: CommandId) {
+    world.write_message(SimFact::SegmentBegun { cause });
     if !world.resource::<Recording>().0 || !world.contains_resource::<Segments>() {
         return;
     }
@@ -87,48 +89,42 @@ pub fn begin_segment(world: &mut World) {
 /// Carries out undo and redo, and forgets everything when the recording has ended.
 pub(crate) fn undo_and_redo(
     world: &mut World,
-    reader: &mut SystemState<MessageReader<SimCommand>>,
+    reader: &mut SystemState<MessageReader<IssuedCommand>>,
 ) -> Result {
-    let commands = SimCommand::unread(world, reader, |command| {
-        matches!(command, SimCommand::Undo | SimCommand::Redo)
-    })?;
     if !world.resource::<Recording>().0 {
         forget(world);
     }
-    for command in commands {
+    carry_out(world, reader, |world, cause, command| {
         let fact = match command {
-            SimCommand::Undo => undo(world),
-            _ => redo(world),
-        };
+            HistoryCommand::Undo => undo(world, cause),
+            HistoryCommand::Redo => redo(world, cause),
+        }?;
         world.write_message(fact);
         publish(world);
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
-fn undo(world: &mut World) -> SimFact {
+fn undo(world: &mut World, cause: CommandId) -> Result<SimFact, String> {
     let Some(begin) = world.resource_mut::<Segments>().undoable.pop_back() else {
-        return SimFact::Refused {
-            reason: "there is nothing to undo: only what was done in the present recording can be"
-                .into(),
-        };
+        return Err(
+            "there is nothing to undo: only what was done in the present recording can be".into(),
+        );
     };
     let end = snapshot(world);
     restore(world, &begin);
     let undone = Undone { begin, end };
     world.resource_mut::<Segments>().redoable.push(undone);
-    SimFact::Undone
+    Ok(SimFact::Undone { cause })
 }
 
-fn redo(world: &mut World) -> SimFact {
+fn redo(world: &mut World, cause: CommandId) -> Result<SimFact, String> {
     let Some(Undone { begin, end }) = world.resource_mut::<Segments>().redoable.pop() else {
-        return SimFact::Refused {
-            reason: "there is nothing to redo".into(),
-        };
+        return Err("there is nothing to redo".into());
     };
     restore(world, &end);
     world.resource_mut::<Segments>().undoable.push_back(begin);
-    SimFact::Redone
+    Ok(SimFact::Redone { cause })
 }
 
 /// The present world, sharing with the last snapshot what has not changed.

@@ -13,22 +13,20 @@
 //! let mut app = App::new();
 //! app.add_plugins((MinimalPlugins, CorePlugin::default(), recorder)).start();
 //!
-//! app.world_mut().write_message(SimCommand::StartRecording);
+//! app.world_mut().write_command(RecordingCommand::Start);
 //! app.step(60);
-//! app.world_mut().write_message(SimCommand::FinishRecording);
+//! app.world_mut().write_command(RecordingCommand::Finish);
 //! app.step(1);
 //!
 //! let session = Session::read(folder.join("session.jsonl"))?;
 //! assert_eq!(session.commands[0].tick, 60);
-//! assert_eq!(session.commands[0].command, SimCommand::FinishRecording);
+//! assert_eq!(session.commands[0].command, SimCommand::Recording(RecordingCommand::Finish));
 //! # std::fs::remove_dir_all(folder)?;
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
-mod cause;
 mod error;
 mod files;
-mod order;
 mod reading;
 mod recording;
 

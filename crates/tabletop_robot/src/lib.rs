@@ -17,7 +17,7 @@
 //!     .add_plugins(RobotPlugin::default())
 //!     .start();
 //! let there = vec![(RobotJoint::RightE1, Drive::Toward(1.5))];
-//! app.world_mut().write_message(SimCommand::Drive(there));
+//! app.world_mut().write_command(RobotCommand::Drive(there));
 //! app.step(120);
 //! let robot = app.world().resource::<Robot>();
 //! assert_eq!(robot.joint(RobotJoint::RightE1).position, 1.5);

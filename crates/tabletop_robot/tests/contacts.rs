@@ -6,7 +6,7 @@ mod kit;
 use bevy::prelude::*;
 use kit::{Stage, block};
 use tabletop_core::{
-    Arm, Drive, ObjectIndex, Pose, RobotContact, RobotJoint, SimCommand, StepApp, TICK_SECONDS,
+    Arm, Drive, ObjectIndex, Pose, RobotCommand, RobotContact, RobotJoint, StepApp, TICK_SECONDS,
     Table, Twist,
 };
 
@@ -17,7 +17,7 @@ const RIGHT_FINGER: &str = "right-gripper-right-finger";
 const GRAVITY: f32 = 98.1;
 
 fn drive(stage: &mut Stage, joint: RobotJoint, drive: Drive) {
-    stage.tell(SimCommand::Drive(vec![(joint, drive)]));
+    stage.tell(RobotCommand::Drive(vec![(joint, drive)]));
 }
 
 fn object(stage: &Stage, id: &str) -> Entity {
@@ -42,7 +42,7 @@ fn push(mut stage: Stage, mass: f32) -> Stage {
     let place = Pose::at(Vec3::new(4.0, -3.0, 0.5));
     stage.put("thing", block(Vec3::ONE), mass, place);
     let pose = Pose::at(Vec3::new(5.0, -3.0, 0.9));
-    stage.tell(SimCommand::ReachTo { arm: ARM, pose });
+    stage.tell(RobotCommand::ReachTo { arm: ARM, pose });
     stage
 }
 
@@ -191,10 +191,10 @@ fn the_table_is_touched_until_the_arm_leaves_it_or_the_robot_is_hidden() {
         assert_eq!((contact.thing, contact.impulse), (table, 0.0));
         assert!(contact.point.z.abs() < 1e-4, "{contact:?}");
     }
-    stage.tell(SimCommand::ShowRobot(false));
+    stage.tell(RobotCommand::Show(false));
     stage.app.step(1);
     assert_eq!(stage.robot().contacts, []);
-    stage.tell(SimCommand::ShowRobot(true));
+    stage.tell(RobotCommand::Show(true));
     stage.app.step(1);
     assert!(!stage.robot().contacts.is_empty());
     lower(&mut stage, -0.1);

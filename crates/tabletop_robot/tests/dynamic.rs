@@ -10,8 +10,8 @@ use kit::{
 };
 use proptest::prelude::*;
 use tabletop_core::{
-    Arm, Drive, Hand, JOINTS_PER_ARM, Pose, Recording, RobotJoint, SimCommand, StepApp,
-    TICK_SECONDS,
+    Arm, Drive, Hand, HandCommand, HistoryCommand, JOINTS_PER_ARM, Pose, Recording, RobotCommand,
+    RobotJoint, StepApp, TICK_SECONDS,
 };
 use tabletop_kinematics::baxter;
 
@@ -271,7 +271,7 @@ proptest! {
         is_shown: bool,
     ) {
         let mut stage = Stage::dynamic();
-        stage.tell(SimCommand::ShowRobot(is_shown));
+        stage.tell(RobotCommand::Show(is_shown));
         for (i, mass) in [0.2, 2.0, 50.0].into_iter().enumerate() {
             let place = Vec3::new(3.0 * i as f32 - 3.0, -3.5, 0.5);
             stage.put(&format!("block{i}"), block(Vec3::ONE), mass, Pose::at(place));
@@ -304,13 +304,13 @@ fn undo_takes_the_motors_back_too() {
     drive(&mut stage, &[(RobotJoint::RightE1, Drive::Toward(1.0))]);
     stage.app.step(30);
     let joints = stage.robot().joints;
-    stage.tell(SimCommand::Grasp {
+    stage.tell(HandCommand::Grasp {
         hand: Hand::Left,
         object: "thing".into(),
     });
     stage.app.step(30);
     let then = stage.robot().joints;
-    stage.tell(SimCommand::Undo);
+    stage.tell(HistoryCommand::Undo);
     stage.app.step(30);
     assert_ne!(joints, then);
     assert_eq!(
@@ -326,7 +326,7 @@ fn what_hinders_an_arm_is_left_when_the_robot_goes_away() {
     drive(&mut stage, &[(RobotJoint::RightS1, Drive::Velocity(-1.0))]);
     stage.app.step(3);
     let angles = stage.robot().angles(ARM);
-    stage.tell(SimCommand::ShowRobot(false));
+    stage.tell(RobotCommand::Show(false));
     stage.app.step(1);
     assert_eq!(stage.robot().angles(ARM), angles);
     assert!(

@@ -6,8 +6,8 @@ mod kit;
 use bevy::prelude::*;
 use kit::{Stage, block};
 use tabletop_core::{
-    Arm, Drive, LidBoxSpec, ObjectIndex, Part, Pose, Rgb, Robot, RobotJoint, RobotMode, SceneItem,
-    SceneSpec, Shape, SimCommand, SimFact, StepApp,
+    Arm, Drive, HandCommand, LidBoxSpec, ObjectIndex, Part, Pose, Rgb, Robot, RobotCommand,
+    RobotJoint, RobotMode, SceneCommand, SceneItem, SceneSpec, Shape, SimFact, StepApp,
 };
 use tabletop_robot::STEEPEST_GRIP;
 
@@ -28,7 +28,7 @@ fn gripper_around(shape: Shape, mass: f32, place: Vec3, degrees: Vec3) -> Stage 
 }
 
 fn close(stage: &mut Stage) -> Vec<SimFact> {
-    stage.tell(SimCommand::Drive(vec![(
+    stage.tell(RobotCommand::Drive(vec![(
         RobotJoint::gripper(ARM),
         Drive::Toward(0.0),
     )]));
@@ -70,7 +70,7 @@ fn a_block_is_held_lifted_carried_and_let_go_of() {
     let expected = moved * (hand.inverse() * place);
     assert!((stage.place("thing").location - expected.location).length() < 1e-3);
 
-    stage.tell(SimCommand::Drive(vec![(
+    stage.tell(RobotCommand::Drive(vec![(
         RobotJoint::gripper(ARM),
         Drive::Toward(2.0),
     )]));
@@ -165,7 +165,7 @@ fn two_blocks_are_held_at_once_and_let_go_of_together() {
     let facts = grip_facts(close(&mut stage));
     assert_eq!(facts.len(), 2, "{facts:?}");
     assert_eq!(stage.robot().arm(ARM).holds.len(), 2);
-    stage.tell(SimCommand::Drive(vec![(
+    stage.tell(RobotCommand::Drive(vec![(
         RobotJoint::gripper(ARM),
         Drive::Velocity(1.0),
     )]));
@@ -200,7 +200,7 @@ fn a_block_as_wide_as_the_gripper_is_taken_carried_and_put_down() {
         stage.reach(ARM, Vec3::new(4.0, -1.0, 1.53), 0.0);
         let put = stage.place("thing").location.with_z(1.0);
 
-        stage.tell(SimCommand::Drive(vec![(
+        stage.tell(RobotCommand::Drive(vec![(
             RobotJoint::gripper(ARM),
             Drive::Toward(2.0),
         )]));
@@ -237,7 +237,7 @@ fn every_order_to_open_releases_what_is_as_wide_as_the_gripper() {
         close(&mut stage);
         assert_eq!(stage.robot().arm(ARM).holds.len(), 1);
         let gripper = RobotJoint::gripper(ARM);
-        stage.tell(SimCommand::Drive(vec![(gripper, order)]));
+        stage.tell(RobotCommand::Drive(vec![(gripper, order)]));
         stage.app.step(1);
         assert!(stage.robot().arm(ARM).holds.is_empty(), "{order:?}");
     }
@@ -253,7 +253,7 @@ fn an_order_to_close_or_stay_releases_nothing() {
         let mut stage = around_wide_block(Stage::new());
         close(&mut stage);
         let gripper = RobotJoint::gripper(ARM);
-        stage.tell(SimCommand::Drive(vec![(gripper, order)]));
+        stage.tell(RobotCommand::Drive(vec![(gripper, order)]));
         stage.app.step(10);
         assert_eq!(stage.robot().arm(ARM).holds.len(), 1, "{order:?}");
     }
@@ -269,7 +269,7 @@ fn a_gripper_that_cannot_open_releases_all_the_same() {
     }
     stage.app.step(5);
     let gripper = RobotJoint::gripper(ARM);
-    stage.tell(SimCommand::Drive(vec![(gripper, Drive::Toward(2.0))]));
+    stage.tell(RobotCommand::Drive(vec![(gripper, Drive::Toward(2.0))]));
     stage.app.step(60);
     assert!(stage.robot().joint(gripper).position < 1.1);
     assert!(stage.robot().arm(ARM).holds.is_empty());
@@ -287,7 +287,7 @@ fn a_fixed_object_is_not_held_and_stops_the_fingers() {
 fn a_hand_takes_an_object_out_of_a_gripper() {
     let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, Vec3::ZERO);
     close(&mut stage);
-    stage.tell(SimCommand::Grasp {
+    stage.tell(HandCommand::Grasp {
         hand: tabletop_core::Hand::Left,
         object: "thing".into(),
     });
@@ -304,9 +304,12 @@ fn hiding_the_robot_lets_go_of_what_it_holds() {
     let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, Vec3::ZERO);
     close(&mut stage);
     stage.reach(ARM, Vec3::new(3.0, -2.0, 2.0), 0.0);
-    stage.tell(SimCommand::ShowRobot(false));
+    let cause = stage.tell(RobotCommand::Show(false));
     let facts = stage.facts_of(120);
-    assert!(facts.contains(&SimFact::RobotShown(false)));
+    assert!(facts.contains(&SimFact::RobotShown {
+        cause,
+        shown: false
+    }));
     assert!((stage.place("thing").location.z - 0.5).abs() < 0.02);
 }
 
@@ -314,7 +317,7 @@ fn hiding_the_robot_lets_go_of_what_it_holds() {
 fn a_held_object_stays_when_the_table_is_cleared() {
     let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, Vec3::ZERO);
     close(&mut stage);
-    stage.tell(SimCommand::ClearTable);
+    stage.tell(SceneCommand::Clear);
     stage.app.step(5);
     assert_eq!(stage.robot().arm(ARM).holds.len(), 1);
     let robot = stage.app.world().resource::<Robot>().clone();
@@ -342,7 +345,7 @@ fn a_lid_is_pulled_open_by_its_handle() {
         items: vec![SceneItem::LidBox(chest)],
         ..default()
     };
-    stage.tell(SimCommand::SetScene(Box::new(scene)));
+    stage.tell(SceneCommand::Set(Box::new(scene)));
     stage.app.step(60);
     let ids: Vec<String> = {
         let index = stage.app.world().resource::<ObjectIndex>();

@@ -6,7 +6,7 @@ mod kit;
 use bevy::prelude::*;
 use bevy_rapier3d::{prelude::Collider, rapier::prelude::SharedShape};
 use kit::Stage;
-use tabletop_core::{Face, Figure, SimCommand, StepApp};
+use tabletop_core::{Face, Figure, RobotCommand, StepApp};
 use tabletop_robot::{Description, RobotBody, RobotPlugin, Source};
 
 /// Triangles of every body that is seen, by name.
@@ -28,10 +28,10 @@ fn the_robot_is_seen_while_it_is_shown() {
     assert!(shown.len() > 20, "{shown:?}");
     let triangles: usize = shown.iter().map(|(_, triangles)| triangles).sum();
     assert!((10_000..40_000).contains(&triangles), "{triangles}");
-    stage.tell(SimCommand::ShowRobot(false));
+    stage.tell(RobotCommand::Show(false));
     stage.app.step(1);
     assert!(seen(&mut stage).is_empty());
-    stage.tell(SimCommand::ShowRobot(true));
+    stage.tell(RobotCommand::Show(true));
     stage.app.step(1);
     assert_eq!(seen(&mut stage), shown);
 }
@@ -96,7 +96,7 @@ fn a_link_is_touched_by_the_hulls_of_its_meshes() {
 fn the_face_changes_and_nothing_else() {
     let mut stage = Stage::new();
     let neutral = seen(&mut stage);
-    stage.tell(SimCommand::ShowFace(Face::Blank));
+    stage.tell(RobotCommand::ShowFace(Face::Blank));
     stage.app.step(1);
     let blank = seen(&mut stage);
     let changed: Vec<_> = neutral

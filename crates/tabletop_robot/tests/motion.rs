@@ -9,12 +9,12 @@ use bevy::prelude::*;
 use kit::{Stage, block, inside_the_table};
 use proptest::prelude::*;
 use tabletop_core::{
-    Arm, Drive, Hand, HeadCamera, Pose, Robot, RobotJoint, SimCommand, SimFact, StepApp,
-    TICK_SECONDS,
+    Arm, Drive, Hand, HandCommand, HeadCamera, HistoryCommand, Pose, Robot, RobotCommand,
+    RobotJoint, SimFact, StepApp, TICK_SECONDS,
 };
 
 fn drive(stage: &mut Stage, joint: RobotJoint, drive: Drive) {
-    stage.tell(SimCommand::Drive(vec![(joint, drive)]));
+    stage.tell(RobotCommand::Drive(vec![(joint, drive)]));
 }
 
 #[test]
@@ -34,7 +34,7 @@ fn a_velocity_moves_a_joint_for_one_tick() {
 #[test]
 fn the_neck_turns_the_camera_and_the_hidden_robot_moves() {
     let mut stage = Stage::new();
-    stage.tell(SimCommand::ShowRobot(false));
+    stage.tell(RobotCommand::Show(false));
     drive(&mut stage, RobotJoint::HeadPan, Drive::Position(0.5));
     drive(&mut stage, RobotJoint::RightW2, Drive::Position(1.0));
     stage.app.step(1);
@@ -49,13 +49,13 @@ fn hands_pass_through_where_the_hidden_robot_was() {
     stage.reach(Arm::Right, place - Vec3::Z * 2.5, 0.0);
     let start = Pose::at(Vec3::new(3.0, 3.0, 0.5));
     stage.put("thing", block(Vec3::ONE), 1.0, start);
-    stage.tell(SimCommand::ShowRobot(false));
+    stage.tell(RobotCommand::Show(false));
     stage.app.step(5);
     let hand = Hand::Left;
     let object = "thing".into();
-    stage.tell(SimCommand::Grasp { hand, object });
+    stage.tell(HandCommand::Grasp { hand, object });
     for location in [start.location + Vec3::Z * 1.5, place] {
-        stage.tell(SimCommand::MoveTo { hand, location });
+        stage.tell(HandCommand::MoveTo { hand, location });
         stage.app.step(60);
     }
     let there = stage.place("thing").location;
@@ -65,17 +65,17 @@ fn hands_pass_through_where_the_hidden_robot_was() {
 #[test]
 fn an_arm_that_went_into_the_table_while_hidden_is_home_when_shown() {
     let mut stage = Stage::new();
-    stage.tell(SimCommand::ShowRobot(false));
+    stage.tell(RobotCommand::Show(false));
     let down = [
         (RobotJoint::LeftS1, 1.0),
         (RobotJoint::LeftE1, 0.0),
         (RobotJoint::RightW2, 0.5),
     ];
     let down = down.map(|(joint, at)| (joint, Drive::Position(at)));
-    stage.tell(SimCommand::Drive(down.into()));
+    stage.tell(RobotCommand::Drive(down.into()));
     stage.app.step(2);
     assert!(!inside_the_table(&mut stage).is_empty());
-    stage.tell(SimCommand::ShowRobot(true));
+    stage.tell(RobotCommand::Show(true));
     let facts = stage.facts_of(2);
     let blocked = |fact: &SimFact| matches!(fact, SimFact::ArmBlocked { arm: Arm::Left, .. });
     assert!(facts.iter().any(blocked), "{facts:?}");
@@ -123,7 +123,7 @@ fn an_arm_stops_at_a_fixed_object_and_pushes_a_free_one() {
             Pose::at(Vec3::new(4.0, -3.0, 0.5)),
         );
         let pose = Pose::at(Vec3::new(5.0, -3.0, 0.9));
-        stage.tell(SimCommand::ReachTo {
+        stage.tell(RobotCommand::ReachTo {
             arm: Arm::Right,
             pose,
         });
@@ -164,7 +164,7 @@ fn the_arms_do_not_enter_each_other() {
     stage.reach(Arm::Right, Vec3::new(2.0, -3.0, 3.0), 0.0);
     stage.reach(Arm::Left, Vec3::new(-2.0, -3.0, 3.0), 0.0);
     let pose = Pose::at(Vec3::new(3.0, -3.0, 3.0));
-    stage.tell(SimCommand::ReachTo {
+    stage.tell(RobotCommand::ReachTo {
         arm: Arm::Left,
         pose,
     });
@@ -205,13 +205,13 @@ fn a_held_object_is_never_inside_the_table() {
 fn a_pose_out_of_reach_is_refused() {
     let mut stage = Stage::new();
     let pose = Pose::at(Vec3::new(30.0, 0.0, 1.0));
-    stage.tell(SimCommand::ReachTo {
+    stage.tell(RobotCommand::ReachTo {
         arm: Arm::Left,
         pose,
     });
     let facts = stage.facts_of(1);
     assert!(
-        matches!(&facts[..], [SimFact::Refused { reason }] if reason.contains("cannot reach")),
+        matches!(&facts[..], [SimFact::Refused { reason, .. }] if reason.contains("cannot reach")),
         "{facts:?}"
     );
 }
@@ -232,14 +232,14 @@ fn undo_takes_the_robot_back_too() {
         .0 = true;
     stage.app.step(1);
     let before = stage.robot().clone();
-    stage.tell(SimCommand::Grasp {
+    stage.tell(HandCommand::Grasp {
         hand: tabletop_core::Hand::Left,
         object: "thing".into(),
     });
     drive(&mut stage, RobotJoint::RightE1, Drive::Toward(1.0));
     stage.app.step(30);
     assert_ne!(stage.robot(), &before);
-    stage.tell(SimCommand::Undo);
+    stage.tell(HistoryCommand::Undo);
     stage.app.step(1);
     assert_eq!(stage.robot().joints, before.joints);
     assert_eq!(
@@ -269,8 +269,8 @@ proptest! {
     ) {
         let mut stage = Stage::new();
         for (is_shown, drives) in acts {
-            stage.tell(SimCommand::ShowRobot(is_shown));
-            stage.tell(SimCommand::Drive(drives));
+            stage.tell(RobotCommand::Show(is_shown));
+            stage.tell(RobotCommand::Drive(drives));
             stage.app.step(3);
             for joint in RobotJoint::ALL {
                 let position = stage.robot().joint(joint).position;
@@ -315,7 +315,7 @@ fn an_arm_that_presses_a_block_onto_the_table_stops() {
     drive(&mut stage, RobotJoint::RightGripper, Drive::Position(0.2));
     stage.reach(Arm::Right, Vec3::new(3.0, -3.0, 2.5), 0.0);
     let pose = Pose::at(Vec3::new(3.0, -3.0, 0.9));
-    stage.tell(SimCommand::ReachTo {
+    stage.tell(RobotCommand::ReachTo {
         arm: Arm::Right,
         pose,
     });

@@ -8,7 +8,7 @@ use kit::{
     Stage, block,
     motors::{ARM, SECOND, check_limits, drive, effort},
 };
-use tabletop_core::{Drive, Pose, Robot, RobotJoint, SimCommand, SimFact, StepApp, TICK_SECONDS};
+use tabletop_core::{Drive, Pose, Robot, RobotCommand, RobotJoint, SimFact, StepApp, TICK_SECONDS};
 
 #[test]
 fn a_swing_into_a_fixed_block_stops_there_within_the_efforts() {
@@ -73,7 +73,7 @@ fn push(mass: f32, is_there: bool) -> Pushed {
     );
     stage.facts_of(30);
     let pose = Pose::at(Vec3::new(7.0, -3.0, 0.9));
-    stage.tell(SimCommand::ReachTo { arm: ARM, pose });
+    stage.tell(RobotCommand::ReachTo { arm: ARM, pose });
     let mut strongest = 0.0_f64;
     let mut facts = Vec::new();
     for tick in 0..SECOND {
@@ -138,7 +138,7 @@ fn an_arm_that_presses_a_block_onto_the_table_stops() {
     stage.reach(ARM, Vec3::new(3.0, -3.0, 2.5), 0.0);
     stage.app.step(60);
     let pose = Pose::at(Vec3::new(3.0, -3.0, 0.9));
-    stage.tell(SimCommand::ReachTo { arm: ARM, pose });
+    stage.tell(RobotCommand::ReachTo { arm: ARM, pose });
     for _ in 0..3 * SECOND {
         stage.app.step(1);
         check_limits(stage.robot());

@@ -1,7 +1,10 @@
 //! What the steps of a scenario do.
 
 use bevy::prelude::*;
-use tabletop_core::{Hand, SimCommand, TICKS_PER_SECOND};
+use tabletop_core::{
+    ClockCommand, Hand, HandCommand, HistoryCommand, RecordingCommand, SceneCommand, SimCommand,
+    TICKS_PER_SECOND,
+};
 
 use crate::{RobotStep, ScenarioRun, Step, program::Action, robot::TICKS_TO_STILL, seen::Seen};
 
@@ -19,7 +22,9 @@ impl ScenarioRun {
     /// Takes the step that is due.
     pub(crate) fn act(&mut self, action: &Action, seen: &Seen) -> Result<Progress, String> {
         match action {
-            Action::SetScene(scene) => Ok(Progress::Command(SimCommand::SetScene(scene.clone()))),
+            Action::SetScene(scene) => Ok(Progress::Command(SimCommand::Scene(SceneCommand::Set(
+                scene.clone(),
+            )))),
             Action::Do(step) => self.take(step, seen.selected, seen),
         }
     }
@@ -27,40 +32,40 @@ impl ScenarioRun {
     fn take(&mut self, step: &Step, hand: Hand, seen: &Seen) -> Result<Progress, String> {
         Ok(Progress::Command(match step {
             Step::With(hand, step) => return self.take(step, *hand, seen),
-            Step::Load { file, .. } => SimCommand::LoadTask(file.clone()),
-            Step::Clear => SimCommand::ClearTable,
-            Step::Make(preset) => SimCommand::Make {
+            Step::Load { file, .. } => SimCommand::Scene(SceneCommand::Load(file.clone())),
+            Step::Clear => SimCommand::Scene(SceneCommand::Clear),
+            Step::Make(preset) => SimCommand::Scene(SceneCommand::Make {
                 preset: *preset,
                 seed: self.random().bits(),
-            },
-            Step::Select(hand) => SimCommand::SelectHand(*hand),
-            Step::Grasp(object) => SimCommand::Grasp {
+            }),
+            Step::Select(hand) => SimCommand::Hand(HandCommand::Select(*hand)),
+            Step::Grasp(object) => SimCommand::Hand(HandCommand::Grasp {
                 hand,
                 object: object.clone(),
-            },
-            Step::MoveTo(location) => SimCommand::MoveTo {
+            }),
+            Step::MoveTo(location) => SimCommand::Hand(HandCommand::MoveTo {
                 hand,
                 location: *location,
-            },
-            Step::MoveBy(offset) => SimCommand::MoveBy {
+            }),
+            Step::MoveBy(offset) => SimCommand::Hand(HandCommand::MoveBy {
                 hand,
                 offset: *offset,
-            },
-            Step::Turn { axis, degrees } => SimCommand::Turn {
+            }),
+            Step::Turn { axis, degrees } => SimCommand::Hand(HandCommand::Turn {
                 hand,
                 axis: axis.direction(),
                 degrees: *degrees,
-            },
+            }),
             Step::Release => {
                 seen.held_by(hand)?;
-                SimCommand::Release(hand)
+                SimCommand::Hand(HandCommand::Release(hand))
             }
-            Step::Destroy => SimCommand::Destroy(hand),
-            Step::Start => SimCommand::StartRecording,
-            Step::Finish => SimCommand::FinishRecording,
-            Step::Undo => SimCommand::Undo,
-            Step::Redo => SimCommand::Redo,
-            Step::Pause(pause) => SimCommand::SetPaused(*pause),
+            Step::Destroy => SimCommand::Hand(HandCommand::Destroy(hand)),
+            Step::Start => SimCommand::Recording(RecordingCommand::Start),
+            Step::Finish => SimCommand::Recording(RecordingCommand::Finish),
+            Step::Undo => SimCommand::History(HistoryCommand::Undo),
+            Step::Redo => SimCommand::History(HistoryCommand::Redo),
+            Step::Pause(pause) => SimCommand::Clock(ClockCommand::SetPaused(*pause)),
             Step::Glide { to, seconds } => return self.glide(*to, *seconds, hand, seen),
             Step::Robot(RobotStep::WaitUntilStill(timeout)) => {
                 let moving = (self.robot_still < TICKS_TO_STILL).then_some("the robot");
@@ -121,7 +126,7 @@ impl ScenarioRun {
         }
         let fraction = (self.ticks_in_step + 1) as f32 / ticks(seconds).max(1) as f32;
         let location = self.glides_from.lerp(to, fraction.min(1.0));
-        let command = SimCommand::MoveTo { hand, location };
+        let command = SimCommand::Hand(HandCommand::MoveTo { hand, location });
         Ok(match fraction < 1.0 {
             true => Progress::GoesOn(Some(command)),
             false => Progress::Command(command),
@@ -183,7 +188,7 @@ mod tests {
         stage.holders[0] = Some(Hand::Any);
         let way: Vec<_> = std::iter::from_fn(|| stage.tick())
             .map(|command| match command {
-                SimCommand::MoveTo { location, .. } => location.x,
+                SimCommand::Hand(HandCommand::MoveTo { location, .. }) => location.x,
                 other => panic!("{other:?}"),
             })
             .collect();

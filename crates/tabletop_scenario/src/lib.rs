@@ -49,7 +49,8 @@ pub use step::{Axis, Step};
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Hands, ObjectIndex, ObjectSpec, OrderSystems, Paused, Pose, Robot, SimCommand, SimFact, Table,
+    Actor, CommandId, CommandWriter, Hands, ObjectIndex, ObjectSpec, OrderSystems, Paused, Pose,
+    Robot, SimFact, Table,
 };
 
 use crate::seen::{Seen, SeenObject};
@@ -74,7 +75,8 @@ impl Plugin for ScenarioPlugin {
 fn take_due_steps(
     mut run: ResMut<ScenarioRun>,
     mut facts: MessageReader<SimFact>,
-    mut commands: MessageWriter<SimCommand>,
+    mut commands: CommandWriter,
+    mut issued: Local<Option<CommandId>>,
     index: Res<ObjectIndex>,
     objects: Query<(&ObjectSpec, &Transform)>,
     tables: Query<&Table>,
@@ -84,10 +86,16 @@ fn take_due_steps(
 ) {
     let mut refusal = None;
     for fact in facts.read() {
-        match fact {
-            SimFact::RecordingFailed { reason, .. } => run.give_up(reason.clone()),
-            SimFact::Refused { reason } if refusal.is_none() => refusal = Some(reason.as_str()),
-            _ => {}
+        if let SimFact::RecordingFailed { reason, .. } = fact {
+            run.give_up(reason.clone());
+        }
+        if let SimFact::Refused {
+            cause: Some(cause),
+            reason,
+        } = fact
+            && Some(*cause) == *issued
+        {
+            refusal = Some(reason.as_str());
         }
     }
     let objects = index.iter().filter_map(|entity| {
@@ -106,5 +114,7 @@ fn take_due_steps(
         paused: paused.0,
         robot: &robot,
     };
-    commands.write_batch(run.tick(&seen, refusal));
+    *issued = run
+        .tick(&seen, refusal)
+        .map(|command| commands.write(Actor::Scenario, command));
 }

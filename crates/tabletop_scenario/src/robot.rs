@@ -2,7 +2,9 @@
 
 use bevy::prelude::*;
 use serde::Deserialize;
-use tabletop_core::{Arm, Drive, Face, Pose, Robot, RobotJoint, SimCommand, WIDEST_GRIP};
+use tabletop_core::{
+    Arm, Drive, Face, Pose, Robot, RobotCommand, RobotJoint, SimCommand, WIDEST_GRIP,
+};
 
 use crate::{seen::Seen, step::fault_of_vector};
 
@@ -122,14 +124,14 @@ impl RobotStep {
     pub(crate) fn command(&self) -> Option<SimCommand> {
         let gripper = |arm: Arm, opening| vec![(RobotJoint::gripper(arm), Drive::Toward(opening))];
         let drives = match self {
-            Self::Show => return Some(SimCommand::ShowRobot(true)),
-            Self::Hide => return Some(SimCommand::ShowRobot(false)),
-            Self::Face(face) => return Some(SimCommand::ShowFace(*face)),
+            Self::Show => return Some(SimCommand::Robot(RobotCommand::Show(true))),
+            Self::Hide => return Some(SimCommand::Robot(RobotCommand::Show(false))),
+            Self::Face(face) => return Some(SimCommand::Robot(RobotCommand::ShowFace(*face))),
             Self::ReachTo { arm, at, degrees } => {
-                return Some(SimCommand::ReachTo {
+                return Some(SimCommand::Robot(RobotCommand::ReachTo {
                     arm: *arm,
                     pose: Pose::from_degrees(*at, *degrees),
-                });
+                }));
             }
             Self::WaitUntilStill(_) => return None,
             Self::Move(positions) => each(positions, Drive::Toward),
@@ -141,7 +143,7 @@ impl RobotStep {
             Self::Close(arm) => gripper(*arm, 0.0),
             Self::Open(arm) => gripper(*arm, WIDEST_GRIP),
         };
-        Some(SimCommand::Drive(drives))
+        Some(SimCommand::Robot(RobotCommand::Drive(drives)))
     }
 }
 
@@ -244,13 +246,19 @@ mod tests {
         assert_eq!(
             given,
             [
-                SimCommand::ShowRobot(true),
-                SimCommand::Drive(vec![(RobotJoint::RightE1, Drive::Toward(1.5))]),
-                SimCommand::Drive(vec![(RobotJoint::LeftGripper, Drive::Toward(0.0))]),
-                SimCommand::ReachTo {
+                SimCommand::Robot(RobotCommand::Show(true)),
+                SimCommand::Robot(RobotCommand::Drive(vec![(
+                    RobotJoint::RightE1,
+                    Drive::Toward(1.5)
+                )])),
+                SimCommand::Robot(RobotCommand::Drive(vec![(
+                    RobotJoint::LeftGripper,
+                    Drive::Toward(0.0)
+                )])),
+                SimCommand::Robot(RobotCommand::ReachTo {
                     arm: Arm::Right,
                     pose: Pose::from_degrees(Vec3::new(3.0, -2.0, 1.0), Vec3::Z * 90.0),
-                },
+                }),
             ]
         );
     }

@@ -156,7 +156,7 @@ impl ScenarioRun {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::Hand;
+    use tabletop_core::{Hand, HandCommand};
 
     use super::*;
     use crate::test_stage::Stage;
@@ -171,20 +171,20 @@ mod tests {
         assert_eq!(
             given,
             [
-                SimCommand::SelectHand(Hand::Left),
-                SimCommand::Grasp {
+                SimCommand::Hand(HandCommand::Select(Hand::Left)),
+                SimCommand::Hand(HandCommand::Grasp {
                     hand: Hand::Left,
                     object: "low".into()
-                },
-                SimCommand::MoveBy {
+                }),
+                SimCommand::Hand(HandCommand::MoveBy {
                     hand: Hand::Right,
                     offset: Vec3::Z
-                },
-                SimCommand::Turn {
+                }),
+                SimCommand::Hand(HandCommand::Turn {
                     hand: Hand::Left,
                     axis: Vec3::Y,
                     degrees: 5.0
-                },
+                }),
             ]
         );
         assert_eq!(*stage.run.outcome(), Outcome::Done);

@@ -20,7 +20,7 @@
 //!     descriptions: vec![],
 //! };
 //! let scene = SceneSpec { items: vec![SceneItem::Object(block)], ..default() };
-//! app.world_mut().write_message(SimCommand::SetScene(Box::new(scene)));
+//! app.world_mut().write_command(SceneCommand::Set(Box::new(scene)));
 //! app.step(120);
 //!
 //! let block = app.world().resource::<ObjectIndex>().get("block").unwrap();
@@ -40,7 +40,7 @@ pub use ids::IdAllocator;
 pub use present::{PresentScene, present_scene};
 
 use bevy::prelude::*;
-use tabletop_core::SimSystems;
+use tabletop_core::{CommandSystems, SimSystems};
 use tabletop_history::{RollbackApp, is_rolling_back};
 
 use crate::compound::Compounds;
@@ -59,7 +59,7 @@ impl Plugin for ScenePlugin {
             .add_systems(
                 FixedUpdate,
                 (
-                    lifecycle::carry_out_commands.in_set(SimSystems::Ingest),
+                    lifecycle::carry_out_commands.in_set(CommandSystems::Scene),
                     lifecycle::remove_fallen.in_set(SimSystems::Sense),
                 ),
             )

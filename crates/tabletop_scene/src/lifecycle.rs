@@ -8,7 +8,8 @@ use bevy::{
     prelude::*,
 };
 use tabletop_core::{
-    Gripped, Held, Joint, ObjectIndex, ObjectSpec, SceneSpec, SimCommand, SimFact, Table,
+    Cause, Gripped, Held, IssuedCommand, Joint, ObjectIndex, ObjectSpec, SceneCommand, SceneSpec,
+    SimFact, Table, carry_out,
 };
 use tabletop_history::Parked;
 use tabletop_physics::{remove_object, renew_if_empty};
@@ -21,12 +22,14 @@ const LOWEST_Z: f32 = -1000.0;
 pub(crate) fn note_created(
     add: On<Add, ObjectSpec>,
     objects: Query<&ObjectSpec>,
+    cause: Res<Cause>,
     mut index: ResMut<ObjectIndex>,
     mut facts: MessageWriter<SimFact>,
 ) -> Result {
     let id = &objects.get(add.entity)?.id;
     index.insert(id, add.entity);
     facts.write(SimFact::ObjectCreated {
+        cause: cause.0,
         id: id.clone(),
         object: add.entity,
     });
@@ -71,6 +74,7 @@ pub(crate) fn note_parked(
 /// What knows of an object that has gone.
 #[derive(SystemParam)]
 pub(crate) struct Forget<'w> {
+    cause: Res<'w, Cause>,
     index: ResMut<'w, ObjectIndex>,
     facts: MessageWriter<'w, SimFact>,
 }
@@ -79,6 +83,7 @@ impl Forget<'_> {
     fn object(&mut self, spec: &ObjectSpec) {
         self.index.remove(&spec.id);
         self.facts.write(SimFact::ObjectDeleted {
+            cause: self.cause.0,
             id: spec.id.clone(),
         });
     }
@@ -87,23 +92,22 @@ impl Forget<'_> {
 /// Carries out the commands one after the other, each on what the one before has left.
 pub(crate) fn carry_out_commands(
     world: &mut World,
-    reader: &mut SystemState<MessageReader<SimCommand>>,
+    reader: &mut SystemState<MessageReader<IssuedCommand>>,
 ) -> Result {
-    let commands = SimCommand::unread(world, reader, |command| {
-        matches!(
-            command,
-            SimCommand::SetScene(_) | SimCommand::ClearTable | SimCommand::Make { .. }
-        )
-    })?;
-    for command in commands {
+    carry_out(world, reader, |world, _, command| {
         match command {
-            SimCommand::SetScene(scene) => set_scene(world, &scene),
-            SimCommand::ClearTable => clear(world),
-            SimCommand::Make { preset, seed } => preset::make(world, preset, seed),
-            _ => {}
+            SceneCommand::Load(path) => {
+                let path = path.display();
+                return Err(format!(
+                    "{path}: nothing here reads task files; add XmlPlugin"
+                ));
+            }
+            SceneCommand::Set(scene) => set_scene(world, &scene),
+            SceneCommand::Clear => clear(world),
+            SceneCommand::Make { preset, seed } => return preset::make(world, preset, seed),
         }
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 fn set_scene(world: &mut World, scene: &SceneSpec) {
@@ -208,10 +212,10 @@ mod tests {
     }
 
     fn scene(ids: &[&str]) -> SimCommand {
-        SimCommand::SetScene(Box::new(SceneSpec {
+        SimCommand::Scene(SceneCommand::Set(Box::new(SceneSpec {
             items: ids.iter().map(|id| SceneItem::Object(ball(id))).collect(),
             ..default()
-        }))
+        })))
     }
 
     fn ids(app: &App) -> Vec<&str> {
@@ -221,8 +225,8 @@ mod tests {
     #[test]
     fn the_last_of_two_scenes_in_a_tick_is_on_the_table() {
         let mut app = app();
-        app.world_mut().write_message(scene(&["a", "b"]));
-        app.world_mut().write_message(scene(&["b", "c"]));
+        app.world_mut().write_command(scene(&["a", "b"]));
+        app.world_mut().write_command(scene(&["b", "c"]));
         app.step(1);
         assert_eq!(ids(&app), ["b", "c"]);
         let world = app.world_mut();
@@ -233,14 +237,14 @@ mod tests {
     #[test]
     fn what_a_hand_holds_stays_and_keeps_its_id() {
         let mut app = app();
-        app.world_mut().write_message(scene(&["a", "b"]));
+        app.world_mut().write_command(scene(&["a", "b"]));
         app.step(1);
         let held = app.world().resource::<ObjectIndex>().get("a");
         let held = held.unwrap();
         app.world_mut()
             .entity_mut(held)
             .insert(Held { by: Hand::Left });
-        app.world_mut().write_message(scene(&["a"]));
+        app.world_mut().write_command(scene(&["a"]));
         app.step(1);
         assert_eq!(ids(&app), ["a", "a#0"]);
         assert_eq!(app.world().resource::<ObjectIndex>().get("a"), Some(held));

@@ -270,7 +270,7 @@ mod tests {
         };
         let scene = SceneSpec { table, items };
         app.world_mut()
-            .write_message(SimCommand::SetScene(Box::new(scene)));
+            .write_command(SceneCommand::Set(Box::new(scene)));
         app.step(1);
         app
     }
@@ -431,7 +431,7 @@ mod tests {
         let mut app = app(Vec::new());
         for preset in [Preset::Stack(3), Preset::BoxContainer] {
             app.world_mut()
-                .write_message(SimCommand::Make { preset, seed: 1 });
+                .write_command(SceneCommand::Make { preset, seed: 1 });
         }
         app.step(1);
         let present = present_scene(app.world());

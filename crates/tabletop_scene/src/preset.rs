@@ -5,7 +5,7 @@ use std::f32::consts::FRAC_PI_2;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{Collider, RigidBodyDisabled};
 use tabletop_core::{
-    Gripped, Held, ObjectIndex, ObjectSpec, Pose, Preset, Random, Rgb, Shape, SimFact, Table,
+    Gripped, Held, ObjectIndex, ObjectSpec, Pose, Preset, Random, Rgb, Shape, Table,
 };
 use tabletop_physics::{Convex, collider, convex_parts};
 
@@ -50,25 +50,21 @@ const COLORS: [Rgb; 8] = [
 ];
 
 /// Puts a preset at a random free place, or says that there is none.
-pub(crate) fn make(world: &mut World, preset: Preset, seed: u64) {
+pub(crate) fn make(world: &mut World, preset: Preset, seed: u64) -> Result<(), String> {
     let mut random = Random::new(seed);
     let surroundings = Surroundings::of(world);
-    let place = match preset.fault() {
-        Some(fault) => Err(fault),
-        None => surroundings.free_place(preset, &mut random).ok_or_else(|| {
-            format!("there is no free place over the table for {preset}; clear a part of it")
-        }),
-    };
-    match place {
-        Ok(pose) => {
-            for spec in objects(preset, pose, &mut random) {
-                spawn(world, spec);
-            }
-        }
-        Err(reason) => {
-            world.write_message(SimFact::Refused { reason });
-        }
+    if let Some(fault) = preset.fault() {
+        return Err(fault);
     }
+    let pose = surroundings
+        .free_place(preset, &mut random)
+        .ok_or_else(|| {
+            format!("there is no free place over the table for {preset}; clear a part of it")
+        })?;
+    for spec in objects(preset, pose, &mut random) {
+        spawn(world, spec);
+    }
+    Ok(())
 }
 
 fn spawn(world: &mut World, spec: ObjectSpec) {
@@ -232,17 +228,17 @@ mod tests {
             ScenePlugin,
         ))
         .start();
-        tell(&mut app, SimCommand::SetScene(Box::default()));
+        tell(&mut app, SceneCommand::Set(Box::default()));
         app
     }
 
-    fn tell(app: &mut App, command: SimCommand) {
-        app.world_mut().write_message(command);
+    fn tell(app: &mut App, command: SceneCommand) {
+        app.world_mut().write_command(command);
         app.step(1);
     }
 
     fn make(app: &mut App, preset: Preset, seed: u64) {
-        tell(app, SimCommand::Make { preset, seed });
+        tell(app, SceneCommand::Make { preset, seed });
     }
 
     fn specs(app: &App) -> Vec<&ObjectSpec> {
@@ -256,9 +252,12 @@ mod tests {
         let facts = app.world().resource::<Messages<SimFact>>();
         let mut all = facts.get_cursor();
         all.read(facts)
-            .filter_map(|fact| match fact {
-                SimFact::Refused { reason } => Some(reason.clone()),
-                _ => None,
+            .filter_map(|fact| {
+                if let SimFact::Refused { reason, .. } = fact {
+                    Some(reason.clone())
+                } else {
+                    None
+                }
             })
             .collect()
     }
@@ -318,7 +317,7 @@ mod tests {
     fn what_is_made_overlaps_nothing_until_there_is_no_room() {
         for seed in 0..4 {
             let mut app = app();
-            app.world_mut().write_message(SimCommand::SetPaused(true));
+            app.world_mut().write_command(ClockCommand::SetPaused(true));
             let mut made = 0;
             for more in 0..200 {
                 let preset = [Preset::BigBlock, Preset::Stack(12), Preset::BoxContainer][more % 3];
@@ -370,12 +369,12 @@ mod tests {
         let made = |app: &mut App| {
             make(app, Preset::BigBlock, 1);
             let id = specs(app)[0].id.clone();
-            tell(app, SimCommand::ClearTable);
+            tell(app, SceneCommand::Clear);
             id
         };
         assert_eq!(made(&mut app), "largeblock");
         assert_eq!(made(&mut app), "largeblock#0");
-        tell(&mut app, SimCommand::SetScene(Box::default()));
+        tell(&mut app, SceneCommand::Set(Box::default()));
         assert_eq!(made(&mut app), "largeblock");
     }
 

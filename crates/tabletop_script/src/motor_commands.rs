@@ -1,18 +1,18 @@
 //! A script's replies as commands of the simulation.
 
 use bevy::prelude::*;
-use tabletop_core::{Arm, Drive, RobotJoint, RobotMode, SimCommand};
+use tabletop_core::{Arm, Drive, RobotCommand, RobotJoint, RobotMode};
 use tabletop_engine::{InitReply, MotorCommand};
 
 /// The commands of an init script.
-pub(crate) fn commands_of_init(reply: &InitReply) -> Vec<SimCommand> {
+pub(crate) fn commands_of_init(reply: &InitReply) -> Vec<RobotCommand> {
     let markers = reply.draw_markers.iter();
     let markers = markers.map(|point| Vec3::from_array(point.map(|x| x as f32)));
-    let mut commands = vec![SimCommand::ShowMarkers(markers.collect())];
+    let mut commands = vec![RobotCommand::ShowMarkers(markers.collect())];
     commands.extend(
         reply
             .init_joint_angles
-            .map(|angles| SimCommand::Drive(at_once(&angles))),
+            .map(|angles| RobotCommand::Drive(at_once(&angles))),
     );
     commands
 }
@@ -32,7 +32,7 @@ pub(crate) fn unreachable(reply: &InitReply) -> Option<String> {
 }
 
 /// The command of a callback script for one tick.
-pub(crate) fn command_of_motor(motor: &MotorCommand, mode: RobotMode) -> SimCommand {
+pub(crate) fn command_of_motor(motor: &MotorCommand, mode: RobotMode) -> RobotCommand {
     let torques = motor.joint_torques.filter(|_| mode == RobotMode::Dynamic);
     let mut drives = match (torques, &motor.joint_angles) {
         (_, Some(angles)) => at_once(angles),
@@ -44,13 +44,13 @@ pub(crate) fn command_of_motor(motor: &MotorCommand, mode: RobotMode) -> SimComm
     }
     let head = motor.head_velocity.map(Drive::Velocity);
     drives.extend(head.map(|drive| (RobotJoint::HeadPan, drive)));
-    SimCommand::Drive(drives)
+    RobotCommand::Drive(drives)
 }
 
 /// The last command of a script that ends in a tick: velocities are zero from then on.
-pub(crate) fn last_command(motor: &MotorCommand) -> Option<SimCommand> {
+pub(crate) fn last_command(motor: &MotorCommand) -> Option<RobotCommand> {
     let angles = motor.joint_angles.as_ref();
-    angles.map(|angles| SimCommand::Drive(at_once(angles)))
+    angles.map(|angles| RobotCommand::Drive(at_once(angles)))
 }
 
 fn at_once(angles: &[[f64; 7]; 2]) -> Vec<(RobotJoint, Drive)> {
@@ -77,9 +77,9 @@ mod tests {
         motor
     }
 
-    fn drives(command: SimCommand) -> Vec<(RobotJoint, Drive)> {
+    fn drives(command: RobotCommand) -> Vec<(RobotJoint, Drive)> {
         match command {
-            SimCommand::Drive(drives) => drives,
+            RobotCommand::Drive(drives) => drives,
             other => panic!("{other:?}"),
         }
     }

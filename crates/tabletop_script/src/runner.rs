@@ -3,7 +3,7 @@
 use std::{thread, time::Duration};
 
 use bevy::prelude::*;
-use tabletop_core::{Agent, ScriptCommand, ScriptEvent, SimBlocked, SimCommand};
+use tabletop_core::{Actor, Agent, RobotCommand, ScriptCommand, ScriptEvent, SimBlocked};
 use tabletop_engine::{EngineError, EngineHandle};
 
 use crate::{
@@ -58,8 +58,8 @@ impl ScriptRunner {
     /// Ends the script, if there is one, and removes its markers.
     fn clear(&mut self, simulation: &mut Simulation) {
         if self.end_session() {
-            let no_markers = SimCommand::ShowMarkers(Vec::new());
-            simulation.commands.write(no_markers);
+            let no_markers = RobotCommand::ShowMarkers(Vec::new());
+            simulation.commands.write(Actor::Script, no_markers);
         }
     }
 

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use bevy::prelude::*;
-use tabletop_core::{Agent, RobotMode, ScriptEvent, SimBlocked, SimTick};
+use tabletop_core::{Actor, Agent, RobotMode, ScriptEvent, SimBlocked, SimTick};
 use tabletop_engine::{EngineError, EngineHandle, Reply};
 
 use crate::{
@@ -187,7 +187,7 @@ impl ScriptSession {
                 Ok(None)
             }
             Reply::Init(reply) => {
-                commands.write_batch(commands_of_init(&reply));
+                commands.write_batch(Actor::Script, commands_of_init(&reply));
                 if let Some(note) = unreachable(&reply) {
                     events.note(&note);
                 }
@@ -204,7 +204,7 @@ impl ScriptSession {
                 Ok(Some(Answer::Commands))
             }
             Reply::Step(reply) if reply.exit => {
-                commands.write_batch(last_command(&reply.motor));
+                commands.write_batch(Actor::Script, last_command(&reply.motor));
                 Ok(Some(Answer::Exit))
             }
             Reply::Step(reply) => {
@@ -214,7 +214,7 @@ impl ScriptSession {
                     self.torques_noted = true;
                     events.note("motor.jointTorques has no effect without --dynamic");
                 }
-                commands.write(command_of_motor(&reply.motor, mode));
+                commands.write(Actor::Script, command_of_motor(&reply.motor, mode));
                 self.phase = Phase::Idle;
                 **agent = Agent::Online { took: reply.took };
                 Ok(Some(Answer::Commands))

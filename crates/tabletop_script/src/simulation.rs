@@ -1,7 +1,7 @@
 //! The parts of the simulation that a running script reads and writes.
 
 use bevy::{ecs::system::SystemParam, prelude::*};
-use tabletop_core::{Agent, PictureDemand, SimBlocked, SimCommand, SimTick};
+use tabletop_core::{Agent, CommandWriter, PictureDemand, SimBlocked, SimTick};
 
 use crate::{events::ScriptEvents, sense::Senses, settings::ScriptSettings};
 
@@ -14,6 +14,6 @@ pub(crate) struct Simulation<'w, 's> {
     pub demand: Res<'w, PictureDemand>,
     pub agent: ResMut<'w, Agent>,
     pub blocked: ResMut<'w, SimBlocked>,
-    pub commands: MessageWriter<'w, SimCommand>,
+    pub commands: CommandWriter<'w>,
     pub events: ScriptEvents<'w>,
 }

@@ -7,7 +7,7 @@ use std::{f64::consts::FRAC_PI_2, path};
 
 use kit::{Folder, Stage, octave};
 use tabletop_core::{
-    Agent, Arm, Robot, RobotJoint, ScriptCommand, ScriptEvent, SimCommand, TICK_SECONDS,
+    Agent, Arm, ClockCommand, Robot, RobotJoint, ScriptCommand, ScriptEvent, TICK_SECONDS,
 };
 
 const TICK: f64 = TICK_SECONDS as f64;
@@ -191,13 +191,13 @@ fn while_paused_there_are_no_calls() {
     let mut stage = Stage::start(folder.settings());
     stage.ticks(15);
     // The pause comes in the tick whose picture the script is to get.
-    stage.command(SimCommand::SetPaused(true));
+    stage.command(ClockCommand::SetPaused(true));
     stage.ticks(5);
     let before = angles(stage.robot());
     stage.ticks(20);
     assert_eq!(angles(stage.robot()), before);
     assert_eq!(stage.markers(), 2);
-    stage.command(SimCommand::SetPaused(false));
+    stage.command(ClockCommand::SetPaused(false));
     stage.ticks(10);
     let printed = stage.printed();
     let numbers: Vec<f64> = printed
@@ -215,10 +215,10 @@ fn while_paused_there_are_no_calls() {
 fn a_script_that_is_started_in_a_pause_begins_after_it() {
     let folder = Folder::pair("aux.initJointAngles = 0.25 * ones(2, 7);", "");
     let mut stage = Stage::start(folder.settings());
-    stage.command(SimCommand::SetPaused(true));
+    stage.command(ClockCommand::SetPaused(true));
     stage.ticks(3);
     assert_eq!(stage.agent(), &Agent::Starting);
-    stage.command(SimCommand::SetPaused(false));
+    stage.command(ClockCommand::SetPaused(false));
     stage.ticks(1);
     assert_eq!(stage.robot().joint(RobotJoint::LeftS0).position, 0.25);
 }

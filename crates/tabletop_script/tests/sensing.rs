@@ -5,7 +5,7 @@ mod kit;
 
 use bevy::prelude::*;
 use kit::{Folder, Stage};
-use tabletop_core::{Arm, ObjectSpec, Pose, Rgb, Shape, SimCommand};
+use tabletop_core::{Arm, ObjectSpec, Pose, Rgb, RobotCommand, Shape};
 use tabletop_script::{FieldPolicy, ScriptSettings};
 
 const NAMES: &str =
@@ -112,7 +112,7 @@ end
 ",
     );
     let mut stage = Stage::start(folder.settings());
-    stage.command(SimCommand::ShowRobot(true));
+    stage.command(RobotCommand::Show(true));
     let pose = Pose::at(Vec3::new(4.4, -5.58, 6.65));
     let spec = ObjectSpec {
         id: "plate".into(),
@@ -189,7 +189,7 @@ fn pictures_show_the_markers_and_not_the_past() {
     let mut settings = folder.settings();
     settings.ticks_per_picture = 1;
     let mut stage = Stage::start(settings);
-    stage.command(SimCommand::ShowRobot(false));
+    stage.command(RobotCommand::Show(false));
     stage.ticks_until(Stage::has_stopped);
     let printed = stage.printed();
     let numbers: Vec<f32> = printed

@@ -8,7 +8,8 @@ use std::time::Duration;
 use bevy::{prelude::*, time::TimeUpdateStrategy};
 use kit::{Folder, Stage};
 use tabletop_core::{
-    Agent, Drive, Face, RobotJoint, ScriptCommand, SimBlocked, SimCommand, TICK_SECONDS,
+    Agent, ClockCommand, Drive, Face, RobotCommand, RobotJoint, ScriptCommand, SimBlocked,
+    TICK_SECONDS,
 };
 use tabletop_script::{ScriptSettings, Waiting};
 
@@ -132,8 +133,8 @@ fn nothing_that_is_told_meanwhile_gets_lost() {
         let goal = 0.3 + f64::from(call) / 10.0;
         let face = if call == 1 { Face::Happy } else { Face::Asleep };
         let drive = (RobotJoint::HeadPan, Drive::Position(goal));
-        stage.command(SimCommand::Drive(vec![drive]));
-        stage.command(SimCommand::ShowFace(face));
+        stage.command(RobotCommand::Drive(vec![drive]));
+        stage.command(RobotCommand::ShowFace(face));
         for _ in 0..10 {
             stage.frame();
         }
@@ -210,7 +211,7 @@ fn a_pause_can_be_made_while_a_script_is_waited_for() {
     let folder = Folder::pair("calls = 0;", SLOW);
     let mut stage = Stage::start(framewise(&folder));
     stage.frames_until(|stage| waits(stage) && stage.track().len() >= 2);
-    stage.command(SimCommand::SetPaused(true));
+    stage.command(ClockCommand::SetPaused(true));
     stage.frames_until(Stage::is_online);
     for _ in 0..5 {
         stage.frame();
@@ -221,7 +222,7 @@ fn a_pause_can_be_made_while_a_script_is_waited_for() {
         assert!(stage.is_online());
     }
     assert_eq!(stage.tick(), tick);
-    stage.command(SimCommand::SetPaused(false));
+    stage.command(ClockCommand::SetPaused(false));
     stage.frames_until(|stage| stage.track().len() >= 6);
 
     let mut blocking = Stage::start(folder.settings());
@@ -234,8 +235,8 @@ fn in_a_pause_nothing_waits_for_a_script() {
     let folder = Folder::pair("calls = 0;", GATED);
     let mut stage = Stage::start(framewise(&folder));
     stage.frames_until(waits);
-    stage.command(SimCommand::SetPaused(true));
-    stage.command(SimCommand::ShowFace(Face::Asleep));
+    stage.command(ClockCommand::SetPaused(true));
+    stage.command(RobotCommand::ShowFace(Face::Asleep));
     stage.frame();
     assert_eq!(stage.robot().face, Face::Asleep);
     assert!(waits(&stage) && !stage.app.world().resource::<SimBlocked>().0);

@@ -1,11 +1,14 @@
 //! Task files in the simulation.
 
 use bevy::prelude::*;
-use tabletop_core::{SceneSpec, ShippedFile, ShippedFiles, SimCommand, SimFact, SimSystems};
+use tabletop_core::{
+    IssuedCommand, SceneCommand, SceneSpec, ShippedFile, ShippedFiles, SimCommand, SimFact,
+    SimSystems,
+};
 
 use crate::{ParsedTask, ReadError, TaskReader};
 
-/// Carries out [`SimCommand::LoadTask`]: in [`SimSystems::Load`] the command becomes a [`SimCommand::SetScene`] with
+/// Carries out [`SceneCommand::Load`]: in [`SimSystems::Load`] the command becomes a [`SceneCommand::Set`] with
 /// what the file says, in the same place of the order, and a [`SimFact::TaskLoaded`] tells its faults, which are
 /// logged, too. A file that cannot be read gives an empty table; one that is not there may be among the [`ShippedFiles`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -19,18 +22,23 @@ impl Plugin for XmlPlugin {
 }
 
 fn load_tasks(
-    mut commands: MessageMutator<SimCommand>,
+    mut commands: MessageMutator<IssuedCommand>,
     mut facts: MessageWriter<SimFact>,
     shipped: Res<ShippedFiles>,
 ) {
-    for command in commands.read() {
-        if let SimCommand::LoadTask(path) = command {
+    for IssuedCommand { id, command, .. } in commands.read() {
+        if let SimCommand::Scene(SceneCommand::Load(path)) = command {
             let path = std::mem::take(path);
             let task = TaskReader::with_shipped(&shipped).read(&path);
             let path = shipped.find(&path).map_or(path, ShippedFile::name);
             let (scene, faults) = scene_and_faults(task);
-            *command = SimCommand::SetScene(Box::new(scene));
-            facts.write(SimFact::TaskLoaded { path, faults });
+            *command = SimCommand::Scene(SceneCommand::Set(Box::new(scene)));
+            let cause = *id;
+            facts.write(SimFact::TaskLoaded {
+                cause,
+                path,
+                faults,
+            });
         }
     }
 }
@@ -55,7 +63,9 @@ fn scene_and_faults(task: Result<ParsedTask, ReadError>) -> (SceneSpec, Vec<Stri
 mod tests {
     use std::{fs, path::PathBuf};
 
-    use tabletop_core::{CorePlugin, Paused, StepApp as _};
+    use tabletop_core::{
+        ClockCommand, CommandId, CorePlugin, Paused, StepApp as _, WriteCommand as _,
+    };
 
     use super::*;
 
@@ -67,10 +77,11 @@ mod tests {
 
     fn see(
         mut seen: ResMut<Seen>,
-        mut commands: MessageReader<SimCommand>,
+        mut commands: MessageReader<IssuedCommand>,
         mut facts: MessageReader<SimFact>,
     ) {
-        seen.commands.extend(commands.read().cloned());
+        let issued = commands.read().cloned();
+        seen.commands.extend(issued.map(|issued| issued.command));
         seen.facts.extend(facts.read().cloned());
     }
 
@@ -98,16 +109,16 @@ mod tests {
         );
         let mut app = app();
         app.insert_resource(Paused(true));
-        app.world_mut().write_message(SimCommand::ClearTable);
+        app.world_mut().write_command(SceneCommand::Clear);
         app.world_mut()
-            .write_message(SimCommand::LoadTask(path.clone()));
-        app.world_mut().write_message(SimCommand::SetPaused(true));
+            .write_command(SceneCommand::Load(path.clone()));
+        app.world_mut().write_command(ClockCommand::SetPaused(true));
         app.step(1);
         let seen = app.world().resource::<Seen>();
         let [
-            SimCommand::ClearTable,
-            SimCommand::SetScene(scene),
-            SimCommand::SetPaused(true),
+            SimCommand::Scene(SceneCommand::Clear),
+            SimCommand::Scene(SceneCommand::Set(scene)),
+            SimCommand::Clock(ClockCommand::SetPaused(true)),
         ] = seen.commands.as_slice()
         else {
             panic!("{:?}", seen.commands);
@@ -115,6 +126,7 @@ mod tests {
         assert_eq!((scene.table.xspan, scene.items.len()), (8.0, 1));
         let [
             SimFact::TaskLoaded {
+                cause: CommandId(1),
                 path: loaded,
                 faults,
             },
@@ -140,18 +152,19 @@ mod tests {
         let mut app = app();
         app.insert_resource(ShippedFiles::new([CUBE]));
         app.world_mut()
-            .write_message(SimCommand::LoadTask(CUBE.path.into()));
+            .write_command(SceneCommand::Load(CUBE.path.into()));
         app.step(1);
         let seen = app.world().resource::<Seen>();
         assert_eq!(
             seen.facts,
             [SimFact::TaskLoaded {
+                cause: CommandId(0),
                 path: CUBE.name(),
                 faults: Vec::new(),
             }]
         );
         assert!(
-            matches!(&seen.commands[..], [SimCommand::SetScene(scene)] if scene.table.xspan == 8.0)
+            matches!(&seen.commands[..], [SimCommand::Scene(SceneCommand::Set(scene))] if scene.table.xspan == 8.0)
         );
     }
 
@@ -159,7 +172,7 @@ mod tests {
     fn a_file_is_loaded_once() {
         let mut app = app();
         app.world_mut()
-            .write_message(SimCommand::LoadTask("missing.xml".into()));
+            .write_command(SceneCommand::Load("missing.xml".into()));
         app.step(5);
         let seen = app.world().resource::<Seen>();
         assert_eq!((seen.commands.len(), seen.facts.len()), (1, 1));
@@ -169,10 +182,13 @@ mod tests {
     fn without_a_file_there_is_still_a_table() {
         let mut app = app();
         app.world_mut()
-            .write_message(SimCommand::LoadTask("missing.xml".into()));
+            .write_command(SceneCommand::Load("missing.xml".into()));
         app.step(1);
         let seen = app.world().resource::<Seen>();
-        assert_eq!(seen.commands, [SimCommand::SetScene(Box::default())]);
+        assert_eq!(
+            seen.commands,
+            [SimCommand::Scene(SceneCommand::Set(Box::default()))]
+        );
         let [SimFact::TaskLoaded { faults, .. }] = seen.facts.as_slice() else {
             panic!("{:?}", seen.facts);
         };

@@ -6,7 +6,9 @@ use std::{
 };
 
 use bevy::{prelude::*, time::common_conditions::on_real_timer};
-use tabletop_core::{OpenRecording, Recording, Replaying, SimCommand, SimFact};
+use tabletop_core::{
+    Actor, CommandWriter, OpenRecording, Recording, Replaying, SceneCommand, SimFact,
+};
 use tabletop_gui::{Files, Notices, Preferences, Tone};
 
 use crate::xml::read_task;
@@ -115,7 +117,7 @@ pub(super) fn reload(
     replaying: Res<Replaying>,
     mut watch: ResMut<Watch>,
     mut notices: ResMut<Notices>,
-    mut commands: MessageWriter<SimCommand>,
+    mut commands: CommandWriter,
 ) {
     if !files.reloads || replaying.0 {
         return;
@@ -138,7 +140,7 @@ pub(super) fn reload(
             &format!("{name} has changed; it is not loaded while a recording runs"),
         ),
         None => {
-            commands.write(SimCommand::LoadTask(path));
+            commands.write(Actor::Panel, SceneCommand::Load(path));
         }
     }
 }

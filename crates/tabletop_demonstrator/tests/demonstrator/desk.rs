@@ -34,26 +34,26 @@ impl Desk {
         .start();
         let scene = SceneSpec { items, ..default() };
         app.world_mut()
-            .write_message(SimCommand::SetScene(Box::new(scene)));
+            .write_command(SceneCommand::Set(Box::new(scene)));
         app.step(60);
         app.world_mut().resource_mut::<Heard>().0.clear();
         Self(app)
     }
 
-    pub fn tell(&mut self, command: SimCommand) -> &mut Self {
-        self.0.world_mut().write_message(command);
+    pub fn tell(&mut self, command: impl Into<SimCommand>) -> &mut Self {
+        self.0.world_mut().write_command(command);
         self
     }
 
     pub fn grasp(&mut self, hand: Hand, object: &str) -> &mut Self {
-        self.tell(SimCommand::Grasp {
+        self.tell(HandCommand::Grasp {
             hand,
             object: object.into(),
         })
     }
 
     pub fn move_to(&mut self, hand: Hand, location: Vec3) -> &mut Self {
-        self.tell(SimCommand::MoveTo { hand, location })
+        self.tell(HandCommand::MoveTo { hand, location })
     }
 
     pub fn step(&mut self, ticks: u64) -> &mut Self {
@@ -79,12 +79,12 @@ impl Desk {
         facts
             .iter()
             .map(|fact| match fact {
-                SimFact::SegmentBegun => "segment".into(),
-                SimFact::Grasped { hand, id } => format!("{hand} grasps {id}"),
-                SimFact::Released { hand, id } => format!("{hand} releases {id}"),
-                SimFact::Destroyed { hand, id } => format!("{hand} destroys {id}"),
-                SimFact::ObjectDeleted { id } => format!("{id} is gone"),
-                SimFact::Refused { reason } => format!("refused: {reason}"),
+                SimFact::SegmentBegun { .. } => "segment".into(),
+                SimFact::Grasped { hand, id, .. } => format!("{hand} grasps {id}"),
+                SimFact::Released { hand, id, .. } => format!("{hand} releases {id}"),
+                SimFact::Destroyed { hand, id, .. } => format!("{hand} destroys {id}"),
+                SimFact::ObjectDeleted { id, .. } => format!("{id} is gone"),
+                SimFact::Refused { reason, .. } => format!("refused: {reason}"),
                 other => format!("{other:?}"),
             })
             .collect()

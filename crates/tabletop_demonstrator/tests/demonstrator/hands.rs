@@ -15,7 +15,7 @@ fn a_block_is_stacked_on_another() {
         desk.step(12);
     }
     assert!((desk.pose("red").location - Vec3::new(-2.0, 0.0, 1.5)).length() < 1e-3);
-    desk.tell(SimCommand::Release(hand)).step(1);
+    desk.tell(HandCommand::Release(hand)).step(1);
     let sunk = 1.5 - desk.pose("red").location.z;
     assert!(sunk < 0.001, "it fell by {sunk} into the block below");
     desk.step(120);
@@ -57,7 +57,7 @@ fn what_is_let_go_of_where_it_was_grasped_stays_there() {
         let top = format!("block{}", spans.len() - 1);
         let before = desk.pose(&top);
         desk.grasp(Hand::Any, &top).step(30);
-        desk.tell(SimCommand::Release(Hand::Any)).step(120);
+        desk.tell(HandCommand::Release(Hand::Any)).step(120);
         let moved = desk.pose(&top).location.distance(before.location);
         assert!(moved < 0.0002, "{top} moved by {moved}");
     }
@@ -93,7 +93,7 @@ fn a_mouse_jump_of_any_size_never_enters_table_walls_or_the_other_hands_object()
     for _ in 0..300 {
         let far = Vec3::new(random(), random() * 0.1, random()) * 1e6f32.powf(random());
         desk.move_to(Hand::Left, far);
-        desk.tell(SimCommand::Turn {
+        desk.tell(HandCommand::Turn {
             hand: Hand::Left,
             axis: Vec3::new(random(), random(), random() + 1.5),
             degrees: random() * 90.0,
@@ -131,7 +131,7 @@ fn a_pushed_block_moves_and_is_not_flung_when_the_hand_lets_go() {
     desk.step(90);
     let pushed = desk.pose("green").location;
     assert!(pushed.x < -4.9, "it was pushed to {pushed}");
-    desk.tell(SimCommand::Release(Hand::Right)).step(2);
+    desk.tell(HandCommand::Release(Hand::Right)).step(2);
     assert!(desk.speed("red") < 3.0 && desk.speed("green") < 3.0);
     desk.step(120);
     assert!(
@@ -160,7 +160,7 @@ fn a_block_squeezed_against_a_wall_stops_the_hand_and_does_not_explode() {
         hand.x > -2.6 && (block.x + 3.0).abs() < 0.2,
         "hand at {hand}, block at {block}"
     );
-    desk.tell(SimCommand::Release(Hand::Right));
+    desk.tell(HandCommand::Release(Hand::Right));
     let mut fastest = 0.0f32;
     for _ in 0..60 {
         desk.step(1);
@@ -177,7 +177,7 @@ fn a_fixed_object_is_moved_as_one_piece_with_its_collider() {
     desk.grasp(Hand::Both, "post")
         .move_to(Hand::Both, Vec3::new(2.0, 0.0, 3.0));
     desk.step(60)
-        .tell(SimCommand::Release(Hand::Both))
+        .tell(HandCommand::Release(Hand::Both))
         .step(120);
     assert_eq!(desk.pose("post").location, Vec3::new(2.0, 0.0, 3.0));
     desk.grasp(Hand::Left, "red")
@@ -223,7 +223,7 @@ fn a_destroyed_object_is_deleted_first() {
     let mut desk = Desk::new(two_blocks());
     desk.grasp(Hand::Left, "red").step(1);
     desk.heard();
-    desk.tell(SimCommand::Destroy(Hand::Left)).step(1);
+    desk.tell(HandCommand::Destroy(Hand::Left)).step(1);
     assert_eq!(
         desk.heard(),
         ["segment", "red is gone", "LeftHand destroys red"]
@@ -236,12 +236,12 @@ fn what_cannot_be_done_is_refused_and_changes_nothing() {
     let mut desk = Desk::new(two_blocks());
     desk.grasp(Hand::Left, "no such thing");
     desk.move_to(Hand::Left, Vec3::ONE);
-    desk.tell(SimCommand::Destroy(Hand::Right));
-    desk.tell(SimCommand::Release(Hand::Right)).step(1);
+    desk.tell(HandCommand::Destroy(Hand::Right));
+    desk.tell(HandCommand::Release(Hand::Right)).step(1);
     assert_eq!(desk.heard().len(), 3);
     desk.grasp(Hand::Left, "red").step(1);
     desk.move_to(Hand::Left, Vec3::new(f32::NAN, 0.0, 0.0));
-    desk.tell(SimCommand::Turn {
+    desk.tell(HandCommand::Turn {
         hand: Hand::Left,
         axis: Vec3::ZERO,
         degrees: 45.0,
@@ -253,9 +253,9 @@ fn what_cannot_be_done_is_refused_and_changes_nothing() {
 #[test]
 fn hands_do_not_act_while_the_simulation_is_paused() {
     let mut desk = Desk::new(two_blocks());
-    desk.tell(SimCommand::SetPaused(true));
+    desk.tell(ClockCommand::SetPaused(true));
     desk.grasp(Hand::Left, "red").step(1);
-    desk.tell(SimCommand::SetPaused(false)).step(3);
+    desk.tell(ClockCommand::SetPaused(false)).step(3);
     assert_eq!(desk.0.world().resource::<Hands>().held_by(Hand::Left), None);
     assert_eq!(
         desk.heard(),
@@ -288,7 +288,7 @@ fn a_held_lid_follows_its_slider() {
         "{lid:?}"
     );
     assert!(lid.rotation.angle_between(Quat::IDENTITY).to_degrees() < 0.5);
-    desk.tell(SimCommand::Release(Hand::Left)).step(120);
+    desk.tell(HandCommand::Release(Hand::Left)).step(120);
     let after = desk.pose("b-box").inverse() * desk.pose("b-lid");
     assert!(after.location.distance(lid.location) < 0.05, "{after:?}");
 }
@@ -317,7 +317,7 @@ fn a_held_link_follows_its_chain() {
         .step(120);
     let taut = desk.pose("c-link6").location;
     assert!(taut.is_finite() && taut.z < 9.5, "torn to {taut}");
-    desk.tell(SimCommand::Release(Hand::Left)).step(300);
+    desk.tell(HandCommand::Release(Hand::Left)).step(300);
     let back = desk.pose("c-link6").location.z;
     assert!(
         (back - hanging).abs() < 0.3,

@@ -11,13 +11,13 @@ fn what_is_kept_for_undo_goes_when_the_recording_ends() {
     let undoable = |desk: &Desk| desk.0.world().resource::<History>().undoable;
     desk.0.insert_resource(Recording(true));
     desk.grasp(Hand::Left, "red")
-        .tell(SimCommand::Destroy(Hand::Left))
+        .tell(HandCommand::Destroy(Hand::Left))
         .step(1);
-    desk.tell(SimCommand::SetScene(Box::default())).step(1);
-    desk.tell(SimCommand::Undo).step(1);
+    desk.tell(SceneCommand::Set(Box::default())).step(1);
+    desk.tell(HistoryCommand::Undo).step(1);
     assert_eq!(undoable(&desk), 1);
     desk.0.insert_resource(Recording(false));
-    desk.tell(SimCommand::Undo).step(1);
+    desk.tell(HistoryCommand::Undo).step(1);
     assert_eq!(undoable(&desk), 0);
     let mut hidden = desk
         .0

@@ -1,7 +1,9 @@
 //! Keys that undo and redo (report section 4.1).
 
 use bevy::prelude::*;
-use tabletop_core::{Action, History, KeySystems, SimCommand, was_struck};
+use tabletop_core::{
+    Action, Actor, CommandWriter, History, HistoryCommand, KeySystems, was_struck,
+};
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(
@@ -14,15 +16,15 @@ pub(crate) fn plugin(app: &mut App) {
     );
 }
 
-fn undo(history: Res<History>, mut commands: MessageWriter<SimCommand>) {
+fn undo(history: Res<History>, mut commands: CommandWriter) {
     if history.undoable > 0 {
-        commands.write(SimCommand::Undo);
+        commands.write(Actor::Key, HistoryCommand::Undo);
     }
 }
 
-fn redo(history: Res<History>, mut commands: MessageWriter<SimCommand>) {
+fn redo(history: Res<History>, mut commands: CommandWriter) {
     if history.redoable > 0 {
-        commands.write(SimCommand::Redo);
+        commands.write(Actor::Key, HistoryCommand::Redo);
     }
 }
 
@@ -31,13 +33,23 @@ mod tests {
     use super::*;
     use crate::test_world::TestWorld;
     use KeyCode::{ControlLeft, KeyY, KeyZ, ShiftRight};
+    use tabletop_core::SimCommand;
 
     #[test]
     fn keys_undo_and_redo_as_far_as_there_is_something() {
         for (keys, command) in [
-            (&[ControlLeft, KeyZ][..], SimCommand::Undo),
-            (&[ControlLeft, ShiftRight, KeyZ], SimCommand::Redo),
-            (&[ControlLeft, KeyY], SimCommand::Redo),
+            (
+                &[ControlLeft, KeyZ][..],
+                SimCommand::History(HistoryCommand::Undo),
+            ),
+            (
+                &[ControlLeft, ShiftRight, KeyZ],
+                SimCommand::History(HistoryCommand::Redo),
+            ),
+            (
+                &[ControlLeft, KeyY],
+                SimCommand::History(HistoryCommand::Redo),
+            ),
         ] {
             let mut test = TestWorld::new(plugin);
             keys.iter().for_each(|&key| test.keys().press(key));

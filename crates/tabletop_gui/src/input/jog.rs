@@ -1,7 +1,9 @@
 //! Moving joints of the robot by hand (report section 5.1): each at a constant speed while its key or button is held down.
 
 use bevy::prelude::*;
-use tabletop_core::{Drive, OrderSystems, Paused, RobotJoint, SimCommand, SimSystems};
+use tabletop_core::{
+    Actor, CommandWriter, Drive, OrderSystems, Paused, RobotCommand, RobotJoint, SimSystems,
+};
 
 /// Speed of manual control, in rad/s, and units/s for grippers.
 const SPEED: f64 = 1.0;
@@ -44,6 +46,15 @@ pub(crate) struct Jog {
 }
 
 impl Jog {
+    /// With what the user moves the joints.
+    fn actor(&self) -> Actor {
+        let by_keys = |joint| self.keys.direction(joint) != 0;
+        match RobotJoint::ALL.into_iter().any(by_keys) {
+            true => Actor::Key,
+            false => Actor::Panel,
+        }
+    }
+
     /// What the joints are told in a tick. The arms move as mirror images.
     fn drives(&self) -> Vec<(RobotJoint, Drive)> {
         RobotJoint::ALL
@@ -69,10 +80,10 @@ pub(crate) fn plugin(app: &mut App) {
     );
 }
 
-fn give_orders(jog: Res<Jog>, mut commands: MessageWriter<SimCommand>) {
+fn give_orders(jog: Res<Jog>, mut commands: CommandWriter) {
     let drives = jog.drives();
     if !drives.is_empty() {
-        commands.write(SimCommand::Drive(drives));
+        commands.write(jog.actor(), RobotCommand::Drive(drives));
     }
 }
 

@@ -1,7 +1,7 @@
 //! Keys of the whole program: Space pauses, Esc quits (report section 2.4).
 
 use bevy::prelude::*;
-use tabletop_core::{Action, KeySystems, Paused, SimCommand, was_struck};
+use tabletop_core::{Action, Actor, ClockCommand, CommandWriter, KeySystems, Paused, was_struck};
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(
@@ -14,8 +14,8 @@ pub(crate) fn plugin(app: &mut App) {
     );
 }
 
-fn toggle_pause(paused: Res<Paused>, mut commands: MessageWriter<SimCommand>) {
-    commands.write(SimCommand::SetPaused(!paused.0));
+fn toggle_pause(paused: Res<Paused>, mut commands: CommandWriter) {
+    commands.write(Actor::Key, ClockCommand::SetPaused(!paused.0));
 }
 
 fn quit(mut exit: MessageWriter<AppExit>) {

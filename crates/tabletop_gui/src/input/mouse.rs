@@ -2,7 +2,9 @@
 //! lets it go.
 
 use bevy::prelude::*;
-use tabletop_core::{DragPlane, Hands, ObjectSpec, Paused, SimCommand, Table};
+use tabletop_core::{
+    Actor, CommandWriter, DragPlane, HandCommand, Hands, ObjectSpec, Paused, Table,
+};
 
 use crate::input::{
     drag::Drag,
@@ -60,7 +62,7 @@ fn press(
     plane: Res<DragPlane>,
     places: Query<&Transform>,
     mut press: ResMut<Press>,
-    mut commands: MessageWriter<SimCommand>,
+    mut commands: CommandWriter,
 ) {
     if !buttons.just_pressed(MouseButton::Left) || pointer.is_panels {
         return;
@@ -77,7 +79,7 @@ fn press(
             .and_then(|place| Drag::start(held, place.translation, plane.normal(), ray))
             .map_or(Press::Idle, Press::Drag),
         Some(_) => {
-            commands.write(SimCommand::Release(hands.selected));
+            commands.write(Actor::Mouse, HandCommand::Release(hands.selected));
             Press::Idle
         }
     };
@@ -91,7 +93,7 @@ fn drag(
     places: Query<&Transform>,
     tables: Query<&Table>,
     mut press: ResMut<Press>,
-    mut commands: MessageWriter<SimCommand>,
+    mut commands: CommandWriter,
 ) {
     let (Press::Drag(drag), Some(ray)) = (*press, pointer.ray) else {
         return;
@@ -108,10 +110,13 @@ fn drag(
         return;
     };
     if moved.target != drag.target {
-        commands.write(SimCommand::MoveTo {
-            hand,
-            location: moved.target,
-        });
+        commands.write(
+            Actor::Mouse,
+            HandCommand::MoveTo {
+                hand,
+                location: moved.target,
+            },
+        );
     }
     press.set_if_neq(Press::Drag(moved));
 }
@@ -124,7 +129,7 @@ fn come_up(
     hands: Res<Hands>,
     specs: Query<&ObjectSpec>,
     mut press: ResMut<Press>,
-    mut commands: MessageWriter<SimCommand>,
+    mut commands: CommandWriter,
 ) {
     if buttons.pressed(MouseButton::Left) {
         return;
@@ -134,10 +139,13 @@ fn come_up(
         && pointer.ray.and_then(|ray| pickable.object_along(ray)) == Some(object)
         && let Ok(spec) = specs.get(object)
     {
-        commands.write(SimCommand::Grasp {
-            hand: hands.selected,
-            object: spec.id.clone(),
-        });
+        commands.write(
+            Actor::Mouse,
+            HandCommand::Grasp {
+                hand: hands.selected,
+                object: spec.id.clone(),
+            },
+        );
     }
     press.set_if_neq(Press::Idle);
 }
@@ -146,15 +154,15 @@ fn come_up(
 mod tests {
     use super::*;
     use crate::test_world::{TestWorld, towards};
-    use tabletop_core::Hand;
+    use tabletop_core::{Hand, SimCommand};
 
     const ABOVE_TABLE: Vec3 = Vec3::new(6.0, 3.0, 0.0);
 
     fn grasp(hand: Hand, id: &str) -> SimCommand {
-        SimCommand::Grasp {
+        SimCommand::Hand(HandCommand::Grasp {
             hand,
             object: id.into(),
-        }
+        })
     }
 
     #[test]
@@ -192,7 +200,10 @@ mod tests {
         test.block("blue", Vec3::new(5.0, 0.0, 1.0));
         for beside in [ABOVE_TABLE, Vec3::new(5.0, 0.0, 1.0)] {
             test.point_at(beside);
-            assert_eq!(test.press(), [SimCommand::Release(Hand::Any)]);
+            assert_eq!(
+                test.press(),
+                [SimCommand::Hand(HandCommand::Release(Hand::Any))]
+            );
             assert_eq!(test.come_up(), []);
         }
     }
@@ -215,7 +226,7 @@ mod tests {
         assert_eq!(test.press(), []);
         test.point_at(Vec3::new(3.0, 0.0, 4.0));
         let commands = test.hold_still();
-        let [SimCommand::MoveTo { hand, location }] = commands[..] else {
+        let [SimCommand::Hand(HandCommand::MoveTo { hand, location })] = commands[..] else {
             panic!("{commands:?}");
         };
         assert_eq!(hand, Hand::Any);

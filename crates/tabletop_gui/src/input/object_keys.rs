@@ -1,7 +1,9 @@
 //! Keys that make objects and clear the table (report section 6.1).
 
 use bevy::prelude::*;
-use tabletop_core::{Action, KeySystems, Paused, Preset, SimCommand, was_struck};
+use tabletop_core::{
+    Action, Actor, CommandWriter, KeySystems, Paused, Preset, SceneCommand, was_struck,
+};
 
 use crate::PresetSeeds;
 
@@ -19,14 +21,14 @@ pub(crate) fn plugin(app: &mut App) {
     );
 }
 
-fn make(preset: Preset) -> impl FnMut(ResMut<PresetSeeds>, MessageWriter<SimCommand>) {
+fn make(preset: Preset) -> impl FnMut(ResMut<PresetSeeds>, CommandWriter) {
     move |mut seeds, mut commands| {
-        commands.write(seeds.make(preset));
+        commands.write(Actor::Key, seeds.make(preset));
     }
 }
 
-fn clear_table(mut commands: MessageWriter<SimCommand>) {
-    commands.write(SimCommand::ClearTable);
+fn clear_table(mut commands: CommandWriter) {
+    commands.write(Actor::Key, SceneCommand::Clear);
 }
 
 #[cfg(test)]
@@ -42,11 +44,11 @@ mod tests {
         for (key, command) in [
             (KeyB, seeds.make(Preset::BigBlock)),
             (KeyN, seeds.make(Preset::Stack(5))),
-            (KeyC, SimCommand::ClearTable),
+            (KeyC, SceneCommand::Clear),
             (KeyN, seeds.make(Preset::Stack(5))),
         ] {
             test.keys().press(key);
-            assert_eq!(test.hold_still(), [command]);
+            assert_eq!(test.hold_still(), [command.into()]);
             assert_eq!(test.hold_still(), []);
             test.keys().release(key);
         }

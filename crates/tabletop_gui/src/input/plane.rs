@@ -225,7 +225,13 @@ mod tests {
         assert_eq!(test.hold_still(), []);
         test.point_at(location + Vec3::new(0.0, 2.0, 3.0));
         let commands = test.hold_still();
-        let [tabletop_core::SimCommand::MoveTo { location: to, .. }] = commands[..] else {
+        let [
+            tabletop_core::SimCommand::Hand(tabletop_core::HandCommand::MoveTo {
+                location: to,
+                ..
+            }),
+        ] = commands[..]
+        else {
             panic!("{commands:?}");
         };
         let moved = to - location;

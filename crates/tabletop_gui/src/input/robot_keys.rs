@@ -2,7 +2,8 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Action, KeySystems, Keys, Paused, Robot, RobotJoint, SimCommand, Way, was_struck,
+    Action, Actor, CommandWriter, KeySystems, Keys, Paused, Robot, RobotCommand, RobotJoint, Way,
+    was_struck,
 };
 
 use crate::{
@@ -30,12 +31,12 @@ pub(crate) fn plugin(app: &mut App) {
     );
 }
 
-fn show_or_hide(robot: Res<Robot>, mut commands: MessageWriter<SimCommand>) {
-    commands.write(SimCommand::ShowRobot(!robot.is_shown));
+fn show_or_hide(robot: Res<Robot>, mut commands: CommandWriter) {
+    commands.write(Actor::Key, RobotCommand::Show(!robot.is_shown));
 }
 
-fn show_next_face(robot: Res<Robot>, mut commands: MessageWriter<SimCommand>) {
-    commands.write(SimCommand::ShowFace(robot.face.next()));
+fn show_next_face(robot: Res<Robot>, mut commands: CommandWriter) {
+    commands.write(Actor::Key, RobotCommand::ShowFace(robot.face.next()));
 }
 
 /// Reads the keys of joints and grippers, once a frame for all of its ticks.
@@ -79,7 +80,7 @@ mod tests {
         time::TimeUpdateStrategy,
     };
     use std::time::Duration;
-    use tabletop_core::{Drive, Face};
+    use tabletop_core::{ClockCommand, Drive, Face, SimCommand};
 
     fn test_world() -> TestWorld {
         TestWorld::new(|app: &mut App| {
@@ -90,7 +91,10 @@ mod tests {
     }
 
     fn drive(joint: RobotJoint, velocity: f64) -> SimCommand {
-        SimCommand::Drive(vec![(joint, Drive::Velocity(velocity))])
+        SimCommand::Robot(RobotCommand::Drive(vec![(
+            joint,
+            Drive::Velocity(velocity),
+        )]))
     }
 
     /// What is asked for in a frame in which these keys are held down.
@@ -154,7 +158,10 @@ mod tests {
             (LeftE1, Drive::Velocity(1.0)),
             (RightE1, Drive::Velocity(1.0)),
         ];
-        assert_eq!(held(&mut test, &[KeyI, KeyK]), [SimCommand::Drive(both)]);
+        assert_eq!(
+            held(&mut test, &[KeyI, KeyK]),
+            [SimCommand::Robot(RobotCommand::Drive(both))]
+        );
     }
 
     #[test]
@@ -192,9 +199,15 @@ mod tests {
         for key in [KeyK, Space] {
             test.keys().press(key);
         }
-        assert_eq!(test.hold_still(), [SimCommand::SetPaused(true)]);
+        assert_eq!(
+            test.hold_still(),
+            [SimCommand::Clock(ClockCommand::SetPaused(true))]
+        );
         assert_eq!(held(&mut test, &[KeyK, KeyR, Backslash]), []);
-        assert_eq!(held(&mut test, &[Space]), [SimCommand::SetPaused(false)]);
+        assert_eq!(
+            held(&mut test, &[Space]),
+            [SimCommand::Clock(ClockCommand::SetPaused(false))]
+        );
         assert_eq!(held(&mut test, &[KeyK]), [drive(LeftE1, 1.0)]);
     }
 
@@ -232,8 +245,11 @@ mod tests {
     fn keys_show_the_robot_and_its_faces_once_a_press() {
         let mut test = test_world();
         for (key, command) in [
-            (KeyR, SimCommand::ShowRobot(true)),
-            (Backslash, SimCommand::ShowFace(Face::Happy)),
+            (KeyR, SimCommand::Robot(RobotCommand::Show(true))),
+            (
+                Backslash,
+                SimCommand::Robot(RobotCommand::ShowFace(Face::Happy)),
+            ),
         ] {
             test.keys().press(key);
             assert_eq!(test.hold_still(), [command]);
@@ -241,7 +257,10 @@ mod tests {
             test.keys().release(key);
         }
         test.app.world_mut().resource_mut::<Robot>().is_shown = true;
-        assert_eq!(held(&mut test, &[KeyR]), [SimCommand::ShowRobot(false)]);
+        assert_eq!(
+            held(&mut test, &[KeyR]),
+            [SimCommand::Robot(RobotCommand::Show(false))]
+        );
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! How far each hand has turned what it holds, about each axis of the world: what the rotation sliders show.
 
 use bevy::prelude::*;
-use tabletop_core::{Hand, SimCommand, SimFact};
+use tabletop_core::{Hand, HandCommand, SimFact};
 
 /// Greatest angle that a slider shows, in degrees, to either side.
 pub(crate) const MAX_DEGREES: i32 = 180;
@@ -21,11 +21,11 @@ impl Turns {
     }
 
     /// Brings one sum as near to these degrees as it goes, and tells what turn that is.
-    pub fn turn_to(&mut self, hand: Hand, axis: usize, degrees: i32) -> Option<SimCommand> {
+    pub fn turn_to(&mut self, hand: Hand, axis: usize, degrees: i32) -> Option<HandCommand> {
         let sum = &mut self.0[hand as usize][axis];
         let before = *sum;
         *sum = degrees.clamp(-MAX_DEGREES, MAX_DEGREES);
-        (*sum != before).then(|| SimCommand::Turn {
+        (*sum != before).then(|| HandCommand::Turn {
             hand,
             axis: AXES[axis],
             degrees: (*sum - before) as f32,
@@ -44,8 +44,20 @@ fn begin_anew(mut facts: MessageReader<SimFact>, mut turns: ResMut<Turns>) {
             SimFact::Grasped { hand, .. }
             | SimFact::Released { hand, .. }
             | SimFact::Destroyed { hand, .. } => turns.0[*hand as usize] = [0; 3],
-            SimFact::Undone | SimFact::Redone => *turns = Turns::default(),
-            _ => {}
+            SimFact::Undone { .. } | SimFact::Redone { .. } => *turns = Turns::default(),
+            SimFact::TaskLoaded { .. }
+            | SimFact::ObjectCreated { .. }
+            | SimFact::ObjectDeleted { .. }
+            | SimFact::SegmentBegun { .. }
+            | SimFact::RecordingStarted { .. }
+            | SimFact::RecordingFinished { .. }
+            | SimFact::RecordingFailed { .. }
+            | SimFact::RobotShown { .. }
+            | SimFact::GripMade { .. }
+            | SimFact::GripRefused { .. }
+            | SimFact::GripReleased { .. }
+            | SimFact::ArmBlocked { .. }
+            | SimFact::Refused { .. } => {}
         }
     }
 }
@@ -54,11 +66,11 @@ fn begin_anew(mut facts: MessageReader<SimFact>, mut turns: ResMut<Turns>) {
 mod tests {
     use super::*;
     use bevy::time::TimeUpdateStrategy;
-    use tabletop_core::CorePlugin;
+    use tabletop_core::{CommandId, CorePlugin};
 
-    fn degrees_of(command: Option<SimCommand>) -> Option<f32> {
+    fn degrees_of(command: Option<HandCommand>) -> Option<f32> {
         match command {
-            Some(SimCommand::Turn { degrees, .. }) => Some(degrees),
+            Some(HandCommand::Turn { degrees, .. }) => Some(degrees),
             None => None,
             other => panic!("{other:?}"),
         }
@@ -93,7 +105,9 @@ mod tests {
         let mut turns = app.world_mut().resource_mut::<Turns>();
         turns.turn_to(Hand::Left, 0, 10);
         turns.turn_to(Hand::Right, 2, 20);
+        let cause = CommandId(0);
         app.world_mut().write_message(SimFact::Grasped {
+            cause,
             hand: Hand::Left,
             id: "red".into(),
         });
@@ -101,7 +115,7 @@ mod tests {
         let turns = *app.world().resource::<Turns>();
         assert_eq!(turns.of(Hand::Left), [0; 3]);
         assert_eq!(turns.of(Hand::Right), [0, 0, 20]);
-        app.world_mut().write_message(SimFact::Undone);
+        app.world_mut().write_message(SimFact::Undone { cause });
         app.update();
         assert_eq!(*app.world().resource::<Turns>(), Turns::default());
     }

@@ -6,7 +6,8 @@ use bevy_egui::{
     egui::{self, Color32, Ui},
 };
 use tabletop_core::{
-    Action, Hand, Hands, History, Keymap, ObjectSpec, Recording, SimCommand, SimFact,
+    Action, Actor, CommandWriter, Hand, HandCommand, Hands, History, HistoryCommand, Keymap,
+    ObjectSpec, Recording, RecordingCommand, SimCommand, SimFact,
 };
 
 use crate::{
@@ -121,7 +122,7 @@ fn show_panel(
     sources: Sources,
     mut turns: ResMut<Turns>,
     mut plane_buttons: ResMut<PlaneButtons>,
-    mut commands: MessageWriter<SimCommand>,
+    mut commands: CommandWriter,
 ) {
     let Ok(context) = contexts.ctx_mut() else {
         return;
@@ -132,21 +133,23 @@ fn show_panel(
     let Asked { plane, request } = asked.unwrap_or_default();
     plane_buttons.set_if_neq(plane);
     if let Some(request) = request {
-        commands.write_batch(command(request, hand, &mut turns));
+        commands.write_batch(Actor::Panel, command(request, hand, &mut turns));
     }
 }
 
 /// The command that carries out what is asked of the panel while a hand is selected.
 fn command(request: Request, hand: Hand, turns: &mut Turns) -> Option<SimCommand> {
     Some(match request {
-        Request::Select(hand) => SimCommand::SelectHand(hand),
-        Request::Release => SimCommand::Release(hand),
-        Request::Destroy => SimCommand::Destroy(hand),
-        Request::TurnTo { axis, degrees } => return turns.turn_to(hand, axis, degrees),
-        Request::Start => SimCommand::StartRecording,
-        Request::Finish => SimCommand::FinishRecording,
-        Request::Undo => SimCommand::Undo,
-        Request::Redo => SimCommand::Redo,
+        Request::Select(hand) => SimCommand::Hand(HandCommand::Select(hand)),
+        Request::Release => SimCommand::Hand(HandCommand::Release(hand)),
+        Request::Destroy => SimCommand::Hand(HandCommand::Destroy(hand)),
+        Request::TurnTo { axis, degrees } => {
+            return turns.turn_to(hand, axis, degrees).map(SimCommand::from);
+        }
+        Request::Start => SimCommand::Recording(RecordingCommand::Start),
+        Request::Finish => SimCommand::Recording(RecordingCommand::Finish),
+        Request::Undo => SimCommand::History(HistoryCommand::Undo),
+        Request::Redo => SimCommand::History(HistoryCommand::Redo),
     })
 }
 
@@ -294,6 +297,7 @@ mod tests {
             .add_systems(Update, open_at_first_grasp);
         for is_open in [true, false] {
             app.world_mut().write_message(SimFact::Grasped {
+                cause: tabletop_core::CommandId(0),
                 hand: Hand::Any,
                 id: "red".into(),
             });
@@ -453,25 +457,37 @@ mod tests {
         for (request, expected) in [
             (
                 Request::Select(Hand::Both),
-                SimCommand::SelectHand(Hand::Both),
+                SimCommand::Hand(HandCommand::Select(Hand::Both)),
             ),
-            (Request::Release, SimCommand::Release(hand)),
-            (Request::Destroy, SimCommand::Destroy(hand)),
+            (
+                Request::Release,
+                SimCommand::Hand(HandCommand::Release(hand)),
+            ),
+            (
+                Request::Destroy,
+                SimCommand::Hand(HandCommand::Destroy(hand)),
+            ),
             (
                 Request::TurnTo {
                     axis: 2,
                     degrees: 30,
                 },
-                SimCommand::Turn {
+                SimCommand::Hand(HandCommand::Turn {
                     hand,
                     axis: Vec3::Z,
                     degrees: 30.0,
-                },
+                }),
             ),
-            (Request::Start, SimCommand::StartRecording),
-            (Request::Finish, SimCommand::FinishRecording),
-            (Request::Undo, SimCommand::Undo),
-            (Request::Redo, SimCommand::Redo),
+            (
+                Request::Start,
+                SimCommand::Recording(RecordingCommand::Start),
+            ),
+            (
+                Request::Finish,
+                SimCommand::Recording(RecordingCommand::Finish),
+            ),
+            (Request::Undo, SimCommand::History(HistoryCommand::Undo)),
+            (Request::Redo, SimCommand::History(HistoryCommand::Redo)),
         ] {
             assert_eq!(command(request, hand, &mut turns), Some(expected));
         }

@@ -81,10 +81,24 @@ fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
                     .iter()
                     .for_each(|fault| notices.add(Tone::Fault, fault));
             }
-            SimFact::Refused { reason } | SimFact::RecordingFailed { reason, .. } => {
+            SimFact::Refused { reason, .. } | SimFact::RecordingFailed { reason, .. } => {
                 notices.add(Tone::Fault, reason);
             }
-            _ => {}
+            SimFact::ObjectCreated { .. }
+            | SimFact::ObjectDeleted { .. }
+            | SimFact::SegmentBegun { .. }
+            | SimFact::Grasped { .. }
+            | SimFact::Released { .. }
+            | SimFact::Destroyed { .. }
+            | SimFact::RecordingStarted { .. }
+            | SimFact::RecordingFinished { .. }
+            | SimFact::Undone { .. }
+            | SimFact::Redone { .. }
+            | SimFact::RobotShown { .. }
+            | SimFact::GripMade { .. }
+            | SimFact::GripRefused { .. }
+            | SimFact::GripReleased { .. }
+            | SimFact::ArmBlocked { .. } => {}
         }
     }
 }
@@ -200,7 +214,7 @@ fn rows(ui: &mut Ui, notices: &Notices, list: &mut MessageList, sought: Option<u
 mod tests {
     use bevy::time::TimeUpdateStrategy;
     use egui_kittest::{Harness, kittest::Queryable as _};
-    use tabletop_core::CorePlugin;
+    use tabletop_core::{CommandId, CorePlugin};
 
     use super::*;
 
@@ -212,16 +226,21 @@ mod tests {
             .init_resource::<Notices>()
             .add_systems(Update, note_facts);
         let refused = |reason: &str| SimFact::Refused {
+            cause: None,
             reason: reason.into(),
         };
         for fact in [
             refused("no such object"),
             SimFact::TaskLoaded {
+                cause: CommandId(0),
                 path: "a.xml".into(),
                 faults: vec!["a.xml:1:2: one".into(), "a.xml:3:4: two".into()],
             },
             refused("no such object"),
-            SimFact::ObjectDeleted { id: "x".into() },
+            SimFact::ObjectDeleted {
+                cause: None,
+                id: "x".into(),
+            },
         ] {
             app.world_mut().write_message(fact);
             app.update();

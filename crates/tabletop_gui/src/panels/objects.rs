@@ -9,7 +9,7 @@ use bevy_egui::{
         ComboBox, Direction, Id, InnerResponse, Layout, Response, Ui, WidgetInfo, WidgetType, vec2,
     },
 };
-use tabletop_core::{Action, Keymap, Preset, SimCommand};
+use tabletop_core::{Action, Actor, CommandWriter, Keymap, Preset, SceneCommand};
 
 use crate::{
     files::{FileRequest, Files, TaskFile, short_name},
@@ -71,7 +71,7 @@ fn show_panel(
     mut panels: ResMut<Panels>,
     mut selection: Local<Selection>,
     mut seeds: ResMut<PresetSeeds>,
-    mut commands: MessageWriter<SimCommand>,
+    mut commands: CommandWriter,
     mut file_requests: MessageWriter<FileRequest>,
     files: Res<Files>,
     keymap: Res<Keymap>,
@@ -88,13 +88,13 @@ fn show_panel(
     let request = Panel::Objects.show(context, &mut panels, |ui| show(ui, &model, &mut selection));
     match request.flatten() {
         Some(Request::Load(path)) => {
-            commands.write(SimCommand::LoadTask(path));
+            commands.write(Actor::Panel, SceneCommand::Load(path));
         }
         Some(Request::Make(preset)) => {
-            commands.write(seeds.make(preset));
+            commands.write(Actor::Panel, seeds.make(preset));
         }
         Some(Request::Clear) => {
-            commands.write(SimCommand::ClearTable);
+            commands.write(Actor::Panel, SceneCommand::Clear);
         }
         Some(Request::File(request)) => {
             file_requests.write(request);

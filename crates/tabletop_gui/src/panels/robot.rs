@@ -9,8 +9,8 @@ use bevy_egui::{
     },
 };
 use tabletop_core::{
-    Action, Agent, Arm, Drive, Face, Keymap, ObjectSpec, Robot, RobotJoint, ScriptCommand,
-    SimCommand, Way,
+    Action, Actor, Agent, Arm, CommandWriter, Drive, Face, Keymap, ObjectSpec, Robot, RobotCommand,
+    RobotJoint, ScriptCommand, Way,
 };
 
 use crate::{
@@ -126,7 +126,7 @@ fn show_panel(
     mut selection: Local<Selection>,
     mut head_view: ResMut<HeadView>,
     mut jog: ResMut<Jog>,
-    mut commands: MessageWriter<SimCommand>,
+    mut commands: CommandWriter,
     mut orders: MessageWriter<ScriptCommand>,
 ) {
     let Ok(context) = contexts.ctx_mut() else {
@@ -149,18 +149,18 @@ fn show_panel(
                 orders.write(toggled(&sources.agent));
             }
             Request::ShowRobot(is_shown) => {
-                commands.write(SimCommand::ShowRobot(is_shown));
+                commands.write(Actor::Panel, RobotCommand::Show(is_shown));
             }
             Request::GoHome => {
                 let home = RobotJoint::ALL.map(|joint| (joint, Drive::Toward(joint.home())));
-                commands.write(SimCommand::Drive(home.into()));
+                commands.write(Actor::Panel, RobotCommand::Drive(home.into()));
             }
             Request::Go(joint, goal) => {
                 let drive = Drive::Toward(goal);
-                commands.write(SimCommand::Drive(vec![(joint, drive)]));
+                commands.write(Actor::Panel, RobotCommand::Drive(vec![(joint, drive)]));
             }
             Request::ShowFace(face) => {
-                commands.write(SimCommand::ShowFace(face));
+                commands.write(Actor::Panel, RobotCommand::ShowFace(face));
             }
         }
     }

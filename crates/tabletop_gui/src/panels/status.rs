@@ -130,7 +130,7 @@ struct Take {
 
 fn follow_recording(mut facts: MessageReader<SimFact>, tick: Res<SimTick>, mut take: ResMut<Take>) {
     for fact in facts.read() {
-        if let SimFact::RecordingStarted { folder } = fact {
+        if let SimFact::RecordingStarted { folder, .. } = fact {
             *take = Take {
                 folder: folder.clone(),
                 began: *tick,
@@ -420,6 +420,7 @@ mod tests {
             .add_systems(Update, follow_recording);
         app.insert_resource(SimTick(100));
         app.world_mut().write_message(SimFact::RecordingStarted {
+            cause: tabletop_core::CommandId(0),
             folder: "demo".into(),
         });
         app.update();

@@ -5,7 +5,10 @@ use std::path::{Path, PathBuf};
 use bevy::prelude::{Resource, warn};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
-use tabletop_core::{HeadCamera, JointSpec, ObjectSpec, Pose, SimCommand, Table};
+use tabletop_core::{
+    Actor, ClockCommand, HeadCamera, IssuedCommand, JointSpec, ObjectSpec, Pose, SimCommand,
+    SimTick, Table,
+};
 
 use crate::{
     error::RecorderError,
@@ -65,6 +68,8 @@ pub struct SessionObject {
 pub struct SessionCommand {
     /// The tick in which it was.
     pub tick: u64,
+    /// Who gave it.
+    pub actor: Actor,
     /// The command.
     pub command: SimCommand,
 }
@@ -80,6 +85,37 @@ pub struct Session {
     pub earlier: Vec<SessionCommand>,
     /// The commands of the recording, in their order.
     pub commands: Vec<SessionCommand>,
+}
+
+impl SessionCommand {
+    /// A command as it is logged.
+    pub(crate) fn of(tick: SimTick, issued: &IssuedCommand) -> Self {
+        Self {
+            tick: tick.0,
+            actor: issued.actor,
+            command: issued.command.clone(),
+        }
+    }
+
+    /// What the program itself does in a tick.
+    pub(crate) fn of_app(tick: SimTick, command: impl Into<SimCommand>) -> Self {
+        Self {
+            tick: tick.0,
+            actor: Actor::App,
+            command: command.into(),
+        }
+    }
+}
+
+/// Whether a session log holds a command. It holds none that is about recordings; the one that ends them is added at the end.
+pub(crate) fn is_logged(command: &SimCommand) -> bool {
+    match command {
+        SimCommand::Recording(_) | SimCommand::History(_) => false,
+        SimCommand::Clock(_)
+        | SimCommand::Scene(_)
+        | SimCommand::Hand(_)
+        | SimCommand::Robot(_) => true,
+    }
 }
 
 impl Session {
@@ -141,7 +177,7 @@ impl Course {
             ));
         }
         self.tick = next_tick;
-        if let SimCommand::SetPaused(paused) = next.command {
+        if let SimCommand::Clock(ClockCommand::SetPaused(paused)) = next.command {
             self.is_paused = paused;
         }
         Ok(())
@@ -167,15 +203,12 @@ pub(crate) fn session_line(content: &impl Serialize) -> serde_json::Result<Vec<u
 }
 
 /// The line of a command; none, with a warning, if it would not read back, because it holds numbers that are none.
-pub(crate) fn command_line(tick: u64, command: &SimCommand) -> Option<Vec<u8>> {
-    let entry = SessionCommand {
-        tick,
-        command: command.clone(),
-    };
-    let line = session_line(&entry)
+pub(crate) fn command_line(command: &SessionCommand) -> Option<Vec<u8>> {
+    let line = session_line(command)
         .ok()
         .filter(|line| serde_json::from_slice::<SessionCommand>(line).is_ok());
     if line.is_none() {
+        let command = &command.command;
         warn!("{command:?} is not in the session log: not all of it can be written");
     }
     line
@@ -186,21 +219,27 @@ mod tests {
     use std::fs;
 
     use bevy::math::Vec3;
-    use tabletop_core::{Drive, Hand, RobotJoint};
+    use tabletop_core::{Drive, Hand, HandCommand, RobotCommand, RobotJoint, SceneCommand};
 
     use super::*;
+
+    fn given(tick: u64, command: impl Into<SimCommand>) -> SessionCommand {
+        SessionCommand {
+            tick,
+            actor: Actor::Mouse,
+            command: command.into(),
+        }
+    }
 
     #[test]
     fn commands_read_back_to_the_bit() {
         let location = Vec3::new(0.1, -1.234_567_9e-7, 16_777_217.0);
-        let command = SimCommand::MoveTo {
-            hand: Hand::Left,
-            location,
-        };
-        let line = command_line(12, &command).unwrap();
+        let hand = Hand::Left;
+        let command = given(12, HandCommand::MoveTo { hand, location });
+        let line = command_line(&command).unwrap();
         assert_eq!(
             serde_json::from_slice::<SessionCommand>(&line).unwrap(),
-            SessionCommand { tick: 12, command }
+            command
         );
         assert_eq!(line.last(), Some(&b'\n'));
     }
@@ -212,21 +251,20 @@ mod tests {
             bits = bits.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
             // Between 1/16 and 16: what joints are told.
             let value = f64::from_bits(0x3fb0_0000_0000_0000 + bits % 0x0080_0000_0000_0000);
-            let command = SimCommand::Drive(vec![(RobotJoint::LeftS0, Drive::Velocity(value))]);
-            let line = command_line(1, &command).unwrap();
+            let drive = (RobotJoint::LeftS0, Drive::Velocity(value));
+            let command = given(1, RobotCommand::Drive(vec![drive]));
+            let line = command_line(&command).unwrap();
             let read = serde_json::from_slice::<SessionCommand>(&line).unwrap();
-            assert_eq!(read.command, command);
+            assert_eq!(read, command);
         }
     }
 
     #[test]
     fn a_command_that_would_not_read_back_is_left_out() {
         let location = Vec3::new(f32::NAN, 0.0, 0.0);
-        let command = SimCommand::MoveTo {
-            hand: Hand::Left,
-            location,
-        };
-        assert_eq!(command_line(12, &command), None);
+        let hand = Hand::Left;
+        let command = given(12, HandCommand::MoveTo { hand, location });
+        assert_eq!(command_line(&command), None);
     }
 
     #[test]
@@ -245,7 +283,7 @@ mod tests {
         let mut log = session_line(&header).unwrap();
         log.extend(session_line(&SessionScene::default()).unwrap());
         for tick in [2, 4] {
-            log.extend(command_line(tick, &SimCommand::ClearTable).unwrap());
+            log.extend(command_line(&given(tick, SceneCommand::Clear)).unwrap());
         }
         log.extend(b"{\"tick\":5,\"comm");
         let path = std::env::temp_dir().join(format!("tabletop_session_{}", std::process::id()));
@@ -258,12 +296,20 @@ mod tests {
         assert_eq!(ticks(&session.commands), [4]);
 
         for (tick, command, problem) in [
-            (1, SimCommand::ClearTable, ":5: tick 1 comes after tick 4"),
-            (5, SimCommand::SetPaused(true), ":6: tick 7 never comes"),
+            (
+                1,
+                SimCommand::Scene(SceneCommand::Clear),
+                ":5: tick 1 comes after tick 4",
+            ),
+            (
+                5,
+                SimCommand::Clock(ClockCommand::SetPaused(true)),
+                ":6: tick 7 never comes",
+            ),
         ] {
             let mut log = log[..log.len() - 15].to_vec();
-            log.extend(command_line(tick, &command).unwrap());
-            log.extend(command_line(7, &SimCommand::ClearTable).unwrap());
+            log.extend(command_line(&given(tick, command)).unwrap());
+            log.extend(command_line(&given(7, SceneCommand::Clear)).unwrap());
             fs::write(&path, &log).unwrap();
             let error = Session::read(&path).unwrap_err().to_string();
             assert!(error.contains(problem), "{error}");
@@ -289,7 +335,7 @@ mod tests {
         };
         fs::write(&path, session_line(&header).unwrap()).unwrap();
         let error = Session::read(&path).unwrap_err().to_string();
-        assert!(error.contains("format 3"), "{error}");
+        assert!(error.contains(&format!("format {}", FORMAT + 1)), "{error}");
         fs::remove_file(path).unwrap();
     }
 }

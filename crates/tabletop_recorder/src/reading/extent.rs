@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-use tabletop_core::{SimCommand, SimTick};
+use tabletop_core::{RecordingCommand, SimCommand, SimTick};
 
 use crate::{
     error::RecorderError,
@@ -25,7 +25,7 @@ impl Session {
     /// Whether the recording has come to its end.
     pub fn is_finished(&self) -> bool {
         let last = self.commands.last();
-        last.is_some_and(|last| last.command == SimCommand::FinishRecording)
+        last.is_some_and(|last| last.command == SimCommand::Recording(RecordingCommand::Finish))
     }
 
     /// The last tick of which something is in the files of the recording in this folder.

@@ -35,9 +35,9 @@ use crate::{
 /// # let ball = ObjectSpec::new("ball", Pose::IDENTITY, 1.0, shape);
 /// # let entity = app.world_mut().spawn(ball).id();
 /// # app.world_mut().resource_mut::<ObjectIndex>().insert("ball", entity);
-/// # app.world_mut().write_message(SimCommand::StartRecording);
+/// # app.world_mut().write_command(RecordingCommand::Start);
 /// # app.step(60);
-/// # app.world_mut().write_message(SimCommand::FinishRecording);
+/// # app.world_mut().write_command(RecordingCommand::Finish);
 /// # app.step(1);
 /// use tabletop_recorder::{Occurrence, RecordingReader};
 ///

@@ -2,7 +2,9 @@
 
 use std::{collections::BTreeMap, path::PathBuf};
 
-use tabletop_core::{Act, Actor, Hand, Rgb, SimCommand, SimTick, TimelineSegment, Verb};
+use tabletop_core::{
+    Act, CommandKind as _, Hand, HandCommand, Manipulator, Rgb, SimTick, TimelineSegment, Verb,
+};
 
 use crate::{
     files::session::SessionCommand,
@@ -72,7 +74,7 @@ impl Hands {
             }
         };
         Some(Act {
-            actor: Actor::Hand(*hand),
+            manipulator: Manipulator::Hand(*hand),
             verb,
             object,
         })
@@ -87,7 +89,11 @@ pub(super) fn colors(segments: &[RecordedSegment]) -> BTreeMap<String, Rgb> {
             let color = properties.iter().find(|(key, _)| key == "color")?;
             Some((id.clone(), color.1.parse().ok()?))
         }
-        _ => None,
+        Occurrence::Delete { .. }
+        | Occurrence::Move { .. }
+        | Occurrence::Grasp { .. }
+        | Occurrence::Release { .. }
+        | Occurrence::Destroy { .. } => None,
     });
     created.collect()
 }
@@ -104,9 +110,12 @@ pub(super) fn begin_of<'c>(
         let tick = SimTick(command.tick);
         after.is_none_or(|after| tick > after) && tick <= last
     };
-    let of = |is_cause: fn(&Act, &SimCommand) -> bool| {
+    let of = |is_cause: fn(&Act, &HandCommand) -> bool| {
         let mut all = commands.iter();
-        all.position(|command| is_here(command) && is_cause(act, &command.command))
+        all.position(|command| {
+            is_here(command)
+                && HandCommand::of(&command.command).is_some_and(|command| is_cause(act, command))
+        })
     };
     if let Some(at) = of(is_told) {
         (SimTick(commands[at].tick), &commands[at + 1..])
@@ -118,20 +127,30 @@ pub(super) fn begin_of<'c>(
 }
 
 /// Whether a command is to do just this.
-fn is_told(act: &Act, command: &SimCommand) -> bool {
-    let by = |hand: &Hand| act.actor == Actor::Hand(*hand);
-    match (act.verb, command) {
-        (Verb::Grasp, SimCommand::Grasp { hand, object }) => {
-            by(hand) && act.object.as_ref() == Some(object)
+fn is_told(act: &Act, command: &HandCommand) -> bool {
+    let is = |verb, hand: &Hand| act.verb == verb && act.manipulator == Manipulator::Hand(*hand);
+    match command {
+        HandCommand::Grasp { hand, object } => {
+            is(Verb::Grasp, hand) && act.object.as_ref() == Some(object)
         }
-        (Verb::Release, SimCommand::Release(hand)) | (Verb::Destroy, SimCommand::Destroy(hand)) => {
-            by(hand)
-        }
-        _ => false,
+        HandCommand::Release(hand) => is(Verb::Release, hand),
+        HandCommand::Destroy(hand) => is(Verb::Destroy, hand),
+        HandCommand::Select(_)
+        | HandCommand::MoveTo { .. }
+        | HandCommand::MoveBy { .. }
+        | HandCommand::Turn { .. } => false,
     }
 }
 
 /// Whether a command makes a hand let go, because another one takes what it holds, or needs it.
-fn is_forced(act: &Act, command: &SimCommand) -> bool {
-    act.verb == Verb::Release && matches!(command, SimCommand::Grasp { .. })
+fn is_forced(act: &Act, command: &HandCommand) -> bool {
+    match command {
+        HandCommand::Grasp { .. } => act.verb == Verb::Release,
+        HandCommand::Select(_)
+        | HandCommand::MoveTo { .. }
+        | HandCommand::MoveBy { .. }
+        | HandCommand::Turn { .. }
+        | HandCommand::Release(_)
+        | HandCommand::Destroy(_) => false,
+    }
 }

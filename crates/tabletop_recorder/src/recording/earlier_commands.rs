@@ -1,11 +1,8 @@
 //! What was told before a recording: its replay begins with that.
 
-use tabletop_core::{SimCommand, SimTick};
+use tabletop_core::{ClockCommand, IssuedCommand, SceneCommand, SimCommand, SimTick};
 
-use crate::{
-    files::session::{SessionCommand, command_line},
-    order::{in_order, is_about_recordings},
-};
+use crate::files::session::{SessionCommand, command_line, is_logged};
 
 /// A longer log is not kept: some three hours of moving something without a break.
 const MOST_BYTES: usize = 64 << 20;
@@ -61,42 +58,49 @@ impl EarlierCommands {
             begin: Some(begin),
             ..Self::default()
         };
-        for SessionCommand { tick, command } in commands {
-            if !is_about_recordings(command) {
-                earlier.append(&command_line(*tick, command).unwrap_or_default());
-            }
-            earlier.note_lasting(command);
+        for command in commands {
+            earlier.append_command(command);
+            earlier.note_lasting(&command.command);
         }
         earlier
     }
 
-    /// Takes in the commands of a tick in which nothing is recorded.
-    pub(crate) fn note(&mut self, tick: SimTick, commands: &[SimCommand], hands_are_empty: bool) {
-        let (first, then) = in_order(commands);
-        for command in first.iter().chain(&then) {
-            let empties_the_world = hands_are_empty
-                && !self.has_used_robot
-                && matches!(command, SimCommand::SetScene(_));
-            if empties_the_world {
+    /// Takes in the commands of a tick in which nothing is recorded, in the order in which they are carried out.
+    pub(crate) fn note(
+        &mut self,
+        tick: SimTick,
+        commands: &[IssuedCommand],
+        hands_are_empty: bool,
+    ) {
+        for issued in commands {
+            let sets_scene = match &issued.command {
+                SimCommand::Scene(SceneCommand::Set(_)) => true,
+                SimCommand::Scene(
+                    SceneCommand::Load(_) | SceneCommand::Clear | SceneCommand::Make { .. },
+                )
+                | SimCommand::Recording(_)
+                | SimCommand::Clock(_)
+                | SimCommand::History(_)
+                | SimCommand::Hand(_)
+                | SimCommand::Robot(_) => false,
+            };
+            if sets_scene && hands_are_empty && !self.has_used_robot {
                 self.begin_at(tick);
             }
-            if !is_about_recordings(command) {
-                self.append(&command_line(tick.0, command).unwrap_or_default());
-            }
-            self.note_lasting(command);
+            self.append_command(&SessionCommand::of(tick, issued));
+            self.note_lasting(&issued.command);
         }
     }
 
     /// Notes what a command changes for longer than a scene stands. To be called for recorded commands, too.
     pub(crate) fn note_lasting(&mut self, command: &SimCommand) {
         match command {
-            SimCommand::SetPaused(paused) => self.is_paused = *paused,
-            SimCommand::ShowRobot(_)
-            | SimCommand::Drive(_)
-            | SimCommand::ReachTo { .. }
-            | SimCommand::ShowFace(_)
-            | SimCommand::ShowMarkers(_) => self.has_used_robot = true,
-            _ => {}
+            SimCommand::Clock(ClockCommand::SetPaused(paused)) => self.is_paused = *paused,
+            SimCommand::Robot(_) => self.has_used_robot = true,
+            SimCommand::Recording(_)
+            | SimCommand::Scene(_)
+            | SimCommand::History(_)
+            | SimCommand::Hand(_) => {}
         }
     }
 
@@ -112,8 +116,14 @@ impl EarlierCommands {
         self.forget();
         self.begin = Some(tick);
         if self.is_paused {
-            let pause = SimCommand::SetPaused(true);
-            self.append(&command_line(tick.0, &pause).unwrap_or_default());
+            let pause = ClockCommand::SetPaused(true);
+            self.append_command(&SessionCommand::of_app(tick, pause));
+        }
+    }
+
+    fn append_command(&mut self, command: &SessionCommand) {
+        if is_logged(&command.command) {
+            self.append(&command_line(command).unwrap_or_default());
         }
     }
 
@@ -135,12 +145,20 @@ impl EarlierCommands {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::Hand;
+    use tabletop_core::{Actor, CommandId, Hand, HandCommand, RecordingCommand, RobotCommand};
 
     use super::*;
 
-    fn scene() -> SimCommand {
-        SimCommand::SetScene(Box::default())
+    fn scene() -> IssuedCommand {
+        issued(SceneCommand::Set(Box::default()))
+    }
+
+    fn issued(command: impl Into<SimCommand>) -> IssuedCommand {
+        IssuedCommand {
+            id: CommandId(0),
+            actor: Actor::Key,
+            command: command.into(),
+        }
     }
 
     fn told(earlier: &EarlierCommands) -> Vec<String> {
@@ -156,16 +174,20 @@ mod tests {
         assert_eq!(earlier.begin(), Some(SimTick(0)));
         earlier.note(
             SimTick(3),
-            &[SimCommand::Release(Hand::Left), scene()],
+            &[scene(), issued(HandCommand::Release(Hand::Left))],
             true,
         );
         assert_eq!(earlier.begin(), Some(SimTick(3)));
         let told_first = told(&earlier);
-        assert!(told_first[0].contains("SetScene") && told_first[1].contains("Release"));
+        assert!(told_first[0].contains("Scene") && told_first[1].contains("Release"));
         earlier.note(SimTick(5), &[scene()], false);
         assert_eq!(earlier.begin(), Some(SimTick(3)));
         assert_eq!(earlier.count(), 3);
-        earlier.note(SimTick(9), &[scene(), SimCommand::StartRecording], true);
+        earlier.note(
+            SimTick(9),
+            &[issued(RecordingCommand::Start), scene()],
+            true,
+        );
         assert_eq!((earlier.begin(), earlier.count()), (Some(SimTick(9)), 1));
     }
 
@@ -173,15 +195,15 @@ mod tests {
     fn what_is_told_again_is_what_was_noted() {
         let commands = [
             (3, scene()),
-            (4, SimCommand::ShowRobot(true)),
+            (4, issued(RobotCommand::Show(true))),
             (5, scene()),
-            (6, SimCommand::SetPaused(true)),
+            (6, issued(ClockCommand::SetPaused(true))),
         ];
         let mut noted = EarlierCommands::default();
         for (tick, command) in &commands {
             noted.note(SimTick(*tick), std::slice::from_ref(command), true);
         }
-        let commands = commands.map(|(tick, command)| SessionCommand { tick, command });
+        let commands = commands.map(|(tick, command)| SessionCommand::of(SimTick(tick), &command));
         let told_again = EarlierCommands::since(SimTick(3), &commands);
         assert_eq!(told_again.begin(), noted.begin());
         assert_eq!(told(&told_again), told(&noted));
@@ -192,10 +214,10 @@ mod tests {
     #[test]
     fn a_pause_and_the_robot_outlive_a_scene() {
         let mut earlier = EarlierCommands::default();
-        earlier.note(SimTick(1), &[SimCommand::SetPaused(true)], true);
+        earlier.note(SimTick(1), &[issued(ClockCommand::SetPaused(true))], true);
         earlier.note(SimTick(1), &[scene()], true);
         assert!(told(&earlier)[0].contains("SetPaused"));
-        earlier.note(SimTick(2), &[SimCommand::ShowRobot(true)], true);
+        earlier.note(SimTick(2), &[issued(RobotCommand::Show(true))], true);
         earlier.note(SimTick(3), &[scene()], true);
         assert_eq!((earlier.begin(), earlier.count()), (Some(SimTick(1)), 4));
     }
@@ -204,7 +226,7 @@ mod tests {
     fn too_long_a_log_is_dropped_until_the_next_scene() {
         let mut earlier = EarlierCommands::default();
         earlier.append_recorded(Some(&vec![b'\n'; MOST_BYTES + 1]));
-        earlier.note(SimTick(8), &[SimCommand::ClearTable], true);
+        earlier.note(SimTick(8), &[issued(SceneCommand::Clear)], true);
         assert_eq!((earlier.begin(), earlier.count()), (None, 0));
         earlier.note(SimTick(9), &[scene()], true);
         assert_eq!((earlier.begin(), earlier.count()), (Some(SimTick(9)), 1));

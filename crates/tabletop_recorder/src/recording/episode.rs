@@ -4,12 +4,12 @@ use std::path::Path;
 
 use bevy::prelude::warn;
 use tabletop_core::{
-    Act, Actor, Paused, Pose, SensorImage, SimCommand, SimFact, SimTick, Timeline, TimelineGrip,
+    Act, Actor, ClockCommand, CommandId, CommandSystems, Hand, HandCommand, IssuedCommand,
+    Manipulator, Paused, Pose, SensorImage, SimCommand, SimFact, SimTick, Timeline, TimelineGrip,
     TimelinePicture, TimelineSegment, TimelineStage,
 };
 
 use crate::{
-    cause::{Beginning, beginnings},
     error::RecorderError,
     files::{
         channels::Channels,
@@ -19,9 +19,8 @@ use crate::{
         joints::{self, Joints},
         picture::{write_depth, write_ids, write_png},
         recording_files::RecordingFiles,
-        session::{SessionHeader, SessionScene, command_line},
+        session::{SessionCommand, SessionHeader, SessionScene, command_line, is_logged},
     },
-    order::{in_order, is_about_recordings, turns_the_clock},
     recording::{
         earlier_commands::EarlierCommands,
         objects::RecordedObjects,
@@ -47,16 +46,25 @@ pub(crate) struct Episode {
     channels: Channels,
     /// The tick before its commands were carried out; they may turn the clock.
     tick: SimTick,
-    /// The commands of this tick, each with the length of the session log before it.
-    logged: Vec<(SimCommand, u64)>,
+    /// The commands of this tick that are in the session log.
+    logged: Vec<LoggedCommand>,
     /// Length of the session log before the first recorded command.
     head: u64,
     /// The commands of this tick that are carried out after the clock was turned.
-    unlogged: Vec<SimCommand>,
+    unlogged: Vec<IssuedCommand>,
     undoable: Vec<SegmentStart>,
     redoable: Vec<UndoneSegment>,
     /// How many pictures were written, also of what was undone.
     pictures: usize,
+}
+
+/// A command in the session log.
+#[derive(Clone, Copy, Debug)]
+struct LoggedCommand {
+    id: CommandId,
+    actor: Actor,
+    /// Length of the session log before it.
+    before: u64,
 }
 
 impl Episode {
@@ -117,37 +125,46 @@ impl Episode {
         self.clock.is_frame(tick)
     }
 
-    /// Logs the commands of a tick before they are carried out, in the order in which they are. If they turn the clock,
-    /// those after that belong to another tick, and are logged when it is reached.
+    /// Logs the commands of a tick, in the order in which they are carried out, before they are. If they turn the clock, those after
+    /// that belong to another tick, and are logged when it is reached.
     pub(crate) fn log_commands(
         &mut self,
         tick: SimTick,
-        commands: &[SimCommand],
+        commands: &[IssuedCommand],
     ) -> Result<(), RecorderError> {
-        let (first, then) = in_order(commands);
+        let phase = |issued: &IssuedCommand| issued.command.phase();
+        let begins = commands.partition_point(|issued| phase(issued) < CommandSystems::History);
+        let (first, then) = commands.split_at(begins);
         self.tick = tick;
         self.logged.clear();
         self.log(first)?;
-        if then.iter().any(turns_the_clock) {
-            self.unlogged = then;
+        if then
+            .iter()
+            .any(|issued| phase(issued) == CommandSystems::History)
+        {
+            self.unlogged = then.to_vec();
             Ok(())
         } else {
             self.log(then)
         }
     }
 
-    fn log(&mut self, commands: Vec<SimCommand>) -> Result<(), RecorderError> {
+    fn log(&mut self, commands: &[IssuedCommand]) -> Result<(), RecorderError> {
         let mut lines = Vec::new();
-        for command in commands {
-            let before = self.files.session.len() + lines.len() as u64;
-            if is_about_recordings(&command) {
+        for issued in commands {
+            if !is_logged(&issued.command) {
                 continue;
             }
-            if let SimCommand::SetPaused(paused) = command {
+            if let SimCommand::Clock(ClockCommand::SetPaused(paused)) = issued.command {
                 self.is_paused = paused;
             }
-            lines.extend(command_line(self.tick.0, &command).unwrap_or_default());
-            self.logged.push((command, before));
+            self.logged.push(LoggedCommand {
+                id: issued.id,
+                actor: issued.actor,
+                before: self.files.session.len() + lines.len() as u64,
+            });
+            let command = SessionCommand::of(self.tick, issued);
+            lines.extend(command_line(&command).unwrap_or_default());
         }
         self.files.session.append(&lines)
     }
@@ -161,11 +178,10 @@ impl Episode {
         stage: &Stage,
         timeline: &mut Timeline,
     ) -> Result<(), RecorderError> {
-        let is_turn = |fact: &SimFact| matches!(fact, SimFact::Undone | SimFact::Redone);
-        let last_turn = facts.iter().rposition(is_turn);
+        let last_turn = facts.iter().rposition(|fact| Turn::of(fact).is_some());
         let (turned, rest) = facts.split_at(last_turn.map_or(0, |last| last + 1));
-        for facts in turned.split_inclusive(is_turn) {
-            let is_undo = facts.ends_with(&[SimFact::Undone]);
+        for facts in turned.split_inclusive(|fact| Turn::of(fact).is_some()) {
+            let is_undo = facts.last().and_then(Turn::of) == Some(Turn::Undo);
             let restored = if is_undo {
                 self.undoable.last().map(|start| &start.before)
             } else {
@@ -184,10 +200,13 @@ impl Episode {
         }
         if self.is_paused != paused.0 {
             // A pause is not turned back with the clock.
-            self.log(vec![SimCommand::SetPaused(paused.0)])?;
+            let pause = SessionCommand::of_app(tick, ClockCommand::SetPaused(paused.0));
+            let line = command_line(&pause).unwrap_or_default();
+            self.files.session.append(&line)?;
+            self.is_paused = paused.0;
         }
         let unlogged = std::mem::take(&mut self.unlogged);
-        self.log(unlogged)?;
+        self.log(&unlogged)?;
         self.write_events(rest, stage, timeline)
     }
 
@@ -198,22 +217,17 @@ impl Episode {
         timeline: &mut Timeline,
     ) -> Result<(), RecorderError> {
         let frame = self.clock.frame(self.tick);
-        let commands: Vec<_> = self
-            .logged
-            .iter()
-            .map(|(command, _)| command.clone())
-            .collect();
-        let mut beginnings = beginnings(&commands, facts).into_iter();
         let mut lines = Vec::new();
-        for fact in facts {
+        for (index, fact) in facts.iter().enumerate() {
             self.note_act(fact, timeline);
             let event = match fact {
-                SimFact::SegmentBegun => {
+                SimFact::SegmentBegun { cause } => {
                     lines.splice(..0, self.objects.open(frame));
                     self.files
                         .text
                         .append_records(&std::mem::take(&mut lines))?;
-                    self.begin_segment(beginnings.next().unwrap_or_default(), timeline)?;
+                    let released = released_by(*cause, &facts[..index]);
+                    self.begin_segment(*cause, released, timeline)?;
                     continue;
                 }
                 SimFact::ObjectCreated { object, .. } => {
@@ -225,16 +239,27 @@ impl Episode {
                     }
                     Event::Create(spec)
                 }
-                SimFact::ObjectDeleted { id } => {
+                SimFact::ObjectDeleted { id, .. } => {
                     if !self.objects.delete(id) {
                         continue;
                     }
                     Event::Delete { id }
                 }
-                SimFact::Grasped { hand, id } => Event::Grasp { hand: *hand, id },
+                SimFact::Grasped { hand, id, .. } => Event::Grasp { hand: *hand, id },
                 SimFact::Released { hand, .. } => Event::Release { hand: *hand },
                 SimFact::Destroyed { hand, .. } => Event::Destroy { hand: *hand },
-                _ => continue,
+                SimFact::TaskLoaded { .. }
+                | SimFact::RecordingStarted { .. }
+                | SimFact::RecordingFinished { .. }
+                | SimFact::RecordingFailed { .. }
+                | SimFact::Undone { .. }
+                | SimFact::Redone { .. }
+                | SimFact::RobotShown { .. }
+                | SimFact::GripMade { .. }
+                | SimFact::GripRefused { .. }
+                | SimFact::GripReleased { .. }
+                | SimFact::ArmBlocked { .. }
+                | SimFact::Refused { .. } => continue,
             };
             lines.push(event.fields(frame));
         }
@@ -247,30 +272,37 @@ impl Episode {
         let Some(act) = Act::of(fact) else {
             return;
         };
-        match (act.actor, &mut timeline.segments[..]) {
-            (Actor::Gripper(_), _) => timeline.grips.push(TimelineGrip {
+        match (act.manipulator, &mut timeline.segments[..]) {
+            (Manipulator::Gripper(_), _) => timeline.grips.push(TimelineGrip {
                 tick: self.tick,
                 act,
             }),
-            (Actor::Hand(_), [_, .., last]) if last.act.is_none() => {
+            (Manipulator::Hand(_), [_, .., last]) if last.act.is_none() => {
                 last.color = act.object.as_ref().and_then(|id| self.objects.color(id));
                 last.act = Some(act);
             }
             // What falls off the world is lost to its hand, in the middle of a segment.
-            (Actor::Hand(_), _) => {}
+            (Manipulator::Hand(_), _) => {}
         }
     }
 
     fn begin_segment(
         &mut self,
-        beginning: Beginning,
+        cause: CommandId,
+        released: Vec<Hand>,
         timeline: &mut Timeline,
     ) -> Result<(), RecorderError> {
         let mut before = self.progress();
-        if let Some(&(_, session)) = self.logged.get(beginning.before) {
-            before.files.session = session;
+        let cause = self.logged.iter().find(|command| command.id == cause);
+        if let Some(cause) = cause {
+            before.files.session = cause.before;
         }
-        let released = beginning.released.into_iter().map(SimCommand::Release);
+        let actor = cause.map_or(Actor::App, |cause| cause.actor);
+        let released = released.into_iter().map(|hand| SessionCommand {
+            tick: self.tick.0,
+            actor,
+            command: HandCommand::Release(hand).into(),
+        });
         self.undoable.push(SegmentStart {
             before,
             released: released.collect(),
@@ -308,7 +340,7 @@ impl Episode {
         let end = self.progress();
         let mut released = Vec::new();
         for command in &start.released {
-            released.extend(command_line(start.tick.0, command).unwrap_or_default());
+            released.extend(command_line(command).unwrap_or_default());
         }
         self.files.put_away(start.before.files, &released)?;
         self.resume(start.before.clone());
@@ -430,6 +462,7 @@ impl Episode {
     pub(crate) fn finish(
         &mut self,
         tick: SimTick,
+        finish: &IssuedCommand,
         stage: &Stage,
         image: Option<&SensorImage>,
         timeline: &mut Timeline,
@@ -438,7 +471,7 @@ impl Episode {
         let commands = self.files.session.read_from(self.head)?;
         let text = self.files.text.len();
         let frame = self.clock.frame(tick);
-        let line = command_line(tick.0, &SimCommand::FinishRecording).unwrap_or_default();
+        let line = command_line(&SessionCommand::of(tick, finish)).unwrap_or_default();
         let ended = self
             .write_frame(tick, Tracked::is_elsewhere, stage, image, timeline)
             .and_then(|()| self.files.session.append(&line));
@@ -454,5 +487,41 @@ impl Episode {
             warn!("what was undone is still there: {error}");
         }
         Ok(commands)
+    }
+}
+
+/// The hands that a command has emptied by now.
+fn released_by(command: CommandId, facts: &[SimFact]) -> Vec<Hand> {
+    let released = facts.iter().filter_map(|fact| {
+        if let SimFact::Released {
+            cause: Some(cause),
+            hand,
+            ..
+        } = fact
+        {
+            (*cause == command).then_some(*hand)
+        } else {
+            None
+        }
+    });
+    released.collect()
+}
+
+/// A change of the clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Turn {
+    Undo,
+    Redo,
+}
+
+impl Turn {
+    fn of(fact: &SimFact) -> Option<Self> {
+        if let SimFact::Undone { .. } = fact {
+            Some(Self::Undo)
+        } else if let SimFact::Redone { .. } = fact {
+            Some(Self::Redo)
+        } else {
+            None
+        }
     }
 }

@@ -1,9 +1,9 @@
 //! How far a recording has come, for undo and redo.
 
-use tabletop_core::{SimCommand, SimFact, SimTick};
+use tabletop_core::{SimFact, SimTick};
 
 use crate::{
-    files::{joints::Joints, recording_files::Lengths},
+    files::{joints::Joints, recording_files::Lengths, session::SessionCommand},
     recording::{
         objects::RecordedObjects,
         stage::Sight,
@@ -27,8 +27,9 @@ pub(crate) struct Progress {
 pub(crate) struct SegmentStart {
     pub(crate) before: Progress,
     pub(crate) timeline: TimelineMark,
-    /// What the session log must say more, if the recording goes on from here.
-    pub(crate) released: Vec<SimCommand>,
+    /// What the session log says instead of the command that began it, if the recording goes on from here: a grasp that takes an
+    /// object out of another hand is a release and a grasp, in segments of their own.
+    pub(crate) released: Vec<SessionCommand>,
     pub(crate) tick: SimTick,
 }
 
@@ -46,8 +47,23 @@ impl Progress {
         let is_there = |id: &str| self.objects.has(id);
         let reported = facts.iter().rposition(|fact| match fact {
             SimFact::ObjectCreated { id, .. } => !is_there(id),
-            SimFact::ObjectDeleted { id } => is_there(id),
-            _ => true,
+            SimFact::ObjectDeleted { id, .. } => is_there(id),
+            SimFact::TaskLoaded { .. }
+            | SimFact::SegmentBegun { .. }
+            | SimFact::Grasped { .. }
+            | SimFact::Released { .. }
+            | SimFact::Destroyed { .. }
+            | SimFact::RecordingStarted { .. }
+            | SimFact::RecordingFinished { .. }
+            | SimFact::RecordingFailed { .. }
+            | SimFact::Undone { .. }
+            | SimFact::Redone { .. }
+            | SimFact::RobotShown { .. }
+            | SimFact::GripMade { .. }
+            | SimFact::GripRefused { .. }
+            | SimFact::GripReleased { .. }
+            | SimFact::ArmBlocked { .. }
+            | SimFact::Refused { .. } => true,
         });
         &facts[..reported.map_or(0, |last| last + 1)]
     }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Hand, Hands, Paused, PictureDemand, Recording, SensorImage, SimCommand, SimFact, SimTick,
-    TICKS_PER_SECOND, Timeline, TimelineStage,
+    CommandId, CommandKind as _, Hand, Hands, IssuedCommand, Paused, PictureDemand, Recording,
+    RecordingCommand, SensorImage, SimFact, SimTick, TICKS_PER_SECOND, Timeline, TimelineStage,
 };
 
 use crate::{
@@ -31,7 +31,8 @@ pub(crate) struct Recorder {
     folder: PathBuf,
     channels: Channels,
     episode: Option<Episode>,
-    is_finishing: bool,
+    /// The command that ends the recording in this tick.
+    finish: Option<IssuedCommand>,
     earlier: EarlierCommands,
 }
 
@@ -41,13 +42,14 @@ impl Recorder {
             folder,
             channels,
             episode: None,
-            is_finishing: false,
+            finish: None,
             earlier: EarlierCommands::default(),
         }
     }
 
     fn start(
         &mut self,
+        cause: CommandId,
         tick: SimTick,
         stage: &Stage,
         timeline: &mut Timeline,
@@ -67,9 +69,9 @@ impl Recorder {
         let episode = Episode::begin(&self.folder, &header, &scene, &self.earlier, self.channels)?;
         *timeline = episode.timeline();
         self.episode = Some(episode);
-        self.is_finishing = false;
+        self.finish = None;
         let folder = self.folder.clone();
-        Ok(SimFact::RecordingStarted { folder })
+        Ok(SimFact::RecordingStarted { cause, folder })
     }
 }
 
@@ -85,36 +87,41 @@ pub fn set_earlier_commands(world: &mut World, begin: SimTick, commands: &[Sessi
 pub(crate) fn take_commands(
     mut recorder: ResMut<Recorder>,
     mut recording: ResMut<Recording>,
-    mut commands: MessageReader<SimCommand>,
+    mut commands: MessageReader<IssuedCommand>,
     mut facts: MessageWriter<SimFact>,
     mut timeline: ResMut<Timeline>,
     tick: Res<SimTick>,
     hands: Res<Hands>,
     stage: Stage,
 ) {
-    let commands: Vec<_> = commands.read().cloned().collect();
-    for command in &commands {
-        match command {
-            SimCommand::StartRecording if recorder.episode.is_some() => {
-                facts.write(refused(IS_RUNNING.into()));
+    let mut commands: Vec<_> = commands.read().cloned().collect();
+    commands.sort_by_key(|issued| issued.command.phase());
+    for issued in &commands {
+        let cause = issued.id;
+        match RecordingCommand::of(&issued.command) {
+            Some(RecordingCommand::Start) if recorder.episode.is_some() => {
+                facts.write(refused(cause, IS_RUNNING));
             }
-            SimCommand::StartRecording => match recorder.start(*tick, &stage, &mut timeline) {
-                Ok(started) => {
-                    recording.0 = true;
-                    facts.write(started);
+            Some(RecordingCommand::Start) => {
+                match recorder.start(cause, *tick, &stage, &mut timeline) {
+                    Ok(started) => {
+                        recording.0 = true;
+                        facts.write(started);
+                    }
+                    Err(error) => {
+                        facts.write(failed(
+                            Some(cause),
+                            recorder.folder.clone(),
+                            format!("no recording was started: {error}"),
+                        ));
+                    }
                 }
-                Err(error) => {
-                    facts.write(failed(
-                        recorder.folder.clone(),
-                        format!("no recording was started: {error}"),
-                    ));
-                }
-            },
-            SimCommand::FinishRecording if recorder.episode.is_none() => {
-                facts.write(refused(NONE_IS_RUNNING.into()));
             }
-            SimCommand::FinishRecording => recorder.is_finishing = true,
-            _ => {}
+            Some(RecordingCommand::Finish) if recorder.episode.is_none() => {
+                facts.write(refused(cause, NONE_IS_RUNNING));
+            }
+            Some(RecordingCommand::Finish) => recorder.finish = Some(issued.clone()),
+            None => {}
         }
     }
     let Recorder {
@@ -123,7 +130,7 @@ pub(crate) fn take_commands(
     if let Some(episode) = episode {
         commands
             .iter()
-            .for_each(|command| earlier.note_lasting(command));
+            .for_each(|issued| earlier.note_lasting(&issued.command));
         let result = episode.log_commands(*tick, &commands);
         recorder.stop_on_error(result, &mut recording, &mut facts);
     } else {
@@ -142,14 +149,14 @@ pub(crate) fn ask_for_picture(
     let (Some(episode), Some(demand)) = (&recorder.episode, demand) else {
         return;
     };
-    if recorder.is_finishing {
+    if recorder.finish.is_some() {
         demand.insist();
     } else if !paused.0 && episode.is_frame(*tick) {
         demand.ask();
     }
 }
 
-/// Writes what this tick has brought, and ends the recording if it was told to.
+/// Writes what this tick has brought, and ends the recording if a command does.
 pub(crate) fn record(
     mut recorder: ResMut<Recorder>,
     mut recording: ResMut<Recording>,
@@ -160,27 +167,27 @@ pub(crate) fn record(
     stage: Stage,
     image: Option<Res<SensorImage>>,
 ) {
-    let is_finishing = recorder.is_finishing;
+    let finish = recorder.finish.clone();
     let Some(episode) = &mut recorder.episode else {
         facts.p0().clear();
         end_running(&mut timeline);
         return;
     };
-    let told: Vec<_> = facts.p0().read().cloned().collect();
-    let mut result = episode.write_facts(*tick, &told, *paused, &stage, &mut timeline);
+    let happened: Vec<_> = facts.p0().read().cloned().collect();
+    let mut result = episode.write_facts(*tick, &happened, *paused, &stage, &mut timeline);
     let image = image
         .as_deref()
         .filter(|image| image.tick == *tick && image.picture.width > 0);
     if result.is_ok() && !paused.0 {
         result = episode.write_tick(*tick, &stage, image, &mut timeline);
     }
-    let ending = match result {
-        Ok(()) if is_finishing => episode
-            .finish(*tick, &stage, image, &mut timeline)
-            .map(Some),
-        result => result.map(|()| None),
+    let ending = match (result, &finish) {
+        (Ok(()), Some(finish)) => episode
+            .finish(*tick, finish, &stage, image, &mut timeline)
+            .map(|commands| Some((finish.id, commands))),
+        (result, _) => result.map(|()| None),
     };
-    recorder.end_if_told(ending, &mut recording, &mut facts.p1());
+    recorder.end_if_over(ending, &mut recording, &mut facts.p1());
     if recorder.episode.is_none() {
         end_running(&mut timeline);
     }
@@ -202,24 +209,25 @@ impl Recorder {
     ) {
         if let Err(error) = result {
             let reason = format!("the recording has ended: {error}");
+            let cause = self.finish.as_ref().map(|finish| finish.id);
             if let Some(folder) = self.end(None, recording) {
-                facts.write(failed(folder, reason));
+                facts.write(failed(cause, folder, reason));
             }
         }
     }
 
-    /// Ends a recording of which these are the commands, if it was told to end, or one that cannot go on.
-    fn end_if_told(
+    /// Ends a recording of which these are the commands, if a command ends it, or one that cannot go on.
+    fn end_if_over(
         &mut self,
-        ending: Result<Option<Vec<u8>>, RecorderError>,
+        ending: Result<Option<(CommandId, Vec<u8>)>, RecorderError>,
         recording: &mut Recording,
         facts: &mut MessageWriter<SimFact>,
     ) {
         match ending {
             Ok(None) => {}
-            Ok(Some(commands)) => {
+            Ok(Some((cause, commands))) => {
                 if let Some(folder) = self.end(Some(&commands), recording) {
-                    facts.write(SimFact::RecordingFinished { folder });
+                    facts.write(SimFact::RecordingFinished { cause, folder });
                 }
             }
             Err(error) => self.stop_on_error(Err(error), recording, facts),
@@ -228,7 +236,7 @@ impl Recorder {
 
     /// Ends the recording, of which these are the lines of its commands. Returns its folder.
     fn end(&mut self, commands: Option<&[u8]>, recording: &mut Recording) -> Option<PathBuf> {
-        self.is_finishing = false;
+        self.finish = None;
         self.earlier.append_recorded(commands);
         let episode = self.episode.take()?;
         recording.0 = false;
@@ -237,13 +245,20 @@ impl Recorder {
 }
 
 /// Nobody may miss that a demonstration is not recorded: it is logged, too.
-fn failed(folder: PathBuf, reason: String) -> SimFact {
+fn failed(cause: Option<CommandId>, folder: PathBuf, reason: String) -> SimFact {
     error!("{reason}");
-    SimFact::RecordingFailed { folder, reason }
+    SimFact::RecordingFailed {
+        cause,
+        folder,
+        reason,
+    }
 }
 
-pub(crate) fn refused(reason: String) -> SimFact {
-    SimFact::Refused { reason }
+pub(crate) fn refused(cause: CommandId, reason: &str) -> SimFact {
+    SimFact::Refused {
+        cause: Some(cause),
+        reason: reason.to_owned(),
+    }
 }
 
 #[cfg(test)]

@@ -4,21 +4,21 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 use serde_json::{Map, Value};
-use tabletop_core::{PictureSystems, SimSystems, TickSystems};
+use tabletop_core::{CommandSystems, PictureSystems, SimSystems, TickSystems};
 
 use crate::{
     files::{channels::Channels, session::SessionSettings},
     recording::recorder::{Recorder, ask_for_picture, record, take_commands},
 };
 
-/// Records the simulation into a folder from [`StartRecording`] to [`FinishRecording`], both ticks included.
+/// Records the simulation into a folder from [`Start`] to [`Finish`], both ticks included.
 /// Needs [`CorePlugin`](tabletop_core::CorePlugin).
 ///
 /// It keeps between the phases of a tick: before [`SimSystems::Ingest`] it logs the commands, after [`PictureSystems`]
 /// it writes what came of them. Both also happen while paused, so that nothing is missed that is done meanwhile.
 ///
-/// [`StartRecording`]: tabletop_core::SimCommand::StartRecording
-/// [`FinishRecording`]: tabletop_core::SimCommand::FinishRecording
+/// [`Start`]: tabletop_core::RecordingCommand::Start
+/// [`Finish`]: tabletop_core::RecordingCommand::Finish
 #[derive(Clone, Debug)]
 pub struct RecorderPlugin {
     /// The folder. What is there when a recording starts is moved aside.
@@ -46,9 +46,7 @@ impl Plugin for RecorderPlugin {
             .add_systems(
                 FixedUpdate,
                 (
-                    take_commands
-                        .after(SimSystems::Load)
-                        .before(SimSystems::Ingest),
+                    take_commands.in_set(CommandSystems::Recording),
                     ask_for_picture
                         .after(SimSystems::Propagate)
                         .before(SimSystems::Sense),

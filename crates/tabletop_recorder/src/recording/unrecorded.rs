@@ -1,16 +1,18 @@
 //! Demonstrations that are not recorded.
 
 use bevy::prelude::*;
-use tabletop_core::{Recording, SimCommand, SimFact, SimSystems, TickSystems};
+use tabletop_core::{
+    CommandSystems, IssuedCommand, Recording, RecordingCommand, SimFact, SimSystems, TickSystems,
+};
 
 use crate::recording::recorder::{IS_RUNNING, NONE_IS_RUNNING, refused};
 
 /// Stands in for [`RecorderPlugin`](crate::RecorderPlugin) where nothing is to be written: what is done between
-/// [`StartRecording`] and [`FinishRecording`] can be undone, and leaves no files.
+/// [`Start`] and [`Finish`] can be undone, and leaves no files.
 /// Needs [`CorePlugin`](tabletop_core::CorePlugin).
 ///
-/// [`StartRecording`]: SimCommand::StartRecording
-/// [`FinishRecording`]: SimCommand::FinishRecording
+/// [`Start`]: RecordingCommand::Start
+/// [`Finish`]: RecordingCommand::Finish
 #[derive(Clone, Copy, Debug, Default)]
 pub struct UnrecordedPlugin;
 
@@ -19,7 +21,7 @@ impl Plugin for UnrecordedPlugin {
         app.add_systems(
             FixedUpdate,
             (
-                start.after(SimSystems::Load).before(SimSystems::Ingest),
+                start.in_set(CommandSystems::Recording),
                 finish.after(SimSystems::Sense).before(SimSystems::Record),
             )
                 .in_set(TickSystems),
@@ -29,35 +31,35 @@ impl Plugin for UnrecordedPlugin {
 
 fn start(
     mut recording: ResMut<Recording>,
-    mut commands: MessageReader<SimCommand>,
+    mut commands: MessageReader<IssuedCommand>,
     mut facts: MessageWriter<SimFact>,
 ) {
-    for command in commands.read() {
+    for (cause, command) in commands.read().filter_map(IssuedCommand::of_kind) {
         match command {
-            SimCommand::StartRecording if recording.0 => {
-                facts.write(refused(IS_RUNNING.into()));
+            RecordingCommand::Start if recording.0 => {
+                facts.write(refused(cause, IS_RUNNING));
             }
-            SimCommand::StartRecording => recording.0 = true,
-            SimCommand::FinishRecording if !recording.0 => {
-                facts.write(refused(NONE_IS_RUNNING.into()));
+            RecordingCommand::Start => recording.0 = true,
+            RecordingCommand::Finish if !recording.0 => {
+                facts.write(refused(cause, NONE_IS_RUNNING));
             }
-            _ => {}
+            RecordingCommand::Finish => {}
         }
     }
 }
 
-fn finish(mut recording: ResMut<Recording>, mut commands: MessageReader<SimCommand>) {
-    if commands
-        .read()
-        .any(|command| *command == SimCommand::FinishRecording)
-    {
-        recording.0 = false;
+fn finish(mut recording: ResMut<Recording>, mut commands: MessageReader<IssuedCommand>) {
+    for (_, command) in commands.read().filter_map(IssuedCommand::of_kind) {
+        match command {
+            RecordingCommand::Start => {}
+            RecordingCommand::Finish => recording.0 = false,
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{CorePlugin, StepApp as _};
+    use tabletop_core::{CorePlugin, StepApp as _, WriteCommand as _};
 
     use super::*;
 
@@ -66,16 +68,16 @@ mod tests {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default(), UnrecordedPlugin))
             .start();
-        let mut told = |command: SimCommand| {
-            app.world_mut().write_message(command);
+        let mut give = |command: RecordingCommand| {
+            app.world_mut().write_command(command);
             app.step(1);
             let mut facts = app.world_mut().resource_mut::<Messages<SimFact>>();
             let refused = facts.drain().count() > 0;
             (app.world().resource::<Recording>().0, refused)
         };
-        assert_eq!(told(SimCommand::FinishRecording), (false, true));
-        assert_eq!(told(SimCommand::StartRecording), (true, false));
-        assert_eq!(told(SimCommand::StartRecording), (true, true));
-        assert_eq!(told(SimCommand::FinishRecording), (false, false));
+        assert_eq!(give(RecordingCommand::Finish), (false, true));
+        assert_eq!(give(RecordingCommand::Start), (true, false));
+        assert_eq!(give(RecordingCommand::Start), (true, true));
+        assert_eq!(give(RecordingCommand::Finish), (false, false));
     }
 }

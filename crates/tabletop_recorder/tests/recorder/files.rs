@@ -4,8 +4,9 @@ use std::{collections::BTreeMap, fs};
 
 use bevy::prelude::App;
 use tabletop_core::{
-    Hand, ObjectIndex, ObjectSpec, Recording, Rgb, Robot, Shape, SimCommand, SimFact, SimTick,
-    StepApp as _,
+    ClockCommand, CommandId, Hand, HandCommand, HistoryCommand, ObjectIndex, ObjectSpec, Recording,
+    RecordingCommand, Rgb, Robot, SceneCommand, Shape, SimCommand, SimFact, SimTick, StepApp as _,
+    WriteCommand as _,
 };
 use tabletop_recorder::{Session, SessionCommand};
 
@@ -21,12 +22,12 @@ fn a_demonstration_is_written_as_the_original_program_does() {
         &mut app,
         &[
             (0, scene(&["zz", "a", "still"])),
-            (100, SimCommand::StartRecording),
+            (100, SimCommand::Recording(RecordingCommand::Start)),
             (20, grasp(Hand::Left, "a")),
-            (20, SimCommand::Release(Hand::Left)),
+            (20, SimCommand::Hand(HandCommand::Release(Hand::Left))),
             (20, grasp(Hand::Right, "zz")),
-            (5, SimCommand::Destroy(Hand::Right)),
-            (20, SimCommand::FinishRecording),
+            (5, SimCommand::Hand(HandCommand::Destroy(Hand::Right))),
+            (20, SimCommand::Recording(RecordingCommand::Finish)),
         ],
     );
     assert_eq!(
@@ -78,8 +79,8 @@ fn a_picture_shows_its_frame() {
         &mut app,
         &[
             (0, scene(&["a"])),
-            (7, SimCommand::StartRecording),
-            (40, SimCommand::FinishRecording),
+            (7, SimCommand::Recording(RecordingCommand::Start)),
+            (40, SimCommand::Recording(RecordingCommand::Finish)),
         ],
     );
     assert_eq!(place.frames(0), [0, 1, 2, 3]);
@@ -105,8 +106,11 @@ fn frames_are_counted_without_drift_for_ten_minutes() {
         &mut app,
         &[
             (0, scene(&["a"])),
-            (11, SimCommand::StartRecording),
-            (10 * 60 * 60, SimCommand::FinishRecording),
+            (11, SimCommand::Recording(RecordingCommand::Start)),
+            (
+                10 * 60 * 60,
+                SimCommand::Recording(RecordingCommand::Finish),
+            ),
         ],
     );
     let expected: Vec<u64> = (0..=10 * 60 * 4).collect();
@@ -135,9 +139,9 @@ fn while_nothing_changes_frames_are_counted_and_nothing_is_written() {
         &mut app,
         &[
             (0, scene(&["still"])),
-            (1, SimCommand::StartRecording),
+            (1, SimCommand::Recording(RecordingCommand::Start)),
             (100, scene(&["still", "still more"])),
-            (30, SimCommand::FinishRecording),
+            (30, SimCommand::Recording(RecordingCommand::Finish)),
         ],
     );
     assert_eq!(place.frames(0), [0, 7]);
@@ -202,12 +206,12 @@ fn a_reader_for_the_original_program_reads_a_recording() {
         &mut app,
         &[
             (0, scene(&["a", "bb", "still"])),
-            (1, SimCommand::StartRecording),
+            (1, SimCommand::Recording(RecordingCommand::Start)),
             (20, grasp(Hand::Any, "a")),
-            (40, SimCommand::Destroy(Hand::Any)),
+            (40, SimCommand::Hand(HandCommand::Destroy(Hand::Any))),
             (30, grasp(Hand::Both, "bb")),
-            (15, SimCommand::Release(Hand::Both)),
-            (14, SimCommand::FinishRecording),
+            (15, SimCommand::Hand(HandCommand::Release(Hand::Both))),
+            (14, SimCommand::Recording(RecordingCommand::Finish)),
         ],
     );
     let text: String = (0..=4).map(|n| place.read(&format!("{n}.txt"))).collect();
@@ -226,8 +230,8 @@ fn states_hold_every_tick_of_what_moves() {
         &mut app,
         &[
             (0, scene(&["a,b", "still"])),
-            (5, SimCommand::StartRecording),
-            (50, SimCommand::FinishRecording),
+            (5, SimCommand::Recording(RecordingCommand::Start)),
+            (50, SimCommand::Recording(RecordingCommand::Finish)),
         ],
     );
     let states = place.read("states.csv");
@@ -260,11 +264,11 @@ fn the_session_log_holds_the_scene_and_every_command() {
         &mut app,
         &[
             (0, scene(&["a"])),
-            (3, SimCommand::SetPaused(true)),
-            (2, SimCommand::StartRecording),
+            (3, SimCommand::Clock(ClockCommand::SetPaused(true))),
+            (2, SimCommand::Recording(RecordingCommand::Start)),
             (0, grasp(Hand::Left, "a")),
-            (4, SimCommand::SetPaused(false)),
-            (10, SimCommand::FinishRecording),
+            (4, SimCommand::Clock(ClockCommand::SetPaused(false))),
+            (10, SimCommand::Recording(RecordingCommand::Finish)),
         ],
     );
     let session = Session::read(place.demo().join("session.jsonl")).unwrap();
@@ -282,14 +286,17 @@ fn the_session_log_holds_the_scene_and_every_command() {
     assert_eq!(session.header.begin_tick, Some(0));
     assert_eq!(
         told(session.earlier),
-        [(0, scene(&["a"])), (3, SimCommand::SetPaused(true))]
+        [
+            (0, scene(&["a"])),
+            (3, SimCommand::Clock(ClockCommand::SetPaused(true)))
+        ]
     );
     assert_eq!(
         told(session.commands),
         [
             (3, grasp(Hand::Left, "a")),
-            (3, SimCommand::SetPaused(false)),
-            (13, SimCommand::FinishRecording),
+            (3, SimCommand::Clock(ClockCommand::SetPaused(false))),
+            (13, SimCommand::Recording(RecordingCommand::Finish)),
         ]
     );
     assert_eq!(
@@ -307,13 +314,13 @@ fn an_earlier_recording_is_part_of_what_came_before_without_what_was_undone() {
         &[
             (2, scene(&["a", "bb"])),
             (1, grasp(Hand::Left, "a")),
-            (1, SimCommand::StartRecording),
+            (1, SimCommand::Recording(RecordingCommand::Start)),
             (9, grasp(Hand::Right, "bb")),
-            (5, SimCommand::Undo),
-            (0, SimCommand::Release(Hand::Left)),
-            (2, SimCommand::FinishRecording),
-            (3, SimCommand::ClearTable),
-            (2, SimCommand::StartRecording),
+            (5, SimCommand::History(HistoryCommand::Undo)),
+            (0, SimCommand::Hand(HandCommand::Release(Hand::Left))),
+            (2, SimCommand::Recording(RecordingCommand::Finish)),
+            (3, SimCommand::Scene(SceneCommand::Clear)),
+            (2, SimCommand::Recording(RecordingCommand::Start)),
         ],
     );
     let session = Session::read(place.demo().join("session.jsonl")).unwrap();
@@ -328,8 +335,8 @@ fn an_earlier_recording_is_part_of_what_came_before_without_what_was_undone() {
         [
             scene(&["a", "bb"]),
             grasp(Hand::Left, "a"),
-            SimCommand::Release(Hand::Left),
-            SimCommand::ClearTable,
+            SimCommand::Hand(HandCommand::Release(Hand::Left)),
+            SimCommand::Scene(SceneCommand::Clear),
         ]
     );
     assert_eq!(session.commands, []);
@@ -344,8 +351,8 @@ fn a_scene_that_is_set_in_the_first_tick_is_the_one_recorded() {
         &[
             (0, scene(&["old"])),
             (3, scene(&["new"])),
-            (0, SimCommand::StartRecording),
-            (0, SimCommand::FinishRecording),
+            (0, SimCommand::Recording(RecordingCommand::Start)),
+            (0, SimCommand::Recording(RecordingCommand::Finish)),
         ],
     );
     assert_eq!(
@@ -364,10 +371,10 @@ fn what_happens_while_paused_is_recorded() {
     run(
         &mut app,
         &[
-            (0, SimCommand::StartRecording),
-            (1, SimCommand::SetPaused(true)),
+            (0, SimCommand::Recording(RecordingCommand::Start)),
+            (1, SimCommand::Clock(ClockCommand::SetPaused(true))),
             (5, scene(&["a"])),
-            (5, SimCommand::FinishRecording),
+            (5, SimCommand::Recording(RecordingCommand::Finish)),
         ],
     );
     assert_eq!(
@@ -386,9 +393,9 @@ fn the_last_frame_tells_where_everything_is_that_is_not_where_its_last_line_says
         &mut app,
         &[
             (0, scene(&["a", "still"])),
-            (1, SimCommand::StartRecording),
+            (1, SimCommand::Recording(RecordingCommand::Start)),
             // Two hundredths of a unit farther than at frame 2.
-            (32, SimCommand::FinishRecording),
+            (32, SimCommand::Recording(RecordingCommand::Finish)),
         ],
     );
     let text = place.read("0.txt");
@@ -405,12 +412,15 @@ fn frames_of_what_stands_still(act: impl FnOnce(&mut App)) -> Vec<u64> {
         &mut app,
         &[
             (0, scene(&["still", "still more"])),
-            (1, SimCommand::StartRecording),
+            (1, SimCommand::Recording(RecordingCommand::Start)),
         ],
     );
     app.step(20);
     act(&mut app);
-    run(&mut app, &[(100, SimCommand::FinishRecording)]);
+    run(
+        &mut app,
+        &[(100, SimCommand::Recording(RecordingCommand::Finish))],
+    );
     place.frames(0)
 }
 
@@ -419,7 +429,7 @@ fn what_appears_vanishes_or_changes_its_colour_is_in_a_picture_though_nothing_mo
     assert_eq!(frames_of_what_stands_still(|_| {}), [0]);
     assert_eq!(
         frames_of_what_stands_still(|app| {
-            app.world_mut().write_message(SimCommand::ClearTable);
+            app.world_mut().write_command(SceneCommand::Clear);
         }),
         [0, 2]
     );
@@ -453,10 +463,10 @@ fn a_destroyed_object_is_gone_from_the_video() {
         &mut app,
         &[
             (0, scene(&["still", "still more"])),
-            (1, SimCommand::StartRecording),
+            (1, SimCommand::Recording(RecordingCommand::Start)),
             (20, grasp(Hand::Left, "still")),
-            (20, SimCommand::Destroy(Hand::Left)),
-            (40, SimCommand::FinishRecording),
+            (20, SimCommand::Hand(HandCommand::Destroy(Hand::Left))),
+            (40, SimCommand::Recording(RecordingCommand::Finish)),
         ],
     );
     let frames: Vec<_> = (0..3).map(|segment| place.frames(segment)).collect();
@@ -469,23 +479,38 @@ fn start_and_finish_tell_what_they_do() {
     let place = Place::new();
     let mut app = app(&place);
     let folder = place.demo();
-    run(&mut app, &[(0, SimCommand::StartRecording)]);
-    let started = SimFact::RecordingStarted { folder };
+    run(
+        &mut app,
+        &[(0, SimCommand::Recording(RecordingCommand::Start))],
+    );
+    let cause = CommandId(0);
+    let started = SimFact::RecordingStarted { cause, folder };
     assert_eq!(heard(&mut app), [started]);
     assert!(app.world().resource::<Recording>().0);
 
-    run(&mut app, &[(0, SimCommand::StartRecording)]);
-    let [SimFact::Refused { reason }] = &heard(&mut app)[..] else {
+    run(
+        &mut app,
+        &[(0, SimCommand::Recording(RecordingCommand::Start))],
+    );
+    let [SimFact::Refused { reason, .. }] = &heard(&mut app)[..] else {
         panic!("a second recording was started");
     };
     assert!(reason.contains("finish it first"), "{reason}");
 
-    run(&mut app, &[(0, SimCommand::FinishRecording)]);
+    run(
+        &mut app,
+        &[(0, SimCommand::Recording(RecordingCommand::Finish))],
+    );
     let folder = place.demo();
-    assert_eq!(heard(&mut app), [SimFact::RecordingFinished { folder }]);
+    let cause = CommandId(2);
+    let finished = SimFact::RecordingFinished { cause, folder };
+    assert_eq!(heard(&mut app), [finished]);
     assert!(!app.world().resource::<Recording>().0);
 
-    run(&mut app, &[(0, SimCommand::FinishRecording)]);
+    run(
+        &mut app,
+        &[(0, SimCommand::Recording(RecordingCommand::Finish))],
+    );
     assert!(matches!(&heard(&mut app)[..], [SimFact::Refused { .. }]));
 }
 
@@ -498,8 +523,8 @@ fn the_next_recording_leaves_the_last_one_alone() {
             &mut app,
             &[
                 (0, scene(&[id])),
-                (1, SimCommand::StartRecording),
-                (1, SimCommand::FinishRecording),
+                (1, SimCommand::Recording(RecordingCommand::Start)),
+                (1, SimCommand::Recording(RecordingCommand::Finish)),
             ],
         );
     }
@@ -511,9 +536,12 @@ fn the_next_recording_leaves_the_last_one_alone() {
 #[test]
 fn a_recording_whose_folder_cannot_be_made_fails() {
     let mut app = app_into("/dev/null/demo".into());
-    run(&mut app, &[(0, SimCommand::StartRecording)]);
+    run(
+        &mut app,
+        &[(0, SimCommand::Recording(RecordingCommand::Start))],
+    );
     let facts = heard(&mut app);
-    let [SimFact::RecordingFailed { folder, reason }] = &facts[..] else {
+    let [SimFact::RecordingFailed { folder, reason, .. }] = &facts[..] else {
         panic!("{facts:?}");
     };
     assert_eq!(*folder, *"/dev/null/demo");

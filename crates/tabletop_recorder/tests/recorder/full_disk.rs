@@ -9,7 +9,9 @@ use std::{
 };
 
 use bevy::prelude::App;
-use tabletop_core::{Hand, Recording, SimCommand, SimFact, StepApp as _};
+use tabletop_core::{
+    ClockCommand, Hand, HandCommand, Recording, RecordingCommand, SimCommand, SimFact, StepApp as _,
+};
 use tabletop_recorder::Session;
 
 use crate::stage::{Place, app_into, grasp, heard, run, scene};
@@ -58,7 +60,7 @@ fn failure(app: &mut App) -> (PathBuf, String) {
     let ends = |fact: &SimFact| place(fact) || matches!(fact, SimFact::RecordingFinished { .. });
     assert!(!facts.iter().any(ends), "{facts:?}");
     match failure {
-        Some(SimFact::RecordingFailed { folder, reason }) => (folder, reason),
+        Some(SimFact::RecordingFailed { folder, reason, .. }) => (folder, reason),
         _ => panic!("{facts:?}"),
     }
 }
@@ -78,14 +80,17 @@ fn what_was_recorded_before_the_disk_was_full_is_complete() {
         let mut app = app_into(demo.clone());
         run(
             &mut app,
-            &[(0, scene(&IDS)), (0, SimCommand::StartRecording)],
+            &[
+                (0, scene(&IDS)),
+                (0, SimCommand::Recording(RecordingCommand::Start)),
+            ],
         );
         let mut ticks = 1;
         while app.world().resource::<Recording>().0 {
             let command = match ticks % 40 {
                 0 => grasp(Hand::Left, "a"),
-                20 => SimCommand::Release(Hand::Left),
-                _ => SimCommand::SelectHand(Hand::Left),
+                20 => SimCommand::Hand(HandCommand::Release(Hand::Left)),
+                _ => SimCommand::Hand(HandCommand::Select(Hand::Left)),
             };
             run(&mut app, &[(0, command)]);
             ticks += 1;
@@ -154,16 +159,22 @@ fn a_last_frame_that_does_not_fit_is_not_there_at_all() {
         &mut app,
         &[
             (0, scene(&["a"])),
-            (0, SimCommand::StartRecording),
-            (20, SimCommand::SetPaused(true)),
+            (0, SimCommand::Recording(RecordingCommand::Start)),
+            (20, SimCommand::Clock(ClockCommand::SetPaused(true))),
             (1, scene(&["bb"])),
         ],
     );
     let before = fs::read(demo.join("0.txt")).unwrap();
     fill(&disk.0, 1 << 20);
-    run(&mut app, &[(0, SimCommand::FinishRecording)]);
+    run(
+        &mut app,
+        &[(0, SimCommand::Recording(RecordingCommand::Finish))],
+    );
     // The test hears nothing in a pause.
-    run(&mut app, &[(0, SimCommand::SetPaused(false))]);
+    run(
+        &mut app,
+        &[(0, SimCommand::Clock(ClockCommand::SetPaused(false)))],
+    );
     let (_, reason) = failure(&mut app);
     assert!(reason.contains("No space left"), "{reason}");
     assert_eq!(fs::read(demo.join("0.txt")).unwrap(), before);
@@ -182,7 +193,10 @@ fn no_recording_starts_on_a_full_disk() {
     let mut app = app_into(disk.0.join("demo"));
     run(
         &mut app,
-        &[(0, scene(&IDS)), (0, SimCommand::StartRecording)],
+        &[
+            (0, scene(&IDS)),
+            (0, SimCommand::Recording(RecordingCommand::Start)),
+        ],
     );
     let (folder, reason) = failure(&mut app);
     assert_eq!(folder, disk.0.join("demo"));
@@ -191,6 +205,9 @@ fn no_recording_starts_on_a_full_disk() {
     assert!(!app.world().resource::<Recording>().0);
 
     fs::remove_file(disk.0.join("filler")).unwrap();
-    run(&mut app, &[(0, SimCommand::StartRecording)]);
+    run(
+        &mut app,
+        &[(0, SimCommand::Recording(RecordingCommand::Start))],
+    );
     assert!(app.world().resource::<Recording>().0, "there is space now");
 }

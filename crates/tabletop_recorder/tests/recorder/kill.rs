@@ -10,7 +10,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use tabletop_core::{Hand, SimCommand, SimTick};
+use tabletop_core::{Hand, HandCommand, RecordingCommand, SimCommand, SimTick};
 use tabletop_recorder::{Session, whole_lines};
 
 use crate::stage::{Place, app_into, grasp, run, scene};
@@ -27,14 +27,17 @@ fn records_until_killed() {
     let mut app = app_into(PathBuf::from(folder));
     run(
         &mut app,
-        &[(0, scene(&IDS)), (0, SimCommand::StartRecording)],
+        &[
+            (0, scene(&IDS)),
+            (0, SimCommand::Recording(RecordingCommand::Start)),
+        ],
     );
     let mut out = std::io::stdout();
     for tick in 1_u64.. {
         let command = match tick % 40 {
             0 => grasp(Hand::Left, "a"),
-            20 => SimCommand::Release(Hand::Left),
-            _ => SimCommand::SelectHand(Hand::Left),
+            20 => SimCommand::Hand(HandCommand::Release(Hand::Left)),
+            _ => SimCommand::Hand(HandCommand::Select(Hand::Left)),
         };
         run(&mut app, &[(0, command)]);
         assert_eq!(app.world().resource::<SimTick>().0, tick + 1);

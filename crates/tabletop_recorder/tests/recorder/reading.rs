@@ -4,7 +4,8 @@ use std::fs;
 
 use bevy::math::Vec3;
 use tabletop_core::{
-    Hand, RobotJoint, SimCommand, SimTick, StepApp as _, Timeline, TimelinePicture, TimelineStage,
+    Hand, HandCommand, HistoryCommand, RecordingCommand, RobotJoint, SimCommand, SimTick,
+    StepApp as _, Timeline, TimelinePicture, TimelineStage,
 };
 use tabletop_recorder::{Occurrence, RecordingReader};
 
@@ -18,7 +19,7 @@ fn recorded(place: &Place, script: &[(u64, SimCommand)]) -> Timeline {
     let mut app = app(place);
     let begin = [
         (0, scene(&["a", "bb", "still"])),
-        (3, SimCommand::StartRecording),
+        (3, SimCommand::Recording(RecordingCommand::Start)),
     ];
     run(&mut app, &begin);
     run(&mut app, script);
@@ -28,12 +29,12 @@ fn recorded(place: &Place, script: &[(u64, SimCommand)]) -> Timeline {
 fn demonstration() -> Vec<(u64, SimCommand)> {
     vec![
         (20, grasp(LEFT, "a")),
-        (7, SimCommand::Release(LEFT)),
+        (7, SimCommand::Hand(HandCommand::Release(LEFT))),
         (0, grasp(RIGHT, "a")),
         (30, grasp(LEFT, "a")),
-        (9, SimCommand::Destroy(RIGHT)),
-        (9, SimCommand::Destroy(LEFT)),
-        (50, SimCommand::FinishRecording),
+        (9, SimCommand::Hand(HandCommand::Destroy(RIGHT))),
+        (9, SimCommand::Hand(HandCommand::Destroy(LEFT))),
+        (50, SimCommand::Recording(RecordingCommand::Finish)),
     ]
 }
 
@@ -81,22 +82,28 @@ fn the_timeline_of_a_recording_is_the_one_with_which_it_was_made() {
 #[test]
 fn undo_takes_its_segments_off_the_timeline_and_redo_brings_them_back() {
     for turns in [
-        vec![(3, SimCommand::Undo)],
-        vec![(3, SimCommand::Undo), (0, SimCommand::Undo)],
-        vec![(3, SimCommand::Undo), (5, SimCommand::Redo)],
+        vec![(3, SimCommand::History(HistoryCommand::Undo))],
         vec![
-            (3, SimCommand::Undo),
-            (0, SimCommand::Undo),
-            (20, SimCommand::Redo),
-            (0, SimCommand::Redo),
-            (1, SimCommand::Undo),
+            (3, SimCommand::History(HistoryCommand::Undo)),
+            (0, SimCommand::History(HistoryCommand::Undo)),
+        ],
+        vec![
+            (3, SimCommand::History(HistoryCommand::Undo)),
+            (5, SimCommand::History(HistoryCommand::Redo)),
+        ],
+        vec![
+            (3, SimCommand::History(HistoryCommand::Undo)),
+            (0, SimCommand::History(HistoryCommand::Undo)),
+            (20, SimCommand::History(HistoryCommand::Redo)),
+            (0, SimCommand::History(HistoryCommand::Redo)),
+            (1, SimCommand::History(HistoryCommand::Undo)),
         ],
     ] {
         let place = Place::new();
         let mut script = demonstration();
         script.pop();
         script.extend(turns);
-        script.push((40, SimCommand::FinishRecording));
+        script.push((40, SimCommand::Recording(RecordingCommand::Finish)));
         let made = recorded(&place, &script);
         let read = RecordingReader::open(place.demo()).unwrap();
         assert_eq!(comparable(&read.timeline().unwrap()), comparable(&made));
@@ -152,7 +159,7 @@ fn what_was_cut_off_is_read_as_far_as_it_goes() {
         &mut app,
         &[
             (0, scene(&["a"])),
-            (0, SimCommand::StartRecording),
+            (0, SimCommand::Recording(RecordingCommand::Start)),
             (20, grasp(LEFT, "a")),
         ],
     );

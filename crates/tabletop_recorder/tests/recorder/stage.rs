@@ -9,9 +9,10 @@ use std::{
 
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
-    CorePlugin, Hand, Hands, ObjectIndex, ObjectSpec, PictureDemand, PictureSystems, Pose,
-    Recording, Rgb, SceneItem, SceneSpec, SensorImage, Shape, SimCommand, SimFact, SimSystems,
-    SimTick, StepApp as _,
+    CommandId, CorePlugin, Hand, HandCommand, Hands, HistoryCommand, IssuedCommand, ObjectIndex,
+    ObjectSpec, PictureDemand, PictureSystems, Pose, Recording, Rgb, SceneCommand, SceneItem,
+    SceneSpec, SensorImage, Shape, SimCommand, SimFact, SimSystems, SimTick, StepApp as _,
+    WriteCommand as _,
 };
 use tabletop_recorder::RecorderPlugin;
 
@@ -149,22 +150,22 @@ pub fn block(id: &str) -> ObjectSpec {
 }
 
 pub fn scene(ids: &[&str]) -> SimCommand {
-    SimCommand::SetScene(Box::new(SceneSpec {
+    SimCommand::Scene(SceneCommand::Set(Box::new(SceneSpec {
         items: ids.iter().map(|id| SceneItem::Object(block(id))).collect(),
         ..default()
-    }))
+    })))
 }
 
 pub fn grasp(hand: Hand, object: &str) -> SimCommand {
     let object = object.into();
-    SimCommand::Grasp { hand, object }
+    SimCommand::Hand(HandCommand::Grasp { hand, object })
 }
 
 /// Carries out commands, each after so many ticks.
 pub fn run(app: &mut App, script: &[(u64, SimCommand)]) {
     for (ticks, command) in script {
         app.step(*ticks);
-        app.world_mut().write_message(command.clone());
+        app.world_mut().write_command(command.clone());
     }
     app.step(1);
 }
@@ -201,83 +202,99 @@ fn hear(mut facts: MessageReader<SimFact>, mut heard: ResMut<Heard>) {
     heard.0.extend(facts.read().cloned());
 }
 
-fn act(world: &mut World, reader: &mut SystemState<MessageReader<SimCommand>>) -> Result {
+fn act(world: &mut World, reader: &mut SystemState<MessageReader<IssuedCommand>>) -> Result {
     let mut commands: Vec<_> = reader.get_mut(world)?.read().cloned().collect();
-    commands.sort_by_key(|command| match command {
-        SimCommand::SetScene(_) | SimCommand::ClearTable => 0,
-        SimCommand::Undo | SimCommand::Redo => 1,
-        _ => 2,
-    });
-    for command in commands {
+    commands.sort_by_key(|issued| issued.command.phase());
+    for IssuedCommand {
+        id: cause, command, ..
+    } in commands
+    {
         match command {
-            SimCommand::SetScene(scene) => {
-                clear(world);
+            SimCommand::Scene(SceneCommand::Set(scene)) => {
+                clear(world, cause);
                 for item in scene.items {
                     if let SceneItem::Object(spec) = item {
-                        let fact = create(world, spec);
+                        let fact = create(world, Some(cause), spec);
                         world.write_message(fact);
                     }
                 }
             }
-            SimCommand::ClearTable => clear(world),
-            SimCommand::Grasp { hand, object } => {
+            SimCommand::Scene(SceneCommand::Clear) => clear(world, cause),
+            SimCommand::Hand(HandCommand::Grasp { hand, object }) => {
                 let Some(entity) = world.resource::<ObjectIndex>().get(&object) else {
                     continue;
                 };
                 if let Some(other) = world.resource::<Hands>().holder_of(entity) {
-                    release(world, other);
+                    release(world, cause, other);
                 }
-                begin_segment(world);
+                begin_segment(world, cause);
                 world.resource_mut::<Hands>().set_held(hand, Some(entity));
-                world.write_message(SimFact::Grasped { hand, id: object });
+                world.write_message(SimFact::Grasped {
+                    cause,
+                    hand,
+                    id: object,
+                });
             }
-            SimCommand::Release(hand) => release(world, hand),
-            SimCommand::Destroy(hand) => {
+            SimCommand::Hand(HandCommand::Release(hand)) => release(world, cause, hand),
+            SimCommand::Hand(HandCommand::Destroy(hand)) => {
                 let Some(id) = held(world, hand) else {
                     continue;
                 };
-                begin_segment(world);
-                let fact = delete(world, &id);
+                begin_segment(world, cause);
+                let fact = delete(world, Some(cause), &id);
                 world.write_message(fact);
                 world.resource_mut::<Hands>().set_held(hand, None);
-                world.write_message(SimFact::Destroyed { hand, id });
+                world.write_message(SimFact::Destroyed { cause, hand, id });
             }
-            SimCommand::Undo => {
+            SimCommand::History(HistoryCommand::Undo) => {
                 let now = moment(world);
                 let mut moments = world.resource_mut::<Moments>();
                 if let Some(before) = moments.undoable.pop() {
                     moments.redoable.push((before.clone(), now));
-                    turn(world, &before, SimFact::Undone);
+                    turn(world, &before, SimFact::Undone { cause });
                 }
             }
-            SimCommand::Redo => {
+            SimCommand::History(HistoryCommand::Redo) => {
                 let mut moments = world.resource_mut::<Moments>();
                 if let Some((before, after)) = moments.redoable.pop() {
                     moments.undoable.push(before);
-                    turn(world, &after, SimFact::Redone);
+                    turn(world, &after, SimFact::Redone { cause });
                 }
             }
-            _ => {}
+            SimCommand::Scene(SceneCommand::Load(_) | SceneCommand::Make { .. })
+            | SimCommand::Hand(
+                HandCommand::Select(_)
+                | HandCommand::MoveTo { .. }
+                | HandCommand::MoveBy { .. }
+                | HandCommand::Turn { .. },
+            )
+            | SimCommand::Recording(_)
+            | SimCommand::Clock(_)
+            | SimCommand::Robot(_) => {}
         }
     }
     Ok(())
 }
 
-fn begin_segment(world: &mut World) {
+fn begin_segment(world: &mut World, cause: CommandId) {
     if world.resource::<Recording>().0 {
         let now = moment(world);
         let mut moments = world.resource_mut::<Moments>();
         moments.undoable.push(now);
         moments.redoable.clear();
     }
-    world.write_message(SimFact::SegmentBegun);
+    world.write_message(SimFact::SegmentBegun { cause });
 }
 
-fn release(world: &mut World, hand: Hand) {
+fn release(world: &mut World, cause: CommandId, hand: Hand) {
     if let Some(id) = held(world, hand) {
-        begin_segment(world);
+        begin_segment(world, cause);
         world.resource_mut::<Hands>().set_held(hand, None);
-        world.write_message(SimFact::Released { hand, id });
+        world.write_message(SimFact::Released {
+            cause: Some(cause),
+            hand,
+            id,
+        });
     }
 }
 
@@ -293,24 +310,27 @@ fn objects(world: &World) -> Vec<ObjectSpec> {
         .collect()
 }
 
-fn clear(world: &mut World) {
+fn clear(world: &mut World, cause: CommandId) {
     for object in objects(world) {
-        let fact = delete(world, &object.id);
+        let fact = delete(world, Some(cause), &object.id);
         world.write_message(fact);
     }
 }
 
-fn create(world: &mut World, spec: ObjectSpec) -> SimFact {
+fn create(world: &mut World, cause: Option<CommandId>, spec: ObjectSpec) -> SimFact {
     let id = spec.id.clone();
     let object = world.spawn(spec).id();
     world.resource_mut::<ObjectIndex>().insert(&id, object);
-    SimFact::ObjectCreated { id, object }
+    SimFact::ObjectCreated { cause, id, object }
 }
 
-fn delete(world: &mut World, id: &str) -> SimFact {
+fn delete(world: &mut World, cause: Option<CommandId>, id: &str) -> SimFact {
     let object = world.resource_mut::<ObjectIndex>().remove(id);
     world.despawn(object.unwrap());
-    SimFact::ObjectDeleted { id: id.into() }
+    SimFact::ObjectDeleted {
+        cause,
+        id: id.into(),
+    }
 }
 
 fn moment(world: &World) -> Moment {
@@ -325,10 +345,10 @@ fn turn(world: &mut World, to: &Moment, fact: SimFact) {
     let mut told = Vec::new();
     let now = objects(world);
     for spec in now.iter().filter(|spec| !to.objects.contains(spec)) {
-        told.push(delete(world, &spec.id));
+        told.push(delete(world, None, &spec.id));
     }
     for spec in to.objects.iter().filter(|spec| !now.contains(spec)) {
-        told.push(create(world, spec.clone()));
+        told.push(create(world, None, spec.clone()));
     }
     for (hand, held) in Hand::ALL.into_iter().zip(&to.hands) {
         let index = world.resource::<ObjectIndex>();

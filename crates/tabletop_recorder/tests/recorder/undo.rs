@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use tabletop_core::{Hand, SimCommand, SimFact, SimTick};
+use tabletop_core::{
+    ClockCommand, CommandId, Hand, HandCommand, HistoryCommand, RecordingCommand, SimCommand,
+    SimFact, SimTick,
+};
 
 use crate::stage::{Place, TurnTells, app, grasp, run, scene};
 
@@ -18,12 +21,15 @@ fn record(tells: TurnTells, script: &[(u64, SimCommand)]) -> BTreeMap<String, Ve
         &mut app,
         &[
             (0, scene(&["a", "bb", "still"])),
-            (3, SimCommand::StartRecording),
+            (3, SimCommand::Recording(RecordingCommand::Start)),
         ],
     );
     run(&mut app, script);
     let now = app.world().resource::<SimTick>().0;
-    run(&mut app, &[(200 - now, SimCommand::FinishRecording)]);
+    run(
+        &mut app,
+        &[(200 - now, SimCommand::Recording(RecordingCommand::Finish))],
+    );
     place.tree()
 }
 
@@ -50,11 +56,11 @@ fn assert_same(done: &[(u64, SimCommand)], undone: &[(u64, SimCommand)]) {
 #[test]
 fn an_undone_grasp_was_never_made() {
     assert_same(
-        &[(20, SimCommand::SelectHand(LEFT))],
+        &[(20, SimCommand::Hand(HandCommand::Select(LEFT)))],
         &[
-            (20, SimCommand::SelectHand(LEFT)),
+            (20, SimCommand::Hand(HandCommand::Select(LEFT))),
             (3, grasp(LEFT, "a")),
-            (47, SimCommand::Undo),
+            (47, SimCommand::History(HistoryCommand::Undo)),
         ],
     );
 }
@@ -62,12 +68,15 @@ fn an_undone_grasp_was_never_made() {
 #[test]
 fn commands_of_the_tick_before_the_grasp_stay() {
     assert_same(
-        &[(20, scene(&["a", "c"])), (0, SimCommand::SelectHand(LEFT))],
         &[
             (20, scene(&["a", "c"])),
-            (0, SimCommand::SelectHand(LEFT)),
+            (0, SimCommand::Hand(HandCommand::Select(LEFT))),
+        ],
+        &[
+            (20, scene(&["a", "c"])),
+            (0, SimCommand::Hand(HandCommand::Select(LEFT))),
             (0, grasp(LEFT, "a")),
-            (47, SimCommand::Undo),
+            (47, SimCommand::History(HistoryCommand::Undo)),
         ],
     );
 }
@@ -79,7 +88,7 @@ fn scenes_are_set_before_hands_act_whatever_the_order_of_the_commands() {
         &[
             (20, grasp(LEFT, "a")),
             (0, scene(&["a", "c"])),
-            (47, SimCommand::Undo),
+            (47, SimCommand::History(HistoryCommand::Undo)),
         ],
     );
 }
@@ -90,10 +99,10 @@ fn hands_act_after_the_clock_was_turned_whatever_the_order_of_the_commands() {
         &[(20, grasp(RIGHT, "bb"))],
         &[
             (20, grasp(LEFT, "a")),
-            (10, SimCommand::Release(LEFT)),
+            (10, SimCommand::Hand(HandCommand::Release(LEFT))),
             (30, grasp(RIGHT, "bb")),
-            (0, SimCommand::Undo),
-            (0, SimCommand::Undo),
+            (0, SimCommand::History(HistoryCommand::Undo)),
+            (0, SimCommand::History(HistoryCommand::Undo)),
         ],
     );
 }
@@ -104,8 +113,8 @@ fn an_undone_destroy_brings_the_object_back_without_a_line() {
         &[(20, grasp(LEFT, "a"))],
         &[
             (20, grasp(LEFT, "a")),
-            (30, SimCommand::Destroy(LEFT)),
-            (33, SimCommand::Undo),
+            (30, SimCommand::Hand(HandCommand::Destroy(LEFT))),
+            (33, SimCommand::History(HistoryCommand::Undo)),
         ],
     );
 }
@@ -113,15 +122,18 @@ fn an_undone_destroy_brings_the_object_back_without_a_line() {
 #[test]
 fn what_was_created_in_an_undone_segment_is_gone() {
     assert_same(
-        &[(20, grasp(LEFT, "a")), (50, SimCommand::Release(LEFT))],
         &[
             (20, grasp(LEFT, "a")),
-            (50, SimCommand::Release(LEFT)),
+            (50, SimCommand::Hand(HandCommand::Release(LEFT))),
+        ],
+        &[
+            (20, grasp(LEFT, "a")),
+            (50, SimCommand::Hand(HandCommand::Release(LEFT))),
             (10, scene(&["a", "new", "newer"])),
             (10, grasp(RIGHT, "new")),
-            (30, SimCommand::Undo),
-            (5, SimCommand::Undo),
-            (0, SimCommand::Release(LEFT)),
+            (30, SimCommand::History(HistoryCommand::Undo)),
+            (5, SimCommand::History(HistoryCommand::Undo)),
+            (0, SimCommand::Hand(HandCommand::Release(LEFT))),
         ],
     );
 }
@@ -133,25 +145,28 @@ fn all_segments_can_be_undone() {
         &[
             (20, grasp(LEFT, "a")),
             (20, grasp(RIGHT, "bb")),
-            (20, SimCommand::Destroy(RIGHT)),
-            (20, SimCommand::Release(LEFT)),
-            (20, SimCommand::Undo),
-            (20, SimCommand::Undo),
-            (20, SimCommand::Undo),
-            (20, SimCommand::Undo),
+            (20, SimCommand::Hand(HandCommand::Destroy(RIGHT))),
+            (20, SimCommand::Hand(HandCommand::Release(LEFT))),
+            (20, SimCommand::History(HistoryCommand::Undo)),
+            (20, SimCommand::History(HistoryCommand::Undo)),
+            (20, SimCommand::History(HistoryCommand::Undo)),
+            (20, SimCommand::History(HistoryCommand::Undo)),
         ],
     );
 }
 
 #[test]
 fn a_redone_segment_was_never_undone() {
-    let grasped_and_destroyed = [(20, grasp(LEFT, "a")), (30, SimCommand::Destroy(LEFT))];
+    let grasped_and_destroyed = [
+        (20, grasp(LEFT, "a")),
+        (30, SimCommand::Hand(HandCommand::Destroy(LEFT))),
+    ];
     for (before_undo, before_redo) in [(1, 1), (1, 0), (47, 40), (15, 100)] {
         let redone = [
             &grasped_and_destroyed[..],
             &[
-                (before_undo, SimCommand::Undo),
-                (before_redo, SimCommand::Redo),
+                (before_undo, SimCommand::History(HistoryCommand::Undo)),
+                (before_redo, SimCommand::History(HistoryCommand::Redo)),
             ],
         ];
         // The tick in which the command to undo was given comes again with the redo.
@@ -163,34 +178,42 @@ fn a_redone_segment_was_never_undone() {
 fn several_segments_are_redone_in_their_order() {
     let segments = [
         (20, grasp(LEFT, "a")),
-        (20, SimCommand::Destroy(LEFT)),
+        (20, SimCommand::Hand(HandCommand::Destroy(LEFT))),
         (20, grasp(LEFT, "bb")),
     ];
     let turned = [
-        (20, SimCommand::Undo),
-        (25, SimCommand::Undo),
-        (30, SimCommand::Undo),
-        (35, SimCommand::Redo),
-        (0, SimCommand::Redo),
-        (15, SimCommand::Redo),
+        (20, SimCommand::History(HistoryCommand::Undo)),
+        (25, SimCommand::History(HistoryCommand::Undo)),
+        (30, SimCommand::History(HistoryCommand::Undo)),
+        (35, SimCommand::History(HistoryCommand::Redo)),
+        (0, SimCommand::History(HistoryCommand::Redo)),
+        (15, SimCommand::History(HistoryCommand::Redo)),
     ];
     assert_same(&segments, &[&segments[..], &turned].concat());
     assert_same(
         &segments[..2],
-        &[&segments[..], &turned, &[(9, SimCommand::Undo)]].concat(),
+        &[
+            &segments[..],
+            &turned,
+            &[(9, SimCommand::History(HistoryCommand::Undo))],
+        ]
+        .concat(),
     );
 }
 
 #[test]
 fn a_new_segment_takes_the_place_of_the_undone_one() {
     assert_same(
-        &[(20, grasp(RIGHT, "bb")), (40, SimCommand::Release(RIGHT))],
+        &[
+            (20, grasp(RIGHT, "bb")),
+            (40, SimCommand::Hand(HandCommand::Release(RIGHT))),
+        ],
         &[
             (20, grasp(LEFT, "a")),
-            (30, SimCommand::Undo),
+            (30, SimCommand::History(HistoryCommand::Undo)),
             (0, grasp(RIGHT, "bb")),
-            (40, SimCommand::Redo),
-            (0, SimCommand::Release(RIGHT)),
+            (40, SimCommand::History(HistoryCommand::Redo)),
+            (0, SimCommand::Hand(HandCommand::Release(RIGHT))),
         ],
     );
 }
@@ -198,15 +221,21 @@ fn a_new_segment_takes_the_place_of_the_undone_one() {
 #[test]
 fn an_undone_grasp_out_of_the_other_hand_is_a_release() {
     assert_same(
-        &[(20, grasp(RIGHT, "a")), (20, SimCommand::Release(RIGHT))],
+        &[
+            (20, grasp(RIGHT, "a")),
+            (20, SimCommand::Hand(HandCommand::Release(RIGHT))),
+        ],
         &[
             (20, grasp(RIGHT, "a")),
             (20, grasp(LEFT, "a")),
-            (20, SimCommand::Undo),
+            (20, SimCommand::History(HistoryCommand::Undo)),
         ],
     );
     let handed_over = [(20, grasp(RIGHT, "a")), (20, grasp(LEFT, "a"))];
-    let redone = [(20, SimCommand::Undo), (20, SimCommand::Redo)];
+    let redone = [
+        (20, SimCommand::History(HistoryCommand::Undo)),
+        (20, SimCommand::History(HistoryCommand::Redo)),
+    ];
     assert_same(&handed_over, &[&handed_over[..], &redone].concat());
 }
 
@@ -214,14 +243,14 @@ fn an_undone_grasp_out_of_the_other_hand_is_a_release() {
 fn undo_works_while_paused() {
     assert_same(
         &[
-            (20, SimCommand::SetPaused(true)),
-            (5, SimCommand::SetPaused(false)),
+            (20, SimCommand::Clock(ClockCommand::SetPaused(true))),
+            (5, SimCommand::Clock(ClockCommand::SetPaused(false))),
         ],
         &[
             (20, grasp(LEFT, "a")),
-            (20, SimCommand::SetPaused(true)),
-            (5, SimCommand::Undo),
-            (5, SimCommand::SetPaused(false)),
+            (20, SimCommand::Clock(ClockCommand::SetPaused(true))),
+            (5, SimCommand::History(HistoryCommand::Undo)),
+            (5, SimCommand::Clock(ClockCommand::SetPaused(false))),
         ],
     );
 }
@@ -234,9 +263,9 @@ fn what_is_undone_is_kept_until_it_cannot_be_redone() {
         &mut app,
         &[
             (0, scene(&["a"])),
-            (1, SimCommand::StartRecording),
+            (1, SimCommand::Recording(RecordingCommand::Start)),
             (20, grasp(LEFT, "a")),
-            (20, SimCommand::Undo),
+            (20, SimCommand::History(HistoryCommand::Undo)),
         ],
     );
     let undone = place.demo().join(".undone/1");
@@ -245,9 +274,12 @@ fn what_is_undone_is_kept_until_it_cannot_be_redone() {
     }
     run(&mut app, &[(5, grasp(LEFT, "a"))]);
     assert!(!place.demo().join(".undone").exists());
-    run(&mut app, &[(5, SimCommand::Undo)]);
+    run(&mut app, &[(5, SimCommand::History(HistoryCommand::Undo))]);
     assert!(undone.exists());
-    run(&mut app, &[(5, SimCommand::FinishRecording)]);
+    run(
+        &mut app,
+        &[(5, SimCommand::Recording(RecordingCommand::Finish))],
+    );
     assert!(!place.demo().join(".undone").exists());
 }
 
@@ -257,10 +289,17 @@ fn an_undo_of_what_was_never_begun_is_survived() {
     let mut app = app(&place);
     run(
         &mut app,
-        &[(0, scene(&["a"])), (1, SimCommand::StartRecording)],
+        &[
+            (0, scene(&["a"])),
+            (1, SimCommand::Recording(RecordingCommand::Start)),
+        ],
     );
-    app.world_mut().write_message(SimFact::Undone);
-    app.world_mut().write_message(SimFact::Redone);
-    run(&mut app, &[(20, SimCommand::FinishRecording)]);
+    let cause = CommandId(9);
+    app.world_mut().write_message(SimFact::Undone { cause });
+    app.world_mut().write_message(SimFact::Redone { cause });
+    run(
+        &mut app,
+        &[(20, SimCommand::Recording(RecordingCommand::Finish))],
+    );
     assert_eq!(place.frames(0), [0, 1, 2]);
 }

@@ -1,64 +1,60 @@
 //! The commands to the robot, carried out.
 
 use bevy::{ecs::system::SystemState, prelude::*};
-use tabletop_core::{Drive, Markers, Paused, Robot, RobotJoint, RobotMode, SimCommand, SimFact};
+use tabletop_core::{
+    Drive, IssuedCommand, Markers, Paused, Robot, RobotCommand, RobotJoint, RobotMode, carry_out,
+};
 
 use crate::command::{joint_targets::JointTargets, reach, visibility};
 
 /// Carries out the commands to the robot.
 pub(crate) fn obey(
     world: &mut World,
-    reader: &mut SystemState<MessageReader<SimCommand>>,
+    reader: &mut SystemState<MessageReader<IssuedCommand>>,
 ) -> Result {
-    let commands = SimCommand::unread(world, reader, |command| {
-        matches!(
-            command,
-            SimCommand::ShowRobot(_)
-                | SimCommand::Drive(_)
-                | SimCommand::ReachTo { .. }
-                | SimCommand::ShowFace(_)
-                | SimCommand::ShowMarkers(_)
-        )
-    })?;
-    for command in commands {
-        if let Err(reason) = carry_out(world, command) {
-            world.write_message(SimFact::Refused { reason });
+    carry_out(world, reader, |world, cause, command| match command {
+        RobotCommand::Show(show) => {
+            visibility::show(world, cause, show);
+            Ok(())
+        }
+        RobotCommand::Drive(drives) => drive(world, drives),
+        RobotCommand::ReachTo { arm, pose } => {
+            refuse_while_paused(world)?;
+            let angles = reach::solve(world, arm, pose)?;
+            world.resource_mut::<JointTargets>().send(arm, angles);
+            Ok(())
+        }
+        RobotCommand::ShowFace(face) => {
+            world.resource_mut::<Robot>().face = face;
+            Ok(())
+        }
+        RobotCommand::ShowMarkers(points) => show_markers(world, points),
+    })
+}
+
+fn drive(world: &mut World, drives: Vec<(RobotJoint, Drive)>) -> Result<(), String> {
+    refuse_while_paused(world)?;
+    let mode = world.resource::<Robot>().mode;
+    for &(joint, drive) in &drives {
+        check(mode, joint, drive)?;
+    }
+    let mut targets = world.resource_mut::<JointTargets>();
+    for (joint, drive) in drives {
+        match drive {
+            Drive::Position(there) if has_motor(mode, joint) => targets.rush(joint, there),
+            Drive::Velocity(_) | Drive::Position(_) | Drive::Toward(_) | Drive::Torque(_) => {
+                targets.take(joint, drive);
+            }
         }
     }
     Ok(())
 }
 
-fn carry_out(world: &mut World, command: SimCommand) -> Result<(), String> {
-    match command {
-        SimCommand::ShowRobot(show) => visibility::show(world, show),
-        SimCommand::Drive(drives) => {
-            refuse_while_paused(world)?;
-            let mode = world.resource::<Robot>().mode;
-            for &(joint, drive) in &drives {
-                check(mode, joint, drive)?;
-            }
-            let mut targets = world.resource_mut::<JointTargets>();
-            for (joint, drive) in drives {
-                match drive {
-                    Drive::Position(there) if has_motor(mode, joint) => targets.rush(joint, there),
-                    _ => targets.take(joint, drive),
-                }
-            }
-        }
-        SimCommand::ReachTo { arm, pose } => {
-            refuse_while_paused(world)?;
-            let angles = reach::solve(world, arm, pose)?;
-            world.resource_mut::<JointTargets>().send(arm, angles);
-        }
-        SimCommand::ShowFace(face) => world.resource_mut::<Robot>().face = face,
-        SimCommand::ShowMarkers(points) => {
-            if let Some(point) = points.iter().find(|point| !point.is_finite()) {
-                return Err(format!("a marker cannot stand at {point}"));
-            }
-            world.resource_mut::<Markers>().0 = points;
-        }
-        _ => {}
+fn show_markers(world: &mut World, points: Vec<Vec3>) -> Result<(), String> {
+    if let Some(point) = points.iter().find(|point| !point.is_finite()) {
+        return Err(format!("a marker cannot stand at {point}"));
     }
+    world.resource_mut::<Markers>().0 = points;
     Ok(())
 }
 
@@ -91,7 +87,7 @@ fn check(mode: RobotMode, joint: RobotJoint, drive: Drive) -> Result<(), String>
         Drive::Torque(_) if !has_motor(mode, joint) => Err(format!(
             "joint {joint} cannot be told a torque: only the joints of arms can, in dynamic mode"
         )),
-        _ => Ok(()),
+        Drive::Velocity(_) | Drive::Position(_) | Drive::Toward(_) | Drive::Torque(_) => Ok(()),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Arm, Robot, SimFact};
+use tabletop_core::{Arm, CommandId, Robot, SimFact};
 
 use crate::{
     articulation::link_entities::{LinkEntities, spawn},
@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// Puts the robot to the table, or takes it away; what its grippers hold is let go of before.
-pub(crate) fn show(world: &mut World, show: bool) {
+pub(crate) fn show(world: &mut World, cause: CommandId, show: bool) {
     if world.resource::<Robot>().is_shown == show {
         return;
     }
@@ -41,7 +41,7 @@ pub(crate) fn show(world: &mut World, show: bool) {
     if let Err(error) = place(world, show) {
         error!("cannot place the robot: {error}");
     }
-    world.write_message(SimFact::RobotShown(show));
+    world.write_message(SimFact::RobotShown { cause, shown: show });
 }
 
 /// Puts the bodies where the joints have them, if they can be there.

@@ -5,6 +5,7 @@ pub mod motors;
 
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use bevy_rapier3d::{parry, prelude::Collider, rapier::prelude as rapier};
+use tabletop_core::CommandId;
 use tabletop_core::*;
 use tabletop_demonstrator::DemonstratorPlugin;
 use tabletop_physics::PhysicsPlugin;
@@ -57,14 +58,14 @@ impl Stage {
             app,
             facts: MessageCursor::default(),
         };
-        stage.tell(SimCommand::SetScene(Box::default()));
-        stage.tell(SimCommand::ShowRobot(true));
+        stage.tell(SceneCommand::Set(Box::default()));
+        stage.tell(RobotCommand::Show(true));
         stage.app.step(1);
         stage
     }
 
-    pub fn tell(&mut self, command: SimCommand) {
-        self.app.world_mut().write_message(command);
+    pub fn tell(&mut self, command: impl Into<SimCommand>) -> CommandId {
+        self.app.world_mut().write_command(command)
     }
 
     pub fn put(&mut self, id: &str, shape: Shape, mass: f32, pose: Pose) -> Entity {
@@ -98,7 +99,7 @@ impl Stage {
     /// Brings an end effector to a place, its fingers pointing down and opening along X, turned about Z.
     pub fn reach(&mut self, arm: Arm, location: Vec3, yaw_degrees: f32) {
         let pose = Pose::from_degrees(location, Vec3::Z * yaw_degrees);
-        self.tell(SimCommand::ReachTo { arm, pose });
+        self.tell(RobotCommand::ReachTo { arm, pose });
         let mut facts = self.facts_of(1);
         for _ in 0..600 {
             if !self.robot().arm(arm).is_moving {

@@ -1,6 +1,6 @@
 //! What tests of dynamic mode share.
 
-use tabletop_core::{Arm, Drive, JOINTS_PER_ARM, Robot, RobotJoint, SimCommand, StepApp};
+use tabletop_core::{Arm, Drive, JOINTS_PER_ARM, Robot, RobotCommand, RobotJoint, StepApp};
 
 use super::Stage;
 
@@ -11,7 +11,7 @@ pub const ARM: Arm = Arm::Right;
 pub const SECOND: u64 = 60;
 
 pub fn drive(stage: &mut Stage, drives: &[(RobotJoint, Drive)]) {
-    stage.tell(SimCommand::Drive(drives.to_vec()));
+    stage.tell(RobotCommand::Drive(drives.to_vec()));
 }
 
 /// Sends an arm to angles, and waits until it is there.

@@ -31,7 +31,7 @@ impl TestWorld {
             ..default()
         };
         app.world_mut()
-            .write_message(SimCommand::SetScene(Box::new(scene)));
+            .write_command(SceneCommand::Set(Box::new(scene)));
         app.step(1);
         Self(app)
     }

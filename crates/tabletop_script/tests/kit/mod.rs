@@ -12,8 +12,8 @@ use std::{
 use bevy::{ecs::message::MessageCursor, prelude::*, time::TimeUpdateStrategy};
 use tabletop_camera::CameraPlugin;
 use tabletop_core::{
-    Agent, CorePlugin, Markers, Robot, ScriptCommand, ScriptEvent, SimCommand, SimSystems, SimTick,
-    StepApp as _, TICK_SECONDS,
+    Agent, CorePlugin, Markers, Robot, SceneCommand, ScriptCommand, ScriptEvent, SimCommand,
+    SimSystems, SimTick, StepApp as _, TICK_SECONDS, WriteCommand as _,
 };
 use tabletop_demonstrator::DemonstratorPlugin;
 use tabletop_physics::PhysicsPlugin;
@@ -125,7 +125,7 @@ impl Stage {
             cursor: MessageCursor::default(),
             events: Vec::new(),
         };
-        stage.command(SimCommand::SetScene(Box::default()));
+        stage.command(SceneCommand::Set(Box::default()));
         if in_frames {
             stage.app.finish();
             stage.app.cleanup();
@@ -137,8 +137,8 @@ impl Stage {
         stage
     }
 
-    pub fn command(&mut self, command: SimCommand) {
-        self.app.world_mut().write_message(command);
+    pub fn command(&mut self, command: impl Into<SimCommand>) {
+        self.app.world_mut().write_command(command);
     }
 
     pub fn script(&mut self, command: ScriptCommand) {

@@ -2,8 +2,8 @@
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
-    Action, KeySystems, OpenRecording, OrderSystems, Pace, PlaybackOrder, Recording, SimCommand,
-    SingleStep, was_struck,
+    Action, Actor, ClockCommand, CommandWriter, HistoryCommand, KeySystems, OpenRecording,
+    OrderSystems, Pace, PlaybackOrder, Recording, SingleStep, was_struck,
 };
 
 use super::model::Request;
@@ -36,7 +36,7 @@ pub(super) struct PendingUndos(usize);
 /// Where requests go.
 #[derive(SystemParam)]
 pub(super) struct Orders<'w> {
-    commands: MessageWriter<'w, SimCommand>,
+    commands: CommandWriter<'w>,
     steps: MessageWriter<'w, SingleStep>,
     playback: MessageWriter<'w, PlaybackOrder>,
     open: MessageWriter<'w, OpenRecording>,
@@ -52,10 +52,12 @@ impl Orders<'_> {
     pub fn carry_out(&mut self, request: Request) {
         match request {
             Request::Play => {
-                self.commands.write(SimCommand::SetPaused(false));
+                self.commands
+                    .write(Actor::Panel, ClockCommand::SetPaused(false));
             }
             Request::Pause => {
-                self.commands.write(SimCommand::SetPaused(true));
+                self.commands
+                    .write(Actor::Panel, ClockCommand::SetPaused(true));
             }
             Request::Step => {
                 self.steps.write(SingleStep);
@@ -72,7 +74,7 @@ impl Orders<'_> {
             }
             Request::Undo(segments) => self.undos.0 = segments,
             Request::Redo => {
-                self.commands.write(SimCommand::Redo);
+                self.commands.write(Actor::Panel, HistoryCommand::Redo);
             }
             Request::Open(folder) => {
                 self.open.write(OpenRecording(folder));
@@ -88,11 +90,11 @@ impl Orders<'_> {
 fn undo_one(
     recording: Res<Recording>,
     mut undos: ResMut<PendingUndos>,
-    mut commands: MessageWriter<SimCommand>,
+    mut commands: CommandWriter,
 ) {
     undos.0 -= 1;
     if recording.0 {
-        commands.write(SimCommand::Undo);
+        commands.write(Actor::Panel, HistoryCommand::Undo);
     } else {
         undos.0 = 0;
     }
@@ -113,7 +115,7 @@ fn go_faster(mut pace: ResMut<Pace>) {
 #[cfg(test)]
 mod tests {
     use bevy::time::TimeUpdateStrategy;
-    use tabletop_core::{CorePlugin, SimTick};
+    use tabletop_core::{CorePlugin, IssuedCommand, SimCommand, SimTick};
 
     use super::*;
 
@@ -139,8 +141,9 @@ mod tests {
             .add_systems(Update, carry_out)
             .add_systems(
                 FixedLast,
-                |mut commands: MessageReader<SimCommand>, mut told: ResMut<Told>| {
-                    told.0.extend(commands.read().cloned());
+                |mut commands: MessageReader<IssuedCommand>, mut told: ResMut<Told>| {
+                    let issued = commands.read();
+                    told.0.extend(issued.map(|issued| issued.command.clone()));
                 },
             );
         app.finish();
@@ -168,9 +171,15 @@ mod tests {
     fn requests_become_what_users_tell() {
         let mut app = app();
         for (request, command) in [
-            (Request::Play, SimCommand::SetPaused(false)),
-            (Request::Pause, SimCommand::SetPaused(true)),
-            (Request::Redo, SimCommand::Redo),
+            (
+                Request::Play,
+                SimCommand::Clock(ClockCommand::SetPaused(false)),
+            ),
+            (
+                Request::Pause,
+                SimCommand::Clock(ClockCommand::SetPaused(true)),
+            ),
+            (Request::Redo, SimCommand::History(HistoryCommand::Redo)),
         ] {
             assert_eq!(ask(&mut app, request), [command]);
         }
@@ -198,8 +207,14 @@ mod tests {
         let mut app = app();
         assert_eq!(ask(&mut app, Request::Undo(3)), []);
         app.insert_resource(Recording(true));
-        assert_eq!(ask(&mut app, Request::Undo(3)), vec![SimCommand::Undo; 3]);
-        assert_eq!(ask(&mut app, Request::Redo), [SimCommand::Redo]);
+        assert_eq!(
+            ask(&mut app, Request::Undo(3)),
+            vec![SimCommand::History(HistoryCommand::Undo); 3]
+        );
+        assert_eq!(
+            ask(&mut app, Request::Redo),
+            [SimCommand::History(HistoryCommand::Redo)]
+        );
     }
 
     #[test]

@@ -3,7 +3,7 @@ use std::fs::File;
 use bevy_egui::egui::{Pos2, Vec2, vec2};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use tabletop_core::{
-    Act, Actor, Arm, Hand, Pace, Rgb, TimelineGrip, TimelinePicture, TimelineSegment, Verb,
+    Act, Arm, Hand, Manipulator, Pace, Rgb, TimelineGrip, TimelinePicture, TimelineSegment, Verb,
 };
 
 use super::*;
@@ -67,7 +67,7 @@ fn timeline() -> Timeline {
     let segment = |start, verb| TimelineSegment {
         start: SimTick(start),
         act: Option::map(verb, |verb| Act {
-            actor: Actor::Hand(Hand::Left),
+            manipulator: Manipulator::Hand(Hand::Left),
             verb,
             object: Some("RedBlock".into()),
         }),
@@ -92,7 +92,7 @@ fn timeline() -> Timeline {
         grips: vec![TimelineGrip {
             tick: SimTick(400),
             act: Act {
-                actor: Actor::Gripper(Arm::Left),
+                manipulator: Manipulator::Gripper(Arm::Left),
                 verb: Verb::Grasp,
                 object: Some("Ball".into()),
             },

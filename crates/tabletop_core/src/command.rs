@@ -1,0 +1,94 @@
+//! Commands: what the simulation is to do in its next tick, and who says so.
+//!
+//! A [`SimCommand`] is nested by who carries it out, and each of its kinds is matched by exactly one system. A command is given
+//! with [`CommandWriter`] or [`WriteCommand`], and travels as an [`IssuedCommand`]: with its [id](CommandId), which the
+//! [facts](crate::SimFact) that come of it name, and with the [`Actor`] who gave it.
+
+mod clock;
+mod hand;
+mod history;
+mod issued;
+mod recording;
+mod robot;
+mod scene;
+
+pub use clock::ClockCommand;
+pub(crate) use clock::carry_out as carry_out_clock;
+pub use hand::HandCommand;
+pub use history::HistoryCommand;
+pub(crate) use issued::NextCommandId;
+pub use issued::{Actor, Cause, CommandId, CommandWriter, IssuedCommand, WriteCommand, carry_out};
+pub use recording::RecordingCommand;
+pub use robot::RobotCommand;
+pub use scene::SceneCommand;
+
+use serde::{Deserialize, Serialize};
+
+use crate::CommandSystems;
+
+/// Something the simulation is to do in its next tick.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum SimCommand {
+    /// For the recorder.
+    Recording(RecordingCommand),
+    /// For the clock.
+    Clock(ClockCommand),
+    /// For what puts objects on the table.
+    Scene(SceneCommand),
+    /// For what keeps the world as it was.
+    History(HistoryCommand),
+    /// For the demonstrator's hands.
+    Hand(HandCommand),
+    /// For the robot.
+    Robot(RobotCommand),
+}
+
+impl SimCommand {
+    /// The phase of a tick in which it is carried out. Of two commands of a tick, the one with the earlier phase comes first, and
+    /// of two in one phase the one that was written first.
+    pub const fn phase(&self) -> CommandSystems {
+        match self {
+            Self::Recording(_) => CommandSystems::Recording,
+            Self::Clock(_) => CommandSystems::Clock,
+            Self::Scene(_) => CommandSystems::Scene,
+            Self::History(_) => CommandSystems::History,
+            Self::Hand(_) => CommandSystems::Hands,
+            Self::Robot(_) => CommandSystems::Robot,
+        }
+    }
+}
+
+/// The commands that one part of the simulator carries out.
+pub trait CommandKind: Clone + Into<SimCommand> {
+    /// The command, if it is of this kind.
+    fn of(command: &SimCommand) -> Option<&Self>;
+}
+
+macro_rules! command_kinds {
+    ($($kind:ident($command:ty),)*) => {$(
+        impl From<$command> for SimCommand {
+            fn from(command: $command) -> Self {
+                Self::$kind(command)
+            }
+        }
+
+        impl CommandKind for $command {
+            fn of(command: &SimCommand) -> Option<&Self> {
+                if let SimCommand::$kind(command) = command {
+                    Some(command)
+                } else {
+                    None
+                }
+            }
+        }
+    )*};
+}
+
+command_kinds! {
+    Recording(RecordingCommand),
+    Clock(ClockCommand),
+    Scene(SceneCommand),
+    History(HistoryCommand),
+    Hand(HandCommand),
+    Robot(RobotCommand),
+}
