@@ -14,6 +14,7 @@
 //! | [`camera`] | what the robot's head camera sees |
 //! | [`recorder`] | recordings on disk |
 //! | [`script`] | users' Matlab, Octave and Python scripts drive the robot |
+//! | [`task`] | what a recording shows, as a task |
 //! | [`scenario`] | scripted demonstrations, for tests and datasets |
 //!
 //! [`TabletopSimPlugins`] is the simulator without a window. It runs on Bevy's `MinimalPlugins`:
@@ -45,6 +46,7 @@ pub use tabletop_robot as robot;
 pub use tabletop_scenario as scenario;
 pub use tabletop_scene as scene;
 pub use tabletop_script as script;
+pub use tabletop_task as task;
 pub use tabletop_xml as xml;
 
 mod headless;

@@ -4,10 +4,12 @@ mod check;
 mod completions;
 #[cfg(feature = "window")]
 mod display;
+mod explain;
 mod init;
 #[cfg(feature = "window")]
 mod keys;
 mod replay;
+mod require;
 mod robot;
 mod robot_options;
 mod run;
@@ -45,6 +47,10 @@ enum Command {
     Run(run::RunArgs),
     /// Run a recording again: watch it, verify it, or make its pictures anew
     Replay(replay::ReplayArgs),
+    /// Say what a recording shows, step by step
+    Explain(explain::ExplainArgs),
+    /// Say what the objects of a recording's task must be, so that others can take their places
+    Require(require::RequireArgs),
     /// Check task files and name every fault with its place
     Check(check::CheckArgs),
     /// Answer questions about the robot's joints and frames for other programs
@@ -129,6 +135,8 @@ pub fn main() -> ExitCode {
     let result = match cli.command {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),
+        Some(Command::Explain(args)) => explain::explain(&args),
+        Some(Command::Require(args)) => require::require(&args),
         Some(Command::Check(args)) => check::check(&args),
         Some(Command::Robot(args)) => robot::robot(&args),
         #[cfg(feature = "window")]

@@ -315,7 +315,7 @@ fn counted(count: usize, of_what: &str) -> String {
 }
 
 /// The scene of a task file, or everything that is wrong with it.
-fn read_faultless_task(file: &Path) -> Result<SceneSpec, String> {
+pub(super) fn read_faultless_task(file: &Path) -> Result<SceneSpec, String> {
     let task = read_task(file).map_err(|error| error.to_string())?;
     let faults: Vec<_> = task.faults.iter().map(ToString::to_string).collect();
     match faults.is_empty() {

@@ -7,6 +7,7 @@ use std::{
 };
 
 use tabletop_recorder::whole_lines;
+use tabletop_task::Requirements;
 
 use super::ReplayError;
 
@@ -95,7 +96,7 @@ fn first_difference_of(before: &[u8], after: &[u8]) -> String {
     String::new()
 }
 
-/// The files of a recording, relative to its folder, in alphabetical order.
+/// The files that a recorder writes to a recording's folder, relative to it, in alphabetical order.
 fn files_in(folder: &Path) -> Result<BTreeSet<PathBuf>, ReplayError> {
     let mut files = BTreeSet::new();
     let mut folders = vec![PathBuf::new()];
@@ -110,6 +111,8 @@ fn files_in(folder: &Path) -> Result<BTreeSet<PathBuf>, ReplayError> {
             let name = inner.join(entry.file_name());
             match entry.file_type().map_err(failed)?.is_dir() {
                 true => folders.push(name),
+                // What the user requires of its objects is not recorded.
+                false if name == Path::new(Requirements::FILE) => {}
                 false => {
                     files.insert(name);
                 }

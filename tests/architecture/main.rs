@@ -9,7 +9,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// What each of our crates may depend on of ours, and whether it may name Rapier and enable what draws or opens windows.
-const RULES: [Rule; 16] = [
+const RULES: [Rule; 17] = [
     Rule::new("tabletop_core", &[]),
     Rule::new("tabletop_xml", &["tabletop_core"]),
     Rule::new("tabletop_history", &["tabletop_core"]),
@@ -40,6 +40,7 @@ const RULES: [Rule; 16] = [
     Rule::new("tabletop_camera", &["tabletop_core", "tabletop_history"]),
     Rule::new("tabletop_recorder", &["tabletop_core"]),
     Rule::new("tabletop_scenario", &["tabletop_core"]),
+    Rule::new("tabletop_task", &["tabletop_core", "tabletop_recorder"]),
     Rule::new("tabletop_view", &["tabletop_core"]).with_window(),
     Rule::new("tabletop_gui", &["tabletop_core"]).with_window(),
     Rule::new(
@@ -57,6 +58,7 @@ const RULES: [Rule; 16] = [
             "tabletop_camera",
             "tabletop_recorder",
             "tabletop_scenario",
+            "tabletop_task",
             "tabletop_view",
             "tabletop_gui",
         ],

@@ -3,6 +3,7 @@
 
 mod anywhere;
 mod examples;
+mod explain;
 #[cfg(feature = "window")]
 mod keys;
 mod kinematics;

@@ -37,6 +37,20 @@ fn two_blocks_are_stacked() {
 }
 
 #[test]
+fn tasks_are_demonstrated() {
+    for name in [
+        "stack_three",
+        "swap",
+        "wall",
+        "letter_u",
+        "hanoi",
+        "hand_over",
+    ] {
+        passes(&format!("{name}.ron"));
+    }
+}
+
+#[test]
 fn letters_are_built() {
     passes("build_letters.ron");
 }

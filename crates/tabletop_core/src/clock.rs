@@ -8,6 +8,7 @@ use bevy::{
     },
     prelude::*,
 };
+use serde::{Deserialize, Serialize};
 
 use crate::{ClockCommand, IssuedCommand, PictureDemand, PictureSystems, SimBlocked};
 
@@ -82,7 +83,9 @@ pub enum ActuateSystems {
 }
 
 /// How many ticks have been simulated.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(
+    Resource, Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize,
+)]
 pub struct SimTick(pub u64);
 
 /// Whether the simulation stands still. Commands are still carried out, so files can be loaded.

@@ -1,0 +1,290 @@
+//! Where objects are at a moment, and how they lie to each other.
+
+use std::{collections::BTreeMap, f32::consts::TAU};
+
+use bevy::math::Vec3;
+use tabletop_core::{Pose, Shape};
+
+use crate::convex::Convex;
+
+/// Objects at a moment.
+#[derive(Clone, Debug, Default)]
+pub struct Arrangement {
+    objects: BTreeMap<String, Placed>,
+}
+
+/// An object at its place.
+#[derive(Clone, Debug)]
+pub(crate) struct Placed {
+    pub pose: Pose,
+    pub solids: Vec<Convex>,
+}
+
+/// How far apart what touches may be, in units.
+pub const TOUCH: f32 = 0.06;
+/// How much of an edge may stand over without being a support, in units.
+const EDGE: f32 = 0.03;
+
+impl Arrangement {
+    /// Objects by their ids, shapes and poses.
+    pub fn new<'a>(objects: impl IntoIterator<Item = (&'a str, &'a Shape, Pose)>) -> Self {
+        let placed = objects
+            .into_iter()
+            .map(|(id, shape, pose)| (id.to_owned(), Placed::new(shape, pose)));
+        Self {
+            objects: placed.collect(),
+        }
+    }
+
+    /// Where an object is.
+    pub fn pose(&self, id: &str) -> Option<Pose> {
+        self.get(id).map(|object| object.pose)
+    }
+
+    pub(crate) fn get(&self, id: &str) -> Option<&Placed> {
+        self.objects.get(id)
+    }
+
+    /// All but one, in the order of their ids.
+    pub(crate) fn others<'a>(
+        &'a self,
+        id: &str,
+    ) -> impl Iterator<Item = (&'a str, &'a Placed)> + use<'a> {
+        let id = id.to_owned();
+        let others = self.objects.iter().filter(move |(other, _)| **other != id);
+        others.map(|(id, object)| (id.as_str(), object))
+    }
+
+    /// What an object stands on, the nearest to its centre first; the table is not among them.
+    pub fn supports(&self, id: &str) -> Vec<&str> {
+        let Some(object) = self.get(id) else {
+            return Vec::new();
+        };
+        let mut supports: Vec<_> = self
+            .others(id)
+            .filter(|(_, other)| object.rests_on(other))
+            .map(|(other, placed)| (placed.across(object.pose.location), other))
+            .collect();
+        supports.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(b.1)));
+        supports.into_iter().map(|(_, id)| id).collect()
+    }
+
+    /// Whether it touches the table's top.
+    pub fn is_on_table(&self, id: &str) -> bool {
+        self.get(id)
+            .is_some_and(|object| object.lowest().abs() < TOUCH)
+    }
+
+    /// The objects that an object is inside of, with walls on all sides.
+    pub fn containers(&self, id: &str) -> Vec<&str> {
+        let Some(object) = self.get(id) else {
+            return Vec::new();
+        };
+        let holds = |other: &Placed| {
+            let [low, high] = overlap(object.heights(), other.heights());
+            let inner = object.pose.location.with_z(f32::midpoint(low, high));
+            high - low > TOUCH && other.encloses(inner) && object.is_within(other)
+        };
+        let all = self.others(id).filter(|(_, other)| holds(other));
+        all.map(|(id, _)| id).collect()
+    }
+
+    /// The objects that an object is around, as a ring is around a peg.
+    pub fn posts(&self, id: &str) -> Vec<&str> {
+        let Some(object) = self.get(id) else {
+            return Vec::new();
+        };
+        let is_around = |other: &Placed| {
+            other.solids.iter().any(|solid| {
+                let [low, high] = overlap(object.heights(), solid.heights());
+                let inner = solid.pose.location.with_z(f32::midpoint(low, high));
+                high - low > TOUCH && object.encloses(inner) && !object.holds(inner)
+            })
+        };
+        let all = self.others(id).filter(|(_, other)| is_around(other));
+        all.map(|(id, _)| id).collect()
+    }
+}
+
+impl Placed {
+    pub fn new(shape: &Shape, pose: Pose) -> Self {
+        let solids = shape.colliding();
+        Self {
+            pose,
+            solids: solids.iter().map(|solid| Convex::of(solid, pose)).collect(),
+        }
+    }
+
+    pub fn lowest(&self) -> f32 {
+        self.heights()[0]
+    }
+
+    /// The lowest and the highest Z of it.
+    pub fn heights(&self) -> [f32; 2] {
+        let all = self.solids.iter().map(Convex::heights);
+        all.reduce(|[low, high], [lower, higher]| [low.min(lower), high.max(higher)])
+            .unwrap_or([self.pose.location.z; 2])
+    }
+
+    /// How far a point is from its origin, seen from above.
+    fn across(&self, point: Vec3) -> f32 {
+        (self.pose.location - point).truncate().length()
+    }
+
+    fn pairs<'a>(&'a self, other: &'a Self) -> impl Iterator<Item = (&'a Convex, &'a Convex)> {
+        let own = self.solids.iter();
+        own.flat_map(|own| other.solids.iter().map(move |other| (own, other)))
+    }
+
+    /// Whether it would fall if the other went, as far as these two tell: it lies on top of a part of it.
+    fn rests_on(&self, other: &Self) -> bool {
+        const LIFT: f32 = 0.15;
+        self.pairs(other).any(|(own, other)| {
+            // A solid that touches has no direction; lifted, it has.
+            let away = own.shrunk(EDGE).moved(Vec3::Z * LIFT).away_from(other);
+            let gap = away.length() - LIFT;
+            away.z > 0.7 * away.length() && away.z > 0.0 && (gap - EDGE).abs() < TOUCH
+        })
+    }
+
+    /// How far apart they are.
+    pub fn gap(&self, other: &Self) -> f32 {
+        self.pairs(other)
+            .map(|(own, other)| own.away_from(other).length())
+            .fold(f32::INFINITY, f32::min)
+    }
+
+    /// Whether a part of it is above or below a part of the other.
+    pub fn shares_column_with(&self, other: &Self) -> bool {
+        self.pairs(other)
+            .any(|(own, other)| own.shrunk(EDGE).gap_from_above(&other.shrunk(EDGE)) <= 0.0)
+    }
+
+    /// Whether every level way from a point meets it.
+    fn encloses(&self, point: Vec3) -> bool {
+        const WAYS: u16 = 16;
+        (0..WAYS).all(|i| {
+            let angle = TAU * (f32::from(i) + 0.5) / f32::from(WAYS);
+            let way = Vec3::new(angle.cos(), angle.sin(), 0.0);
+            self.solids.iter().any(|solid| solid.is_hit_by(point, way))
+        })
+    }
+
+    /// Whether a point is in a solid of it.
+    fn holds(&self, point: Vec3) -> bool {
+        let spot = Convex {
+            pose: Pose::at(point),
+            solid: tabletop_core::Solid::Ball(1e-3),
+        };
+        self.solids
+            .iter()
+            .any(|solid| solid.away_from(&spot).length() < 1e-3)
+    }
+
+    /// Whether it reaches nowhere beyond the outline of the other, as seen from above.
+    fn is_within(&self, other: &Self) -> bool {
+        let reach = |object: &Self, way: Vec3| {
+            let all = object
+                .solids
+                .iter()
+                .map(|solid| solid.farthest(way).dot(way));
+            all.fold(f32::NEG_INFINITY, f32::max)
+        };
+        let frame = other.pose.rotation;
+        let ways = [Vec3::X, Vec3::Y].map(|axis| (frame * axis).with_z(0.0).normalize_or(axis));
+        ways.into_iter()
+            .flat_map(|way| [way, -way])
+            .all(|way| reach(self, way) <= reach(other, way) + TOUCH)
+    }
+}
+
+fn overlap(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
+    [a[0].max(b[0]), a[1].min(b[1])]
+}
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::{Part, Rgb};
+
+    use super::*;
+
+    fn cube() -> Shape {
+        Shape::Block {
+            span: Vec3::splat(2.0),
+            color: Rgb::RED,
+        }
+    }
+
+    fn at(x: f32, y: f32, z: f32) -> Pose {
+        Pose::at(Vec3::new(x, y, z))
+    }
+
+    #[test]
+    fn a_block_on_two_stands_on_both_and_not_on_its_neighbour() {
+        let cube = cube();
+        let arrangement = Arrangement::new([
+            ("a", &cube, at(-1.0, 0.0, 1.0)),
+            ("b", &cube, at(1.2, 0.0, 1.0)),
+            ("top", &cube, at(0.0, 0.0, 3.0)),
+            ("beside", &cube, at(2.001, 0.0, 3.0)),
+        ]);
+        assert_eq!(arrangement.supports("top"), ["a", "b"]);
+        assert_eq!(arrangement.supports("beside"), ["b"]);
+        assert!(arrangement.supports("a").is_empty());
+        assert!(arrangement.is_on_table("a") && !arrangement.is_on_table("top"));
+    }
+
+    #[test]
+    fn a_block_is_inside_a_box_and_not_inside_a_corner() {
+        let (cube, container) = (
+            cube(),
+            Shape::Box {
+                span: Vec3::new(4.0, 4.0, 1.5),
+                thickness: 0.2,
+                color: Rgb::BROWN,
+            },
+        );
+        let arrangement = Arrangement::new([
+            ("in", &cube, at(0.3, 0.0, 1.2)),
+            ("out", &cube, at(3.5, 0.0, 1.0)),
+            ("box", &container, at(0.0, 0.0, 0.75)),
+        ]);
+        assert_eq!(arrangement.containers("in"), ["box"]);
+        assert_eq!(arrangement.supports("in"), ["box"]);
+        assert!(arrangement.containers("out").is_empty());
+        assert!(arrangement.containers("box").is_empty());
+    }
+
+    #[test]
+    fn a_ring_is_around_its_peg() {
+        let plate = |x: f32, y: f32, at: Vec3| Part {
+            id: String::new(),
+            pose: Pose::at(at),
+            shape: Shape::Block {
+                span: Vec3::new(x, y, 0.5),
+                color: Rgb::RED,
+            },
+        };
+        let ring = Shape::Composite {
+            parts: vec![
+                plate(0.5, 2.0, Vec3::X),
+                plate(0.5, 2.0, Vec3::NEG_X),
+                plate(2.0, 0.5, Vec3::Y),
+                plate(2.0, 0.5, Vec3::NEG_Y),
+            ],
+        };
+        let peg = Shape::Block {
+            span: Vec3::new(0.4, 0.4, 3.0),
+            color: Rgb::GRAY,
+        };
+        let arrangement = Arrangement::new([
+            ("ring", &ring, at(0.1, 0.0, 0.25)),
+            ("free", &ring, at(5.0, 0.0, 0.25)),
+            ("peg", &peg, at(0.0, 0.0, 1.5)),
+        ]);
+        assert_eq!(arrangement.posts("ring"), ["peg"]);
+        assert!(arrangement.posts("free").is_empty());
+        assert!(arrangement.posts("peg").is_empty());
+        assert!(arrangement.containers("ring").is_empty());
+    }
+}

@@ -1,0 +1,314 @@
+//! How far convex solids are from each other (Gilbert, Johnson and Keerthi's algorithm).
+
+use bevy::math::{Vec2, Vec3, Vec3Swizzles as _};
+use tabletop_core::{Pose, Primitive, Solid};
+
+/// A convex solid at its place, in the table's frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Convex {
+    pub pose: Pose,
+    pub solid: Solid,
+}
+
+impl Convex {
+    /// A solid of a body that is at this pose.
+    pub fn of(primitive: &Primitive, body: Pose) -> Self {
+        Self {
+            pose: body * primitive.pose,
+            solid: primitive.solid,
+        }
+    }
+
+    /// The point that lies farthest in a direction.
+    pub fn farthest(&self, direction: Vec3) -> Vec3 {
+        let d = self.pose.rotation.inverse() * direction;
+        let point = match self.solid {
+            Solid::Cuboid(span) => span / 2.0 * d.signum(),
+            Solid::Cylinder { radius, yspan } => {
+                let across = Vec2::new(d.x, d.z).normalize_or_zero() * radius;
+                Vec3::new(across.x, yspan / 2.0 * d.y.signum(), across.y)
+            }
+            Solid::Ball(radius) => d.normalize_or_zero() * radius,
+        };
+        self.pose * point
+    }
+
+    /// The lowest and the highest Z of it.
+    pub fn heights(&self) -> [f32; 2] {
+        [Vec3::NEG_Z, Vec3::Z].map(|way| self.farthest(way).z)
+    }
+
+    /// The same solid, made thinner by this on all sides.
+    pub fn shrunk(mut self, by: f32) -> Self {
+        let less = |extent: f32| (extent - 2.0 * by).max(extent * 0.1);
+        self.solid = match self.solid {
+            Solid::Cuboid(span) => Solid::Cuboid(span.map(less)),
+            Solid::Cylinder { radius, yspan } => Solid::Cylinder {
+                radius: less(2.0 * radius) / 2.0,
+                yspan: less(yspan),
+            },
+            Solid::Ball(radius) => Solid::Ball(less(2.0 * radius) / 2.0),
+        };
+        self
+    }
+
+    /// The same solid, moved.
+    pub fn moved(mut self, by: Vec3) -> Self {
+        self.pose.location += by;
+        self
+    }
+
+    /// From the nearest point of the other solid to that of this one; zero if they overlap.
+    pub fn away_from(&self, other: &Self) -> Vec3 {
+        nearest_to_origin(self.pose.location - other.pose.location, |way| {
+            self.farthest(way) - other.farthest(-way)
+        })
+    }
+
+    /// How far apart they are seen from above; 0 if one is above a part of the other.
+    pub fn gap_from_above(&self, other: &Self) -> f32 {
+        let flat = |point: Vec3| point.xy().extend(0.0);
+        let between = self.pose.location - other.pose.location;
+        nearest_to_origin(flat(between), |way| {
+            let way = flat(way);
+            flat(self.farthest(way) - other.farthest(-way))
+        })
+        .length()
+    }
+
+    /// Whether a ray meets it.
+    pub fn is_hit_by(&self, from: Vec3, towards: Vec3) -> bool {
+        let origin = self.pose.inverse() * from;
+        let ray = self.pose.rotation.inverse() * towards;
+        // Between which lengths of the ray a coordinate is within its extent.
+        let slab = |from: f32, along: f32, half: f32| match along.abs() < 1e-9 {
+            true if from.abs() <= half => (f32::NEG_INFINITY, f32::INFINITY),
+            true => (f32::INFINITY, f32::NEG_INFINITY),
+            false => {
+                let [a, b] = [(-half - from) / along, (half - from) / along];
+                (a.min(b), a.max(b))
+            }
+        };
+        let disc = |from: Vec2, along: Vec2, radius: f32| {
+            let (a, b) = (along.length_squared(), from.dot(along));
+            let c = from.length_squared() - radius * radius;
+            let root = b * b - a * c;
+            match (a < 1e-12, root < 0.0) {
+                (true, _) if c <= 0.0 => (f32::NEG_INFINITY, f32::INFINITY),
+                (true, _) | (_, true) => (f32::INFINITY, f32::NEG_INFINITY),
+                _ => ((-b - root.sqrt()) / a, (-b + root.sqrt()) / a),
+            }
+        };
+        let ranges = match self.solid {
+            Solid::Cuboid(span) => {
+                let half = span / 2.0;
+                vec![
+                    slab(origin.x, ray.x, half.x),
+                    slab(origin.y, ray.y, half.y),
+                    slab(origin.z, ray.z, half.z),
+                ]
+            }
+            Solid::Cylinder { radius, yspan } => vec![
+                slab(origin.y, ray.y, yspan / 2.0),
+                disc(origin.xz(), ray.xz(), radius),
+            ],
+            Solid::Ball(radius) => {
+                let (b, c) = (origin.dot(ray), origin.length_squared() - radius * radius);
+                return c <= 0.0 || (b < 0.0 && b * b >= c * ray.length_squared());
+            }
+        };
+        let first = ranges.iter().map(|range| range.0).fold(0.0, f32::max);
+        let last = ranges
+            .iter()
+            .map(|range| range.1)
+            .fold(f32::INFINITY, f32::min);
+        first <= last
+    }
+}
+
+/// The point of a convex set that is nearest to the origin, where the set is known by its farthest points.
+fn nearest_to_origin(inside: Vec3, farthest: impl Fn(Vec3) -> Vec3) -> Vec3 {
+    const STEPS: usize = 64;
+    let mut simplex = vec![farthest(-inside)];
+    let mut nearest = simplex[0];
+    for _ in 0..STEPS {
+        let length = nearest.length_squared();
+        if length < 1e-10 {
+            return Vec3::ZERO;
+        }
+        let next = farthest(-nearest);
+        // No point is nearer than this one.
+        let gain = length - nearest.dot(next);
+        if gain <= 1e-5 * length.max(1e-4) || simplex.contains(&next) {
+            break;
+        }
+        simplex.push(next);
+        let (point, kept) = nearest_of_simplex(&simplex);
+        if kept.len() == 4 {
+            return Vec3::ZERO;
+        }
+        if point.length_squared() >= length {
+            break;
+        }
+        (nearest, simplex) = (point, kept);
+    }
+    nearest
+}
+
+/// The point of a simplex that is nearest to the origin, and the corners that it lies between.
+fn nearest_of_simplex(corners: &[Vec3]) -> (Vec3, Vec<Vec3>) {
+    // Of every face, in ascending dimension, the foot of the origin if it is within the face.
+    let mut best: Option<(Vec3, Vec<Vec3>)> = None;
+    for chosen in 1_u32..1 << corners.len() {
+        let face: Vec<_> = (0..corners.len())
+            .filter(|i| chosen & (1 << i) != 0)
+            .map(|i| corners[i])
+            .collect();
+        if let Some(foot) = foot_in(&face)
+            && best.as_ref().is_none_or(|(nearest, kept)| {
+                let (new, old) = (foot.length_squared(), nearest.length_squared());
+                new < old - 1e-12 || (face.len() < kept.len() && new <= old)
+            })
+        {
+            best = Some((foot, face));
+        }
+    }
+    best.unwrap_or_else(|| (corners[0], vec![corners[0]]))
+}
+
+/// The foot of the perpendicular from the origin, if it is within the simplex of these corners.
+fn foot_in(corners: &[Vec3]) -> Option<Vec3> {
+    let weights: Vec<f32> = match *corners {
+        [_] => vec![1.0],
+        [a, b] => {
+            let along = b - a;
+            let t = -a.dot(along) / along.length_squared();
+            vec![1.0 - t, t]
+        }
+        [a, b, c] => {
+            let (u, v) = (b - a, c - a);
+            let (uu, uv, vv) = (u.dot(u), u.dot(v), v.dot(v));
+            let (au, av) = (-a.dot(u), -a.dot(v));
+            let det = uu * vv - uv * uv;
+            let (s, t) = ((au * vv - av * uv) / det, (av * uu - au * uv) / det);
+            vec![1.0 - s - t, s, t]
+        }
+        [a, b, c, d] => {
+            let (u, v, w) = (b - a, c - a, d - a);
+            let det = u.dot(v.cross(w));
+            let [r, s, t] = [
+                -a.dot(v.cross(w)) / det,
+                u.dot((-a).cross(w)) / det,
+                u.dot(v.cross(-a)) / det,
+            ];
+            vec![1.0 - r - s - t, r, s, t]
+        }
+        _ => return None,
+    };
+    let is_within = weights
+        .iter()
+        .all(|weight| weight.is_finite() && *weight >= 0.0);
+    is_within.then(|| {
+        corners
+            .iter()
+            .zip(weights)
+            .map(|(corner, weight)| *corner * weight)
+            .sum()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn convex(solid: Solid, location: Vec3, degrees: Vec3) -> Convex {
+        Convex {
+            pose: Pose::from_degrees(location, degrees),
+            solid,
+        }
+    }
+
+    #[test]
+    fn distances_are_those_of_geometry() {
+        let cube = convex(Solid::Cuboid(Vec3::splat(2.0)), Vec3::ZERO, Vec3::ZERO);
+        for (other, expected) in [
+            (
+                convex(Solid::Ball(1.0), Vec3::X * 5.0, Vec3::ZERO),
+                Vec3::X * -3.0,
+            ),
+            (
+                convex(Solid::Ball(1.0), Vec3::X * 1.5, Vec3::ZERO),
+                Vec3::ZERO,
+            ),
+            (
+                convex(
+                    Solid::Cuboid(Vec3::ONE),
+                    Vec3::new(0.5, 0.2, 2.0),
+                    Vec3::ZERO,
+                ),
+                Vec3::Z * -0.5,
+            ),
+            (
+                convex(
+                    Solid::Cylinder {
+                        radius: 0.5,
+                        yspan: 4.0,
+                    },
+                    Vec3::Z * 4.0,
+                    Vec3::X * 90.0,
+                ),
+                Vec3::Z * -1.0,
+            ),
+        ] {
+            let found = cube.away_from(&other);
+            assert!(
+                (found - expected).length() < 1e-3,
+                "{found} is not {expected}"
+            );
+        }
+    }
+
+    fn solid() -> impl Strategy<Value = Solid> {
+        prop_oneof![
+            (0.1..3.0_f32, 0.1..3.0_f32, 0.1..3.0_f32)
+                .prop_map(|(x, y, z)| Solid::Cuboid(Vec3::new(x, y, z))),
+            (0.1..2.0_f32, 0.1..3.0_f32)
+                .prop_map(|(radius, yspan)| Solid::Cylinder { radius, yspan }),
+            (0.1..2.0_f32).prop_map(Solid::Ball),
+        ]
+    }
+
+    fn vector(limit: f32) -> impl Strategy<Value = Vec3> {
+        (-limit..limit, -limit..limit, -limit..limit).prop_map(Vec3::from)
+    }
+
+    proptest! {
+        #[test]
+        fn the_nearest_points_are_separated_by_planes_through_them(
+            a in solid(), b in solid(), at in vector(5.0), turned in vector(180.0),
+        ) {
+            let (a, b) = (convex(a, Vec3::ZERO, Vec3::ZERO), convex(b, at, turned));
+            let away = a.away_from(&b);
+            let back = b.away_from(&a);
+            prop_assert!((away + back).length() < 1e-2, "{away} and back {back}");
+            if away.length() > 0.02 {
+                // All of `a` lies beyond all of `b` by the distance, in this direction.
+                let way = away.normalize();
+                let between = a.farthest(-way).dot(way) - b.farthest(way).dot(way);
+                prop_assert!((between - away.length()).abs() < 1e-2);
+            }
+        }
+
+        #[test]
+        fn a_ray_through_an_inner_point_hits(
+            solid in solid(), at in vector(5.0), turned in vector(180.0), way in vector(1.0),
+        ) {
+            prop_assume!(way.length() > 0.1);
+            let convex = convex(solid, at, turned);
+            prop_assert!(convex.is_hit_by(at - way * 20.0, way));
+            prop_assert!(!convex.is_hit_by(at + way.normalize() * 20.0, way));
+        }
+    }
+}

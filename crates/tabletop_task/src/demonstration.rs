@@ -1,0 +1,257 @@
+//! What a recording shows: which objects were where, and what the hands did.
+
+use std::{collections::BTreeMap, path::Path};
+
+use bevy::math::Vec3;
+use tabletop_core::{Hand, JointSpec, ObjectSpec, Pose, Rgb, Shape, SimTick, Table};
+use tabletop_recorder::{Occurrence, RecordedSegment, RecorderError, RecordingReader};
+
+use crate::{arrangement::Arrangement, track::Track};
+
+/// A recording, as far as a task is to be seen in it.
+#[derive(Clone, Debug, Default)]
+pub struct Demonstration {
+    /// The table.
+    pub table: Table,
+    /// The objects, in the order of their creation.
+    pub objects: Vec<ShownObject>,
+    /// What connects objects.
+    pub joints: Vec<JointSpec>,
+    /// What the hands did, in its order.
+    pub acts: Vec<HandAct>,
+    /// The first tick.
+    pub start: SimTick,
+    /// The last tick.
+    pub end: SimTick,
+}
+
+/// An object of a demonstration.
+#[derive(Clone, Debug)]
+pub struct ShownObject {
+    /// What it is; its pose is where it was first.
+    pub spec: ObjectSpec,
+    /// Where it was.
+    pub track: Track,
+    /// When it came.
+    pub created: SimTick,
+    /// When it went, if it did.
+    pub deleted: Option<SimTick>,
+}
+
+/// What a hand did.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct HandAct {
+    /// The tick.
+    pub tick: SimTick,
+    /// The hand.
+    pub hand: Hand,
+    /// What it did.
+    pub deed: Deed,
+}
+
+/// What a hand does.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Deed {
+    /// It takes an object.
+    Grasp(String),
+    /// It lets go of what it holds.
+    Release,
+    /// It removes what it holds.
+    Destroy,
+}
+
+impl Demonstration {
+    /// Reads a recording.
+    ///
+    /// # Errors
+    /// A file cannot be read, or a line of it is none that a recorder writes; it is named.
+    pub fn read(folder: impl AsRef<Path>) -> Result<Self, RecorderError> {
+        Self::of(&RecordingReader::open(folder)?)
+    }
+
+    /// What a recording shows.
+    ///
+    /// # Errors
+    /// As for [`read`](Self::read).
+    pub fn of(recording: &RecordingReader) -> Result<Self, RecorderError> {
+        let scene = &recording.session().scene;
+        let mut shown = Self {
+            table: scene.table.unwrap_or_default(),
+            joints: scene.joints.clone(),
+            start: recording.first_tick(),
+            end: recording.last_tick(),
+            ..Self::default()
+        };
+        for object in &scene.objects {
+            let mut spec = object.spec.clone();
+            spec.pose = object.pose;
+            shown.add(spec, recording.first_tick());
+        }
+        let rows = recording.states()?;
+        shown.follow(
+            &recording.segments()?,
+            recording.header().ticks_per_frame,
+            rows.is_empty(),
+        );
+        for row in rows {
+            if let Some(object) = shown.named_mut(&row.id) {
+                object.track.push(row.tick, row.pose);
+            }
+        }
+        Ok(shown)
+    }
+
+    /// What segments of events show: all that there is of a recording of the original program. Objects are what the properties of
+    /// their events say; of a composite, they do not say how it is built.
+    pub fn of_events(segments: &[RecordedSegment], ticks_per_frame: u64) -> Self {
+        let mut shown = Self::default();
+        shown.follow(segments, ticks_per_frame, true);
+        let frames = segments.iter().flat_map(|segment| &segment.events);
+        let last = frames.map(|event| event.frame).max().unwrap_or(0);
+        shown.end = SimTick(last * ticks_per_frame);
+        shown
+    }
+
+    /// The object of this id.
+    pub fn named(&self, id: &str) -> Option<&ShownObject> {
+        self.objects.iter().find(|object| object.spec.id == id)
+    }
+
+    fn named_mut(&mut self, id: &str) -> Option<&mut ShownObject> {
+        self.objects.iter_mut().find(|object| object.spec.id == id)
+    }
+
+    /// Where all objects that are there are at the end of a tick.
+    pub(crate) fn at(&self, tick: SimTick) -> Arrangement {
+        let there = self.objects.iter().filter(|object| {
+            object.created <= tick && object.deleted.is_none_or(|deleted| tick < deleted)
+        });
+        Arrangement::new(there.filter_map(|object| {
+            let pose = object.track.at(tick)?;
+            Some((object.spec.id.as_str(), &object.spec.shape, pose))
+        }))
+    }
+
+    fn add(&mut self, spec: ObjectSpec, created: SimTick) {
+        self.objects.push(ShownObject {
+            track: Track::default(),
+            created,
+            deleted: None,
+            spec,
+        });
+    }
+
+    /// Follows the events; the moves only if there is nothing better.
+    fn follow(&mut self, segments: &[RecordedSegment], ticks_per_frame: u64, moves: bool) {
+        for segment in segments {
+            // An act is shown by the first frame after it; when it was is known of the first one.
+            let mut begun = segment.act.is_some();
+            for event in &segment.events {
+                let shown = SimTick(self.start.0 + event.frame * ticks_per_frame);
+                let mut act = |hand, deed| {
+                    let tick = match std::mem::take(&mut begun) {
+                        true => segment.start,
+                        false => shown,
+                    };
+                    self.acts.push(HandAct { tick, hand, deed });
+                };
+                match &event.what {
+                    Occurrence::Create { id, properties } => match self.named_mut(id) {
+                        Some(known) => known.deleted = None,
+                        None => self.add(spec_of(id, properties), shown),
+                    },
+                    Occurrence::Delete { id } => {
+                        if let Some(object) = self.named_mut(id) {
+                            object.deleted = Some(
+                                segment
+                                    .start
+                                    .max(SimTick(shown.0.saturating_sub(ticks_per_frame))),
+                            );
+                        }
+                    }
+                    Occurrence::Move {
+                        id,
+                        location,
+                        degrees,
+                    } if moves => {
+                        if let Some(object) = self.named_mut(id) {
+                            let pose = Pose::from_degrees(*location, *degrees);
+                            object.track.push(shown, pose);
+                        }
+                    }
+                    Occurrence::Move { .. } => {}
+                    Occurrence::Grasp { hand, id } => act(*hand, Deed::Grasp(id.clone())),
+                    Occurrence::Release { hand } => act(*hand, Deed::Release),
+                    Occurrence::Destroy { hand } => act(*hand, Deed::Destroy),
+                }
+            }
+        }
+    }
+}
+
+/// The object that properties of a recording tell of.
+fn spec_of(id: &str, properties: &[(String, String)]) -> ObjectSpec {
+    let known: BTreeMap<&str, &str> = properties
+        .iter()
+        .map(|(name, value)| (name.as_str(), value.as_str()))
+        .collect();
+    let number = |name: &str| known.get(name).and_then(|value| value.parse::<f32>().ok());
+    let length = |name: &str| number(name).unwrap_or(1.0);
+    let span = Vec3::new(length("xspan"), length("yspan"), length("zspan"));
+    let color = known.get("color").and_then(|color| {
+        // The original writes some colours with eight digits.
+        color.get(..7).unwrap_or(color).parse().ok()
+    });
+    let color = color.unwrap_or(Rgb::GRAY);
+    let thickness = number("thickness").unwrap_or(0.05);
+    let radius = number("radius").unwrap_or(0.5);
+    // The original calls a ball a cylinder, and a cylinder's length `zspan`.
+    let yspan = number("yspan").or(number("zspan"));
+    let shape = match (known.get("shape").copied().unwrap_or_default(), yspan) {
+        ("block", _) => Shape::Block { span, color },
+        ("box", _) => Shape::Box {
+            span,
+            thickness,
+            color,
+        },
+        ("cylinder", Some(yspan)) => Shape::Cylinder {
+            radius,
+            yspan,
+            color,
+        },
+        ("sphere" | "cylinder", _) => Shape::Sphere { radius, color },
+        ("lid", _) => Shape::Lid {
+            span: span.with_z(thickness),
+            color,
+            handle_span: Vec3::new(
+                length("handleXspan"),
+                length("handleYspan"),
+                length("handleZspan"),
+            ),
+            handle_thickness: number("handleThickness").unwrap_or(thickness),
+            handle_color: color,
+        },
+        _ => Shape::Composite { parts: Vec::new() },
+    };
+    let mass = number("mass").unwrap_or(1.0);
+    let mut spec = ObjectSpec::new(id, Pose::IDENTITY, mass, shape);
+    let geometry = [
+        "xspan",
+        "yspan",
+        "zspan",
+        "radius",
+        "color",
+        "thickness",
+        "handleXspan",
+        "handleYspan",
+        "handleZspan",
+        "handleThickness",
+        "mass",
+    ];
+    spec.descriptions = properties
+        .iter()
+        .filter(|(name, _)| !geometry.contains(&name.as_str()))
+        .cloned()
+        .collect();
+    spec
+}

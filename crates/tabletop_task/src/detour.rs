@@ -1,0 +1,139 @@
+//! What was done on the way, and does not matter.
+
+use serde::{Deserialize, Serialize};
+use tabletop_core::SimTick;
+
+use crate::{
+    arrangement::Placed,
+    demonstration::Demonstration,
+    manipulation::{Ending, Manipulation},
+    symmetry::Symmetry,
+};
+
+/// A manipulation, or a part of one, that leaves no trace in what was shown.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Detour {
+    /// Id of the object.
+    pub object: String,
+    /// Why it does not matter.
+    pub kind: DetourKind,
+    /// The tick in which the object was grasped.
+    pub grasp: SimTick,
+    /// The tick in which it was let go of.
+    pub release: SimTick,
+}
+
+/// Why something does not matter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DetourKind {
+    /// It was grasped and released in its place.
+    InPlace,
+    /// It was moved, and in the end it stood where it had been.
+    AwayAndBack,
+    /// It was put down, and nothing happened before it was taken on that needed this.
+    PutDown,
+    /// It went from one hand to another.
+    HandedOver,
+}
+
+/// How far from where it was an object is in the same place, in units and rad.
+const SAME_PLACE: (f32, f32) = (0.05, 0.05);
+/// How far an object that is only held moves.
+const HELD_STILL: f32 = 0.1;
+
+/// Takes what was only a detour out of the manipulations. They stay in their order.
+pub fn fold(shown: &Demonstration, manipulations: &mut Vec<Manipulation>) -> Vec<Detour> {
+    let mut detours: Vec<_> = manipulations
+        .iter()
+        .filter(|manipulation| manipulation.hands.len() > 1)
+        .map(|manipulation| detour(manipulation, DetourKind::HandedOver))
+        .collect();
+    while let Some(detour) = fold_one(shown, manipulations) {
+        detours.push(detour);
+    }
+    detours.sort_by_key(|detour| (detour.grasp, detour.release));
+    detours
+}
+
+fn fold_one(shown: &Demonstration, manipulations: &mut Vec<Manipulation>) -> Option<Detour> {
+    for i in 0..manipulations.len() {
+        let manipulation = &manipulations[i];
+        if manipulation.ending == Ending::Released && is_back(shown, manipulation) {
+            let kind = match farthest(shown, manipulation) < HELD_STILL {
+                true => DetourKind::InPlace,
+                false => DetourKind::AwayAndBack,
+            };
+            let manipulation = manipulations.remove(i);
+            return Some(detour(&manipulation, kind));
+        }
+        let rest = &manipulations[i + 1..];
+        let next = rest
+            .iter()
+            .position(|next| next.object == manipulation.object);
+        let Some(next) = next.map(|next| i + 1 + next) else {
+            continue;
+        };
+        let between = &manipulations[i + 1..next];
+        if manipulation.ending == Ending::Released
+            && between
+                .iter()
+                .all(|other| is_apart(shown, manipulation, other))
+        {
+            let first = manipulations.remove(i);
+            let last = &mut manipulations[next - 1];
+            last.from = first.from;
+            return Some(detour(&first, DetourKind::PutDown));
+        }
+    }
+    None
+}
+
+fn detour(manipulation: &Manipulation, kind: DetourKind) -> Detour {
+    Detour {
+        object: manipulation.object.clone(),
+        kind,
+        grasp: manipulation.grasp,
+        release: manipulation.release,
+    }
+}
+
+/// Whether an object looks in the end as it did before.
+fn is_back(shown: &Demonstration, manipulation: &Manipulation) -> bool {
+    let Some(object) = shown.named(&manipulation.object) else {
+        return false;
+    };
+    let symmetry = Symmetry::of(&object.spec.shape);
+    let (moved, turned) = symmetry.difference(manipulation.from, manipulation.to);
+    moved < SAME_PLACE.0 && turned < SAME_PLACE.1
+}
+
+/// How far an object went from where it was, in units.
+fn farthest(shown: &Demonstration, manipulation: &Manipulation) -> f32 {
+    let Some(object) = shown.named(&manipulation.object) else {
+        return 0.0;
+    };
+    let poses = object.track.between(manipulation.grasp, manipulation.rest);
+    poses
+        .map(|pose| pose.location.distance(manipulation.from.location))
+        .fold(0.0, f32::max)
+}
+
+/// Whether neither has made room for the other, nor carries it: the places of one are not above or below those of the other.
+fn is_apart(shown: &Demonstration, one: &Manipulation, other: &Manipulation) -> bool {
+    let [ones, others] = [one, other].map(|manipulation| places(shown, manipulation));
+    ones.iter()
+        .all(|one| others.iter().all(|other| !one.shares_column_with(other)))
+}
+
+/// An object where it was before a manipulation, and where it was put.
+pub(crate) fn places(shown: &Demonstration, manipulation: &Manipulation) -> Vec<Placed> {
+    let Some(object) = shown.named(&manipulation.object) else {
+        return Vec::new();
+    };
+    let place = |pose| Placed::new(&object.spec.shape, pose);
+    match manipulation.ending {
+        Ending::Released => vec![place(manipulation.from), place(manipulation.to)],
+        Ending::Destroyed | Ending::Held => vec![place(manipulation.from)],
+    }
+}

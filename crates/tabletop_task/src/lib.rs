@@ -1,0 +1,51 @@
+//! What a recording shows, as a task: the manipulations, the relations that each establishes, the goals with the freedoms that
+//! symmetry leaves, the order that matters, and what is required of the objects that take its roles (report sections 1 and 4).
+//!
+//! [`Demonstration`] is what a recording holds of this: objects, their ways, the deeds of the hands. [`Task`] is what it means.
+//! [`Requirements`] say which objects may take its roles, [`Task::bind`] finds them on another table.
+//!
+//! ```no_run
+//! use tabletop_task::Task;
+//!
+//! let task = Task::read("demo")?;
+//! for step in &task.steps {
+//!     println!("{}. {}", step.number, step.sentence);
+//! }
+//! # Ok::<_, Box<dyn std::error::Error>>(())
+//! ```
+
+mod arrangement;
+mod assignment;
+mod binding;
+mod convex;
+mod demonstration;
+mod detour;
+mod goal;
+mod manipulation;
+mod noun;
+mod order;
+mod property;
+mod relation;
+mod requirement;
+mod role;
+mod sentence;
+mod step;
+mod symmetry;
+mod task;
+mod track;
+mod understanding;
+
+pub use arrangement::Arrangement;
+pub use binding::{Binding, Unbound};
+pub use demonstration::{Deed, Demonstration, HandAct, ShownObject};
+pub use detour::{Detour, DetourKind};
+pub use goal::{Freedom, Goal, Place, Reference};
+pub use manipulation::{Ending, Manipulation};
+pub use property::{has_value, properties, property};
+pub use relation::{Relation, Side};
+pub use requirement::{RequirementError, Requirements};
+pub use role::Role;
+pub use step::Step;
+pub use symmetry::{Symmetry, Turns};
+pub use task::Task;
+pub use track::Track;

@@ -1,0 +1,121 @@
+//! What hands did to objects, from grasp to release.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use tabletop_core::{Hand, Pose, SimTick};
+
+use crate::demonstration::{Deed, Demonstration};
+
+/// An object in a hand, or in one hand after the other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Manipulation {
+    /// Id of the object.
+    pub object: String,
+    /// The hands, in the order in which they held it.
+    pub hands: Vec<Hand>,
+    /// The tick in which it was grasped.
+    pub grasp: SimTick,
+    /// The tick in which it was let go of or removed.
+    pub release: SimTick,
+    /// The tick by which it has come to rest.
+    pub rest: SimTick,
+    /// How it ended.
+    pub ending: Ending,
+    /// Where the object was before.
+    pub from: Pose,
+    /// Where it came to rest.
+    pub to: Pose,
+}
+
+/// How a manipulation ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Ending {
+    /// The hand let go of it.
+    Released,
+    /// The hand removed it from the world.
+    Destroyed,
+    /// The recording ended while it was held.
+    Held,
+}
+
+/// Ticks between release and grasp in a hand-over.
+const HAND_OVER: u64 = 2;
+
+impl Manipulation {
+    /// The manipulations of a demonstration, in the order in which they ended.
+    pub fn all(shown: &Demonstration) -> Vec<Self> {
+        let mut held = BTreeMap::<Hand, (String, SimTick)>::new();
+        let mut all = Vec::new();
+        for act in &shown.acts {
+            let end = |ending| move |(object, grasp)| (act.hand, object, grasp, act.tick, ending);
+            let ended = match &act.deed {
+                Deed::Grasp(id) => {
+                    let before = held.insert(act.hand, (id.clone(), act.tick));
+                    before.map(end(Ending::Released))
+                }
+                Deed::Release => held.remove(&act.hand).map(end(Ending::Released)),
+                Deed::Destroy => held.remove(&act.hand).map(end(Ending::Destroyed)),
+            };
+            all.extend(ended);
+        }
+        let held = held
+            .into_iter()
+            .map(|(hand, (object, grasp))| (hand, object, grasp, shown.end, Ending::Held));
+        all.extend(held.collect::<Vec<_>>());
+
+        let mut manipulations = Vec::<Self>::new();
+        for (hand, object, grasp, release, ending) in all {
+            let Some(track) = shown.named(&object).map(|object| &object.track) else {
+                continue;
+            };
+            let handed_over = manipulations.iter_mut().find(|earlier| {
+                let between = grasp.0.saturating_sub(earlier.release.0);
+                earlier.object == object
+                    && earlier.ending == Ending::Released
+                    && grasp >= earlier.release
+                    && between <= HAND_OVER
+            });
+            if let Some(earlier) = handed_over {
+                earlier.hands.push(hand);
+                (earlier.release, earlier.ending) = (release, ending);
+                continue;
+            }
+            let (Some(from), Some(to)) = (
+                track.at(SimTick(grasp.0.saturating_sub(1))),
+                track.at(release),
+            ) else {
+                continue;
+            };
+            manipulations.push(Self {
+                object,
+                hands: vec![hand],
+                grasp,
+                release,
+                rest: release,
+                ending,
+                from,
+                to,
+            });
+        }
+        manipulations.sort_by_key(|manipulation| manipulation.release);
+        for i in 0..manipulations.len() {
+            let (object, release) = (&manipulations[i].object, manipulations[i].release);
+            let next = manipulations
+                .iter()
+                .filter(|next| next.object == *object && next.grasp >= release)
+                .map(|next| SimTick(next.grasp.0.saturating_sub(1)))
+                .min();
+            let until = next.unwrap_or(shown.end).max(release);
+            let track = shown.named(object).map(|object| &object.track);
+            let rest = match manipulations[i].ending {
+                Ending::Released => track.map_or(release, |track| track.rest_after(release, until)),
+                Ending::Destroyed | Ending::Held => release,
+            };
+            let to = track.and_then(|track| track.at(rest));
+            manipulations[i].rest = rest;
+            manipulations[i].to = to.unwrap_or(manipulations[i].to);
+        }
+        manipulations
+    }
+}

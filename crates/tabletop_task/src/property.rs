@@ -1,0 +1,166 @@
+//! What can be said of an object.
+
+use bevy::math::Vec3;
+use tabletop_core::{ObjectSpec, Rgb, Shape};
+
+/// The properties of an object, as name and value: `id`, `shape`, `color` if it has just one, `size`, what its shape is made by
+/// (`xspan`, `radius`, ...), `mass`, then its descriptions.
+pub fn properties(spec: &ObjectSpec) -> Vec<(String, String)> {
+    let mut all = vec![("id".to_owned(), spec.id.clone())];
+    let mut add = |name: &str, value: String| all.push((name.to_owned(), value));
+    let mut descriptions = spec.all_descriptions().into_iter();
+    if let Some((_, shape)) = descriptions.next() {
+        add("shape", shape.to_owned());
+    }
+    if let Some(color) = only_color(&spec.shape) {
+        add("color", color.to_string());
+    }
+    let lengths = lengths(&spec.shape);
+    let size: Vec<_> = lengths
+        .iter()
+        .map(|(_, length)| length.to_string())
+        .collect();
+    add("size", size.join("x"));
+    for (name, length) in lengths {
+        add(name, length.to_string());
+    }
+    add("mass", spec.mass.to_string());
+    for (name, value) in descriptions {
+        add(name, value.to_owned());
+    }
+    all
+}
+
+/// A property of an object.
+pub fn property(spec: &ObjectSpec, name: &str) -> Option<String> {
+    let all = properties(spec).into_iter();
+    all.rev()
+        .find(|(known, _)| known == name)
+        .map(|(_, value)| value)
+}
+
+fn only_color(shape: &Shape) -> Option<Rgb> {
+    let solids = shape.drawn();
+    let first = solids.first()?.color;
+    solids
+        .iter()
+        .all(|solid| solid.color == first)
+        .then_some(first)
+}
+
+/// The lengths that a shape is made by, in units; of a composite, of the cuboid around it.
+fn lengths(shape: &Shape) -> Vec<(&'static str, f32)> {
+    let spans = |span: Vec3| vec![("xspan", span.x), ("yspan", span.y), ("zspan", span.z)];
+    match shape {
+        Shape::Block { span, .. }
+        | Shape::Box { span, .. }
+        | Shape::Link { span, .. }
+        | Shape::Lid { span, .. } => spans(*span),
+        Shape::Cylinder { radius, yspan, .. } => vec![("radius", *radius), ("yspan", *yspan)],
+        Shape::Sphere { radius, .. } => vec![("radius", *radius)],
+        Shape::Composite { .. } => spans(around(shape)),
+    }
+}
+
+/// The extents of the cuboid around a shape, along the axes of its frame, to a hundredth of a unit.
+fn around(shape: &Shape) -> Vec3 {
+    let solids: Vec<_> = shape
+        .colliding()
+        .iter()
+        .map(|solid| crate::convex::Convex::of(solid, tabletop_core::Pose::IDENTITY))
+        .collect();
+    let reach = |way: Vec3| {
+        let all = solids.iter().map(|solid| solid.farthest(way).dot(way));
+        all.reduce(f32::max).unwrap_or(0.0)
+    };
+    let extents = Vec3::AXES.map(|axis| reach(axis) + reach(-axis));
+    (Vec3::from(extents) * 100.0).round() / 100.0
+}
+
+/// Whether a property has the value that is asked for: a colour by its name or `#rrggbb`, a number within 1 %, a range `1..2`, lengths
+/// with `x` between them, or else a text, in upper or lower case.
+pub fn has_value(name: &str, value: &str, wanted: &str) -> bool {
+    if name == "color" {
+        let [Ok(value), Ok(color)] = [value, wanted].map(str::parse::<Rgb>) else {
+            return false;
+        };
+        let is_named = !wanted.trim().starts_with('#');
+        return value.to_bytes() == color.to_bytes()
+            || (is_named && crate::noun::color_name(value) == crate::noun::color_name(color));
+    }
+    if let (Some((least, most)), Ok(value)) = (wanted.split_once(".."), value.parse::<f32>()) {
+        let bound = |text: &str, open: f32| match text.trim() {
+            "" => Some(open),
+            text => text.parse().ok(),
+        };
+        return bound(least, f32::NEG_INFINITY).is_some_and(|least| least <= value)
+            && bound(most, f32::INFINITY).is_some_and(|most| value <= most);
+    }
+    let numbers = |text: &str| {
+        let parts: Result<Vec<f32>, _> = text.split('x').map(|part| part.trim().parse()).collect();
+        parts.ok()
+    };
+    match (numbers(value), numbers(wanted)) {
+        (Some(a), Some(b)) => {
+            let is_near = |(a, b): (&f32, &f32)| (a - b).abs() <= 0.01 * b.abs().max(1e-3);
+            a.len() == b.len() && a.iter().zip(&b).all(is_near)
+        }
+        _ => value.eq_ignore_ascii_case(wanted.trim()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::Pose;
+
+    use super::*;
+
+    #[test]
+    fn colours_numbers_and_ranges_are_compared_as_what_they_are() {
+        for (name, value, wanted, expected) in [
+            ("color", "#ff0000", "red", true),
+            ("color", "#e01010", "red", true),
+            ("color", "#e01010", "#ff0000", false),
+            ("color", "#00ff00", "red", false),
+            ("color", "#00ff00", "vermilion", false),
+            ("xspan", "2", "2.0", true),
+            ("xspan", "2", "1..3", true),
+            ("xspan", "2", "..1.5", false),
+            ("xspan", "2", "1.5..", true),
+            ("size", "2x2x1", "2.0x2.0x1.0", true),
+            ("size", "2x2x1", "2x2", false),
+            ("use", "Tool", "tool", true),
+        ] {
+            assert_eq!(
+                has_value(name, value, wanted),
+                expected,
+                "{name}: {value}, {wanted}"
+            );
+        }
+    }
+
+    #[test]
+    fn an_object_tells_its_properties() {
+        let mut spec = ObjectSpec::new(
+            "a",
+            Pose::IDENTITY,
+            1.0,
+            Shape::Cylinder {
+                radius: 0.5,
+                yspan: 3.0,
+                color: Rgb::RED,
+            },
+        );
+        spec.descriptions.push(("use".into(), "log".into()));
+        let told: Vec<_> = properties(&spec)
+            .into_iter()
+            .map(|(name, value)| format!("{name}={value}"))
+            .collect();
+        assert_eq!(
+            told.join(" "),
+            "id=a shape=cylinder color=#ff0000 size=0.5x3 radius=0.5 yspan=3 mass=1 use=log"
+        );
+        assert_eq!(property(&spec, "use").as_deref(), Some("log"));
+        assert_eq!(property(&spec, "xspan"), None);
+    }
+}

@@ -1,0 +1,305 @@
+//! How an object is to others when it has been put somewhere.
+
+use bevy::math::{Quat, Vec3};
+use serde::{Deserialize, Serialize};
+use tabletop_core::{JointKind, JointSpec, Pose};
+
+use crate::{
+    arrangement::{Arrangement, TOUCH},
+    demonstration::Demonstration,
+    manipulation::{Ending, Manipulation},
+    symmetry::{Symmetry, angle_between},
+};
+
+/// What a manipulation establishes. Objects are meant by their ids.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Relation {
+    /// It stands on the table.
+    OnTable,
+    /// It stands on an object.
+    On {
+        /// The object.
+        object: String,
+    },
+    /// It is in an object, with walls on all sides.
+    Inside {
+        /// The object.
+        object: String,
+    },
+    /// It is around a part of an object, as a ring on its peg.
+    Around {
+        /// The object.
+        object: String,
+    },
+    /// It stands beside an object.
+    Beside {
+        /// The object.
+        object: String,
+        /// On which side of it, as the robot sees it.
+        side: Side,
+    },
+    /// Its sides are parallel to those of an object.
+    AlignedWith {
+        /// The object.
+        object: String,
+    },
+    /// It is where an object was in the beginning.
+    InPlaceOf {
+        /// The object.
+        object: String,
+    },
+    /// It is out of the way, to be moved again later.
+    Aside,
+    /// It has slid along the joint that connects it with an object.
+    Slid {
+        /// The object.
+        object: String,
+        /// How far it is open, in units.
+        opening: f32,
+        /// How far it can be open, in units.
+        travel: f32,
+    },
+    /// It is turned in its place.
+    Turned {
+        /// About which axis, in the table's frame.
+        axis: Vec3,
+        /// By which angle.
+        degrees: f32,
+    },
+    /// It is no longer there.
+    Destroyed,
+    /// A hand holds it in the end.
+    Held,
+}
+
+/// On which side of an object another one is, as the robot sees it, in front of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// Towards -X.
+    Left,
+    /// Towards +X.
+    Right,
+    /// Towards the robot.
+    Front,
+    /// Towards the robot and -X.
+    FrontLeft,
+    /// Towards the robot and +X.
+    FrontRight,
+    /// Away from the robot.
+    Behind,
+    /// Away from the robot, and towards -X.
+    BehindLeft,
+    /// Away from the robot, and towards +X.
+    BehindRight,
+}
+
+impl Side {
+    /// The side of what is this way across the table.
+    pub fn of(way: Vec3) -> Self {
+        // More than 22° off an axis is off both.
+        let is_along = |along: f32, across: f32| along.abs() > 2.4 * across.abs();
+        match (way.x > 0.0, way.y > 0.0) {
+            (right, _) if is_along(way.x, way.y) => match right {
+                true => Self::Right,
+                false => Self::Left,
+            },
+            (_, behind) if is_along(way.y, way.x) => match behind {
+                true => Self::Behind,
+                false => Self::Front,
+            },
+            (false, false) => Self::FrontLeft,
+            (true, false) => Self::FrontRight,
+            (false, true) => Self::BehindLeft,
+            (true, true) => Self::BehindRight,
+        }
+    }
+}
+
+impl Relation {
+    /// The object to which it is a relation.
+    pub fn object(&self) -> Option<&str> {
+        match self {
+            Self::On { object }
+            | Self::Inside { object }
+            | Self::Around { object }
+            | Self::Beside { object, .. }
+            | Self::AlignedWith { object }
+            | Self::InPlaceOf { object }
+            | Self::Slid { object, .. } => Some(object),
+            Self::OnTable | Self::Aside | Self::Turned { .. } | Self::Destroyed | Self::Held => {
+                None
+            }
+        }
+    }
+}
+
+/// How far from where another one was an object is in its place, in units.
+const PLACE: f32 = 0.3;
+/// Within which distance objects are beside each other, in units.
+const NEIGHBOURHOOD: f32 = 0.6;
+/// Within which angle objects are aligned, in rad.
+const ALIGNED: f32 = 0.1;
+/// How far what is turned in its place moves across, in units, and by which angle it turns at least, in rad.
+const TURNED: (f32, f32) = (0.15, 0.05);
+
+/// The relations that a manipulation establishes, the one that says most first. `later` are the manipulations after it.
+pub(crate) fn established(
+    shown: &Demonstration,
+    manipulation: &Manipulation,
+    later: &[Manipulation],
+) -> Vec<Relation> {
+    match manipulation.ending {
+        Ending::Destroyed => return vec![Relation::Destroyed],
+        Ending::Held => return vec![Relation::Held],
+        Ending::Released => {}
+    }
+    let id = manipulation.object.as_str();
+    let after = shown.at(manipulation.rest);
+    if let Some(slid) = slid(shown, &after, id) {
+        return vec![slid];
+    }
+    let owned = |id: &str| id.to_owned();
+    let mut relations: Vec<_> = after
+        .posts(id)
+        .into_iter()
+        .map(|id| Relation::Around { object: owned(id) })
+        .collect();
+    for object in after.containers(id) {
+        relations.push(Relation::Inside {
+            object: owned(object),
+        });
+    }
+    let inner: Vec<_> = relations.iter().filter_map(Relation::object).collect();
+    let supports = after.supports(id);
+    let others = supports.iter().filter(|support| !inner.contains(support));
+    let on: Vec<_> = others
+        .map(|support| Relation::On {
+            object: owned(support),
+        })
+        .collect();
+    relations.extend(on);
+    if relations.is_empty() {
+        relations.extend(turned(shown, manipulation));
+    }
+    if relations.is_empty() {
+        let place = in_place_of(shown, &after, manipulation);
+        let is_moved_later = later.iter().any(|next| next.object == id);
+        let on_table = place
+            .or_else(|| is_moved_later.then_some(Relation::Aside))
+            .or_else(|| beside(&after, id, later));
+        relations.extend(on_table);
+    }
+    if let Some(object) = relations.first().and_then(Relation::object)
+        && is_aligned(shown, &after, id, object)
+    {
+        let object = owned(object);
+        relations.push(Relation::AlignedWith { object });
+    }
+    if after.is_on_table(id) {
+        relations.push(Relation::OnTable);
+    }
+    relations
+}
+
+/// The joint along which an object slides: the object that it slides on, and the joint's frame in that one, with its travel.
+pub(crate) fn slider<'s>(joints: &'s [JointSpec], id: &str) -> Option<(&'s JointSpec, f32)> {
+    joints.iter().find_map(|joint| match joint.kind {
+        JointKind::Slider { travel, .. } if joint.objects[1] == id => Some((joint, travel)),
+        JointKind::Slider { .. } | JointKind::Ball => None,
+    })
+}
+
+fn slid(shown: &Demonstration, after: &Arrangement, id: &str) -> Option<Relation> {
+    let (joint, travel) = slider(&shown.joints, id)?;
+    let frame = after.pose(&joint.objects[0])? * joint.frames[0];
+    let own = after.pose(id)? * joint.frames[1];
+    let opening = -(frame.inverse() * own.location).x;
+    Some(Relation::Slid {
+        object: joint.objects[0].clone(),
+        opening: opening.clamp(0.0, travel),
+        travel,
+    })
+}
+
+fn turned(shown: &Demonstration, manipulation: &Manipulation) -> Option<Relation> {
+    let object = shown.named(&manipulation.object)?;
+    let symmetry = Symmetry::of(&object.spec.shape);
+    let (from, to) = (manipulation.from, manipulation.to);
+    let across = (to.location - from.location).truncate().length();
+    let (_, angle) = symmetry.difference(from, to);
+    if across > TURNED.0 || angle < TURNED.1 {
+        return None;
+    }
+    let from = symmetry.nearest(from, to);
+    let mut turn: Quat = to.rotation * from.rotation.inverse();
+    if turn.w < 0.0 {
+        turn = -turn;
+    }
+    let (mut axis, mut angle) = turn.to_axis_angle();
+    // One way to say it: about an axis that points up, or right, or away.
+    let main = axis.abs().max_position();
+    if axis[main] < 0.0 {
+        (axis, angle) = (-axis, -angle);
+    }
+    Some(Relation::Turned {
+        axis,
+        degrees: angle.to_degrees(),
+    })
+}
+
+fn in_place_of(
+    shown: &Demonstration,
+    after: &Arrangement,
+    manipulation: &Manipulation,
+) -> Option<Relation> {
+    let at = manipulation.to.location.truncate();
+    let near = |pose: Pose| pose.location.truncate().distance(at);
+    let object = shown.objects.iter().find(|other| {
+        let id = other.spec.id.as_str();
+        let first = other.track.at(shown.start);
+        let has_left = |first| {
+            after
+                .pose(id)
+                .is_none_or(|now| now.location.distance(first) > PLACE)
+        };
+        other.spec.id != manipulation.object
+            && first.is_some_and(|first| near(first) < PLACE && has_left(first.location))
+    })?;
+    Some(Relation::InPlaceOf {
+        object: object.spec.id.clone(),
+    })
+}
+
+fn beside(after: &Arrangement, id: &str, later: &[Manipulation]) -> Option<Relation> {
+    let own = after.get(id)?;
+    let stays = |other: &str| later.iter().all(|next| next.object != other);
+    let (gap, object, other) = after
+        .others(id)
+        .filter(|(other, placed)| stays(other) && placed.lowest().abs() < TOUCH)
+        .map(|(other, placed)| (own.gap(placed), other, placed))
+        .min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let side = Side::of(own.pose.location - other.pose.location);
+    (gap < NEIGHBOURHOOD).then(|| Relation::Beside {
+        object: object.to_owned(),
+        side,
+    })
+}
+
+/// Whether some orientation that looks like that of the one is some that looks like that of the other.
+fn is_aligned(shown: &Demonstration, after: &Arrangement, id: &str, other: &str) -> bool {
+    let known = [id, other].map(|id| Some((shown.named(id)?, after.pose(id)?)));
+    let [Some((_, own)), Some((_, other))] = known else {
+        return false;
+    };
+    // Blocks are aligned whatever their sides are called: modulo quarter turns.
+    let relative = other.rotation.inverse() * own.rotation;
+    let quarters = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| relative * axis);
+    quarters.iter().all(|axis| {
+        let main = axis.abs().max_position();
+        let mut nearest = Vec3::ZERO;
+        nearest[main] = axis[main].signum();
+        angle_between(Quat::IDENTITY, Quat::from_rotation_arc(*axis, nearest)) < ALIGNED
+    })
+}

@@ -1,0 +1,203 @@
+//! What an object must be to take a role: the report's "symbolic properties, such as specifying that a block being picked up must be
+//! red".
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    io::ErrorKind,
+    path::{Path, PathBuf},
+};
+
+use serde::{Deserialize, Serialize};
+use tabletop_core::{ObjectSpec, Rgb};
+
+use crate::{
+    noun::color_name,
+    property::{has_value, property},
+    role::Role,
+    task::Task,
+};
+
+/// What is required of the objects that take the roles of a task. It is kept as `task.json` in the recording's folder.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Requirements {
+    /// By role: properties and their values. A role that is not here takes what is most like the object with which it was shown; a
+    /// role without properties takes any object.
+    pub roles: BTreeMap<String, BTreeMap<String, String>>,
+}
+
+/// What is wrong with a requirement or its file.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says it")]
+pub enum RequirementError {
+    #[error("{path}: {source}", path = .path.display())]
+    Io {
+        path: PathBuf,
+        source: std::io::Error,
+    },
+    #[error("{path}: {source}", path = .path.display())]
+    File {
+        path: PathBuf,
+        source: serde_json::Error,
+    },
+    #[error("the demonstration has no step {0}")]
+    NoStep(usize),
+    #[error(
+        "`{text}` is no requirement: expected `name=value`, the name of a property that {noun} has ({known}), or `any`"
+    )]
+    Unknown {
+        text: String,
+        noun: String,
+        known: String,
+    },
+    #[error("`{0}` is not a colour")]
+    Color(String),
+}
+
+/// The property that means the object of another step.
+const SAME: &str = "same";
+
+impl Requirements {
+    /// The name of their file in a recording's folder.
+    pub const FILE: &str = "task.json";
+
+    /// Reads those of a recording; there are none without a file.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is not what [`write`](Self::write) writes.
+    pub fn read(folder: &Path) -> Result<Self, RequirementError> {
+        let path = folder.join(Self::FILE);
+        let text = match fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Self::default()),
+            Err(source) => return Err(RequirementError::Io { path, source }),
+        };
+        serde_json::from_str(&text).map_err(|source| RequirementError::File { path, source })
+    }
+
+    /// Writes them to a recording's folder; without any, there is no file.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), RequirementError> {
+        let path = folder.join(Self::FILE);
+        let failed = |source| RequirementError::Io {
+            path: path.clone(),
+            source,
+        };
+        if self.roles.is_empty() {
+            return match fs::remove_file(&path) {
+                Err(error) if error.kind() != ErrorKind::NotFound => Err(failed(error)),
+                _ => Ok(()),
+            };
+        }
+        let text = serde_json::to_string_pretty(self).map_err(std::io::Error::from);
+        fs::write(&path, text.map_err(failed)? + "\n").map_err(failed)
+    }
+
+    /// Adds a requirement, as `name=value`, `name` for the value with which the role was shown, `same=STEP`, or `any` for none at all.
+    ///
+    /// # Errors
+    /// The object has no such property, or there is no such value or step.
+    pub fn add(&mut self, task: &Task, role: &Role, text: &str) -> Result<(), RequirementError> {
+        if text == "any" {
+            self.roles.insert(role.id.clone(), BTreeMap::new());
+            return Ok(());
+        }
+        let unknown = || {
+            let known: Vec<_> = crate::property::properties(&role.shown)
+                .into_iter()
+                .map(|(name, _)| name)
+                .collect();
+            RequirementError::Unknown {
+                text: text.to_owned(),
+                noun: role.noun.clone(),
+                known: known.join(", "),
+            }
+        };
+        let (name, value) = match text.split_once('=') {
+            Some((name, value)) if !name.trim().is_empty() => {
+                (name.trim().to_owned(), value.trim().to_owned())
+            }
+            Some(_) => return Err(unknown()),
+            None => {
+                let value = property(&role.shown, text).ok_or_else(unknown)?;
+                (text.to_owned(), value)
+            }
+        };
+        if name == "color" && value.parse::<Rgb>().is_err() {
+            return Err(RequirementError::Color(value));
+        }
+        if name == SAME {
+            let step = value.parse().map_err(|_| unknown())?;
+            task.step(step).ok_or(RequirementError::NoStep(step))?;
+        }
+        let of_role = self.roles.entry(role.id.clone()).or_default();
+        of_role.insert(name, value);
+        Ok(())
+    }
+
+    /// Takes away a requirement by its property's name, or all of a role. Whether there was one.
+    pub fn remove(&mut self, role: &Role, name: Option<&str>) -> bool {
+        let Some(name) = name else {
+            return self.roles.remove(&role.id).is_some();
+        };
+        let Some(of_role) = self.roles.get_mut(&role.id) else {
+            return false;
+        };
+        let was_there = of_role.remove(name).is_some();
+        if of_role.is_empty() {
+            self.roles.remove(&role.id);
+        }
+        was_there
+    }
+
+    /// What an object lacks to take a role, as `name value`; nothing if it fits. Only if there are requirements of the role.
+    pub fn lacks(&self, role: &str, object: &ObjectSpec) -> Option<Vec<String>> {
+        let wanted = self
+            .roles
+            .get(role)?
+            .iter()
+            .filter(|(name, _)| *name != SAME);
+        let lacks = wanted.filter(|(name, wanted)| {
+            !property(object, name).is_some_and(|value| has_value(name, &value, wanted))
+        });
+        Some(
+            lacks
+                .map(|(name, wanted)| format!("{name} {wanted}"))
+                .collect(),
+        )
+    }
+
+    /// The step whose object a role has to take as well.
+    pub(crate) fn same_as(&self, role: &str) -> Option<usize> {
+        self.roles.get(role)?.get(SAME)?.parse().ok()
+    }
+
+    /// What a role is called in sentences, if requirements say it.
+    pub(crate) fn phrase(&self, role: &str) -> Option<String> {
+        let wanted = self.roles.get(role)?;
+        if wanted.is_empty() {
+            return Some("any object".into());
+        }
+        let get = |name: &str| wanted.get(name).map(String::as_str);
+        let color = get("color").map(|color| match color.parse::<Rgb>() {
+            Ok(rgb) if color.starts_with('#') => color_name(rgb),
+            _ => color,
+        });
+        let shape = get("shape").unwrap_or("object");
+        let named: Vec<_> = color.into_iter().chain([shape]).collect();
+        let others: Vec<_> = wanted
+            .iter()
+            .filter(|(name, _)| !["color", "shape"].contains(&name.as_str()))
+            .map(|(name, value)| match name.as_str() {
+                SAME => format!("that is moved in step {value}"),
+                "id" => format!("\"{value}\""),
+                name => format!("with {name} {value}"),
+            })
+            .collect();
+        let all: Vec<_> = ["the"].into_iter().chain(named).collect();
+        Some([&[all.join(" ")][..], &others].concat().join(" "))
+    }
+}

@@ -1,0 +1,92 @@
+//! Where something was, tick by tick.
+
+use tabletop_core::{Pose, SimTick};
+
+use crate::symmetry::angle_between;
+
+/// The poses of an object along time: it keeps each until the next one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Track(Vec<(SimTick, Pose)>);
+
+impl Track {
+    /// Notes where it is from a tick on. Ticks ascend.
+    pub fn push(&mut self, tick: SimTick, pose: Pose) {
+        match self.0.last_mut() {
+            Some(last) if last.0 == tick => last.1 = pose,
+            _ => self.0.push((tick, pose)),
+        }
+    }
+
+    /// Where it is at the end of a tick: before its first pose, there; nowhere if it has none.
+    pub fn at(&self, tick: SimTick) -> Option<Pose> {
+        let known = self.0.partition_point(|(since, _)| *since <= tick);
+        let (_, pose) = self.0.get(known.max(1) - 1)?;
+        Some(*pose)
+    }
+
+    /// The poses from one tick to another, both included.
+    pub fn between(&self, from: SimTick, to: SimTick) -> impl Iterator<Item = Pose> {
+        let first = self.at(from);
+        let inner = self
+            .0
+            .iter()
+            .filter(move |(tick, _)| *tick > from && *tick <= to);
+        first.into_iter().chain(inner.map(|(_, pose)| *pose))
+    }
+
+    /// The first tick from `from` on after which it stays where it is for a quarter of a second; `until` at the latest.
+    pub fn rest_after(&self, from: SimTick, until: SimTick) -> SimTick {
+        const STILL_TICKS: u64 = 15;
+        const STILL_LENGTH: f32 = 0.01;
+        const STILL_ANGLE: f32 = 0.01;
+        let mut rest = from;
+        let changes = self
+            .0
+            .iter()
+            .filter(|(tick, _)| *tick > from && *tick <= until);
+        let Some(mut still) = self.at(from) else {
+            return until;
+        };
+        for (tick, pose) in changes {
+            if tick.0 > rest.0 + STILL_TICKS {
+                break;
+            }
+            let moved = pose.location.distance(still.location);
+            if moved > STILL_LENGTH || angle_between(pose.rotation, still.rotation) > STILL_ANGLE {
+                (rest, still) = (*tick, *pose);
+            }
+        }
+        SimTick(rest.0 + STILL_TICKS).min(until)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::math::Vec3;
+
+    use super::*;
+
+    #[test]
+    fn a_pose_holds_until_the_next_one() {
+        let mut track = Track::default();
+        for (tick, x) in [(10, 1.0), (20, 2.0), (20, 3.0)] {
+            track.push(SimTick(tick), Pose::at(Vec3::X * x));
+        }
+        let found =
+            [0, 10, 19, 20, 99].map(|tick| track.at(SimTick(tick)).map(|pose| pose.location.x));
+        assert_eq!(found, [1.0, 1.0, 1.0, 3.0, 3.0].map(Some));
+        assert_eq!(Track::default().at(SimTick(0)), None);
+    }
+
+    #[test]
+    fn what_falls_is_at_rest_when_it_has_landed() {
+        let mut track = Track::default();
+        for tick in 0..=30_u64 {
+            let height = 30_u64.saturating_sub(tick) as f32 / 10.0;
+            track.push(SimTick(tick), Pose::at(Vec3::Z * height));
+        }
+        assert_eq!(track.rest_after(SimTick(5), SimTick(100)), SimTick(45));
+        assert_eq!(track.rest_after(SimTick(5), SimTick(40)), SimTick(40));
+        assert_eq!(track.rest_after(SimTick(60), SimTick(100)), SimTick(75));
+    }
+}

@@ -1,0 +1,92 @@
+//! From a demonstration to the task that it shows.
+
+use std::path::Path;
+
+use tabletop_recorder::RecorderError;
+
+use crate::{
+    demonstration::Demonstration,
+    detour::fold,
+    goal::Goal,
+    manipulation::Manipulation,
+    noun::Nouns,
+    order::partial_order,
+    relation::{Relation, established},
+    requirement::Requirements,
+    role::Role,
+    step::Step,
+    symmetry::Symmetry,
+    task::Task,
+};
+
+impl Task {
+    /// Reads a recording, and says what it shows.
+    ///
+    /// # Errors
+    /// A file cannot be read, or a line of it is none that a recorder writes; it is named.
+    pub fn read(folder: impl AsRef<Path>) -> Result<Self, RecorderError> {
+        Ok(Self::of(&Demonstration::read(folder)?))
+    }
+
+    /// What a demonstration shows.
+    pub fn of(shown: &Demonstration) -> Self {
+        let mut manipulations = Manipulation::all(shown);
+        let detours = fold(shown, &mut manipulations);
+        let relations: Vec<_> = (0..manipulations.len())
+            .map(|i| established(shown, &manipulations[i], &manipulations[i + 1..]))
+            .collect();
+        let order = partial_order(shown, &manipulations, &relations);
+        let steps = (0..manipulations.len()).map(|i| {
+            let manipulation = &manipulations[i];
+            let before = i.checked_sub(1).map(|before| &manipulations[before]);
+            Step {
+                number: i + 1,
+                sentence: String::new(),
+                object: manipulation.object.clone(),
+                hands: manipulation.hands.clone(),
+                grasp: manipulation.grasp,
+                release: manipulation.release,
+                meanwhile: before.is_some_and(|before| manipulation.grasp < before.release),
+                relations: relations[i].clone(),
+                goal: Goal::of(shown, manipulation, &relations[i]),
+                after: order[i].iter().map(|step| step + 1).collect(),
+            }
+        });
+        let steps: Vec<_> = steps.collect();
+        let mut task = Self {
+            table: shown.table,
+            roles: cast(shown, &steps),
+            joints: shown.joints.clone(),
+            steps,
+            detours,
+        };
+        task.phrase(&Requirements::default());
+        task
+    }
+}
+
+/// The objects that steps are about.
+fn cast(shown: &Demonstration, steps: &[Step]) -> Vec<Role> {
+    let nouns = Nouns::of(shown);
+    let mut ids = Vec::<&str>::new();
+    for step in steps {
+        let others = step.relations.iter().filter_map(Relation::object);
+        for id in [step.object.as_str()].into_iter().chain(others) {
+            if !ids.contains(&id) {
+                ids.push(id);
+            }
+        }
+    }
+    let role = |id: &str| {
+        let object = shown.named(id)?;
+        let mut spec = object.spec.clone();
+        spec.pose = object.track.at(shown.start).unwrap_or(spec.pose);
+        Some(Role {
+            id: id.to_owned(),
+            noun: nouns.of_object(id),
+            symmetry: Symmetry::of(&spec.shape),
+            shown: spec,
+        })
+    };
+    ids.into_iter().filter_map(role).collect()
+}

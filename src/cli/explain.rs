@@ -1,0 +1,124 @@
+//! `tabletop explain`: what a recording shows.
+
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+use clap::Args;
+use serde_json::json;
+use tabletop::{
+    scene::{IdAllocator, assemble},
+    task::{DetourKind, Requirements, Role, Step, Task},
+};
+use tabletop_core::TICKS_PER_SECOND;
+
+use super::{Failure, Output, run::read_faultless_task, terminal::show_warnings};
+
+#[derive(Args)]
+pub(super) struct ExplainArgs {
+    /// The recording's folder
+    #[arg(value_name = "DIR")]
+    recording: PathBuf,
+    /// Print all that is known of the task as JSON
+    #[arg(long)]
+    json: bool,
+    /// Say which objects of this task file take the roles; exit code 1 if none fit
+    #[arg(long, value_name = "FILE")]
+    setup: Option<PathBuf>,
+}
+
+/// Says what a recording shows.
+pub(super) fn explain(args: &ExplainArgs) -> Result<ExitCode, Failure> {
+    show_warnings();
+    let (task, requirements) = read(&args.recording)?;
+    let binding = match &args.setup {
+        Some(setup) => {
+            let scene = read_faultless_task(setup).map_err(Failure::input)?;
+            let objects = assemble(&scene, &mut IdAllocator::default()).objects;
+            let binding = task.bind(&requirements, &objects);
+            Some(
+                binding
+                    .map_err(|unbound| Failure::run(format!("{}: {unbound}", setup.display())))?,
+            )
+        }
+        None => None,
+    };
+    if args.json {
+        let mut json = json!({ "task": task, "requirements": requirements.roles });
+        if let Some(binding) = binding {
+            json["binding"] = json!(binding);
+        }
+        return print(&format!("{json:#}\n"));
+    }
+    let mut lines: Vec<_> = task.steps.iter().map(numbered).collect();
+    if task.steps.is_empty() {
+        lines.push("Nothing is moved for good.".into());
+    }
+    lines.extend(task.detours.iter().map(|detour| {
+        let noun = role_noun(&task, &detour.object);
+        let what = match detour.kind {
+            DetourKind::InPlace => "was held in its place",
+            DetourKind::AwayAndBack => "was moved away and back",
+            DetourKind::PutDown => "was put down on the way",
+            DetourKind::HandedOver => "went from hand to hand",
+        };
+        let seconds = |tick: u64| tick as f64 / f64::from(TICKS_PER_SECOND);
+        let [from, to] = [detour.grasp.0, detour.release.0].map(seconds);
+        format!("Does not matter: {noun} {what} ({from:.2} to {to:.2} s).")
+    }));
+    if let Some(binding) = binding {
+        let taken = |role: &Role| Some(format!("{} is {}.", role.noun, binding.object(&role.id)?));
+        lines.extend(
+            task.roles
+                .iter()
+                .filter_map(taken)
+                .map(|line| capital(&line)),
+        );
+    }
+    print(&(lines.join("\n") + "\n"))
+}
+
+/// The task of a recording, with what is required in its sentences.
+pub(super) fn read(recording: &Path) -> Result<(Task, Requirements), Failure> {
+    let mut task = Task::read(recording).map_err(Failure::input)?;
+    let requirements = Requirements::read(recording).map_err(Failure::input)?;
+    task.phrase(&requirements);
+    Ok((task, requirements))
+}
+
+/// A step with its number, and what must come before it if that is not just the step before.
+fn numbered(step: &Step) -> String {
+    let Step {
+        number,
+        sentence,
+        after,
+        ..
+    } = step;
+    let order = match after[..] {
+        [] if *number > 1 => " (at any time)".to_owned(),
+        [] => String::new(),
+        [only] if only + 1 == *number => String::new(),
+        _ => {
+            let after: Vec<_> = after.iter().map(usize::to_string).collect();
+            format!(" (after {})", after.join(" and "))
+        }
+    };
+    format!("{number}. {sentence}{order}")
+}
+
+fn role_noun(task: &Task, id: &str) -> String {
+    task.role(id)
+        .map_or_else(|| id.to_owned(), |role| role.noun.clone())
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|letter| letter.to_ascii_uppercase());
+    first.into_iter().chain(letters).collect()
+}
+
+pub(super) fn print(text: &str) -> Result<ExitCode, Failure> {
+    Output::Stdout.write(text.as_bytes())?;
+    Ok(ExitCode::SUCCESS)
+}
