@@ -6,10 +6,9 @@ use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tabletop_core::{Robot, RobotMode, SimFact, SimSystems, TickSystems, is_shipped};
-use tabletop_kinematics::ModelError;
 use tabletop_physics::PhysicsSettings;
 use tabletop_recorder::SessionSettings;
-use tabletop_robot::{Description, RobotPlugin, Source};
+use tabletop_robot::{Description, DescriptionError, RobotPlugin, Source};
 
 /// Names of the settings in a session log.
 pub(crate) const PHYSICS: &str = "physics";
@@ -79,7 +78,7 @@ pub(crate) struct RobotSettings {
 
 impl RobotSettings {
     /// The plugin of this robot.
-    pub fn plugin(self) -> Result<RobotPlugin, ModelError> {
+    pub fn plugin(self) -> Result<RobotPlugin, DescriptionError> {
         Ok(RobotPlugin {
             description: self.description.map(Description::read).transpose()?,
             mode: self.mode,
@@ -171,6 +170,7 @@ mod tests {
         other.robot.description = Some(Source {
             path: "robot.urdf".into(),
             urdf: "<robot/>".repeat(100),
+            layout: None,
         });
         assert_eq!(
             difference(&other).unwrap(),

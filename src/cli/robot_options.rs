@@ -50,6 +50,7 @@ fn describe(path: &Path) -> Result<Description, Failure> {
     let source = Source {
         path: true_path(path),
         urdf,
+        layout: None,
     };
     Description::read(source).map_err(|error| at(&error))
 }

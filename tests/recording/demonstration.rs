@@ -115,7 +115,7 @@ pub fn bits(app: &App) -> Vec<(String, Vec<u32>)> {
         let bits = joint.position.to_bits();
         [bits as u32, (bits >> 32) as u32]
     });
-    let held = robot.arms.iter().map(|arm| arm.holds.len() as u32);
+    let held = robot.limbs.iter().map(|limb| limb.holds.len() as u32);
     let robot = [u32::from(robot.is_shown)].into_iter().chain(joints);
     std::iter::once(("tick".into(), vec![tick]))
         .chain([("robot".into(), robot.chain(held).collect())])

@@ -78,9 +78,9 @@ pub use preset::Preset;
 pub use random::Random;
 pub use recording::{History, OpenRecording, Recording, Replaying};
 pub use robot::{
-    Arm, ArmState, BaseLayout, CameraLayout, Drive, Face, FingerLook, Gripped, GripperKind,
-    GripperLayout, JOINTS_PER_ARM, JointId, JointLayout, JointName, JointRole, JointState,
-    LayoutError, LayoutFile, LimbId, LimbLayout, LimbName, LinkFrame, Markers, Robot, RobotContact,
+    Arm, BaseLayout, CameraLayout, Drive, Face, FingerLook, Gripped, GripperKind, GripperLayout,
+    JOINTS_PER_ARM, JointId, JointLayout, JointName, JointRole, JointState, LayoutError,
+    LayoutFile, LimbId, LimbLayout, LimbName, LimbState, LinkFrame, Markers, Robot, RobotContact,
     RobotJoint, RobotLayout, RobotMode, WIDEST_GRIP, robot_base,
 };
 pub use rollback::Rollback;

@@ -218,6 +218,18 @@ impl RobotJoint {
     }
 }
 
+impl From<RobotJoint> for JointId {
+    fn from(joint: RobotJoint) -> Self {
+        Self(joint as u16)
+    }
+}
+
+impl From<Arm> for LimbId {
+    fn from(arm: Arm) -> Self {
+        Self(arm as u8)
+    }
+}
+
 impl fmt::Display for RobotJoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
@@ -294,13 +306,13 @@ pub struct JointState {
     pub torque: f64,
 }
 
-/// What is known of an arm.
+/// What is known of a limb.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ArmState {
+pub struct LimbState {
     /// The end effector: a point midway between the fingers, its x along the opening, its -z where the fingers point.
     pub end_effector: Pose,
-    /// Origins of the joints S1, E1 and W1, in the table's frame.
-    pub joint_origins: [Vec3; 3],
+    /// Origins of the joints that are [tracked](LimbLayout::trackers), in the table's frame.
+    pub joint_origins: Vec<Vec3>,
     /// The objects that the gripper holds, in the order in which it took them.
     pub holds: Vec<Entity>,
     /// What the arm is stopped by; `None` if nothing is in its way.
@@ -333,39 +345,46 @@ pub struct Robot {
     pub mode: RobotMode,
     /// What its screen shows.
     pub face: Face,
-    /// Its joints, by [`RobotJoint::index`].
-    pub joints: [JointState; 17],
-    /// Its arms, left and right.
-    pub arms: [ArmState; 2],
+    /// Its joints, by [`JointId`].
+    pub joints: Vec<JointState>,
+    /// Its limbs, by [`LimbId`].
+    pub limbs: Vec<LimbState>,
     /// What its bodies touch: body by body, of each the table first, then the objects in the order of their creation.
     pub contacts: Vec<RobotContact>,
 }
 
 impl Default for Robot {
+    /// [Baxter](RobotLayout::baxter).
     fn default() -> Self {
-        Self {
-            is_shown: false,
-            mode: RobotMode::default(),
-            face: Face::default(),
-            joints: RobotJoint::ALL.map(|joint| JointState {
-                position: joint.home(),
-                ..default()
-            }),
-            arms: default(),
-            contacts: Vec::new(),
-        }
+        Self::at_home(RobotLayout::baxter())
     }
 }
 
 impl Robot {
+    /// A hidden robot with its joints where they are when the program starts.
+    pub fn at_home(layout: &RobotLayout) -> Self {
+        let joints = layout.joints.iter().map(|joint| JointState {
+            position: joint.home,
+            ..default()
+        });
+        Self {
+            is_shown: false,
+            mode: RobotMode::default(),
+            face: Face::default(),
+            joints: joints.collect(),
+            limbs: vec![LimbState::default(); layout.limbs.len()],
+            contacts: Vec::new(),
+        }
+    }
+
     /// What is known of a joint.
-    pub const fn joint(&self, joint: RobotJoint) -> &JointState {
+    pub fn joint(&self, joint: RobotJoint) -> &JointState {
         &self.joints[joint.index()]
     }
 
     /// What is known of an arm.
-    pub const fn arm(&self, arm: Arm) -> &ArmState {
-        &self.arms[arm as usize]
+    pub fn arm(&self, arm: Arm) -> &LimbState {
+        &self.limbs[arm as usize]
     }
 
     /// Angles of the joints of an arm, in rad.
@@ -373,8 +392,21 @@ impl Robot {
         RobotJoint::of_arm(arm).map(|joint| self.joint(joint).position)
     }
 
+    /// What is known of a limb.
+    pub fn limb(&self, limb: LimbId) -> &LimbState {
+        &self.limbs[limb.index()]
+    }
+
+    /// Positions of these joints, in rad.
+    pub fn positions_of(&self, joints: &[JointId]) -> Vec<f64> {
+        let joints = joints.iter();
+        joints
+            .map(|joint| self.joints[joint.index()].position)
+            .collect()
+    }
+
     /// Puts the joints to these positions, reached in a tick.
-    pub fn move_to(&mut self, positions: &[f64; 17]) {
+    pub fn move_to(&mut self, positions: &[f64]) {
         for (joint, position) in self.joints.iter_mut().zip(positions) {
             joint.velocity = (position - joint.position) / f64::from(TICK_SECONDS);
             joint.position = *position;

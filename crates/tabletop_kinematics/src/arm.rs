@@ -1,11 +1,11 @@
-//! An arm: the seven turning joints between two links.
+//! An arm: the turning joints between two links.
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use crate::{JointId, JointType, JointValues, LinkId, ModelError, RobotModel};
 
-/// Joints of an arm.
-pub const ARM_JOINTS: usize = 7;
+/// Most joints of an arm.
+pub const MOST_ARM_JOINTS: usize = 16;
 
 /// How a body moves: the velocity of one of its points and its angular velocity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,14 +16,14 @@ pub struct DTwist {
     pub angular: DVec3,
 }
 
-/// The seven turning joints from a base link to a tip link, compiled for speed: what is fixed between them is merged.
+/// The turning joints from a base link to a tip link, compiled for speed: what is fixed between them is merged.
 ///
 /// Everything is in the base link's frame, in m and rad; angles are in the order from the base to the tip.
 #[derive(Clone, Debug)]
 pub struct ArmChain {
-    joints: [JointId; ARM_JOINTS],
-    limits: [[f64; 2]; ARM_JOINTS],
-    segments: [Segment; ARM_JOINTS],
+    joints: Vec<JointId>,
+    limits: Vec<[f64; 2]>,
+    segments: Vec<Segment>,
     /// From the tip link's frame to that of the last joint's child.
     end: DAffine3,
 }
@@ -50,7 +50,7 @@ impl ArmChain {
     ///
     /// # Errors
     ///
-    /// There are no such links, or between them are not exactly seven turning joints that follow no other one.
+    /// There are no such links, or between them are not one to sixteen turning joints that follow no other one.
     pub fn between(model: &RobotModel, base: &str, tip: &str) -> Result<Self, ModelError> {
         Self::new(model, model.find_link(base)?, model.find_link(tip)?)
     }
@@ -59,7 +59,7 @@ impl ArmChain {
     ///
     /// # Errors
     ///
-    /// Between them are not exactly seven turning joints that follow no other one.
+    /// Between them are not one to sixteen turning joints that follow no other one.
     pub fn new(model: &RobotModel, base: LinkId, tip: LinkId) -> Result<Self, ModelError> {
         let no_arm = |reason: String| ModelError::NoArm {
             base: model.link(base).name.clone(),
@@ -96,54 +96,65 @@ impl ArmChain {
                 axis: joint.axis,
             });
         }
-        let count = joints.len();
-        match (joints.try_into(), segments.try_into()) {
-            (Ok(joints), Ok(segments)) => Ok(Self {
-                limits: <[JointId; ARM_JOINTS]>::map(joints, |joint| model.joint(joint).limits),
-                joints,
-                segments,
-                end: rigid,
-            }),
-            _ => Err(no_arm(format!("there are {count} joints instead of seven"))),
+        if joints.is_empty() || joints.len() > MOST_ARM_JOINTS {
+            let count = joints.len();
+            return Err(no_arm(format!(
+                "there are {count} joints instead of 1 to {MOST_ARM_JOINTS}"
+            )));
         }
+        Ok(Self {
+            limits: joints
+                .iter()
+                .map(|&joint| model.joint(joint).limits)
+                .collect(),
+            joints,
+            segments,
+            end: rigid,
+        })
     }
 
-    /// The same arm with other limits: least and largest angle of each joint, in rad.
+    /// The same arm with other limits: least and largest angle of each joint, in rad. Joints for which there are none keep theirs.
     #[must_use]
-    pub const fn with_limits(mut self, limits: [[f64; 2]; ARM_JOINTS]) -> Self {
-        self.limits = limits;
+    pub fn with_limits(mut self, limits: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        for (own, limits) in self.limits.iter_mut().zip(limits) {
+            *own = limits;
+        }
         self
     }
 
     /// The joints.
-    pub const fn joints(&self) -> &[JointId; ARM_JOINTS] {
+    pub fn joints(&self) -> &[JointId] {
         &self.joints
     }
 
     /// Least and largest angle of each joint, in rad.
-    pub const fn limits(&self) -> &[[f64; 2]; ARM_JOINTS] {
+    pub fn limits(&self) -> &[[f64; 2]] {
         &self.limits
     }
 
     /// The angles of the arm in a configuration of the whole model.
-    pub fn angles(&self, configuration: &JointValues) -> [f64; ARM_JOINTS] {
-        self.joints.map(|joint| configuration[joint])
+    pub fn angles(&self, configuration: &JointValues) -> Vec<f64> {
+        let joints = self.joints.iter();
+        joints.map(|&joint| configuration[joint]).collect()
     }
 
     /// Writes the angles of the arm into a configuration of the whole model.
-    pub fn set_angles(&self, angles: &[f64; ARM_JOINTS], configuration: &mut JointValues) {
+    pub fn set_angles(&self, angles: &[f64], configuration: &mut JointValues) {
         for (&joint, &angle) in self.joints.iter().zip(angles) {
             configuration[joint] = angle;
         }
     }
 
     /// The angles, moved within the limits.
-    pub fn clamp(&self, angles: &[f64; ARM_JOINTS]) -> [f64; ARM_JOINTS] {
-        std::array::from_fn(|i| angles[i].max(self.limits[i][0]).min(self.limits[i][1]))
+    pub fn clamp(&self, angles: &[f64]) -> Vec<f64> {
+        let angles = angles.iter().zip(&self.limits);
+        angles
+            .map(|(angle, [least, largest])| angle.max(*least).min(*largest))
+            .collect()
     }
 
     /// Where the tip is: from its frame to the base's.
-    pub fn tip(&self, angles: &[f64; ARM_JOINTS]) -> DAffine3 {
+    pub fn tip(&self, angles: &[f64]) -> DAffine3 {
         let mut frame = DAffine3::IDENTITY;
         for (segment, &angle) in self.segments.iter().zip(angles) {
             frame = segment.turned(frame, angle);
@@ -152,26 +163,25 @@ impl ArmChain {
     }
 
     /// How the tip moves per rad of each joint (the geometric Jacobian), in the base's frame.
-    pub fn jacobian(&self, angles: &[f64; ARM_JOINTS]) -> [DTwist; ARM_JOINTS] {
+    pub fn jacobian(&self, angles: &[f64]) -> Vec<DTwist> {
         self.tip_and_jacobian(angles).1
     }
 
-    pub(crate) fn tip_and_jacobian(
-        &self,
-        angles: &[f64; ARM_JOINTS],
-    ) -> (DAffine3, [DTwist; ARM_JOINTS]) {
+    pub(crate) fn tip_and_jacobian(&self, angles: &[f64]) -> (DAffine3, Vec<DTwist>) {
         let mut frame = DAffine3::IDENTITY;
-        let axes = std::array::from_fn::<_, ARM_JOINTS, _>(|i| {
-            let segment = &self.segments[i];
-            frame = segment.turned(frame, angles[i]);
-            (frame.translation, frame.matrix3 * segment.axis)
-        });
+        let segments = self.segments.iter().zip(angles);
+        let axes: Vec<_> = segments
+            .map(|(segment, &angle)| {
+                frame = segment.turned(frame, angle);
+                (frame.translation, frame.matrix3 * segment.axis)
+            })
+            .collect();
         let tip = frame * self.end;
-        let jacobian = axes.map(|(origin, axis)| DTwist {
+        let jacobian = axes.into_iter().map(|(origin, axis)| DTwist {
             linear: axis.cross(tip.translation - origin),
             angular: axis,
         });
-        (tip, jacobian)
+        (tip, jacobian.collect())
     }
 }
 

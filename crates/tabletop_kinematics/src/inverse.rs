@@ -14,7 +14,7 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use thiserror::Error;
 
-use crate::{ARM_JOINTS, ArmChain, DTwist};
+use crate::{ArmChain, DTwist, MOST_ARM_JOINTS};
 
 /// Where the tip of an arm shall be, in the frame of the arm's base, in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +35,7 @@ pub struct Miss {
 }
 
 /// No angles within the limits were found that bring the tip to the target.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[derive(Clone, Debug, Error, PartialEq)]
 #[error(
     "unreachable: the nearest posture found misses it by {:.3} mm and {:.3}°",
     miss.position * 1e3,
@@ -43,7 +43,7 @@ pub struct Miss {
 )]
 pub struct Unreachable {
     /// The angles that come nearest, in rad, a rad counting as much as 0.3 m.
-    pub best: [f64; ARM_JOINTS],
+    pub best: Vec<f64>,
     /// By how much they miss the target.
     pub miss: Miss,
 }
@@ -79,15 +79,11 @@ impl ArmChain {
     /// # Errors
     ///
     /// None were found: the target is out of reach, or not a number.
-    pub fn solve(
-        &self,
-        target: &Target,
-        seed: &[f64; ARM_JOINTS],
-    ) -> Result<[f64; ARM_JOINTS], Unreachable> {
+    pub fn solve(&self, target: &Target, seed: &[f64]) -> Result<Vec<f64>, Unreachable> {
         let mut nearest = (f64::INFINITY, self.clamp(seed));
         for search in 0..STARTS {
             let (cost, angles) = match search {
-                0 => self.search(target, nearest.1, STEPS),
+                0 => self.search(target, nearest.1.clone(), STEPS),
                 _ => self.search(target, self.posture(search), PATIENCE),
             };
             if self.miss(target, &angles).is_within(&TOLERANCE) {
@@ -98,13 +94,13 @@ impl ArmChain {
             }
         }
         Err(Unreachable {
-            best: nearest.1,
             miss: self.miss(target, &nearest.1),
+            best: nearest.1,
         })
     }
 
     /// By how much the tip misses the target with these angles.
-    pub fn miss(&self, target: &Target, angles: &[f64; ARM_JOINTS]) -> Miss {
+    pub fn miss(&self, target: &Target, angles: &[f64]) -> Miss {
         let error = target.error(&self.tip(angles));
         Miss {
             position: error.linear.length(),
@@ -114,14 +110,9 @@ impl ArmChain {
 
     /// Goes downhill from a posture: the nearest one on the way, and what it costs in m². Ends when it has not come nearer
     /// by a tenth in as many steps as its patience is.
-    fn search(
-        &self,
-        target: &Target,
-        start: [f64; ARM_JOINTS],
-        patience: usize,
-    ) -> (f64, [f64; ARM_JOINTS]) {
-        let mut angles = start;
-        let mut nearest = (f64::INFINITY, start);
+    fn search(&self, target: &Target, start: Vec<f64>, patience: usize) -> (f64, Vec<f64>) {
+        let mut angles = start.clone();
+        let mut nearest = (f64::INFINITY, start.clone());
         let mut steps_left = patience;
         for step in 0..STEPS {
             let (tip, jacobian) = self.tip_and_jacobian(&angles);
@@ -133,7 +124,7 @@ impl ArmChain {
                 false => steps_left - 1,
             };
             if cost < nearest.0 {
-                nearest = (cost, angles);
+                nearest = (cost, angles.clone());
             }
             let miss = Miss {
                 position: error.linear.length(),
@@ -143,32 +134,32 @@ impl ArmChain {
                 break;
             }
             let pull = match step < PULLED_STEPS {
-                true => std::array::from_fn(|i| PULL * (start[i] - angles[i])),
-                false => [0.0; ARM_JOINTS],
+                true => (0..angles.len())
+                    .map(|i| PULL * (start[i] - angles[i]))
+                    .collect(),
+                false => vec![0.0; angles.len()],
             };
             let turns_count = matches!(target, Target::Pose(_));
             let system = System::new(&error, &jacobian, cost, turns_count);
             let motion = self.motion(&system, &angles, pull);
             let longest = motion.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
             let part = (LONGEST_STEP / longest).min(1.0);
-            angles = self.clamp(&std::array::from_fn(|i| angles[i] + part * motion[i]));
+            for (angle, motion) in angles.iter_mut().zip(motion) {
+                *angle += part * motion;
+            }
+            angles = self.clamp(&angles);
         }
         nearest
     }
 
     /// A step that no joint takes beyond its limits.
-    fn motion(
-        &self,
-        system: &System,
-        angles: &[f64; ARM_JOINTS],
-        pull: [f64; ARM_JOINTS],
-    ) -> [f64; ARM_JOINTS] {
+    fn motion(&self, system: &System, angles: &[f64], pull: Vec<f64>) -> Vec<f64> {
         let mut wish = pull;
-        let mut is_free = [true; ARM_JOINTS];
+        let mut is_free = vec![true; angles.len()];
         loop {
             let motion = system.solve(&wish, &is_free);
             let mut is_within = true;
-            for i in 0..ARM_JOINTS {
+            for i in 0..angles.len() {
                 let end = angles[i] + motion[i];
                 let [least, largest] = self.limits()[i];
                 if is_free[i] && !(least..=largest).contains(&end) {
@@ -184,16 +175,20 @@ impl ArmChain {
     }
 
     /// The postures that searches begin from: the middle of the limits, then all over them (a Halton sequence).
-    fn posture(&self, index: usize) -> [f64; ARM_JOINTS] {
-        const PRIMES: [usize; ARM_JOINTS] = [2, 3, 5, 7, 11, 13, 17];
-        std::array::from_fn(|i| {
-            let [least, largest] = self.limits()[i].map(|limit| limit.clamp(-3.2, 3.2));
-            let share = match index {
-                1 => 0.5,
-                _ => halton(index, PRIMES[i]),
-            };
-            least + share * (largest - least)
-        })
+    fn posture(&self, index: usize) -> Vec<f64> {
+        const PRIMES: [usize; MOST_ARM_JOINTS] =
+            [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
+        let limits = self.limits().iter().zip(PRIMES);
+        limits
+            .map(|(limits, prime)| {
+                let [least, largest] = limits.map(|limit| limit.clamp(-3.2, 3.2));
+                let share = match index {
+                    1 => 0.5,
+                    _ => halton(index, prime),
+                };
+                least + share * (largest - least)
+            })
+            .collect()
     }
 }
 
@@ -251,20 +246,20 @@ const ROWS: usize = 6;
 /// What a step has to do: the linear model of the arm, weighted.
 struct System {
     /// By joint.
-    columns: [[f64; ROWS]; ARM_JOINTS],
+    columns: Vec<[f64; ROWS]>,
     error: [f64; ROWS],
     damping: f64,
 }
 
 impl System {
-    fn new(error: &DTwist, jacobian: &[DTwist; ARM_JOINTS], cost: f64, turns_count: bool) -> Self {
+    fn new(error: &DTwist, jacobian: &[DTwist], cost: f64, turns_count: bool) -> Self {
         let weight = if turns_count { METERS_PER_RAD } else { 0.0 };
         let row = |twist: &DTwist| {
             let (v, w) = (twist.linear, twist.angular * weight);
             [v.x, v.y, v.z, w.x, w.y, w.z]
         };
         Self {
-            columns: std::array::from_fn(|i| row(&jacobian[i])),
+            columns: jacobian.iter().map(row).collect(),
             error: row(error),
             damping: DAMPING * cost + LEAST_DAMPING,
         }
@@ -272,7 +267,7 @@ impl System {
 
     /// The motion of the joints: those that are not free do as they wish, the others what serves the error, and as far as
     /// that leaves it open, what they wish.
-    fn solve(&self, wish: &[f64; ARM_JOINTS], is_free: &[bool; ARM_JOINTS]) -> [f64; ARM_JOINTS] {
+    fn solve(&self, wish: &[f64], is_free: &[bool]) -> Vec<f64> {
         let mut matrix = [[0.0; ROWS]; ROWS];
         let mut rest = self.error;
         for (j, column) in self.columns.iter().enumerate() {
@@ -289,10 +284,13 @@ impl System {
             row[i] += self.damping;
         }
         let force = solve_symmetric(matrix, rest);
-        std::array::from_fn(|j| {
-            let served: f64 = self.columns[j].iter().zip(&force).map(|(a, b)| a * b).sum();
-            wish[j] + if is_free[j] { served } else { 0.0 }
-        })
+        let columns = self.columns.iter().enumerate();
+        columns
+            .map(|(j, column)| {
+                let served: f64 = column.iter().zip(&force).map(|(a, b)| a * b).sum();
+                wish[j] + if is_free[j] { served } else { 0.0 }
+            })
+            .collect()
     }
 }
 

@@ -6,7 +6,7 @@
 //!
 //! - [`RobotModel`]: links and joints, read from URDF and checked; [`RobotModel::frames`] and [`RobotModel::jacobian`] are its forward
 //!   kinematics.
-//! - [`ArmChain`]: the seven joints from a base to a tip; [`ArmChain::solve`] is its inverse kinematics.
+//! - [`ArmChain`]: the joints from a base to a tip; [`ArmChain::solve`] is its inverse kinematics.
 //! - [`RobotModel::gravity_torques`], [`RobotModel::inverse_dynamics`], [`RobotModel::inertia_matrix`]: its dynamics.
 //! - [`baxter()`] and [`baxter_smile()`]: the robot of the report, embedded.
 //!
@@ -38,7 +38,7 @@ mod outline;
 mod urdf;
 mod values;
 
-pub use arm::{ARM_JOINTS, ArmChain, DTwist};
+pub use arm::{ArmChain, DTwist, MOST_ARM_JOINTS};
 pub use baxter::{baxter, baxter_smile};
 pub use dynamics::{InertiaMatrix, Load};
 pub use error::ModelError;

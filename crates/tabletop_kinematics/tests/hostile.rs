@@ -228,7 +228,7 @@ fn a_long_chain_is_read() {
     let error = ArmChain::between(&robot, "0", "5000").unwrap_err();
     assert_eq!(
         error.to_string(),
-        "no arm leads from link 0 to link 5000: there are 5000 joints instead of seven"
+        "no arm leads from link 0 to link 5000: there are 5000 joints instead of 1 to 16"
     );
 }
 
@@ -244,8 +244,8 @@ fn arms_that_are_none_are_refused() {
         ),
         (
             "torso",
-            "head",
-            "no arm leads from link torso to link head: there are 1 joints instead of seven",
+            "torso",
+            "no arm leads from link torso to link torso: there are 0 joints instead of 1 to 16",
         ),
         (
             "torso",

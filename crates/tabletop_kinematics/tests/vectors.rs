@@ -50,7 +50,7 @@ fn every_vector_of_the_file_is_met() {
             let tip = format!("{side}_end_effector");
             let arm = ArmChain::between(&robot, "base", &tip).unwrap();
             let angles = numbers(&vector[format!("q_{side}")]);
-            arm.set_angles(&angles.try_into().unwrap(), &mut configuration);
+            arm.set_angles(&angles, &mut configuration);
         }
         let pan = robot.find_joint("head_pan").unwrap();
         configuration[pan] = vector["head_pan"].as_f64().unwrap();

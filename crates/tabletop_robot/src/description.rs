@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
+use tabletop_core::{LayoutError, LayoutFile, RobotLayout};
 use tabletop_kinematics::{ModelError, RobotModel};
+use thiserror::Error;
 
 use crate::articulation::tree::Articulation;
 
@@ -13,6 +15,8 @@ use crate::articulation::tree::Articulation;
 pub struct Description {
     /// Its model.
     pub model: RobotModel,
+    /// Its limbs and joints.
+    pub layout: RobotLayout,
     /// Where it was read from; `None` for the robot that comes with the program.
     pub source: Option<Source>,
 }
@@ -20,23 +24,45 @@ pub struct Description {
 /// Where a robot's description was read from.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Source {
-    /// The file, beside which its meshes are.
+    /// The URDF, beside which its meshes are.
     pub path: PathBuf,
     /// What it says.
     pub urdf: String,
+    /// What the `robot.ron` says. Without it, limbs and joints are those of Baxter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub layout: Option<String>,
+}
+
+/// Why a robot cannot be used.
+#[derive(Debug, Error)]
+pub enum DescriptionError {
+    /// Its URDF cannot, or lacks what the `robot.ron` names.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// Its `robot.ron` cannot.
+    #[error("robot.ron: {0}")]
+    Layout(#[from] LayoutError),
 }
 
 impl Description {
-    /// The robot that a file describes.
+    /// The robot that files describe.
     ///
     /// # Errors
     ///
-    /// The text is no URDF that can be used, or lacks joints or links that the robot's arms need; the error names them.
-    pub fn read(source: Source) -> Result<Self, ModelError> {
+    /// The texts cannot be used, or the URDF lacks joints or links that the `robot.ron` names; the error names them.
+    pub fn read(source: Source) -> Result<Self, DescriptionError> {
         let model = RobotModel::from_urdf(&source.urdf)?;
-        Articulation::new(model.clone())?;
+        let layout = match &source.layout {
+            Some(text) => LayoutFile::read(text)?.layout(|joint| {
+                let joint = model.find_joint(joint).ok()?;
+                Some(model.joint(joint).limits)
+            })?,
+            None => RobotLayout::default(),
+        };
+        Articulation::new(model.clone(), layout.clone())?;
         Ok(Self {
             model,
+            layout,
             source: Some(source),
         })
     }
@@ -51,9 +77,10 @@ impl Description {
     /// # Errors
     ///
     /// None that a test of the program would not find.
-    pub fn baxter() -> Result<Self, ModelError> {
+    pub fn baxter() -> Result<Self, DescriptionError> {
         Ok(Self {
             model: tabletop_kinematics::baxter()?,
+            layout: RobotLayout::default(),
             source: None,
         })
     }

@@ -36,6 +36,6 @@ mod plugin;
 
 pub use articulation::link_entities::RobotBody;
 pub use command::joint_targets::MANUAL_SPEED;
-pub use description::{Description, Source};
+pub use description::{Description, DescriptionError, Source};
 pub use gripper::closing::STEEPEST_GRIP;
 pub use plugin::RobotPlugin;

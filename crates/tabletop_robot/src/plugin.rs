@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    ActuateSystems, CommandSystems, Figure, Gripped, HeadCamera, Robot, RobotJoint, RobotMode,
+    ActuateSystems, CommandSystems, Figure, Gripped, HeadCamera, Robot, RobotLayout, RobotMode,
     SimSystems,
 };
 use tabletop_history::{RollbackApp, is_rolling_back};
@@ -45,23 +45,25 @@ impl Plugin for RobotPlugin {
                 return;
             }
         };
-        let mut articulation = match Articulation::new(description.model.clone()) {
-            Ok(articulation) => articulation,
-            Err(error) => {
-                error!("there is no robot: {error}");
-                return;
-            }
-        };
+        let mut articulation =
+            match Articulation::new(description.model.clone(), description.layout.clone()) {
+                Ok(articulation) => articulation,
+                Err(error) => {
+                    error!("there is no robot: {error}");
+                    return;
+                }
+            };
         for (link, error) in articulation.add_meshes(description.path()) {
             warn!("link {link} is not touched where this mesh would be: {error}");
         }
+        let layout = description.layout.clone();
         app.insert_resource(SelfCollisionMatrix::new(&articulation))
             .insert_resource(articulation)
             .insert_resource(description)
             .init_resource::<LinkFigures>()
-            .init_resource::<JointTargets>()
+            .insert_resource(JointTargets::none(&layout))
             .init_resource::<LinkEntities>()
-            .init_resource::<Grips>()
+            .insert_resource(Grips::none(&layout))
             .init_resource::<Motors>()
             .init_resource::<HeadCamera>()
             .rollback_component::<Gripped>()
@@ -71,7 +73,12 @@ impl Plugin for RobotPlugin {
             .rollback_resource::<LinkEntities>()
             .rollback_resource::<Grips>()
             .rollback_resource::<Motors>();
-        app.world_mut().resource_mut::<Robot>().mode = self.mode;
+        let world = app.world_mut();
+        world.insert_resource(Robot {
+            mode: self.mode,
+            ..Robot::at_home(&layout)
+        });
+        world.insert_resource(layout);
         app.add_systems(Startup, publish)
             .add_systems(
                 FixedUpdate,
@@ -97,8 +104,11 @@ impl Plugin for RobotPlugin {
 }
 
 /// Lets the head camera turn with the neck.
-fn turn_camera(robot: Res<Robot>, mut camera: ResMut<HeadCamera>) {
-    let pan = robot.joint(RobotJoint::HeadPan).position as f32;
+fn turn_camera(layout: Res<RobotLayout>, robot: Res<Robot>, mut camera: ResMut<HeadCamera>) {
+    let Some(neck) = layout.neck else {
+        return;
+    };
+    let pan = robot.joints[neck.index()].position as f32;
     if camera.pan != pan {
         camera.pan = pan;
     }

@@ -303,13 +303,13 @@ fn undo_takes_the_motors_back_too() {
     stage.app.world_mut().resource_mut::<Recording>().0 = true;
     drive(&mut stage, &[(RobotJoint::RightE1, Drive::Toward(1.0))]);
     stage.app.step(30);
-    let joints = stage.robot().joints;
+    let joints = stage.robot().joints.clone();
     stage.tell(HandCommand::Grasp {
         hand: Hand::Left,
         object: "thing".into(),
     });
     stage.app.step(30);
-    let then = stage.robot().joints;
+    let then = stage.robot().joints.clone();
     stage.tell(HistoryCommand::Undo);
     stage.app.step(30);
     assert_ne!(joints, then);

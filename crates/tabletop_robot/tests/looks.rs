@@ -59,6 +59,7 @@ fn a_link_is_touched_by_the_hulls_of_its_meshes() {
         let source = Source {
             path: folder.join("my.urdf"),
             urdf: urdf.replacen(box_of_torso, &mesh, 1),
+            layout: None,
         };
         let mut stage = Stage::with(RobotPlugin {
             description: Some(Description::read(source).unwrap()),
@@ -116,6 +117,7 @@ fn what_has_no_mesh_is_shown_by_what_it_is_touched_by() {
     let source = Source {
         path: "my.urdf".into(),
         urdf,
+        layout: None,
     };
     let robot = RobotPlugin {
         description: Some(Description::read(source).unwrap()),

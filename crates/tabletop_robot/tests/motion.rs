@@ -243,8 +243,8 @@ fn undo_takes_the_robot_back_too() {
     stage.app.step(1);
     assert_eq!(stage.robot().joints, before.joints);
     assert_eq!(
-        stage.robot().arms[1].end_effector,
-        before.arms[1].end_effector
+        stage.robot().limbs[1].end_effector,
+        before.limbs[1].end_effector
     );
 }
 

@@ -96,8 +96,8 @@ impl Senses<'_, '_> {
         let mut trackers = Vec::new();
         for (arm, prefix) in Arm::BOTH.into_iter().zip(["l", "r"]) {
             let state = self.robot.arm(arm);
-            for (name, origin) in ["S1", "E1", "W1"].into_iter().zip(state.joint_origins) {
-                trackers.push((format!("{prefix}-{name}"), point(origin)));
+            for (name, origin) in ["S1", "E1", "W1"].into_iter().zip(&state.joint_origins) {
+                trackers.push((format!("{prefix}-{name}"), point(*origin)));
             }
             for (finger, side) in [("l", -1.0), ("r", 1.0)] {
                 for (end, along) in [("n", 1.0), ("f", -1.0)] {

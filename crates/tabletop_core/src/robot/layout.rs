@@ -279,12 +279,12 @@ impl RobotLayout {
     }
 
     /// All joints.
-    pub fn joint_ids(&self) -> impl ExactSizeIterator<Item = JointId> + use<> {
+    pub fn joint_ids(&self) -> impl ExactSizeIterator<Item = JointId> + Clone + use<> {
         (0..self.joints.len() as u16).map(JointId)
     }
 
     /// All limbs.
-    pub fn limb_ids(&self) -> impl ExactSizeIterator<Item = LimbId> + use<> {
+    pub fn limb_ids(&self) -> impl ExactSizeIterator<Item = LimbId> + Clone + use<> {
         (0..self.limbs.len() as u8).map(LimbId)
     }
 

@@ -1,9 +1,6 @@
 //! Where every joint of the robot was at the end of every tick, how fast, and how hard its motor pulled.
 
-use tabletop_core::{JointState, RobotJoint, SimTick};
-
-/// The robot's joints, by [`RobotJoint::index`].
-pub(crate) type Joints = [JointState; RobotJoint::ALL.len()];
+use tabletop_core::{JointState, RobotLayout, SimTick};
 
 /// The names of the columns.
 pub(crate) fn header() -> Vec<String> {
@@ -14,16 +11,24 @@ pub(crate) fn header() -> Vec<String> {
 
 /// A row for each joint that differs in any bit from the tick before: position in rad, or units for a gripper, velocity per
 /// s, torque in N m, with the digits that read back to the same bits.
-pub(crate) fn rows(tick: SimTick, before: Option<&Joints>, now: &Joints) -> Vec<Vec<String>> {
-    RobotJoint::ALL
-        .into_iter()
-        .filter(|joint| {
-            let i = joint.index();
-            before.is_none_or(|before| bits(before[i]) != bits(now[i]))
+pub(crate) fn rows(
+    tick: SimTick,
+    layout: &RobotLayout,
+    before: Option<&[JointState]>,
+    now: &[JointState],
+) -> Vec<Vec<String>> {
+    layout
+        .joints
+        .iter()
+        .zip(now)
+        .enumerate()
+        .filter(|(i, (_, now))| {
+            let before = before.and_then(|before| before.get(*i));
+            before.is_none_or(|before| bits(*before) != bits(**now))
         })
-        .map(|joint| {
-            let numbers = numbers(now[joint.index()]).map(|number| format!("{number:?}"));
-            [tick.0.to_string(), joint.name().to_owned()]
+        .map(|(_, (joint, now))| {
+            let numbers = numbers(*now).map(|number| format!("{number:?}"));
+            [tick.0.to_string(), joint.name.to_string()]
                 .into_iter()
                 .chain(numbers)
                 .collect()
@@ -45,9 +50,13 @@ mod tests {
 
     #[test]
     fn joints_are_told_once_and_then_when_they_change() {
+        let baxter = RobotLayout::baxter();
+        let rows = |tick, before: Option<&[JointState]>, now: &[JointState]| {
+            rows(tick, baxter, before, now)
+        };
         let still = [JointState::default(); 17];
         let mut moved = still;
-        moved[RobotJoint::LeftE1.index()].position = 0.1;
+        moved[3].position = 0.1;
         assert_eq!(rows(SimTick(3), None, &still).len(), 17);
         assert!(rows(SimTick(4), Some(&still), &still).is_empty());
         assert_eq!(

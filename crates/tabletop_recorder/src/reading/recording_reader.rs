@@ -5,7 +5,7 @@ use std::{
     path::Path,
 };
 
-use tabletop_core::{JointState, RobotJoint, SimTick, Timeline, TimelinePicture, TimelineStage};
+use tabletop_core::{JointName, JointState, SimTick, Timeline, TimelinePicture, TimelineStage};
 
 use crate::{
     error::RecorderError,
@@ -201,18 +201,18 @@ impl RecordingReader {
         rows::joints(&self.folder.joints())
     }
 
-    /// How every joint of the robot was at the end of a tick, in the order of [`RobotJoint::ALL`].
+    /// How every joint of the robot was at the end of a tick, in the order of its [layout](tabletop_core::RobotLayout).
     ///
     /// # Errors
     /// As for [`joints`](Self::joints).
-    pub fn joints_at(
-        &self,
-        tick: SimTick,
-    ) -> Result<[JointState; RobotJoint::ALL.len()], RecorderError> {
-        let mut joints = [JointState::default(); RobotJoint::ALL.len()];
+    pub fn joints_at(&self, tick: SimTick) -> Result<Vec<(JointName, JointState)>, RecorderError> {
+        let mut joints: Vec<(JointName, JointState)> = Vec::new();
         let rows = self.joints()?.into_iter();
         for row in rows.take_while(|row| row.tick <= tick) {
-            joints[row.joint.index()] = row.state;
+            match joints.iter_mut().find(|(name, _)| *name == row.joint) {
+                Some((_, state)) => *state = row.state,
+                None => joints.push((row.joint, row.state)),
+            }
         }
         Ok(joints)
     }

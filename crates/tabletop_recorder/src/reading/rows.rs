@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::{JointState, Pose, RobotJoint, SimTick, Twist};
+use tabletop_core::{JointName, JointState, Pose, SimTick, Twist};
 
 use crate::{
     error::RecorderError,
@@ -30,7 +30,7 @@ pub struct JointRow {
     /// The tick.
     pub tick: SimTick,
     /// The joint.
-    pub joint: RobotJoint,
+    pub joint: JointName,
     /// Its position, velocity and torque.
     pub state: JointState,
 }
@@ -54,18 +54,25 @@ pub(super) fn states(path: &Path) -> Result<Vec<StateRow>, RecorderError> {
     })
 }
 
+/// The rows of the first tick name all joints of the robot.
 pub(super) fn joints(path: &Path) -> Result<Vec<JointRow>, RecorderError> {
+    let mut first_tick = None;
+    let mut known = Vec::new();
     rows(path, |fields| {
         let [tick, name, numbers @ ..] = fields else {
             return Err(String::new());
         };
-        let joint = RobotJoint::ALL
-            .into_iter()
-            .find(|joint| joint.name() == *name);
+        let tick = SimTick(number("a tick", tick)?);
+        let joint = JointName::new(name);
+        if *first_tick.get_or_insert(tick) == tick {
+            known.push(joint);
+        } else if !known.contains(&joint) {
+            return Err(format!("expected a joint, found `{name}`"));
+        }
         let [position, velocity, torque] = numbers_of::<f64, 3>(numbers)?;
         Ok(JointRow {
-            tick: SimTick(number("a tick", tick)?),
-            joint: joint.ok_or_else(|| format!("expected a joint, found `{name}`"))?,
+            tick,
+            joint,
             state: JointState {
                 position,
                 velocity,
@@ -78,7 +85,7 @@ pub(super) fn joints(path: &Path) -> Result<Vec<JointRow>, RecorderError> {
 /// The rows of a file below its header.
 fn rows<T>(
     path: &Path,
-    parse: impl Fn(&[&str]) -> Result<T, String>,
+    mut parse: impl FnMut(&[&str]) -> Result<T, String>,
 ) -> Result<Vec<T>, RecorderError> {
     let text = read_whole_lines(path)?;
     let mut reader = csv::ReaderBuilder::new()
@@ -110,6 +117,8 @@ fn numbers_of<T: std::str::FromStr + Copy, const N: usize>(
 
 #[cfg(test)]
 mod tests {
+    use tabletop_core::RobotLayout;
+
     use super::*;
     use crate::files::{joints, states};
 
@@ -150,16 +159,19 @@ mod tests {
     #[test]
     fn joints_read_back_to_the_bit_and_wrong_rows_are_named() {
         let mut all = [JointState::default(); 17];
-        all[RobotJoint::LeftE1.index()].position = 1.0 / 3.0;
+        let before = all;
+        all[3].position = 1.0 / 3.0;
+        let baxter = RobotLayout::baxter();
         let mut lines = vec![joints::header()];
-        lines.extend(joints::rows(SimTick(4), None, &all));
+        lines.extend(joints::rows(SimTick(4), baxter, None, &before));
+        lines.extend(joints::rows(SimTick(5), baxter, Some(&before), &all));
         let path = file("joints", &lines);
         let rows = joints(&path).unwrap();
-        assert_eq!(rows.len(), 17);
+        assert_eq!(rows.len(), 18);
         let row = JointRow {
-            tick: SimTick(4),
-            joint: RobotJoint::LeftE1,
-            state: all[RobotJoint::LeftE1.index()],
+            tick: SimTick(5),
+            joint: JointName::from_static("left_e1"),
+            state: all[3],
         };
         assert!(rows.contains(&row));
         for (field, problem) in [
@@ -167,16 +179,16 @@ mod tests {
             (4, "expected a number, found `x`"),
         ] {
             let mut lines = lines.clone();
-            lines[3][field] = "x".into();
+            lines[18][field] = "x".into();
             let path = file("joints", &lines);
             let error = joints(&path).unwrap_err().to_string();
             assert!(
-                error.starts_with(&format!("{}:4: ", path.display())),
+                error.starts_with(&format!("{}:19: ", path.display())),
                 "{error}"
             );
             assert!(error.contains(problem), "{error}");
         }
-        lines[3].pop();
+        lines[18].pop();
         let error = joints(&file("joints", &lines)).unwrap_err().to_string();
         assert!(error.contains("expected 3 numbers, found 2"), "{error}");
         std::fs::remove_file(path).unwrap();

@@ -5,8 +5,8 @@ use std::path::Path;
 use bevy::prelude::warn;
 use tabletop_core::{
     Act, Actor, ClockCommand, CommandId, CommandSystems, Hand, HandCommand, IssuedCommand,
-    Manipulator, Paused, Pose, SensorImage, SimCommand, SimFact, SimTick, Timeline, TimelineGrip,
-    TimelinePicture, TimelineSegment, TimelineStage,
+    JointState, Manipulator, Paused, Pose, SensorImage, SimCommand, SimFact, SimTick, Timeline,
+    TimelineGrip, TimelinePicture, TimelineSegment, TimelineStage,
 };
 
 use crate::{
@@ -16,7 +16,7 @@ use crate::{
         event::Event,
         folder::Folder,
         frame::FrameClock,
-        joints::{self, Joints},
+        joints,
         picture::{write_depth, write_ids, write_png},
         recording_files::RecordingFiles,
         session::{SessionCommand, SessionHeader, SessionScene, command_line, is_logged},
@@ -40,7 +40,7 @@ pub(crate) struct Episode {
     /// What there was to be seen at the last frame.
     sight: Sight,
     /// The robot's joints at the end of the tick before.
-    last_joints: Option<Joints>,
+    last_joints: Option<Vec<JointState>>,
     /// Whether the simulation is paused where the session log ends.
     is_paused: bool,
     channels: Channels,
@@ -326,7 +326,7 @@ impl Episode {
             files: self.files.lengths(),
             objects: self.objects.clone(),
             sight: self.sight.clone(),
-            last_joints: self.last_joints,
+            last_joints: self.last_joints.clone(),
             is_paused: self.is_paused,
         }
     }
@@ -391,8 +391,13 @@ impl Episode {
         }
         let rows = self.objects.moved_rows(tick, stage);
         self.files.states.append_records(&rows)?;
-        let rows = joints::rows(tick, self.last_joints.as_ref(), stage.joints());
-        self.last_joints = Some(*stage.joints());
+        let rows = joints::rows(
+            tick,
+            &stage.layout,
+            self.last_joints.as_deref(),
+            stage.joints(),
+        );
+        self.last_joints = Some(stage.joints().to_vec());
         self.files.joints.append_records(&rows)
     }
 

@@ -1,9 +1,9 @@
 //! How far a recording has come, for undo and redo.
 
-use tabletop_core::{SimFact, SimTick};
+use tabletop_core::{JointState, SimFact, SimTick};
 
 use crate::{
-    files::{joints::Joints, recording_files::Lengths, session::SessionCommand},
+    files::{recording_files::Lengths, session::SessionCommand},
     recording::{
         objects::RecordedObjects,
         stage::Sight,
@@ -18,7 +18,7 @@ pub(crate) struct Progress {
     pub(crate) objects: RecordedObjects,
     /// What there was to be seen at the last frame.
     pub(crate) sight: Sight,
-    pub(crate) last_joints: Option<Joints>,
+    pub(crate) last_joints: Option<Vec<JointState>>,
     pub(crate) is_paused: bool,
 }
 

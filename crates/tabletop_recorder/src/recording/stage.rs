@@ -2,12 +2,12 @@
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
-    HeadCamera, Joint, JointSpec, ObjectIndex, ObjectSpec, Robot, Shape, Table, Twist,
+    HeadCamera, Joint, JointSpec, JointState, ObjectIndex, ObjectSpec, Robot, RobotLayout, Shape,
+    Table, Twist,
 };
 
 use crate::{
     files::{
-        joints::Joints,
         session::{SessionObject, SessionScene, SessionSettings},
         states::State,
     },
@@ -32,6 +32,7 @@ pub(crate) struct Stage<'w, 's> {
     pub(crate) camera: Option<Res<'w, HeadCamera>>,
     pub(crate) settings: Res<'w, SessionSettings>,
     robot: Res<'w, Robot>,
+    pub(crate) layout: Res<'w, RobotLayout>,
 }
 
 impl Stage<'_, '_> {
@@ -87,7 +88,7 @@ impl Stage<'_, '_> {
     }
 
     /// The robot's joints.
-    pub(crate) fn joints(&self) -> &Joints {
+    pub(crate) fn joints(&self) -> &[JointState] {
         &self.robot.joints
     }
 

@@ -5,10 +5,10 @@ use bevy_rapier3d::{
     plugin::systems::{init_colliders, init_rigid_bodies},
     prelude::*,
 };
-use tabletop_core::{CarriesHeadCamera, Pose, Robot, Rollback, Table, robot_base};
+use tabletop_core::{CarriesHeadCamera, Pose, Robot, Rollback, Table};
 use tabletop_physics::to_rapier;
 
-use crate::articulation::tree::{Articulation, Body, Posture, TreePosition};
+use crate::articulation::tree::{Articulation, Body, Positions, Posture, TreePosition};
 
 /// A body of the robot: a link, or a finger of a gripper.
 #[derive(Component, Clone, Debug)]
@@ -80,15 +80,19 @@ fn collider(body: &Body) -> Option<Collider> {
 }
 
 /// The positions of the joints.
-pub(crate) fn positions(robot: &Robot) -> [f64; 17] {
-    robot.joints.map(|joint| joint.position)
+pub(crate) fn positions(robot: &Robot) -> Positions {
+    robot.joints.iter().map(|joint| joint.position).collect()
 }
 
 /// Where the torso's frame stands, in front of the present table.
 pub(crate) fn base(world: &mut World) -> Pose {
     let mut tables = world.query::<&Table>();
     let table = tables.iter(world).next().copied();
-    robot_base(&table.unwrap_or_default())
+    world
+        .resource::<Articulation>()
+        .layout
+        .base
+        .pose(&table.unwrap_or_default())
 }
 
 /// Puts the bodies where a posture has them, without pushing anything on the way.

@@ -1,14 +1,14 @@
 //! Which bodies of the robot can meet.
 
 use bevy::prelude::*;
-use tabletop_core::{Pose, RobotJoint};
+use tabletop_core::{JointRole, Pose};
 
 use crate::{
-    articulation::tree::{Articulation, Body, TreePosition},
+    articulation::tree::{Articulation, Body, Positions, TreePosition},
     clearance::{Owner, Solid},
 };
 
-/// Joints between two bodies of an arm that can meet.
+/// Joints between two bodies of a limb that can meet.
 const JOINTS_BETWEEN: usize = 3;
 
 /// Distance, in units, at which bodies meet in a pose that the real robot takes: their solids are rough there.
@@ -35,11 +35,20 @@ impl SelfCollisionMatrix {
             bodies,
             can_meet: vec![false; bodies * bodies],
         };
-        let postures = KNOWN.map(|angles| known_posture(articulation, angles));
+        let known = articulation.layout.known_postures.iter();
+        let postures: Vec<_> = known
+            .map(|angles| known_posture(articulation, angles))
+            .collect();
+        let may_touch = |a: usize, b: usize| {
+            let [a, b] = [a, b].map(|body| &articulation.bodies[body].id);
+            let mut pairs = articulation.layout.may_touch.iter();
+            pairs.any(|(one, other)| [[one, other], [other, one]].contains(&[a, b]))
+        };
         for a in 0..bodies {
             for b in 0..a {
                 let [place_a, place_b] = [a, b].map(|i| articulation.bodies[i].place);
                 let can_meet = are_apart(place_a, place_b)
+                    && !may_touch(a, b)
                     && !postures
                         .iter()
                         .any(|solids| overlap(&solids[a], &solids[b]));
@@ -54,31 +63,27 @@ impl SelfCollisionMatrix {
 /// Whether bodies are far enough from each other along the robot to meet.
 const fn are_apart(a: TreePosition, b: TreePosition) -> bool {
     match (a, b) {
-        (TreePosition::Arm(a, i), TreePosition::Arm(b, j)) if a as u8 == b as u8 => {
+        (TreePosition::Limb(a, i), TreePosition::Limb(b, j)) if a.0 == b.0 => {
             i.abs_diff(j) >= JOINTS_BETWEEN
         }
-        (TreePosition::Arm(..), TreePosition::Arm(..)) => true,
-        (TreePosition::Arm(_, i), _) | (_, TreePosition::Arm(_, i)) => i >= JOINTS_BETWEEN,
+        (TreePosition::Limb(..), TreePosition::Limb(..)) => true,
+        (TreePosition::Limb(_, i), _) | (_, TreePosition::Limb(_, i)) => i >= JOINTS_BETWEEN,
         _ => false,
     }
 }
 
-/// Angles of the left arm in poses that the real robot takes; the right arm mirrors them: home, straight, untucked,
-/// tucked, neutral.
-const KNOWN: [[f64; 7]; 5] = [
-    [0.25, 0.0, -1.527, 2.618, 1.529, 1.5, 0.0],
-    [0.0; 7],
-    [-0.08, -1.0, -1.19, 1.94, 0.67, 1.03, -0.5],
-    [-1.0, -2.07, 3.0, 2.55, 0.0, 0.01, 0.0],
-    [0.0, -0.55, 0.0, 0.75, 0.0, 1.26, 0.0],
-];
-
 /// The solids of every body in a known pose.
-fn known_posture(articulation: &Articulation, angles: [f64; 7]) -> Vec<Vec<Solid>> {
-    let positions = RobotJoint::ALL.map(|joint| match joint.arm() {
-        Some(_) if !joint.is_gripper() => joint.mirror() * angles[joint.index() % angles.len()],
-        _ => joint.home(),
-    });
+fn known_posture(articulation: &Articulation, angles: &[f64]) -> Vec<Vec<Solid>> {
+    let joints = articulation.layout.joints.iter();
+    let positions: Positions = joints
+        .map(|joint| match joint.role {
+            JointRole::Limb { place, .. } => {
+                let angle = angles.get(place);
+                angle.map_or(joint.home, |angle| joint.sign * angle)
+            }
+            JointRole::Neck | JointRole::Gripper(_) => joint.home,
+        })
+        .collect();
     let posture = articulation.posture(&positions);
     let solids = |(number, body): (usize, &Body)| {
         let pose = articulation.pose(body, &posture, Pose::IDENTITY);
@@ -93,16 +98,16 @@ fn overlap(a: &[Solid], b: &[Solid]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::Arm;
+    use tabletop_core::LimbId;
 
     use super::*;
 
     #[test]
     fn neighbours_cannot_meet_and_arms_can() {
-        let arm = |i| TreePosition::Arm(Arm::Left, i);
+        let arm = |i| TreePosition::Limb(LimbId(0), i);
         assert!(!are_apart(arm(2), arm(4)));
         assert!(are_apart(arm(2), arm(5)));
-        assert!(are_apart(arm(1), TreePosition::Arm(Arm::Right, 1)));
+        assert!(are_apart(arm(1), TreePosition::Limb(LimbId(1), 1)));
         assert!(!are_apart(TreePosition::Trunk, arm(2)));
         assert!(are_apart(TreePosition::Head, arm(7)));
         assert!(!are_apart(TreePosition::Trunk, TreePosition::Head));

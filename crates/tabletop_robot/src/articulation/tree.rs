@@ -10,17 +10,17 @@ use bevy::{
     prelude::*,
 };
 use bevy_rapier3d::rapier::prelude::SharedShape;
-use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, RobotJoint, UNITS_PER_METER, WIDEST_GRIP};
+use smallvec::SmallVec;
+use tabletop_core::{
+    JointId, JointRole, LimbId, LimbLayout, LinkFrame, Pose, RobotLayout, UNITS_PER_METER,
+};
 use tabletop_kinematics::{
-    ArmChain, Frames, Geometry, JointId, JointValues, LinkId, LinkShape, Load, ModelError,
-    RobotModel,
+    ArmChain, Frames, Geometry, JointId as ModelJointId, JointValues, LinkId, LinkShape, Load,
+    ModelError, RobotModel,
 };
 use tabletop_physics::Convex;
 
 use crate::look::{error::LookError, figure::figure_of};
-
-/// Extents of a finger across, along the opening and along the finger, in units: x, y, z of the end effector's frame.
-pub(crate) const FINGER: Vec3 = Vec3::new(0.3, 0.4, 1.5);
 
 /// How far a finger of a wide open gripper stands back, in units: more than the distance at which something counts as touched. So what
 /// is as wide as the opening is not jammed between the fingers.
@@ -29,11 +29,8 @@ const PLAY: f32 = 0.015;
 /// From this share of the widest opening on, fingers begin to stand back.
 const ALMOST_OPEN: f32 = 0.99;
 
-/// From the end effector's axes to the wrist's, and back.
-pub(crate) const WRIST_TURNED: DMat3 = DMat3::from_cols(DVec3::NEG_Y, DVec3::NEG_X, DVec3::NEG_Z);
-
-/// Where the end effector is on the wrist of a description that does not name it, in m along the wrist's axis.
-const END_EFFECTOR_ON_WRIST: f64 = 0.19535;
+/// One number for every joint of the robot, by [`JointId`].
+pub(crate) type Positions = SmallVec<[f64; 24]>;
 
 /// A rigid part of the robot.
 #[derive(Clone, Debug)]
@@ -56,7 +53,7 @@ pub(crate) enum Carrier {
     /// It is a link.
     Link(LinkId),
     /// It is a finger of a gripper, on this side of the opening: -1 left, 1 right. Its x points inwards.
-    Gripper(Arm, i8),
+    Gripper(LimbId, i8),
 }
 
 /// Where a body is along the robot.
@@ -66,20 +63,31 @@ pub(crate) enum TreePosition {
     Trunk,
     /// It turns with the neck.
     Head,
-    /// So many joints of an arm carry it; fingers are carried by one more.
-    Arm(Arm, usize),
+    /// So many joints of a limb carry it; fingers are carried by one more.
+    Limb(LimbId, usize),
 }
 
 /// The robot's model, and what of it the simulator moves.
 #[derive(Resource, Clone, Debug)]
 pub(crate) struct Articulation {
     model: RobotModel,
-    joints: [Option<JointId>; 15],
-    end_effectors: [(LinkId, DAffine3); 2],
-    origins: [[LinkId; 3]; 2],
-    chains: [ArmChain; 2],
+    /// Its limbs and joints.
+    pub layout: RobotLayout,
+    /// The model's joints, by [`JointId`]; `None` for openings and a neck that the model lacks.
+    joints: Vec<Option<ModelJointId>>,
+    limbs: Vec<Limb>,
     /// The bodies.
     pub bodies: Vec<Body>,
+}
+
+/// What of the model a limb is.
+#[derive(Clone, Debug)]
+struct Limb {
+    chain: ArmChain,
+    /// What carries the end effector, and the end effector's frame there.
+    end_effector: (LinkId, DAffine3),
+    /// The links whose origins are tracked.
+    trackers: Vec<LinkId>,
 }
 
 /// Where everything is at a moment, in the torso's frame.
@@ -87,7 +95,7 @@ pub(crate) struct Articulation {
 pub(crate) struct Posture {
     values: JointValues,
     frames: Frames,
-    openings: [f64; 2],
+    openings: Vec<f64>,
 }
 
 impl Posture {
@@ -98,37 +106,23 @@ impl Posture {
 }
 
 impl Articulation {
-    /// Finds the robot's arms, grippers and head in a model.
-    pub fn new(model: RobotModel) -> Result<Self, ModelError> {
-        let mut joints = [None; 15];
-        for joint in RobotJoint::ALL.into_iter().take(joints.len()) {
-            joints[joint.index()] = match joint {
-                RobotJoint::HeadPan => model.find_joint(joint.name()).ok(),
-                _ => Some(model.find_joint(joint.name())?),
-            };
-        }
-        let end_effectors = [
-            end_effector(&model, Arm::Left)?,
-            end_effector(&model, Arm::Right)?,
-        ];
-        let chain = |arm: Arm| -> Result<_, ModelError> {
-            let limits = RobotJoint::of_arm(arm).map(|joint| joint.limits().into());
-            let chain = ArmChain::new(&model, model.root(), end_effectors[arm as usize].0)?;
-            Ok(chain.with_limits(limits))
-        };
-        let origins = |arm: Arm| -> Result<_, ModelError> {
-            let link = |name: &str| {
-                let joint = model.find_joint(&format!("{arm}_{name}"))?;
-                Ok::<_, ModelError>(model.joint(joint).child)
-            };
-            Ok([link("s1")?, link("e1")?, link("w1")?])
-        };
+    /// Finds the joints and links of a layout in a model.
+    pub fn new(model: RobotModel, layout: RobotLayout) -> Result<Self, ModelError> {
+        let joints = layout.joints.iter().map(|joint| match joint.role {
+            JointRole::Limb { .. } => model.find_joint(joint.name.as_str()).map(Some),
+            JointRole::Neck => Ok(model.find_joint(joint.name.as_str()).ok()),
+            JointRole::Gripper(_) => Ok(None),
+        });
+        let joints = joints.collect::<Result<Vec<_>, _>>()?;
+        let limbs = layout
+            .limbs
+            .iter()
+            .map(|limb| Limb::new(&model, &layout, limb));
         let mut articulation = Self {
-            end_effectors,
-            origins: [origins(Arm::Left)?, origins(Arm::Right)?],
-            chains: [chain(Arm::Left)?, chain(Arm::Right)?],
+            limbs: limbs.collect::<Result<_, _>>()?,
             joints,
             bodies: Vec::new(),
+            layout,
             model,
         };
         articulation.bodies = articulation.find_bodies();
@@ -160,30 +154,31 @@ impl Articulation {
         &self.model
     }
 
-    /// The chain, with the limits of table 1, from the torso to the link that carries an end effector, and the end effector's frame on that link.
-    pub const fn chain(&self, arm: Arm) -> (&ArmChain, DAffine3) {
-        (
-            &self.chains[arm as usize],
-            self.end_effectors[arm as usize].1,
-        )
+    /// The chain, with the limits of the layout, from the root to the link that carries an end effector, and the end effector's frame
+    /// on that link.
+    pub fn chain(&self, limb: LimbId) -> (&ArmChain, DAffine3) {
+        let limb = &self.limbs[limb.index()];
+        (&limb.chain, limb.end_effector.1)
     }
 
     /// The joint of the model that a joint of the robot is.
-    pub fn joint(&self, joint: RobotJoint) -> Option<JointId> {
+    pub fn joint(&self, joint: JointId) -> Option<ModelJointId> {
         self.joints.get(joint.index()).copied().flatten()
     }
 
     fn find_bodies(&self) -> Vec<Body> {
         let links = (0..self.model.links().len()).filter_map(|i| self.link_body(i));
-        let fingers = Arm::BOTH.into_iter().flat_map(|arm| {
+        let fingers = self.layout.limb_ids().flat_map(|id| {
+            let limb = self.layout.limb(id);
+            let arm = limb.name;
             [("left", -1), ("right", 1)].map(|(name, side)| Body {
                 id: format!("{arm}-gripper-{name}-finger"),
                 name: format!("{name} finger of the {arm} gripper"),
-                carrier: Carrier::Gripper(arm, side),
-                place: TreePosition::Arm(arm, JOINTS_PER_ARM + 1),
+                carrier: Carrier::Gripper(id, side),
+                place: TreePosition::Limb(id, limb.joints.len() + 1),
                 parts: vec![Convex {
                     pose: Pose::IDENTITY,
-                    shape: cuboid(FINGER),
+                    shape: cuboid(limb.gripper.finger),
                 }],
             })
         });
@@ -212,42 +207,46 @@ impl Articulation {
         let carriers: Vec<_> = std::iter::successors(Some(link), |&link| self.model.parent(link))
             .filter_map(|link| self.model.link(link).joint)
             .collect();
-        let is_carrier = |joint: &RobotJoint| {
+        let is_carrier = |joint: &JointId| {
             self.joint(*joint)
                 .is_some_and(|joint| carriers.contains(&joint))
         };
-        if is_carrier(&RobotJoint::HeadPan) {
+        if self.layout.neck.as_ref().is_some_and(is_carrier) {
             return TreePosition::Head;
         }
-        Arm::BOTH
-            .into_iter()
-            .find_map(|arm| {
-                let joints = RobotJoint::of_arm(arm);
-                let count = joints.iter().filter(|joint| is_carrier(joint)).count();
-                (count > 0).then_some(TreePosition::Arm(arm, count))
+        self.layout
+            .limb_ids()
+            .find_map(|limb| {
+                let joints = self.layout.limb(limb).joints.iter();
+                let count = joints.filter(|joint| is_carrier(joint)).count();
+                (count > 0).then_some(TreePosition::Limb(limb, count))
             })
             .unwrap_or(TreePosition::Trunk)
     }
 
-    /// Where everything is when the joints are at these positions, by [`RobotJoint::index`].
-    pub fn posture(&self, positions: &[f64; 17]) -> Posture {
+    /// Where everything is when the joints are at these positions, by [`JointId`].
+    pub fn posture(&self, positions: &[f64]) -> Posture {
         let mut posture = Posture {
             values: self.model.zero(),
             frames: Frames::default(),
-            openings: [0.0; 2],
+            openings: Vec::new(),
         };
         self.update(&mut posture, positions);
         posture
     }
 
     /// Brings a posture to other positions of the joints.
-    pub fn update(&self, posture: &mut Posture, positions: &[f64; 17]) {
+    pub fn update(&self, posture: &mut Posture, positions: &[f64]) {
         for (joint, position) in self.joints.iter().zip(positions) {
             if let Some(joint) = *joint {
                 posture.values[joint] = *position;
             }
         }
-        posture.openings = Arm::BOTH.map(|arm| positions[RobotJoint::gripper(arm).index()]);
+        let limbs = self.layout.limbs.iter();
+        posture.openings.clear();
+        posture
+            .openings
+            .extend(limbs.map(|limb| positions[limb.gripper.joint.index()]));
         self.model.frames_into(&posture.values, &mut posture.frames);
     }
 
@@ -255,11 +254,13 @@ impl Articulation {
     pub fn pose(&self, body: &Body, posture: &Posture, base: Pose) -> Pose {
         match body.carrier {
             Carrier::Link(link) => base * in_units(posture.frames[link]),
-            Carrier::Gripper(arm, side) => {
-                let opening = posture.openings[arm as usize] as f32;
-                let out = opening / 2.0 + play(opening) + FINGER.x / 2.0;
+            Carrier::Gripper(limb, side) => {
+                let gripper = &self.layout.limb(limb).gripper;
+                let [_, widest] = self.layout.joint(gripper.joint).limits;
+                let opening = posture.openings[limb.index()] as f32;
+                let out = opening / 2.0 + play(opening, widest) + gripper.finger.x / 2.0;
                 let inwards = if side < 0 { 0.0 } else { PI };
-                self.end_effector(arm, posture, base)
+                self.end_effector(limb, posture, base)
                     * Pose::new(
                         Vec3::X * f32::from(side) * out,
                         Quat::from_rotation_z(inwards),
@@ -269,23 +270,26 @@ impl Articulation {
     }
 
     /// Where an end effector is.
-    pub fn end_effector(&self, arm: Arm, posture: &Posture, base: Pose) -> Pose {
-        let (link, offset) = self.end_effectors[arm as usize];
+    pub fn end_effector(&self, limb: LimbId, posture: &Posture, base: Pose) -> Pose {
+        let (link, offset) = self.limbs[limb.index()].end_effector;
         base * in_units(posture.frames[link] * offset)
     }
 
-    /// What the joints of an arm turn about: a point and a unit vector, in m in the torso's frame.
-    pub fn axes(&self, arm: Arm, posture: &Posture) -> [(DVec3, DVec3); JOINTS_PER_ARM] {
-        self.chains[arm as usize].joints().map(|joint| {
-            let joint = self.model.joint(joint);
-            let frame = posture.frames[joint.child];
-            (frame.translation, frame.transform_vector3(joint.axis))
-        })
+    /// What the joints of a limb turn about: a point and a unit vector, in m in the torso's frame.
+    pub fn axes(&self, limb: LimbId, posture: &Posture) -> Vec<(DVec3, DVec3)> {
+        let joints = self.limbs[limb.index()].chain.joints().iter();
+        joints
+            .map(|&joint| {
+                let joint = self.model.joint(joint);
+                let frame = posture.frames[joint.child];
+                (frame.translation, frame.transform_vector3(joint.axis))
+            })
+            .collect()
     }
 
     /// Something that an end effector carries, at this pose in its frame, in units, with this mass in kg.
-    pub fn load(&self, arm: Arm, pose: Pose, mass: f64) -> Load {
-        let (link, offset) = self.end_effectors[arm as usize];
+    pub fn load(&self, limb: LimbId, pose: Pose, mass: f64) -> Load {
+        let (link, offset) = self.limbs[limb.index()].end_effector;
         Load {
             link,
             point: offset.transform_point3(pose.location.as_dvec3() / UNITS_PER_METER),
@@ -293,24 +297,58 @@ impl Articulation {
         }
     }
 
-    /// Where the origins of the joints S1, E1 and W1 of an arm are.
-    pub fn joint_origins(&self, arm: Arm, posture: &Posture, base: Pose) -> [Vec3; 3] {
-        self.origins[arm as usize].map(|link| base * in_units(posture.frames[link]).location)
+    /// Where the origins of the tracked joints of a limb are.
+    pub fn joint_origins(&self, limb: LimbId, posture: &Posture, base: Pose) -> Vec<Vec3> {
+        let trackers = self.limbs[limb.index()].trackers.iter();
+        trackers
+            .map(|&link| base * in_units(posture.frames[link]).location)
+            .collect()
     }
 }
 
-/// The frame of an end effector, on the link that carries it.
-fn end_effector(model: &RobotModel, arm: Arm) -> Result<(LinkId, DAffine3), ModelError> {
-    if let Ok(link) = model.find_link(&format!("{arm}_end_effector")) {
-        return Ok((link, DAffine3::IDENTITY));
+impl Limb {
+    fn new(
+        model: &RobotModel,
+        layout: &RobotLayout,
+        limb: &LimbLayout,
+    ) -> Result<Self, ModelError> {
+        let end_effector = frame_on(model, &limb.end_effector)?;
+        let limits = limb.joints.iter().map(|&joint| layout.joint(joint).limits);
+        let trackers = limb.trackers.iter().map(|&joint| {
+            let joint = model.find_joint(layout.joint(joint).name.as_str())?;
+            Ok(model.joint(joint).child)
+        });
+        let chain = ArmChain::new(model, model.root(), end_effector.0)?;
+        for (i, &joint) in limb.joints.iter().enumerate() {
+            let found = model.find_joint(layout.joint(joint).name.as_str())?;
+            if chain.joints().get(i) != Some(&found) || chain.joints().len() != limb.joints.len() {
+                return Err(ModelError::NoArm {
+                    base: model.link(model.root()).name.clone(),
+                    tip: model.link(end_effector.0).name.clone(),
+                    reason: format!("its joints are not those of the limb {}", limb.name),
+                });
+            }
+        }
+        Ok(Self {
+            chain: chain.with_limits(limits),
+            end_effector,
+            trackers: trackers.collect::<Result<_, _>>()?,
+        })
     }
-    let wrist = model.find_link(&format!("{arm}_wrist"))?;
-    Ok((wrist, end_effector_on_wrist()))
 }
 
-/// The fingers point along the wrist's z, away from it; the left one is on the wrist's y side.
-fn end_effector_on_wrist() -> DAffine3 {
-    DAffine3::from_mat3_translation(WRIST_TURNED, DVec3::Z * END_EFFECTOR_ON_WRIST)
+/// The first of these frames whose link the model has.
+fn frame_on(model: &RobotModel, frames: &[LinkFrame]) -> Result<(LinkId, DAffine3), ModelError> {
+    let mut missing = model.find_link("");
+    for frame in frames {
+        missing = model.find_link(&frame.link);
+        if let Ok(link) = missing {
+            let axes = DMat3::from_cols_array_2d(&frame.axes);
+            let origin = DVec3::from_array(frame.at);
+            return Ok((link, DAffine3::from_mat3_translation(axes, origin)));
+        }
+    }
+    missing.map(|link| (link, DAffine3::IDENTITY))
 }
 
 /// A frame of the model as a pose in units.
@@ -335,8 +373,8 @@ fn cuboid(span: Vec3) -> SharedShape {
 }
 
 /// How far a finger stands back at an opening, in units.
-fn play(opening: f32) -> f32 {
-    let share = opening / WIDEST_GRIP as f32;
+fn play(opening: f32, widest: f64) -> f32 {
+    let share = opening / widest as f32;
     PLAY * ((share - ALMOST_OPEN) / (1.0 - ALMOST_OPEN)).clamp(0.0, 1.0)
 }
 

@@ -2,7 +2,8 @@
 
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
-    Drive, IssuedCommand, Markers, Paused, Robot, RobotCommand, RobotJoint, RobotMode, carry_out,
+    Drive, IssuedCommand, JointId, JointLayout, JointRole, LimbId, Markers, Paused, Robot,
+    RobotCommand, RobotLayout, RobotMode, carry_out,
 };
 
 use crate::command::{joint_targets::JointTargets, reach, visibility};
@@ -20,8 +21,11 @@ pub(crate) fn obey(
         RobotCommand::Drive(drives) => drive(world, drives),
         RobotCommand::ReachTo { arm, pose } => {
             refuse_while_paused(world)?;
-            let angles = reach::solve(world, arm, pose)?;
-            world.resource_mut::<JointTargets>().send(arm, angles);
+            let limb = LimbId::from(arm);
+            let angles = reach::solve(world, limb, pose)?;
+            world.resource_scope(|world, mut targets: Mut<JointTargets>| {
+                targets.send(world.resource::<RobotLayout>(), limb, angles);
+            });
             Ok(())
         }
         RobotCommand::ShowFace(face) => {
@@ -32,21 +36,27 @@ pub(crate) fn obey(
     })
 }
 
-fn drive(world: &mut World, drives: Vec<(RobotJoint, Drive)>) -> Result<(), String> {
+fn drive(world: &mut World, drives: Vec<(tabletop_core::RobotJoint, Drive)>) -> Result<(), String> {
     refuse_while_paused(world)?;
     let mode = world.resource::<Robot>().mode;
+    let layout = world.resource::<RobotLayout>();
     for &(joint, drive) in &drives {
-        check(mode, joint, drive)?;
+        check(mode, layout.joint(joint.into()), drive)?;
     }
-    let mut targets = world.resource_mut::<JointTargets>();
-    for (joint, drive) in drives {
-        match drive {
-            Drive::Position(there) if has_motor(mode, joint) => targets.rush(joint, there),
-            Drive::Velocity(_) | Drive::Position(_) | Drive::Toward(_) | Drive::Torque(_) => {
-                targets.take(joint, drive);
+    world.resource_scope(|world, mut targets: Mut<JointTargets>| {
+        let layout = world.resource::<RobotLayout>();
+        for (joint, drive) in drives {
+            let joint = JointId::from(joint);
+            match drive {
+                Drive::Position(there) if has_motor(mode, layout.joint(joint)) => {
+                    targets.rush(layout, joint, there);
+                }
+                Drive::Velocity(_) | Drive::Position(_) | Drive::Toward(_) | Drive::Torque(_) => {
+                    targets.take(layout, joint, drive);
+                }
             }
         }
-    }
+    });
     Ok(())
 }
 
@@ -66,12 +76,12 @@ fn refuse_while_paused(world: &World) -> Result<(), String> {
 }
 
 /// Whether a joint is moved by a motor with limited torque.
-fn has_motor(mode: RobotMode, joint: RobotJoint) -> bool {
-    mode == RobotMode::Dynamic && !joint.is_gripper() && joint != RobotJoint::HeadPan
+fn has_motor(mode: RobotMode, joint: &JointLayout) -> bool {
+    mode == RobotMode::Dynamic && matches!(joint.role, JointRole::Limb { .. })
 }
 
 /// Whether a joint can do what it is told.
-fn check(mode: RobotMode, joint: RobotJoint, drive: Drive) -> Result<(), String> {
+fn check(mode: RobotMode, joint: &JointLayout, drive: Drive) -> Result<(), String> {
     let value = match drive {
         Drive::Velocity(value)
         | Drive::Position(value)
@@ -80,12 +90,14 @@ fn check(mode: RobotMode, joint: RobotJoint, drive: Drive) -> Result<(), String>
     };
     if !value.is_finite() {
         return Err(format!(
-            "joint {joint} cannot be told {drive:?}: not a number"
+            "joint {} cannot be told {drive:?}: not a number",
+            joint.name
         ));
     }
     match drive {
         Drive::Torque(_) if !has_motor(mode, joint) => Err(format!(
-            "joint {joint} cannot be told a torque: only the joints of arms can, in dynamic mode"
+            "joint {} cannot be told a torque: only the joints of arms can, in dynamic mode",
+            joint.name
         )),
         Drive::Velocity(_) | Drive::Position(_) | Drive::Toward(_) | Drive::Torque(_) => Ok(()),
     }
@@ -95,15 +107,15 @@ fn check(mode: RobotMode, joint: RobotJoint, drive: Drive) -> Result<(), String>
 mod tests {
     use super::*;
 
-    const E1: RobotJoint = RobotJoint::LeftE1;
-
     #[test]
     fn what_is_not_a_number_is_refused() {
+        let e1 = RobotLayout::baxter().joint(JointId(3));
+        let head_pan = RobotLayout::baxter().joint(JointId(14));
         for drive in [Drive::Velocity(f64::NAN), Drive::Position(f64::INFINITY)] {
-            assert!(check(RobotMode::Kinematic, E1, drive).is_err());
+            assert!(check(RobotMode::Kinematic, e1, drive).is_err());
         }
-        assert!(check(RobotMode::Kinematic, E1, Drive::Torque(1.0)).is_err());
-        assert!(check(RobotMode::Dynamic, E1, Drive::Torque(1.0)).is_ok());
-        assert!(check(RobotMode::Dynamic, RobotJoint::HeadPan, Drive::Torque(1.0)).is_err());
+        assert!(check(RobotMode::Kinematic, e1, Drive::Torque(1.0)).is_err());
+        assert!(check(RobotMode::Dynamic, e1, Drive::Torque(1.0)).is_ok());
+        assert!(check(RobotMode::Dynamic, head_pan, Drive::Torque(1.0)).is_err());
     }
 }

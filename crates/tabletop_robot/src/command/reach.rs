@@ -1,7 +1,7 @@
 //! Bringing an end effector to a pose.
 
 use bevy::prelude::*;
-use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, Robot, UNITS_PER_METER};
+use tabletop_core::{LimbId, Pose, Robot, UNITS_PER_METER};
 use tabletop_kinematics::Target;
 
 use crate::{
@@ -9,12 +9,10 @@ use crate::{
     articulation::tree::{Articulation, in_meters},
 };
 
-/// The angles of an arm that bring its end effector to a pose in the table's frame, near to those that it has now.
-pub(crate) fn solve(
-    world: &mut World,
-    arm: Arm,
-    pose: Pose,
-) -> Result<[f64; JOINTS_PER_ARM], String> {
+/// The angles of a limb that bring its end effector to a pose in the table's frame, near to those that it has now.
+pub(crate) fn solve(world: &mut World, limb: LimbId, pose: Pose) -> Result<Vec<f64>, String> {
+    let limb_layout = world.resource::<Articulation>().layout.limb(limb).clone();
+    let arm = limb_layout.name;
     if !pose.location.is_finite() || !pose.rotation.is_finite() {
         return Err(format!(
             "the {arm} arm cannot reach for {pose:?}: not a pose"
@@ -22,10 +20,13 @@ pub(crate) fn solve(
     }
     let base = base(world);
     let robot = world.resource::<Robot>();
-    let (chain, end_effector) = world.resource::<Articulation>().chain(arm);
+    let (chain, end_effector) = world.resource::<Articulation>().chain(limb);
     let target = in_meters(base.inverse() * pose) * end_effector.inverse();
     chain
-        .solve(&Target::Pose(target), &robot.angles(arm))
+        .solve(
+            &Target::Pose(target),
+            &robot.positions_of(&limb_layout.joints),
+        )
         .map_err(|unreachable| {
             format!(
                 "the {arm} arm cannot reach {:.3}: it comes no nearer than {:.3} units and {:.1}°",

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Arm, CommandId, Robot, SimFact};
+use tabletop_core::{CommandId, Robot, RobotLayout, SimFact};
 
 use crate::{
     articulation::link_entities::{LinkEntities, spawn},
@@ -16,8 +16,8 @@ pub(crate) fn show(world: &mut World, cause: CommandId, show: bool) {
         return;
     }
     if !show {
-        for arm in Arm::BOTH {
-            grips::release(world, arm);
+        for limb in world.resource::<RobotLayout>().limb_ids() {
+            grips::release(world, limb);
         }
     }
     world.resource_mut::<Robot>().is_shown = show;

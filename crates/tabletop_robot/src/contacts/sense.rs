@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Arm, ObjectIndex, Robot, RobotContact, Table};
+use tabletop_core::{ObjectIndex, Robot, RobotContact, Table};
 
 use crate::{
     articulation::link_entities::LinkEntities,
@@ -21,10 +21,10 @@ pub(crate) fn sense_contacts(
     rapier: ReadRapierContext,
     mut robot: ResMut<Robot>,
 ) -> Result {
-    for arm in Arm::BOTH {
-        let holds = grips.of(arm).iter().map(|grip| grip.object);
-        if !robot.arm(arm).holds.iter().copied().eq(holds.clone()) {
-            robot.arms[arm as usize].holds = holds.collect();
+    for limb in articulation.layout.limb_ids() {
+        let holds = grips.of(limb).iter().map(|grip| grip.object);
+        if !robot.limb(limb).holds.iter().copied().eq(holds.clone()) {
+            robot.limbs[limb.index()].holds = holds.collect();
         }
     }
     let mut contacts = Vec::new();
@@ -58,13 +58,13 @@ pub(crate) fn sense_contacts(
 /// What a finger touches because its gripper holds it.
 fn with_gripped(carrier: Carrier, grips: &Grips, robot: &Robot) -> impl Iterator<Item = Contact> {
     let finger = match carrier {
-        Carrier::Gripper(arm, side) => Some((arm, usize::from(side > 0))),
+        Carrier::Gripper(limb, side) => Some((limb, usize::from(side > 0))),
         Carrier::Link(_) => None,
     };
-    finger.into_iter().flat_map(move |(arm, finger)| {
-        grips.of(arm).iter().map(move |grip| Contact {
+    finger.into_iter().flat_map(move |(limb, finger)| {
+        grips.of(limb).iter().map(move |grip| Contact {
             thing: grip.object,
-            point: robot.arm(arm).end_effector * grip.points[finger],
+            point: robot.limb(limb).end_effector * grip.points[finger],
             impulse: 0.0,
         })
     })

@@ -3,8 +3,6 @@
 //! To physics the robot's bodies go where they go, whatever is in their way: what they push gets their speed at once. So what
 //! it takes to push something must be known before the arm moves, not after.
 
-use std::array::from_fn;
-
 use bevy::{
     math::{DAffine3, DVec3},
     prelude::*,
@@ -12,7 +10,7 @@ use bevy::{
 use bevy_rapier3d::{
     parry::bounding_volume::BoundingVolume, plugin::RapierContextMut, rapier::prelude as rapier,
 };
-use tabletop_core::{Arm, JOINTS_PER_ARM, TICK_SECONDS, UNITS_PER_METER};
+use tabletop_core::{LimbId, TICK_SECONDS, UNITS_PER_METER};
 use tabletop_physics::impulse_share;
 
 use crate::{
@@ -20,7 +18,7 @@ use crate::{
     articulation::tree::{TreePosition, in_meters},
     clearance::TOUCHING,
     dynamics::impulse::{ContactLoad, FrictionAxis},
-    dynamics::matrix::Joints,
+    dynamics::matrix::{Joints, each},
     motion::environment::FreeObject,
     motion::sweep::Motion,
 };
@@ -32,7 +30,7 @@ const AHEAD: f32 = 0.7;
 /// the robot's bodies and what it holds.
 pub(crate) fn contact_loads(
     motion: &mut Motion,
-    arm: Arm,
+    limb: LimbId,
     rapier: &RapierContextMut,
     gravity: f32,
     is_mine: impl Fn(Entity) -> bool,
@@ -40,10 +38,10 @@ pub(crate) fn contact_loads(
     if motion.environment.free.is_empty() || !motion.is_shown {
         return Vec::new();
     }
-    let here = motion.positions;
-    let solids = motion.solids(arm, &here, &here);
+    let here = motion.positions.clone();
+    let solids = motion.solids(limb, &here, &here);
     motion.articulation.update(&mut motion.scratch, &here);
-    let axes = motion.articulation.axes(arm, &motion.scratch);
+    let axes = motion.articulation.axes(limb, &motion.scratch);
     let to_robot = in_meters(motion.base).inverse();
     let mut touches = Vec::new();
     for thing in &motion.environment.free {
@@ -74,10 +72,10 @@ pub(crate) fn contact_loads(
         // What weighs on the arm falls towards it; what lies elsewhere stays there.
         let falls = (Vec3::NEG_Z.dot(normal) * gravity * TICK_SECONDS).min(0.0);
         let carriers = match motion.articulation.bodies[number].place {
-            TreePosition::Arm(_, joints) => joints.min(JOINTS_PER_ARM),
+            TreePosition::Limb(_, joints) => joints.min(axes.len()),
             TreePosition::Trunk | TreePosition::Head => 0,
         };
-        let lever = |direction| lever(&axes[..carriers], to_robot, contact.point1, direction);
+        let lever = |direction| lever(&axes, carriers, to_robot, contact.point1, direction);
         let ahead = resistance(rapier, thing, normal, &is_mine);
         let (along, across) = normal.any_orthonormal_pair();
         let slides = [along, across].map(|direction| {
@@ -102,14 +100,22 @@ pub(crate) fn contact_loads(
     touches
 }
 
-/// How fast a point goes along a direction per rad/s of each joint, in m, if these joints carry it.
-fn lever(carriers: &[(DVec3, DVec3)], to_robot: DAffine3, point: Vec3, direction: Vec3) -> Joints {
+/// How fast a point goes along a direction per rad/s of each joint, in m, if so many of them carry it.
+fn lever(
+    axes: &[(DVec3, DVec3)],
+    carriers: usize,
+    to_robot: DAffine3,
+    point: Vec3,
+    direction: Vec3,
+) -> Joints {
     let point = to_robot.transform_point3(point.as_dvec3() / UNITS_PER_METER);
     let direction = to_robot.transform_vector3(direction.as_dvec3());
-    from_fn(|i| {
-        carriers.get(i).map_or(0.0, |(origin, axis)| {
-            axis.cross(point - *origin).dot(direction)
-        })
+    each(axes.len(), |i| {
+        let (origin, axis) = axes[i];
+        match i < carriers {
+            true => axis.cross(point - origin).dot(direction),
+            false => 0.0,
+        }
     })
 }
 

@@ -8,11 +8,9 @@
 #[cfg(test)]
 mod tests;
 
-use std::array::from_fn;
-
 use crate::dynamics::{
     impulse::{ContactLoad, FrictionLoad},
-    matrix::{Factors, Joints, Matrix, dot},
+    matrix::{Factors, Joints, Matrix, dot, each},
     motor::Motor,
 };
 
@@ -30,13 +28,13 @@ pub(crate) struct LimbDynamics {
     /// Torque against the motion of each joint, in N m per rad/s.
     pub damping: Joints,
     /// Between which angles each joint can move, in rad.
-    pub stops: [[f64; 2]; 7],
+    pub stops: Vec<[f64; 2]>,
     /// What the arm touches that is free to move.
     pub touches: Vec<ContactLoad>,
 }
 
 /// What a step makes of an arm.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Step {
     /// How fast the joints are at its end and move in it, in rad/s.
     pub velocities: Joints,
@@ -58,14 +56,14 @@ const HALVINGS: usize = 30;
 
 impl LimbDynamics {
     /// What `seconds` make of the arm.
-    pub fn step(&self, motors: &[Motor; 7], seconds: f64) -> Step {
-        let smooth = self.minimum(motors, self.velocities, &[], seconds);
+    pub fn step(&self, motors: &[Motor], seconds: f64) -> Step {
+        let smooth = self.minimum(motors, self.velocities.clone(), &[], seconds);
         let draws = self.draws(&smooth);
         let velocities = match draws.is_empty() {
             true => smooth,
             false => self.minimum(motors, smooth, &draws, seconds),
         };
-        let velocities = from_fn(|i| {
+        let velocities = each(motors.len(), |i| {
             let [least, largest] = self.bounds(i, seconds);
             let speed = motors[i].speed;
             let velocity = if velocities[i].is_finite() {
@@ -76,10 +74,10 @@ impl LimbDynamics {
             velocity.clamp(-speed, speed).min(largest).max(least)
         });
         Step {
-            velocities,
-            torques: from_fn(|i| {
+            torques: each(motors.len(), |i| {
                 motors[i].torque(self.angles[i] + seconds * velocities[i], velocities[i])
             }),
+            velocities,
         }
     }
 
@@ -92,7 +90,7 @@ impl LimbDynamics {
     /// The velocities at the end of a step, looked for from these on.
     fn minimum(
         &self,
-        motors: &[Motor; 7],
+        motors: &[Motor],
         from: Joints,
         draws: &[FrictionLoad],
         seconds: f64,
@@ -105,8 +103,8 @@ impl LimbDynamics {
                 break;
             }
             let slope = self.hessian(motors, &velocities, draws, seconds);
-            let way = Factors::of(&slope).solve(start.map(|residual| -residual));
-            let next = line_search(velocities, &way, dot(&start, &way), residual);
+            let way = Factors::of(&slope).solve(start.iter().map(|residual| -residual).collect());
+            let next = line_search(&velocities, &way, dot(&start, &way), residual);
             if next == velocities {
                 break;
             }
@@ -118,13 +116,13 @@ impl LimbDynamics {
     /// The angular momentum in N m s that would come from nowhere if the joints had these velocities at the end of a step.
     fn residual(
         &self,
-        motors: &[Motor; 7],
+        motors: &[Motor],
         velocities: &Joints,
         draws: &[FrictionLoad],
         seconds: f64,
     ) -> Joints {
-        let change: Joints = from_fn(|i| velocities[i] - self.velocities[i]);
-        let mut pushed = [0.0; 7];
+        let change = each(velocities.len(), |i| velocities[i] - self.velocities[i]);
+        let mut pushed = each(velocities.len(), |_| 0.0);
         let pushes = self.touches.iter().map(|touch| {
             let push = touch.push(dot(&touch.lever, velocities));
             (push, &touch.lever)
@@ -138,7 +136,7 @@ impl LimbDynamics {
                 *pushed += push * lever;
             }
         }
-        from_fn(|i| {
+        each(velocities.len(), |i| {
             let velocity = velocities[i];
             let [least, largest] = self.bounds(i, seconds);
             let motor = motors[i].torque(self.angles[i] + seconds * velocity, velocity);
@@ -152,12 +150,12 @@ impl LimbDynamics {
     /// How that changes with the velocities.
     fn hessian(
         &self,
-        motors: &[Motor; 7],
+        motors: &[Motor],
         velocities: &Joints,
         draws: &[FrictionLoad],
         seconds: f64,
     ) -> Matrix {
-        let mut slope = self.inertia;
+        let mut slope = self.inertia.clone();
         let pushed = self.touches.iter().map(|touch| {
             let mass = touch.felt_mass(dot(&touch.lever, velocities));
             (mass, &touch.lever)
@@ -194,12 +192,12 @@ impl LimbDynamics {
 /// Goes from somewhere this way until it goes up again: the convex function whose slopes `residual` has goes down by
 /// `-start` where the way starts.
 fn line_search(
-    from: Joints,
+    from: &Joints,
     way: &Joints,
     start: f64,
     residual: impl Fn(&Joints) -> Joints,
 ) -> Joints {
-    let at = |part: f64| -> Joints { from_fn(|i| from[i] + part * way[i]) };
+    let at = |part: f64| each(from.len(), |i| from[i] + part * way[i]);
     let slope = |part: f64| dot(&residual(&at(part)), way);
     let enough = 0.1 * start.abs();
     if slope(1.0) <= enough {

@@ -4,18 +4,16 @@
 //! never farther ahead than the motor can pull, so a joint that is held back does not wind up. Grippers and neck go as in
 //! kinematic mode. The arms' own weight is borne by springs, as in the real robot; the motors bear what the grippers hold.
 
-use std::array::from_fn;
-
 use bevy::{math::DVec3, prelude::*};
-use tabletop_core::{Arm, JOINTS_PER_ARM, Robot, RobotJoint, TICK_SECONDS, UNITS_PER_METER};
+use tabletop_core::{LimbId, Robot, RobotLayout, TICK_SECONDS, UNITS_PER_METER};
 use tabletop_kinematics::Load;
 
 use crate::{
-    articulation::tree::Articulation,
+    articulation::tree::{Articulation, Positions},
     command::joint_targets::{JointTargets, Setpoint},
     dynamics::impulse::ContactLoad,
     dynamics::limb_dynamics::{LimbDynamics, Step},
-    dynamics::matrix::{Joints, Matrix},
+    dynamics::matrix::{Joints, Matrix, each, each_pair},
     dynamics::motor::{Motor, MotorTask, STRETCH},
     motion::sweep::Motion,
 };
@@ -29,13 +27,10 @@ const AT_REST: f64 = 0.02;
 /// Speed in rad/s below which a joint stands still, as gears do.
 const STILL: f64 = 1e-6;
 
-/// Torques (N m) and speeds (rad/s) of Baxter's motors from the shoulder to the elbow, and of those beyond.
-const USUAL: [(f64, f64); 2] = [(50.0, 1.5), (15.0, 4.0)];
-
 /// What the motors have to remember from tick to tick.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct Motors {
-    arms: [LimbMotors; 2],
+    limbs: Vec<LimbMotors>,
     was_shown: bool,
 }
 
@@ -55,21 +50,23 @@ pub(crate) struct LimbStep {
     /// What the arm touches, as the masses have it.
     touched: Vec<Entity>,
     masses: LimbDynamics,
-    motors: [Motor; 7],
+    motors: Vec<Motor>,
     step: Step,
 }
 
 impl Motors {
     /// Forgets the motion of arms that have been moved by something else.
-    pub fn look(&mut self, robot: &Robot) {
+    pub fn look(&mut self, layout: &RobotLayout, robot: &Robot) {
         let appears = std::mem::replace(&mut self.was_shown, robot.is_shown) != robot.is_shown;
-        for arm in Arm::BOTH {
-            let (driven, angles) = (&mut self.arms[arm as usize], robot.angles(arm));
-            if appears || driven.angles != angles {
-                *driven = LimbMotors {
+        self.limbs
+            .resize_with(layout.limbs.len(), LimbMotors::default);
+        for (motors, limb) in self.limbs.iter_mut().zip(&layout.limbs) {
+            let angles = Joints::from_vec(robot.positions_of(&limb.joints));
+            if appears || motors.angles != angles {
+                *motors = LimbMotors {
+                    velocities: each(angles.len(), |_| 0.0),
+                    places: angles.clone(),
                     angles,
-                    velocities: [0.0; 7],
-                    places: angles,
                 };
             }
         }
@@ -81,53 +78,53 @@ impl Motors {
         motion: &mut Motion,
         targets: &JointTargets,
         gravity: f32,
-        mut touches: impl FnMut(&mut Motion, Arm) -> Vec<(Entity, ContactLoad)>,
-    ) -> [LimbStep; 2] {
-        let mut all_touches = Arm::BOTH.map(|arm| touches(motion, arm));
+        mut touches: impl FnMut(&mut Motion, LimbId) -> Vec<(Entity, ContactLoad)>,
+    ) -> Vec<LimbStep> {
+        let limbs = motion.articulation.layout.limb_ids();
+        let all_touches: Vec<_> = limbs.clone().map(|limb| touches(motion, limb)).collect();
         let articulation = motion.articulation;
         articulation.update(&mut motion.scratch, &motion.positions);
         let (model, frames) = (articulation.model(), motion.scratch.frames());
-        let loads = Arm::BOTH.map(|arm| -> Vec<Load> {
-            let carried = motion.carried[arm as usize].iter();
+        let loads = limbs.clone().map(|limb| -> Vec<Load> {
+            let carried = motion.carried[limb.index()].iter();
             carried
-                .map(|it| articulation.load(arm, it.pose, it.mass))
+                .map(|it| articulation.load(limb, it.pose, it.mass))
                 .collect()
         });
+        let loads: Vec<_> = loads.collect();
         let all_loads = loads.concat();
         let mut velocities = model.zero();
-        for arm in Arm::BOTH {
-            let chain = articulation.chain(arm).0;
-            chain.set_angles(&self.arms[arm as usize].velocities, &mut velocities);
+        for limb in limbs.clone() {
+            let chain = articulation.chain(limb).0;
+            chain.set_angles(&self.limbs[limb.index()].velocities, &mut velocities);
         }
         let inertia = model.inertia_matrix(frames, &all_loads);
         let turning =
             model.inverse_dynamics(frames, &velocities, &model.zero(), DVec3::ZERO, &all_loads);
         let down = DVec3::NEG_Z * (f64::from(gravity) / UNITS_PER_METER);
-        Arm::BOTH.map(|arm| {
-            let driven = &self.arms[arm as usize];
-            let chain = articulation.chain(arm).0;
-            let joints = *chain.joints();
-            let inertia: Matrix = from_fn(|i| from_fn(|j| inertia[(joints[i], joints[j])]));
-            let axes = articulation.axes(arm, &motion.scratch);
-            let weights: Joints = from_fn(|i| {
+        let pulls = limbs.zip(all_touches).map(|(limb, touches)| {
+            let driven = &self.limbs[limb.index()];
+            let chain = articulation.chain(limb).0;
+            let joints = chain.joints();
+            let inertia = each_pair(joints.len(), |i, j| inertia[(joints[i], joints[j])]);
+            let axes = articulation.axes(limb, &motion.scratch);
+            let weights = each(joints.len(), |i| {
                 let (origin, axis) = axes[i];
                 let of_load = |load: &Load| {
                     let arm = frames[load.link].transform_point3(load.point) - origin;
                     -axis.dot(arm.cross(down * load.mass))
                 };
-                loads[arm as usize].iter().map(of_load).sum()
+                loads[limb.index()].iter().map(of_load).sum()
             });
-            let motors = driven.motors(articulation, arm, targets, &inertia, &weights);
-            let (touched, touches) = std::mem::take(&mut all_touches[arm as usize])
-                .into_iter()
-                .unzip();
+            let motors = driven.motors(articulation, limb, targets, &inertia, &weights);
+            let (touched, touches) = touches.into_iter().unzip();
             let masses = LimbDynamics {
-                angles: driven.angles,
-                velocities: driven.velocities,
+                angles: driven.angles.clone(),
+                velocities: driven.velocities.clone(),
                 inertia,
                 bias: add(&chain.angles(&turning), &weights),
-                damping: joints.map(|joint| model.joint(joint).damping),
-                stops: RobotJoint::of_arm(arm).map(|joint| joint.limits().into()),
+                damping: each(joints.len(), |i| model.joint(joints[i]).damping),
+                stops: chain.limits().to_vec(),
                 touches,
             };
             let mut step = masses.step(&motors, f64::from(TICK_SECONDS));
@@ -136,7 +133,7 @@ impl Motors {
                 .iter()
                 .all(|velocity| velocity.abs() < STILL)
             {
-                step.velocities = [0.0; 7];
+                step.velocities.fill(0.0);
             }
             LimbStep {
                 touched,
@@ -144,33 +141,35 @@ impl Motors {
                 motors,
                 step,
             }
-        })
+        });
+        pulls.collect()
     }
 
     /// Notes what has become of a tick: how far the arms have come, and with which torques.
-    pub fn note(&mut self, pulls: &[LimbStep; 2], motion: &mut Motion, robot: &mut Robot) {
-        for (arm, pull) in Arm::BOTH.into_iter().zip(pulls) {
-            let joints = RobotJoint::of_arm(arm);
-            let angles = joints.map(|joint| motion.positions[joint.index()]);
+    pub fn note(&mut self, pulls: &[LimbStep], motion: &mut Motion, robot: &mut Robot) {
+        let layout = &motion.articulation.layout;
+        for (limb, pull) in layout.limb_ids().zip(pulls) {
+            let joints = &layout.limb(limb).joints;
+            let angles = each(joints.len(), |i| motion.positions[joints[i].index()]);
             // Where something free is only just reached, an arm keeps its speed.
             let is_free =
-                motion.blocked_by[arm as usize].is_none() && !motion.is_squeezing[arm as usize];
+                motion.blocked_by[limb.index()].is_none() && !motion.is_squeezing[limb.index()];
             let (velocities, torques) = match is_free {
-                true => (pull.step.velocities, pull.step.torques),
+                true => (pull.step.velocities.clone(), pull.step.torques.clone()),
                 false => pull.held_back(&angles),
             };
-            for (joint, torque) in joints.into_iter().zip(torques) {
+            for (joint, torque) in joints.iter().zip(torques) {
                 robot.joints[joint.index()].torque = torque;
             }
-            let held_up_by = &mut motion.held_up_by[arm as usize];
+            let held_up_by = &mut motion.held_up_by[limb.index()];
             *held_up_by = held_up_by.or_else(|| pull.stalled_by());
-            let places = from_fn(|i| match pull.motors[i].task {
+            let places = each(angles.len(), |i| match pull.motors[i].task {
                 MotorTask::Follow { angle, .. } => {
                     angle.clamp(angles[i] - STRETCH, angles[i] + STRETCH)
                 }
                 MotorTask::Torque(_) => angles[i],
             });
-            self.arms[arm as usize] = LimbMotors {
+            self.limbs[limb.index()] = LimbMotors {
                 angles,
                 velocities,
                 places,
@@ -178,22 +177,22 @@ impl Motors {
         }
     }
 
-    /// Lets an arm stay where it is.
-    pub fn stay(&mut self, arm: Arm) {
-        let driven = &mut self.arms[arm as usize];
-        driven.places = driven.angles;
+    /// Lets a limb stay where it is.
+    pub fn stay(&mut self, limb: LimbId) {
+        if let Some(motors) = self.limbs.get_mut(limb.index()) {
+            motors.places.clone_from(&motors.angles);
+        }
     }
 
-    /// How far targets have been carried out: to where the motors pull joints that have come to rest, and these positions
+    /// How far orders have been carried out: to where the motors pull joints that have come to rest, and these positions
     /// of all others.
-    pub fn reached(&self, positions: &[f64; 17]) -> [f64; 17] {
-        let mut reached = *positions;
-        for arm in Arm::BOTH {
-            let driven = &self.arms[arm as usize];
-            for (i, joint) in RobotJoint::of_arm(arm).into_iter().enumerate() {
-                let is_near = (driven.angles[i] - driven.places[i]).abs() < STRETCH;
-                if is_near && driven.velocities[i].abs() < AT_REST {
-                    reached[joint.index()] = driven.places[i];
+    pub fn reached(&self, layout: &RobotLayout, positions: &[f64]) -> Positions {
+        let mut reached = Positions::from_slice(positions);
+        for (motors, limb) in self.limbs.iter().zip(&layout.limbs) {
+            for (i, joint) in limb.joints.iter().enumerate() {
+                let is_near = (motors.angles[i] - motors.places[i]).abs() < STRETCH;
+                if is_near && motors.velocities[i].abs() < AT_REST {
+                    reached[joint.index()] = motors.places[i];
                 }
             }
         }
@@ -206,27 +205,28 @@ impl LimbMotors {
     fn motors(
         &self,
         articulation: &Articulation,
-        arm: Arm,
+        limb: LimbId,
         targets: &JointTargets,
         inertia: &Matrix,
         weights: &Joints,
-    ) -> [Motor; 7] {
-        let joints = RobotJoint::of_arm(arm);
-        let setpoints = targets.arm_setpoints(arm, self.places);
-        from_fn(|i| {
+    ) -> Vec<Motor> {
+        let layout = &articulation.layout;
+        let joints = &layout.limb(limb).joints;
+        let setpoints = targets.limb_setpoints(layout, limb, &self.places);
+        let motor = |i: usize| {
             let joint = articulation
                 .model()
-                .joint(articulation.chain(arm).0.joints()[i]);
-            let usual = USUAL[usize::from(i > 3)];
+                .joint(articulation.chain(limb).0.joints()[i]);
+            let usual = layout.joint(joints[i]);
             let effort = if joint.effort > 0.0 {
                 joint.effort
             } else {
-                usual.0
+                usual.effort
             };
             let speed = if joint.velocity > 0.0 {
                 joint.velocity
             } else {
-                usual.1
+                usual.speed
             };
             let task = match targets.torque(joints[i]) {
                 Some(torque) => MotorTask::Torque(torque),
@@ -235,7 +235,7 @@ impl LimbMotors {
                     // As fast as it can still stop where it is to go.
                     let brakes = BRAKES * effort / inertia[i][i].max(f64::MIN_POSITIVE);
                     let left = targets
-                        .goal(joints[i])
+                        .goal(layout, joints[i])
                         .map(|goal| (goal - self.places[i]).abs());
                     let fastest =
                         left.map_or(speed, |left| speed.min((2.0 * brakes * left).sqrt()));
@@ -257,18 +257,22 @@ impl LimbMotors {
                 speed,
                 task,
             }
-        })
+        };
+        (0..joints.len()).map(motor).collect()
     }
 }
 
 impl LimbStep {
     /// Where the joints are to be after the tick.
-    pub fn setpoints(&self, arm: Arm) -> [Setpoint; JOINTS_PER_ARM] {
-        let joints = RobotJoint::of_arm(arm);
-        from_fn(|i| {
-            let way = f64::from(TICK_SECONDS) * self.step.velocities[i];
-            Setpoint::Move(joints[i].clamp(self.masses.angles[i] + way))
-        })
+    pub fn setpoints(&self) -> Vec<Setpoint> {
+        let angles = self.masses.angles.iter().zip(&self.step.velocities);
+        angles
+            .zip(&self.masses.stops)
+            .map(|((angle, velocity), [least, largest])| {
+                let way = f64::from(TICK_SECONDS) * velocity;
+                Setpoint::Move((angle + way).clamp(*least, *largest))
+            })
+            .collect()
     }
 
     /// What a motor pushes in vain with all its might.
@@ -289,12 +293,16 @@ impl LimbStep {
 
     /// Velocities and torques of an arm that came only to these angles, because something is in its way.
     fn held_back(&self, angles: &Joints) -> (Joints, Joints) {
-        let velocities = from_fn(|i| (angles[i] - self.masses.angles[i]) / f64::from(TICK_SECONDS));
-        let torques = from_fn(|i| self.motors[i].torque(angles[i], velocities[i]));
+        let velocities = each(angles.len(), |i| {
+            (angles[i] - self.masses.angles[i]) / f64::from(TICK_SECONDS)
+        });
+        let torques = each(angles.len(), |i| {
+            self.motors[i].torque(angles[i], velocities[i])
+        });
         (velocities, torques)
     }
 }
 
-fn add(a: &Joints, b: &Joints) -> Joints {
-    from_fn(|i| a[i] + b[i])
+fn add(a: &[f64], b: &[f64]) -> Joints {
+    each(a.len(), |i| a[i] + b[i])
 }

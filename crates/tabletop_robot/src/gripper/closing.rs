@@ -43,8 +43,13 @@ pub(crate) struct Touched {
 }
 
 /// What happens to a gripper that closes.
-pub(crate) fn close(end_effector: Pose, opening: f32, between: &[Candidate]) -> Closing {
-    let pads = FingerPad::pair(end_effector, opening);
+pub(crate) fn close(
+    end_effector: Pose,
+    opening: f32,
+    finger: Vec3,
+    between: &[Candidate],
+) -> Closing {
+    let pads = FingerPad::pair(end_effector, opening, finger);
     let mut closing = Closing {
         room: opening,
         touched: Vec::new(),
@@ -97,6 +102,8 @@ mod tests {
 
     use super::*;
 
+    const FINGER: Vec3 = Vec3::new(0.3, 0.4, 1.5);
+
     const OBJECT: Entity = Entity::PLACEHOLDER;
 
     fn candidate(shape: SharedShape, pose: Pose) -> Candidate {
@@ -113,8 +120,8 @@ mod tests {
     /// θ when the gripper has closed on this, without moving it.
     fn theta(candidate: Candidate) -> f32 {
         let candidates = [candidate];
-        let free = close(Pose::IDENTITY, 2.0, &candidates);
-        let closed = close(Pose::IDENTITY, 2.0 - free.room, &candidates);
+        let free = close(Pose::IDENTITY, 2.0, FINGER, &candidates);
+        let closed = close(Pose::IDENTITY, 2.0 - free.room, FINGER, &candidates);
         assert!(closed.room < 1e-3, "{closed:?}");
         closed.touched[0].angle
     }
@@ -150,7 +157,12 @@ mod tests {
     #[test]
     fn a_block_off_the_centre_leaves_the_same_room() {
         for x in [0.0, 0.2, -0.4] {
-            let closing = close(Pose::IDENTITY, 2.0, &[unit_block(Pose::at(Vec3::X * x))]);
+            let closing = close(
+                Pose::IDENTITY,
+                2.0,
+                FINGER,
+                &[unit_block(Pose::at(Vec3::X * x))],
+            );
             assert!((closing.room - 1.0).abs() < 1e-4, "{closing:?}");
             assert!(closing.touched.is_empty());
         }
@@ -160,7 +172,7 @@ mod tests {
     fn blocks_behind_each_other_add_up() {
         let halves = [-0.5, 0.4]
             .map(|x| candidate(SharedShape::cuboid(0.25, 0.5, 0.5), Pose::at(Vec3::X * x)));
-        let closing = close(Pose::IDENTITY, 2.0, &halves);
+        let closing = close(Pose::IDENTITY, 2.0, FINGER, &halves);
         assert!((closing.room - 1.0).abs() < 1e-4, "{closing:?}");
         assert!(closing.touched.is_empty());
     }
@@ -169,13 +181,13 @@ mod tests {
     fn blocks_above_each_other_are_both_touched() {
         let stacked = [-0.3, 0.3]
             .map(|z| candidate(SharedShape::cuboid(0.25, 0.25, 0.25), Pose::at(Vec3::Z * z)));
-        let closing = close(Pose::IDENTITY, 0.5, &stacked);
+        let closing = close(Pose::IDENTITY, 0.5, FINGER, &stacked);
         assert_eq!(closing.touched.len(), 2);
         assert_eq!(closing.room, 0.0);
     }
 
     #[test]
     fn nothing_between_the_fingers_lets_them_meet() {
-        assert_eq!(close(Pose::IDENTITY, 1.5, &[]).room, 1.5);
+        assert_eq!(close(Pose::IDENTITY, 1.5, FINGER, &[]).room, 1.5);
     }
 }

@@ -5,9 +5,6 @@ use bevy_rapier3d::parry::query::Ray;
 use tabletop_core::Pose;
 use tabletop_physics::{Convex, to_rapier};
 
-/// Half the extents of the inner face of a finger across and along the finger, in units.
-const HALF_FACE: Vec2 = Vec2::new(0.2, 0.75);
-
 /// Rays across and along the face, with which it probes what is in front of it.
 const PROBE_RAYS: (u32, u32) = (9, 31);
 
@@ -39,14 +36,18 @@ pub(crate) struct FingerTouch {
 pub(crate) struct FingerPad {
     /// Origin in the centre of the face, x inwards, z along the finger.
     pub pose: Pose,
+    /// Half its extents across and along the finger, in units.
+    half: Vec2,
 }
 
 impl FingerPad {
     /// The faces of a gripper's left and right finger.
-    pub fn pair(end_effector: Pose, opening: f32) -> [Self; 2] {
+    pub fn pair(end_effector: Pose, opening: f32, finger: Vec3) -> [Self; 2] {
+        let half = Vec2::new(finger.y, finger.z) / 2.0;
         let turned = Quat::from_rotation_z(std::f32::consts::PI);
         [(-1.0, Quat::IDENTITY), (1.0, turned)].map(|(side, rotation)| Self {
             pose: end_effector * Pose::new(Vec3::X * (side * opening / 2.0), rotation),
+            half,
         })
     }
 
@@ -57,7 +58,7 @@ impl FingerPad {
         reach: f32,
     ) -> impl Iterator<Item = (ProbeRay, f32)> + 'a {
         let inwards = self.pose.rotation * Vec3::X;
-        probe_rays().filter_map(move |(ray, at)| {
+        probe_rays(self.half).filter_map(move |(ray, at)| {
             let line = Ray::new(self.pose * (at - Vec3::X * DEPTH), inwards);
             let nearest = body
                 .iter()
@@ -79,7 +80,7 @@ impl FingerPad {
             .min_by(f32::total_cmp)?;
         let area = hits.iter().filter(|(_, d)| *d <= distance + YIELD);
         let (sum, count) = area.fold((Vec3::ZERO, 0.0), |(sum, count), (ray, _)| {
-            (sum + place_of(*ray), count + 1.0)
+            (sum + place_of(*ray, self.half), count + 1.0)
         });
         Some(FingerTouch {
             distance,
@@ -88,20 +89,20 @@ impl FingerPad {
     }
 }
 
-fn probe_rays() -> impl Iterator<Item = (ProbeRay, Vec3)> {
+fn probe_rays(half: Vec2) -> impl Iterator<Item = (ProbeRay, Vec3)> {
     let (across, along) = PROBE_RAYS;
     (0..across)
         .flat_map(move |x| (0..along).map(move |z| (x, z)))
-        .map(|ray| (ray, place_of(ray)))
+        .map(move |ray| (ray, place_of(ray, half)))
 }
 
 /// Where a ray is, in the frame of the face.
-fn place_of(ray: ProbeRay) -> Vec3 {
+fn place_of(ray: ProbeRay, half: Vec2) -> Vec3 {
     let from_middle = |i: u32, count: u32| 2.0 * i as f32 / (count - 1) as f32 - 1.0;
     Vec3::new(
         0.0,
-        from_middle(ray.0, PROBE_RAYS.0) * HALF_FACE.x,
-        from_middle(ray.1, PROBE_RAYS.1) * HALF_FACE.y,
+        from_middle(ray.0, PROBE_RAYS.0) * half.x,
+        from_middle(ray.1, PROBE_RAYS.1) * half.y,
     )
 }
 
@@ -110,6 +111,8 @@ mod tests {
     use bevy_rapier3d::rapier::prelude as rapier;
 
     use super::*;
+
+    const FINGER: Vec3 = Vec3::new(0.3, 0.4, 1.5);
 
     fn block(span: Vec3, pose: Pose) -> [Convex; 1] {
         let half = span / 2.0;
@@ -121,7 +124,7 @@ mod tests {
 
     #[test]
     fn a_finger_measures_how_far_a_block_is_and_where_its_face_is() {
-        let [left, right] = FingerPad::pair(Pose::IDENTITY, 2.0);
+        let [left, right] = FingerPad::pair(Pose::IDENTITY, 2.0, FINGER);
         let block = block(Vec3::ONE, Pose::at(Vec3::new(0.2, 0.0, 0.25)));
         let (left, right) = (left.touch(&block, 2.0), right.touch(&block, 2.0));
         let (left, right) = (left.unwrap(), right.unwrap());
@@ -139,7 +142,7 @@ mod tests {
 
     #[test]
     fn what_is_beside_the_fingers_is_not_touched() {
-        let [left, _] = FingerPad::pair(Pose::IDENTITY, 2.0);
+        let [left, _] = FingerPad::pair(Pose::IDENTITY, 2.0, FINGER);
         let beside = block(Vec3::ONE, Pose::at(Vec3::new(0.0, 0.71, 0.0)));
         assert_eq!(left.touch(&beside, 2.0), None);
         let far = block(Vec3::ONE, Pose::at(Vec3::new(5.0, 0.0, 0.0)));
@@ -148,7 +151,7 @@ mod tests {
 
     #[test]
     fn what_has_entered_a_finger_is_nearer_than_nothing() {
-        let [left, _] = FingerPad::pair(Pose::IDENTITY, 1.0);
+        let [left, _] = FingerPad::pair(Pose::IDENTITY, 1.0, FINGER);
         let block = block(Vec3::ONE * 1.02, Pose::IDENTITY);
         let touch = left.touch(&block, 1.0).unwrap();
         assert!((touch.distance + 0.01).abs() < 1e-4, "{touch:?}");

@@ -2,17 +2,19 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{GravityScale, Velocity};
-use tabletop_core::{Arm, Gripped, Held, Joint, ObjectSpec, Pose, Robot, SimFact};
+use tabletop_core::{
+    Arm, Gripped, Held, Joint, LimbId, ObjectSpec, Pose, Robot, RobotLayout, SimFact,
+};
 use tabletop_physics::{JustReleased, hold, let_go, pull_velocity};
 
 use crate::gripper::closing::Touched;
 
 /// What the grippers hold, and how.
-#[derive(Resource, Clone, Debug, Default)]
+#[derive(Resource, Clone, Debug)]
 pub(crate) struct Grips {
-    held: [Vec<Grip>; 2],
+    held: Vec<Vec<Grip>>,
     /// Objects that a closing gripper could not hold, until it opens.
-    pub refused: [Vec<Entity>; 2],
+    pub refused: Vec<Vec<Entity>>,
 }
 
 /// An object in a gripper.
@@ -29,9 +31,22 @@ pub(crate) struct Grip {
 }
 
 impl Grips {
+    /// Empty grippers.
+    pub fn none(layout: &RobotLayout) -> Self {
+        Self {
+            held: vec![Vec::new(); layout.limbs.len()],
+            refused: vec![Vec::new(); layout.limbs.len()],
+        }
+    }
+
+    /// The limbs.
+    fn limbs(&self) -> impl Iterator<Item = LimbId> + use<> {
+        (0..self.held.len() as u8).map(LimbId)
+    }
+
     /// What a gripper holds, in the order in which it took it.
-    pub fn of(&self, arm: Arm) -> &[Grip] {
-        &self.held[arm as usize]
+    pub fn of(&self, limb: LimbId) -> &[Grip] {
+        &self.held[limb.index()]
     }
 
     /// Everything that is held.
@@ -41,9 +56,9 @@ impl Grips {
 }
 
 /// Takes an object into a gripper whose fingers touch it.
-pub(crate) fn take(world: &mut World, arm: Arm, touched: Touched) {
+pub(crate) fn take(world: &mut World, limb: LimbId, touched: Touched) {
     let object = touched.object;
-    let end_effector = world.resource::<Robot>().arm(arm).end_effector;
+    let end_effector = world.resource::<Robot>().limb(limb).end_effector;
     let Some(here) = world.get::<Transform>(object).map(Pose::from) else {
         return;
     };
@@ -54,26 +69,31 @@ pub(crate) fn take(world: &mut World, arm: Arm, touched: Touched) {
         .query::<&Joint>()
         .iter(world)
         .any(|joint| joint.objects.contains(&object));
-    world.resource_mut::<Grips>().held[arm as usize].push(Grip {
+    world.resource_mut::<Grips>().held[limb.index()].push(Grip {
         object,
         pose: end_effector.inverse() * here,
         points: touched.points.map(|point| end_effector.inverse() * point),
         is_jointed,
     });
     let mut body = world.entity_mut(object);
-    body.insert(Gripped { by: arm });
+    body.insert(Gripped {
+        by: Arm::BOTH[limb.index()],
+    });
     if is_jointed {
         body.insert(GravityScale(0.0));
         body.remove::<JustReleased>();
     } else {
         hold(body);
     }
-    world.write_message(SimFact::GripMade { arm, id });
+    world.write_message(SimFact::GripMade {
+        arm: Arm::BOTH[limb.index()],
+        id,
+    });
 }
 
 /// Lets go of everything that a gripper holds.
-pub(crate) fn release(world: &mut World, arm: Arm) {
-    let grips = std::mem::take(&mut world.resource_mut::<Grips>().held[arm as usize]);
+pub(crate) fn release(world: &mut World, limb: LimbId) {
+    let grips = std::mem::take(&mut world.resource_mut::<Grips>().held[limb.index()]);
     for Grip { object, .. } in grips {
         let Some(id) = id(world, object) else {
             continue;
@@ -81,7 +101,10 @@ pub(crate) fn release(world: &mut World, arm: Arm) {
         let mut body = world.entity_mut(object);
         body.remove::<Gripped>();
         let_go(body);
-        world.write_message(SimFact::GripReleased { arm, id });
+        world.write_message(SimFact::GripReleased {
+            arm: Arm::BOTH[limb.index()],
+            id,
+        });
     }
 }
 
@@ -91,10 +114,10 @@ pub(crate) fn draw_jointed(
     robot: Res<Robot>,
     mut objects: Query<(&Transform, &mut Velocity)>,
 ) {
-    for arm in Arm::BOTH {
-        for grip in grips.of(arm).iter().filter(|grip| grip.is_jointed) {
+    for limb in grips.limbs() {
+        for grip in grips.of(limb).iter().filter(|grip| grip.is_jointed) {
             if let Ok((transform, mut velocity)) = objects.get_mut(grip.object) {
-                let target = robot.arm(arm).end_effector * grip.pose;
+                let target = robot.limb(limb).end_effector * grip.pose;
                 *velocity = pull_velocity(Pose::from(transform), target);
             }
         }
@@ -111,14 +134,14 @@ pub(crate) fn give_to_hands(
     if held.is_empty() {
         return;
     }
-    for arm in Arm::BOTH {
-        grips.held[arm as usize].retain(|grip| {
+    for limb in grips.limbs() {
+        grips.held[limb.index()].retain(|grip| {
             let Ok(spec) = held.get(grip.object) else {
                 return true;
             };
             commands.entity(grip.object).remove::<Gripped>();
             facts.write(SimFact::GripReleased {
-                arm,
+                arm: Arm::BOTH[limb.index()],
                 id: spec.id.clone(),
             });
             false
@@ -133,15 +156,15 @@ pub(crate) fn note_lost(
     mut grips: ResMut<Grips>,
     mut facts: MessageWriter<SimFact>,
 ) {
-    for arm in Arm::BOTH {
-        let held = &mut grips.held[arm as usize];
+    for limb in grips.limbs() {
+        let held = &mut grips.held[limb.index()];
         let Some(place) = held.iter().position(|grip| grip.object == remove.entity) else {
             continue;
         };
         held.remove(place);
         if let Ok(spec) = objects.get(remove.entity) {
             facts.write(SimFact::GripReleased {
-                arm,
+                arm: Arm::BOTH[limb.index()],
                 id: spec.id.clone(),
             });
         }

@@ -2,20 +2,20 @@
 
 use std::collections::BTreeSet;
 
-use bevy::{math::DAffine3, prelude::*};
-use tabletop_core::{Face, Figure, Robot};
+use bevy::{
+    math::{DAffine3, DMat3, DVec3},
+    prelude::*,
+};
+use tabletop_core::{Face, Figure, FingerLook, GripperLayout, Robot, UNITS_PER_METER};
 use tabletop_kinematics::{Geometry, Link, LinkShape};
 
 use crate::{
     articulation::link_entities::LinkEntities,
-    articulation::tree::{Articulation, Carrier, WRIST_TURNED},
+    articulation::tree::{Articulation, Carrier},
     description::Description,
     look::error::LookError,
     look::figure::{figure_of, merged, screen_with, stand_in},
 };
-
-/// The link whose face changes.
-const SCREEN: &str = "screen";
 
 /// The looks of the robot's bodies, made when it is shown for the first time.
 #[derive(Resource, Default)]
@@ -43,8 +43,9 @@ pub(crate) fn show_figures(
         figures.bodies = figures_of(&description, &articulation);
     }
     for (number, &part) in parts.0.iter().enumerate() {
-        let is_screen = matches!(articulation.bodies[number].carrier, Carrier::Link(link)
-            if description.model.link(link).name == SCREEN);
+        let body = &articulation.bodies[number];
+        let is_screen = matches!(body.carrier, Carrier::Link(_))
+            && articulation.layout.screen.as_ref() == Some(&body.id);
         let mut part = commands.entity(part);
         let Some((face, first)) = show else {
             part.remove::<Figure>();
@@ -52,7 +53,7 @@ pub(crate) fn show_figures(
         };
         let is_new = figures.shown.is_none_or(|(_, before)| before != first);
         let figure = if is_screen {
-            screen(&description, face)
+            screen(&description, &body.id, face)
         } else if is_new {
             figures.bodies[number].clone()
         } else {
@@ -83,7 +84,15 @@ fn figures_of(description: &Description, articulation: &Articulation) -> Vec<Opt
                     stand_in(&link.collisions)
                 })
             }
-            Carrier::Gripper(..) => seen(&finger(), description).ok(),
+            Carrier::Gripper(limb, _) => {
+                let gripper = &articulation.layout.limb(limb).gripper;
+                finger(gripper, description).unwrap_or_else(|error| {
+                    if told.insert(error.to_string()) {
+                        warn!("fingers are shown by what they are touched by: {error}");
+                    }
+                    stand_in(&[finger_solid(gripper)])
+                })
+            }
         })
         .collect()
 }
@@ -95,8 +104,8 @@ fn figure_of_link(description: &Description, link: &Link) -> Result<Option<Figur
     visuals.map(merged)
 }
 
-fn screen(description: &Description, face: Face) -> Option<Figure> {
-    let link = description.model.find_link(SCREEN).ok()?;
+fn screen(description: &Description, link: &str, face: Face) -> Option<Figure> {
+    let link = description.model.find_link(link).ok()?;
     let link = description.model.link(link);
     match &link.visuals[..] {
         [visual] if is_ours(visual) => screen_with(face, visual, description.path()).ok(),
@@ -113,13 +122,28 @@ fn is_ours(visual: &LinkShape) -> bool {
     matches!(&visual.geometry, Geometry::Mesh { file, .. } if file.starts_with("package://tabletop/"))
 }
 
-/// The visual of a finger. Its shape has the axes of a wrist.
-fn finger() -> LinkShape {
-    LinkShape {
-        origin: DAffine3::from_mat3(WRIST_TURNED),
+/// What a finger looks like.
+fn finger(gripper: &GripperLayout, description: &Description) -> Result<Option<Figure>, LookError> {
+    let Some(FingerLook { file, axes }) = &gripper.look else {
+        return Ok(stand_in(&[finger_solid(gripper)]));
+    };
+    let visual = LinkShape {
+        origin: DAffine3::from_mat3(DMat3::from_cols_array_2d(axes)),
         geometry: Geometry::Mesh {
-            file: "package://tabletop/finger.shape.json".into(),
-            scale: bevy::math::DVec3::ONE,
+            file: file.clone(),
+            scale: DVec3::ONE,
+        },
+        color: None,
+    };
+    seen(&visual, description).map(Some)
+}
+
+/// What a finger is touched by.
+fn finger_solid(gripper: &GripperLayout) -> LinkShape {
+    LinkShape {
+        origin: DAffine3::IDENTITY,
+        geometry: Geometry::Box {
+            size: gripper.finger.as_dvec3() / UNITS_PER_METER,
         },
         color: None,
     }

@@ -2,7 +2,7 @@
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Arm, Robot, RobotJoint, RobotMode, SimFact};
+use tabletop_core::{Arm, LimbId, Robot, RobotMode, SimFact};
 use tabletop_physics::PhysicsSettings;
 
 use crate::{
@@ -40,6 +40,7 @@ pub(crate) fn advance(
     mut facts: MessageWriter<SimFact>,
     mut commands: Commands,
 ) -> Result {
+    let layout = &known.articulation.layout;
     let is_dynamic = robot.mode == RobotMode::Dynamic;
     let is_told = targets.are_given();
     if !is_dynamic && !is_told {
@@ -49,25 +50,26 @@ pub(crate) fn advance(
     let mut rapier = moved.rapier.single_mut()?;
     let mut motion = known.motion(&robot, &grips, &rapier);
     let pulls = is_dynamic.then(|| {
-        motors.look(&robot);
-        motors.pull(&mut motion, &targets, settings.gravity, |motion, arm| {
+        motors.look(layout, &robot);
+        motors.pull(&mut motion, &targets, settings.gravity, |motion, limb| {
             let is_mine =
                 |body| known.bodies.contains(body) || grips.all().any(|object| object == body);
-            contact_loads(motion, arm, &rapier, settings.gravity, is_mine)
+            contact_loads(motion, limb, &rapier, settings.gravity, is_mine)
         })
     });
     motion.turn_head(&targets);
     let mut actions = Vec::new();
-    for arm in Arm::BOTH {
+    for limb in layout.limb_ids() {
+        let joints = &layout.limb(limb).joints;
         let setpoints = match &pulls {
-            Some(pulls) => pulls[arm as usize].setpoints(arm),
-            None => targets.arm_setpoints(arm, robot.angles(arm)),
+            Some(pulls) => pulls[limb.index()].setpoints(),
+            None => targets.limb_setpoints(layout, limb, &robot.positions_of(joints)),
         };
-        motion.move_arm(arm, setpoints);
-        let gripper = RobotJoint::gripper(arm);
-        let opens = targets.open(gripper, motion.positions[gripper.index()]);
-        let closing = motion.move_fingers(arm, &targets);
-        actions.extend(decide(&known, arm, opens, closing, &mut grips));
+        motion.move_arm(limb, &setpoints);
+        let gripper = layout.limb(limb).gripper.joint;
+        let opens = targets.open(layout, gripper, motion.positions[gripper.index()]);
+        let closing = motion.move_fingers(limb, &targets);
+        actions.extend(decide(&known, limb, opens, closing, &mut grips));
     }
 
     let before = positions(&robot);
@@ -75,25 +77,26 @@ pub(crate) fn advance(
     match pulls {
         Some(pulls) => {
             motors.note(&pulls, &mut motion, &mut robot);
-            targets.end_tick(&motors.reached(&motion.positions));
+            targets.end_tick(layout, &motors.reached(layout, &motion.positions));
         }
-        None => targets.end_tick(&motion.positions),
+        None => targets.end_tick(layout, &motion.positions),
     }
-    for arm in Arm::BOTH {
-        let blocked_by = known.blocked_by(arm, &motion, &mut targets);
+    for limb in layout.limb_ids() {
+        let blocked_by = known.blocked_by(limb, &motion, &mut targets);
         if let Some(by) = &blocked_by {
-            targets.give_up(arm);
-            motors.stay(arm);
-            if robot.arm(arm).blocked_by.as_ref() != Some(by) {
+            targets.give_up(layout, limb);
+            motors.stay(limb);
+            if robot.limb(limb).blocked_by.as_ref() != Some(by) {
                 let by = by.clone();
+                let arm = Arm::BOTH[limb.index()];
                 facts.write(SimFact::ArmBlocked { arm, by });
             }
         }
-        let has_moved = RobotJoint::of_arm(arm)
-            .iter()
-            .any(|joint| motion.positions[joint.index()] != before[joint.index()]);
+        let mut joints = layout.limb(limb).joints.iter();
+        let has_moved =
+            joints.any(|joint| motion.positions[joint.index()] != before[joint.index()]);
         if (is_told && has_moved) || blocked_by.is_some() {
-            robot.arms[arm as usize].blocked_by = blocked_by;
+            robot.limbs[limb.index()].blocked_by = blocked_by;
         }
     }
     known.publish(&mut robot, &targets, motion.base);
@@ -129,21 +132,26 @@ fn stand_still(robot: &mut ResMut<Robot>) {
 
 /// What a gripper does besides moving its fingers.
 enum Action {
-    Take(Arm, Touched),
-    Release(Arm),
-    Refuse { arm: Arm, id: String, angle: f32 },
+    Take(LimbId, Touched),
+    Release(LimbId),
+    Refuse {
+        limb: LimbId,
+        id: String,
+        angle: f32,
+    },
 }
 
 impl Action {
     fn carry_out(self, commands: &mut Commands, facts: &mut MessageWriter<SimFact>) {
         match self {
-            Self::Take(arm, touched) => {
-                commands.queue(move |world: &mut World| grips::take(world, arm, touched));
+            Self::Take(limb, touched) => {
+                commands.queue(move |world: &mut World| grips::take(world, limb, touched));
             }
-            Self::Release(arm) => {
-                commands.queue(move |world: &mut World| grips::release(world, arm));
+            Self::Release(limb) => {
+                commands.queue(move |world: &mut World| grips::release(world, limb));
             }
-            Self::Refuse { arm, id, angle } => {
+            Self::Refuse { limb, id, angle } => {
+                let arm = Arm::BOTH[limb.index()];
                 facts.write(SimFact::GripRefused { arm, id, angle });
             }
         }
@@ -153,15 +161,15 @@ impl Action {
 /// What follows from a gripper's opening or closing.
 fn decide(
     known: &RobotView,
-    arm: Arm,
+    limb: LimbId,
     opens: bool,
     closing: Closing,
     grips: &mut Grips,
 ) -> Vec<Action> {
     if opens {
-        grips.refused[arm as usize].clear();
-        let holds = !grips.of(arm).is_empty();
-        return holds.then_some(Action::Release(arm)).into_iter().collect();
+        grips.refused[limb.index()].clear();
+        let holds = !grips.of(limb).is_empty();
+        return holds.then_some(Action::Release(limb)).into_iter().collect();
     }
     let mut actions = Vec::new();
     for touched in closing.touched {
@@ -170,11 +178,11 @@ fn decide(
             continue;
         }
         if angle < STEEPEST_GRIP {
-            actions.push(Action::Take(arm, touched));
-        } else if !grips.refused[arm as usize].contains(&object) {
-            grips.refused[arm as usize].push(object);
+            actions.push(Action::Take(limb, touched));
+        } else if !grips.refused[limb.index()].contains(&object) {
+            grips.refused[limb.index()].push(object);
             let id = known.name(Owner::Thing(object));
-            actions.push(Action::Refuse { arm, id, angle });
+            actions.push(Action::Refuse { limb, id, angle });
         }
     }
     actions

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Arm, Robot, RobotJoint, SimFact, Table};
+use tabletop_core::{Arm, Robot, SimFact, Table};
 
 use crate::{
     articulation::link_entities, command::joint_targets::JointTargets, gripper::grips::Grips,
@@ -36,15 +36,19 @@ pub(crate) fn leave_obstacles(
 ) -> Result {
     let rapier = rapier.single_mut()?;
     let mut motion = known.motion(&robot, &grips, &rapier);
-    for arm in Arm::BOTH {
-        let Some(obstacle) = motion.is_inside(arm) else {
+    for limb in known.articulation.layout.limb_ids() {
+        let Some(obstacle) = motion.is_inside(limb) else {
             continue;
         };
-        for joint in RobotJoint::of_arm(arm) {
-            robot.joints[joint.index()].position = joint.home();
+        let layout = &known.articulation.layout;
+        for joint in &layout.limb(limb).joints {
+            robot.joints[joint.index()].position = layout.joint(*joint).home;
         }
         let by = known.name(obstacle);
-        facts.write(SimFact::ArmBlocked { arm, by });
+        facts.write(SimFact::ArmBlocked {
+            arm: Arm::BOTH[limb.index()],
+            by,
+        });
     }
     Ok(())
 }

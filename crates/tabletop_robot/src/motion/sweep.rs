@@ -4,12 +4,12 @@ use std::rc::Rc;
 
 use bevy::prelude::*;
 use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
-use tabletop_core::{Arm, JOINTS_PER_ARM, Pose, RobotJoint};
+use tabletop_core::{LimbId, Pose};
 use tabletop_physics::Convex;
 
 use crate::{
     articulation::self_collision::SelfCollisionMatrix,
-    articulation::tree::{Articulation, Body, Carrier, Posture, TreePosition},
+    articulation::tree::{Articulation, Body, Carrier, Positions, Posture, TreePosition},
     clearance::{Owner, Solid, are_near, part_left},
     command::joint_targets::{JointTargets, Setpoint},
     gripper::closing::{Candidate, Closing, close},
@@ -45,10 +45,10 @@ pub(crate) struct Carried {
 
 /// Where the robot is at some positions of the joints.
 pub(crate) struct Poses {
-    positions: [f64; 17],
+    positions: Positions,
     /// Its bodies.
     bodies: Vec<Pose>,
-    end_effectors: [Pose; 2],
+    end_effectors: Vec<Pose>,
 }
 
 /// Answers that are remembered.
@@ -65,17 +65,17 @@ pub(crate) struct Motion<'a> {
     /// What is around it.
     pub environment: Environment,
     /// Whether its grippers hold anything.
-    pub holds: [bool; 2],
+    pub holds: Vec<bool>,
     /// What its grippers hold rigidly.
-    pub carried: [Vec<Carried>; 2],
-    /// Positions of the joints, by [`RobotJoint::index`].
-    pub positions: [f64; 17],
+    pub carried: Vec<Vec<Carried>>,
+    /// Positions of the joints, by [`JointId`](tabletop_core::JointId).
+    pub positions: Positions,
     /// What stopped each arm in this tick.
-    pub blocked_by: [Option<Owner>; 2],
+    pub blocked_by: Vec<Option<Owner>>,
     /// What each arm has squeezed so much in this tick that it waited.
-    pub held_up_by: [Option<Entity>; 2],
+    pub held_up_by: Vec<Option<Entity>>,
     /// Whether each arm was slowed in this tick by squeezing something free.
-    pub is_squeezing: [bool; 2],
+    pub is_squeezing: Vec<bool>,
     /// Whether it can meet anything.
     pub is_shown: bool,
     /// The last answers to where it is.
@@ -87,15 +87,18 @@ pub(crate) struct Motion<'a> {
 impl Motion<'_> {
     /// Turns the neck.
     pub fn turn_head(&mut self, targets: &JointTargets) {
-        let position = &mut self.positions[RobotJoint::HeadPan.index()];
-        *position = targets.setpoint(RobotJoint::HeadPan, *position).position();
+        let layout = &self.articulation.layout;
+        if let Some(neck) = layout.neck {
+            let position = &mut self.positions[neck.index()];
+            *position = targets.setpoint(layout, neck, *position).position();
+        }
     }
 
     /// Moves the joints of an arm to where they are to be.
-    pub fn move_arm(&mut self, arm: Arm, setpoints: [Setpoint; JOINTS_PER_ARM]) {
-        let joints = RobotJoint::of_arm(arm);
-        let mut there = self.positions;
-        for (joint, setpoint) in joints.into_iter().zip(setpoints) {
+    pub fn move_arm(&mut self, limb: LimbId, setpoints: &[Setpoint]) {
+        let joints = &self.articulation.layout.limb(limb).joints;
+        let mut there = self.positions.clone();
+        for (joint, setpoint) in joints.iter().zip(setpoints) {
             there[joint.index()] = setpoint.position();
         }
         if there == self.positions {
@@ -106,49 +109,56 @@ impl Motion<'_> {
             .any(|setpoint| matches!(setpoint, Setpoint::Jump(_)));
         if jumps
             && self
-                .obstacle(arm, &self.positions.clone(), &there)
+                .obstacle(limb, &self.positions.clone(), &there)
                 .is_none()
         {
             self.positions = there;
             return;
         }
-        let (part, pushed) = self.push(arm, &there);
-        self.is_squeezing[arm as usize] = pushed.is_some();
+        let (part, pushed) = self.push(limb, &there);
+        self.is_squeezing[limb.index()] = pushed.is_some();
         if part < LEAST_PUSH {
-            self.held_up_by[arm as usize] = pushed;
+            self.held_up_by[limb.index()] = pushed;
             return;
         }
-        self.blocked_by[arm as usize] = self.sweep(arm, lerp(&self.positions, &there, part));
+        self.blocked_by[limb.index()] = self.sweep(limb, lerp(&self.positions, &there, part));
     }
 
     /// Opens or closes a gripper. Returns what it has found between its fingers while closing.
-    pub fn move_fingers(&mut self, arm: Arm, targets: &JointTargets) -> Closing {
-        let joint = RobotJoint::gripper(arm);
+    pub fn move_fingers(&mut self, limb: LimbId, targets: &JointTargets) -> Closing {
+        let layout = &self.articulation.layout;
+        let joint = layout.limb(limb).gripper.joint;
+        let [least, _] = layout.joint(joint).limits;
         let opening = self.positions[joint.index()];
-        let setpoint = targets.setpoint(joint, opening).position();
+        let setpoint = targets.setpoint(layout, joint, opening).position();
         let mut closing = Closing::default();
-        let mut there = self.positions;
+        let mut there = self.positions.clone();
         if setpoint > opening {
             there[joint.index()] = setpoint;
-        } else if setpoint < opening && !self.holds[arm as usize] {
-            closing = close(self.end_effector(arm), opening as f32, &self.between(arm));
-            there[joint.index()] = setpoint.max(opening - f64::from(closing.room)).max(0.0);
+        } else if setpoint < opening && !self.holds[limb.index()] {
+            closing = close(
+                self.end_effector(limb),
+                opening as f32,
+                layout.limb(limb).gripper.finger,
+                &self.between(limb),
+            );
+            there[joint.index()] = setpoint.max(opening - f64::from(closing.room)).max(least);
         }
-        let (part, _) = self.push(arm, &there);
+        let (part, _) = self.push(limb, &there);
         if there != self.positions && part >= LEAST_PUSH {
-            self.sweep(arm, lerp(&self.positions, &there, part));
+            self.sweep(limb, lerp(&self.positions, &there, part));
         }
         closing
     }
 
     /// Where an end effector is.
-    pub fn end_effector(&mut self, arm: Arm) -> Pose {
-        self.poses(&self.positions.clone()).end_effectors[arm as usize]
+    pub fn end_effector(&mut self, limb: LimbId) -> Pose {
+        self.poses(&self.positions.clone()).end_effectors[limb.index()]
     }
 
     /// What may be between the fingers of a gripper.
-    fn between(&mut self, arm: Arm) -> Vec<Candidate> {
-        let at = self.end_effector(arm).location;
+    fn between(&mut self, limb: LimbId) -> Vec<Candidate> {
+        let at = self.end_effector(limb).location;
         let near = Aabb::new(at - BETWEEN, at + BETWEEN);
         let things = self.environment.free.iter();
         things
@@ -161,15 +171,15 @@ impl Motion<'_> {
     }
 
     /// Goes towards these positions, as far as nothing is in the way of an arm. Returns what is.
-    fn sweep(&mut self, arm: Arm, there: [f64; 17]) -> Option<Owner> {
-        let start = self.positions;
+    fn sweep(&mut self, limb: LimbId, there: Positions) -> Option<Owner> {
+        let start = self.positions.clone();
         let between = |part: f64| lerp(&start, &there, part);
-        let steps = (self.way(arm, &start, &there) / STEP)
+        let steps = (self.way(limb, &start, &there) / STEP)
             .ceil()
             .clamp(1.0, MOST_STEPS);
         for step in 1..=steps as u32 {
             let ahead = f64::from(step) / f64::from(steps);
-            let Some(mut obstacle) = self.obstacle(arm, &self.positions.clone(), &between(ahead))
+            let Some(mut obstacle) = self.obstacle(limb, &self.positions.clone(), &between(ahead))
             else {
                 self.positions = between(ahead);
                 continue;
@@ -177,7 +187,7 @@ impl Motion<'_> {
             let (mut free, mut blocked) = (f64::from(step - 1) / f64::from(steps), ahead);
             for _ in 0..HALVINGS {
                 let middle = (free + blocked) / 2.0;
-                match self.obstacle(arm, &self.positions.clone(), &between(middle)) {
+                match self.obstacle(limb, &self.positions.clone(), &between(middle)) {
                     None => free = middle,
                     Some(nearer) => (blocked, obstacle) = (middle, nearer),
                 }
@@ -189,12 +199,12 @@ impl Motion<'_> {
     }
 
     /// The part of the way to these positions that an arm can go in a tick with what it pushes, and what it squeezes most.
-    fn push(&mut self, arm: Arm, there: &[f64; 17]) -> (f64, Option<Entity>) {
+    fn push(&mut self, limb: LimbId, there: &Positions) -> (f64, Option<Entity>) {
         if self.environment.free.is_empty() {
             return (1.0, None);
         }
-        let here = self.positions;
-        let solids = self.solids(arm, &here, there);
+        let here = self.positions.clone();
+        let solids = self.solids(limb, &here, there);
         let (mut part, mut most_pushed) = (1.0, None);
         for (i, thing) in self.environment.free.iter().enumerate() {
             let approaches = solids
@@ -223,9 +233,9 @@ impl Motion<'_> {
     }
 
     /// About how far the bodies of an arm go between two positions, in units.
-    fn way(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> f32 {
+    fn way(&mut self, limb: LimbId, from: &Positions, to: &Positions) -> f32 {
         let [from, to] = [from, to].map(|positions| self.poses(positions));
-        self.bodies_of(arm)
+        self.bodies_of(limb)
             .map(|number| (from.bodies[number], to.bodies[number]))
             .map(|(from, to)| {
                 from.location.distance(to.location) + from.rotation.angle_between(to.rotation)
@@ -234,15 +244,15 @@ impl Motion<'_> {
     }
 
     /// The numbers of the bodies of an arm.
-    fn bodies_of(&self, arm: Arm) -> impl Iterator<Item = usize> {
+    fn bodies_of(&self, limb: LimbId) -> impl Iterator<Item = usize> {
         let bodies = self.articulation.bodies.iter().enumerate();
         bodies
-            .filter(move |(_, body)| is_of(body, arm))
+            .filter(move |(_, body)| is_of(body, limb))
             .map(|(number, _)| number)
     }
 
     /// Where the robot is. The last few answers are remembered: most are asked for several times.
-    fn poses(&mut self, positions: &[f64; 17]) -> Rc<Poses> {
+    fn poses(&mut self, positions: &Positions) -> Rc<Poses> {
         let is_asked = |poses: &&Rc<Poses>| poses.positions == *positions;
         if let Some(poses) = self.asked.iter().find(is_asked) {
             return Rc::clone(poses);
@@ -250,14 +260,16 @@ impl Motion<'_> {
         self.articulation.update(&mut self.scratch, positions);
         let bodies = self.articulation.bodies.iter();
         let poses = Rc::new(Poses {
-            positions: *positions,
+            positions: positions.clone(),
             bodies: bodies
                 .map(|body| self.articulation.pose(body, &self.scratch, self.base))
                 .collect(),
-            end_effectors: Arm::BOTH.map(|arm| {
-                self.articulation
-                    .end_effector(arm, &self.scratch, self.base)
-            }),
+            end_effectors: (self.articulation.layout.limb_ids())
+                .map(|limb| {
+                    self.articulation
+                        .end_effector(limb, &self.scratch, self.base)
+                })
+                .collect(),
         });
         if self.asked.len() == MOST_ASKED {
             self.asked.remove(0);
@@ -267,19 +279,24 @@ impl Motion<'_> {
     }
 
     /// The solids of an arm and of what it holds, each with the number of a body that meets what it meets.
-    pub fn solids(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> Vec<(usize, Solid)> {
+    pub fn solids(
+        &mut self,
+        limb: LimbId,
+        from: &Positions,
+        to: &Positions,
+    ) -> Vec<(usize, Solid)> {
         let [from, to] = [from, to].map(|positions| self.poses(positions));
         let mut solids = Vec::new();
-        for number in self.bodies_of(arm) {
+        for number in self.bodies_of(limb) {
             let parts = &self.articulation.bodies[number].parts;
             let [from, to] = [&from, &to].map(|poses| poses.bodies[number]);
             let moving = Solid::moving(parts, Owner::Body(number), from, to);
             solids.extend(moving.map(|solid| (number, solid)));
         }
-        let finger = self.finger(arm);
-        for carried in &self.carried[arm as usize] {
+        let finger = self.finger(limb);
+        for carried in &self.carried[limb.index()] {
             let [from, to] =
-                [&from, &to].map(|poses| poses.end_effectors[arm as usize] * carried.pose);
+                [&from, &to].map(|poses| poses.end_effectors[limb.index()] * carried.pose);
             let moving = Solid::moving(&carried.parts, Owner::Thing(carried.object), from, to);
             solids.extend(moving.map(|solid| (finger, solid)));
         }
@@ -287,8 +304,8 @@ impl Motion<'_> {
     }
 
     /// The number of a finger of an arm.
-    fn finger(&self, arm: Arm) -> usize {
-        let is_finger = |body: &Body| matches!(body.carrier, Carrier::Gripper(of, _) if of == arm);
+    fn finger(&self, limb: LimbId) -> usize {
+        let is_finger = |body: &Body| matches!(body.carrier, Carrier::Gripper(of, _) if of == limb);
         self.articulation
             .bodies
             .iter()
@@ -297,9 +314,9 @@ impl Motion<'_> {
     }
 
     /// What an arm is inside of that it cannot pass.
-    pub fn is_inside(&mut self, arm: Arm) -> Option<Owner> {
-        let here = self.positions;
-        let solids = self.solids(arm, &here, &here);
+    pub fn is_inside(&mut self, limb: LimbId) -> Option<Owner> {
+        let here = self.positions.clone();
+        let solids = self.solids(limb, &here, &here);
         let mut immovable = self.environment.immovable.iter();
         immovable
             .find(|obstacle| {
@@ -311,22 +328,22 @@ impl Motion<'_> {
     }
 
     /// What is in the way of an arm between two positions.
-    fn obstacle(&mut self, arm: Arm, from: &[f64; 17], to: &[f64; 17]) -> Option<Owner> {
+    fn obstacle(&mut self, limb: LimbId, from: &Positions, to: &Positions) -> Option<Owner> {
         if !self.is_shown {
             return None;
         }
-        let solids = self.solids(arm, from, to);
+        let solids = self.solids(limb, from, to);
         let outside = solids.iter().find_map(|(_, solid)| {
             let mut immovable = self.environment.immovable.iter();
             immovable
                 .find(|obstacle| solid.collides_with(obstacle))
                 .map(|obstacle| obstacle.owner)
         });
-        outside.or_else(|| self.own_body(arm, &solids))
+        outside.or_else(|| self.own_body(limb, &solids))
     }
 
     /// The body of the robot that solids of an arm would run into.
-    fn own_body(&mut self, arm: Arm, solids: &[(usize, Solid)]) -> Option<Owner> {
+    fn own_body(&mut self, limb: LimbId, solids: &[(usize, Solid)]) -> Option<Owner> {
         for (i, (a, solid)) in solids.iter().enumerate() {
             let met = solids[..i].iter().find(|(b, other)| {
                 self.self_collisions.can_meet(*a, *b) && solid.collides_with(other)
@@ -337,7 +354,7 @@ impl Motion<'_> {
         }
         let here = self.poses(&self.positions.clone());
         for (number, body) in self.articulation.bodies.iter().enumerate() {
-            if is_of(body, arm)
+            if is_of(body, limb)
                 || !solids
                     .iter()
                     .any(|(a, _)| self.self_collisions.can_meet(*a, number))
@@ -358,9 +375,9 @@ impl Motion<'_> {
     }
 
     /// The boxes around the solids of an arm where it is now.
-    pub fn bounds(&mut self, arm: Arm) -> Vec<Aabb> {
-        let here = self.positions;
-        let solids = self.solids(arm, &here, &here);
+    pub fn bounds(&mut self, limb: LimbId) -> Vec<Aabb> {
+        let here = self.positions.clone();
+        let solids = self.solids(limb, &here, &here);
         solids.iter().map(|(_, solid)| *solid.bounds()).collect()
     }
 }
@@ -376,13 +393,14 @@ pub(crate) fn reach(poses: impl Iterator<Item = Vec3>) -> Aabb {
 }
 
 /// Positions on the way between others.
-fn lerp(from: &[f64; 17], to: &[f64; 17], part: f64) -> [f64; 17] {
-    std::array::from_fn(|i| match part < 1.0 {
-        true => from[i] + (to[i] - from[i]) * part,
-        false => to[i],
-    })
+fn lerp(from: &Positions, to: &Positions, part: f64) -> Positions {
+    if part >= 1.0 {
+        return to.clone();
+    }
+    let ways = from.iter().zip(to);
+    ways.map(|(from, to)| from + (to - from) * part).collect()
 }
 
-fn is_of(body: &Body, arm: Arm) -> bool {
-    matches!(body.place, TreePosition::Arm(of, _) if of == arm)
+fn is_of(body: &Body, limb: LimbId) -> bool {
+    matches!(body.place, TreePosition::Limb(of, _) if of == limb)
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*};
-use tabletop_core::{Arm, Gripped, Held, ObjectSpec, Pose, Robot, Table, robot_base};
+use tabletop_core::{Gripped, Held, LimbId, ObjectSpec, Pose, Robot, Table};
 use tabletop_physics::convex_parts;
 
 use crate::{
@@ -51,9 +51,10 @@ impl RobotView<'_, '_> {
                 .map(|pose| pose.location),
         );
         let environment = Environment::new(rapier, &near, &self.bodies, &held, robot.is_shown);
-        let carried = Arm::BOTH.map(|arm| {
+        let limbs = self.articulation.layout.limb_ids();
+        let carried = limbs.clone().map(|limb| {
             grips
-                .of(arm)
+                .of(limb)
                 .iter()
                 .filter(|grip| !grip.is_jointed)
                 .map(|grip| Carried {
@@ -72,12 +73,12 @@ impl RobotView<'_, '_> {
             self_collisions: &self.self_collisions,
             base,
             environment,
-            carried,
+            carried: carried.collect(),
             positions,
-            blocked_by: [None; 2],
-            held_up_by: [None; 2],
-            is_squeezing: [false; 2],
-            holds: Arm::BOTH.map(|arm| !grips.of(arm).is_empty()),
+            blocked_by: vec![None; limbs.len()],
+            held_up_by: vec![None; limbs.len()],
+            is_squeezing: vec![false; limbs.len()],
+            holds: limbs.map(|limb| !grips.of(limb).is_empty()).collect(),
             is_shown: robot.is_shown,
             asked: Vec::new(),
             scratch: posture,
@@ -86,18 +87,19 @@ impl RobotView<'_, '_> {
 
     /// Where the torso's frame stands, in front of the present table.
     pub fn base(&self) -> Pose {
-        robot_base(&self.tables.iter().next().copied().unwrap_or_default())
+        let table = self.tables.iter().next().copied().unwrap_or_default();
+        self.articulation.layout.base.pose(&table)
     }
 
     /// What an arm was stopped by in a tick, by name: what cannot be passed, or what it has squeezed for too long.
     pub fn blocked_by(
         &self,
-        arm: Arm,
+        limb: LimbId,
         motion: &Motion,
         targets: &mut JointTargets,
     ) -> Option<String> {
-        let squeezed = targets.wait_for(arm, motion.held_up_by[arm as usize]);
-        let obstacle = motion.blocked_by[arm as usize].or(squeezed.map(Owner::Thing));
+        let squeezed = targets.wait_for(limb, motion.held_up_by[limb.index()]);
+        let obstacle = motion.blocked_by[limb.index()].or(squeezed.map(Owner::Thing));
         obstacle.map(|owner| self.name(owner))
     }
 
@@ -106,9 +108,9 @@ impl RobotView<'_, '_> {
         let posture = self.articulation.posture(&motion.positions);
         let poses = poses(&self.articulation, &posture, motion.base);
         let bodies = self.parts.0.iter().copied().zip(poses);
-        let held = Arm::BOTH.into_iter().flat_map(|arm| {
-            let end_effector = robot.arm(arm).end_effector;
-            let rigid = grips.of(arm).iter().filter(|grip| !grip.is_jointed);
+        let held = self.articulation.layout.limb_ids().flat_map(|limb| {
+            let end_effector = robot.limb(limb).end_effector;
+            let rigid = grips.of(limb).iter().filter(|grip| !grip.is_jointed);
             rigid.map(move |grip| (grip.object, end_effector * grip.pose))
         });
         bodies.chain(held).collect()
@@ -128,11 +130,11 @@ impl RobotView<'_, '_> {
     /// Writes what is known of the arms.
     pub fn publish(&self, robot: &mut Robot, targets: &JointTargets, base: Pose) {
         let posture = self.articulation.posture(&positions(robot));
-        for arm in Arm::BOTH {
-            let state = &mut robot.arms[arm as usize];
-            state.end_effector = self.articulation.end_effector(arm, &posture, base);
-            state.joint_origins = self.articulation.joint_origins(arm, &posture, base);
-            state.is_moving = targets.is_under_way(arm);
+        for limb in self.articulation.layout.limb_ids() {
+            let state = &mut robot.limbs[limb.index()];
+            state.end_effector = self.articulation.end_effector(limb, &posture, base);
+            state.joint_origins = self.articulation.joint_origins(limb, &posture, base);
+            state.is_moving = targets.is_under_way(&self.articulation.layout, limb);
         }
     }
 
@@ -145,8 +147,8 @@ impl RobotView<'_, '_> {
             .iter()
             .any(|thing| thing.is_sleeping)
         {
-            for arm in Arm::BOTH {
-                bounds.extend(motion.bounds(arm));
+            for limb in self.articulation.layout.limb_ids() {
+                bounds.extend(motion.bounds(limb));
             }
         }
         let things = motion.environment.free.iter();

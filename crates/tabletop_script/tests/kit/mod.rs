@@ -82,13 +82,18 @@ pub fn octave(folder: &Path) -> ScriptSettings {
     settings
 }
 
+/// Where the joints of the robot are.
+pub fn positions(robot: &Robot) -> Vec<f64> {
+    robot.joints.iter().map(|joint| joint.position).collect()
+}
+
 /// Where all joints were at the end of each tick in which a script was called.
 #[derive(Resource, Default)]
-pub struct Track(pub Vec<[f64; 17]>);
+pub struct Track(pub Vec<Vec<f64>>);
 
 fn note(agent: Res<Agent>, robot: Res<Robot>, mut track: ResMut<Track>) {
     if matches!(*agent, Agent::Online { .. }) {
-        track.0.push(robot.joints.map(|joint| joint.position));
+        track.0.push(positions(&robot));
     }
 }
 
@@ -210,7 +215,7 @@ impl Stage {
         self.app.world().resource::<SimTick>().0
     }
 
-    pub fn track(&self) -> &[[f64; 17]] {
+    pub fn track(&self) -> &[Vec<f64>] {
         &self.app.world().resource::<Track>().0
     }
 
@@ -239,10 +244,10 @@ impl Stage {
     pub fn assert_at_rest(&mut self) {
         self.ticks(1);
         assert_eq!(self.markers(), 0);
-        let before = self.robot().joints.map(|joint| joint.position);
+        let before = positions(self.robot());
         let tick = self.tick();
         self.ticks(5);
-        assert_eq!(self.robot().joints.map(|joint| joint.position), before);
+        assert_eq!(positions(self.robot()), before);
         assert!(
             self.robot()
                 .joints

@@ -3,20 +3,19 @@
 use std::f64::consts::{PI, TAU};
 
 use super::*;
-use crate::dynamics::impulse::FrictionAxis;
-use crate::dynamics::motor::MotorTask;
+use crate::dynamics::{impulse::FrictionAxis, matrix::each_pair, motor::MotorTask};
 
 const SECONDS: f64 = 1.0 / 60.0;
 
 /// Joints that do not act on each other, each with this inertia in kg m².
 fn apart(inertia: f64) -> LimbDynamics {
     LimbDynamics {
-        angles: [0.0; 7],
-        velocities: [0.0; 7],
-        inertia: from_fn(|i| from_fn(|j| if i == j { inertia } else { 0.0 })),
-        bias: [0.0; 7],
-        damping: [0.0; 7],
-        stops: [[-10.0, 10.0]; 7],
+        angles: each(7, |_| 0.0),
+        velocities: each(7, |_| 0.0),
+        inertia: each_pair(7, |i, j| if i == j { inertia } else { 0.0 }),
+        bias: each(7, |_| 0.0),
+        damping: each(7, |_| 0.0),
+        stops: vec![[-10.0, 10.0]; 7],
         touches: Vec::new(),
     }
 }
@@ -39,10 +38,10 @@ fn at(angle: f64) -> MotorTask {
 
 fn go(masses: &mut LimbDynamics, motors: &[Motor; 7], seconds: f64) -> Step {
     let step = masses.step(motors, seconds);
-    for (angle, velocity) in masses.angles.iter_mut().zip(step.velocities) {
+    for (angle, velocity) in masses.angles.iter_mut().zip(&step.velocities) {
         *angle += seconds * velocity;
     }
-    masses.velocities = step.velocities;
+    masses.velocities.clone_from(&step.velocities);
     step
 }
 
@@ -50,13 +49,11 @@ fn go(masses: &mut LimbDynamics, motors: &[Motor; 7], seconds: f64) -> Step {
 fn a_pendulum_swings_with_its_period() {
     // 2 kg at 0.4 m.
     let mut masses = apart(2.0 * 0.4 * 0.4);
-    masses.angles = [0.1; 7];
+    masses.angles = each(7, |_| 0.1);
     let mut crossings = Vec::new();
     for tick in 0..600 {
         let before = masses.angles[0];
-        masses.bias = masses
-            .angles
-            .map(|angle| 2.0 * 9.81 * 0.4 * f64::sin(angle));
+        masses.bias = each(7, |i| 2.0 * 9.81 * 0.4 * f64::sin(masses.angles[i]));
         go(&mut masses, &motors(MotorTask::Torque(0.0)), SECONDS);
         if before > 0.0 && masses.angles[0] <= 0.0 {
             let part = before / (before - masses.angles[0]);
@@ -75,8 +72,8 @@ fn a_pendulum_swings_with_its_period() {
 #[test]
 fn damping_takes_speed_away() {
     let mut masses = apart(1.0);
-    masses.damping = [0.7; 7];
-    masses.velocities = [1.0; 7];
+    masses.damping = each(7, |_| 0.7);
+    masses.velocities = each(7, |_| 1.0);
     for _ in 0..120 {
         go(&mut masses, &motors(MotorTask::Torque(0.0)), SECONDS);
     }
@@ -121,7 +118,7 @@ fn a_joint_gets_to_its_place_and_stays_there() {
 #[test]
 fn a_weight_that_the_motor_does_not_know_stretches_it_by_its_share() {
     let mut masses = apart(2.0);
-    masses.bias = [21.0; 7];
+    masses.bias = each(7, |_| 21.0);
     for _ in 0..300 {
         go(&mut masses, &motors(at(0.0)), SECONDS);
     }
@@ -150,8 +147,8 @@ fn a_motor_has_no_more_than_its_torque_and_its_speed() {
 #[test]
 fn a_stop_takes_the_speed_and_lets_the_joint_go_back() {
     let mut masses = apart(1.0);
-    masses.stops = [[-1.0, 0.01]; 7];
-    masses.velocities = [1.2; 7];
+    masses.stops = vec![[-1.0, 0.01]; 7];
+    masses.velocities = each(7, |_| 1.2);
     go(&mut masses, &motors(MotorTask::Torque(4.0)), SECONDS);
     assert!((masses.angles[0] - 0.01).abs() < 1e-12);
     let step = go(&mut masses, &motors(MotorTask::Torque(4.0)), SECONDS);
@@ -164,8 +161,8 @@ fn a_stop_takes_the_speed_and_lets_the_joint_go_back() {
 fn a_light_thing_hardly_slows_the_arm_and_a_heavy_one_stalls_it() {
     let push = |mass: f64| {
         let mut masses = apart(1.0);
-        masses.velocities = [0.5; 7];
-        let mut lever = [0.0; 7];
+        masses.velocities = each(7, |_| 0.5);
+        let mut lever = each(7, |_| 0.0);
         lever[0] = 0.5;
         masses.touches.push(ContactLoad {
             lever,
@@ -194,7 +191,7 @@ fn a_light_thing_hardly_slows_the_arm_and_a_heavy_one_stalls_it() {
 #[test]
 fn a_thing_that_lies_on_the_arm_weighs() {
     let mut masses = apart(1.0);
-    let mut lever = [0.0; 7];
+    let mut lever = each(7, |_| 0.0);
     lever[0] = 0.5;
     masses.touches.push(ContactLoad {
         lever,
@@ -218,7 +215,7 @@ fn a_thing_that_lies_on_the_arm_weighs() {
 fn an_arm_does_not_slip_along_what_it_presses_on_until_friction_gives_way() {
     let slide = |torque: f64| {
         let mut masses = apart(1.0);
-        let lever = |joint: usize| from_fn(|i| if i == joint { 1.0 } else { 0.0 });
+        let lever = |joint: usize| each(7, |i| if i == joint { 1.0 } else { 0.0 });
         masses.touches.push(ContactLoad {
             lever: lever(0),
             mass: 1.0,
@@ -255,15 +252,16 @@ fn what_the_joints_do_is_found_in_any_state() {
         (state >> 40) as f64 / f64::from(1 << 24) * 2.0 - 1.0
     };
     for _ in 0..2000 {
-        let root: Matrix = from_fn(|_| from_fn(|_| number()));
+        let root: Matrix = (0..7).map(|_| each(7, |_| number())).collect();
         let mut masses = apart(0.01);
-        masses.inertia =
-            from_fn(|i| from_fn(|j| dot(&root[i], &root[j]) + if i == j { 0.01 } else { 0.0 }));
-        masses.angles = from_fn(|_| PI * number());
-        masses.velocities = from_fn(|_| 1.5 * number());
-        masses.bias = from_fn(|_| 30.0 * number());
-        masses.stops = [[-PI, PI]; 7];
-        let motors: [Motor; 7] = from_fn(|i| Motor {
+        masses.inertia = each_pair(7, |i, j| {
+            dot(&root[i], &root[j]) + if i == j { 0.01 } else { 0.0 }
+        });
+        masses.angles = each(7, |_| PI * number());
+        masses.velocities = each(7, |_| 1.5 * number());
+        masses.bias = each(7, |_| 30.0 * number());
+        masses.stops = vec![[-PI, PI]; 7];
+        let motors: [Motor; 7] = std::array::from_fn(|i| Motor {
             effort: 50.0,
             speed: 1.5,
             task: if number() > 0.0 {
