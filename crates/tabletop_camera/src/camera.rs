@@ -5,7 +5,7 @@ mod linear;
 use std::ops::Range;
 
 use bevy::{
-    math::{Mat3, Vec2, Vec3},
+    math::{Mat3A, Vec2, Vec3, Vec3A},
     prelude::Quat,
 };
 use tabletop_core::{HeadCamera, Pose, Table};
@@ -107,17 +107,25 @@ impl View {
         }
     }
 
+    /// What tells it from all others.
+    pub fn bits(&self) -> [u32; 11] {
+        let ([x, y, z], [a, b, c, d]) = (self.eye.to_array(), self.axes.to_array());
+        let [right, down] = self.pixel.to_array();
+        let size = [self.width, self.height].map(|count| count as f32);
+        [x, y, z, a, b, c, d, right, down, size[0], size[1]].map(f32::to_bits)
+    }
+
     /// Where a point, given relative to the eye, is seen.
     pub fn pixel_of(&self, point: Vec3) -> Option<Vec2> {
         self.pixel_of_local(self.axes.inverse() * point)
     }
 
     /// Where points are seen that are given in the frame of a body.
-    pub fn pixels_of(&self, body: Pose) -> impl Fn(Vec3) -> Option<Vec2> {
+    pub fn pixels_of(&self, body: Pose) -> impl Fn(Vec3A) -> Option<Vec2> {
         let to_camera = self.axes.inverse();
-        let axes = Mat3::from_quat(to_camera * body.rotation);
-        let origin = to_camera * (body.location - self.eye);
-        move |point| self.pixel_of_local(axes * point + origin)
+        let axes = Mat3A::from_quat(to_camera * body.rotation);
+        let origin = Vec3A::from(to_camera * (body.location - self.eye));
+        move |point| self.pixel_of_local((axes * point + origin).into())
     }
 
     /// Where a point, given in the frame of the camera, is seen.

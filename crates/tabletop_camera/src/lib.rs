@@ -1,8 +1,8 @@
 //! The robot's eye: what its head camera sees, as a picture with depth and object numbers, with or without a window.
 //!
 //! Everything is worked out on the processor from IEEE arithmetic, each row by itself, so the same scene gives the same bytes
-//! on every run, however many threads draw. Objects are no meshes: faces are found row by row from the planes through the eye and their edges, cylinders
-//! and balls by meeting each ray with the exact surface, and only what is seen in the end is lit. (The rasteriser crate `euc`
+//! on every run, however many threads draw. Objects are no meshes: faces are found row by row from the planes through the
+//! eye and their edges, cylinders and balls by meeting each ray with the exact surface, and only what is seen in the end is lit. (The rasteriser crate `euc`
 //! 0.5 draws the same blocks at a seventh of the speed.) Figures are triangles, lit at their corners.
 //! [`Rasterizer`] draws any [`Scene`] for any [`Camera`]; it knows no ECS:
 //!
@@ -51,6 +51,12 @@ mod scene;
 pub use camera::Camera;
 pub use raster::Rasterizer;
 pub use scene::{DrawnFigure, DrawnSolid, Facets, Scene};
+
+/// What most users of this crate name.
+pub mod prelude {
+    #[doc(hidden)]
+    pub use crate::{Camera, CameraPlugin, DrawnFigure, DrawnSolid, Facets, Rasterizer, Scene};
+}
 
 use bevy::prelude::*;
 use tabletop_core::{HeadCamera, Markers, PictureDemand, PictureSystems, SensorImage};

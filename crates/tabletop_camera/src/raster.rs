@@ -1,5 +1,6 @@
 //! Drawing a picture, in bands of rows that several threads may draw at once.
 
+mod backdrop;
 mod band;
 mod bounds;
 mod coverage;
@@ -18,6 +19,7 @@ use bevy::tasks::ComputeTaskPool;
 use tabletop_core::Picture;
 
 use self::{
+    backdrop::Backdrop,
     band::{Band, Frame},
     face::ROWS,
     resolve::Pixels,
@@ -29,14 +31,18 @@ use crate::{
     scene::Scene,
 };
 
+/// So many rows are a thread's task, whole bands. The pictures are the same whatever it is.
+const ROWS_IN_TASK: usize = 2 * ROWS;
+
 /// Draws pictures, one after the other. It keeps its memory, so that it allocates next to nothing once it has drawn a picture of
-/// the same size and a scene of the same length.
+/// the same size and a scene of the same length, and what it found out about the table and figures as long as they stay.
 ///
 /// In an app, Bevy's compute threads help.
 #[derive(Clone, Debug, Default)]
 pub struct Rasterizer {
     visible: VisibleSurfaces,
     spheres: TransparentSpheres,
+    backdrop: Backdrop,
     bands: Vec<Band>,
 }
 
@@ -51,25 +57,39 @@ impl Rasterizer {
         if picture.depth.is_empty() {
             return;
         }
+        let backdrop = self.visible.backdrop;
+        let backdrop = backdrop.map(|face| &self.visible.faces[face as usize]);
+        self.backdrop.prepare(backdrop, &view);
         let frame = &Frame {
             view: &view,
             visible: &self.visible,
             spheres: &self.spheres,
+            backdrop: &self.backdrop,
             is_smooth: camera.antialiasing,
         };
-        let first_rows = || (0..camera.height).step_by(ROWS);
-        self.bands.resize_with(first_rows().len(), Band::default);
-        let parts = Pixels::of(picture).parts(ROWS * camera.width as usize);
-        let bands = self.bands.iter_mut().zip(first_rows()).zip(parts);
+        let width = camera.width as usize;
+        let pixels = Pixels::of(picture);
+        let draw = |band: &mut Band, first_row, pixels: Pixels| {
+            let rows = (first_row..).step_by(ROWS);
+            for (first_row, pixels) in rows.zip(pixels.parts(ROWS * width)) {
+                band.draw(frame, first_row, pixels);
+            }
+        };
         match ComputeTaskPool::try_get() {
             Some(threads) => {
+                let first_rows = (0..camera.height).step_by(ROWS_IN_TASK);
+                self.bands.resize_with(first_rows.len(), Band::default);
+                let bands = self.bands.iter_mut().zip(first_rows);
                 threads.scope(|tasks| {
-                    for ((band, first_row), part) in bands {
-                        tasks.spawn(async move { band.draw(frame, first_row, part) });
+                    for ((band, first_row), part) in bands.zip(pixels.parts(ROWS_IN_TASK * width)) {
+                        tasks.spawn(async move { draw(band, first_row, part) });
                     }
                 });
             }
-            None => bands.for_each(|((band, first_row), part)| band.draw(frame, first_row, part)),
+            None => {
+                self.bands.resize_with(1, Band::default);
+                draw(&mut self.bands[0], 0, pixels);
+            }
         }
     }
 }

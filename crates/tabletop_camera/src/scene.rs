@@ -44,6 +44,15 @@ pub struct DrawnSolid {
     pub object: u32,
 }
 
+impl DrawnFigure {
+    /// What tells its pose from all others.
+    pub(crate) fn pose_bits(&self) -> [u32; 7] {
+        let ([x, y, z], [a, b, c, d]) =
+            (self.pose.location.to_array(), self.pose.rotation.to_array());
+        [x, y, z, a, b, c, d].map(f32::to_bits)
+    }
+}
+
 impl DrawnSolid {
     /// A solid of a body that stands at `pose`.
     pub fn of(body: Pose, primitive: &Primitive, object: u32) -> Self {

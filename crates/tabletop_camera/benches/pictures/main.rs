@@ -1,7 +1,8 @@
 //! How many pictures a second one core draws.
 //!
 //! `cargo bench -p tabletop -p tabletop_camera --bench pictures` prints it for the two blocks of `default.xml` with ten more,
-//! for these with two arms of 2304 triangles over them, and for a table of balls and cylinders, plain and with smooth edges.
+//! for these with two arms of 2304 triangles over them, each still and with everything but the table in another place in every
+//! picture, and for a table of balls and cylinders, plain and with smooth edges.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 
 mod scenes;
@@ -27,10 +28,14 @@ fn main() {
         figures: arms(),
         ..Scene::default()
     };
-    for (name, scene) in [
-        ("default and 10 blocks", without_arms(blocks())),
-        ("the same with two arms", with_arms),
-        ("20 balls and cylinders", without_arms(rounds())),
+    let still = |scene: Scene| vec![scene];
+    let moving = |scene: Scene| vec![moved(&scene), scene];
+    for (name, scenes) in [
+        ("default and 10 blocks", still(without_arms(blocks()))),
+        ("all of them moving", moving(without_arms(blocks()))),
+        ("the same with two arms", still(with_arms.clone())),
+        ("all of it moving", moving(with_arms)),
+        ("20 balls and cylinders", still(without_arms(rounds()))),
     ] {
         for (width, height) in [(200, 150), (640, 480), (1024, 600)] {
             let [plain, smooth] = [false, true].map(|antialiasing| {
@@ -40,25 +45,39 @@ fn main() {
                     antialiasing,
                     ..HeadCamera::default()
                 };
-                pictures_a_second(&scene, &Camera::of_head(&head, &Table::default()))
+                pictures_a_second(&scenes, &Camera::of_head(&head, &Table::default()))
             });
             println!("{name:22} {width:4}x{height:<4} {plain}  {smooth}");
         }
     }
 }
 
-fn pictures_a_second(scene: &Scene, camera: &Camera) -> String {
+/// How many pictures of these scenes, one after the other.
+fn pictures_a_second(scenes: &[Scene], camera: &Camera) -> String {
     let (mut rasterizer, mut picture) = (Rasterizer::default(), Picture::default());
     let mut rates: Vec<f64> = (0..TURNS)
         .map(|_| {
             let (start, mut count) = (Instant::now(), 0);
             while start.elapsed().as_secs_f64() < SECONDS_PER_TURN {
-                rasterizer.draw(scene, camera, &mut picture);
-                count += 1;
+                for scene in scenes {
+                    rasterizer.draw(scene, camera, &mut picture);
+                    count += 1;
+                }
             }
             f64::from(count) / start.elapsed().as_secs_f64()
         })
         .collect();
     rates.sort_by(f64::total_cmp);
     format!("{:6.0} ({:.0})", rates[TURNS / 2], rates[TURNS - 1])
+}
+
+/// The scene with everything but the table, which comes first, a little farther right.
+fn moved(scene: &Scene) -> Scene {
+    let mut moved = scene.clone();
+    let solids = moved.solids.iter_mut().skip(1).map(|solid| &mut solid.pose);
+    let figures = moved.figures.iter_mut().map(|figure| &mut figure.pose);
+    for pose in solids.chain(figures) {
+        pose.location.x += 0.01;
+    }
+    moved
 }

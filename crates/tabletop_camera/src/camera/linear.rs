@@ -102,6 +102,11 @@ impl Linear {
         }
     }
 
+    /// What tells it from all others.
+    pub fn bits(&self) -> [u32; 3] {
+        [self.first, self.right, self.down].map(f32::to_bits)
+    }
+
     /// Its value at a point of the picture.
     pub fn at(&self, x: f32, y: f32) -> f32 {
         self.first + self.right * x + self.down * y

@@ -8,6 +8,7 @@ use std::ops::Range;
 use crate::{
     camera::{SampleOffset, View, Window},
     raster::{
+        backdrop::Backdrop,
         coverage::Coverage,
         face::ROWS,
         resolve::{Pixels, RowResolver},
@@ -24,6 +25,7 @@ pub(crate) struct Frame<'a> {
     pub view: &'a View,
     pub visible: &'a VisibleSurfaces,
     pub spheres: &'a TransparentSpheres,
+    pub backdrop: &'a Backdrop,
     pub is_smooth: bool,
 }
 
@@ -98,7 +100,7 @@ impl Band {
             row.dense = 0..0;
         }
         let quadrics = frame.visible.quadrics.iter().map(|quadric| &quadric.window);
-        let figures = frame.visible.figures.iter();
+        let figures = frame.visible.figure_windows();
         for window in quadrics.chain(figures).chain(frame.spheres.windows()) {
             let Range { start, end } = window.columns;
             for row in rows_of(window, &rows) {
@@ -206,6 +208,7 @@ impl Band {
         let Row { faces, dense } = &self.rows[i];
         let mut row = RowResolver {
             visible: frame.visible,
+            backdrop: frame.backdrop,
             row,
             centers: self.centers.center_row(i),
             smooth: frame.is_smooth.then(|| self.smooth.smooth_row(i)),

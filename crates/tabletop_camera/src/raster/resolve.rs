@@ -9,6 +9,7 @@ use crate::{
     camera::SampleOffset,
     color::nearest_bytes,
     raster::{
+        backdrop::Backdrop,
         samples::{CenterRow, SmoothRow},
         visible::VisibleSurfaces,
     },
@@ -26,6 +27,7 @@ pub(crate) struct Pixels<'a> {
 #[derive(Debug)]
 pub(crate) struct RowResolver<'a, 'b> {
     pub visible: &'a VisibleSurfaces,
+    pub backdrop: &'a Backdrop,
     pub row: u32,
     pub centers: CenterRow<'a>,
     pub smooth: Option<SmoothRow<'a>>,
@@ -60,12 +62,18 @@ impl<'a> Pixels<'a> {
 impl RowResolver<'_, '_> {
     /// Paints these columns, in which all samples see one face.
     pub fn paint_face(&mut self, face: u32, columns: Range<usize>) {
+        let known = self.backdrop.row(self.row);
+        let known = known.filter(|_| self.visible.backdrop == Some(face));
         let face = &self.visible.faces[face as usize];
-        let inverse_depth = face.plane.inverse_depth;
-        let inverse_depth = inverse_depth.on_row(self.row, SampleOffset::CENTER);
         let depths = &mut self.pixels.depth[columns.clone()];
-        for (x, depth) in (columns.start as i32..).zip(depths) {
-            *depth = 1.0 / inverse_depth.at(x as f32);
+        if let Some(known) = known {
+            depths.copy_from_slice(&known[columns.clone()]);
+        } else {
+            let inverse_depth = face.plane.inverse_depth;
+            let inverse_depth = inverse_depth.on_row(self.row, SampleOffset::CENTER);
+            for (x, depth) in (columns.start as i32..).zip(depths) {
+                *depth = 1.0 / inverse_depth.at(x as f32);
+            }
         }
         self.pixels.objects[columns.clone()].fill(face.look.object);
         face.look
@@ -74,6 +82,9 @@ impl RowResolver<'_, '_> {
 
     /// Paints these columns as their samples say.
     pub fn paint_samples(&mut self, columns: Range<usize>) {
+        if columns.is_empty() {
+            return;
+        }
         let Self {
             visible,
             centers,

@@ -30,6 +30,9 @@ pub(crate) struct Samples<Depth, Surface> {
     width: usize,
 }
 
+/// So many samples are behind the last ones, so that four can be looked at wherever one is.
+const PADDING: usize = 3;
+
 pub(crate) type CenterSamples = Samples<f32, u32>;
 pub(crate) type SmoothSamples = Samples<[f32; 4], [u32; 4]>;
 
@@ -44,8 +47,11 @@ impl<Depth: Clone + Default, Surface: Clone + Default> Samples<Depth, Surface> {
     /// Makes it so large, without saying what the samples see.
     pub fn resize(&mut self, width: usize, rows: usize) {
         self.width = width;
-        self.inverse_depth.resize(width * rows, Depth::default());
-        self.surface.resize(width * rows, Surface::default());
+        let samples = width * rows + PADDING;
+        if self.surface.len() != samples {
+            self.inverse_depth.resize(samples, Depth::default());
+            self.surface.resize(samples, Surface::default());
+        }
     }
 
     /// How many pixels are in a row.
@@ -68,6 +74,41 @@ impl CenterSamples {
         CenterRow {
             inverse_depth,
             surface,
+        }
+    }
+
+    /// Puts a surface into those of a few columns of a row, from the start to before the end, that see nothing nearer.
+    #[inline]
+    pub fn put_few(
+        &mut self,
+        row: usize,
+        [start, end]: [f32; 2],
+        inverse_depth: OnRow<f32>,
+        surface: u32,
+    ) {
+        const LANES: Vec4 = Vec4::new(0.0, 1.0, 2.0, 3.0);
+        let ends = [start, end].map(Vec4::splat);
+        let [base, step] = [inverse_depth.at(0.0), inverse_depth.step].map(Vec4::splat);
+        let surface = Vec4::splat(f32::from_bits(surface));
+        let mut x = ends[0] + LANES;
+        for first in (column(start)..column(end)).step_by(4) {
+            // Four samples at once, among them some behind the columns. Their surfaces are bits only.
+            let first = row * self.width + first;
+            let (Some(seen_inverse_depth), Some(seen_surface)) = (
+                self.inverse_depth[first..].first_chunk_mut::<4>(),
+                self.surface[first..].first_chunk_mut::<4>(),
+            ) else {
+                return;
+            };
+            let own = base + step * x;
+            put_lanes(
+                seen_inverse_depth,
+                seen_surface,
+                x.cmplt(ends[1]),
+                own,
+                surface,
+            );
+            x += 4.0;
         }
     }
 }
@@ -112,34 +153,6 @@ impl CenterRow<'_> {
             *seen = inverse_depth.at(x as f32);
         }
         self.surface[columns].fill(surface);
-    }
-
-    /// Puts a surface into those of a few columns, from the start to before the end, that see nothing nearer.
-    #[inline]
-    pub fn put_some(&mut self, [start, end]: [f32; 2], inverse_depth: OnRow<f32>, surface: u32) {
-        const LANES: Vec4 = Vec4::new(0.0, 1.0, 2.0, 3.0);
-        let columns = column(start)..column(end);
-        let Some(last) = self.inverse_depth.len().checked_sub(4) else {
-            self.put(columns, |x| (inverse_depth.at(x), surface));
-            return;
-        };
-        let ends = [start, end].map(Vec4::splat);
-        let [base, step] = [inverse_depth.at(0.0), inverse_depth.step].map(Vec4::splat);
-        let surface = Vec4::splat(f32::from_bits(surface));
-        for first in columns.step_by(4) {
-            // Four samples at once, among them some that are before or behind the columns. Their surfaces are bits only.
-            let first = first.min(last);
-            let (Some(seen_inverse_depth), Some(seen_surface)) = (
-                self.inverse_depth[first..].first_chunk_mut::<4>(),
-                self.surface[first..].first_chunk_mut::<4>(),
-            ) else {
-                return;
-            };
-            let x = Vec4::splat(first as i32 as f32) + LANES;
-            let own = base + step * x;
-            let is_seen = x.cmpge(ends[0]) & x.cmplt(ends[1]);
-            put_lanes(seen_inverse_depth, seen_surface, is_seen, own, surface);
-        }
     }
 
     /// Puts surfaces into those of these columns that see nothing nearer. `seen_at` says for a column how near which surface is.

@@ -128,9 +128,24 @@ impl SpanList {
             (inner_start..inner_end, Sees::Face(added.face)),
             (inner_end..end, Sees::Several),
         ];
+        let first = self.spans.iter().take_while(|span| span.end <= start);
+        let first = first.count();
+        // Mostly all of it is before or behind one face.
+        let around = self.spans[first];
+        if let Sees::Face(seen) = around.sees
+            && around.end >= end
+        {
+            match plane.order(plane_of(seen), row, start..end, reach) {
+                Order::Farther => return,
+                Order::Nearer => {
+                    self.replace(first, around, parts);
+                    return;
+                }
+                Order::Unclear => {}
+            }
+        }
         std::mem::swap(&mut self.spans, &mut self.before);
         let before = &self.before;
-        let first = before.partition_point(|span| span.end <= start);
         self.spans.clear();
         self.spans.extend_from_slice(&before[..first]);
         let mut rest = before.len();
@@ -160,6 +175,30 @@ impl SpanList {
             push(&mut self.spans, span.start.max(end)..span.end, span.sees);
         }
         self.spans.extend_from_slice(&before[rest..]);
+    }
+
+    /// Puts parts of a span in its place.
+    fn replace(&mut self, i: usize, span: Span, [left, middle, right]: [(Range<u32>, Sees); 3]) {
+        let (start, end) = (left.0.start, right.0.end);
+        let parts = [
+            (span.start..start, span.sees),
+            left,
+            middle,
+            right,
+            (end..span.end, span.sees),
+        ];
+        let mut spans = [span; 5];
+        let mut count = 0;
+        for (Range { start, end }, sees) in parts {
+            if start < end {
+                spans[count] = Span { start, end, sees };
+                count += 1;
+            }
+        }
+        let length = self.spans.len();
+        self.spans.resize(length + count - 1, span);
+        self.spans.copy_within(i + 1..length, i + count);
+        self.spans[i..i + count].copy_from_slice(&spans[..count]);
     }
 }
 

@@ -60,8 +60,8 @@ impl Triangle {
         for (row, (start, end)) in rows.zip(starts.to_array().into_iter().zip(ends.to_array())) {
             if start < end {
                 let inverse_depth = self.inverse_depth.on_row(row, SampleOffset::CENTER);
-                let mut samples = samples.center_row((row - first_row) as usize);
-                samples.put_some([start, end], inverse_depth, self.surface);
+                let row = (row - first_row) as usize;
+                samples.put_few(row, [start, end], inverse_depth, self.surface);
             }
         }
     }

@@ -1,8 +1,8 @@
 //! What of a scene a camera can see.
 
-use std::ops::Range;
+use std::{ops::Range, sync::Arc};
 
-use bevy::math::{Mat3, Vec2, Vec3};
+use bevy::math::{Mat3, Mat3A, Vec2, Vec3, Vec3A};
 use tabletop_core::{LIGHT, Solid};
 
 use crate::{
@@ -15,7 +15,7 @@ use crate::{
         surface::{FlatLook, Surface, clamp_share},
         triangle::Triangle,
     },
-    scene::{DrawnFigure, DrawnSolid, Scene},
+    scene::{DrawnFigure, DrawnSolid, Facets, Scene},
 };
 
 /// The surfaces that face a camera, and what they bound.
@@ -27,15 +27,34 @@ pub(crate) struct VisibleSurfaces {
     patches: Vec<u32>,
     /// Flat faces; the first stands for nothing.
     pub faces: Vec<Face>,
+    /// The face that is most likely the same in the next picture: the upper one of the first solid.
+    pub backdrop: Option<u32>,
     pub quadrics: Vec<Quadric>,
-    /// Where figures may be seen.
-    pub figures: Vec<Window>,
+    /// The figures in the order of the scene. As long as they and the view stay the same, so do their triangles and surfaces, which
+    /// are therefore the first ones.
+    figures: Vec<ProjectedFigure>,
+    /// The bits of the view that they are seen in.
+    view: Option<[u32; 11]>,
     triangles: Vec<Triangle>,
     edge_table: EdgeTable,
     /// So many patches there are.
     patch_count: u32,
     /// The vertices of a figure.
     vertices: Vec<Corner>,
+}
+
+/// A figure as it is seen.
+#[derive(Clone, Debug)]
+struct ProjectedFigure {
+    facets: Arc<Facets>,
+    pose: [u32; 7],
+    object: u32,
+    /// Where it may be seen.
+    window: Option<Window>,
+    /// So many surfaces, triangles and patches there are with it.
+    surfaces: usize,
+    triangles: usize,
+    patches: u32,
 }
 
 /// A corner of a triangle as it is seen.
@@ -50,18 +69,14 @@ struct Corner {
 }
 
 impl VisibleSurfaces {
-    /// Forgets everything and looks at this scene.
+    /// Looks at this scene, and forgets what was before.
     pub fn project(&mut self, scene: &Scene, view: &View) {
-        self.surfaces.clear();
-        self.patches.clear();
-        self.patch_count = 0;
+        self.project_figures(&scene.figures, view);
         self.faces.clear();
-        self.add_surface(Surface::NOTHING);
         self.faces.push(Face::NOTHING);
-        self.figures.clear();
         self.quadrics.clear();
-        self.triangles.clear();
-        for drawn in &scene.solids {
+        self.backdrop = None;
+        for (i, drawn) in scene.solids.iter().enumerate() {
             let corners = corners_of_solid(drawn, view);
             if let Some(window) = view.window_of(&corners) {
                 match drawn.solid {
@@ -72,16 +87,64 @@ impl VisibleSurfaces {
                     Solid::Ball(radius) => self.add_ball(drawn, view, window, radius),
                 }
             }
-        }
-        for drawn in &scene.figures {
-            let corners = corners_of_box(drawn.pose, drawn.facets.bounds, view);
-            if let Some(window) = view.window_of(&corners) {
-                self.add_figure(drawn, view, &window);
-                self.figures.push(window);
+            if i == 0 && self.faces.len() > 1 {
+                self.backdrop = Some(self.faces.len() as u32 - 1);
             }
+        }
+    }
+
+    /// Looks at figures, but not at the first ones that are as they were in the picture before.
+    fn project_figures(&mut self, figures: &[DrawnFigure], view: &View) {
+        let same_view = self.view.replace(view.bits()) == Some(view.bits());
+        let pairs = self.figures.iter().zip(figures);
+        let unchanged = pairs.take_while(|(before, now)| same_view && before.is_of(now));
+        let unchanged = unchanged.count();
+        if same_view && unchanged == self.figures.len() && unchanged == figures.len() {
+            self.forget_figures_from(unchanged);
+            return;
+        }
+        self.forget_figures_from(unchanged);
+        for drawn in &figures[unchanged..] {
+            let corners = corners_of_box(drawn.pose, drawn.facets.bounds, view);
+            let window = view.window_of(&corners);
+            if let Some(window) = &window {
+                self.add_figure(drawn, view, window);
+            }
+            self.figures.push(ProjectedFigure {
+                facets: Arc::clone(&drawn.facets),
+                pose: drawn.pose_bits(),
+                object: drawn.object,
+                window,
+                surfaces: self.surfaces.len(),
+                triangles: self.triangles.len(),
+                patches: self.patch_count,
+            });
         }
         let rows = self.triangles.iter().map(|triangle| &triangle.rows);
         self.edge_table.sort(rows, view.height, ROWS as u32);
+    }
+
+    /// Forgets all but the first figures and what is nothing.
+    fn forget_figures_from(&mut self, end: usize) {
+        let last = end.checked_sub(1).map(|last| &self.figures[last]);
+        let (surfaces, triangles, patches) = last.map_or((0, 0, 0), |last| {
+            (last.surfaces, last.triangles, last.patches)
+        });
+        self.surfaces.truncate(surfaces);
+        self.patches.truncate(surfaces);
+        self.triangles.truncate(triangles);
+        self.patch_count = patches;
+        self.figures.truncate(end);
+        if surfaces == 0 {
+            self.add_surface(Surface::NOTHING);
+        }
+    }
+
+    /// Where figures may be seen.
+    pub fn figure_windows(&self) -> impl Iterator<Item = &Window> {
+        self.figures
+            .iter()
+            .filter_map(|figure| figure.window.as_ref())
     }
 
     fn add_cuboid(&mut self, drawn: &DrawnSolid, view: &View, window: Window, corners: &[Vec3; 8]) {
@@ -131,11 +194,13 @@ impl VisibleSurfaces {
         let axes = Mat3::from_quat(drawn.pose.rotation);
         let pixel_of = view.pixels_of(drawn.pose);
         self.vertices.clear();
+        let (turned, location) = (Mat3A::from(axes), Vec3A::from(drawn.pose.location));
+        let view_eye = Vec3A::from(view.eye);
         self.vertices
             .extend(facets.vertices.iter().map(|vertex| Corner {
                 pixel: pixel_of(vertex.position),
-                place: drawn.pose.location + axes * vertex.position - view.eye,
-                share: clamp_share(LIGHT.share(axes * vertex.normal)),
+                place: (location + turned * vertex.position - view_eye).into(),
+                share: clamp_share(LIGHT.share((turned * vertex.normal).into())),
             }));
         let eye = drawn.pose.inverse() * view.eye;
         for facet in &facets.triangles {
@@ -183,6 +248,15 @@ impl VisibleSurfaces {
     pub fn is_edge_between(&self, surfaces: [u32; 5]) -> bool {
         let [first, others @ ..] = surfaces.map(|i| self.patches[i as usize]);
         others.iter().any(|&patch| patch != first)
+    }
+}
+
+impl ProjectedFigure {
+    /// Whether it is this one.
+    fn is_of(&self, drawn: &DrawnFigure) -> bool {
+        Arc::ptr_eq(&self.facets, &drawn.facets)
+            && self.pose == drawn.pose_bits()
+            && self.object == drawn.object
     }
 }
 

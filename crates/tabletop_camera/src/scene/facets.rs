@@ -1,6 +1,6 @@
 //! Surfaces of triangles, made ready for being drawn.
 
-use bevy::math::Vec3;
+use bevy::math::{Vec3, Vec3A};
 use tabletop_core::Triangles;
 
 use crate::color::scaled_to_bytes;
@@ -19,8 +19,8 @@ pub struct Facets {
 /// A vertex in the frame of the figure.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Vertex {
-    pub position: Vec3,
-    pub normal: Vec3,
+    pub position: Vec3A,
+    pub normal: Vec3A,
 }
 
 /// A triangle.
@@ -56,7 +56,10 @@ impl From<&Triangles> for Facets {
             .positions
             .iter()
             .zip(&surface.normals)
-            .map(|(&position, &normal)| Vertex { position, normal })
+            .map(|(&position, &normal)| Vertex {
+                position: position.into(),
+                normal: normal.into(),
+            })
             .collect();
         let mut patch_of = Patches::new(vertices.len());
         let mut bounds = [Vec3::INFINITY, Vec3::NEG_INFINITY];
@@ -66,7 +69,7 @@ impl From<&Triangles> for Facets {
                 continue;
             };
             let [Some(a), Some(b), Some(c)] =
-                corners.map(|i| Some(vertices.get(i as usize)?.position))
+                corners.map(|i| Some(Vec3::from(vertices.get(i as usize)?.position)))
             else {
                 continue;
             };

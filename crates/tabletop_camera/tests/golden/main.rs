@@ -21,11 +21,36 @@ fn smooth_pictures_are_the_bytes_they_were() {
     assert_eq!(hash_of_pictures(true), 0x7033_0b48_74c1_6a15);
 }
 
+#[test]
+fn a_figure_is_drawn_where_it_is_now() {
+    let (mut scene, camera) = (0..)
+        .map(|seed| random_scene(seed, true))
+        .find(|(scene, _)| scene.figures.len() > 3)
+        .expect("a scene has figures");
+    let (mut rasterizer, mut picture) = (Rasterizer::default(), Picture::default());
+    for _ in 0..3 {
+        for i in 0..scene.figures.len() {
+            scene.figures[i].pose.location.x += 0.1;
+            scene.solids.truncate(i + 2);
+            rasterizer.draw(&scene, &camera, &mut picture);
+            let mut anew = Picture::default();
+            Rasterizer::default().draw(&scene, &camera, &mut anew);
+            assert_eq!(hash_of(&picture), hash_of(&anew), "figure {i}");
+        }
+        scene.figures.swap(1, 2);
+        scene.figures.pop();
+    }
+}
+
 fn hash_of_pictures(antialiasing: bool) -> u64 {
     let (mut rasterizer, mut picture) = (Rasterizer::default(), Picture::default());
     (0..SCENES).fold(0xcbf2_9ce4_8422_2325, |hash, seed| {
         let (scene, camera) = random_scene(seed, antialiasing);
+        // What is kept from picture to picture must not show.
         rasterizer.draw(&scene, &camera, &mut picture);
+        let before = hash_of(&picture);
+        rasterizer.draw(&scene, &camera, &mut picture);
+        assert_eq!(hash_of(&picture), before, "scene {seed}");
         (hash ^ hash_of(&picture)).wrapping_mul(0x0100_0000_01b3)
     })
 }
