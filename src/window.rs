@@ -22,7 +22,7 @@ use bevy::{
     prelude::*,
     render::RenderPlugin,
 };
-use tabletop_core::{Actor, CommandWriter, OpenRecording, PacePlugin, SceneCommand};
+use tabletop_core::{Actor, CommandWriter, OpenRecording, PacePlugin, RobotCommand, SceneCommand};
 use tabletop_gui::{
     GuiPlugin, Preferences, PresetSeeds, WidgetListPlugin, keymap_file::KeymapFile,
 };
@@ -43,6 +43,8 @@ pub struct WindowOptions {
     pub show: Show,
     /// The robot at the table; a replay has that of its recording.
     pub robot: RobotPlugin,
+    /// Whether the robot stands at the table from the start.
+    pub show_robot: bool,
     /// The scripts that can drive the robot, and their engine.
     pub scripts: ScriptSettings,
     /// How it is shown.
@@ -146,6 +148,9 @@ fn build(options: WindowOptions) -> App {
         Show::Task(setup) => {
             let load = move |mut commands: CommandWriter| {
                 commands.write(Actor::Panel, SceneCommand::Load(setup.clone()));
+                if options.show_robot {
+                    commands.write(Actor::Panel, RobotCommand::Show(true));
+                }
             };
             app.add_systems(Startup, load);
         }

@@ -7,14 +7,18 @@ use bevy::{
     prelude::*,
 };
 use tabletop::{
+    TabletopSimPlugins,
     core::{OrderSystems, TickSystems},
+    headless_app_with,
     prelude::*,
+    recorder::{RecorderPlugin, UnrecordedPlugin},
 };
 
 fn with_ambiguities_as_errors(app: &mut App) {
     app.edit_schedule(FixedUpdate, |schedule| {
         schedule.set_build_settings(ScheduleBuildSettings {
             ambiguity_detection: LogLevel::Error,
+            hierarchy_detection: LogLevel::Error,
             ..default()
         });
     });
@@ -22,10 +26,15 @@ fn with_ambiguities_as_errors(app: &mut App) {
 
 #[test]
 fn the_order_of_a_tick_is_unambiguous() {
-    let mut app = headless_app();
-    with_ambiguities_as_errors(&mut app);
-    app.step(1);
-    assert_eq!(app.world().resource::<SimTick>().0, 1);
+    let without_recorder = TabletopSimPlugins
+        .build()
+        .disable::<RecorderPlugin>()
+        .add(UnrecordedPlugin);
+    for mut app in [headless_app(), headless_app_with(without_recorder)] {
+        with_ambiguities_as_errors(&mut app);
+        app.step(1);
+        assert_eq!(app.world().resource::<SimTick>().0, 1);
+    }
 }
 
 #[test]

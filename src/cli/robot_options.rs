@@ -5,9 +5,10 @@ use std::{
     time::Duration,
 };
 
+use bevy::prelude::*;
 use clap::Args;
 use tabletop::{
-    core::RobotMode,
+    core::{RobotCommand, RobotMode, WriteCommand as _},
     robot::{Description, RobotPlugin, Source},
     script::{
         ENGINE_VARIABLE, EngineChoice, EngineKind, EngineLocator, FieldPolicy, ScriptSettings,
@@ -25,6 +26,9 @@ pub(super) struct RobotOptions {
     /// Move the arms by motors with limited torque instead of exactly as told
     #[arg(long)]
     dynamic: bool,
+    /// Put the robot to the table from the start
+    #[arg(long)]
+    pub show_robot: bool,
 }
 
 impl RobotOptions {
@@ -41,6 +45,13 @@ impl RobotOptions {
                 false => RobotMode::Kinematic,
             },
         })
+    }
+
+    /// Puts the robot to the table, if it is to be there from the start.
+    pub fn show(&self, app: &mut App) {
+        if self.show_robot {
+            app.world_mut().write_command(RobotCommand::Show(true));
+        }
     }
 }
 
@@ -89,8 +100,14 @@ impl EngineOptions {
             settings.locator.variable = None;
         }
         if let Some(script) = script {
-            let (language, agent) = split(script);
+            let ScriptName {
+                language,
+                agent,
+                pair,
+            } = ScriptName::parse(script);
             settings.agent = agent.map(PathBuf::from);
+            settings.pair =
+                pair.map(|pair| ["Init", "Callback"].map(|part| format!("{pair}{part}")));
             settings.engine = self.engine_for(language, &settings.locator)?;
             if language == OTHER {
                 settings.objects = FieldPolicy::Always;
@@ -212,19 +229,45 @@ fn patience(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| format!("expected a number of seconds from 0.01 to {DAY}"))
 }
 
-/// The language, and the path after the colon.
-fn split(script: &str) -> (&str, Option<&str>) {
-    match script.split_once(':') {
-        Some((language, path)) => (language, Some(path)),
-        None => (script, None),
+/// What `--script` says.
+struct ScriptName<'a> {
+    language: &'a str,
+    /// The folder of the scripts, or the file.
+    agent: Option<&'a str>,
+    /// What the names of a pair of Matlab scripts begin with.
+    pair: Option<&'a str>,
+}
+
+impl<'a> ScriptName<'a> {
+    fn parse(text: &'a str) -> Self {
+        let (name, pair) = match text.rsplit_once('#') {
+            Some((name, pair)) if !pair.contains('/') => (name, Some(pair)),
+            Some(_) | None => (text, None),
+        };
+        let (language, agent) = match name.split_once(':') {
+            Some((language, agent)) => (language, Some(agent)),
+            None => (name, None),
+        };
+        Self {
+            language,
+            agent,
+            pair,
+        }
     }
 }
 
 /// Reads what `--script` says.
 pub(super) fn script(text: &str) -> Result<String, String> {
-    match split(text) {
-        ("matlab" | "octave" | "python", _) | (OTHER, Some(_)) => Ok(text.to_owned()),
-        (OTHER, None) => Err("expected a colon and the path of the script after other".into()),
+    let name = ScriptName::parse(text);
+    match (name.language, name.agent, name.pair) {
+        ("matlab" | "octave", _, Some("")) => {
+            Err("expected the name of a pair of scripts after #, as in #reach".into())
+        }
+        ("matlab" | "octave", _, _) | ("python", _, None) | (OTHER, Some(_), None) => Ok(text.to_owned()),
+        ("python" | OTHER, _, Some(_)) => {
+            Err("# names a pair of Matlab scripts; a Python file or a driver has no pairs".into())
+        }
+        (OTHER, None, None) => Err("expected a colon and the path of the script after other".into()),
         _ => Err("expected matlab, octave, python or other, and after a colon the folder of the scripts or the file".into()),
     }
 }

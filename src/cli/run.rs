@@ -66,8 +66,9 @@ pub(super) struct RunArgs {
     #[arg(long, value_name = "FILE.xml")]
     save: Option<PathBuf>,
     /// The script that drives the robot: `matlab` (the scripts that matlab/agentBehavior.m names), `matlab:FOLDER`, `octave:FOLDER`,
-    /// `python:FILE`, or `other:FILE` for the driver that `--engine` names. Without a scenario, the run ends with the script
-    #[arg(long, value_name = "LANGUAGE[:PATH]", value_parser = script)]
+    /// `matlab:FOLDER#reach` (reachInit.m and reachCallback.m), `python:FILE`, or `other:FILE` for the driver that `--engine` names.
+    /// The run ends with the script if there is no scenario, or one that waits for nothing
+    #[arg(long, value_name = "LANGUAGE[:PATH][#PAIR]", value_parser = script)]
     script: Option<String>,
     #[command(flatten)]
     engine: EngineOptions,
@@ -98,6 +99,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
             let setup = setup.unwrap_or(Path::new(super::DEFAULT_SETUP));
             let (mut app, result) = put_on_table(setup, plugins(args)?)?;
             app.add_systems(FixedLast, tell_what_stops_the_robot);
+            args.robot.show(&mut app);
             let start = Instant::now();
             let script = Script::start(&mut app, args.script.is_some());
             let script = script.run(&mut app, ticks(seconds.unwrap_or(10.0)));
@@ -158,14 +160,18 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     }
 
     let mut app = headless_app_with((recording(plugins(args)?, args), ScenarioPlugin));
+    let (limit, only_prepares) = (program.limit, program.only_prepares());
     app.insert_resource(ScenarioRun::new(program))
         .add_systems(FixedLast, tell_what_stops_the_robot);
+    args.robot.show(&mut app);
     let start = Instant::now();
     let mut script = Script::start(&mut app, args.script.is_some());
     let mut facts = MessageCursor::<SimFact>::default();
     let mut has_recorded = false;
+    let mut ticks_taken = 0;
     let outcome = loop {
         app.step(1);
+        ticks_taken += 1;
         has_recorded |= facts
             .read(app.world().resource())
             .any(|fact| matches!(fact, SimFact::RecordingStarted { .. }));
@@ -181,6 +187,16 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
             }
         }
     };
+    let outcome = outcome.and_then(|done| {
+        if only_prepares {
+            let mut left = ticks_taken..limit;
+            script.run_while(&mut app, |_| left.next().is_some())?;
+        }
+        if script.is_running() {
+            say("tabletop: the script was still running when the scenario ended; a Wait at its end gives it more time");
+        }
+        Ok(done)
+    });
     shut_down(app.world_mut());
     args.write_ends(&app)?;
     if args.record.is_some() {

@@ -97,6 +97,11 @@ impl Script {
         Ok(())
     }
 
+    /// Whether it acts, or will.
+    pub const fn is_running(&self) -> bool {
+        self.is_wanted && self.end.is_none()
+    }
+
     pub fn result(self) -> Result<(), Failure> {
         self.end.unwrap_or(Ok(()))
     }

@@ -31,8 +31,8 @@ pub(super) struct WindowArgs {
     #[arg(long, value_name = "S", default_value = "1", value_parser = run::seconds, allow_negative_numbers = true, requires = "screenshot")]
     after: f64,
     /// The scripts that the key M starts: `matlab` (those that matlab/agentBehavior.m names), `matlab:FOLDER`, `octave:FOLDER`,
-    /// `python:FILE`, or `other:FILE`, which the driver runs that `--engine` names
-    #[arg(long, value_name = "LANGUAGE[:PATH]", value_parser = script)]
+    /// `matlab:FOLDER#reach` (reachInit.m and reachCallback.m), `python:FILE`, or `other:FILE`, which the driver runs that `--engine` names
+    #[arg(long, value_name = "LANGUAGE[:PATH][#PAIR]", value_parser = script)]
     script: Option<String>,
     #[command(flatten)]
     engine: EngineOptions,
@@ -58,6 +58,7 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
     let options = WindowOptions {
         show: Show::Task(args.setup.clone()),
         robot: args.robot.plugin()?,
+        show_robot: args.robot.show_robot,
         scripts: args.engine.settings(args.script.as_deref())?,
         display,
         keys: args.keys,
@@ -85,6 +86,7 @@ pub(super) fn play(replay: Replay, scripts: ScriptSettings) -> Result<ExitCode, 
     let options = WindowOptions {
         show: Show::Replay(Box::new(replay)),
         robot: RobotPlugin::default(),
+        show_robot: false,
         scripts,
         display: DisplayOptions {
             ask: Some(false),

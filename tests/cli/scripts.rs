@@ -577,3 +577,74 @@ fn torques_that_nothing_obeys_are_noted_once() {
     let output = command(&run).arg("--dynamic").output().unwrap();
     assert!(!stderr(&output).contains(note));
 }
+
+#[test]
+fn a_pair_of_scripts_is_named_on_the_command_line() {
+    let folder = copy_of_matlab("example");
+    let named = format!("{}#reach", octave(&folder));
+    let run = ["run", "--seconds", "1", "--show-robot", "--script"];
+    let output = command(&run).arg(&named).output().unwrap();
+    succeeded(&output);
+    let robot = |script: &str| {
+        let run = ["run", "--seconds", "1", "--script", script];
+        let output = tabletop(&[&run[..], &["--show-robot", "--final-robot", "-"]].concat());
+        succeeded(&output);
+        output.stdout
+    };
+    name_pair(&folder, "reach");
+    assert_eq!(robot(&named), robot(&octave(&folder)));
+
+    for (pair, reason) in [
+        ("#grab", "there is no grabInit.m in"),
+        ("#", "expected the name of a pair of scripts after #"),
+    ] {
+        let output = tabletop(&["run", "--script", &format!("{}{pair}", octave(&folder))]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(reason), "{}", stderr(&output));
+    }
+    let output = tabletop(&["run", "--script", "python:python/example.py#reach"]);
+    let reason = "a Python file or a driver has no pairs";
+    assert!(stderr(&output).contains(reason), "{}", stderr(&output));
+}
+
+/// `--script` for a script that ends itself after half a second.
+fn half_a_second(name: &str) -> String {
+    python(
+        name,
+        "global calls; calls = 0",
+        "global calls; calls += 1; print('call', calls); calls < 30 or setattr(aux, 'exit', True)",
+    )
+}
+
+#[test]
+fn a_scenario_that_waits_for_nothing_lasts_as_long_as_its_script() {
+    let scenario = scenario("shown.ron", "Robot(Show)");
+    let run = |limit: &[&str], script: &str| {
+        let run = ["run", scenario.to_str().unwrap(), "--script", script];
+        let output = tabletop(&[&run[..], limit].concat());
+        succeeded(&output);
+        stderr(&output)
+    };
+    let cut = "the script was still running when the scenario ended";
+    let whole = run(&[], &half_a_second("whole"));
+    assert!(whole.contains("call 30"), "{whole}");
+    assert!(!whole.contains(cut), "{whole}");
+    let part = run(&["--seconds", "0.2"], &half_a_second("part"));
+    assert!(
+        part.contains("call 5") && !part.contains("call 15"),
+        "{part}"
+    );
+    assert!(part.contains(cut), "{part}");
+}
+
+#[test]
+fn a_scenario_that_ends_before_its_script_says_so() {
+    let scenario = scenario("short.ron", "Wait(0.2)");
+    let script = half_a_second("long");
+    let output = tabletop(&["run", scenario.to_str().unwrap(), "--script", &script]);
+    succeeded(&output);
+    let printed = stderr(&output);
+    assert!(!printed.contains("call 30"), "{printed}");
+    let cut = "the script was still running when the scenario ended";
+    assert_eq!(printed.matches(cut).count(), 1, "{printed}");
+}

@@ -136,7 +136,7 @@ impl EngineConfig {
         let agent = self.agent_path();
         match kind {
             EngineKind::Matlab | EngineKind::Octave => {
-                script_folder::fault(&agent, self.pair.is_none(), &self.working_dir)
+                script_folder::fault(&agent, self.pair.as_ref(), &self.working_dir)
             }
             _ if !agent.exists() => Some(format!("there is no {}", agent.display())),
             EngineKind::Python if agent.is_dir() => Some(format!(

@@ -19,7 +19,8 @@ fn posture(robot: &RobotModel, left: [f64; 7]) -> JointValues {
     let mut configuration = robot.zero();
     for (side, sign) in [("left", 1.0), ("right", -1.0)] {
         let arm = ArmChain::between(robot, "torso", &format!("{side}_wrist")).unwrap();
-        let angles: [f64; 7] = std::array::from_fn(|i| if i % 2 == 0 { sign * left[i] } else { left[i] });
+        let angles: [f64; 7] =
+            std::array::from_fn(|i| if i % 2 == 0 { sign * left[i] } else { left[i] });
         arm.set_angles(&angles, &mut configuration);
     }
     configuration

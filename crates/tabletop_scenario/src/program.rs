@@ -76,4 +76,12 @@ impl Program {
             random,
         })
     }
+
+    /// Whether it only prepares: none of its steps lets time pass for something to happen, as `Wait` and `Glide` do.
+    pub fn only_prepares(&self) -> bool {
+        self.steps.iter().all(|step| match &step.action {
+            Action::SetScene(_) => true,
+            Action::Do(step) => !step.waits(),
+        })
+    }
 }

@@ -103,6 +103,45 @@ impl Axis {
 }
 
 impl Step {
+    /// Whether it lets time pass for something to happen.
+    pub(crate) fn waits(&self) -> bool {
+        match self {
+            Self::With(_, step) => step.waits(),
+            Self::Glide { .. }
+            | Self::Wait(_)
+            | Self::WaitUntilRest(_)
+            | Self::WaitUntilThere(_)
+            | Self::Robot(RobotStep::WaitUntilStill(_)) => true,
+            Self::Load { .. }
+            | Self::Clear
+            | Self::Make(_)
+            | Self::Select(_)
+            | Self::Grasp(_)
+            | Self::MoveTo(_)
+            | Self::MoveBy(_)
+            | Self::Turn { .. }
+            | Self::Release
+            | Self::Destroy
+            | Self::Start
+            | Self::Finish
+            | Self::Undo
+            | Self::Redo
+            | Self::Pause(_)
+            | Self::Robot(
+                RobotStep::Show
+                | RobotStep::Hide
+                | RobotStep::Move(_)
+                | RobotStep::Set(_)
+                | RobotStep::Home
+                | RobotStep::ReachTo { .. }
+                | RobotStep::Close(_)
+                | RobotStep::Open(_)
+                | RobotStep::Face(_),
+            )
+            | Self::Expect(_) => false,
+        }
+    }
+
     /// What makes no sense in it.
     pub(crate) fn fault(&self) -> Option<String> {
         match self {

@@ -8,8 +8,12 @@ use std::{
 /// The variables of the base workspace that the scripts share with the simulator.
 pub(crate) const SHARED: [&str; 3] = ["sensor", "motor", "aux"];
 
-/// Why the scripts of a folder cannot be run, or would not be. `whole`: with agentBehavior.m.
-pub(crate) fn fault(folder: &Path, whole: bool, working_dir: &Path) -> Option<String> {
+/// Why the scripts of a folder cannot be run, or would not be: this pair, or the one that agentBehavior.m names.
+pub(crate) fn fault(
+    folder: &Path,
+    pair: Option<&[String; 2]>,
+    working_dir: &Path,
+) -> Option<String> {
     let shown = folder.display();
     if !folder.exists() {
         return Some(format!("there is no {shown}"));
@@ -23,9 +27,16 @@ pub(crate) fn fault(folder: &Path, whole: bool, working_dir: &Path) -> Option<St
             "{shown} cannot be on Matlab's path, because its name holds '{separator}'; rename it"
         ));
     }
-    let behavior = |extension| folder.join("agentBehavior").with_extension(extension);
-    if whole && !["m", "p"].map(behavior).iter().any(|file| file.is_file()) {
-        return Some(format!("there is no agentBehavior.m in {shown}"));
+    let is_there = |name: &str| {
+        let file = |extension| folder.join(format!("{name}.{extension}"));
+        ["m", "p"].map(file).iter().any(|file| file.is_file())
+    };
+    let names = match pair {
+        Some([init, callback]) => vec![init.as_str(), callback],
+        None => vec!["agentBehavior"],
+    };
+    if let Some(name) = names.into_iter().find(|name| !is_there(name)) {
+        return Some(format!("there is no {name}.m in {shown}"));
     }
     let working_dir = absolute(working_dir).ok()?;
     let (shadow, script) = files(folder).into_iter().find_map(|script| {

@@ -47,12 +47,14 @@ impl Plugin for RecorderPlugin {
                 FixedUpdate,
                 (
                     take_commands.in_set(CommandSystems::Recording),
-                    ask_for_picture
-                        .after(SimSystems::Propagate)
-                        .before(SimSystems::Sense),
-                    record.after(PictureSystems).before(SimSystems::Record),
-                )
-                    .in_set(TickSystems),
+                    (
+                        ask_for_picture
+                            .after(SimSystems::Propagate)
+                            .before(SimSystems::Sense),
+                        record.after(PictureSystems).before(SimSystems::Record),
+                    )
+                        .in_set(TickSystems),
+                ),
             );
     }
 }

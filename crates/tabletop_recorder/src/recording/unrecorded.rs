@@ -22,9 +22,11 @@ impl Plugin for UnrecordedPlugin {
             FixedUpdate,
             (
                 start.in_set(CommandSystems::Recording),
-                finish.after(SimSystems::Sense).before(SimSystems::Record),
-            )
-                .in_set(TickSystems),
+                finish
+                    .after(SimSystems::Sense)
+                    .before(SimSystems::Record)
+                    .in_set(TickSystems),
+            ),
         );
     }
 }
