@@ -49,9 +49,10 @@ pub use tabletop_script as script;
 pub use tabletop_task as task;
 pub use tabletop_xml as xml;
 
+pub mod final_state;
 mod headless;
 pub mod replay;
-pub mod report;
+pub mod scene_dump;
 mod settings;
 pub mod shipped;
 pub mod task_files;

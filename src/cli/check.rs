@@ -7,7 +7,7 @@ use std::{
 
 use clap::Args;
 use tabletop::{
-    report,
+    scene_dump,
     shipped::{read_task, task_reader},
 };
 
@@ -47,7 +47,7 @@ pub(super) fn check(args: &CheckArgs) -> Result<ExitCode, Failure> {
         sound &= task.faults.is_empty();
         if args.dump {
             let mut json = Vec::new();
-            report::write_dump(&task.scene, &mut json).map_err(Failure::run)?;
+            scene_dump::write_dump(&task.scene, &mut json).map_err(Failure::run)?;
             Output::Stdout.write(&json)?;
         } else if task.faults.is_empty() {
             Output::Stdout.write(format!("{}: ok\n", file.display()).as_bytes())?;

@@ -16,9 +16,8 @@ use tabletop::{
         ClockCommand, Recording, RecordingCommand, SceneCommand, SceneSpec, SimFact, SimTick,
         StepApp as _, TICKS_PER_SECOND, WriteCommand as _,
     },
-    headless_app_with,
+    final_state, headless_app_with,
     recorder::{RecorderPlugin, UnrecordedPlugin},
-    report,
     script::{ScriptPlugin, shut_down},
     shipped::{read_scenario, read_task, true_path},
     task_files::save_task,
@@ -98,7 +97,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
             let setup = args.setup.as_deref();
             let setup = setup.unwrap_or(Path::new(super::DEFAULT_SETUP));
             let (mut app, result) = put_on_table(setup, plugins(args)?)?;
-            app.add_systems(FixedLast, tell_what_stops_the_robot);
+            app.add_systems(FixedLast, report_what_stops_the_robot);
             args.robot.show(&mut app);
             let start = Instant::now();
             let script = Script::start(&mut app, args.script.is_some());
@@ -131,16 +130,16 @@ pub(super) fn pass(app: &mut App, ticks: u64) {
     app.step(ticks.max(1));
 }
 
-/// The simulator with a task file's scene on its table, and the exit code for the file's faults.
+/// The simulator that loads a task file in its first tick, and the exit code for the file's faults.
 fn put_on_table(setup: &Path, plugins: PluginGroupBuilder) -> Result<(App, ExitCode), Failure> {
-    let task = read_task(setup).map_err(Failure::input)?;
-    for fault in &task.faults {
+    let faults = read_task(setup).map_err(Failure::input)?.faults;
+    for fault in &faults {
         say(fault);
     }
     let mut app = headless_app_with(plugins);
     app.world_mut()
-        .write_command(SceneCommand::Set(Box::new(task.scene)));
-    let result = match task.faults.is_empty() {
+        .write_command(SceneCommand::Load(setup.to_owned()));
+    let result = match faults.is_empty() {
         true => ExitCode::SUCCESS,
         false => ExitCode::from(WRONG_INPUT),
     };
@@ -162,7 +161,7 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     let mut app = headless_app_with((recording(plugins(args)?, args), ScenarioPlugin));
     let (limit, only_prepares) = (program.limit, program.only_prepares());
     app.insert_resource(ScenarioRun::new(program))
-        .add_systems(FixedLast, tell_what_stops_the_robot);
+        .add_systems(FixedLast, report_what_stops_the_robot);
     args.robot.show(&mut app);
     let start = Instant::now();
     let mut script = Script::start(&mut app, args.script.is_some());
@@ -225,18 +224,38 @@ fn finish_recording(app: &mut App) {
     }
 }
 
-/// Says once of each thing that it stops an arm, or cannot be gripped.
-fn tell_what_stops_the_robot(mut facts: MessageReader<SimFact>, mut told: Local<BTreeSet<String>>) {
-    let stops = facts.read().filter(|fact| {
-        matches!(
-            fact,
-            SimFact::ArmBlocked { .. } | SimFact::GripRefused { .. }
-        )
-    });
-    for news in stops.filter_map(SimFact::robot_news) {
-        if told.insert(news.clone()) {
-            say(format_args!("tabletop: {news}"));
+/// Reports once of each thing that it stops an arm, or cannot be gripped.
+fn report_what_stops_the_robot(
+    mut facts: MessageReader<SimFact>,
+    mut reported: Local<BTreeSet<String>>,
+) {
+    let events = facts.read().filter(|fact| stops_the_robot(fact));
+    for event in events.filter_map(SimFact::robot_event) {
+        if reported.insert(event.clone()) {
+            say(format_args!("tabletop: {event}"));
         }
+    }
+}
+
+fn stops_the_robot(fact: &SimFact) -> bool {
+    match fact {
+        SimFact::ArmBlocked { .. } | SimFact::GripRefused { .. } => true,
+        SimFact::TaskLoaded { .. }
+        | SimFact::ObjectCreated { .. }
+        | SimFact::ObjectDeleted { .. }
+        | SimFact::SegmentBegun { .. }
+        | SimFact::Grasped { .. }
+        | SimFact::Released { .. }
+        | SimFact::Destroyed { .. }
+        | SimFact::RecordingStarted { .. }
+        | SimFact::RecordingFinished { .. }
+        | SimFact::RecordingFailed { .. }
+        | SimFact::Undone { .. }
+        | SimFact::Redone { .. }
+        | SimFact::RobotShown { .. }
+        | SimFact::GripMade { .. }
+        | SimFact::GripReleased { .. }
+        | SimFact::Refused { .. } => false,
     }
 }
 
@@ -301,7 +320,7 @@ impl RunArgs {
         }
         if let Some(output) = &self.final_robot {
             let mut json = Vec::new();
-            report::write_robot(app.world(), &mut json).map_err(Failure::run)?;
+            final_state::write_robot(app.world(), &mut json).map_err(Failure::run)?;
             output.write(&json)?;
         }
         if let Some(path) = &self.save {
@@ -346,6 +365,6 @@ pub(super) fn ticks(seconds: f64) -> u64 {
 
 fn write_final_state(app: &App, output: &Output) -> Result<(), Failure> {
     let mut csv = Vec::new();
-    report::write_state(app.world(), &mut csv).map_err(Failure::run)?;
+    final_state::write_state(app.world(), &mut csv).map_err(Failure::run)?;
     output.write(&csv)
 }

@@ -31,8 +31,8 @@ pub(super) fn is_unheard() -> bool {
 pub(super) fn show_warnings() {
     App::empty().add_plugins(LogPlugin {
         level: Level::WARN,
-        // That a recording has failed is said by the command that wanted it.
-        filter: "tabletop_recorder::recorder=off".into(),
+        // The command that wanted a recording says that it has failed, and the one that names a task file its faults.
+        filter: "tabletop_recorder::recording::recorder=off,tabletop_xml::plugin=off".into(),
         fmt_layer: |_| {
             Some(Box::new(
                 Layer::default()

@@ -39,7 +39,7 @@ mod random;
 mod ray;
 mod recording;
 mod robot;
-mod robot_news;
+mod robot_event;
 mod rollback;
 mod scene;
 mod sensor;

@@ -108,7 +108,13 @@ impl Check {
             Self::OnTopOf { within, .. }
             | Self::OnTable { within, .. }
             | Self::Inside { within, .. } => fault_of_tolerance(*within),
-            _ => None,
+            Self::AtRest(_)
+            | Self::AllAtRest
+            | Self::Exists(_)
+            | Self::Gone(_)
+            | Self::HeldBy { .. }
+            | Self::Free(_)
+            | Self::Robot(_) => None,
         }
     }
 

@@ -116,7 +116,12 @@ impl RobotStep {
                 fault_of_vector(*at).or_else(|| fault_of_vector(*degrees))
             }
             Self::WaitUntilStill(seconds) => crate::step::fault_of_time(*seconds),
-            _ => None,
+            Self::Show
+            | Self::Hide
+            | Self::Home
+            | Self::Close(_)
+            | Self::Open(_)
+            | Self::Face(_) => None,
         }
     }
 

@@ -161,23 +161,45 @@ impl Step {
             }
             Self::Robot(step) => step.fault(),
             Self::Expect(check) => check.fault(),
-            _ => None,
+            Self::Clear
+            | Self::Select(_)
+            | Self::Grasp(_)
+            | Self::Release
+            | Self::Destroy
+            | Self::Start
+            | Self::Finish
+            | Self::Undo
+            | Self::Redo
+            | Self::Pause(_) => None,
         }
     }
 
     /// Whether a hand does it.
     pub(crate) const fn is_done_by_a_hand(&self) -> bool {
-        matches!(
-            self,
+        match self {
             Self::Grasp(_)
-                | Self::MoveTo(_)
-                | Self::MoveBy(_)
-                | Self::Glide { .. }
-                | Self::Turn { .. }
-                | Self::Release
-                | Self::Destroy
-                | Self::WaitUntilThere(_)
-        )
+            | Self::MoveTo(_)
+            | Self::MoveBy(_)
+            | Self::Glide { .. }
+            | Self::Turn { .. }
+            | Self::Release
+            | Self::Destroy
+            | Self::WaitUntilThere(_) => true,
+            Self::Load { .. }
+            | Self::Clear
+            | Self::Make(_)
+            | Self::Select(_)
+            | Self::With(..)
+            | Self::Wait(_)
+            | Self::WaitUntilRest(_)
+            | Self::Start
+            | Self::Finish
+            | Self::Undo
+            | Self::Redo
+            | Self::Pause(_)
+            | Self::Robot(_)
+            | Self::Expect(_) => false,
+        }
     }
 }
 

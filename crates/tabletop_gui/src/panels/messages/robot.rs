@@ -10,7 +10,7 @@ pub(crate) fn plugin(app: &mut App) {
 }
 
 fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
-    for words in facts.read().filter_map(SimFact::robot_news) {
+    for words in facts.read().filter_map(SimFact::robot_event) {
         notices.renew(Tone::News, &words);
     }
 }

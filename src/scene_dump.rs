@@ -1,75 +1,11 @@
-//! What the command line writes about scenes and worlds.
+//! What the command line writes about the scene of a task file.
 
 use std::io::Write;
 
 use bevy::prelude::*;
 use serde::Serialize;
-use serde_json::json;
-use tabletop_core::{
-    Arm, Decimal, JointKind, ObjectIndex, ObjectSpec, Part, Pose, Robot, RobotJoint, SceneSpec,
-    Shape,
-};
+use tabletop_core::{JointKind, ObjectSpec, Part, Pose, SceneSpec, Shape};
 use tabletop_scene::{Assembly, IdAllocator, assemble};
-
-/// Writes where every object is as CSV, in the order of creation: `id,x,y,z,rx,ry,rz` in units and degrees, the numbers as
-/// recordings write them.
-///
-/// # Errors
-///
-/// What the writer reports.
-pub fn write_state(world: &World, out: impl Write) -> csv::Result<()> {
-    let mut csv = csv::Writer::from_writer(out);
-    for object in world.resource::<ObjectIndex>().iter() {
-        let (Some(spec), Some(transform)) = (
-            world.get::<ObjectSpec>(object),
-            world.get::<Transform>(object),
-        ) else {
-            continue;
-        };
-        let pose = Pose::from(transform);
-        let numbers = [pose.location, pose.degrees()]
-            .into_iter()
-            .flat_map(|vector| vector.to_array())
-            .map(|number| Decimal(number).to_string());
-        csv.write_record(std::iter::once(spec.id.clone()).chain(numbers))?;
-    }
-    csv.flush()?;
-    Ok(())
-}
-
-/// Writes the robot as JSON: positions of its joints in rad, end effectors and openings of the grippers in units, ids of what
-/// they hold.
-///
-/// # Errors
-///
-/// What the writer reports.
-pub fn write_robot(world: &World, mut out: impl Write) -> std::io::Result<()> {
-    let robot = world.resource::<Robot>();
-    let id = |&object: &Entity| Some(&*world.get::<ObjectSpec>(object)?.id);
-    let arms = Arm::BOTH.map(|arm| {
-        let state = robot.arm(arm);
-        let Pose { location, rotation } = state.end_effector;
-        let value = json!({
-            "angles": robot.angles(arm),
-            "end_effector": {
-                "position": location.to_array(),
-                "quaternion_xyzw": rotation.to_array(),
-            },
-            "gripper_opening": robot.joint(RobotJoint::gripper(arm)).position,
-            "holds": state.holds.iter().filter_map(id).collect::<Vec<_>>(),
-            "blocked_by": state.blocked_by,
-        });
-        (arm.name().to_owned(), value)
-    });
-    let mut json = serde_json::Map::from_iter(arms);
-    json.insert("shown".into(), json!(robot.is_shown));
-    json.insert(
-        "head_pan".into(),
-        json!(robot.joint(RobotJoint::HeadPan).position),
-    );
-    serde_json::to_writer_pretty(&mut out, &json)?;
-    writeln!(out)
-}
 
 /// Writes a scene as JSON: the table, every object with its parts, and the joints, with ids as they will be on the table.
 /// Lengths in units, angles in degrees, colours as `#rrggbb`.

@@ -1,4 +1,4 @@
-//! What the robot has done, in words.
+//! Events of the robot, in words.
 
 use crate::SimFact;
 
@@ -7,7 +7,7 @@ const LARGEST_GRIP_ANGLE: f32 = 180.0 / 16.0;
 
 impl SimFact {
     /// What the robot has done, in words; nothing of what others have.
-    pub fn robot_news(&self) -> Option<String> {
+    pub fn robot_event(&self) -> Option<String> {
         Some(match self {
             Self::GripMade { arm, id } => format!("the {arm} gripper holds {id}"),
             Self::GripRefused { arm, id, angle } => format!(
@@ -76,9 +76,9 @@ mod tests {
                 "the left arm is stopped by the table",
             ),
         ] {
-            assert_eq!(fact.robot_news().as_deref(), Some(expected));
+            assert_eq!(fact.robot_event().as_deref(), Some(expected));
         }
         let cause = CommandId(0);
-        assert_eq!(SimFact::Undone { cause }.robot_news(), None);
+        assert_eq!(SimFact::Undone { cause }.robot_event(), None);
     }
 }
