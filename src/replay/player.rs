@@ -284,6 +284,18 @@ mod tests {
     }
 
     #[test]
+    fn commands_are_given_in_the_name_of_who_gave_them() {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .start();
+        player(&[(0, HandCommand::Select(Hand::Left).into())]).play_in(&mut app);
+        app.step(1);
+        let mut issued = app.world_mut().resource_mut::<Messages<IssuedCommand>>();
+        let actors: Vec<_> = issued.drain().map(|issued| issued.actor).collect();
+        assert_eq!(actors, [Actor::Mouse]);
+    }
+
+    #[test]
     fn a_script_watches_and_then_acts() {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default()))

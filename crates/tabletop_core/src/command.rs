@@ -92,3 +92,36 @@ command_kinds! {
     Hand(HandCommand),
     Robot(RobotCommand),
 }
+
+#[cfg(test)]
+mod tests {
+    use bevy::prelude::*;
+
+    use super::*;
+    use crate::{CorePlugin, StepApp as _};
+
+    #[derive(Resource, Default)]
+    struct Phases(Vec<CommandSystems>);
+
+    #[test]
+    fn phases_come_in_the_order_in_which_they_compare() {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .init_resource::<Phases>();
+        let phases = [
+            CommandSystems::Recording,
+            CommandSystems::Clock,
+            CommandSystems::Scene,
+            CommandSystems::History,
+            CommandSystems::Hands,
+            CommandSystems::Robot,
+        ];
+        for phase in phases.into_iter().rev() {
+            let note = move |mut noted: ResMut<Phases>| noted.0.push(phase);
+            app.add_systems(FixedUpdate, note.in_set(phase));
+        }
+        app.start().step(1);
+        assert_eq!(app.world().resource::<Phases>().0, phases);
+        assert!(phases.is_sorted());
+    }
+}

@@ -118,3 +118,39 @@ fn take_due_steps(
         .tick(&seen, refusal)
         .map(|command| commands.write(Actor::Scenario, command));
 }
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::{CommandSystems, CorePlugin, IssuedCommand, SceneSpec, StepApp as _};
+
+    use super::*;
+
+    /// Whether a scenario goes on after a command of its own or of somebody else was refused.
+    fn goes_on_after(refuses_own: bool) -> bool {
+        let scenario = Scenario::parse("s.ron", "(steps: [Select(Left), Wait(9)])").unwrap();
+        let program = Program::new(&scenario, |_| Ok(SceneSpec::default()), 0).unwrap();
+        let refuse = move |mut issued: MessageReader<IssuedCommand>,
+                           mut facts: MessageWriter<SimFact>| {
+            for IssuedCommand { id, .. } in issued.read() {
+                let other = CommandId(id.0 + 1);
+                facts.write(SimFact::Refused {
+                    cause: Some(if refuses_own { *id } else { other }),
+                    reason: "no".into(),
+                });
+            }
+        };
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), ScenarioPlugin))
+            .insert_resource(ScenarioRun::new(program))
+            .add_systems(FixedUpdate, refuse.in_set(CommandSystems::Hands))
+            .start()
+            .step(5);
+        *app.world().resource::<ScenarioRun>().outcome() == Outcome::Running
+    }
+
+    #[test]
+    fn a_scenario_fails_if_one_of_its_own_commands_is_refused() {
+        assert!(!goes_on_after(true));
+        assert!(goes_on_after(false), "another's command was refused");
+    }
+}

@@ -148,3 +148,77 @@ pub fn carry_out<C: CommandKind>(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CommandSystems, CorePlugin, Hand, HandCommand, SceneCommand, StepApp as _};
+
+    #[derive(Resource, Default)]
+    struct CarriedOut(Vec<(CommandId, Cause)>);
+
+    fn carry_out_hands(
+        world: &mut World,
+        reader: &mut SystemState<MessageReader<IssuedCommand>>,
+    ) -> Result {
+        carry_out(world, reader, |world, id, command| {
+            let cause = *world.resource::<Cause>();
+            world.resource_mut::<CarriedOut>().0.push((id, cause));
+            match command {
+                HandCommand::Release(hand) => Err(format!("{hand} holds nothing")),
+                HandCommand::Select(_)
+                | HandCommand::Grasp { .. }
+                | HandCommand::MoveTo { .. }
+                | HandCommand::MoveBy { .. }
+                | HandCommand::Turn { .. }
+                | HandCommand::Destroy(_) => Ok(()),
+            }
+        })
+    }
+
+    #[test]
+    fn a_refusal_names_its_command_and_the_next_one_is_carried_out() {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .init_resource::<CarriedOut>()
+            .add_systems(FixedUpdate, carry_out_hands.in_set(CommandSystems::Hands))
+            .start();
+        let world = app.world_mut();
+        let release = world.write_command(HandCommand::Release(Hand::Left));
+        let clear = world.write_command(SceneCommand::Clear);
+        let select = world.write_command(HandCommand::Select(Hand::Left));
+        assert!(release < clear && clear < select);
+        app.step(1);
+        let carried_out = &app.world().resource::<CarriedOut>().0;
+        assert_eq!(
+            *carried_out,
+            [release, select].map(|id| (id, Cause(Some(id))))
+        );
+        assert_eq!(*app.world().resource::<Cause>(), Cause(None));
+        let facts: Vec<_> = app
+            .world_mut()
+            .resource_mut::<Messages<SimFact>>()
+            .drain()
+            .collect();
+        let refused = SimFact::Refused {
+            cause: Some(release),
+            reason: "LeftHand holds nothing".into(),
+        };
+        assert_eq!(facts, [refused]);
+    }
+
+    #[test]
+    fn a_command_says_who_gives_it() {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .add_systems(FixedFirst, |mut commands: CommandWriter| {
+                commands.write(Actor::Key, SceneCommand::Clear);
+            })
+            .start();
+        app.world_mut().write_command(SceneCommand::Clear);
+        app.step(1);
+        let mut issued = app.world_mut().resource_mut::<Messages<IssuedCommand>>();
+        let actors: Vec<_> = issued.drain().map(|issued| issued.actor).collect();
+        assert_eq!(actors, [Actor::App, Actor::Key]);
+    }
+}

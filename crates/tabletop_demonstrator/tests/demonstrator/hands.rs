@@ -219,6 +219,37 @@ fn hand_off_and_forced_releases_are_reported_under_the_hand_that_held() {
 }
 
 #[test]
+fn what_a_hand_does_names_the_command_that_it_came_of() {
+    let mut desk = Desk::new(two_blocks());
+    desk.grasp(Hand::Left, "red").step(1);
+    let hand = Hand::Right;
+    let (object, id) = ("red".to_owned(), "red".to_owned());
+    let world = desk.0.world_mut();
+    let cause = world.write_command(HandCommand::Grasp { hand, object });
+    world.resource_mut::<Messages<SimFact>>().clear();
+    desk.step(1);
+    let facts: Vec<_> = desk
+        .0
+        .world_mut()
+        .resource_mut::<Messages<SimFact>>()
+        .drain()
+        .collect();
+    assert_eq!(
+        facts,
+        [
+            SimFact::SegmentBegun { cause },
+            SimFact::Released {
+                cause: Some(cause),
+                hand: Hand::Left,
+                id: id.clone(),
+            },
+            SimFact::SegmentBegun { cause },
+            SimFact::Grasped { cause, hand, id },
+        ]
+    );
+}
+
+#[test]
 fn a_destroyed_object_is_deleted_first() {
     let mut desk = Desk::new(two_blocks());
     desk.grasp(Hand::Left, "red").step(1);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use tabletop_core::{
     ClockCommand, CommandId, Hand, HandCommand, HistoryCommand, RecordingCommand, SimCommand,
-    SimFact, SimTick,
+    SimFact, SimTick, StepApp as _, WriteCommand as _,
 };
 
 use crate::stage::{Place, TurnTells, app, grasp, run, scene};
@@ -105,6 +105,66 @@ fn hands_act_after_the_clock_was_turned_whatever_the_order_of_the_commands() {
             (0, SimCommand::History(HistoryCommand::Undo)),
         ],
     );
+}
+
+#[test]
+fn a_command_that_was_refused_before_the_grasp_stays() {
+    assert_same(
+        &[(20, grasp(LEFT, "nothing"))],
+        &[
+            (20, grasp(LEFT, "nothing")),
+            (0, grasp(LEFT, "a")),
+            (47, SimCommand::History(HistoryCommand::Undo)),
+        ],
+    );
+}
+
+#[test]
+fn a_release_and_a_grasp_of_one_tick_are_undone_one_by_one() {
+    assert_same(
+        &[
+            (20, grasp(LEFT, "a")),
+            (30, SimCommand::Hand(HandCommand::Release(LEFT))),
+        ],
+        &[
+            (20, grasp(LEFT, "a")),
+            (30, SimCommand::Hand(HandCommand::Release(LEFT))),
+            (0, grasp(LEFT, "bb")),
+            (20, SimCommand::History(HistoryCommand::Undo)),
+        ],
+    );
+}
+
+#[test]
+fn the_second_of_two_equal_commands_begins_segments_of_its_own() {
+    assert_same(
+        &[
+            (20, grasp(LEFT, "a")),
+            (0, SimCommand::Hand(HandCommand::Release(LEFT))),
+        ],
+        &[
+            (20, grasp(LEFT, "a")),
+            (0, grasp(LEFT, "a")),
+            (47, SimCommand::History(HistoryCommand::Undo)),
+        ],
+    );
+}
+
+#[test]
+fn a_segment_without_a_logged_command_begins_after_all_of_its_tick() {
+    let place = Place::new();
+    let mut app = app(&place);
+    let start = SimCommand::Recording(RecordingCommand::Start);
+    run(&mut app, &[(0, scene(&["a"])), (1, start)]);
+    let cause = CommandId(1000);
+    app.world_mut().write_command(HandCommand::Select(LEFT));
+    app.world_mut()
+        .write_message(SimFact::SegmentBegun { cause });
+    app.step(1);
+    app.world_mut().write_message(SimFact::Undone { cause });
+    let finish = SimCommand::Recording(RecordingCommand::Finish);
+    run(&mut app, &[(0, finish)]);
+    assert!(place.read("session.jsonl").contains("Select"));
 }
 
 #[test]
