@@ -279,6 +279,16 @@ mod tests {
     }
 
     #[test]
+    fn the_parent_of_a_module_within_a_file_is_the_file() {
+        let root = ("", "mod a; use a::A;");
+        let own = ("a", "pub struct A; mod inner { use super::A; }");
+        assert_eq!(circles(&[root, own]), Vec::<String>::new());
+        let outer = ("a", "pub struct A; mod inner { use super::super::b; }");
+        let b = ("b", "use crate::a::A;");
+        assert_eq!(circles(&[root, outer, b]), ["a b"]);
+    }
+
+    #[test]
     fn declarations_tests_texts_and_comments_are_no_need() {
         let child = (
             "a",

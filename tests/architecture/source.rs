@@ -25,9 +25,11 @@ const ITEMS: [&str; 9] = [
 
 impl Source {
     pub fn parse(text: &str) -> Self {
+        Self::of(&tokens(text))
+    }
+
+    fn of(mut rest: &[String]) -> Self {
         let mut source = Self::default();
-        let tokens = tokens(text);
-        let mut rest = tokens.as_slice();
         let mut is_public = false;
         while let Some(token) = rest.first() {
             if rest.starts_with(&["#", "[", "cfg", "(", "test", ")", "]"].map(String::from)) {
@@ -45,6 +47,13 @@ impl Source {
                     source.add_uses(&[], &rest[1..end], is_public);
                     rest = &rest[end..];
                 }
+                "mod" if rest.get(2).is_some_and(|token| token == "{") => {
+                    let after = after_item(rest);
+                    let inside = &rest[3..rest.len() - after.len()];
+                    source.add_inline_module(Self::of(inside));
+                    source.items.insert(rest[1].clone());
+                    rest = after;
+                }
                 item if ITEMS.contains(&item) && rest.len() > 1 => {
                     source.items.insert(rest[1].clone());
                     rest = &rest[1..];
@@ -61,6 +70,18 @@ impl Source {
             is_public = false;
         }
         source
+    }
+
+    /// Adds what a module within the file needs. Its `super` is the file.
+    fn add_inline_module(&mut self, module: Self) {
+        let uses = module.uses.into_iter().filter(|it| !it.is_public);
+        let uses = uses.map(|it| it.path);
+        for mut path in module.paths.into_iter().chain(uses) {
+            if let Some(first) = path.first_mut().filter(|first| *first == "super") {
+                *first = "self".to_owned();
+            }
+            self.paths.push(path);
+        }
     }
 
     /// Adds the names of a tree such as `a::{b, c::{d as e, *}}`.

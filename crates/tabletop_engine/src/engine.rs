@@ -2,15 +2,15 @@
 
 use std::{
     sync::{
-        Arc, Mutex, PoisonError,
+        Arc, Mutex, MutexGuard, PoisonError,
         mpsc::{self, Receiver, Sender},
     },
     thread::{self, JoinHandle},
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use crate::{
-    config::EngineConfig,
+    config::{EngineConfig, Timeouts},
     console::{Console, ConsoleLine},
     error::EngineError,
     reply::Reply,
@@ -23,6 +23,11 @@ const FAREWELL: Duration = Duration::from_secs(10);
 /// The same while somebody waits for it.
 const SHORT_FAREWELL: Duration = Duration::from_secs(2);
 
+/// How long after the end of its time a request fails even if the engine's thread does not say so.
+const BACKSTOP: Duration = Duration::from_secs(10);
+/// How long the end of that thread is waited for beyond the engine's farewell.
+const LAST_WAIT: Duration = Duration::from_secs(8);
+
 /// An engine that runs, or is about to. Clones are the same engine; with the last of them it ends.
 #[derive(Clone, Debug)]
 pub struct EngineHandle(Arc<Shared>);
@@ -31,9 +36,34 @@ pub struct EngineHandle(Arc<Shared>);
 struct Shared {
     inbox: Sender<Signal>,
     replies: Mutex<Receiver<Reply>>,
+    timeouts: Timeouts,
+    /// The request that has no reply yet.
+    pending: Mutex<Option<Pending>>,
     console: Console,
     killer: Killer,
     thread: Option<JoinHandle<()>>,
+}
+
+/// A request without a reply.
+#[derive(Clone, Copy, Debug)]
+struct Pending {
+    what: &'static str,
+    since: Instant,
+    limit: Duration,
+}
+
+impl Pending {
+    fn new(what: &'static str, limit: Duration) -> Self {
+        let since = Instant::now();
+        Self { what, since, limit }
+    }
+
+    /// How long it may still take until nobody waits for the engine's thread any more, which should have ended it long before.
+    fn rest(&self) -> Duration {
+        self.limit
+            .saturating_add(BACKSTOP)
+            .saturating_sub(self.since.elapsed())
+    }
 }
 
 impl EngineHandle {
@@ -45,6 +75,7 @@ impl EngineHandle {
         let (inbox, signals) = mpsc::channel();
         let (outbox, replies) = mpsc::channel();
         let console = Console::new(config.console_limit);
+        let timeouts = config.timeouts;
         let killer = Killer::default();
         let worker = Worker {
             config,
@@ -64,6 +95,8 @@ impl EngineHandle {
         Ok(Self(Arc::new(Shared {
             inbox,
             replies: Mutex::new(replies),
+            timeouts,
+            pending: Mutex::new(Some(Pending::new("the engine's start", timeouts.start))),
             console,
             killer,
             thread: Some(thread),
@@ -72,11 +105,13 @@ impl EngineHandle {
 
     /// Asks for the init script, in an empty workspace. [`Reply::Init`] or [`Reply::Failed`] follows.
     pub fn init(&self, aux: Aux) {
+        self.expect("the init script", self.0.timeouts.init);
         self.send(Signal::Init(Box::new(aux)));
     }
 
     /// Asks for the callback script. [`Reply::Step`] or [`Reply::Failed`] follows.
     pub fn step(&self, sensor: Sensor) {
+        self.expect("the callback script", self.0.timeouts.step);
         self.send(Signal::Step(Box::new(sensor)));
     }
 
@@ -92,14 +127,21 @@ impl EngineHandle {
         self.0.killer.kill();
     }
 
-    /// The next reply, or nothing if none comes in time or no more will.
+    /// The next reply, or nothing if none comes in time or no more will. A request whose time is long over fails, whatever keeps
+    /// the engine's thread.
     pub fn recv_timeout(&self, limit: Duration) -> Option<Reply> {
-        let replies = self
-            .0
-            .replies
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        replies.recv_timeout(limit).ok()
+        let replies = lock(&self.0.replies);
+        let pending = *lock(&self.0.pending);
+        let wait = pending.map_or(limit, |pending| limit.min(pending.rest()));
+        if let Ok(reply) = replies.recv_timeout(wait) {
+            *lock(&self.0.pending) = None;
+            return Some(reply);
+        }
+        let Pending { what, limit, .. } = pending.filter(|pending| pending.rest().is_zero())?;
+        *lock(&self.0.pending) = None;
+        self.kill();
+        let stack = Vec::new();
+        Some(Reply::Failed(EngineError::Timeout { what, limit, stack }))
     }
 
     /// What the script has printed since the last call, as far as [`EngineConfig::output`] lets it be kept.
@@ -115,6 +157,10 @@ impl EngineHandle {
             .is_some_and(|thread| !thread.is_finished())
     }
 
+    fn expect(&self, what: &'static str, limit: Duration) {
+        *lock(&self.0.pending) = Some(Pending::new(what, limit));
+    }
+
     fn send(&self, signal: Signal) {
         // An engine that has ended has reported it; requests to it have no effect.
         drop(self.0.inbox.send(signal));
@@ -124,8 +170,28 @@ impl EngineHandle {
 impl Drop for Shared {
     fn drop(&mut self) {
         drop(self.inbox.send(Signal::Stop(SHORT_FAREWELL)));
-        if let Some(thread) = self.thread.take() {
-            drop(thread.join());
+        let Some(thread) = self.thread.take() else {
+            return;
+        };
+        for patience in [SHORT_FAREWELL + LAST_WAIT, LAST_WAIT] {
+            if is_finished_within(&thread, patience) {
+                drop(thread.join());
+                return;
+            }
+            // Something keeps the thread, such as a pipe that is full; with the engine it goes.
+            self.killer.kill();
         }
     }
+}
+
+fn is_finished_within(thread: &JoinHandle<()>, limit: Duration) -> bool {
+    let start = Instant::now();
+    while !thread.is_finished() && start.elapsed() < limit {
+        thread::sleep(Duration::from_millis(1));
+    }
+    thread.is_finished()
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -53,6 +53,7 @@ mod kind;
 mod octave;
 mod private_folder;
 pub mod protocol;
+mod regular_file;
 mod reply;
 mod variables;
 mod worker;

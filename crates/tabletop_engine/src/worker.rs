@@ -1,5 +1,6 @@
 //! The thread on which an engine lives.
 
+mod descendants;
 mod driver;
 mod ending;
 mod exchange_folder;
@@ -173,7 +174,12 @@ impl Running {
 
     /// Serves requests until the engine ends, and returns why it did.
     fn serve(mut self) -> EngineError {
+        let mut reaped = Instant::now();
         loop {
+            if reaped.elapsed() >= HEARTBEAT {
+                self.process.reap_orphans();
+                reaped = Instant::now();
+            }
             let signal = match self.waiting.pop_front() {
                 Some(signal) => Ok(signal),
                 None => self.worker.inbox.recv_timeout(HEARTBEAT),

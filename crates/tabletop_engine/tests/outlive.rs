@@ -19,18 +19,26 @@ use tabletop_engine::{Sensor, Trigger};
 const FOLDER: &str = "TABLETOP_TEST_FOLDER";
 const TRIGGER: &str = "TABLETOP_TEST_TRIGGER";
 
-/// A script that writes its process, that of a child of its own and its session's folder to a file, then hangs or not.
-fn pair(folder: &Path, hang: bool) -> Folder {
+/// A script that writes its session's folder, its process and those of these children to a file, then hangs or not.
+fn pair(folder: &Path, children: &[&str], hang: bool) -> Folder {
     let note = folder.join("processes");
+    let children = children.join("; ");
     let init = format!(
-        "[~, child] = system('sleep 1000 >/dev/null 2>&1 & echo $!');\nsession = fileparts(fileparts(which('tabletop_call')));\n\
-         fid = fopen('{0}.part', 'w'); fprintf(fid, '%d %s %s', getpid(), strtrim(child), session); fclose(fid); rename('{0}.part', '{0}');\n\
+        "[~, children] = system('{children}');\nsession = fileparts(fileparts(which('tabletop_call')));\n\
+         fid = fopen('{0}.part', 'w'); fprintf(fid, '%s %d %s', session, getpid(), children); fclose(fid); rename('{0}.part', '{0}');\n\
          log = fopen('{1}', 'w'); fputs(log, 'written');",
         note.display(),
         folder.join("log").display()
     );
     Folder::pair(&init, if hang { "while true, end" } else { "" })
 }
+
+/// A child in the engine's group, one that has left it, and one that has also left its environment behind.
+const CHILDREN: [&str; 3] = [
+    "sleep 1000 >/dev/null 2>&1 & echo $!",
+    "setsid sleep 1000 >/dev/null 2>&1 & echo $!",
+    "env -i setsid sleep 1000 >/dev/null 2>&1 & echo $!",
+];
 
 struct Note {
     processes: Vec<Pid>,
@@ -41,13 +49,11 @@ fn read(folder: &Path) -> Note {
     let start = Instant::now();
     loop {
         if let Ok(text) = fs::read_to_string(folder.join("processes")) {
-            let (engine, rest) = text.split_once(' ').unwrap();
-            let (child, session) = rest.split_once(' ').unwrap();
-            let processes = [engine, child].map(|pid| Pid::from_raw(pid.parse().unwrap()));
-            return Note {
-                processes: processes.into(),
-                session: session.into(),
-            };
+            let mut words = text.split_whitespace();
+            let session = words.next().unwrap().into();
+            let processes = words.map(|pid| Pid::from_raw(pid.parse().unwrap()));
+            let processes = processes.collect();
+            return Note { processes, session };
         }
         assert!(
             start.elapsed() < Duration::from_secs(60),
@@ -84,12 +90,13 @@ fn all_gone(note: &Note, limit: Duration) -> bool {
 fn with_the_last_handle_all_is_gone() {
     for trigger in TRIGGERS {
         let folder = Folder::new(&[]);
-        let scripts = pair(&folder.0, false);
+        let scripts = pair(&folder.0, &CHILDREN, false);
         let session = Session::octave(&scripts.0, trigger);
         session.init().unwrap();
         session.step(&Sensor::default()).unwrap();
         let note = read(&folder.0);
         assert!(note.processes.iter().all(|pid| lives(*pid)) && note.session.exists());
+        assert_eq!(note.processes.len(), 1 + CHILDREN.len());
         drop(session);
         assert!(all_gone(&note, Duration::from_secs(2)));
     }
@@ -99,7 +106,7 @@ fn with_the_last_handle_all_is_gone() {
 fn with_a_killed_program_all_is_gone() {
     for trigger in TRIGGERS {
         let folder = Folder::new(&[]);
-        let scripts = pair(&folder.0, true);
+        let scripts = pair(&folder.0, &CHILDREN[..2], true);
         // This test again, as a program that has an engine with a script that hangs.
         let mut program = Command::new(env::current_exe().unwrap())
             .args(["--exact", "a_program", "--ignored"])

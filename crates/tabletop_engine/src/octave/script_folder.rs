@@ -1,9 +1,14 @@
 //! The folder of scripts for MATLAB and Octave: what is wrong with it, before an engine looks at it.
 
 use std::{
-    fs,
+    fs, io,
     path::{Path, PathBuf, absolute},
 };
+
+use crate::regular_file::{self, Links};
+
+/// Larger files are no scripts.
+const LARGEST_SCRIPT: usize = 16 << 20;
 
 /// The variables of the base workspace that the scripts share with the simulator.
 pub(crate) const SHARED: [&str; 3] = ["sensor", "motor", "aux"];
@@ -53,7 +58,7 @@ pub(crate) fn fault(
 
 /// What the user should know of a script that has run.
 pub(crate) fn note(script: &Path) -> Option<String> {
-    let text = fs::read(script).ok()?;
+    let text = read(script).ok()?;
     let text = String::from_utf8_lossy(&text);
     (is_function(&text) && !reaches_shared(&text)).then(|| {
         format!(
@@ -78,7 +83,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 
 /// Whether a script is a function.
 pub(crate) fn is_function_file(script: &Path) -> bool {
-    fs::read(script).is_ok_and(|text| is_function(&String::from_utf8_lossy(&text)))
+    read(script).is_ok_and(|text| is_function(&String::from_utf8_lossy(&text)))
 }
 
 /// Whether a file's first word that is no comment is "function".
@@ -115,7 +120,7 @@ impl Encoding {
         let mut foreign = None;
         let mut has_utf8 = false;
         for file in files(folder) {
-            let text = fs::read(&file).unwrap_or_default();
+            let text = read(&file).unwrap_or_default();
             if text.is_ascii() {
                 continue;
             }
@@ -147,6 +152,10 @@ impl Encoding {
     }
 }
 
+fn read(script: &Path) -> io::Result<Vec<u8>> {
+    regular_file::read(script, LARGEST_SCRIPT, Links::Followed)
+}
+
 fn files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut files: Vec<_> = entries
@@ -166,7 +175,7 @@ fn is_hidden(path: &Path) -> bool {
 
 /// Whether a script holds a function of this name.
 pub(crate) fn holds_function(script: &Path, name: &str) -> bool {
-    let text = fs::read(script).unwrap_or_default();
+    let text = read(script).unwrap_or_default();
     let text = String::from_utf8_lossy(&text);
     let mut heads = text
         .lines()
@@ -185,5 +194,27 @@ mod tests {
         assert!(!is_function("x = 1;\nfunction f"));
         assert!(!is_function("functional = 1;"));
         assert!(!is_function("% only words"));
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn what_is_no_file_is_not_read() {
+        let folder = std::env::temp_dir().join(format!("tabletop-pipes-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let (pipe, endless) = (folder.join("pipe.m"), folder.join("zero.m"));
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+        assert!(made.unwrap().success());
+        std::os::unix::fs::symlink("/dev/zero", &endless).unwrap();
+        for script in [&pipe, &endless] {
+            assert!(
+                read(script)
+                    .unwrap_err()
+                    .to_string()
+                    .contains("no regular file")
+            );
+            assert!(!is_function_file(script) && note(script).is_none());
+        }
+        assert_eq!(Encoding::of(&folder), Encoding::Utf8);
+        fs::remove_dir_all(folder).unwrap();
     }
 }

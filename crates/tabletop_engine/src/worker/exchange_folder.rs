@@ -1,7 +1,7 @@
 //! The folder through which the program and an engine exchange files.
 
 use std::{
-    fs,
+    fs::OpenOptions,
     io::Write as _,
     path::{Path, PathBuf},
 };
@@ -9,7 +9,8 @@ use std::{
 use crate::{
     error::EngineError,
     private_folder::PrivateFolder,
-    protocol::{Arrays, MAX_FILE_BYTES, ProtocolError},
+    protocol::{Arrays, MAX_FILE_BYTES},
+    regular_file::{self, Links},
 };
 
 /// A place with less room than this, in bytes, is full.
@@ -49,8 +50,9 @@ impl ExchangeFolder {
         let path = self.folder().join("request.bin");
         let bytes = arrays.encode()?;
         // Written over: to give the memory back and take it anew costs more than all the rest.
-        let mut options = fs::OpenOptions::new();
-        let file = options.write(true).create(true).truncate(false).open(&path);
+        let mut options = OpenOptions::new();
+        options.write(true).create(true).truncate(false);
+        let file = regular_file::open(&path, &mut options, Links::Refused);
         file.and_then(|mut file| {
             file.write_all(&bytes)?;
             file.set_len(bytes.len() as u64)
@@ -61,13 +63,8 @@ impl ExchangeFolder {
     /// Reads what the engine answered.
     pub(crate) fn read_reply(&self) -> Result<Arrays, EngineError> {
         let path = self.folder().join("reply.bin");
-        let size = fs::metadata(&path)
-            .map_err(|error| EngineError::file(&path, &error))?
-            .len();
-        if size > MAX_FILE_BYTES as u64 {
-            return Err(ProtocolError::Damaged("it is too long").into());
-        }
-        let bytes = fs::read(&path).map_err(|error| EngineError::file(&path, &error))?;
+        let bytes = regular_file::read(&path, MAX_FILE_BYTES, Links::Refused)
+            .map_err(|error| EngineError::file(&path, &error))?;
         Ok(Arrays::decode(&bytes)?)
     }
 }

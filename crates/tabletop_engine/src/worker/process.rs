@@ -9,6 +9,8 @@ use std::{
     time::{Duration, Instant},
 };
 
+use super::descendants::{Descendants, FOLDER_VARIABLE};
+
 /// How long a killed process may take to be gone.
 const REAP_LIMIT: Duration = Duration::from_secs(2);
 
@@ -47,6 +49,7 @@ pub(crate) struct Process {
     child: Child,
     stdin: Option<ChildStdin>,
     killer: Killer,
+    descendants: Descendants,
     /// Waits for this program's end in its place.
     watchdog: Option<Child>,
 }
@@ -67,6 +70,7 @@ impl Process {
             .stdin(stdin)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
+        command.env(FOLDER_VARIABLE, folder);
         own_group(&mut command);
         let mut target = killer.0.lock().unwrap_or_else(PoisonError::into_inner);
         if target.cancelled {
@@ -76,11 +80,13 @@ impl Process {
         target.pid = Some(child.id());
         drop(target);
         let watchdog = watch(child.id(), folder);
+        let descendants = Descendants::of(child.id(), folder);
         let stdin = child.stdin.take();
         let mut process = Self {
             child,
             stdin,
             killer,
+            descendants,
             watchdog: None,
         };
         process.watchdog = watchdog?;
@@ -116,6 +122,11 @@ impl Process {
         self.stdin = None;
     }
 
+    /// Takes leave of processes that the engine has started and left, and that have ended.
+    pub(crate) fn reap_orphans(&self) {
+        self.descendants.reap();
+    }
+
     /// How it ended, if it has.
     pub(crate) fn ended(&mut self) -> Option<ExitStatus> {
         let mut target = self.killer.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -123,6 +134,8 @@ impl Process {
         if let Some(pid) = target.pid.take() {
             // What it has started and left behind.
             kill_group(pid);
+            drop(target);
+            self.descendants.kill();
         }
         Some(status)
     }
@@ -144,6 +157,7 @@ impl Drop for Process {
     fn drop(&mut self) {
         self.killer.kill();
         self.wait(REAP_LIMIT);
+        self.descendants.kill();
         if let Some(watchdog) = &mut self.watchdog {
             // If it is gone already there is nothing to do.
             drop(watchdog.kill());
@@ -188,12 +202,17 @@ fn watch(pid: u32, folder: &Path) -> io::Result<Option<Child>> {
         wait_for_it "$1"
         kill -INT -"$1" && wait_for_it "$1"
         kill -9 -"$1"
+        for environment in $(grep -ls -- "$3=$2" /proc/[0-9]*/environ); do
+            pid=${environment#/proc/}
+            kill -9 "${pid%/environ}"
+        done
         rm -rf -- "$2"
     "#;
     command
         .args(["-c", script, "tabletop-watchdog"])
         .arg(pid.to_string())
-        .arg(folder);
+        .arg(folder)
+        .arg(FOLDER_VARIABLE);
     command
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
