@@ -101,24 +101,20 @@ impl ArmChain {
 
     /// By how much the tip misses the target with these angles.
     pub fn miss(&self, target: &Target, angles: &[f64]) -> Miss {
-        let error = target.error(&self.tip(angles));
-        Miss {
-            position: error.linear.length(),
-            rotation: error.angular.length(),
-        }
+        Miss::of(&target.residual(&self.tip(angles)))
     }
 
-    /// Goes downhill from a posture: the nearest one on the way, and what it costs in m². Ends when it has not come nearer
-    /// by a tenth in as many steps as its patience is.
+    /// Gauss–Newton steps downhill from a posture: the nearest one on the way, and its cost in m². Ends when the cost has not
+    /// fallen by a fifth in as many steps as its patience is.
     fn search(&self, target: &Target, start: Vec<f64>, patience: usize) -> (f64, Vec<f64>) {
         let mut angles = start.clone();
         let mut nearest = (f64::INFINITY, start.clone());
         let mut steps_left = patience;
         for step in 0..STEPS {
             let (tip, jacobian) = self.tip_and_jacobian(&angles);
-            let error = target.error(&tip);
-            let cost = error.linear.length_squared()
-                + error.angular.length_squared() * METERS_PER_RAD.powi(2);
+            let residual = target.residual(&tip);
+            let cost = residual.linear.length_squared()
+                + residual.angular.length_squared() * METERS_PER_RAD.powi(2);
             steps_left = match cost < 0.8 * nearest.0 {
                 true => patience,
                 false => steps_left - 1,
@@ -126,11 +122,7 @@ impl ArmChain {
             if cost < nearest.0 {
                 nearest = (cost, angles.clone());
             }
-            let miss = Miss {
-                position: error.linear.length(),
-                rotation: error.angular.length(),
-            };
-            if steps_left == 0 || miss.is_within(&TOLERANCE) {
+            if steps_left == 0 || Miss::of(&residual).is_within(&TOLERANCE) {
                 break;
             }
             let pull = match step < PULLED_STEPS {
@@ -140,36 +132,37 @@ impl ArmChain {
                 false => vec![0.0; angles.len()],
             };
             let turns_count = matches!(target, Target::Pose(_));
-            let system = System::new(&error, &jacobian, cost, turns_count);
-            let motion = self.motion(&system, &angles, pull);
-            let longest = motion.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-            let part = (LONGEST_STEP / longest).min(1.0);
-            for (angle, motion) in angles.iter_mut().zip(motion) {
-                *angle += part * motion;
+            let equations = NormalEquations::new(&residual, &jacobian, cost, turns_count);
+            let newton_step = self.newton_step(&equations, &angles, pull);
+            let longest = newton_step.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+            let length = (LONGEST_STEP / longest).min(1.0);
+            for (angle, step) in angles.iter_mut().zip(newton_step) {
+                *angle += length * step;
             }
             angles = self.clamp(&angles);
         }
         nearest
     }
 
-    /// A step that no joint takes beyond its limits.
-    fn motion(&self, system: &System, angles: &[f64], pull: Vec<f64>) -> Vec<f64> {
-        let mut wish = pull;
+    /// A Gauss–Newton step that takes no joint beyond its limits: a joint that would leave them goes to the limit, and the others
+    /// are solved for again.
+    fn newton_step(&self, equations: &NormalEquations, angles: &[f64], pull: Vec<f64>) -> Vec<f64> {
+        let mut bias = pull;
         let mut is_free = vec![true; angles.len()];
         loop {
-            let motion = system.solve(&wish, &is_free);
+            let step = equations.solve(&bias, &is_free);
             let mut is_within = true;
             for i in 0..angles.len() {
-                let end = angles[i] + motion[i];
+                let end = angles[i] + step[i];
                 let [least, largest] = self.limits()[i];
                 if is_free[i] && !(least..=largest).contains(&end) {
                     is_free[i] = false;
-                    wish[i] = end.max(least).min(largest) - angles[i];
+                    bias[i] = end.max(least).min(largest) - angles[i];
                     is_within = false;
                 }
             }
             if is_within {
-                return motion;
+                return step;
             }
         }
     }
@@ -194,7 +187,7 @@ impl ArmChain {
 
 impl Target {
     /// The motion from the tip to the target, as velocities for 1 s.
-    fn error(&self, tip: &DAffine3) -> DTwist {
+    fn residual(&self, tip: &DAffine3) -> DTwist {
         match self {
             Self::Pose(pose) => DTwist {
                 linear: pose.translation - tip.translation,
@@ -209,6 +202,13 @@ impl Target {
 }
 
 impl Miss {
+    fn of(residual: &DTwist) -> Self {
+        Self {
+            position: residual.linear.length(),
+            rotation: residual.angular.length(),
+        }
+    }
+
     fn is_within(&self, tolerance: &Self) -> bool {
         self.position < tolerance.position && self.rotation < tolerance.rotation
     }
@@ -243,36 +243,36 @@ fn halton(mut index: usize, base: usize) -> f64 {
 /// Coordinates of a tip.
 const ROWS: usize = 6;
 
-/// What a step has to do: the linear model of the arm, weighted.
-struct System {
-    /// By joint.
-    columns: Vec<[f64; ROWS]>,
-    error: [f64; ROWS],
+/// The damped normal equations of a Gauss–Newton step, `(J Jᵀ + damping) y = residual`, in weighted coordinates of the tip.
+struct NormalEquations {
+    /// The columns of `J`, by joint.
+    jacobian: Vec<[f64; ROWS]>,
+    residual: [f64; ROWS],
     damping: f64,
 }
 
-impl System {
-    fn new(error: &DTwist, jacobian: &[DTwist], cost: f64, turns_count: bool) -> Self {
+impl NormalEquations {
+    fn new(residual: &DTwist, jacobian: &[DTwist], cost: f64, turns_count: bool) -> Self {
         let weight = if turns_count { METERS_PER_RAD } else { 0.0 };
         let row = |twist: &DTwist| {
             let (v, w) = (twist.linear, twist.angular * weight);
             [v.x, v.y, v.z, w.x, w.y, w.z]
         };
         Self {
-            columns: jacobian.iter().map(row).collect(),
-            error: row(error),
+            jacobian: jacobian.iter().map(row).collect(),
+            residual: row(residual),
             damping: DAMPING * cost + LEAST_DAMPING,
         }
     }
 
-    /// The motion of the joints: those that are not free do as they wish, the others what serves the error, and as far as
-    /// that leaves it open, what they wish.
-    fn solve(&self, wish: &[f64], is_free: &[bool]) -> Vec<f64> {
+    /// The step of the joints: those that are not free move by their bias, the others so that the residual vanishes, and by their
+    /// bias as far as that leaves them free.
+    fn solve(&self, bias: &[f64], is_free: &[bool]) -> Vec<f64> {
         let mut matrix = [[0.0; ROWS]; ROWS];
-        let mut rest = self.error;
-        for (j, column) in self.columns.iter().enumerate() {
+        let mut rest = self.residual;
+        for (j, column) in self.jacobian.iter().enumerate() {
             for row in 0..ROWS {
-                rest[row] -= column[row] * wish[j];
+                rest[row] -= column[row] * bias[j];
                 if is_free[j] {
                     for other in 0..=row {
                         matrix[row][other] += column[row] * column[other];
@@ -283,12 +283,12 @@ impl System {
         for (i, row) in matrix.iter_mut().enumerate() {
             row[i] += self.damping;
         }
-        let force = solve_symmetric(matrix, rest);
-        let columns = self.columns.iter().enumerate();
+        let multipliers = solve_symmetric(matrix, rest);
+        let columns = self.jacobian.iter().enumerate();
         columns
             .map(|(j, column)| {
-                let served: f64 = column.iter().zip(&force).map(|(a, b)| a * b).sum();
-                wish[j] + if is_free[j] { served } else { 0.0 }
+                let along: f64 = column.iter().zip(&multipliers).map(|(a, b)| a * b).sum();
+                bias[j] + if is_free[j] { along } else { 0.0 }
             })
             .collect()
     }

@@ -25,6 +25,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+/// The types that most users of the crate need.
+pub mod prelude {
+    #[doc(hidden)]
+    pub use crate::{ArmChain, Frames, JointId, JointValues, LinkId, RobotModel, Target, baxter};
+}
+
 mod arm;
 mod baxter;
 mod dynamics;
