@@ -12,9 +12,9 @@ use std::{
     time::{Duration, Instant},
 };
 
-use common::{Folder, Session, TRIGGERS};
+use common::{Folder, PATIENCE, Session, TRIGGERS};
 use nix::{sys::signal, unistd::Pid};
-use tabletop_engine::{Sensor, Trigger};
+use tabletop_engine::Trigger;
 
 const FOLDER: &str = "TABLETOP_TEST_FOLDER";
 const TRIGGER: &str = "TABLETOP_TEST_TRIGGER";
@@ -55,10 +55,7 @@ fn read(folder: &Path) -> Note {
             let processes = processes.collect();
             return Note { processes, session };
         }
-        assert!(
-            start.elapsed() < Duration::from_secs(60),
-            "the script has not run"
-        );
+        assert!(start.elapsed() < PATIENCE, "the script has not run");
         std::thread::sleep(Duration::from_millis(20));
     }
 }
@@ -93,12 +90,12 @@ fn with_the_last_handle_all_is_gone() {
         let scripts = pair(&folder.0, &CHILDREN, false);
         let session = Session::octave(&scripts.0, trigger);
         session.init().unwrap();
-        session.step(&Sensor::default()).unwrap();
+        session.step(&common::at_rest()).unwrap();
         let note = read(&folder.0);
         assert!(note.processes.iter().all(|pid| lives(*pid)) && note.session.exists());
         assert_eq!(note.processes.len(), 1 + CHILDREN.len());
         drop(session);
-        assert!(all_gone(&note, Duration::from_secs(2)));
+        assert!(all_gone(&note, PATIENCE));
     }
 }
 
@@ -121,7 +118,7 @@ fn with_a_killed_program_all_is_gone() {
         assert!(note.processes.iter().all(|pid| lives(*pid)));
         program.kill().unwrap();
         program.wait().unwrap();
-        assert!(all_gone(&note, Duration::from_secs(10)), "{trigger:?}");
+        assert!(all_gone(&note, PATIENCE), "{trigger:?}");
         let log = fs::read_to_string(folder.0.join("log")).unwrap();
         assert_eq!(log, "written", "{trigger:?}");
     }
@@ -138,7 +135,7 @@ fn a_program() {
     };
     let session = Session::octave(&folder, trigger);
     session.init().unwrap();
-    session.step(&Sensor::default()).unwrap();
+    session.step(&common::at_rest()).unwrap();
 }
 
 #[test]
@@ -150,7 +147,6 @@ fn a_polling_engine_ends_when_nobody_asks_any_more() {
         .unwrap()
         .replace("quiet < 30", "quiet < 0.3");
     fs::write(folder.0.join("tabletop_poll.m"), poll).unwrap();
-    let start = Instant::now();
     let script = format!(
         "addpath('{}'); tabletop_poll('{0}/'); exit",
         folder.0.display()
@@ -159,5 +155,5 @@ fn a_polling_engine_ends_when_nobody_asks_any_more() {
         .args(["-q", "--eval", &script])
         .output()
         .unwrap();
-    assert!(ended.status.success() && start.elapsed() < Duration::from_secs(20));
+    assert!(ended.status.success());
 }

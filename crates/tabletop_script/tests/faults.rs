@@ -190,7 +190,7 @@ fn engines_that_are_none_do_not_keep_the_simulation() {
         fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
         let mut settings = folder.settings();
         settings.engine = EngineChoice::Program(program);
-        settings.timeouts.start = Duration::from_secs(2);
+        settings.timeouts.start = Duration::from_secs(6);
         let reason = failure(settings);
         assert!(reason.contains(message), "{text}: {reason}");
     }

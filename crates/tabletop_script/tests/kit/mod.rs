@@ -22,7 +22,7 @@ use tabletop_scene::ScenePlugin;
 use tabletop_script::{EngineChoice, ScriptPlugin, ScriptSettings, Waiting};
 
 /// Longer than anything takes here.
-pub const PATIENCE: Duration = Duration::from_secs(60);
+pub const PATIENCE: Duration = Duration::from_secs(300);
 
 /// A folder for a test's files.
 pub struct Folder(pub PathBuf);
