@@ -6,7 +6,8 @@ The simulator runs this file and tells it which script of yours to use. Your scr
     def callback(sensor, motor, aux): ...    # called in every tick of the simulation, 60 times a second
 
 The arguments are objects with the fields of the Matlab interface. Rows are left, right; joints are S0, S1, E0, E1, W0, W1,
-W2; lengths are in units of 10 cm, angles in rad.
+W2; lengths are in units of 10 cm, angles in rad. The sizes are those of Baxter: another robot has aux.numLimbs rows and
+aux.numJoints joints.
 
     sensor.timeElapsed       simulation time since the last call, in s
     sensor.jointAngles       2x7
@@ -66,7 +67,7 @@ GREATEST = 2**32 - 1  # extent of an array that can be told
 COUNTS = {"aux.numLimbs", "aux.numJoints"}
 COLUMNS = {"sensor.objects.mass", "sensor.contacts.impulse"}  # a number for each, also where there is only one
 WANTED = ("drawMarkers", "initJointAngles", "exit")  # what a script sets in aux
-VELOCITIES = {"jointVelocities": (2, 7), "gripperVelocities": (2, 1)}
+ROWS = {"sensor.jointAngles", "sensor.gripperOpening", "sensor.jointTorques", "aux.minJointAngles", "aux.maxJointAngles"}
 SCRIPT = "__tabletop_script__"  # the script's name as a module: no file of a user has it
 FILE = "TABLETOP_SCRIPT"  # the variable that tells its file to the processes that it starts
 MOST = 300_000  # how many elements of an array, and letters of a text, are sent at most
@@ -111,6 +112,8 @@ def _field(name, code, dims, data):
     if name in COLUMNS:
         dims = dims[:1]
     value = _value(code, dims, data)
+    if name in ROWS and dims == (1, 1):  # of a robot with one limb: a matrix as those of others
+        return _rows([[value]])
     return int(value) if name in COUNTS else value
 
 
@@ -256,10 +259,12 @@ def _double(number):
         return math.inf if number > 0 else -math.inf
 
 
+def _rows(rows):
+    return rows if numpy is None else numpy.array(rows)
+
+
 def _zeros(rows, columns):
-    if numpy is not None:
-        return numpy.zeros((rows, columns))
-    return [[0.0] * columns for _ in range(rows)]
+    return _rows([[0.0] * columns for _ in range(rows)])
 
 
 def _structs(arrays):
@@ -417,10 +422,11 @@ class _Agent:
         request = self.request()
         self.aux = request.aux
         self.known = set(vars(self.aux))
+        limbs, joints = self.aux.numLimbs, self.aux.numJoints
         self.module = _load(request.agent.folder)
         self.module.init(self.aux)
         _warn_of_typos(self.aux, self.known)
-        self.motor = SimpleNamespace(**{name: _zeros(*size) for name, size in VELOCITIES.items()})
+        self.motor = SimpleNamespace(jointVelocities=_zeros(limbs, joints), gripperVelocities=_zeros(limbs, 1))
         return {"aux." + name: value for name, value in vars(self.aux).items() if name in WANTED}
 
     def step(self):

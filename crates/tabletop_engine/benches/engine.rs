@@ -10,8 +10,8 @@ use std::{
 };
 
 use tabletop_engine::{
-    Aux, EngineChoice, EngineConfig, EngineError, EngineHandle, EngineKind, EngineLocator, Reply,
-    RgbImage, Sensor, Trigger,
+    Aux, EngineChoice, EngineConfig, EngineError, EngineHandle, EngineKind, EngineLocator,
+    JointMatrix, Reply, RgbImage, Sensor, Trigger,
 };
 
 const CALLS: usize = 600;
@@ -45,12 +45,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             config.pair = Some(["benchInit".into(), "benchCallback".into()]);
         }
         let engine = EngineHandle::start(config)?;
-        engine.init(Aux::default());
+        engine.init(Aux {
+            min_joint_angles: JointMatrix::zeros([2, 7]),
+            max_joint_angles: JointMatrix::zeros([2, 7]),
+        });
         answer(&engine)?;
         answer(&engine)?;
         let bare = Sensor {
             time_elapsed: 1.0 / 60.0,
-            ..Sensor::default()
+            ..Sensor::at_rest([2, 7])
         };
         let pixels = (0..90_000u32).map(|place| place as u8).collect();
         let picture = Sensor {

@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use std::{env, fs, time::Duration};
-//! use tabletop_engine::{Aux, EngineChoice, EngineConfig, EngineHandle, Reply, Sensor, EngineLocator};
+//! use tabletop_engine::prelude::*;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let folder = env::temp_dir().join(format!("tabletop-example-{}", std::process::id()));
@@ -20,8 +20,9 @@
 //! let mut config = EngineConfig::new(octave);
 //! config.agent = folder.clone();
 //! let engine = EngineHandle::start(config)?;
-//! engine.init(Aux::default());
-//! engine.step(Sensor { time_elapsed: 1.0 / 60.0, ..Sensor::default() });
+//! let (least, largest) = ([[-1.5; 7]; 2], [[1.5; 7]; 2]);
+//! engine.init(Aux { min_joint_angles: least.into(), max_joint_angles: largest.into() });
+//! engine.step(Sensor { time_elapsed: 1.0 / 60.0, ..Sensor::at_rest([2, 7]) });
 //!
 //! while let Some(reply) = engine.recv_timeout(Duration::from_secs(60)) {
 //!     match reply {
@@ -43,6 +44,15 @@
 //! Program and engine exchange named arrays in files of a private folder in memory; see [`protocol`] and
 //! `docs/script-protocol.md`. An engine learns by a [`Trigger`] that there is something to do. Its process and all that it
 //! starts are a group of their own, which ends with the last [`EngineHandle`] or, on Unix, with this program, however that ends.
+
+/// The types that most users of the crate need.
+pub mod prelude {
+    #[doc(hidden)]
+    pub use crate::{
+        Aux, EngineChoice, EngineConfig, EngineError, EngineHandle, EngineKind, EngineLocator,
+        JointMatrix, MotorCommand, Reply, Sensor,
+    };
+}
 
 mod config;
 mod console;
@@ -72,6 +82,7 @@ pub use reply::{Reply, StepReply};
 pub use variables::{
     auxiliary::{Aux, InitReply},
     invalid_field::{InvalidField, MatrixElement},
+    matrix::JointMatrix,
     motor::MotorCommand,
     sensor::{RgbImage, SensedContact, SensedObject, Sensor},
 };

@@ -2,5 +2,6 @@
 
 pub(crate) mod auxiliary;
 pub(crate) mod invalid_field;
+pub(crate) mod matrix;
 pub(crate) mod motor;
 pub(crate) mod sensor;

@@ -88,6 +88,8 @@ struct Running {
     seq: u32,
     open_outputs: u32,
     last_drawn: Option<Instant>,
+    /// How many limbs the robot has, and how many joints each.
+    size: [usize; 2],
     /// The script that is called back, if the engine has reported it.
     callback: Option<PathBuf>,
 }
@@ -126,6 +128,7 @@ impl Running {
             seq: 0,
             open_outputs: 0,
             last_drawn: None,
+            size: [0; 2],
             callback: None,
             worker,
         };
@@ -242,6 +245,7 @@ impl Running {
         if !path.ends_with(['/', '\\']) {
             path.push('/');
         }
+        self.size = aux.size();
         let mut arrays = aux.arrays(&path);
         arrays.put("agent.folder", Array::text(agent.to_string_lossy()));
         if let Some([init, callback]) = &config.pair {
@@ -276,7 +280,7 @@ impl Running {
             }
         };
         self.callback = callback;
-        InitReply::read(&reply).map_err(|field| self.invalid_field(field, init))
+        InitReply::read(&reply, self.size).map_err(|field| self.invalid_field(field, init))
     }
 
     fn step(&mut self, sensor: &Sensor) -> Result<StepReply, EngineError> {
@@ -284,7 +288,7 @@ impl Running {
         self.session.write_request(&sensor.arrays())?;
         let limit = self.worker.config.timeouts.step;
         let reply = self.call(Op::Step, "the callback script", limit)?;
-        let motor = MotorCommand::read(&reply)
+        let motor = MotorCommand::read(&reply, self.size)
             .map_err(|field| self.invalid_field(field, self.callback.clone()))?;
         Ok(StepReply {
             motor,

@@ -7,7 +7,7 @@ mod common;
 use std::path;
 
 use common::{Folder, Session, TRIGGERS};
-use tabletop_engine::{MotorCommand, Sensor, Trigger};
+use tabletop_engine::{MotorCommand, Trigger};
 
 fn motors(init: &str, callback: &str, trigger: Trigger) -> [MotorCommand; 2] {
     let folder = Folder::pair(init, callback);
@@ -15,7 +15,7 @@ fn motors(init: &str, callback: &str, trigger: Trigger) -> [MotorCommand; 2] {
     let session = Session::octave(&folder.0, trigger);
     session.init().unwrap();
     [(); 2].map(|()| {
-        let result = session.step(&Sensor::default());
+        let result = session.step(&common::at_rest());
         result
             .unwrap_or_else(|error| panic!("{init} {callback}: {error}"))
             .motor
@@ -39,7 +39,7 @@ fn whatever_becomes_of_the_path_the_script_runs_on() {
             let session = Session::octave(&folder.0, trigger);
             for _ in 0..2 {
                 session.init().unwrap();
-                let error = common::script_error(session.step(&Sensor::default()));
+                let error = common::script_error(session.step(&common::at_rest()));
                 assert_eq!(error.message, "mine");
             }
         }
@@ -60,8 +60,8 @@ fn a_motor_that_was_cleared_is_at_rest() {
                 "{clear} motor.jointVelocities(2, 1) = 0.5; motor.gripperVelocities(1) = 1;"
             );
             let mut expected = MotorCommand {
-                gripper_velocities: [1.0, 0.0],
-                ..MotorCommand::default()
+                gripper_velocities: vec![1.0, 0.0],
+                ..MotorCommand::at_rest([2, 7])
             };
             expected.joint_velocities[1][0] = 0.5;
             assert_eq!(
@@ -82,7 +82,7 @@ fn what_was_cleared_may_be_declared_again() {
             let [_, motor] = motors(&heading, callback, trigger);
             assert_eq!(motor.head_velocity, Some(2.0));
             let [_, motor] = motors("", &heading, trigger);
-            assert_eq!(motor, MotorCommand::default());
+            assert_eq!(motor, MotorCommand::at_rest([2, 7]));
             let [_, motor] = motors("", &format!("{heading} {callback}"), trigger);
             assert_eq!(motor.head_velocity, Some(2.0), "{declare}");
         }

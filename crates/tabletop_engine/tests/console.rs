@@ -21,7 +21,7 @@ fn what_scripts_print_arrives_apart_from_replies() {
         session.init().unwrap();
         let printed = session.printed("x = 3");
         assert!(printed.contains("from init\nx = 3\n"), "{printed}");
-        session.step(&Sensor::default()).unwrap();
+        session.step(&common::at_rest()).unwrap();
         let printed = session.printed("timeElapsed");
         assert!(
             printed.contains("no end of line") && printed.contains("timeElapsed: 0\n"),
@@ -36,8 +36,8 @@ fn a_flood_of_output_neither_blocks_nor_piles_up() {
     let session = Session::octave(&folder.0, Trigger::Stdin);
     let start = Instant::now();
     session.init().unwrap();
-    session.step(&Sensor::default()).unwrap();
-    session.step(&Sensor::default()).unwrap();
+    session.step(&common::at_rest()).unwrap();
+    session.step(&common::at_rest()).unwrap();
     let lines = session.engine.drain_console();
     // 200 lines and a remark in each second that has begun.
     let most = 201 * (start.elapsed().as_secs() as usize + 2);
@@ -60,7 +60,7 @@ fn all_that_is_printed_can_be_had() {
     let session = Session::start(config).unwrap();
     session.init().unwrap();
     for _ in 0..1200 {
-        session.step(&Sensor::default()).unwrap();
+        session.step(&common::at_rest()).unwrap();
     }
     session.engine.stop();
     while session.engine.is_alive() {
@@ -80,7 +80,7 @@ fn a_flood_is_noted_now_and_then() {
     session.init().unwrap();
     let mut lines = Vec::new();
     for _ in 0..20 {
-        session.step(&Sensor::default()).unwrap();
+        session.step(&common::at_rest()).unwrap();
         lines.extend(session.engine.drain_console());
     }
     let notes = lines
@@ -125,7 +125,7 @@ fn a_struct_shows_what_it_holds() {
         let sensor = Sensor {
             picture: RgbImage::new(200, 150, vec![9; 90_000]),
             tracker_loc: Some(vec![("l-S1".into(), [1.0, 2.0, 3.0])]),
-            ..Sensor::default()
+            ..common::at_rest()
         };
         session.step(&sensor).unwrap();
         let printed = session.printed("trackerLoc");
@@ -151,7 +151,7 @@ fn what_was_shown_is_not_said_again() {
         let session = Session::octave(&folder.0, trigger);
         session.init().unwrap();
         assert!(session.printed("a warning").contains("a warning"));
-        let error = session.step(&Sensor::default()).unwrap_err().to_string();
+        let error = session.step(&common::at_rest()).unwrap_err().to_string();
         assert!(
             error.contains("unseen") && !error.contains("a warning"),
             "{error}"
@@ -175,7 +175,7 @@ fn warnings_name_no_line_of_the_driver() {
         .unwrap();
         let session = Session::octave(&folder.0, trigger);
         session.init().unwrap();
-        session.step(&Sensor::default()).unwrap();
+        session.step(&common::at_rest()).unwrap();
         let printed = session.printed("testCallback at line 1");
         assert!(
             printed.contains("from init") && printed.contains("helper at line 2"),
@@ -220,7 +220,7 @@ fn a_line_without_an_end_is_not_lost() {
     let folder = Folder::pair("", "fprintf(2, 'dots'); error('no');");
     let session = Session::octave(&folder.0, Trigger::Stdin);
     session.init().unwrap();
-    session.step(&Sensor::default()).unwrap_err();
+    session.step(&common::at_rest()).unwrap_err();
     session.engine.stop();
     assert!(session.printed("dots").contains("dots"));
 }

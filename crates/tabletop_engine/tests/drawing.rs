@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Folder, Session, octave};
-use tabletop_engine::{Sensor, Trigger};
+use tabletop_engine::Trigger;
 
 #[test]
 fn what_draws_does_nothing_without_a_display() {
@@ -43,7 +43,7 @@ fn nobody_chooses_files() {
     );
     let session = Session::octave(&folder.0, Trigger::Stdin);
     session.init().unwrap();
-    session.step(&Sensor::default()).unwrap();
+    session.step(&common::at_rest()).unwrap();
     let printed = session.printed("nobody can choose");
     assert!(printed.contains("nobody can choose"), "{printed}");
 }
@@ -56,7 +56,7 @@ fn that_no_file_is_made_is_said_once() {
     let session = Session::start(config).unwrap();
     session.init().unwrap();
     for reported in [1, 0] {
-        session.step(&Sensor::default()).unwrap();
+        session.step(&common::at_rest()).unwrap();
         let printed = session.printed("done");
         assert_eq!(
             printed.matches("makes no file").count(),

@@ -6,9 +6,7 @@ mod common;
 use std::{fs, os::unix::fs::PermissionsExt as _};
 
 use common::{Folder, Session, limits};
-use tabletop_engine::{
-    EngineChoice, EngineConfig, EngineKind, EngineLocator, Platform, Sensor, Trigger,
-};
+use tabletop_engine::{EngineChoice, EngineConfig, EngineKind, EngineLocator, Platform, Trigger};
 
 #[test]
 fn a_matlab_on_the_path_is_started_and_driven() {
@@ -39,7 +37,7 @@ fn a_matlab_on_the_path_is_started_and_driven() {
     );
     let reply = session.init().unwrap();
     assert_eq!(reply.draw_markers[1], limits().max_joint_angles[1][..3]);
-    let reply = session.step(&Sensor::default()).unwrap();
+    let reply = session.step(&common::at_rest()).unwrap();
     assert!(reply.exit && reply.motor.head_velocity == Some(1.0));
 }
 

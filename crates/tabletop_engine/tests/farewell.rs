@@ -7,7 +7,7 @@ mod common;
 use std::{fs, path::Path, time::Duration};
 
 use common::{Folder, Session, octave};
-use tabletop_engine::{ConsoleLine, Sensor, Trigger};
+use tabletop_engine::{ConsoleLine, Trigger};
 
 const INIT: &str = "fid = fopen([aux.path 'log.txt'], 'w'); fputs(fid, 'written'); \
     farewell = onCleanup(@() disp('farewell'));";
@@ -21,7 +21,7 @@ fn called(callback: &str, trigger: Trigger) -> (Folder, Session) {
     }
     let session = Session::start(config).unwrap();
     session.init().unwrap();
-    drop(session.step(&Sensor::default()));
+    drop(session.step(&common::at_rest()));
     (folder, session)
 }
 
@@ -80,7 +80,7 @@ fn when_a_running_call_is_stopped() {
     )
     .unwrap();
     session.init().unwrap();
-    session.engine.step(Sensor::default());
+    session.engine.step(common::at_rest());
     assert!(session.printed("busy").contains("busy"));
     session.engine.stop();
     last_lines(&session);

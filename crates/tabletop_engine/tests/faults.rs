@@ -5,7 +5,7 @@ mod common;
 use std::fs;
 
 use common::{Folder, Session, TRIGGERS, script_error};
-use tabletop_engine::{Sensor, Trigger};
+use tabletop_engine::Trigger;
 
 #[test]
 fn an_error_is_told_with_its_place() {
@@ -18,7 +18,7 @@ fn an_error_is_told_with_its_place() {
         .unwrap();
         let session = Session::octave(&folder.0, trigger);
         session.init().unwrap();
-        let error = script_error(session.step(&Sensor::default()));
+        let error = script_error(session.step(&common::at_rest()));
         assert_eq!(error.id, "Octave:undefined-function");
         assert!(
             error.message.contains("'undefined_thing' undefined"),
@@ -74,7 +74,7 @@ fn errors_of_all_kinds_are_told() {
         )
         .unwrap();
         session.init().unwrap();
-        let error = script_error(session.step(&Sensor::default()));
+        let error = script_error(session.step(&common::at_rest()));
         assert!(
             error.id.starts_with(id) && error.message.contains(message),
             "{script}: {} {error}",
@@ -98,7 +98,7 @@ fn endless_recursion_is_an_error() {
         .unwrap();
         let session = Session::octave(&folder.0, trigger);
         session.init().unwrap();
-        let error = script_error(session.step(&Sensor::default()));
+        let error = script_error(session.step(&common::at_rest()));
         assert!(error.message.contains("max_recursion_depth"), "{error}");
     }
 }
@@ -111,7 +111,7 @@ fn wrong_syntax_is_told_with_its_place() {
         let error = script_error(
             session
                 .init()
-                .and_then(|_| session.step(&Sensor::default())),
+                .and_then(|_| session.step(&common::at_rest())),
         );
         assert!(error.message.contains("parse error"), "{error}");
         let place = error.location().unwrap();
@@ -153,7 +153,7 @@ fn a_folder_with_an_awkward_name_works() {
     for trigger in TRIGGERS {
         let session = Session::octave(&awkward, trigger);
         session.init().unwrap();
-        let error = script_error(session.step(&Sensor::default()));
+        let error = script_error(session.step(&common::at_rest()));
         assert_eq!(
             (
                 error.message.as_str(),

@@ -7,7 +7,7 @@ mod common;
 use std::{fs, path::Path};
 
 use common::{Folder, Session, octave, script_error};
-use tabletop_engine::{EngineConfig, Sensor, Stream, Trigger};
+use tabletop_engine::{EngineConfig, Stream, Trigger};
 
 /// Why the scripts cannot be initialized.
 fn fault(config: EngineConfig) -> String {
@@ -100,7 +100,7 @@ fn scripts_may_be_named_in_many_ways() {
         let folder = behavior(text);
         let session = Session::octave(&folder.0, Trigger::Stdin);
         session.init().unwrap();
-        let motor = session.step(&Sensor::default()).unwrap().motor;
+        let motor = session.step(&common::at_rest()).unwrap().motor;
         assert_eq!(motor.head_velocity, Some(2.0), "{text}");
     }
 }
@@ -140,7 +140,7 @@ fn scripts_of_windows_are_read() {
     let file = detour.join("testCallback.m");
     let session = Session::octave(&detour, Trigger::Stdin);
     session.init().unwrap();
-    let motor = session.step(&Sensor::default()).unwrap().motor;
+    let motor = session.step(&common::at_rest()).unwrap().motor;
     assert_eq!(motor.head_velocity, Some(2.0), "the letter in UTF-8");
     let lines = session.engine.drain_console();
     assert!(
@@ -195,7 +195,7 @@ fn the_users_startup_file_does_no_harm() {
         session.init().unwrap();
         assert!(scripts.join("x.mat").exists());
         assert!(
-            script_error(session.step(&Sensor::default()))
+            script_error(session.step(&common::at_rest()))
                 .message
                 .contains("nosuch")
         );

@@ -23,7 +23,7 @@ fn whatever_a_script_clears_it_runs_on() {
             let session = Session::octave(&folder.0, trigger);
             session.init().unwrap();
             for count in 1..3 {
-                let motor = session.step(&Sensor::default()).unwrap().motor;
+                let motor = session.step(&common::at_rest()).unwrap().motor;
                 assert_eq!(motor.head_velocity, Some(f64::from(count + 2)), "{init}");
             }
         }
@@ -42,7 +42,7 @@ fn whatever_a_script_clears_it_runs_on() {
             for _ in 0..3 {
                 let sensor = Sensor {
                     time_elapsed: 2.0,
-                    ..Sensor::default()
+                    ..common::at_rest()
                 };
                 let motor = session.step(&sensor).unwrap().motor;
                 assert_eq!(motor.head_velocity, Some(2.0), "{callback}");
@@ -54,7 +54,7 @@ fn whatever_a_script_clears_it_runs_on() {
         for _ in 0..3 {
             assert_eq!(
                 session
-                    .step(&Sensor::default())
+                    .step(&common::at_rest())
                     .unwrap()
                     .motor
                     .joint_velocities,
@@ -72,7 +72,7 @@ fn a_callback_may_be_changed_on_the_way() {
     session.init().unwrap();
     let head = || {
         session
-            .step(&Sensor::default())
+            .step(&common::at_rest())
             .unwrap()
             .motor
             .head_velocity
@@ -143,7 +143,7 @@ fn an_invalid_motor_is_told() {
         for (script, message) in faults {
             fs::write(folder.0.join("testCallback.m"), script).unwrap();
             session.init().unwrap();
-            let error = session.step(&Sensor::default()).unwrap_err();
+            let error = session.step(&common::at_rest()).unwrap_err();
             assert!(
                 !error.is_fatal() && error.to_string().starts_with(message),
                 "{script}: {error}"
@@ -155,7 +155,7 @@ fn an_invalid_motor_is_told() {
         session.init().unwrap();
         assert_eq!(
             session
-                .step(&Sensor::default())
+                .step(&common::at_rest())
                 .unwrap()
                 .motor
                 .gripper_velocities,
@@ -193,11 +193,11 @@ fn exit_is_told_whatever_its_value() {
         let folder = Folder::pair("", exit);
         let session = Session::octave(&folder.0, Trigger::Stdin);
         assert!(!session.init().unwrap().exit);
-        assert!(session.step(&Sensor::default()).unwrap().exit);
+        assert!(session.step(&common::at_rest()).unwrap().exit);
         let folder = Folder::pair(exit, "");
         let session = Session::octave(&folder.0, Trigger::Stdin);
         assert!(session.init().unwrap().exit);
-        assert!(session.step(&Sensor::default()).unwrap().exit);
+        assert!(session.step(&common::at_rest()).unwrap().exit);
     }
 }
 
@@ -206,7 +206,7 @@ fn a_callback_that_is_overwritten_is_told() {
     let folder = Folder::pair("", "callbackFunc = 5;");
     let session = Session::octave(&folder.0, Trigger::Stdin);
     session.init().unwrap();
-    let error = session.step(&Sensor::default()).unwrap_err().to_string();
+    let error = session.step(&common::at_rest()).unwrap_err().to_string();
     assert!(error.starts_with("callbackFunc is 1x1 double"), "{error}");
 }
 
@@ -215,6 +215,6 @@ fn complex_numbers_that_are_real_are_taken() {
     let folder = Folder::pair("", "motor.jointVelocities = complex(ones(2, 7), 0);");
     let session = Session::octave(&folder.0, Trigger::Stdin);
     session.init().unwrap();
-    let motor = session.step(&Sensor::default()).unwrap().motor;
+    let motor = session.step(&common::at_rest()).unwrap().motor;
     assert_eq!(motor.joint_velocities, [[1.0; 7]; 2]);
 }

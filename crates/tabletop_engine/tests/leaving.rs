@@ -5,7 +5,7 @@ mod common;
 use std::fs;
 
 use common::{Folder, Session, TRIGGERS, octave, script_error};
-use tabletop_engine::{Sensor, Stream};
+use tabletop_engine::Stream;
 
 #[test]
 fn only_the_word_that_leaves_is_replaced() {
@@ -17,7 +17,7 @@ fn only_the_word_that_leaves_is_replaced() {
         let session = Session::octave(&folder.0, trigger);
         for _ in 0..2 {
             session.init().unwrap();
-            let exits = [(); 4].map(|()| session.step(&Sensor::default()).unwrap().exit);
+            let exits = [(); 4].map(|()| session.step(&common::at_rest()).unwrap().exit);
             assert_eq!(exits, [false, false, false, true]);
             let printed = session.printed("\nbreak\nbreak\n");
             assert!(printed.contains("\nbreak\nbreak\n"), "{printed}");
@@ -39,7 +39,7 @@ fn scripts_that_the_pair_calls_may_be_left_as_well() {
         fs::write(folder.0.join("helper.m"), helper).unwrap();
         let session = Session::octave(&folder.0, trigger);
         session.init().unwrap();
-        let motor = session.step(&Sensor::default()).unwrap().motor;
+        let motor = session.step(&common::at_rest()).unwrap().motor;
         assert_eq!(motor.head_velocity, Some(2.0));
     }
 }
@@ -64,7 +64,7 @@ fn a_script_that_may_be_left_is_still_in_its_folder() {
     for trigger in TRIGGERS {
         let session = Session::octave(&folder.0, trigger);
         session.init().unwrap();
-        let motor = session.step(&Sensor::default()).unwrap().motor;
+        let motor = session.step(&common::at_rest()).unwrap().motor;
         assert_eq!(motor.head_velocity, Some(2.0));
         let script = folder.0.join("testCallback").display().to_string();
         let printed = session.printed("part\npart\n");
@@ -77,7 +77,7 @@ fn a_script_that_may_be_left_is_still_in_its_folder() {
     fs::write(folder.0.join("part.m"), "error('no');\nif true, break, end").unwrap();
     let session = Session::octave(&folder.0, TRIGGERS[0]);
     session.init().unwrap();
-    let error = script_error(session.step(&Sensor::default())).to_string();
+    let error = script_error(session.step(&common::at_rest())).to_string();
     let place = format!("no\n  at {}:1\n", folder.0.join("part.m").display());
     assert!(error.starts_with(&place), "{error}");
 }
@@ -100,7 +100,7 @@ fn a_script_may_be_left_whatever_is_put_on_the_path() {
         let session = Session::octave(&folder.0, TRIGGERS[0]);
         session.init().unwrap();
         for _ in 0..2 {
-            session.step(&Sensor::default()).unwrap();
+            session.step(&common::at_rest()).unwrap();
         }
         assert!(
             session
@@ -137,7 +137,7 @@ fn what_is_left_where_it_cannot_be_is_told_with_what_to_write() {
         let session = Session::start(config).unwrap();
         let result = session
             .init()
-            .and_then(|_| session.step(&Sensor::default()));
+            .and_then(|_| session.step(&common::at_rest()));
         let error = script_error(result).to_string();
         assert!(error.contains("write \"return\""), "{error}");
     }

@@ -21,11 +21,11 @@ fn scripts_share_the_base_workspace() {
         for _ in 0..2 {
             let reply = session.init().unwrap();
             assert_eq!(reply.draw_markers, [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
-            assert_eq!(reply.init_joint_angles, Some([[0.25; 7]; 2]));
+            assert_eq!(reply.init_joint_angles, Some([[0.25; 7]; 2].into()));
             for count in 1..4 {
                 let sensor = Sensor {
                     time_elapsed: 0.5,
-                    ..Sensor::default()
+                    ..common::at_rest()
                 };
                 let reply = session.step(&sensor).unwrap();
                 assert_eq!(reply.motor.joint_velocities[0][1], f64::from(count));
@@ -51,7 +51,7 @@ fn pictures_and_all_else_arrive() {
     rgb[15] = 51;
     let mut sensor = Sensor {
         picture: RgbImage::new(3, 2, rgb),
-        ..Sensor::default()
+        ..common::at_rest()
     };
     sensor.joint_angles[1][6] = 0.75;
     let motor = session.step(&sensor).unwrap().motor;

@@ -7,14 +7,14 @@ mod common;
 use std::fs;
 
 use common::{Folder, Session, TRIGGERS, octave, script_error};
-use tabletop_engine::{EngineError, Sensor, Trigger};
+use tabletop_engine::{EngineError, Trigger};
 
 fn message(init: &str, callback: &str) -> String {
     let folder = Folder::pair(init, callback);
     let session = Session::octave(&folder.0, Trigger::Stdin);
     let result = session
         .init()
-        .and_then(|_| session.step(&Sensor::default()));
+        .and_then(|_| session.step(&common::at_rest()));
     result.unwrap_err().to_string()
 }
 
@@ -82,7 +82,7 @@ fn an_invalid_motor_is_reported_with_its_script() {
     let folder = Folder::pair("", callback);
     let session = Session::octave(&folder.0, Trigger::Stdin);
     session.init().unwrap();
-    let message = session.step(&Sensor::default()).unwrap_err().to_string();
+    let message = session.step(&common::at_rest()).unwrap_err().to_string();
     let script = folder.0.join("testCallback.m");
     assert!(
         message.ends_with(&format!("must be 1x1\n  at {}", script.display())),
@@ -100,7 +100,7 @@ fn a_line_that_is_not_known_is_not_made_up() {
     .unwrap();
     let session = Session::octave(&folder.0, Trigger::Stdin);
     session.init().unwrap();
-    let error = script_error(session.step(&Sensor::default())).to_string();
+    let error = script_error(session.step(&common::at_rest())).to_string();
     assert!(!error.contains(":0"), "{error}");
 }
 
@@ -115,7 +115,7 @@ fn a_killed_engine_leaves_nothing_behind() {
             config.working_dir.clone_from(&current.0);
             let session = Session::start(config).unwrap();
             session.init().unwrap();
-            let error = session.step(&Sensor::default()).unwrap_err();
+            let error = session.step(&common::at_rest()).unwrap_err();
             assert!(matches!(error, EngineError::Died { .. }), "{error}");
             assert_eq!(fs::read_dir(&current.0).unwrap().count(), 0);
         }
@@ -135,7 +135,7 @@ fn an_error_without_a_place_is_in_the_script_that_ran() {
         let folder = Folder::pair("", fault);
         let session = Session::octave(&folder.0, Trigger::Stdin);
         session.init().unwrap();
-        let error = script_error(session.step(&Sensor::default())).to_string();
+        let error = script_error(session.step(&common::at_rest())).to_string();
         let place = format!("\n  at {}", folder.0.join("testCallback.m").display());
         assert!(
             error.contains(reported) && error.ends_with(&place),

@@ -67,7 +67,7 @@ fn sensor() -> Sensor {
         time_elapsed: 0.02,
         picture: RgbImage::new(4, 3, (0..36).collect()),
         tracker_loc: Some(names.map(|name| (name.to_owned(), [1.0, 2.0, 3.0])).into()),
-        ..Sensor::default()
+        ..common::at_rest()
     }
 }
 
@@ -108,7 +108,7 @@ fn maps_hold_values_and_functions() {
     for (tick, motor) in until_exit("maps") {
         assert_eq!(
             (tick, motor.joint_velocities, motor.head_velocity),
-            (1, [[0.25; 7]; 2], Some(3.0))
+            (1, [[0.25; 7]; 2].into(), Some(3.0))
         );
     }
 }

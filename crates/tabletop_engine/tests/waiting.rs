@@ -5,7 +5,6 @@ mod common;
 use std::{fs, time::Duration};
 
 use common::{Folder, Session, TRIGGERS, octave, script_error};
-use tabletop_engine::Sensor;
 
 #[test]
 fn nobody_answers_and_nobody_types() {
@@ -28,7 +27,7 @@ fn nobody_answers_and_nobody_types() {
         ] {
             fs::write(&callback, format!("pause(0);\n{wait}\n")).unwrap();
             session.init().unwrap();
-            let error = script_error(session.step(&Sensor::default()));
+            let error = script_error(session.step(&common::at_rest()));
             assert_eq!(error.id, "tabletop:input", "{wait}: {error}");
             let place = error.stack.last().unwrap().to_string();
             assert_eq!(place, format!("{}:2", callback.display()), "{wait}");
@@ -55,7 +54,7 @@ fn what_a_script_starts_reads_nothing() {
         let session = Session::start(config).unwrap();
         session.init().unwrap();
         for _ in 0..2 {
-            let motor = session.step(&Sensor::default()).unwrap().motor;
+            let motor = session.step(&common::at_rest()).unwrap().motor;
             assert_eq!(motor.head_velocity, Some(1.0));
         }
         let printed = session.printed("written");
@@ -79,7 +78,7 @@ fn breakpoints_are_ignored() {
         config.timeouts.step = Duration::from_secs(10);
         let session = Session::start(config).unwrap();
         session.init().unwrap();
-        let motor = session.step(&Sensor::default()).unwrap().motor;
+        let motor = session.step(&common::at_rest()).unwrap().motor;
         assert_eq!(motor.head_velocity, Some(1.0));
         let printed = session.printed("dbstop has no effect");
         assert!(

@@ -13,18 +13,46 @@
 //! Fields of `sensor` that take time are sent only to scripts that mention them ([`FieldPolicy`]). `docs/scripts.md` is for
 //! those who write scripts.
 //!
-//! ```no_run
-//! use bevy::prelude::*;
-//! use tabletop_core::{prelude::*, ScriptCommand};
-//! use tabletop_script::{ScriptPlugin, ScriptSettings};
-//!
-//! let mut app = App::new();
-//! app.add_plugins((MinimalPlugins, CorePlugin::default()))
-//!     .add_plugins(ScriptPlugin { settings: ScriptSettings::default() })
-//!     .start();
-//! app.world_mut().write_message(ScriptCommand::Start); // runs the scripts that matlab/agentBehavior.m names
-//! app.step(600);
 //! ```
+//! use std::{env, fs, process};
+//! use bevy::prelude::*;
+//! use tabletop_core::{Agent, ScriptCommand, prelude::*};
+//! use tabletop_script::prelude::*;
+//!
+//! # fn main() -> std::io::Result<()> {
+//! let script = env::temp_dir().join(format!("tabletop-example-{}.py", process::id()));
+//! fs::write(&script, "
+//! def init(aux):
+//!     aux.drawMarkers = [[1, 2, 3]]
+//!
+//! def callback(sensor, motor, aux):
+//!     aux.exit = True
+//! ")?;
+//! let settings = ScriptSettings {
+//!     engine: EngineChoice::Kind(EngineKind::Python),
+//!     agent: Some(script.clone()),
+//!     ..default()
+//! };
+//! let mut app = App::new();
+//! app.add_plugins((MinimalPlugins, CorePlugin::default(), ScriptPlugin { settings }))
+//!     .start();
+//!
+//! app.world_mut().write_message(ScriptCommand::Start);
+//! app.step(1); // The script's init has run.
+//! assert!(app.world().resource::<Agent>().is_on());
+//! app.step(1); // Its callback has run, and ended it.
+//! assert_eq!(*app.world().resource::<Agent>(), Agent::Off);
+//! # fs::remove_file(script)
+//! # }
+//! ```
+
+/// The types that most users of the crate need.
+pub mod prelude {
+    #[doc(hidden)]
+    pub use crate::{
+        EngineChoice, EngineKind, FieldPolicy, ScriptPlugin, ScriptSettings, Waiting, shut_down,
+    };
+}
 
 mod blocked;
 mod events;
@@ -37,6 +65,7 @@ mod settings;
 mod simulation;
 
 pub use settings::{FieldPolicy, ScriptSettings, Waiting};
+pub use tabletop_engine as engine;
 pub use tabletop_engine::{
     ENGINE_VARIABLE, EngineChoice, EngineConfig, EngineError, EngineKind, EngineLocator, Timeouts,
 };

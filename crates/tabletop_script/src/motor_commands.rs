@@ -1,67 +1,82 @@
 //! A script's replies as commands of the simulation.
 
 use bevy::prelude::*;
-use tabletop_core::{Arm, Drive, RobotCommand, RobotJoint, RobotMode};
-use tabletop_engine::{InitReply, MotorCommand};
+use tabletop_core::{Drive, JointId, RobotCommand, RobotJoint, RobotLayout, RobotMode};
+use tabletop_engine::{InitReply, JointMatrix, MotorCommand};
 
 /// The commands of an init script.
-pub(crate) fn commands_of_init(reply: &InitReply) -> Vec<RobotCommand> {
+pub(crate) fn commands_of_init(reply: &InitReply, layout: &RobotLayout) -> Vec<RobotCommand> {
     let markers = reply.draw_markers.iter();
     let markers = markers.map(|point| Vec3::from_array(point.map(|x| x as f32)));
     let mut commands = vec![RobotCommand::ShowMarkers(markers.collect())];
-    commands.extend(
-        reply
-            .init_joint_angles
-            .map(|angles| RobotCommand::Drive(at_once(&angles))),
-    );
+    let angles = reply.init_joint_angles.as_ref();
+    commands.extend(angles.map(|angles| drive(at_once(angles, layout))));
     commands
 }
 
 /// The first angle of an init script that a joint cannot have.
-pub(crate) fn unreachable(reply: &InitReply) -> Option<String> {
+pub(crate) fn unreachable(reply: &InitReply, layout: &RobotLayout) -> Option<String> {
     let angles = reply.init_joint_angles.as_ref()?;
-    let mut joints = each_joint(angles, |angle| angle).into_iter();
+    let mut joints = each_joint(angles, layout, |angle| angle);
     let (joint, angle) = joints.find(|&(joint, angle)| {
-        let (least, largest) = joint.limits();
+        let [least, largest] = layout.joint(joint).limits;
         !(least..=largest).contains(&angle)
     })?;
-    let (least, largest) = joint.limits();
+    let joint = layout.joint(joint);
+    let (name, [least, largest]) = (&joint.name, joint.limits);
     Some(format!(
-        "aux.initJointAngles wants {joint} at {angle}; it is moved to the nearest of its angles, {least} to {largest}"
+        "aux.initJointAngles wants {name} at {angle}; it is moved to the nearest of its angles, {least} to {largest}"
     ))
 }
 
 /// The command of a callback script for one tick.
-pub(crate) fn command_of_motor(motor: &MotorCommand, mode: RobotMode) -> RobotCommand {
-    let torques = motor.joint_torques.filter(|_| mode == RobotMode::Dynamic);
+pub(crate) fn command_of_motor(
+    motor: &MotorCommand,
+    mode: RobotMode,
+    layout: &RobotLayout,
+) -> RobotCommand {
+    let torques = motor.joint_torques.as_ref();
+    let torques = torques.filter(|_| mode == RobotMode::Dynamic);
     let mut drives = match (torques, &motor.joint_angles) {
-        (_, Some(angles)) => at_once(angles),
-        (Some(torques), None) => each_joint(&torques, Drive::Torque),
-        (None, None) => each_joint(&motor.joint_velocities, Drive::Velocity),
+        (_, Some(angles)) => at_once(angles, layout),
+        (Some(torques), None) => each_joint(torques, layout, Drive::Torque).collect(),
+        (None, None) => each_joint(&motor.joint_velocities, layout, Drive::Velocity).collect(),
     };
-    for (arm, velocity) in Arm::BOTH.into_iter().zip(motor.gripper_velocities) {
-        drives.push((RobotJoint::gripper(arm), Drive::Velocity(velocity)));
-    }
-    let head = motor.head_velocity.map(Drive::Velocity);
-    drives.extend(head.map(|drive| (RobotJoint::HeadPan, drive)));
-    RobotCommand::Drive(drives)
+    let grippers = layout.limbs.iter().map(|limb| limb.gripper.joint);
+    let velocities = motor.gripper_velocities.iter().copied();
+    drives.extend(grippers.zip(velocities.map(Drive::Velocity)));
+    let head = layout.neck.zip(motor.head_velocity);
+    drives.extend(head.map(|(neck, velocity)| (neck, Drive::Velocity(velocity))));
+    drive(drives)
 }
 
 /// The last command of a script that ends in a tick: velocities are zero from then on.
-pub(crate) fn last_command(motor: &MotorCommand) -> Option<RobotCommand> {
+pub(crate) fn last_command(motor: &MotorCommand, layout: &RobotLayout) -> Option<RobotCommand> {
     let angles = motor.joint_angles.as_ref();
-    angles.map(|angles| RobotCommand::Drive(at_once(angles)))
+    angles.map(|angles| drive(at_once(angles, layout)))
 }
 
-fn at_once(angles: &[[f64; 7]; 2]) -> Vec<(RobotJoint, Drive)> {
-    each_joint(angles, Drive::Position)
+fn drive(drives: Vec<(JointId, Drive)>) -> RobotCommand {
+    let joints = drives.into_iter();
+    let joints = joints.filter_map(|(joint, drive)| {
+        let joint = RobotJoint::ALL.get(joint.index())?;
+        Some((*joint, drive))
+    });
+    RobotCommand::Drive(joints.collect())
 }
 
-fn each_joint<T>(values: &[[f64; 7]; 2], each: impl Fn(f64) -> T) -> Vec<(RobotJoint, T)> {
-    let arms = Arm::BOTH.into_iter().zip(values);
-    arms.flat_map(|(arm, values)| RobotJoint::of_arm(arm).into_iter().zip(values))
-        .map(|(joint, value)| (joint, each(*value)))
-        .collect()
+fn at_once(angles: &JointMatrix, layout: &RobotLayout) -> Vec<(JointId, Drive)> {
+    each_joint(angles, layout, Drive::Position).collect()
+}
+
+fn each_joint<T>(
+    values: &JointMatrix,
+    layout: &RobotLayout,
+    each: impl Fn(f64) -> T,
+) -> impl Iterator<Item = (JointId, T)> {
+    let limbs = layout.limbs.iter().zip(values.rows());
+    let joints = limbs.flat_map(|(limb, values)| limb.joints.iter().zip(values));
+    joints.map(move |(joint, value)| (*joint, each(*value)))
 }
 
 #[cfg(test)]
@@ -70,8 +85,8 @@ mod tests {
 
     fn motor() -> MotorCommand {
         let mut motor = MotorCommand {
-            gripper_velocities: [0.5, -1.0],
-            ..MotorCommand::default()
+            gripper_velocities: vec![0.5, -1.0],
+            ..MotorCommand::at_rest([2, 7])
         };
         motor.joint_velocities[1][6] = 2.0;
         motor
@@ -86,7 +101,11 @@ mod tests {
 
     #[test]
     fn velocities_are_for_every_joint_of_the_arms_and_the_grippers() {
-        let drives = drives(command_of_motor(&motor(), RobotMode::Kinematic));
+        let drives = drives(command_of_motor(
+            &motor(),
+            RobotMode::Kinematic,
+            RobotLayout::baxter(),
+        ));
         assert_eq!(drives.len(), 16);
         assert_eq!(drives[13], (RobotJoint::RightW2, Drive::Velocity(2.0)));
         assert_eq!(
@@ -98,11 +117,12 @@ mod tests {
     #[test]
     fn an_angle_out_of_reach_is_noted() {
         let mut angles = [[0.0; 7]; 2];
-        let note = |angles| {
-            unreachable(&InitReply {
-                init_joint_angles: Some(angles),
+        let note = |angles: [[f64; 7]; 2]| {
+            let reply = InitReply {
+                init_joint_angles: Some(JointMatrix::from(angles)),
                 ..InitReply::default()
-            })
+            };
+            unreachable(&reply, RobotLayout::baxter())
         };
         assert_eq!(note(angles), None);
         angles[1][0] = 99.0;
@@ -113,14 +133,16 @@ mod tests {
     #[test]
     fn angles_take_the_place_of_velocities_and_torques_need_motors() {
         let torques = MotorCommand {
-            joint_torques: Some([[1.0; 7]; 2]),
+            joint_torques: Some([[1.0; 7]; 2].into()),
             ..motor()
         };
-        let first = |motor: &MotorCommand, mode| drives(command_of_motor(motor, mode))[0].1;
+        let first = |motor: &MotorCommand, mode| {
+            drives(command_of_motor(motor, mode, RobotLayout::baxter()))[0].1
+        };
         assert_eq!(first(&torques, RobotMode::Kinematic), Drive::Velocity(0.0));
         assert_eq!(first(&torques, RobotMode::Dynamic), Drive::Torque(1.0));
         let angles = MotorCommand {
-            joint_angles: Some([[0.25; 7]; 2]),
+            joint_angles: Some([[0.25; 7]; 2].into()),
             ..torques
         };
         assert_eq!(first(&angles, RobotMode::Dynamic), Drive::Position(0.25));
@@ -132,7 +154,11 @@ mod tests {
             head_velocity: Some(0.1),
             ..motor()
         };
-        let drives = drives(command_of_motor(&turning, RobotMode::Kinematic));
+        let drives = drives(command_of_motor(
+            &turning,
+            RobotMode::Kinematic,
+            RobotLayout::baxter(),
+        ));
         assert_eq!(
             drives.last(),
             Some(&(RobotJoint::HeadPan, Drive::Velocity(0.1)))

@@ -4,15 +4,12 @@ use std::path::Path;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
-    Arm, ObjectIndex, ObjectSpec, Pose, Recording, Replaying, Robot, RobotJoint, RobotMode,
-    SensorImage, SimTick, TICK_SECONDS, Table,
+    JointId, JointState, ObjectIndex, ObjectSpec, Pose, Recording, Replaying, Robot, RobotLayout,
+    RobotMode, SensorImage, SimTick, TICK_SECONDS, Table,
 };
-use tabletop_engine::{Aux, RgbImage, SensedContact, SensedObject, Sensor};
+use tabletop_engine::{Aux, JointMatrix, RgbImage, SensedContact, SensedObject, Sensor};
 
 use crate::ScriptSettings;
-
-/// How far fingers' ends are from the end effector: across and along it, in units. They do not follow the opening.
-const FINGER_ENDS: Vec2 = Vec2::new(1.15, 0.75);
 
 /// The fields of `sensor` that a script gets beside those that all scripts get.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +32,7 @@ impl SensorFields {
 /// What can be sensed.
 #[derive(SystemParam)]
 pub(crate) struct Senses<'w, 's> {
+    layout: Res<'w, RobotLayout>,
     robot: Res<'w, Robot>,
     image: Res<'w, SensorImage>,
     index: Res<'w, ObjectIndex>,
@@ -44,16 +42,32 @@ pub(crate) struct Senses<'w, 's> {
     replaying: Res<'w, Replaying>,
 }
 
-/// What an init script gets to know.
-pub(crate) fn aux() -> Aux {
-    let limits = Arm::BOTH.map(|arm| RobotJoint::of_arm(arm).map(RobotJoint::limits));
-    Aux {
-        min_joint_angles: limits.map(|arm| arm.map(|(least, _)| least)),
-        max_joint_angles: limits.map(|arm| arm.map(|(_, largest)| largest)),
-    }
-}
-
 impl Senses<'_, '_> {
+    /// Which limbs and joints the robot has.
+    pub fn layout(&self) -> &RobotLayout {
+        &self.layout
+    }
+
+    /// What an init script gets to know.
+    pub fn aux(&self) -> Aux {
+        let limits = |end: usize| self.of_limbs(|joint| self.layout.joint(joint).limits[end]);
+        Aux {
+            min_joint_angles: limits(0),
+            max_joint_angles: limits(1),
+        }
+    }
+
+    /// A number for each joint of each limb.
+    fn of_limbs(&self, of: impl Fn(JointId) -> f64) -> JointMatrix {
+        let limbs = self.layout.limbs.iter();
+        let rows = limbs.map(|limb| limb.joints.iter().map(|joint| of(*joint)).collect());
+        JointMatrix::from_rows(&rows.collect::<Vec<_>>())
+    }
+
+    fn state(&self, joint: JointId) -> &JointState {
+        &self.robot.joints[joint.index()]
+    }
+
     /// How the robot's joints move.
     pub fn mode(&self) -> RobotMode {
         self.robot.mode
@@ -61,24 +75,24 @@ impl Senses<'_, '_> {
 
     /// What a callback script gets to know, so many ticks after it was called before.
     pub fn sensor(&self, ticks: u64, picture: Option<RgbImage>, fields: SensorFields) -> Sensor {
-        let robot = &self.robot;
-        let of_arms = |value: fn(&Robot, RobotJoint) -> f64| {
-            Arm::BOTH.map(|arm| RobotJoint::of_arm(arm).map(|joint| value(robot, joint)))
-        };
-        let dynamic = robot.mode == RobotMode::Dynamic;
+        let dynamic = self.mode() == RobotMode::Dynamic;
+        let grippers = self.layout.limbs.iter().map(|limb| limb.gripper.joint);
+        let limbs = self.robot.limbs.iter();
         Sensor {
             time_elapsed: ticks as f64 * f64::from(TICK_SECONDS),
-            joint_angles: of_arms(|robot, joint| robot.joint(joint).position),
-            end_eff_pos: Arm::BOTH.map(|arm| point(robot.arm(arm).end_effector.location)),
-            gripper_opening: Arm::BOTH.map(|arm| robot.joint(RobotJoint::gripper(arm)).position),
+            joint_angles: self.of_limbs(|joint| self.state(joint).position),
+            end_eff_pos: limbs
+                .map(|limb| point(limb.end_effector.location))
+                .collect(),
+            gripper_opening: grippers.map(|joint| self.state(joint).position).collect(),
             picture,
             tracker_loc: fields.trackers.then(|| self.trackers()),
             demo_cue: self.recording.0 || self.replaying.0,
-            head_angle: Some(robot.joint(RobotJoint::HeadPan).position),
+            head_angle: self.layout.neck.map(|neck| self.state(neck).position),
             objects: fields.objects.then(|| self.objects()),
             contacts: fields.objects.then(|| self.contacts()),
             held: fields.objects.then(|| self.held()),
-            joint_torques: dynamic.then(|| of_arms(|robot, joint| robot.joint(joint).torque)),
+            joint_torques: dynamic.then(|| self.of_limbs(|joint| self.state(joint).torque)),
         }
     }
 
@@ -91,17 +105,21 @@ impl Senses<'_, '_> {
         RgbImage::new(picture.width, picture.height, picture.rgb.clone())
     }
 
-    /// The points on the arms that the original program names.
+    /// The points on the limbs, by the names that they have in the original program.
     fn trackers(&self) -> Vec<(String, [f64; 3])> {
         let mut trackers = Vec::new();
-        for (arm, prefix) in Arm::BOTH.into_iter().zip(["l", "r"]) {
-            let state = self.robot.arm(arm);
-            for (name, origin) in ["S1", "E1", "W1"].into_iter().zip(&state.joint_origins) {
-                trackers.push((format!("{prefix}-{name}"), point(*origin)));
+        for (limb, state) in self.layout.limbs.iter().zip(&self.robot.limbs) {
+            let prefix = &limb.prefix;
+            for (joint, origin) in limb.trackers.iter().zip(&state.joint_origins) {
+                let name = format!("{prefix}-{}", self.layout.joint(*joint).label);
+                trackers.push((name, point(*origin)));
             }
+            let [_, widest] = self.layout.joint(limb.gripper.joint).limits;
+            // They do not follow the opening.
+            let ends = limb.gripper.finger_ends(widest);
             for (finger, side) in [("l", -1.0), ("r", 1.0)] {
                 for (end, along) in [("n", 1.0), ("f", -1.0)] {
-                    let place = Vec3::new(side * FINGER_ENDS.x, 0.0, along * FINGER_ENDS.y);
+                    let place = Vec3::new(side * ends.x, 0.0, along * ends.y);
                     let name = format!("{prefix}g-{finger}{end}");
                     trackers.push((name, point(state.end_effector * place)));
                 }
@@ -151,12 +169,15 @@ impl Senses<'_, '_> {
         }
     }
 
-    fn held(&self) -> [Vec<String>; 2] {
-        Arm::BOTH.map(|arm| {
-            let held = self.robot.arm(arm).holds.iter();
+    fn held(&self) -> Vec<(String, Vec<String>)> {
+        let limbs = self.layout.limbs.iter().zip(&self.robot.limbs);
+        let held = limbs.map(|(limb, state)| {
+            let held = state.holds.iter();
             let specs = held.filter_map(|&object| self.objects.get(object).ok());
-            specs.map(|(spec, _)| spec.id.clone()).collect()
-        })
+            let ids = specs.map(|(spec, _)| spec.id.clone());
+            (limb.name.as_str().to_owned(), ids.collect())
+        });
+        held.collect()
     }
 }
 

@@ -8,7 +8,7 @@ use tabletop_engine::{EngineError, EngineHandle, Reply};
 
 use crate::{
     motor_commands::{command_of_motor, commands_of_init, last_command, unreachable},
-    sense::{SensorFields, aux},
+    sense::SensorFields,
     settings::{ScriptSettings, Waiting},
     simulation::Simulation,
 };
@@ -116,7 +116,7 @@ impl ScriptSession {
     fn ask_what_is_due(&mut self, simulation: &Simulation) {
         match self.phase {
             Phase::Ready => {
-                self.engine.init(aux());
+                self.engine.init(simulation.senses.aux());
                 self.expect(Phase::Init);
             }
             Phase::Idle => {
@@ -187,8 +187,8 @@ impl ScriptSession {
                 Ok(None)
             }
             Reply::Init(reply) => {
-                commands.write_batch(Actor::Script, commands_of_init(&reply));
-                if let Some(note) = unreachable(&reply) {
+                commands.write_batch(Actor::Script, commands_of_init(&reply, senses.layout()));
+                if let Some(note) = unreachable(&reply, senses.layout()) {
                     events.note(&note);
                 }
                 if reply.exit {
@@ -204,7 +204,7 @@ impl ScriptSession {
                 Ok(Some(Answer::Commands))
             }
             Reply::Step(reply) if reply.exit => {
-                commands.write_batch(Actor::Script, last_command(&reply.motor));
+                commands.write_batch(Actor::Script, last_command(&reply.motor, senses.layout()));
                 Ok(Some(Answer::Exit))
             }
             Reply::Step(reply) => {
@@ -214,7 +214,8 @@ impl ScriptSession {
                     self.torques_noted = true;
                     events.note("motor.jointTorques has no effect without --dynamic");
                 }
-                commands.write(Actor::Script, command_of_motor(&reply.motor, mode));
+                let command = command_of_motor(&reply.motor, mode, senses.layout());
+                commands.write(Actor::Script, command);
                 self.phase = Phase::Idle;
                 **agent = Agent::Online { took: reply.took };
                 Ok(Some(Answer::Commands))

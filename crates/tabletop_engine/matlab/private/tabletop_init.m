@@ -3,7 +3,8 @@ function [names, values] = tabletop_init(folder)
 evalin('base', 'clear all; close all; clc;');
 request = tabletop_get([folder 'request.bin']);
 agent = request.agent;
-template = struct('jointVelocities', zeros(2, 7), 'gripperVelocities', zeros(2, 1));
+limbs = request.aux.numLimbs;
+template = struct('jointVelocities', zeros(limbs, request.aux.numJoints), 'gripperVelocities', zeros(limbs, 1));
 driver = [folder 'driver' filesep];
 tabletop_path(driver);
 octave = exist('OCTAVE_VERSION', 'builtin');

@@ -100,6 +100,14 @@ impl Array {
         }
     }
 
+    /// A row of numbers.
+    pub fn row(values: Vec<f64>) -> Self {
+        Self {
+            dims: vec![1, values.len() as u32],
+            data: Data::Double(values),
+        }
+    }
+
     /// A column of numbers.
     pub fn column(values: Vec<f64>) -> Self {
         Self {

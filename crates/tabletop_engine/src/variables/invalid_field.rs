@@ -28,7 +28,7 @@ pub enum InvalidField {
         /// Size and class of what is there.
         found: String,
         /// What should be there.
-        expected: &'static str,
+        expected: String,
     },
     /// A number is not one.
     #[error("{element} is {found}; it must be a finite number")]

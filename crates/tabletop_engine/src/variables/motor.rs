@@ -2,21 +2,24 @@
 
 use crate::{
     protocol::{Array, Arrays, Data},
-    variables::invalid_field::{FARTHEST, InvalidField, MatrixElement},
+    variables::{
+        invalid_field::{FARTHEST, InvalidField, MatrixElement},
+        matrix::JointMatrix,
+    },
 };
 
-/// What a script orders for one tick. Rows and pairs are in the order left, right; joints in the order S0, S1, E0, E1, W0, W1,
+/// The script's commands for one tick. For Baxter, rows are in the order left, right; joints in the order S0, S1, E0, E1, W0, W1,
 /// W2.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MotorCommand {
-    /// Velocities of the arms' joints, in rad/s.
-    pub joint_velocities: [[f64; 7]; 2],
-    /// How fast the grippers open (positive) or close, in units/s.
-    pub gripper_velocities: [f64; 2],
+    /// Velocities of the limbs' joints, in rad/s.
+    pub joint_velocities: JointMatrix,
+    /// How fast each limb's gripper opens (positive) or closes, in units/s.
+    pub gripper_velocities: Vec<f64>,
     /// Angles that the joints take at once, in rad. The velocities then mean nothing.
-    pub joint_angles: Option<[[f64; 7]; 2]>,
-    /// Torques of the arms' joints, in N m, for a robot that is moved by forces.
-    pub joint_torques: Option<[[f64; 7]; 2]>,
+    pub joint_angles: Option<JointMatrix>,
+    /// Torques of the limbs' joints, in N m, for a robot that is moved by forces.
+    pub joint_torques: Option<JointMatrix>,
     /// How fast the head turns, in rad/s, positive to the robot's left.
     pub head_velocity: Option<f64>,
 }
@@ -30,22 +33,31 @@ const FIELDS: [&str; 5] = [
 ];
 
 impl MotorCommand {
-    /// Reads the fields "motor.…" of an engine's reply. What is missing is at rest.
+    /// No motion of so many limbs with so many joints each.
+    pub fn at_rest(size: [usize; 2]) -> Self {
+        Self {
+            joint_velocities: JointMatrix::zeros(size),
+            gripper_velocities: vec![0.0; size[0]],
+            ..Self::default()
+        }
+    }
+
+    /// Reads the fields "motor.…" of an engine's reply for so many limbs with so many joints each. What is missing is at rest.
     ///
     /// # Errors
     /// A field is unknown, has another size or class than it must, or holds what is no number.
-    pub fn read(arrays: &Arrays) -> Result<Self, InvalidField> {
-        let mut motor = Self::default();
+    pub fn read(arrays: &Arrays, size: [usize; 2]) -> Result<Self, InvalidField> {
+        let mut motor = Self::at_rest(size);
         for (name, array) in arrays.iter() {
             let Some(field) = name.strip_prefix("motor") else {
                 continue;
             };
             match field.strip_prefix('.').unwrap_or_default() {
                 "" => return Err(no_struct(name, array)),
-                "jointVelocities" => motor.joint_velocities = joints(name, array)?,
-                "gripperVelocities" => motor.gripper_velocities = pair(name, array)?,
-                "jointAngles" => motor.joint_angles = Some(joints(name, array)?),
-                "jointTorques" => motor.joint_torques = Some(joints(name, array)?),
+                "jointVelocities" => motor.joint_velocities = joints(name, array, size)?,
+                "gripperVelocities" => motor.gripper_velocities = column(name, array, size[0])?,
+                "jointAngles" => motor.joint_angles = Some(joints(name, array, size)?),
+                "jointTorques" => motor.joint_torques = Some(joints(name, array, size)?),
                 "headVelocity" => motor.head_velocity = Some(number(name, array)?),
                 other => return Err(unknown(name, other)),
             }
@@ -82,28 +94,35 @@ fn common_prefix(known: &str, name: &str) -> usize {
     pairs.take_while(|(a, b)| a.eq_ignore_ascii_case(b)).count()
 }
 
-/// A matrix of two rows of joints.
-pub(crate) fn joints(field: &str, array: &Array) -> Result<[[f64; 7]; 2], InvalidField> {
-    let numbers = numbers(field, array, &[2, 7], "2x7 double")?;
-    let mut rows = [[0.0; 7]; 2];
-    for (place, number) in numbers.iter().enumerate() {
-        rows[place % 2][place / 2] = *number;
-    }
-    Ok(rows)
+/// A row for each limb.
+pub(crate) fn joints(
+    field: &str,
+    array: &Array,
+    size: [usize; 2],
+) -> Result<JointMatrix, InvalidField> {
+    let numbers = matrix(field, array, size)?;
+    Ok(JointMatrix::from_columns(size, numbers))
 }
 
-fn pair(field: &str, array: &Array) -> Result<[f64; 2], InvalidField> {
-    match numbers(field, array, &[2, 1], "2x1 double")? {
-        [left, right] => Ok([*left, *right]),
-        _ => Err(size(field, array, "2x1 double")),
-    }
+/// A number for each limb.
+fn column(field: &str, array: &Array, limbs: usize) -> Result<Vec<f64>, InvalidField> {
+    matrix(field, array, [limbs, 1]).map(<[f64]>::to_vec)
 }
 
 fn number(field: &str, array: &Array) -> Result<f64, InvalidField> {
-    match numbers(field, array, &[1, 1], "1x1 double")? {
+    match matrix(field, array, [1, 1])? {
         [number] => Ok(*number),
         _ => Err(size(field, array, "1x1 double")),
     }
+}
+
+fn matrix<'a>(
+    field: &str,
+    array: &'a Array,
+    [rows, columns]: [usize; 2],
+) -> Result<&'a [f64], InvalidField> {
+    let dims = [rows as u32, columns as u32];
+    numbers(field, array, &dims, &format!("{rows}x{columns} double"))
 }
 
 /// Most points that a script can mark.
@@ -147,7 +166,7 @@ fn numbers<'a>(
     field: &str,
     array: &'a Array,
     dims: &[u32],
-    expected: &'static str,
+    expected: &str,
 ) -> Result<&'a [f64], InvalidField> {
     let Data::Double(numbers) = &array.data else {
         return Err(size(field, array, expected));
@@ -169,11 +188,11 @@ fn numbers<'a>(
     })
 }
 
-fn size(field: &str, array: &Array, expected: &'static str) -> InvalidField {
+fn size(field: &str, array: &Array, expected: &str) -> InvalidField {
     InvalidField::Size {
         field: field.to_owned(),
         found: array.describe(),
-        expected,
+        expected: expected.to_owned(),
     }
 }
 
@@ -184,7 +203,7 @@ mod tests {
     fn fault(field: &str, array: Array) -> String {
         let mut arrays = Arrays::default();
         arrays.put(field, array);
-        MotorCommand::read(&arrays).unwrap_err().to_string()
+        MotorCommand::read(&arrays, [2, 7]).unwrap_err().to_string()
     }
 
     #[test]
@@ -196,13 +215,26 @@ mod tests {
         arrays.put("motor.gripperVelocities", Array::column(vec![1.0, -1.0]));
         arrays.put("motor.headVelocity", Array::scalar(0.25));
         arrays.put("aux.exit", Array::scalar(1.0));
-        let motor = MotorCommand::read(&arrays).unwrap();
+        let motor = MotorCommand::read(&arrays, [2, 7]).unwrap();
         assert_eq!(motor.joint_velocities, rows);
         assert_eq!(motor.gripper_velocities, [1.0, -1.0]);
         assert_eq!(
             (motor.joint_angles, motor.head_velocity),
             (None, Some(0.25))
         );
+    }
+
+    #[test]
+    fn a_robot_with_one_arm_has_one_row() {
+        let mut arrays = Arrays::default();
+        arrays.put("motor.jointAngles", Array::matrix(&[[0.5; 7]]));
+        arrays.put("motor.gripperVelocities", Array::scalar(-1.0));
+        let motor = MotorCommand::read(&arrays, [1, 7]).unwrap();
+        assert_eq!(motor.joint_angles, Some([[0.5; 7]].into()));
+        assert_eq!(motor.joint_velocities, [[0.0; 7]]);
+        assert_eq!(motor.gripper_velocities, [-1.0]);
+        let fault = MotorCommand::read(&arrays, [2, 7]).unwrap_err().to_string();
+        assert_eq!(fault, "motor.jointAngles is 1x7 double; it must be 2x7");
     }
 
     #[test]

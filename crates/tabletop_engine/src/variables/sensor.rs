@@ -1,35 +1,38 @@
 //! What the robot senses: the script's `sensor` variable (report section 5.2).
 
-use crate::protocol::{Array, Arrays, Data};
+use crate::{
+    protocol::{Array, Arrays, Data},
+    variables::matrix::JointMatrix,
+};
 
-/// What a script gets to know in a tick. Rows and pairs are in the order left, right; joints in the order S0, S1, E0, E1, W0,
-/// W1, W2.
+/// What a script gets to know in a tick. For Baxter, rows are in the order left, right; joints in the order S0, S1, E0, E1, W0, W1,
+/// W2.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sensor {
     /// Simulation time since the last call, in s.
     pub time_elapsed: f64,
-    /// Angles of the arms' joints, in rad.
-    pub joint_angles: [[f64; 7]; 2],
-    /// Where the end effectors are, in units of 10 cm.
-    pub end_eff_pos: [[f64; 3]; 2],
-    /// How far the grippers are open, in units.
-    pub gripper_opening: [f64; 2],
+    /// Angles of the limbs' joints, in rad.
+    pub joint_angles: JointMatrix,
+    /// Where each limb's end effector is, in units of 10 cm.
+    pub end_eff_pos: Vec<[f64; 3]>,
+    /// How far each limb's gripper is open, in units.
+    pub gripper_opening: Vec<f64>,
     /// What the head camera sees, if there is a fresh picture.
     pub picture: Option<RgbImage>,
     /// Points on the arms by name, in units. A map costs Octave half a millisecond, so leave it out where nobody asks for it.
     pub tracker_loc: Option<Vec<(String, [f64; 3])>>,
     /// Whether a demonstration is going on: one that is being recorded or replayed.
     pub demo_cue: bool,
-    /// The head's angle, in rad, positive to the robot's left.
+    /// The head's angle, in rad, positive to the robot's left; a robot without a neck has none.
     pub head_angle: Option<f64>,
     /// The objects of the world, if the script may know them.
     pub objects: Option<Vec<SensedObject>>,
     /// What touches what.
     pub contacts: Option<Vec<SensedContact>>,
-    /// The ids of the objects that each gripper holds.
-    pub held: Option<[Vec<String>; 2]>,
-    /// Torques of the arms' joints, in N m.
-    pub joint_torques: Option<[[f64; 7]; 2]>,
+    /// The limbs by their names, which are fields of the struct, with the ids of the objects that their grippers hold.
+    pub held: Option<Vec<(String, Vec<String>)>>,
+    /// Torques of the limbs' joints, in N m.
+    pub joint_torques: Option<JointMatrix>,
 }
 
 /// A picture: rows from the top, pixels from the left, red, green and blue of each.
@@ -102,14 +105,24 @@ pub struct SensedContact {
 }
 
 impl Sensor {
+    /// The least that a robot of so many limbs with so many joints each senses, all of it 0.
+    pub fn at_rest(size: [usize; 2]) -> Self {
+        Self {
+            joint_angles: JointMatrix::zeros(size),
+            end_eff_pos: vec![[0.0; 3]; size[0]],
+            gripper_opening: vec![0.0; size[0]],
+            ..Self::default()
+        }
+    }
+
     /// The sensor as named arrays.
     pub fn arrays(&self) -> Arrays {
         let mut arrays = Arrays::default();
         let mut put = |name: &str, array| arrays.put(format!("sensor.{name}"), array);
         put("timeElapsed", Array::scalar(self.time_elapsed));
-        put("jointAngles", Array::matrix(&self.joint_angles));
+        put("jointAngles", self.joint_angles.array());
         put("endEffPos", Array::matrix(&self.end_eff_pos));
-        put("gripperOpening", Array::matrix(&[self.gripper_opening]));
+        put("gripperOpening", Array::row(self.gripper_opening.clone()));
         put("demoCue", Array::logical(self.demo_cue));
         if let Some(picture) = &self.picture {
             put("rgbVision", picture.array());
@@ -121,11 +134,10 @@ impl Sensor {
             put("headAngle", Array::scalar(angle));
         }
         if let Some(torques) = &self.joint_torques {
-            put("jointTorques", Array::matrix(torques));
+            put("jointTorques", torques.array());
         }
-        if let Some([left, right]) = &self.held {
-            put("held.left", Array::texts(left.clone()));
-            put("held.right", Array::texts(right.clone()));
+        for (limb, ids) in self.held.iter().flatten() {
+            put(&format!("held.{limb}"), Array::texts(ids.clone()));
         }
         if let Some(objects) = &self.objects {
             let texts = |of: fn(&SensedObject) -> &String| {
@@ -192,13 +204,16 @@ mod tests {
                 .map(|(name, _)| name.to_owned())
                 .collect::<Vec<_>>()
         };
-        let bare = names(&Sensor::default());
+        let bare = names(&Sensor::at_rest([2, 7]));
         assert_eq!(bare.len(), 5);
         let full = Sensor {
             objects: Some(vec![SensedObject::default()]),
             contacts: Some(Vec::new()),
-            held: Some([vec!["a".into()], Vec::new()]),
-            ..Default::default()
+            held: Some(vec![
+                ("left".into(), vec!["a".into()]),
+                ("right".into(), Vec::new()),
+            ]),
+            ..Sensor::at_rest([2, 7])
         };
         assert!(full.arrays().encode().is_ok());
         assert!(names(&full).contains(&"sensor.objects.position".to_owned()));

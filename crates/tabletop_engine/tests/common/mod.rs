@@ -17,8 +17,8 @@ use tabletop_engine::{
     InitReply, Reply, ScriptError, Sensor, StepReply, Timeouts, Trigger,
 };
 
-/// Longer than anything takes here.
-const PATIENCE: Duration = Duration::from_secs(60);
+/// Longer than anything takes here, also on a machine that is busy with other things.
+pub const PATIENCE: Duration = Duration::from_secs(300);
 
 /// A folder for a test's files.
 pub struct Folder(pub PathBuf);
@@ -63,12 +63,18 @@ pub fn octave(agent: &Path, trigger: Trigger) -> EngineConfig {
     let mut config = EngineConfig::new(found);
     config.trigger = trigger;
     config.agent = agent.to_owned();
-    config.timeouts = Timeouts {
-        start: PATIENCE,
-        init: PATIENCE,
-        step: PATIENCE,
-    };
+    config.timeouts = patient();
     config
+}
+
+/// Timeouts that end before the tests' patience does.
+pub fn patient() -> Timeouts {
+    let most = PATIENCE * 4 / 5;
+    Timeouts {
+        start: most,
+        init: most,
+        step: most,
+    }
 }
 
 pub const TRIGGERS: [Trigger; 2] = [Trigger::Stdin, Trigger::Poll];
@@ -144,10 +150,15 @@ pub fn script_error<T: std::fmt::Debug>(result: Result<T, EngineError>) -> Scrip
     }
 }
 
+/// What a robot that does not move senses.
+pub fn at_rest() -> Sensor {
+    Sensor::at_rest([2, 7])
+}
+
 /// The limits of the robot's joints.
 pub fn limits() -> Aux {
     Aux {
-        min_joint_angles: [[-1.7, -2.147, -3.054, -0.05, -3.059, -1.571, -3.059]; 2],
-        max_joint_angles: [[1.7, 1.047, 3.054, 2.618, 3.059, 2.094, 3.059]; 2],
+        min_joint_angles: [[-1.7, -2.147, -3.054, -0.05, -3.059, -1.571, -3.059]; 2].into(),
+        max_joint_angles: [[1.7, 1.047, 3.054, 2.618, 3.059, 2.094, 3.059]; 2].into(),
     }
 }

@@ -19,12 +19,18 @@ pub struct Robot {
 impl Robot {
     pub fn new(init: &InitReply) -> Self {
         let model = baxter().unwrap();
+        let mut start = [[0.0; 7]; 2];
+        if let Some(angles) = &init.init_joint_angles {
+            for (start, angles) in start.iter_mut().zip(angles.rows()) {
+                start.copy_from_slice(angles);
+            }
+        }
         let arm =
             |side| ArmChain::between(&model, "torso", &format!("{side}_end_effector")).unwrap();
         Self {
             arms: [arm("left"), arm("right")],
             limits: limits(),
-            angles: init.init_joint_angles.unwrap_or_default(),
+            angles: start,
             grippers: [2.0; 2],
             head: 0.0,
         }
@@ -40,11 +46,11 @@ impl Robot {
     pub fn sensor(&self) -> Sensor {
         Sensor {
             time_elapsed: TICK,
-            joint_angles: self.angles,
-            end_eff_pos: self.hands(),
-            gripper_opening: self.grippers,
+            joint_angles: self.angles.into(),
+            end_eff_pos: self.hands().into(),
+            gripper_opening: self.grippers.into(),
             head_angle: Some(self.head),
-            ..Sensor::default()
+            ..super::at_rest()
         }
     }
 
