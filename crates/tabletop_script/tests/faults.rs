@@ -166,15 +166,15 @@ fn engines_that_are_none_do_not_keep_the_simulation() {
         ("exit 1", "the engine ended (exit status: 1)"),
         (
             "exec >&- 2>&-; exec sleep 1000",
-            "no answer from the engine's start within 2 s",
+            "no answer from the engine's start within 6 s",
         ),
         (
             "exec sleep 1000",
-            "no answer from the engine's start within 2 s",
+            "no answer from the engine's start within 6 s",
         ),
         (
             "while read line; do echo \"$line\"; done",
-            "no answer from the engine's start within 2 s",
+            "no answer from the engine's start within 6 s",
         ),
         (
             "read a; read b; printf '\\001done 1\\n'; exec sleep 1000",
