@@ -1,6 +1,9 @@
 //! `tabletop explain` and `tabletop require`: what is understood of demonstrations.
 
-use std::{fs, path::PathBuf};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use serde_json::Value;
 
@@ -262,7 +265,7 @@ fn require(demo: &str, arguments: &[&str]) -> Result<Vec<String>, String> {
     }
 }
 
-fn bound(demo: &str, setup: &PathBuf) -> Result<Vec<String>, String> {
+fn bound(demo: &str, setup: &Path) -> Result<Vec<String>, String> {
     let output = tabletop(&["explain", demo, "--setup", setup.to_str().unwrap()]);
     let lines = stdout(&output);
     let taken = lines

@@ -21,11 +21,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let angles: Vec<_> = (0..POSES)
         .map(|_| {
             let limits = arm.limits();
-            limits.map(|[least, largest]| least + random(&mut state) * (largest - least))
+            let angles = limits
+                .iter()
+                .map(|[least, largest]| least + random(&mut state) * (largest - least));
+            angles.collect::<Vec<_>>()
         })
         .collect();
 
-    let report = |what: &str, beyond: f64, seed: &mut dyn FnMut(&[f64]) -> _| {
+    let report = |what: &str, beyond: f64, seed: &mut dyn FnMut(&[f64]) -> Vec<f64>| {
         let mut times = Vec::with_capacity(POSES);
         let mut solved = 0;
         for angles in &angles {
@@ -45,10 +48,11 @@ fn main() -> Result<(), Box<dyn Error>> {
             times[POSES - 1],
         );
     };
-    report("from the start", 0.0, &mut |_| START);
-    report("2 m out of reach", 2.0, &mut |_| START);
+    report("from the start", 0.0, &mut |_| START.to_vec());
+    report("2 m out of reach", 2.0, &mut |_| START.to_vec());
     report("from close by", 0.0, &mut |angles| {
-        angles.map(|angle| angle + NEAR * (2.0 * random(&mut state) - 1.0))
+        let near = |angle| angle + NEAR * (2.0 * random(&mut state) - 1.0);
+        angles.iter().map(near).collect()
     });
 
     let mut frames = robot.frames(&robot.zero());

@@ -57,9 +57,9 @@ pub(crate) fn cheapest(costs: &[Vec<Option<i64>>]) -> Option<Vec<usize>> {
         }
     }
     let mut given = vec![0; rows];
-    for column in 1..=columns {
-        if let Some(row) = taken_by[column].checked_sub(1) {
-            given[row] = column - 1;
+    for (column, taken_by) in taken_by[1..].iter().enumerate() {
+        if let Some(row) = taken_by.checked_sub(1) {
+            given[row] = column;
         }
     }
     let is_allowed = given

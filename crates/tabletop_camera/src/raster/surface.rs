@@ -177,6 +177,5 @@ impl Surface {
 
 /// A share between those at the corners of a triangle, which rounding may bring a little beyond them.
 pub(crate) fn clamp_share(share: f32) -> f32 {
-    const LEAST: f32 = LIGHT.least();
-    share.max(LEAST).min(1.0)
+    share.max(LIGHT.least()).min(1.0)
 }

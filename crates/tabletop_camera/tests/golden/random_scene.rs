@@ -11,7 +11,7 @@ use tabletop_core::{HeadCamera, Picture, Pose, Rgb, Solid, Table, Triangles};
 pub fn random_scene(seed: u64, antialiasing: bool) -> (Scene, Camera) {
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
     let is_wild = seed % 4 == 3;
-    let is_upright = seed % 3 == 0;
+    let is_upright = seed.is_multiple_of(3);
     let sizes = [(200, 150), (61, 47), (33, 17), (3, 90), (1, 1), (130, 5)];
     let (width, height) = sizes[random.below(12) as usize % sizes.len()];
     let head = HeadCamera {

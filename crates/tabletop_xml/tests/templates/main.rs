@@ -30,11 +30,13 @@ fn scene(content: &str) -> SceneSpec {
 }
 
 fn objects(scene: &SceneSpec) -> Vec<&ObjectSpec> {
-    let object = |item| match item {
-        &SceneItem::Object(ref object) => Some(object),
-        &SceneItem::Chain(_) | &SceneItem::LidBox(_) => None,
-    };
-    scene.items.iter().filter_map(object).collect()
+    let items = scene.items.iter();
+    items
+        .filter_map(|item| match item {
+            SceneItem::Object(object) => Some(object),
+            SceneItem::Chain(_) | SceneItem::LidBox(_) => None,
+        })
+        .collect()
 }
 
 /// The ids of the objects that a file with this content has, in their order.
