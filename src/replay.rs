@@ -221,6 +221,7 @@ impl Replay {
             folder: into,
             header: self.session.header.settings.clone(),
             channels,
+            ..default()
         };
         let mut app = headless_app_with(self.plugins().set(recorder));
         self.play(Player::recording(&self.session), &mut app);

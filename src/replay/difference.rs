@@ -29,8 +29,7 @@ pub(super) fn first_before_cut(
     recorded: &Path,
     replayed: &Path,
 ) -> Result<Option<String>, ReplayError> {
-    let mut files = files_in(recorded)?;
-    files.retain(|file| !is_for_the_program_alone(file));
+    let files = files_in(recorded)?;
     first_that_differs(files, [recorded, replayed], |file, before, after| {
         let is_picture = file.extension().is_some_and(|extension| extension == "png");
         after.starts_with(match is_picture {
@@ -65,12 +64,10 @@ fn first_that_differs(
     Ok(None)
 }
 
-/// Whether it is a picture that was not finished, or was undone.
+/// Whether it is a file that was not finished, or is hidden, as what was undone is.
 fn is_for_the_program_alone(file: &Path) -> bool {
-    file.starts_with(".undone")
-        || file
-            .extension()
-            .is_some_and(|extension| extension == "part")
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    name.starts_with('.') || name.ends_with(".part")
 }
 
 /// Where two files differ: line and texts, or for pictures that they do.
@@ -96,7 +93,8 @@ fn first_difference_of(before: &[u8], after: &[u8]) -> String {
     String::new()
 }
 
-/// The files that a recorder writes to a recording's folder, relative to it, in alphabetical order.
+/// The files that a recorder writes to a recording's folder, relative to it, in alphabetical order; without those that are for the
+/// program alone.
 fn files_in(folder: &Path) -> Result<BTreeSet<PathBuf>, ReplayError> {
     let mut files = BTreeSet::new();
     let mut folders = vec![PathBuf::new()];
@@ -109,6 +107,9 @@ fn files_in(folder: &Path) -> Result<BTreeSet<PathBuf>, ReplayError> {
         for entry in fs::read_dir(&path).map_err(failed)? {
             let entry = entry.map_err(failed)?;
             let name = inner.join(entry.file_name());
+            if is_for_the_program_alone(&name) {
+                continue;
+            }
             match entry.file_type().map_err(failed)?.is_dir() {
                 true => folders.push(name),
                 // What the user requires of its objects is not recorded.

@@ -16,6 +16,19 @@ use tabletop::{
     replay::Replay,
 };
 
+/// A folder in memory, where there is one: for hundreds of recordings.
+pub fn fresh_folder_in_memory(name: &str) -> PathBuf {
+    let memory = Path::new("/dev/shm");
+    match memory.is_dir() {
+        true => {
+            let folder = memory.join(format!("tabletop-{name}-{}", std::process::id()));
+            let _not_there = fs::remove_dir_all(&folder);
+            folder
+        }
+        false => fresh_folder(name),
+    }
+}
+
 /// Where a test records; what an earlier run has left there is gone.
 pub fn fresh_folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);

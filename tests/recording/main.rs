@@ -3,6 +3,7 @@
 
 mod demonstration;
 mod ending;
+mod faults;
 mod playback;
 mod random;
 mod rest;

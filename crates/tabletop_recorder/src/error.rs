@@ -52,6 +52,16 @@ pub enum RecorderError {
         /// The reason.
         source: io::Error,
     },
+    /// An undo, a redo or an end was interrupted, and cannot be done now.
+    #[error(
+        "{folder}: what was interrupted when its recording was cut off cannot be done now: {source}"
+    )]
+    Interrupted {
+        /// The folder of the recording.
+        folder: PathBuf,
+        /// The reason.
+        source: Box<RecorderError>,
+    },
     /// A picture cannot be encoded.
     #[error(
         "cannot encode the picture {path}: {source}; check the size of the head camera's pictures"

@@ -1,14 +1,19 @@
 //! The files of a recording.
 
 pub(crate) mod channels;
+pub(crate) mod destination;
+pub(crate) mod durability;
 pub(crate) mod event;
 pub(crate) mod folder;
 pub(crate) mod format;
 pub(crate) mod frame;
+pub(crate) mod intent;
 pub(crate) mod joints;
+pub(crate) mod limits;
 pub(crate) mod log_file;
 pub(crate) mod picture;
 pub(crate) mod properties;
 pub(crate) mod recording_files;
 pub(crate) mod session;
 pub(crate) mod states;
+pub(crate) mod storage;

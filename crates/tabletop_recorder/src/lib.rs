@@ -33,12 +33,14 @@ mod recording;
 pub use error::RecorderError;
 pub use files::{
     channels::Channels,
+    durability::Durability,
     event::Event,
     frame::{FRAMES_PER_SECOND, TICKS_PER_FRAME},
     log_file::whole_lines,
     session::{
         Session, SessionCommand, SessionHeader, SessionObject, SessionScene, SessionSettings,
     },
+    storage::{Fault, Storage},
 };
 pub use reading::{
     event::{Occurrence, RecordedEvent},

@@ -1,38 +1,39 @@
 //! Files that only ever end with a whole line.
 
 use std::{
-    fs::{File, OpenOptions, TryLockError},
-    io::{self, Seek as _, SeekFrom, Write as _},
+    io,
     path::{Path, PathBuf},
 };
 
-use crate::error::RecorderError;
+use crate::{
+    error::RecorderError,
+    files::storage::{Storage, StoredFile},
+};
 
 /// A file that grows by whole lines. What is appended is with the operating system when the call returns, so it outlives
 /// the program; what cannot be appended whole is not in the file.
 #[derive(Debug)]
 pub(crate) struct LogFile {
     path: PathBuf,
-    file: File,
+    file: StoredFile,
     len: u64,
 }
 
 impl LogFile {
-    pub(crate) fn create(path: PathBuf) -> Result<Self, RecorderError> {
-        let file = OpenOptions::new()
-            .write(true)
-            .create_new(true)
-            .open(&path)
+    pub(crate) fn create(storage: &Storage, path: PathBuf) -> Result<Self, RecorderError> {
+        let file = storage
+            .create(&path)
             .map_err(RecorderError::create(&path))?;
         Ok(Self { path, file, len: 0 })
     }
 
     /// Opens a file of which the first `len` bytes are kept.
-    pub(crate) fn reopen(path: PathBuf, len: u64) -> Result<Self, RecorderError> {
-        let file = OpenOptions::new()
-            .write(true)
-            .open(&path)
-            .map_err(RecorderError::write(&path))?;
+    pub(crate) fn reopen(
+        storage: &Storage,
+        path: PathBuf,
+        len: u64,
+    ) -> Result<Self, RecorderError> {
+        let file = storage.open(&path).map_err(RecorderError::write(&path))?;
         let mut log = Self { path, file, len };
         log.cut(len)?;
         Ok(log)
@@ -40,11 +41,8 @@ impl LogFile {
 
     /// Lets other programs know that it is being written, as long as this is there.
     pub(crate) fn lock(&self) {
-        // A lock of Windows would keep everybody from reading; but there, no folder with an open file is moved. Where a file system
-        // knows no locks, all goes on without.
-        if cfg!(unix) {
-            let _ = self.file.try_lock();
-        }
+        // Nobody else can have it: who starts a recording keeps the others off the folder.
+        let _is_free = self.file.try_lock();
     }
 
     pub(crate) fn len(&self) -> u64 {
@@ -53,9 +51,12 @@ impl LogFile {
 
     /// Appends lines, each with its line end.
     pub(crate) fn append(&mut self, lines: &[u8]) -> Result<(), RecorderError> {
-        if let Err(error) = self.file.write_all(lines) {
+        if lines.is_empty() {
+            return Ok(());
+        }
+        if let Err(error) = self.file.append(lines) {
             // Should that fail, too, the first error says why.
-            let _cut = self.set_len(self.len);
+            let _cut = self.file.cut(self.len);
             return Err(RecorderError::write(&self.path)(error));
         }
         self.len += lines.len() as u64;
@@ -71,42 +72,25 @@ impl LogFile {
         self.append(&lines)
     }
 
-    /// Appends what another file holds.
-    pub(crate) fn append_file(&mut self, path: &Path) -> Result<(), RecorderError> {
-        let lines = std::fs::read(path).map_err(RecorderError::read(path))?;
-        self.append(&lines)
-    }
-
     /// Keeps the first `len` bytes.
     pub(crate) fn cut(&mut self, len: u64) -> Result<(), RecorderError> {
-        self.set_len(len).map_err(RecorderError::write(&self.path))
-    }
-
-    /// What comes after the first `len` bytes.
-    pub(crate) fn read_from(&self, len: u64) -> Result<Vec<u8>, RecorderError> {
-        let mut whole = std::fs::read(&self.path).map_err(RecorderError::read(&self.path))?;
-        Ok(whole.split_off(whole.len().min(len as usize)))
-    }
-
-    /// Keeps the first `len` bytes, and moves the others to a new file.
-    pub(crate) fn cut_to_file(&mut self, len: u64, path: PathBuf) -> Result<(), RecorderError> {
-        let mut tail = Self::create(path)?;
-        tail.append(&self.read_from(len)?)?;
-        self.cut(len)
-    }
-
-    fn set_len(&mut self, len: u64) -> io::Result<()> {
-        self.file.set_len(len)?;
-        self.file.seek(SeekFrom::Start(len))?;
+        self.file
+            .cut(len)
+            .map_err(RecorderError::write(&self.path))?;
         self.len = len;
         Ok(())
     }
-}
 
-/// Whether somebody is [writing](LogFile::lock) a file.
-pub(crate) fn is_locked(path: &Path) -> bool {
-    let locked = File::open(path).map(|file| file.try_lock_shared());
-    matches!(locked, Ok(Err(TryLockError::WouldBlock)))
+    /// What comes after the first `len` bytes.
+    pub(crate) fn read_from(&mut self, len: u64) -> Result<Vec<u8>, RecorderError> {
+        let rest = self.file.read_from(len, u64::MAX);
+        rest.map_err(RecorderError::read(&self.path))
+    }
+
+    /// Has what was appended outlive a loss of power.
+    pub(crate) fn sync(&self) -> Result<(), RecorderError> {
+        self.file.sync().map_err(RecorderError::write(&self.path))
+    }
 }
 
 fn csv_lines(records: &[Vec<String>]) -> io::Result<Vec<u8>> {
@@ -125,12 +109,16 @@ pub fn whole_lines(bytes: &[u8]) -> &[u8] {
     end.and_then(|end| bytes.get(..=end)).unwrap_or_default()
 }
 
-/// The text of a file up to its last line end.
-pub(crate) fn read_whole_lines(path: &Path) -> Result<String, RecorderError> {
-    let bytes = std::fs::read(path).map_err(RecorderError::read(path))?;
-    let text = String::from_utf8(whole_lines(&bytes).to_vec());
-    text.map_err(|error| {
-        RecorderError::read(path)(io::Error::new(io::ErrorKind::InvalidData, error))
+/// The text of a file, which is refused if it has more bytes than this, up to its last line end.
+pub(crate) fn read_whole_lines(path: &Path, most_bytes: u64) -> Result<String, RecorderError> {
+    let read = Storage::default().read(path, most_bytes);
+    let mut bytes = read.map_err(RecorderError::read(path))?;
+    bytes.truncate(whole_lines(&bytes).len());
+    String::from_utf8(bytes).map_err(|error| {
+        RecorderError::read(path)(io::Error::new(
+            io::ErrorKind::InvalidData,
+            error.utf8_error(),
+        ))
     })
 }
 

@@ -1,47 +1,32 @@
 //! Pictures as PNG files.
 
-use std::{fs, path::Path};
-
 use tabletop_core::Picture;
-
-use crate::error::RecorderError;
 
 /// Depths in a depth image are counted in tenths of a millimetre, of which a unit has this many.
 const DEPTHS_PER_UNIT: f32 = 1000.0;
 
-/// Writes a picture with 8 bits each of red, green, blue and alpha, as the original program did. Under its name the file
-/// is never incomplete.
-pub(crate) fn write_png(picture: &Picture, path: &Path) -> Result<(), RecorderError> {
+/// A picture with 8 bits each of red, green, blue and alpha, as the original program wrote it.
+pub(crate) fn color_png(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
     let (pixels, _) = picture.rgb.as_chunks();
     let rgba: Vec<u8> = pixels
         .iter()
         .flat_map(|&[red, green, blue]| [red, green, blue, u8::MAX])
         .collect();
-    write(
-        picture,
-        png::ColorType::Rgba,
-        png::BitDepth::Eight,
-        &rgba,
-        path,
-    )
+    encode(picture, png::ColorType::Rgba, png::BitDepth::Eight, &rgba)
 }
 
-/// Writes how far away is what each pixel shows, in 16 bits: tenths of a millimetre along the axis of view, 0 where nothing
+/// How far away is what each pixel shows, in 16 bits: tenths of a millimetre along the axis of view, 0 where nothing
 /// is, 65535 for that far and beyond.
-pub(crate) fn write_depth(picture: &Picture, path: &Path) -> Result<(), RecorderError> {
+pub(crate) fn depth_png(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
     let values = picture.depth.iter().map(|&depth| match depth {
         f32::INFINITY => 0,
         depth => (depth * DEPTHS_PER_UNIT).round() as u16,
     });
-    write_16_bits(picture, values, path)
+    encode_16_bits(picture, values)
 }
 
-/// Writes in 16 bits what each pixel shows: 0 for nothing, or the number of what stands in this place of the list.
-pub(crate) fn write_ids(
-    picture: &Picture,
-    numbers: &[u16],
-    path: &Path,
-) -> Result<(), RecorderError> {
+/// In 16 bits, what each pixel shows: 0 for nothing, or the number of what stands in this place of the list.
+pub(crate) fn ids_png(picture: &Picture, numbers: &[u16]) -> Result<Vec<u8>, png::EncodingError> {
     let values = picture.objects.iter().map(|&object| {
         let place = (object as usize).checked_sub(1);
         place
@@ -49,43 +34,20 @@ pub(crate) fn write_ids(
             .copied()
             .unwrap_or(0)
     });
-    write_16_bits(picture, values, path)
+    encode_16_bits(picture, values)
 }
 
-fn write_16_bits(
+fn encode_16_bits(
     picture: &Picture,
     values: impl Iterator<Item = u16>,
-    path: &Path,
-) -> Result<(), RecorderError> {
+) -> Result<Vec<u8>, png::EncodingError> {
     let bytes: Vec<u8> = values.flat_map(u16::to_be_bytes).collect();
-    write(
+    encode(
         picture,
         png::ColorType::Grayscale,
         png::BitDepth::Sixteen,
         &bytes,
-        path,
     )
-}
-
-fn write(
-    picture: &Picture,
-    color: png::ColorType,
-    depth: png::BitDepth,
-    data: &[u8],
-    path: &Path,
-) -> Result<(), RecorderError> {
-    let bytes = encode(picture, color, depth, data).map_err(|source| RecorderError::Picture {
-        path: path.to_owned(),
-        source,
-    })?;
-    let part = path.with_extension("png.part");
-    fs::write(&part, bytes)
-        .and_then(|()| fs::rename(&part, path))
-        .map_err(|error| {
-            // What could not be written need not be there.
-            let _removed = fs::remove_file(&part);
-            RecorderError::write(path)(error)
-        })
 }
 
 fn encode(
@@ -109,21 +71,13 @@ fn encode(
 mod tests {
     use super::*;
 
-    /// Writes a file, and reads its pixels back.
-    fn written(
-        name: &str,
-        write: impl Fn(&Path) -> Result<(), RecorderError>,
-    ) -> (png::OutputInfo, Vec<u8>) {
-        let name = format!("tabletop_{name}_{}.png", std::process::id());
-        let path = std::env::temp_dir().join(name);
-        write(&path).unwrap();
-        let file = fs::File::open(&path).unwrap();
-        let mut reader = png::Decoder::new(std::io::BufReader::new(file))
+    /// The pixels of an encoded picture.
+    fn decoded(bytes: &[u8]) -> (png::OutputInfo, Vec<u8>) {
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
             .read_info()
             .unwrap();
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut pixels).unwrap();
-        fs::remove_file(path).unwrap();
         (info, pixels)
     }
 
@@ -134,7 +88,7 @@ mod tests {
         for (index, value) in picture.rgb.iter_mut().enumerate() {
             *value = index as u8 * 10;
         }
-        let (info, pixels) = written("color", |path| write_png(&picture, path));
+        let (info, pixels) = decoded(&color_png(&picture).unwrap());
         assert_eq!((info.width, info.height), (3, 2));
         assert_eq!(info.color_type, png::ColorType::Rgba);
         assert_eq!(info.bit_depth, png::BitDepth::Eight);
@@ -150,7 +104,7 @@ mod tests {
         picture.resize(2, 2);
         picture.depth = vec![f32::INFINITY, 1.0, 12.3456, 70.0];
         picture.objects = vec![0, 1, 2, 3];
-        let (info, pixels) = written("depth", |path| write_depth(&picture, path));
+        let (info, pixels) = decoded(&depth_png(&picture).unwrap());
         assert_eq!(info.bit_depth, png::BitDepth::Sixteen);
         assert_eq!(info.color_type, png::ColorType::Grayscale);
         let values = |pixels: &[u8]| -> Vec<u16> {
@@ -161,7 +115,7 @@ mod tests {
                 .collect()
         };
         assert_eq!(values(&pixels), [0, 1000, 12346, 65535]);
-        let (_, pixels) = written("ids", |path| write_ids(&picture, &[1, 9], path));
+        let (_, pixels) = decoded(&ids_png(&picture, &[1, 9]).unwrap());
         assert_eq!(values(&pixels), [0, 1, 9, 0]);
     }
 }

@@ -1,13 +1,19 @@
 //! The files of a running recording, of which undo takes the end away and redo brings it back.
 
+use std::path::Path;
+
 use crate::{
     error::RecorderError,
     files::{
-        folder::{Folder, create_folder},
+        destination::Destination,
+        durability::Durability,
+        folder::Folder,
+        intent::{Intent, Lengths, fulfil_what_was_left},
         joints,
         log_file::LogFile,
         session::{SessionHeader, SessionScene, session_line},
         states,
+        storage::is_taken,
     },
 };
 
@@ -22,47 +28,49 @@ pub(crate) struct RecordingFiles {
     pub(crate) text: LogFile,
     /// The number of the present segment.
     pub(crate) segment: u32,
-}
-
-/// How long the files of a recording were.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lengths {
-    pub(crate) segment: u32,
-    pub(crate) text: u64,
-    pub(crate) session: u64,
-    pub(crate) states: u64,
-    pub(crate) joints: u64,
+    pub(crate) durability: Durability,
 }
 
 impl RecordingFiles {
-    /// Makes the files of a recording that begins, in a new folder.
+    /// Makes the files of a recording that begins, in a new folder, which is there with all of them or not at all.
     pub(crate) fn create(
-        folder: Folder,
+        destination: &Destination,
         header: &SessionHeader,
         scene: &SessionScene,
         earlier_commands: &[u8],
     ) -> Result<Self, RecorderError> {
-        let mut session = LogFile::create(folder.session())?;
-        session.lock();
-        for line in [session_line(header), session_line(scene)] {
-            let line =
-                line.map_err(|error| RecorderError::write(&folder.session())(error.into()))?;
-            session.append(&line)?;
+        let fill = |folder: &Folder| fill(folder, header, scene, earlier_commands);
+        let Destination {
+            folder: path,
+            storage,
+            durability,
+            ..
+        } = destination;
+        let files = Folder::create(path, storage, fill, |folder, lengths| {
+            Self::open(folder, *durability, lengths)
+        })?;
+        if *durability != Durability::None {
+            files.folder.sync_name()?;
         }
-        session.append(earlier_commands)?;
-        let mut states = LogFile::create(folder.states())?;
-        states.append_records(&[states::header()])?;
-        let mut joints = LogFile::create(folder.joints())?;
-        joints.append_records(&[joints::header()])?;
-        create_folder(&folder.pictures(0))?;
-        let text = LogFile::create(folder.text(0))?;
+        Ok(files)
+    }
+
+    fn open(
+        folder: Folder,
+        durability: Durability,
+        lengths: Lengths,
+    ) -> Result<Self, RecorderError> {
+        let storage = folder.storage();
+        let session = LogFile::reopen(storage, folder.session(), lengths.session)?;
+        session.lock();
         Ok(Self {
-            folder,
             session,
-            states,
-            joints,
-            text,
+            states: LogFile::reopen(storage, folder.states(), lengths.states)?,
+            joints: LogFile::reopen(storage, folder.joints(), lengths.joints)?,
+            text: LogFile::reopen(storage, folder.text(0), lengths.text)?,
             segment: 0,
+            durability,
+            folder,
         })
     }
 
@@ -78,8 +86,8 @@ impl RecordingFiles {
 
     pub(crate) fn begin_segment(&mut self) -> Result<(), RecorderError> {
         let segment = self.segment + 1;
-        create_folder(&self.folder.pictures(segment))?;
-        self.text = LogFile::create(self.folder.text(segment))?;
+        self.folder.create_inner(&self.folder.pictures(segment))?;
+        self.text = LogFile::create(self.folder.storage(), self.folder.text(segment))?;
         self.segment = segment;
         Ok(())
     }
@@ -87,13 +95,26 @@ impl RecordingFiles {
     /// Puts away the present segment, before which the files had these lengths. The session log goes on with these lines.
     pub(crate) fn put_away(&mut self, before: Lengths, then: &[u8]) -> Result<(), RecorderError> {
         let away = self.folder.undone_segment(self.segment);
-        create_folder(away.path())?;
-        self.session.cut_to_file(before.session, away.session())?;
-        self.states.cut_to_file(before.states, away.states())?;
-        self.joints.cut_to_file(before.joints, away.joints())?;
-        self.folder.move_segment(self.segment, &away)?;
-        self.session.append(then)?;
-        self.resume(before)
+        self.folder.create_inner(away.path())?;
+        for (log, len, end) in [
+            (&mut self.session, before.session, away.session()),
+            (&mut self.states, before.states, away.states()),
+            (&mut self.joints, before.joints, away.joints()),
+        ] {
+            let mut kept = LogFile::create(away.storage(), end)?;
+            kept.append(&log.read_from(len)?)?;
+        }
+        let intent = Intent::PutAway {
+            segment: self.segment,
+            before,
+            then: String::from_utf8_lossy(then).into_owned(),
+        };
+        intent.declare(&self.folder)?;
+        intent.fulfil(&self.folder)?;
+        self.resume(Lengths {
+            session: before.session + then.len() as u64,
+            ..before
+        })
     }
 
     /// Brings back the segment that was put away last, before which the files had these lengths, in the place of everything since,
@@ -104,28 +125,133 @@ impl RecordingFiles {
         first_frame: u64,
         end: Lengths,
     ) -> Result<(), RecorderError> {
-        let away = self.folder.undone_segment(end.segment);
-        self.folder.remove_pictures(before.segment, first_frame)?;
-        self.text.cut(before.text)?;
-        self.session.cut(before.session)?;
-        self.session.append_file(&away.session())?;
-        self.states.cut(before.states)?;
-        self.states.append_file(&away.states())?;
-        self.joints.cut(before.joints)?;
-        self.joints.append_file(&away.joints())?;
-        away.move_segment(end.segment, &self.folder)?;
-        away.remove()?;
+        let segment = end.segment;
+        let intent = Intent::BringBack {
+            segment,
+            before,
+            first_frame,
+        };
+        intent.declare(&self.folder)?;
+        intent.fulfil(&self.folder)?;
+        self.folder.undone_segment(segment).remove()?;
         self.resume(end)
     }
 
+    /// Goes on where the files have these lengths.
     fn resume(&mut self, at: Lengths) -> Result<(), RecorderError> {
-        self.text = LogFile::reopen(self.folder.text(at.segment), at.text)?;
+        self.session.cut(at.session)?;
+        self.states.cut(at.states)?;
+        self.joints.cut(at.joints)?;
+        let text = self.folder.text(at.segment);
+        self.text = LogFile::reopen(self.folder.storage(), text, at.text)?;
         self.segment = at.segment;
         Ok(())
     }
 
     /// Removes for good what was put away.
     pub(crate) fn drop_undone(&self) -> Result<(), RecorderError> {
-        self.folder.undone().remove()
+        let dropped = self.folder.dropped();
+        dropped.remove()?;
+        let undone = self.folder.undone();
+        if is_taken(undone.path()) {
+            let renamed = self.folder.storage().rename(undone.path(), dropped.path());
+            renamed.map_err(RecorderError::write(undone.path()))?;
+            dropped.remove()?;
+        }
+        Ok(())
     }
+
+    /// Writes a picture of the present segment, which under its name is never incomplete.
+    pub(crate) fn write_picture(
+        &self,
+        path: &Path,
+        encoded: Result<Vec<u8>, png::EncodingError>,
+    ) -> Result<(), RecorderError> {
+        let bytes = encoded.map_err(|source| RecorderError::Picture {
+            path: path.to_owned(),
+            source,
+        })?;
+        let sync = self.durability == Durability::EveryTick;
+        let written = self.folder.storage().write_whole(path, &bytes, sync);
+        written.map_err(RecorderError::write(path))
+    }
+
+    /// Has what was written in a tick outlive a loss of power, if it is to.
+    pub(crate) fn end_tick(&self) -> Result<(), RecorderError> {
+        match self.durability {
+            Durability::EveryTick => [&self.session, &self.states, &self.joints, &self.text]
+                .into_iter()
+                .try_for_each(LogFile::sync),
+            Durability::None | Durability::AtFinish => Ok(()),
+        }
+    }
+
+    /// Begins the end of the recording: until [`finish`](Self::finish) has succeeded, what is written is taken back.
+    pub(crate) fn begin_end(&self, first_frame: u64, line: &[u8]) -> Result<Intent, RecorderError> {
+        let before = self.lengths();
+        let intent = Intent::Finish {
+            before,
+            session: before.session + line.len() as u64,
+            first_frame,
+        };
+        intent.declare(&self.folder)?;
+        Ok(intent)
+    }
+
+    /// Ends the recording with this line of the session log.
+    pub(crate) fn finish(&mut self, line: &[u8], intent: &Intent) -> Result<(), RecorderError> {
+        self.sync_all()?;
+        self.session.append(line)?;
+        self.sync_session()?;
+        intent.forget(&self.folder)
+    }
+
+    fn sync_all(&self) -> Result<(), RecorderError> {
+        match self.durability {
+            Durability::None => Ok(()),
+            Durability::AtFinish | Durability::EveryTick => self.folder.sync(),
+        }
+    }
+
+    fn sync_session(&self) -> Result<(), RecorderError> {
+        match self.durability {
+            Durability::None => Ok(()),
+            Durability::AtFinish | Durability::EveryTick => self.session.sync(),
+        }
+    }
+
+    /// Closes the files of a recording that could not go on, and does what then was about to be done.
+    pub(crate) fn abandon(self) {
+        let Self { folder, .. } = self;
+        // It is done when the recording is read, then.
+        let _ = fulfil_what_was_left(&folder);
+    }
+}
+
+/// Writes the files of a recording that begins.
+fn fill(
+    folder: &Folder,
+    header: &SessionHeader,
+    scene: &SessionScene,
+    earlier_commands: &[u8],
+) -> Result<Lengths, RecorderError> {
+    let storage = folder.storage();
+    let mut session = LogFile::create(storage, folder.session())?;
+    for line in [session_line(header), session_line(scene)] {
+        let line = line.map_err(|error| RecorderError::write(&folder.session())(error.into()))?;
+        session.append(&line)?;
+    }
+    session.append(earlier_commands)?;
+    let mut states = LogFile::create(storage, folder.states())?;
+    states.append_records(&[states::header()])?;
+    let mut joints = LogFile::create(storage, folder.joints())?;
+    joints.append_records(&[joints::header()])?;
+    folder.create_inner(&folder.pictures(0))?;
+    LogFile::create(storage, folder.text(0))?;
+    Ok(Lengths {
+        session: session.len(),
+        states: states.len(),
+        joints: joints.len(),
+        ..Lengths::default()
+    })
 }

@@ -12,7 +12,7 @@ use tabletop_core::{
 
 use crate::{
     error::RecorderError,
-    files::{format::FORMAT, log_file::read_whole_lines},
+    files::{format::FORMAT, limits::MOST_SESSION_BYTES, log_file::read_whole_lines},
 };
 
 /// First line of a session log: who wrote it, and how.
@@ -125,7 +125,7 @@ impl Session {
     /// The file cannot be read, a line is not what it should be, or no simulation can have come to a command's tick.
     pub fn read(path: impl Into<PathBuf>) -> Result<Self, RecorderError> {
         let path = path.into();
-        let text = read_whole_lines(&path)?;
+        let text = read_whole_lines(&path, MOST_SESSION_BYTES)?;
         let mut lines = (1..).zip(text.lines());
         let mut line = |number| lines.next().unwrap_or((number, ""));
         let header: SessionHeader = parse(&path, line(1))?;

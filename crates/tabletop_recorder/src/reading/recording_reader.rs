@@ -11,11 +11,14 @@ use crate::{
     error::RecorderError,
     files::{
         folder::Folder,
+        intent::fulfil_what_was_left,
+        limits::MOST_EVENT_BYTES,
         log_file::read_whole_lines,
         session::{Session, SessionHeader},
+        storage::is_taken,
     },
     reading::{
-        event,
+        event::{self, RecordedEvent},
         rows::{self, JointRow, StateRow},
         segment::{self, Hands, RecordedFrame, RecordedSegment, begin_of},
     },
@@ -68,12 +71,13 @@ pub struct RecordingReader {
 }
 
 impl RecordingReader {
-    /// Opens the recording in a folder.
+    /// Opens the recording in a folder. If the program that made it was killed while it was undoing something, that is finished first.
     ///
     /// # Errors
-    /// The folder has no session log, or one that no recorder has written.
+    /// The folder has no session log, or one that no recorder has written; or what was interrupted cannot be finished.
     pub fn open(folder: impl AsRef<Path>) -> Result<Self, RecorderError> {
         let folder = Folder::existing(folder.as_ref());
+        fulfil_what_was_left(&folder)?;
         let session = Session::read(folder.session())?;
         let end = session.commands.last().filter(|_| session.is_finished());
         let last_tick = match end {
@@ -126,11 +130,9 @@ impl RecordingReader {
         let mut hands = Hands::default();
         let mut commands = &self.session.commands[..];
         for number in 0.. {
-            let path = self.folder.text(number);
-            if !path.exists() {
+            let Some(events) = read_events(&self.folder, number)? else {
                 break;
-            }
-            let events = event::read(&path, &read_whole_lines(&path)?)?;
+            };
             let act = hands.follow(&events).filter(|_| number > 0);
             let begun = act.as_ref().map(|(act, frame)| {
                 let before = frame
@@ -144,7 +146,38 @@ impl RecordingReader {
                 number,
                 start: begun.unwrap_or(self.first_tick()),
                 act: act.map(|(act, _)| act),
-                frames: self.frames(number)?,
+                frames: self.frames(&self.folder, number)?,
+                events,
+            });
+        }
+        Ok(segments)
+    }
+
+    /// The segments that were undone when the recording was cut off, and could still have been redone, in their order. A recording
+    /// that was finished has none.
+    ///
+    /// # Errors
+    /// As for [`segments`](Self::segments).
+    pub fn undone(&self) -> Result<Vec<RecordedSegment>, RecorderError> {
+        let mut segments = Vec::new();
+        let mut hands = Hands::default();
+        let mut next = 0;
+        while let Some(events) = read_events(&self.folder, next)? {
+            hands.follow(&events);
+            next += 1;
+        }
+        for number in next.. {
+            let folder = self.folder.undone_segment(number);
+            let Some(events) = read_events(&folder, number)? else {
+                break;
+            };
+            let act = hands.follow(&events);
+            let frame = act.as_ref().map_or(0, |(_, frame)| *frame);
+            segments.push(RecordedSegment {
+                number,
+                start: self.tick_of_frame(frame),
+                act: act.map(|(act, _)| act),
+                frames: self.frames(&folder, number)?,
                 events,
             });
         }
@@ -152,9 +185,8 @@ impl RecordingReader {
     }
 
     /// The frames of a segment that have pictures.
-    fn frames(&self, segment: u32) -> Result<Vec<RecordedFrame>, RecorderError> {
-        let numbers: BTreeSet<_> = self
-            .folder
+    fn frames(&self, folder: &Folder, segment: u32) -> Result<Vec<RecordedFrame>, RecorderError> {
+        let numbers: BTreeSet<_> = folder
             .pictured_frames(segment)?
             .into_iter()
             .map(|(number, _)| number)
@@ -162,7 +194,7 @@ impl RecordingReader {
         let frames = numbers.into_iter().map(|number| RecordedFrame {
             number,
             tick: self.tick_of_frame(number),
-            picture: self.folder.picture(segment, number),
+            picture: folder.picture(segment, number),
         });
         Ok(frames.filter(|frame| frame.picture.exists()).collect())
     }
@@ -245,4 +277,14 @@ impl RecordingReader {
             grips: Vec::new(),
         })
     }
+}
+
+/// The events of a segment, if there is one of this number.
+fn read_events(folder: &Folder, segment: u32) -> Result<Option<Vec<RecordedEvent>>, RecorderError> {
+    let path = folder.text(segment);
+    if !is_taken(&path) {
+        return Ok(None);
+    }
+    let text = read_whole_lines(&path, MOST_EVENT_BYTES)?;
+    event::read(&path, &text).map(Some)
 }

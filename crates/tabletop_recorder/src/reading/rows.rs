@@ -7,7 +7,7 @@ use tabletop_core::{JointName, JointState, Pose, SimTick, Twist};
 
 use crate::{
     error::RecorderError,
-    files::log_file::read_whole_lines,
+    files::{limits::MOST_ROW_BYTES, log_file::read_whole_lines},
     reading::{event::number, fault::damaged},
 };
 
@@ -87,7 +87,7 @@ fn rows<T>(
     path: &Path,
     mut parse: impl FnMut(&[&str]) -> Result<T, String>,
 ) -> Result<Vec<T>, RecorderError> {
-    let text = read_whole_lines(path)?;
+    let text = read_whole_lines(path, MOST_ROW_BYTES)?;
     let mut reader = csv::ReaderBuilder::new()
         .flexible(true)
         .from_reader(text.as_bytes());

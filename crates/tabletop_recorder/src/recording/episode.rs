@@ -1,6 +1,6 @@
 //! A recording while it is made: one demonstration as a sequence of segments.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use bevy::prelude::warn;
 use tabletop_core::{
@@ -13,11 +13,11 @@ use crate::{
     error::RecorderError,
     files::{
         channels::Channels,
+        destination::Destination,
         event::Event,
-        folder::Folder,
         frame::FrameClock,
         joints,
-        picture::{write_depth, write_ids, write_png},
+        picture::{color_png, depth_png, ids_png},
         recording_files::RecordingFiles,
         session::{SessionCommand, SessionHeader, SessionScene, command_line, is_logged},
     },
@@ -70,15 +70,12 @@ struct LoggedCommand {
 impl Episode {
     /// Begins a recording in a new folder.
     pub(crate) fn begin(
-        folder: &Path,
+        destination: &Destination,
         header: &SessionHeader,
         scene: &SessionScene,
         earlier: &EarlierCommands,
-        channels: Channels,
     ) -> Result<Self, RecorderError> {
-        let files = Folder::create(folder, |folder| {
-            RecordingFiles::create(folder, header, scene, earlier.lines())
-        })?;
+        let files = RecordingFiles::create(destination, header, scene, earlier.lines())?;
         let objects = scene.objects.iter().map(|object| object.spec.clone());
         let start = SimTick(header.start_tick);
         Ok(Self {
@@ -89,7 +86,7 @@ impl Episode {
             sight: Sight::default(),
             last_joints: None,
             is_paused: earlier.is_paused(),
-            channels,
+            channels: destination.channels,
             tick: start,
             logged: Vec::new(),
             unlogged: Vec::new(),
@@ -97,6 +94,13 @@ impl Episode {
             redoable: Vec::new(),
             pictures: 0,
         })
+    }
+
+    /// Ends a recording that cannot go on. Returns its folder.
+    pub(crate) fn abandon(self) -> PathBuf {
+        let folder = self.folder().to_owned();
+        self.files.abandon();
+        folder
     }
 
     pub(crate) fn folder(&self) -> &Path {
@@ -398,7 +402,8 @@ impl Episode {
             stage.joints(),
         );
         self.last_joints = Some(stage.joints().to_vec());
-        self.files.joints.append_records(&rows)
+        self.files.joints.append_records(&rows)?;
+        self.files.end_tick()
     }
 
     /// Writes a frame: a line for each object of which this is so, and a picture if there is such a line, or something else to be
@@ -450,14 +455,17 @@ impl Episode {
         let (folder, segment) = (&self.files.folder, self.files.segment);
         let channel = |name| folder.channel(segment, frame, name);
         let picture = &image.picture;
-        write_png(picture, &folder.picture(segment, frame))?;
+        self.files
+            .write_picture(&folder.picture(segment, frame), color_png(picture))?;
         if self.channels.depth {
-            write_depth(picture, &channel("depth"))?;
+            self.files
+                .write_picture(&channel("depth"), depth_png(picture))?;
         }
         if self.channels.ids {
             let shown = image.shown.iter();
             let numbers = shown.map(|&entity| self.objects.number_of(stage.shown(entity)));
-            write_ids(picture, &numbers.collect::<Vec<_>>(), &channel("ids"))?;
+            let encoded = ids_png(picture, &numbers.collect::<Vec<_>>());
+            self.files.write_picture(&channel("ids"), encoded)?;
         }
         Ok(())
     }
@@ -474,20 +482,13 @@ impl Episode {
     ) -> Result<Vec<u8>, RecorderError> {
         timeline.end = tick;
         let commands = self.files.session.read_from(self.head)?;
-        let text = self.files.text.len();
         let frame = self.clock.frame(tick);
+        // The picture of a frame that is at its tick anyway stays.
+        let first_frame = frame + u64::from(self.clock.is_frame(tick));
         let line = command_line(&SessionCommand::of(tick, finish)).unwrap_or_default();
-        let ended = self
-            .write_frame(tick, Tracked::is_elsewhere, stage, image, timeline)
-            .and_then(|()| self.files.session.append(&line));
-        if let Err(error) = ended {
-            // What has failed is told; more cannot be done.
-            let _ = self.files.text.cut(text);
-            if !self.clock.is_frame(tick) {
-                let _ = self.files.folder.remove_pictures(self.files.segment, frame);
-            }
-            return Err(error);
-        }
+        let intent = self.files.begin_end(first_frame, &line)?;
+        self.write_frame(tick, Tracked::is_elsewhere, stage, image, timeline)?;
+        self.files.finish(&line, &intent)?;
         if let Err(error) = self.files.drop_undone() {
             warn!("what was undone is still there: {error}");
         }

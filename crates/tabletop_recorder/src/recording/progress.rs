@@ -3,7 +3,7 @@
 use tabletop_core::{JointState, SimFact, SimTick};
 
 use crate::{
-    files::{recording_files::Lengths, session::SessionCommand},
+    files::{intent::Lengths, session::SessionCommand},
     recording::{
         objects::RecordedObjects,
         stage::Sight,

@@ -11,7 +11,7 @@ use tabletop_core::{
 use crate::{
     error::RecorderError,
     files::{
-        channels::Channels,
+        destination::Destination,
         format::FORMAT,
         frame::TICKS_PER_FRAME,
         session::{SessionCommand, SessionHeader},
@@ -28,8 +28,7 @@ pub(crate) const NONE_IS_RUNNING: &str = "no recording is running; start one fir
 /// Makes the recordings.
 #[derive(Resource, Debug)]
 pub(crate) struct Recorder {
-    folder: PathBuf,
-    channels: Channels,
+    destination: Destination,
     episode: Option<Episode>,
     /// The command that ends the recording in this tick.
     finish: Option<IssuedCommand>,
@@ -37,10 +36,9 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    pub(crate) fn new(folder: PathBuf, channels: Channels) -> Self {
+    pub(crate) fn new(destination: Destination) -> Self {
         Self {
-            folder,
-            channels,
+            destination,
             episode: None,
             finish: None,
             earlier: EarlierCommands::default(),
@@ -66,11 +64,11 @@ impl Recorder {
             settings: stage.settings.0.clone(),
         };
         let scene = stage.scene();
-        let episode = Episode::begin(&self.folder, &header, &scene, &self.earlier, self.channels)?;
+        let episode = Episode::begin(&self.destination, &header, &scene, &self.earlier)?;
         *timeline = episode.timeline();
         self.episode = Some(episode);
         self.finish = None;
-        let folder = self.folder.clone();
+        let folder = self.destination.folder.clone();
         Ok(SimFact::RecordingStarted { cause, folder })
     }
 }
@@ -111,7 +109,7 @@ pub(crate) fn take_commands(
                     Err(error) => {
                         facts.write(failed(
                             Some(cause),
-                            recorder.folder.clone(),
+                            recorder.destination.folder.clone(),
                             format!("no recording was started: {error}"),
                         ));
                     }
@@ -210,8 +208,8 @@ impl Recorder {
         if let Err(error) = result {
             let reason = format!("the recording has ended: {error}");
             let cause = self.finish.as_ref().map(|finish| finish.id);
-            if let Some(folder) = self.end(None, recording) {
-                facts.write(failed(cause, folder, reason));
+            if let Some(episode) = self.end(None, recording) {
+                facts.write(failed(cause, episode.abandon(), reason));
             }
         }
     }
@@ -226,7 +224,8 @@ impl Recorder {
         match ending {
             Ok(None) => {}
             Ok(Some((cause, commands))) => {
-                if let Some(folder) = self.end(Some(&commands), recording) {
+                if let Some(episode) = self.end(Some(&commands), recording) {
+                    let folder = episode.folder().to_owned();
                     facts.write(SimFact::RecordingFinished { cause, folder });
                 }
             }
@@ -234,13 +233,12 @@ impl Recorder {
         }
     }
 
-    /// Ends the recording, of which these are the lines of its commands. Returns its folder.
-    fn end(&mut self, commands: Option<&[u8]>, recording: &mut Recording) -> Option<PathBuf> {
+    /// Ends the recording, of which these are the lines of its commands, and returns it.
+    fn end(&mut self, commands: Option<&[u8]>, recording: &mut Recording) -> Option<Episode> {
         self.finish = None;
         self.earlier.append_recorded(commands);
-        let episode = self.episode.take()?;
         recording.0 = false;
-        Some(episode.folder().to_owned())
+        self.episode.take()
     }
 }
 

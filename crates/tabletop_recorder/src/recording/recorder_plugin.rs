@@ -7,7 +7,10 @@ use serde_json::{Map, Value};
 use tabletop_core::{CommandSystems, PictureSystems, SimSystems, TickSystems};
 
 use crate::{
-    files::{channels::Channels, session::SessionSettings},
+    files::{
+        channels::Channels, destination::Destination, durability::Durability,
+        session::SessionSettings, storage::Storage,
+    },
     recording::recorder::{Recorder, ask_for_picture, record, take_commands},
 };
 
@@ -27,6 +30,10 @@ pub struct RecorderPlugin {
     pub header: Map<String, Value>,
     /// What is written beside the pictures.
     pub channels: Channels,
+    /// What outlives a loss of power.
+    pub durability: Durability,
+    /// The file system, which tests let fail.
+    pub storage: Storage,
 }
 
 impl Default for RecorderPlugin {
@@ -35,26 +42,33 @@ impl Default for RecorderPlugin {
             folder: "demo".into(),
             header: Map::new(),
             channels: Channels::default(),
+            durability: Durability::default(),
+            storage: Storage::default(),
         }
     }
 }
 
 impl Plugin for RecorderPlugin {
     fn build(&self, app: &mut App) {
-        app.insert_resource(Recorder::new(self.folder.clone(), self.channels))
-            .insert_resource(SessionSettings(self.header.clone()))
-            .add_systems(
-                FixedUpdate,
+        app.insert_resource(Recorder::new(Destination {
+            folder: self.folder.clone(),
+            channels: self.channels,
+            durability: self.durability,
+            storage: self.storage.clone(),
+        }))
+        .insert_resource(SessionSettings(self.header.clone()))
+        .add_systems(
+            FixedUpdate,
+            (
+                take_commands.in_set(CommandSystems::Recording),
                 (
-                    take_commands.in_set(CommandSystems::Recording),
-                    (
-                        ask_for_picture
-                            .after(SimSystems::Propagate)
-                            .before(SimSystems::Sense),
-                        record.after(PictureSystems).before(SimSystems::Record),
-                    )
-                        .in_set(TickSystems),
-                ),
-            );
+                    ask_for_picture
+                        .after(SimSystems::Propagate)
+                        .before(SimSystems::Sense),
+                    record.after(PictureSystems).before(SimSystems::Record),
+                )
+                    .in_set(TickSystems),
+            ),
+        );
     }
 }

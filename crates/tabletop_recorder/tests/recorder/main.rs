@@ -1,6 +1,7 @@
 //! Recordings as they are on disk.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+mod faults;
 mod files;
 mod full_disk;
 mod kill;

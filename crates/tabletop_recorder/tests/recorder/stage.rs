@@ -21,10 +21,23 @@ pub struct Place(PathBuf);
 
 impl Place {
     pub fn new() -> Self {
+        Self::in_folder(&std::env::temp_dir())
+    }
+
+    /// In memory, where that is a folder: for thousands of recordings.
+    pub fn in_memory() -> Self {
+        let memory = Path::new("/dev/shm");
+        match memory.is_dir() {
+            true => Self::in_folder(memory),
+            false => Self::new(),
+        }
+    }
+
+    fn in_folder(folder: &Path) -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let name = format!("tabletop_recorder_{}_{number}", std::process::id());
-        let path = std::env::temp_dir().join(name);
+        let path = folder.join(name);
         fs::create_dir_all(&path).unwrap();
         Self(path)
     }
@@ -44,22 +57,7 @@ impl Place {
 
     /// The files of the recording with their content; folders end with a slash.
     pub fn tree(&self) -> BTreeMap<String, Vec<u8>> {
-        fn collect(folder: &Path, name: &str, tree: &mut BTreeMap<String, Vec<u8>>) {
-            for entry in fs::read_dir(folder).unwrap() {
-                let path = entry.unwrap().path();
-                let name = format!("{name}{}", path.file_name().unwrap().to_string_lossy());
-                if path.is_dir() {
-                    let name = format!("{name}/");
-                    collect(&path, &name, tree);
-                    tree.insert(name, Vec::new());
-                } else {
-                    tree.insert(name, fs::read(&path).unwrap());
-                }
-            }
-        }
-        let mut tree = BTreeMap::new();
-        collect(&self.demo(), "", &mut tree);
-        tree
+        files_in(&self.demo())
     }
 
     /// The names of the pictures of a segment, in the order of their frames.
@@ -75,6 +73,26 @@ impl Place {
         frames.sort_unstable();
         frames
     }
+}
+
+/// The files in a folder with their content; folders end with a slash.
+pub fn files_in(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    fn collect(folder: &Path, name: &str, tree: &mut BTreeMap<String, Vec<u8>>) {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = format!("{name}{}", path.file_name().unwrap().to_string_lossy());
+            if path.is_dir() {
+                let name = format!("{name}/");
+                collect(&path, &name, tree);
+                tree.insert(name, Vec::new());
+            } else {
+                tree.insert(name, fs::read(&path).unwrap());
+            }
+        }
+    }
+    let mut tree = BTreeMap::new();
+    collect(folder, "", &mut tree);
+    tree
 }
 
 impl Drop for Place {
@@ -114,30 +132,30 @@ pub fn app(place: &Place) -> App {
 }
 
 pub fn app_into(folder: PathBuf) -> App {
+    app_with(RecorderPlugin {
+        folder,
+        ..default()
+    })
+}
+
+pub fn app_with(recorder: RecorderPlugin) -> App {
     let mut app = App::new();
-    app.add_plugins((
-        MinimalPlugins,
-        CorePlugin::default(),
-        RecorderPlugin {
-            folder,
-            ..default()
-        },
-    ))
-    .insert_resource(TurnTells::After)
-    .init_resource::<Heard>()
-    .init_resource::<Moments>()
-    .init_resource::<PictureDemand>()
-    .init_resource::<SensorImage>()
-    .add_systems(
-        FixedUpdate,
-        (
-            act.in_set(SimSystems::Ingest),
-            move_objects.in_set(SimSystems::Physics),
-            take_picture.in_set(PictureSystems),
-            hear.in_set(SimSystems::Record),
-        ),
-    )
-    .start();
+    app.add_plugins((MinimalPlugins, CorePlugin::default(), recorder))
+        .insert_resource(TurnTells::After)
+        .init_resource::<Heard>()
+        .init_resource::<Moments>()
+        .init_resource::<PictureDemand>()
+        .init_resource::<SensorImage>()
+        .add_systems(
+            FixedUpdate,
+            (
+                act.in_set(SimSystems::Ingest),
+                move_objects.in_set(SimSystems::Physics),
+                take_picture.in_set(PictureSystems),
+                hear.in_set(SimSystems::Record),
+            ),
+        )
+        .start();
     app
 }
 

@@ -1,0 +1,13 @@
+//! How much of a recording outlives a loss of power.
+
+/// How much of a recording outlives a loss of power. A crash or a kill of the program costs at most a tick in any case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Durability {
+    /// What the operating system has written by then: for recordings that are thrown away.
+    None,
+    /// All of it, once it is finished.
+    #[default]
+    AtFinish,
+    /// All of it up to its last tick. Costs several writes to the disk a tick.
+    EveryTick,
+}

@@ -1,0 +1,170 @@
+//! What is about to be done to several files at once, so that all of it happens or nothing.
+//!
+//! The intent is written before the files are touched, and gone when all of it is done. Who finds one in a recording that nobody
+//! is making does what it says: every step can be taken twice.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    error::RecorderError,
+    files::{folder::Folder, storage::is_taken},
+};
+
+/// The longest that is read: it holds a few lines of commands.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// How long the files of a recording were.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Lengths {
+    pub(crate) segment: u32,
+    pub(crate) text: u64,
+    pub(crate) session: u64,
+    pub(crate) states: u64,
+    pub(crate) joints: u64,
+}
+
+/// What is about to be done to the files of a recording.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Intent {
+    /// A segment is put away; the ends of the logs that belong to it are in its folder already.
+    PutAway {
+        segment: u32,
+        before: Lengths,
+        /// Lines with which the session log goes on.
+        then: String,
+    },
+    /// A segment that was put away is brought back, in the place of everything since, of which this was the first frame.
+    BringBack {
+        segment: u32,
+        before: Lengths,
+        first_frame: u64,
+    },
+    /// The recording ends with a last frame. It is taken back unless the session log has come to an end.
+    Finish {
+        before: Lengths,
+        /// How long the session log then is.
+        session: u64,
+        /// From which frame on pictures are its own.
+        first_frame: u64,
+    },
+}
+
+impl Intent {
+    /// Writes it down: from now on, it will be done.
+    pub(crate) fn declare(&self, folder: &Folder) -> Result<(), RecorderError> {
+        let path = folder.intent();
+        let fault = RecorderError::write(&path);
+        match serde_json::to_vec(self) {
+            Ok(bytes) => folder.storage().write_whole(&path, &bytes, false),
+            Err(error) => Err(error.into()),
+        }
+        .map_err(fault)
+    }
+
+    /// Does it, and forgets it.
+    pub(crate) fn fulfil(&self, folder: &Folder) -> Result<(), RecorderError> {
+        match self {
+            Self::PutAway {
+                segment,
+                before,
+                then,
+            } => {
+                let away = folder.undone_segment(*segment);
+                for (log, len, lines) in [
+                    (folder.session(), before.session, then.as_bytes()),
+                    (folder.states(), before.states, &[]),
+                    (folder.joints(), before.joints, &[]),
+                ] {
+                    replace_end(folder, &log, len, lines)?;
+                }
+                folder.move_segment(*segment, &away)?;
+            }
+            Self::BringBack {
+                segment,
+                before,
+                first_frame,
+            } => {
+                let away = folder.undone_segment(*segment);
+                folder.remove_pictures(before.segment, *first_frame)?;
+                replace_end(folder, &folder.text(before.segment), before.text, &[])?;
+                for (log, len, end) in [
+                    (folder.session(), before.session, away.session()),
+                    (folder.states(), before.states, away.states()),
+                    (folder.joints(), before.joints, away.joints()),
+                ] {
+                    let lines = folder.storage().read(&end, u64::MAX);
+                    let lines = lines.map_err(RecorderError::read(&end))?;
+                    replace_end(folder, &log, len, &lines)?;
+                }
+                away.move_segment(*segment, folder)?;
+            }
+            Self::Finish {
+                before,
+                session,
+                first_frame,
+            } => {
+                let path = folder.session();
+                let file = folder.storage().open_to_read(&path);
+                let len = file.and_then(|file| file.len());
+                if len.map_err(RecorderError::read(&path))? < *session {
+                    replace_end(folder, &folder.text(before.segment), before.text, &[])?;
+                    replace_end(folder, &path, before.session, &[])?;
+                    folder.remove_pictures(before.segment, *first_frame)?;
+                }
+            }
+        }
+        self.forget(folder)
+    }
+
+    /// Forgets it: it is done.
+    pub(crate) fn forget(&self, folder: &Folder) -> Result<(), RecorderError> {
+        let path = folder.intent();
+        let removed = folder.storage().remove_file(&path);
+        removed.map_err(RecorderError::write(&path))
+    }
+}
+
+/// Does what a program that was killed was about to do.
+pub(crate) fn fulfil_what_was_left(folder: &Folder) -> Result<(), RecorderError> {
+    let path = folder.intent();
+    if !is_taken(&path) {
+        return Ok(());
+    }
+    let interrupted = |source| RecorderError::Interrupted {
+        folder: folder.path().to_owned(),
+        source: Box::new(source),
+    };
+    let session = folder.session();
+    let lock = folder.storage().open_to_read(&session);
+    let lock = lock.map_err(|error| interrupted(RecorderError::read(&session)(error)))?;
+    // Who makes the recording, or reads it at the same time, does it.
+    if !lock.try_lock() || !is_taken(&path) {
+        return Ok(());
+    }
+    let intent = folder.storage().read(&path, MOST_BYTES).and_then(|bytes| {
+        let intent: Intent = serde_json::from_slice(&bytes)?;
+        Ok(intent)
+    });
+    intent
+        .map_err(RecorderError::read(&path))
+        .and_then(|intent| intent.fulfil(folder))
+        .map_err(interrupted)
+}
+
+/// Keeps the first `len` bytes of a log, and has these lines follow.
+fn replace_end(folder: &Folder, path: &Path, len: u64, lines: &[u8]) -> Result<(), RecorderError> {
+    let replace = || {
+        let mut file = folder.storage().open(path)?;
+        if file.len()? < len {
+            return Err(std::io::ErrorKind::UnexpectedEof.into());
+        }
+        file.cut(len)?;
+        match lines.is_empty() {
+            true => Ok(()),
+            false => file.append(lines),
+        }
+    };
+    replace().map_err(RecorderError::write(path))
+}

@@ -1,0 +1,10 @@
+//! How large what is read may be.
+
+/// Bytes of a session log.
+pub(crate) const MOST_SESSION_BYTES: u64 = 256 << 20;
+
+/// Bytes of a segment's events.
+pub(crate) const MOST_EVENT_BYTES: u64 = 256 << 20;
+
+/// Bytes of states, or of joints.
+pub(crate) const MOST_ROW_BYTES: u64 = 1 << 30;

@@ -1,0 +1,204 @@
+//! Whatever call to the file system fails, and if the program is killed at any of them, what is left of a recording runs again to the
+//! same files.
+
+use std::{collections::BTreeSet, fs, path::Path};
+
+use bevy::prelude::{App, default};
+use tabletop_core::{Hand, SimCommand, SimTick, StepApp as _};
+use tabletop_recorder::{
+    Channels, Durability, Fault, RecorderPlugin, RecordingReader, Storage, whole_lines,
+};
+
+use crate::stage::{Place, app_with, files_in, grasp, run, scene};
+
+type Script = [(u64, SimCommand)];
+
+const LEFT: Hand = Hand::Left;
+const RIGHT: Hand = Hand::Right;
+const EVERY_TICK: Durability = Durability::EveryTick;
+
+fn recorder(place: &Place, storage: Storage, durability: Durability) -> App {
+    app_with(RecorderPlugin {
+        folder: place.demo(),
+        durability,
+        channels: Channels {
+            depth: true,
+            ids: false,
+        },
+        storage,
+        ..default()
+    })
+}
+
+/// Has every call fail in every way in turn, each in a recording of this script, and checks what is left of it.
+fn try_every_fault(script: &Script) {
+    let place = Place::in_memory();
+    let counted = Storage::default();
+    run(&mut recorder(&place, counted.clone(), EVERY_TICK), script);
+    let calls = counted.calls();
+    assert!(calls > 100, "only {calls} calls");
+    let mut ends = BTreeSet::new();
+    for call in 0..calls {
+        for fault in Fault::ALL {
+            let place = Place::in_memory();
+            fs::create_dir_all(place.demo()).unwrap();
+            fs::write(place.demo().join("note"), "an earlier recording").unwrap();
+            run(
+                &mut recorder(&place, Storage::with_fault(fault, call), EVERY_TICK),
+                script,
+            );
+            match check(&place) {
+                Ok(end) => ends.extend(end),
+                Err(problem) => panic!("{fault:?} at call {call} of {calls}: {problem}"),
+            }
+        }
+    }
+    assert!(ends.len() > 10, "the recordings end only in {ends:?}");
+}
+
+/// Checks what is left of a recording. Returns its last tick, if there is one.
+fn check(place: &Place) -> Result<Option<SimTick>, String> {
+    let is_earlier = |name: &&str| place.path().join(name).join("note").exists();
+    let earlier = ["demo", "demo-1"].into_iter().filter(is_earlier).count();
+    if earlier != 1 {
+        return Err(format!("the earlier recording is there {earlier} times"));
+    }
+    if !place.demo().exists() || is_earlier(&"demo") {
+        return Ok(None);
+    }
+    let recording = RecordingReader::open(place.demo()).map_err(|error| error.to_string())?;
+    for read in [
+        recording.segments().map(drop),
+        recording.undone().map(drop),
+        recording.states().map(drop),
+        recording.joints().map(drop),
+    ] {
+        read.map_err(|error| error.to_string())?;
+    }
+    if recording.header().begin_tick.is_none() {
+        // An earlier recording came to an untimely end, so its commands are not known.
+        return Ok(None);
+    }
+    let again = Place::in_memory();
+    run_again(&recording, &again);
+    compare(&place.demo(), &again.demo(), &recording)?;
+    Ok(Some(recording.last_tick()))
+}
+
+/// Records what a recording holds again, to its end.
+fn run_again(recording: &RecordingReader, again: &Place) {
+    let mut app = recorder(again, Storage::default(), Durability::None);
+    let session = recording.session();
+    let start = recording.first_tick();
+    let earlier = session
+        .earlier
+        .iter()
+        .map(|it| (it.tick, it.command.clone()));
+    let recorded = session
+        .commands
+        .iter()
+        .map(|it| (it.tick, it.command.clone()));
+    let end = recording
+        .cut_off_at()
+        .map(|tick| (tick.0, SimCommand::FinishRecording));
+    let commands = earlier
+        .chain([(start.0, SimCommand::StartRecording)])
+        .chain(recorded)
+        .chain(end);
+    for (tick, command) in commands {
+        let now = app.world().resource::<SimTick>().0;
+        app.step(tick - now);
+        app.world_mut().write_message(command);
+    }
+    app.step(1);
+}
+
+/// Whether the files of a recording, or their beginnings if it was cut off, are those of another.
+fn compare(found: &Path, expected: &Path, recording: &RecordingReader) -> Result<(), String> {
+    let is_whole = recording.cut_off_at().is_none();
+    let is_hidden = |name: &str| name.starts_with('.') || name.ends_with(".part");
+    let found: Vec<_> = files_in(found)
+        .into_iter()
+        .filter(|(name, _)| !is_hidden(name))
+        .collect();
+    let expected = files_in(expected);
+    if is_whole && found.len() != expected.len() {
+        return Err(format!("{} files are not {}", found.len(), expected.len()));
+    }
+    for (name, content) in found {
+        let is_empty_folder = name.ends_with('/') && !is_whole;
+        let same = match expected.get(&name) {
+            Some(expected) if is_whole || name.ends_with(".png") => content == *expected,
+            Some(expected) => expected.starts_with(whole_lines(&content)),
+            None => is_empty_folder,
+        };
+        if !same {
+            return Err(format!(
+                "{name} is\n{}\ninstead of\n{}",
+                String::from_utf8_lossy(&content),
+                String::from_utf8_lossy(expected.get(&name).unwrap_or(&Vec::new()))
+            ));
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn a_recording_with_undo_and_redo_survives_every_fault() {
+    try_every_fault(&[
+        (0, scene(&["a", "bb"])),
+        (2, SimCommand::StartRecording),
+        (2, grasp(RIGHT, "a")),
+        (14, SimCommand::Release(RIGHT)),
+        (1, SimCommand::Undo),
+        (1, SimCommand::Undo),
+        (2, SimCommand::Redo),
+        (0, SimCommand::Redo),
+        (3, SimCommand::Undo),
+        (0, grasp(LEFT, "bb")),
+        (15, grasp(LEFT, "a")),
+        (2, SimCommand::Undo),
+        (15, SimCommand::Redo),
+        (2, SimCommand::Undo),
+        (1, SimCommand::FinishRecording),
+    ]);
+}
+
+#[test]
+fn a_recording_of_hand_overs_survives_every_fault() {
+    try_every_fault(&[
+        (0, scene(&["a", "bb"])),
+        (0, SimCommand::StartRecording),
+        (2, grasp(RIGHT, "a")),
+        (1, grasp(LEFT, "a")),
+        (3, SimCommand::Undo),
+        (16, SimCommand::Destroy(LEFT)),
+        (1, SimCommand::FinishRecording),
+    ]);
+}
+
+#[test]
+fn a_recording_of_another_scene_survives_every_fault() {
+    try_every_fault(&[
+        (0, scene(&["a", "bb"])),
+        (2, SimCommand::StartRecording),
+        (7, scene(&["ccc", "bb"])),
+        (3, grasp(RIGHT, "ccc")),
+        (7, SimCommand::ClearTable),
+        (7, SimCommand::FinishRecording),
+    ]);
+}
+
+#[test]
+fn a_second_recording_survives_every_fault_and_the_first_is_kept() {
+    try_every_fault(&[
+        (0, scene(&["a"])),
+        (2, SimCommand::StartRecording),
+        (2, grasp(RIGHT, "a")),
+        (2, SimCommand::FinishRecording),
+        (2, SimCommand::StartRecording),
+        (2, SimCommand::Release(RIGHT)),
+        (1, SimCommand::Undo),
+        (16, SimCommand::FinishRecording),
+    ]);
+}
