@@ -21,8 +21,7 @@ use tabletop_core::{
 };
 use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
 use tabletop_recorder::{
-    Channels, RecorderError, RecorderPlugin, RecordingReader, Session, SessionCommand,
-    TICKS_PER_FRAME,
+    RecorderError, RecorderPlugin, RecordingReader, Session, SessionCommand, TICKS_PER_FRAME,
 };
 use tabletop_robot::RobotPlugin;
 
@@ -207,21 +206,14 @@ impl Replay {
         player.play_in(app);
     }
 
-    /// Replays it without a window and records that into another folder, with pictures as this camera sees it.
+    /// Replays it without a window and records that, with its own settings in the header and pictures as this camera sees it.
     ///
     /// # Errors
     /// [`ReplayError::Record`], as with a full disk.
-    pub fn record(
-        &self,
-        into: PathBuf,
-        camera: HeadCamera,
-        channels: Channels,
-    ) -> Result<(), ReplayError> {
+    pub fn record(&self, recorder: RecorderPlugin, camera: HeadCamera) -> Result<(), ReplayError> {
         let recorder = RecorderPlugin {
-            folder: into,
             header: self.session.header.settings.clone(),
-            channels,
-            ..default()
+            ..recorder
         };
         let mut app = headless_app_with(self.plugins().set(recorder));
         self.play(Player::recording(&self.session), &mut app);

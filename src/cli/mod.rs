@@ -14,19 +14,20 @@ mod robot;
 mod robot_options;
 mod run;
 mod script;
+mod temporary_folder;
 mod terminal;
 mod window;
 
 use std::{
     fmt, fs,
-    io::{self, ErrorKind, Write as _},
+    io::{self, ErrorKind, IsTerminal as _, Write as _},
     path::PathBuf,
     process::ExitCode,
 };
 
 use clap::{Parser, Subcommand};
 
-use terminal::say;
+use terminal::{printable, say};
 
 /// A virtual demonstrator environment for robot imitation learning.
 ///
@@ -195,7 +196,12 @@ impl Output {
         match self {
             Self::Stdout => {
                 let mut stdout = io::stdout().lock();
-                let written = stdout.write_all(bytes).and_then(|()| stdout.flush());
+                let text = String::from_utf8_lossy(bytes);
+                let written = match stdout.is_terminal() {
+                    true => stdout.write_all(printable(&text).as_bytes()),
+                    false => stdout.write_all(bytes),
+                };
+                let written = written.and_then(|()| stdout.flush());
                 written.map_err(|error| match error.kind() {
                     ErrorKind::BrokenPipe => Failure::silent(),
                     _ => Failure::run(format!("standard output: {error}")),

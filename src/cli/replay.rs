@@ -1,13 +1,13 @@
 //! `tabletop replay`: a recording, run again.
 
-use std::{fs, path::PathBuf, process::ExitCode};
+use std::{path::PathBuf, process::ExitCode};
 
 use bevy::{math::Vec3, prelude::*};
 use clap::Args;
 use tabletop::{
     core::{Pose, SimTick, StepApp as _},
     headless_app_with,
-    recorder::{Channels, RecorderPlugin},
+    recorder::{Channels, Durability, RecorderPlugin},
     replay::{Player, Replay},
     script::ScriptPlugin,
 };
@@ -17,6 +17,7 @@ use super::{
     robot_options::{EngineOptions, script},
     run::{seconds, ticks},
     script::{Script, headless_settings},
+    temporary_folder::TemporaryFolder,
     terminal::{say, show_warnings},
     window,
 };
@@ -120,15 +121,19 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     if let Some(script) = &args.script {
         return watch(&replay, script, args);
     }
-    let temporary = std::env::temp_dir().join(format!("tabletop-replay-{}", std::process::id()));
-    let out = args.out.as_ref().unwrap_or(&temporary);
-    let recorded = args.pictures.record(&replay, out.clone());
+    let (_temporary, out, durability) = match &args.out {
+        Some(out) => (None, out.clone(), Durability::AtFinish),
+        None => {
+            let temporary = TemporaryFolder::new("tabletop-replay").map_err(Failure::run)?;
+            let out = temporary.path().join("replayed");
+            (Some(temporary), out, Durability::None)
+        }
+    };
+    let recorded = args.pictures.record(&replay, out.clone(), durability);
     let difference = recorded.and_then(|()| match args.verify {
-        true => replay.first_difference(out).map_err(Failure::input),
+        true => replay.first_difference(&out).map_err(Failure::input),
         false => Ok(None),
     });
-    // It is not there if the recording of the replay is to be kept.
-    let _ = fs::remove_dir_all(&temporary);
     let Some(difference) = difference? else {
         return Ok(ExitCode::SUCCESS);
     };
@@ -158,7 +163,12 @@ fn watch(replay: &Replay, script: &str, args: &ReplayArgs) -> Result<ExitCode, F
 }
 
 impl PictureArgs {
-    fn record(&self, replay: &Replay, into: PathBuf) -> Result<(), Failure> {
+    fn record(
+        &self,
+        replay: &Replay,
+        into: PathBuf,
+        durability: Durability,
+    ) -> Result<(), Failure> {
         let mut camera = replay.camera();
         if let Some((width, height)) = self.render {
             (camera.width, camera.height) = (width, height);
@@ -177,6 +187,12 @@ impl PictureArgs {
             depth: self.depth,
             ids: self.ids,
         };
-        replay.record(into, camera, channels).map_err(Failure::run)
+        let recorder = RecorderPlugin {
+            folder: into,
+            channels,
+            durability,
+            ..default()
+        };
+        replay.record(recorder, camera).map_err(Failure::run)
     }
 }

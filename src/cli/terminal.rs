@@ -1,8 +1,9 @@
 //! What the program says to whoever runs it.
 
 use std::{
+    borrow::Cow,
     fmt,
-    io::{self, ErrorKind, IsTerminal as _, Write as _},
+    io::{self, ErrorKind, Write},
     sync::atomic::{AtomicBool, Ordering},
 };
 
@@ -16,7 +17,7 @@ static IS_CLOSED: AtomicBool = AtomicBool::new(false);
 
 /// Says a line on standard error.
 pub(super) fn say(line: impl fmt::Display) {
-    let said = writeln!(io::stderr(), "{line}");
+    let said = writeln!(io::stderr(), "{}", printable(&line.to_string()));
     if said.is_err_and(|error| error.kind() == ErrorKind::BrokenPipe) {
         IS_CLOSED.store(true, Ordering::Relaxed);
     }
@@ -38,11 +39,63 @@ pub(super) fn show_warnings() {
                 Layer::default()
                     .without_time()
                     .with_target(false)
-                    .with_ansi(io::stderr().is_terminal())
-                    .with_writer(io::stderr)
+                    .with_ansi(false)
+                    .with_writer(PrintableStderr::default)
                     .log_internal_errors(false),
             ))
         },
         ..default()
     });
+}
+
+/// A text in which characters that a terminal obeys, as those of ids in a stranger's file may be, are written out.
+pub(super) fn printable(text: &str) -> Cow<'_, str> {
+    let obeyed = |letter: char| letter.is_control() && !matches!(letter, '\n' | '\t');
+    if !text.contains(obeyed) {
+        return text.into();
+    }
+    let mut printable = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match obeyed(letter) {
+            true => printable.extend(letter.escape_default()),
+            false => printable.push(letter),
+        }
+    }
+    printable.into()
+}
+
+/// Standard error, which gets each text as it is printable.
+#[derive(Default)]
+struct PrintableStderr(Vec<u8>);
+
+impl Write for PrintableStderr {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let text = std::mem::take(&mut self.0);
+        io::stderr().write_all(printable(&String::from_utf8_lossy(&text)).as_bytes())
+    }
+}
+
+impl Drop for PrintableStderr {
+    fn drop(&mut self) {
+        // Nobody hears it, then.
+        let _ = self.flush();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_terminal_obeys_is_written_out() {
+        assert_eq!(printable("two\nlines\t\u{e4}"), "two\nlines\t\u{e4}");
+        assert_eq!(
+            printable("a\u{1b}[31mred\u{9b}2J\r\u{7}"),
+            "a\\u{1b}[31mred\\u{9b}2J\\r\\u{7}"
+        );
+    }
 }

@@ -12,7 +12,7 @@ use tabletop::{
     headless_app_with,
     physics::PhysicsSettings,
     prelude::*,
-    recorder::{Channels, RecorderPlugin},
+    recorder::{Durability, RecorderPlugin},
     replay::Replay,
 };
 
@@ -42,9 +42,12 @@ pub fn assert_replays(folder: &Path) {
     assert_eq!(replay.cut_off_at(), None);
     let name = folder.file_name().unwrap().to_string_lossy();
     let replayed = fresh_folder(&format!("{name}_replayed"));
-    replay
-        .record(replayed.clone(), replay.camera(), Channels::default())
-        .unwrap();
+    let recorder = RecorderPlugin {
+        folder: replayed.clone(),
+        durability: Durability::None,
+        ..default()
+    };
+    replay.record(recorder, replay.camera()).unwrap();
     assert_eq!(replay.first_difference(&replayed).unwrap(), None);
 }
 

@@ -8,67 +8,78 @@ use std::{
 
 use bevy::prelude::*;
 use tabletop::{
-    core::HeadCamera,
+    core::{Drive, HeadCamera, ScriptCommand},
     headless_app_with,
     prelude::*,
-    recorder::{Channels, Durability, Fault, RecorderPlugin, Storage},
+    recorder::{Durability, Fault, RecorderPlugin, SessionCommand, Storage},
     replay::Replay,
+    script::{EngineChoice, EngineKind, ScriptPlugin, ScriptSettings},
 };
 
 use crate::demonstration::fresh_folder_in_memory;
 
+fn small_camera() -> HeadCamera {
+    HeadCamera {
+        width: 4,
+        height: 3,
+        ..default()
+    }
+}
+
 /// Commands, and how many ticks to simulate with them.
 type Act = (Vec<SimCommand>, u64);
 
-/// A simulator that records into `demo` in this folder.
-fn simulator(folder: &Path, storage: Storage) -> App {
-    let recorder = RecorderPlugin {
+/// Which of the calls are made to fail: every so many, from this one on.
+#[derive(Clone, Copy)]
+struct Calls {
+    first: usize,
+    step: usize,
+}
+
+const ALL: Calls = Calls { first: 0, step: 1 };
+
+/// The recorder that keeps a recording in `demo` in this folder.
+fn recorder(folder: &Path, storage: Storage) -> RecorderPlugin {
+    RecorderPlugin {
         folder: folder.join("demo"),
         durability: Durability::EveryTick,
         storage,
         ..default()
-    };
-    let mut app = headless_app_with(TabletopSimPlugins.build().set(recorder));
-    app.insert_resource(HeadCamera {
-        width: 4,
-        height: 3,
-        ..default()
-    });
-    app
+    }
 }
 
-fn act(app: &mut App, acts: &[Act]) {
+fn record(acts: &[Act], recorder: RecorderPlugin) {
+    let mut app = headless_app_with(TabletopSimPlugins.build().set(recorder));
+    app.insert_resource(small_camera());
     for (commands, ticks) in acts {
         app.world_mut().write_message_batch(commands.clone());
         app.step(*ticks);
     }
 }
 
-/// Has every call fail in every way in turn, each in a recording of these acts, and checks what is left of it.
-fn try_every_fault(name: &str, acts: &[Act]) {
+/// Has calls fail in every way in turn, each in a recording that is made anew, and checks what is left of it.
+fn try_faults(name: &str, calls: Calls, record: impl Fn(RecorderPlugin)) {
     let folder = fresh_folder_in_memory(name);
     let counted = Storage::default();
-    act(&mut simulator(&folder, counted.clone()), acts);
-    let calls = counted.calls();
-    assert!(calls > 100, "{calls}");
+    record(recorder(&folder, counted.clone()));
+    let count = counted.calls();
+    assert!(count > 100, "{count}");
     let mut ends = BTreeSet::new();
-    for call in 0..calls {
+    for call in (0..count).skip(calls.first).step_by(calls.step) {
         for fault in Fault::ALL {
             let folder = fresh_folder_in_memory(name);
             // An earlier recording, which must not be lost.
             fs::create_dir_all(folder.join("demo")).unwrap();
             fs::write(folder.join("demo/note"), "earlier").unwrap();
-            act(
-                &mut simulator(&folder, Storage::with_fault(fault, call)),
-                acts,
-            );
-            let end = check(&folder).unwrap_or_else(|error| {
-                panic!("{name}: {fault:?} at call {call} of {calls}: {error}")
-            });
-            ends.extend(end);
+            record(recorder(&folder, Storage::with_fault(fault, call)));
+            match check(&folder) {
+                Ok(end) => ends.extend(end),
+                Err(problem) => panic!("{name}: {fault:?} at call {call} of {count}: {problem}"),
+            }
         }
     }
     assert!(ends.len() > 3, "{ends:?}");
+    fs::remove_dir_all(folder).unwrap();
 }
 
 /// Checks what is left in a folder. Returns where the recording ends.
@@ -88,8 +99,13 @@ fn check(folder: &Path) -> Result<Option<u64>, String> {
     }
     let replayed = folder.join("replayed");
     let replay = Replay::read(&demo).map_err(|error| error.to_string())?;
+    let recorder = RecorderPlugin {
+        folder: replayed.clone(),
+        durability: Durability::None,
+        ..default()
+    };
     replay
-        .record(replayed.clone(), replay.camera(), Channels::default())
+        .record(recorder, replay.camera())
         .map_err(|error| error.to_string())?;
     match replay.first_difference(&replayed) {
         Ok(None) => Ok(Some(replay.recording().last_tick().0)),
@@ -116,22 +132,132 @@ fn task(file: &str) -> SimCommand {
     SimCommand::LoadTask(PathBuf::from("tablesetup").join(file))
 }
 
-#[test]
-fn a_recording_with_undo_survives_every_fault() {
+fn drive(joint: RobotJoint, speed: f64) -> SimCommand {
+    SimCommand::Drive(vec![(joint, Drive::Velocity(speed))])
+}
+
+fn with_undo(calls: Calls) {
     use Hand::{Left, Right};
-    try_every_fault(
-        "fault_undo",
-        &[
-            (vec![task("default.xml"), SimCommand::StartRecording], 2),
-            (vec![grasp(Right, "RedBlock")], 2),
-            (vec![move_to(Right, (-1.5, 0.2, 5.0))], 2),
-            (vec![SimCommand::Release(Right)], 2),
-            (vec![SimCommand::Undo], 2),
-            (vec![SimCommand::Undo], 1),
-            (vec![SimCommand::Redo, SimCommand::Redo], 1),
-            (vec![SimCommand::Undo, grasp(Left, "GreenBlock")], 2),
-            (vec![SimCommand::Undo], 14),
-            (vec![SimCommand::FinishRecording], 2),
-        ],
-    );
+    let acts = [
+        (vec![task("default.xml"), SimCommand::StartRecording], 2),
+        (vec![grasp(Right, "RedBlock")], 2),
+        (vec![move_to(Right, (-1.5, 0.2, 5.0))], 2),
+        (vec![SimCommand::Release(Right)], 2),
+        (vec![SimCommand::Undo], 2),
+        (vec![SimCommand::Undo], 1),
+        (vec![SimCommand::Redo, SimCommand::Redo], 1),
+        (vec![SimCommand::Undo, grasp(Left, "GreenBlock")], 2),
+        (vec![SimCommand::Undo], 14),
+        (vec![SimCommand::FinishRecording], 2),
+    ];
+    try_faults("fault_undo", calls, |recorder| record(&acts, recorder));
+}
+
+fn with_the_robot(calls: Calls) {
+    let acts = [
+        (vec![task("default.xml"), SimCommand::ShowRobot(true)], 2),
+        (vec![SimCommand::StartRecording], 2),
+        (vec![drive(RobotJoint::LeftS1, 0.5)], 10),
+        (vec![grasp(Hand::Any, "RedBlock")], 2),
+        (vec![drive(RobotJoint::RightE1, -0.5)], 5),
+        (vec![SimCommand::FinishRecording], 1),
+    ];
+    try_faults("fault_robot", calls, |recorder| record(&acts, recorder));
+}
+
+fn with_another_scene(calls: Calls) {
+    let acts = [
+        (vec![task("default.xml"), SimCommand::StartRecording], 9),
+        (vec![task("lidbox.xml")], 9),
+        (vec![SimCommand::SetPaused(true)], 1),
+        (vec![SimCommand::ClearTable], 1),
+        (vec![SimCommand::SetPaused(false)], 5),
+        (vec![SimCommand::FinishRecording], 1),
+    ];
+    try_faults("fault_scene", calls, |recorder| record(&acts, recorder));
+}
+
+/// What a script has done once is done again by its replay, with the same calls.
+fn with_a_script(calls: Calls) {
+    let place = fresh_folder_in_memory("fault_script_once");
+    fs::create_dir_all(&place).unwrap();
+    let script = place.join("robot.py");
+    fs::write(&script, SCRIPT).unwrap();
+    let settings = ScriptSettings {
+        agent: Some(script),
+        engine: EngineChoice::Kind(EngineKind::Python),
+        ..default()
+    };
+    let once = RecorderPlugin {
+        folder: place.join("demo"),
+        durability: Durability::None,
+        ..default()
+    };
+    let plugins = TabletopSimPlugins.build().set(once);
+    let mut app = headless_app_with(plugins.set(ScriptPlugin { settings }));
+    app.insert_resource(small_camera());
+    let world = app.world_mut();
+    world.write_message(task("default.xml"));
+    world.write_message(ScriptCommand::Start);
+    app.step(5);
+    app.world_mut().write_message(SimCommand::StartRecording);
+    app.step(20);
+    app.world_mut().write_message(SimCommand::FinishRecording);
+    app.step(1);
+    drop(app);
+    let replay = Replay::read(place.join("demo")).unwrap();
+    let is_drive = |command: &SessionCommand| matches!(command.command, SimCommand::Drive(_));
+    let drives = replay
+        .recording()
+        .session()
+        .commands
+        .iter()
+        .filter(|it| is_drive(it));
+    assert!(drives.count() > 10, "the script does not drive the robot");
+    try_faults("fault_script", calls, |recorder| {
+        // A recording that fails ends the replay, too.
+        let _ = replay.record(recorder, replay.camera());
+    });
+    fs::remove_dir_all(place).unwrap();
+}
+
+const SCRIPT: &str = "def init(aux): pass
+def callback(sensor, motor, aux):
+    motor.jointVelocities = [[0.2] * 7] * 2
+";
+
+/// Of every recording some calls, others for each.
+#[test]
+fn recordings_survive_faults() {
+    with_undo(Calls { first: 3, step: 41 });
+    with_the_robot(Calls { first: 7, step: 61 });
+    with_another_scene(Calls {
+        first: 11,
+        step: 61,
+    });
+    with_a_script(Calls { first: 5, step: 61 });
+}
+
+#[test]
+#[ignore = "takes some minutes"]
+fn a_recording_with_undo_survives_every_fault() {
+    with_undo(ALL);
+}
+
+#[test]
+#[ignore = "takes some minutes"]
+fn a_recording_with_the_robot_survives_every_fault() {
+    with_the_robot(ALL);
+}
+
+#[test]
+#[ignore = "takes some minutes"]
+fn a_recording_with_another_scene_survives_every_fault() {
+    with_another_scene(ALL);
+}
+
+#[test]
+#[ignore = "takes some minutes"]
+fn a_recording_with_a_script_survives_every_fault() {
+    with_a_script(ALL);
 }
