@@ -52,7 +52,9 @@ fn record(acts: &[Act], recorder: RecorderPlugin) {
     let mut app = headless_app_with(TabletopSimPlugins.build().set(recorder));
     app.insert_resource(small_camera());
     for (commands, ticks) in acts {
-        app.world_mut().write_message_batch(commands.clone());
+        for command in commands {
+            app.world_mut().write_command(command.clone());
+        }
         app.step(*ticks);
     }
 }
@@ -115,64 +117,75 @@ fn check(folder: &Path) -> Result<Option<u64>, String> {
 }
 
 fn grasp(hand: Hand, object: &str) -> SimCommand {
-    SimCommand::Grasp {
+    HandCommand::Grasp {
         hand,
         object: object.into(),
     }
+    .into()
 }
 
 fn move_to(hand: Hand, location: (f32, f32, f32)) -> SimCommand {
-    SimCommand::MoveTo {
+    HandCommand::MoveTo {
         hand,
         location: location.into(),
     }
+    .into()
 }
 
 fn task(file: &str) -> SimCommand {
-    SimCommand::LoadTask(PathBuf::from("tablesetup").join(file))
+    SceneCommand::Load(PathBuf::from("tablesetup").join(file)).into()
 }
 
 fn drive(joint: RobotJoint, speed: f64) -> SimCommand {
-    SimCommand::Drive(vec![(joint, Drive::Velocity(speed))])
+    RobotCommand::Drive(vec![(joint, Drive::Velocity(speed))]).into()
 }
 
 fn with_undo(calls: Calls) {
     use Hand::{Left, Right};
     let acts = [
-        (vec![task("default.xml"), SimCommand::StartRecording], 2),
+        (vec![task("default.xml"), RecordingCommand::Start.into()], 2),
         (vec![grasp(Right, "RedBlock")], 2),
         (vec![move_to(Right, (-1.5, 0.2, 5.0))], 2),
-        (vec![SimCommand::Release(Right)], 2),
-        (vec![SimCommand::Undo], 2),
-        (vec![SimCommand::Undo], 1),
-        (vec![SimCommand::Redo, SimCommand::Redo], 1),
-        (vec![SimCommand::Undo, grasp(Left, "GreenBlock")], 2),
-        (vec![SimCommand::Undo], 14),
-        (vec![SimCommand::FinishRecording], 2),
+        (vec![HandCommand::Release(Right).into()], 2),
+        (vec![HistoryCommand::Undo.into()], 2),
+        (vec![HistoryCommand::Undo.into()], 1),
+        (
+            vec![HistoryCommand::Redo.into(), HistoryCommand::Redo.into()],
+            1,
+        ),
+        (
+            vec![HistoryCommand::Undo.into(), grasp(Left, "GreenBlock")],
+            2,
+        ),
+        (vec![HistoryCommand::Undo.into()], 14),
+        (vec![RecordingCommand::Finish.into()], 2),
     ];
     try_faults("fault_undo", calls, |recorder| record(&acts, recorder));
 }
 
 fn with_the_robot(calls: Calls) {
     let acts = [
-        (vec![task("default.xml"), SimCommand::ShowRobot(true)], 2),
-        (vec![SimCommand::StartRecording], 2),
+        (
+            vec![task("default.xml"), RobotCommand::Show(true).into()],
+            2,
+        ),
+        (vec![RecordingCommand::Start.into()], 2),
         (vec![drive(RobotJoint::LeftS1, 0.5)], 10),
         (vec![grasp(Hand::Any, "RedBlock")], 2),
         (vec![drive(RobotJoint::RightE1, -0.5)], 5),
-        (vec![SimCommand::FinishRecording], 1),
+        (vec![RecordingCommand::Finish.into()], 1),
     ];
     try_faults("fault_robot", calls, |recorder| record(&acts, recorder));
 }
 
 fn with_another_scene(calls: Calls) {
     let acts = [
-        (vec![task("default.xml"), SimCommand::StartRecording], 9),
+        (vec![task("default.xml"), RecordingCommand::Start.into()], 9),
         (vec![task("lidbox.xml")], 9),
-        (vec![SimCommand::SetPaused(true)], 1),
-        (vec![SimCommand::ClearTable], 1),
-        (vec![SimCommand::SetPaused(false)], 5),
-        (vec![SimCommand::FinishRecording], 1),
+        (vec![ClockCommand::SetPaused(true).into()], 1),
+        (vec![SceneCommand::Clear.into()], 1),
+        (vec![ClockCommand::SetPaused(false).into()], 5),
+        (vec![RecordingCommand::Finish.into()], 1),
     ];
     try_faults("fault_scene", calls, |recorder| record(&acts, recorder));
 }
@@ -197,16 +210,18 @@ fn with_a_script(calls: Calls) {
     let mut app = headless_app_with(plugins.set(ScriptPlugin { settings }));
     app.insert_resource(small_camera());
     let world = app.world_mut();
-    world.write_message(task("default.xml"));
+    world.write_command(task("default.xml"));
     world.write_message(ScriptCommand::Start);
     app.step(5);
-    app.world_mut().write_message(SimCommand::StartRecording);
+    app.world_mut().write_command(RecordingCommand::Start);
     app.step(20);
-    app.world_mut().write_message(SimCommand::FinishRecording);
+    app.world_mut().write_command(RecordingCommand::Finish);
     app.step(1);
     drop(app);
     let replay = Replay::read(place.join("demo")).unwrap();
-    let is_drive = |command: &SessionCommand| matches!(command.command, SimCommand::Drive(_));
+    let is_drive = |command: &SessionCommand| {
+        matches!(command.command, SimCommand::Robot(RobotCommand::Drive(_)))
+    };
     let drives = replay
         .recording()
         .session()

@@ -4,9 +4,13 @@
 use std::{collections::BTreeSet, fs, path::Path};
 
 use bevy::prelude::{App, default};
-use tabletop_core::{Hand, SimCommand, SimTick, StepApp as _};
+use tabletop_core::{
+    Actor, Hand, HandCommand, HistoryCommand, RecordingCommand, SceneCommand, SimCommand, SimTick,
+    StepApp as _, WriteCommand as _,
+};
 use tabletop_recorder::{
-    Channels, Durability, Fault, RecorderPlugin, RecordingReader, Storage, whole_lines,
+    Channels, Durability, Fault, RecorderPlugin, RecordingReader, SessionCommand, Storage,
+    whole_lines,
 };
 
 use crate::stage::{Place, app_with, files_in, grasp, run, scene};
@@ -90,25 +94,30 @@ fn run_again(recording: &RecordingReader, again: &Place) {
     let mut app = recorder(again, Storage::default(), Durability::None);
     let session = recording.session();
     let start = recording.first_tick();
-    let earlier = session
-        .earlier
-        .iter()
-        .map(|it| (it.tick, it.command.clone()));
-    let recorded = session
-        .commands
-        .iter()
-        .map(|it| (it.tick, it.command.clone()));
+    let of = |tick: SimTick, command: RecordingCommand| SessionCommand {
+        tick: tick.0,
+        actor: Actor::App,
+        command: command.into(),
+    };
     let end = recording
         .cut_off_at()
-        .map(|tick| (tick.0, SimCommand::FinishRecording));
-    let commands = earlier
-        .chain([(start.0, SimCommand::StartRecording)])
-        .chain(recorded)
+        .map(|tick| of(tick, RecordingCommand::Finish));
+    let commands = session
+        .earlier
+        .iter()
+        .cloned()
+        .chain([of(start, RecordingCommand::Start)])
+        .chain(session.commands.iter().cloned())
         .chain(end);
-    for (tick, command) in commands {
+    for SessionCommand {
+        tick,
+        actor,
+        command,
+    } in commands
+    {
         let now = app.world().resource::<SimTick>().0;
         app.step(tick - now);
-        app.world_mut().write_message(command);
+        app.world_mut().write_command_of(actor, command);
     }
     app.step(1);
 }
@@ -147,20 +156,20 @@ fn compare(found: &Path, expected: &Path, recording: &RecordingReader) -> Result
 fn a_recording_with_undo_and_redo_survives_every_fault() {
     try_every_fault(&[
         (0, scene(&["a", "bb"])),
-        (2, SimCommand::StartRecording),
+        (2, RecordingCommand::Start.into()),
         (2, grasp(RIGHT, "a")),
-        (14, SimCommand::Release(RIGHT)),
-        (1, SimCommand::Undo),
-        (1, SimCommand::Undo),
-        (2, SimCommand::Redo),
-        (0, SimCommand::Redo),
-        (3, SimCommand::Undo),
+        (14, HandCommand::Release(RIGHT).into()),
+        (1, HistoryCommand::Undo.into()),
+        (1, HistoryCommand::Undo.into()),
+        (2, HistoryCommand::Redo.into()),
+        (0, HistoryCommand::Redo.into()),
+        (3, HistoryCommand::Undo.into()),
         (0, grasp(LEFT, "bb")),
         (15, grasp(LEFT, "a")),
-        (2, SimCommand::Undo),
-        (15, SimCommand::Redo),
-        (2, SimCommand::Undo),
-        (1, SimCommand::FinishRecording),
+        (2, HistoryCommand::Undo.into()),
+        (15, HistoryCommand::Redo.into()),
+        (2, HistoryCommand::Undo.into()),
+        (1, RecordingCommand::Finish.into()),
     ]);
 }
 
@@ -168,12 +177,12 @@ fn a_recording_with_undo_and_redo_survives_every_fault() {
 fn a_recording_of_hand_overs_survives_every_fault() {
     try_every_fault(&[
         (0, scene(&["a", "bb"])),
-        (0, SimCommand::StartRecording),
+        (0, RecordingCommand::Start.into()),
         (2, grasp(RIGHT, "a")),
         (1, grasp(LEFT, "a")),
-        (3, SimCommand::Undo),
-        (16, SimCommand::Destroy(LEFT)),
-        (1, SimCommand::FinishRecording),
+        (3, HistoryCommand::Undo.into()),
+        (16, HandCommand::Destroy(LEFT).into()),
+        (1, RecordingCommand::Finish.into()),
     ]);
 }
 
@@ -181,11 +190,11 @@ fn a_recording_of_hand_overs_survives_every_fault() {
 fn a_recording_of_another_scene_survives_every_fault() {
     try_every_fault(&[
         (0, scene(&["a", "bb"])),
-        (2, SimCommand::StartRecording),
+        (2, RecordingCommand::Start.into()),
         (7, scene(&["ccc", "bb"])),
         (3, grasp(RIGHT, "ccc")),
-        (7, SimCommand::ClearTable),
-        (7, SimCommand::FinishRecording),
+        (7, SceneCommand::Clear.into()),
+        (7, RecordingCommand::Finish.into()),
     ]);
 }
 
@@ -193,12 +202,12 @@ fn a_recording_of_another_scene_survives_every_fault() {
 fn a_second_recording_survives_every_fault_and_the_first_is_kept() {
     try_every_fault(&[
         (0, scene(&["a"])),
-        (2, SimCommand::StartRecording),
+        (2, RecordingCommand::Start.into()),
         (2, grasp(RIGHT, "a")),
-        (2, SimCommand::FinishRecording),
-        (2, SimCommand::StartRecording),
-        (2, SimCommand::Release(RIGHT)),
-        (1, SimCommand::Undo),
-        (16, SimCommand::FinishRecording),
+        (2, RecordingCommand::Finish.into()),
+        (2, RecordingCommand::Start.into()),
+        (2, HandCommand::Release(RIGHT).into()),
+        (1, HistoryCommand::Undo.into()),
+        (16, RecordingCommand::Finish.into()),
     ]);
 }
