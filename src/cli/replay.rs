@@ -5,7 +5,7 @@ use std::{path::PathBuf, process::ExitCode};
 use bevy::{math::Vec3, prelude::*};
 use clap::Args;
 use tabletop::{
-    core::{Pose, SimTick, StepApp as _},
+    core::{HeadCamera, Pose, SimTick, StepApp as _},
     headless_app_with,
     recorder::{Channels, Durability, RecorderPlugin},
     replay::{Player, Replay},
@@ -75,11 +75,19 @@ struct PictureArgs {
 
 /// Reads a picture size such as `640x480`.
 fn size(text: &str) -> Result<(u32, u32), String> {
-    const MOST: u32 = 8192;
-    text.split_once('x')
-        .and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)))
-        .filter(|(width, height)| (1..=MOST).contains(width) && (1..=MOST).contains(height))
-        .ok_or_else(|| format!("expected a width and a height of 1 to {MOST}, such as 640x480"))
+    let size = text
+        .split_once('x')
+        .and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
+    let (width, height) = size.ok_or("expected a width and a height, such as 640x480")?;
+    let camera = HeadCamera {
+        width,
+        height,
+        ..default()
+    };
+    match camera.fault() {
+        Some(fault) => Err(fault),
+        None => Ok((width, height)),
+    }
 }
 
 /// Reads a point such as `0,-8,12.5`.

@@ -1,6 +1,7 @@
 //! Recordings of the whole simulator.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+mod damaged;
 mod demonstration;
 mod ending;
 mod faults;

@@ -33,6 +33,39 @@ pub struct HeadCamera {
     pub mount: Option<Pose>,
 }
 
+impl HeadCamera {
+    /// The most pixels of a picture, whose rows and columns are at most [`MOST_SIDE`](Self::MOST_SIDE).
+    pub const MOST_PIXELS: u64 = 1 << 24;
+    /// The most rows, and the most columns, of a picture.
+    pub const MOST_SIDE: u32 = 8192;
+
+    /// What makes no sense in it.
+    pub fn fault(&self) -> Option<String> {
+        let Self { width, height, .. } = *self;
+        let sides = 1..=Self::MOST_SIDE;
+        let pixels = u64::from(width) * u64::from(height);
+        if !sides.contains(&width) || !sides.contains(&height) || pixels > Self::MOST_PIXELS {
+            return Some(format!(
+                "{width}x{height} is no size of a picture, expected sides of 1 to {} and at most {} pixels",
+                Self::MOST_SIDE,
+                Self::MOST_PIXELS
+            ));
+        }
+        if !(0.001..=3.141).contains(&self.vertical_fov) {
+            return Some(format!(
+                "an angle of view of {} rad, expected 0.001 to 3.141",
+                self.vertical_fov
+            ));
+        }
+        let is_finite = self.pan.is_finite()
+            && self.mount.is_none_or(|mount| {
+                mount.location.is_finite() && (mount.rotation.length_squared() - 1.0).abs() < 0.01
+            });
+        (!is_finite)
+            .then(|| "it is nowhere: a number is not finite, or its rotation is none".into())
+    }
+}
+
 impl Default for HeadCamera {
     fn default() -> Self {
         Self {

@@ -52,6 +52,16 @@ pub enum RecorderError {
         /// The reason.
         source: io::Error,
     },
+    /// A command cannot be written.
+    #[error("a command in tick {tick} cannot be written: {command}: {source}")]
+    Command {
+        /// The tick.
+        tick: u64,
+        /// The command, or how it begins.
+        command: String,
+        /// The reason.
+        source: serde_json::Error,
+    },
     /// An undo, a redo or an end was interrupted, and cannot be done now.
     #[error(
         "{folder}: what was interrupted when its recording was cut off cannot be done now: {source}"
@@ -87,6 +97,14 @@ pub enum RecorderError {
         path: PathBuf,
         /// Number of the line, from 1.
         line: usize,
+        /// What is wrong.
+        problem: String,
+    },
+    /// The files say what no recorder writes.
+    #[error("{folder}: {problem}; a file was changed, or is damaged")]
+    Files {
+        /// The folder of the recording.
+        folder: PathBuf,
         /// What is wrong.
         problem: String,
     },

@@ -1,5 +1,6 @@
 //! The files of a recording.
 
+pub(crate) mod bounds;
 pub(crate) mod channels;
 pub(crate) mod destination;
 pub(crate) mod durability;
@@ -9,6 +10,7 @@ pub(crate) mod format;
 pub(crate) mod frame;
 pub(crate) mod intent;
 pub(crate) mod joints;
+pub(crate) mod json;
 pub(crate) mod limits;
 pub(crate) mod log_file;
 pub(crate) mod picture;

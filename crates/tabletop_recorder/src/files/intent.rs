@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     error::RecorderError,
-    files::{folder::Folder, storage::is_taken},
+    files::{folder::Folder, json::from_json, storage::is_taken},
 };
 
 /// The longest that is read: it holds a few lines of commands.
@@ -144,7 +144,7 @@ pub(crate) fn fulfil_what_was_left(folder: &Folder) -> Result<(), RecorderError>
         return Ok(());
     }
     let intent = folder.storage().read(&path, MOST_BYTES).and_then(|bytes| {
-        let intent: Intent = serde_json::from_slice(&bytes)?;
+        let intent: Intent = from_json(&bytes)?;
         Ok(intent)
     });
     intent

@@ -10,8 +10,9 @@ use crate::{
         folder::Folder,
         intent::{Intent, Lengths, fulfil_what_was_left},
         joints,
+        json::to_json_line,
         log_file::LogFile,
-        session::{SessionHeader, SessionScene, session_line},
+        session::{SessionHeader, SessionScene},
         states,
         storage::is_taken,
     },
@@ -237,7 +238,7 @@ fn fill(
 ) -> Result<Lengths, RecorderError> {
     let storage = folder.storage();
     let mut session = LogFile::create(storage, folder.session())?;
-    for line in [session_line(header), session_line(scene)] {
+    for line in [to_json_line(header), to_json_line(scene)] {
         let line = line.map_err(|error| RecorderError::write(&folder.session())(error.into()))?;
         session.append(&line)?;
     }

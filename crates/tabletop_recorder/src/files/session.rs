@@ -2,17 +2,25 @@
 
 use std::path::{Path, PathBuf};
 
-use bevy::prelude::{Resource, warn};
+use bevy::prelude::Resource;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
 use tabletop_core::{
-    Actor, ClockCommand, HeadCamera, IssuedCommand, JointSpec, ObjectSpec, Pose, SimCommand,
-    SimTick, Table,
+    Actor, ClockCommand, HeadCamera, IssuedCommand, JointSpec, ObjectSpec, Pose, RecordingCommand,
+    SimCommand, SimTick, Table,
 };
 
 use crate::{
     error::RecorderError,
-    files::{format::FORMAT, limits::MOST_SESSION_BYTES, log_file::read_whole_lines},
+    files::{
+        bounds::{
+            check_begin, check_command, check_joint, check_present, check_table, check_ticks,
+        },
+        format::FORMAT,
+        json::{from_json, to_json_line},
+        limits::MOST_SESSION_BYTES,
+        log_file::read_whole_lines,
+    },
 };
 
 /// First line of a session log: who wrote it, and how.
@@ -128,23 +136,27 @@ impl Session {
         let text = read_whole_lines(&path, MOST_SESSION_BYTES)?;
         let mut lines = (1..).zip(text.lines());
         let mut line = |number| lines.next().unwrap_or((number, ""));
-        let header: SessionHeader = parse(&path, line(1))?;
-        if header.format != FORMAT {
-            let found = header.format;
-            return Err(RecorderError::Format { path, found });
-        }
-        let scene = parse(&path, line(2))?;
+        let fault = |line: usize| {
+            let path = path.clone();
+            move |problem| RecorderError::Course {
+                path,
+                line,
+                problem,
+            }
+        };
+        let header: SessionHeader = parse_header(&path, line(1))?;
+        check_begin(header.begin_tick, header.start_tick, header.camera.as_ref())
+            .map_err(fault(1))?;
+        let scene: SessionScene = parse(&path, line(2))?;
+        scene.check().map_err(fault(2))?;
         let mut earlier = Vec::new();
-        let mut course = Course::default();
+        let mut course = Course::of(&header);
         for line in lines {
-            let entry = parse(&path, line)?;
+            let entry: SessionCommand = parse(&path, line)?;
             course
                 .follow(&entry)
-                .map_err(|problem| RecorderError::Course {
-                    path: path.clone(),
-                    line: line.0,
-                    problem,
-                })?;
+                .and_then(|()| check_command(&entry.command))
+                .map_err(fault(line.0))?;
             earlier.push(entry);
         }
         let commands = earlier.split_off(earlier.len().min(header.earlier_commands));
@@ -157,14 +169,41 @@ impl Session {
     }
 }
 
+/// Of a command that cannot be written, not more letters are shown.
+const LONGEST_SHOWN: usize = 200;
+
+impl SessionScene {
+    /// Says what makes no sense in it.
+    fn check(&self) -> Result<(), String> {
+        self.table.iter().try_for_each(check_table)?;
+        let mut parts = 0;
+        for object in &self.objects {
+            check_present(object.pose, &object.spec, &mut parts)?;
+        }
+        self.joints.iter().try_for_each(check_joint)
+    }
+}
+
 /// How far a simulation has come with the commands of a session log.
-#[derive(Default)]
 struct Course {
+    /// The tick of the first command.
+    begin: u64,
     tick: u64,
     is_paused: bool,
+    is_finished: bool,
 }
 
 impl Course {
+    fn of(header: &SessionHeader) -> Self {
+        let begin = header.begin_tick.unwrap_or(header.start_tick);
+        Self {
+            begin,
+            tick: begin,
+            is_paused: false,
+            is_finished: false,
+        }
+    }
+
     /// Goes on to the next command, or says why no simulation comes to it.
     fn follow(&mut self, next: &SessionCommand) -> Result<(), String> {
         let (tick, next_tick) = (self.tick, next.tick);
@@ -176,7 +215,12 @@ impl Course {
                 "tick {next_tick} never comes: the simulation is paused in tick {tick}, and nothing ends that"
             ));
         }
+        if self.is_finished {
+            return Err("a command comes after the end of the recording".into());
+        }
+        check_ticks(self.begin, next_tick)?;
         self.tick = next_tick;
+        self.is_finished = next.command == RecordingCommand::Finish.into();
         if let SimCommand::Clock(ClockCommand::SetPaused(paused)) = next.command {
             self.is_paused = paused;
         }
@@ -184,34 +228,50 @@ impl Course {
     }
 }
 
+/// A header tells its format, whatever else it holds.
+fn parse_header(path: &Path, line: (usize, &str)) -> Result<SessionHeader, RecorderError> {
+    #[derive(Deserialize)]
+    struct Format {
+        format: u32,
+    }
+    let Format { format: found } = parse(path, line)?;
+    match found {
+        FORMAT => parse(path, line),
+        found => Err(RecorderError::Format {
+            path: path.to_owned(),
+            found,
+        }),
+    }
+}
+
 fn parse<T: DeserializeOwned>(
     path: &Path,
     (line, text): (usize, &str),
 ) -> Result<T, RecorderError> {
-    serde_json::from_str(text).map_err(|source| RecorderError::Session {
+    from_json(text.as_bytes()).map_err(|source| RecorderError::Session {
         path: path.to_owned(),
         line,
         source,
     })
 }
 
-/// A line of a session log, with its line end.
-pub(crate) fn session_line(content: &impl Serialize) -> serde_json::Result<Vec<u8>> {
-    let mut line = serde_json::to_vec(content)?;
-    line.push(b'\n');
-    Ok(line)
-}
-
-/// The line of a command; none, with a warning, if it would not read back, because it holds numbers that are none.
-pub(crate) fn command_line(command: &SessionCommand) -> Option<Vec<u8>> {
-    let line = session_line(command)
-        .ok()
-        .filter(|line| serde_json::from_slice::<SessionCommand>(line).is_ok());
-    if line.is_none() {
-        let command = &command.command;
-        warn!("{command:?} is not in the session log: not all of it can be written");
-    }
-    line
+/// The line of a command.
+///
+/// # Errors
+/// It would not read back, because it holds numbers that are none.
+pub(crate) fn command_line(command: &SessionCommand) -> Result<Vec<u8>, RecorderError> {
+    let line = to_json_line(command).and_then(|line| {
+        from_json::<SessionCommand>(&line)?;
+        Ok(line)
+    });
+    line.map_err(|source| RecorderError::Command {
+        tick: command.tick,
+        command: format!("{:?}", command.command)
+            .chars()
+            .take(LONGEST_SHOWN)
+            .collect(),
+        source,
+    })
 }
 
 #[cfg(test)]
@@ -260,11 +320,15 @@ mod tests {
     }
 
     #[test]
-    fn a_command_that_would_not_read_back_is_left_out() {
+    fn a_command_that_would_not_read_back_is_an_error() {
         let location = Vec3::new(f32::NAN, 0.0, 0.0);
         let hand = Hand::Left;
         let command = given(12, HandCommand::MoveTo { hand, location });
-        assert_eq!(command_line(&command), None);
+        let error = command_line(&command).unwrap_err().to_string();
+        assert!(
+            error.starts_with("a command in tick 12 cannot be written: Hand(MoveTo"),
+            "{error}"
+        );
     }
 
     #[test]
@@ -280,8 +344,8 @@ mod tests {
             camera: None,
             settings: Map::new(),
         };
-        let mut log = session_line(&header).unwrap();
-        log.extend(session_line(&SessionScene::default()).unwrap());
+        let mut log = to_json_line(&header).unwrap();
+        log.extend(to_json_line(&SessionScene::default()).unwrap());
         for tick in [2, 4] {
             log.extend(command_line(&given(tick, SceneCommand::Clear)).unwrap());
         }
@@ -322,7 +386,7 @@ mod tests {
             error.starts_with(&format!("{}:5: ", path.display())),
             "{error}"
         );
-        for (text, line) in [(&[][..], 1), (&session_line(&header).unwrap(), 2)] {
+        for (text, line) in [(&[][..], 1), (&to_json_line(&header).unwrap(), 2)] {
             fs::write(&path, text).unwrap();
             let error = Session::read(&path).unwrap_err().to_string();
             let place = format!("{}:{line}: ", path.display());
@@ -333,7 +397,7 @@ mod tests {
             format: FORMAT + 1,
             ..header
         };
-        fs::write(&path, session_line(&header).unwrap()).unwrap();
+        fs::write(&path, to_json_line(&header).unwrap()).unwrap();
         let error = Session::read(&path).unwrap_err().to_string();
         assert!(error.contains(&format!("format {}", FORMAT + 1)), "{error}");
         fs::remove_file(path).unwrap();

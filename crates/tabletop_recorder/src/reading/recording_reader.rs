@@ -10,6 +10,7 @@ use tabletop_core::{JointName, JointState, SimTick, Timeline, TimelinePicture, T
 use crate::{
     error::RecorderError,
     files::{
+        bounds::check_ticks,
         folder::Folder,
         intent::fulfil_what_was_left,
         limits::MOST_EVENT_BYTES,
@@ -84,6 +85,12 @@ impl RecordingReader {
             Some(end) => SimTick(end.tick),
             None => session.last_tick(folder.path())?,
         };
+        let header = &session.header;
+        let begin = header.begin_tick.unwrap_or(header.start_tick);
+        check_ticks(begin, last_tick.0).map_err(|problem| RecorderError::Files {
+            folder: folder.path().to_owned(),
+            problem,
+        })?;
         Ok(Self {
             folder,
             session,

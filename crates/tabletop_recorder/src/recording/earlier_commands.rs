@@ -1,5 +1,6 @@
 //! What was told before a recording: its replay begins with that.
 
+use bevy::prelude::warn;
 use tabletop_core::{ClockCommand, IssuedCommand, SceneCommand, SimCommand, SimTick};
 
 use crate::files::session::{SessionCommand, command_line, is_logged};
@@ -123,7 +124,13 @@ impl EarlierCommands {
 
     fn append_command(&mut self, command: &SessionCommand) {
         if is_logged(&command.command) {
-            self.append(&command_line(command).unwrap_or_default());
+            match command_line(command) {
+                Ok(line) => self.append(&line),
+                Err(error) => {
+                    warn!("no recording can be replayed until a scene is set: {error}");
+                    self.forget();
+                }
+            }
         }
     }
 

@@ -168,7 +168,7 @@ impl Episode {
                 before: self.files.session.len() + lines.len() as u64,
             });
             let command = SessionCommand::of(self.tick, issued);
-            lines.extend(command_line(&command).unwrap_or_default());
+            lines.extend(command_line(&command)?);
         }
         self.files.session.append(&lines)
     }
@@ -205,7 +205,7 @@ impl Episode {
         if self.is_paused != paused.0 {
             // A pause is not turned back with the clock.
             let pause = SessionCommand::of_app(tick, ClockCommand::SetPaused(paused.0));
-            let line = command_line(&pause).unwrap_or_default();
+            let line = command_line(&pause)?;
             self.files.session.append(&line)?;
             self.is_paused = paused.0;
         }
@@ -344,7 +344,7 @@ impl Episode {
         let end = self.progress();
         let mut released = Vec::new();
         for command in &start.released {
-            released.extend(command_line(command).unwrap_or_default());
+            released.extend(command_line(command)?);
         }
         self.files.put_away(start.before.files, &released)?;
         self.resume(start.before.clone());
@@ -485,7 +485,7 @@ impl Episode {
         let frame = self.clock.frame(tick);
         // The picture of a frame that is at its tick anyway stays.
         let first_frame = frame + u64::from(self.clock.is_frame(tick));
-        let line = command_line(&SessionCommand::of(tick, finish)).unwrap_or_default();
+        let line = command_line(&SessionCommand::of(tick, finish))?;
         let intent = self.files.begin_end(first_frame, &line)?;
         self.write_frame(tick, Tracked::is_elsewhere, stage, image, timeline)?;
         self.files.finish(&line, &intent)?;

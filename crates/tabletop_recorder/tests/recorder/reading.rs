@@ -2,14 +2,15 @@
 
 use std::fs;
 
-use bevy::math::Vec3;
+use bevy::{math::Vec3, prelude::default};
 use tabletop_core::{
-    Hand, HandCommand, HistoryCommand, RecordingCommand, SimCommand, SimTick, StepApp as _,
-    Timeline, TimelinePicture, TimelineStage,
+    Hand, HandCommand, HistoryCommand, ObjectSpec, Part, Pose, Recording, RecordingCommand,
+    SceneCommand, SceneItem, SceneSpec, Shape, SimCommand, SimTick, StepApp as _, Timeline,
+    TimelinePicture, TimelineStage,
 };
 use tabletop_recorder::{Occurrence, RecordingReader};
 
-use crate::stage::{Place, app, grasp, location, run, scene};
+use crate::stage::{Place, app, block, grasp, location, run, scene};
 
 const LEFT: Hand = Hand::Left;
 const RIGHT: Hand = Hand::Right;
@@ -207,5 +208,93 @@ fn what_is_no_recording_or_damaged_is_an_error_with_its_place() {
             "{error}"
         );
         fs::write(&path, "").unwrap();
+    }
+}
+
+#[test]
+fn composites_in_composites_are_recorded_and_read() {
+    let place = Place::new();
+    let mut app = app(&place);
+    let nested = (0..99).fold(block("it").shape, |shape, _| Shape::Composite {
+        parts: vec![Part {
+            id: String::new(),
+            pose: Pose::IDENTITY,
+            shape,
+        }],
+    });
+    let object = ObjectSpec {
+        shape: nested,
+        ..block("it")
+    };
+    let scene = SceneSpec {
+        items: vec![SceneItem::Object(object.clone())],
+        ..default()
+    };
+    let set: SimCommand = SceneCommand::Set(Box::new(scene)).into();
+    run(
+        &mut app,
+        &[
+            (0, set.clone()),
+            (1, RecordingCommand::Start.into()),
+            (1, set.clone()),
+            (1, RecordingCommand::Finish.into()),
+        ],
+    );
+    let recording = RecordingReader::open(place.demo()).unwrap();
+    let session = recording.session();
+    assert_eq!(session.scene.objects[0].spec, object);
+    assert_eq!(session.earlier[0].command, set);
+    assert_eq!(session.commands[0].command, set);
+}
+
+#[test]
+fn what_cannot_be_written_ends_the_recording() {
+    let place = Place::new();
+    let mut app = app(&place);
+    run(
+        &mut app,
+        &[
+            (0, scene(&["a"])),
+            (0, RecordingCommand::Start.into()),
+            (
+                5,
+                HandCommand::MoveTo {
+                    hand: LEFT,
+                    location: Vec3::NAN,
+                }
+                .into(),
+            ),
+            (5, HandCommand::Select(LEFT).into()),
+        ],
+    );
+    let recording = RecordingReader::open(place.demo()).unwrap();
+    assert_eq!(recording.cut_off_at(), Some(SimTick(4)));
+    assert!(!app.world().resource::<Recording>().0);
+}
+
+#[cfg(unix)]
+#[test]
+fn links_and_devices_are_not_read() {
+    let place = Place::new();
+    recorded(&place, &demonstration());
+    let elsewhere = place.path().join("elsewhere");
+    fs::write(&elsewhere, "0,create,a\n").unwrap();
+    for target in ["/dev/zero".as_ref(), &*elsewhere] {
+        for file in ["1.txt", "states.csv", "joints.csv", "session.jsonl"] {
+            let path = place.demo().join(file);
+            let content = fs::read(&path).unwrap();
+            fs::remove_file(&path).unwrap();
+            std::os::unix::fs::symlink(target, &path).unwrap();
+            let read = RecordingReader::open(place.demo()).and_then(|recording| {
+                recording.segments()?;
+                recording.states()?;
+                recording.joints()
+            });
+            let error = read.unwrap_err().to_string();
+            assert!(error.contains("it is no file but a link"), "{error}");
+            assert!(error.contains(file), "{error}");
+            fs::remove_file(&path).unwrap();
+            fs::write(&path, content).unwrap();
+        }
     }
 }

@@ -1,0 +1,74 @@
+//! JSON of a stated depth.
+
+use serde::{Deserialize, Serialize};
+use serde_json::error::Error;
+
+/// How deep values may be nested: a composite in a composite takes four levels, and task files have a hundred of those.
+const MOST_LEVELS: usize = 512;
+
+/// Reads a value.
+///
+/// # Errors
+/// It is no such value, or is nested deeper than recordings are.
+pub(crate) fn from_json<'j, T: Deserialize<'j>>(json: &'j [u8]) -> Result<T, Error> {
+    if depth(json) > MOST_LEVELS {
+        let reason = format!("it is nested more than {MOST_LEVELS} levels deep");
+        return Err(serde::de::Error::custom(reason));
+    }
+    let mut reader = serde_json::Deserializer::from_slice(json);
+    reader.disable_recursion_limit();
+    let value = T::deserialize(&mut reader)?;
+    reader.end()?;
+    Ok(value)
+}
+
+/// A line that holds a value.
+pub(crate) fn to_json_line(value: &impl Serialize) -> Result<Vec<u8>, Error> {
+    let mut line = serde_json::to_vec(value)?;
+    line.push(b'\n');
+    Ok(line)
+}
+
+/// How deep brackets are nested, at most.
+fn depth(json: &[u8]) -> usize {
+    let (mut depth, mut most) = (0_usize, 0);
+    let (mut is_text, mut is_escaped) = (false, false);
+    for &byte in json {
+        match byte {
+            _ if is_escaped => is_escaped = false,
+            b'\\' if is_text => is_escaped = true,
+            b'"' => is_text = !is_text,
+            _ if is_text => {}
+            b'[' | b'{' => {
+                depth += 1;
+                most = most.max(depth);
+            }
+            b']' | b'}' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+    }
+    most
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::Value;
+
+    use super::*;
+
+    #[test]
+    fn values_are_read_up_to_a_depth() {
+        let nested = |levels| "[".repeat(levels) + &"]".repeat(levels);
+        assert!(from_json::<Value>(nested(MOST_LEVELS).as_bytes()).is_ok());
+        for levels in [MOST_LEVELS + 1, 1_000_000] {
+            let error = from_json::<Value>(nested(levels).as_bytes()).unwrap_err();
+            assert!(
+                error.to_string().contains("more than 512 levels"),
+                "{error}"
+            );
+        }
+        let text = r#"["[[[\"[[", {"a": [1]}]"#;
+        assert_eq!(depth(text.as_bytes()), 3);
+        assert!(from_json::<Value>(b"[] []").is_err());
+    }
+}
