@@ -19,6 +19,7 @@
 //! ```
 
 mod agent;
+mod bounds;
 mod clock;
 mod color;
 mod command;
@@ -50,6 +51,7 @@ mod twist;
 mod user;
 
 pub use agent::{Agent, ScriptCommand, ScriptEvent, SimBlocked};
+pub use bounds::Bounds;
 pub use clock::{
     ActuateSystems, CommandSystems, OrderSystems, Paused, SimSystems, SimTick, StepApp,
     TICK_SECONDS, TICKS_PER_SECOND, TickSystems,

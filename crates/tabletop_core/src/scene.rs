@@ -89,6 +89,16 @@ impl ChainSpec {
         }
     }
 
+    /// The pose of a link's centre while the chain is straight.
+    pub fn link_pose(&self, link: u32) -> Pose {
+        let along = (self.end - self.start).normalize_or(Vec3::Y);
+        let fraction = (link as f32 + 0.5) / self.links() as f32;
+        Pose::new(
+            self.start.lerp(self.end, fraction),
+            Quat::from_rotation_arc(Vec3::Y, along),
+        )
+    }
+
     /// The least number of links that reaches from start to end: all of them together may be half a link short.
     pub fn least_links(&self) -> u32 {
         (self.start.distance(self.end) / self.link_span.y - 0.5).ceil() as u32

@@ -6,7 +6,6 @@ use tabletop_core::{Hand, quat_from_degrees};
 
 use crate::{
     RobotCheck,
-    bounds::Bounds,
     rest::Stillness,
     seen::{Seen, SeenObject},
     step::fault_of_vector,
@@ -188,8 +187,8 @@ fn is_turned(object: &SeenObject, degrees: Vec3, within: f32) -> Result<(), Stri
 }
 
 fn is_on_top(upper: &SeenObject, lower: &SeenObject, within: f32) -> Result<(), String> {
-    let support = Bounds::of(lower);
-    let gap = Bounds::of(upper).low.z - support.high.z;
+    let support = lower.bounds();
+    let gap = upper.bounds().low.z - support.high.z;
     let is_over = support.is_below(upper.pose.location);
     lies_on(gap, within, is_over).map_err(|found| {
         format!(
@@ -201,7 +200,7 @@ fn is_on_top(upper: &SeenObject, lower: &SeenObject, within: f32) -> Result<(), 
 
 fn is_on_table(object: &SeenObject, seen: &Seen, within: f32) -> Result<(), String> {
     let table = seen.table.ok_or("expected a table, found none")?;
-    let gap = Bounds::of(object).low.z;
+    let gap = object.bounds().low.z;
     let found = object.pose.location;
     let is_over = found.x.abs() <= table.xspan / 2.0 && found.y.abs() <= table.yspan / 2.0;
     lies_on(gap, within, is_over).map_err(|found| {
@@ -223,7 +222,7 @@ fn lies_on(gap: f32, within: f32, is_over: bool) -> Result<(), String> {
 }
 
 fn is_inside(inner: &SeenObject, outer: &SeenObject, within: f32) -> Result<(), String> {
-    let outside = Bounds::of(outer).distance_out(Bounds::of(inner));
+    let outside = outer.bounds().distance_out(inner.bounds());
     (outside <= within).then_some(()).ok_or_else(|| {
         format!(
             "expected `{}` inside `{}`, found it {outside:.3} outside, at {}",

@@ -22,7 +22,6 @@
 //! ```
 
 mod act;
-mod bounds;
 mod check;
 mod error;
 mod place;

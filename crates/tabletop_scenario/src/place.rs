@@ -2,9 +2,7 @@
 
 use bevy::prelude::*;
 use serde::Deserialize;
-use tabletop_core::{Pose, Random, SceneItem, SceneSpec};
-
-use crate::bounds::Bounds;
+use tabletop_core::{Bounds, Pose, Random, SceneItem, SceneSpec};
 
 /// Least distance, in units, of an object that is placed to any other.
 const CLEARANCE: f32 = 0.05;

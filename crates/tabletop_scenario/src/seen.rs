@@ -1,7 +1,7 @@
 //! What a scenario sees of the world: its state at the end of the last tick.
 
 use bevy::prelude::*;
-use tabletop_core::{Hand, ObjectSpec, Pose, Robot, Table};
+use tabletop_core::{Bounds, Hand, ObjectSpec, Pose, Robot, Table};
 
 /// The world as a scenario sees it.
 #[derive(Clone, Debug)]
@@ -29,6 +29,13 @@ pub(crate) struct SeenObject<'a> {
     pub pose: Pose,
     /// Who holds it.
     pub holder: Option<Hand>,
+}
+
+impl SeenObject<'_> {
+    /// The upright cuboid around it.
+    pub fn bounds(&self) -> Bounds {
+        Bounds::of_shape(&self.spec.shape, self.pose)
+    }
 }
 
 impl<'a> Seen<'a> {

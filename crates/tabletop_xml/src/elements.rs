@@ -2,9 +2,11 @@
 
 pub(crate) mod attributes;
 mod chain;
+mod cost;
 mod hollow;
 mod lidbox;
 mod object;
+mod overlap;
 pub(crate) mod value;
 
 use tabletop_core::{SceneItem, SceneSpec, Table};
@@ -12,7 +14,10 @@ use tabletop_core::{SceneItem, SceneSpec, Table};
 use crate::{
     NAMESPACE,
     document::{ROOT, tree::Element},
-    elements::attributes::AttributeReader,
+    elements::{
+        attributes::AttributeReader,
+        cost::{Cost, Excess},
+    },
     fault::{Excerpt, Faults},
     suggestion::nearest,
 };
@@ -71,13 +76,24 @@ impl ElementReader<'_> {
 
     fn items(&mut self, root: &Element) -> Vec<SceneItem> {
         let mut items = Vec::new();
+        let mut cost = Cost::default();
         for child in &root.children {
-            if self.is_allowed(child, root.name, &ITEMS) {
-                items.extend(match child.name {
-                    "chain" => self.chain(child).map(SceneItem::Chain),
-                    "lidbox" => self.lidbox(child).map(SceneItem::LidBox),
-                    _ => self.object(child).map(SceneItem::Object),
-                });
+            if !self.is_allowed(child, root.name, &ITEMS) {
+                continue;
+            }
+            let item = match child.name {
+                "chain" => self.chain(child).map(SceneItem::Chain),
+                "lidbox" => self.lidbox(child).map(SceneItem::LidBox),
+                _ => self.object(child).map(SceneItem::Object),
+            };
+            let Some(item) = item else {
+                continue;
+            };
+            match cost.add(&item) {
+                Ok(()) => items.push(item),
+                Err(Excess { problem, expected }) => {
+                    self.faults.report(child.place(), problem, expected);
+                }
             }
         }
         items

@@ -16,7 +16,6 @@ pub(super) fn build(spec: &ChainSpec, ids: &mut IdAllocator) -> (Vec<ObjectSpec>
     let (mut objects, mut joints) = (Vec::new(), Vec::new());
     let id = ids.unique(&spec.id);
     let along = (spec.end - spec.start).normalize_or(Vec3::Y);
-    let rotation = Quat::from_rotation_arc(Vec3::Y, along);
     let half_link = Vec3::Y * spec.link_span.y / 2.0;
     let mut add = |suffix: &str, pose, mass, shape| {
         let id = ids.unique(&format!("{id}-{suffix}"));
@@ -36,18 +35,20 @@ pub(super) fn build(spec: &ChainSpec, ids: &mut IdAllocator) -> (Vec<ObjectSpec>
         });
     };
 
-    let count = spec.links();
     let mut previous = add("start", Pose::at(spec.start), 0.0, end_cube.clone());
     let mut pivot = along * END_PIVOT;
-    for link in 0..count {
-        let fraction = (link as f32 + 0.5) / count as f32;
-        let pose = Pose::new(spec.start.lerp(spec.end, fraction), rotation);
+    for link in 0..spec.links() {
         let shape = Shape::Link {
             span: spec.link_span,
             padding: spec.link_padding,
             color: spec.color,
         };
-        let id = add(&format!("link{link}"), pose, spec.link_mass, shape);
+        let id = add(
+            &format!("link{link}"),
+            spec.link_pose(link),
+            spec.link_mass,
+            shape,
+        );
         joint(&previous, pivot, &id, -half_link);
         previous = id;
         pivot = half_link;

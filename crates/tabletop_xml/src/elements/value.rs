@@ -19,6 +19,8 @@ pub(crate) const MASSES: RangeInclusive<f32> = 0.0..=1e6;
 pub(crate) const PADDINGS: RangeInclusive<f32> = 0.0..=1000.0;
 /// Numbers of links.
 pub(crate) const LINK_COUNTS: RangeInclusive<u32> = 0..=1000;
+/// How long an id can be.
+const MAX_ID: usize = 200;
 /// Numbers of sides.
 pub(crate) const SIDES: RangeInclusive<u32> = 3..=1_000_000;
 
@@ -108,6 +110,10 @@ pub(crate) fn color(text: &str) -> Result<Rgb, ValueError> {
 /// Reads an id, which may be empty.
 pub(crate) fn id(text: &str) -> Result<String, ValueError> {
     let id = trim(text);
+    if id.len() > MAX_ID {
+        let expected = format_args!("at most {MAX_ID} characters");
+        return Err(ValueError::new(text, "is too long", expected));
+    }
     match id.chars().all(is_id_character) {
         true => Ok(id.to_owned()),
         false => Err(ValueError::new(

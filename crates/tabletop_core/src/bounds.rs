@@ -1,13 +1,12 @@
 //! Upright cuboids around objects.
 
 use bevy::prelude::*;
-use tabletop_core::{ChainSpec, LidBoxSpec, Pose, Primitive, SceneItem, Shape, Solid};
 
-use crate::seen::SeenObject;
+use crate::{ChainSpec, LidBoxSpec, Pose, Primitive, SceneItem, Shape, Solid};
 
 /// An upright cuboid, in units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Bounds {
+pub struct Bounds {
     /// Its corner of the least coordinates.
     pub low: Vec3,
     /// Its corner of the greatest coordinates.
@@ -15,10 +14,7 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
-    pub fn of(object: &SeenObject) -> Self {
-        Self::of_shape(&object.spec.shape, object.pose)
-    }
-
+    /// Around the solids of a shape whose origin is at a pose.
     pub fn of_shape(shape: &Shape, at: Pose) -> Self {
         shape
             .colliding()
@@ -28,6 +24,7 @@ impl Bounds {
             .unwrap_or(Self::around(at.location, Vec3::ZERO))
     }
 
+    /// Around an element of a task file, roughly if it is a chain.
     pub fn of_item(item: &SceneItem) -> Self {
         match item {
             SceneItem::Object(object) => Self::of_shape(&object.shape, object.pose),
@@ -48,7 +45,8 @@ impl Bounds {
         Self::of_cuboid(lidbox.span + Vec3::Z * top, center)
     }
 
-    fn of_primitive(part: Primitive, at: Pose) -> Self {
+    /// Around a solid of a shape whose origin is at a pose.
+    pub fn of_primitive(part: Primitive, at: Pose) -> Self {
         let at = at * part.pose;
         match part.solid {
             Solid::Cuboid(span) => Self::of_cuboid(span, at),
@@ -67,14 +65,17 @@ impl Bounds {
         Self::around(at.location, reach)
     }
 
-    fn around(center: Vec3, reach: Vec3) -> Self {
+    /// Around a point, as far in each direction.
+    pub fn around(center: Vec3, reach: Vec3) -> Self {
         Self {
             low: center - reach,
             high: center + reach,
         }
     }
 
-    fn union(self, other: Self) -> Self {
+    /// Around this one and another.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
         Self {
             low: self.low.min(other.low),
             high: self.high.max(other.high),
@@ -85,6 +86,12 @@ impl Bounds {
     pub fn is_below(self, point: Vec3) -> bool {
         let point = point.xy();
         point.cmpge(self.low.xy()).all() && point.cmple(self.high.xy()).all()
+    }
+
+    /// Whether the two have points in common that are farther than a distance inside of both.
+    pub fn overlaps(self, other: Self, distance: f32) -> bool {
+        let depth = (self.high - other.low).min(other.high - self.low);
+        depth.min_element() > distance
     }
 
     /// How far another one stands out of this one.
@@ -106,9 +113,8 @@ impl Bounds {
 mod tests {
     use std::f32::consts::SQRT_2;
 
-    use tabletop_core::Rgb;
-
     use super::*;
+    use crate::Rgb;
 
     #[test]
     fn turned_solids_reach_as_far_as_they_do() {
@@ -148,6 +154,9 @@ mod tests {
         assert!(unit.is_crowded_by(beside, 0.3) && !unit.is_crowded_by(beside, 0.1));
         assert!((unit.distance_out(beside) - 1.2).abs() < 1e-6);
         assert_eq!(unit.distance_out(unit), 0.0);
+        let into = Bounds::around(Vec3::X * 0.9, Vec3::splat(0.5));
+        assert!(unit.overlaps(into, 0.05) && into.overlaps(unit, 0.05));
+        assert!(!unit.overlaps(into, 0.2) && !unit.overlaps(beside, 0.0));
         assert!(unit.is_below(Vec3::Z * 9.0) && !unit.is_below(Vec3::X));
     }
 }

@@ -1,0 +1,147 @@
+//! What a scene costs to simulate: how many solids it has, and how many of them overlap.
+
+use tabletop_core::{Bounds, ChainSpec, LidBoxSpec, Pose, SceneItem, Shape};
+
+use crate::elements::overlap::Overlaps;
+
+/// How many convex solids a task can have: a container has five, a link is one.
+pub(crate) const MAX_SOLIDS: usize = 20_000;
+/// How many links the chains of a task can have together.
+const MAX_LINKS: usize = 5_000;
+/// How many pairs of solids of different objects can overlap at the start.
+const MAX_OVERLAPS: usize = 20_000;
+
+/// What a part of a scene costs.
+#[derive(Debug, Default)]
+pub(crate) struct Cost {
+    solids: usize,
+    links: usize,
+    overlaps: Overlaps,
+}
+
+/// Why something costs too much: what is wrong, what is expected.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Excess {
+    pub problem: &'static str,
+    pub expected: String,
+}
+
+impl Cost {
+    /// Accounts for an element of a scene. What costs too much with all before it does not count for what follows.
+    pub fn add(&mut self, item: &SceneItem) -> Result<(), Excess> {
+        let bodies = bodies(item);
+        let solids = self.solids + bodies.iter().map(Vec::len).sum::<usize>();
+        let links = match item {
+            SceneItem::Chain(chain) => self.links + chain.links() as usize,
+            SceneItem::Object(_) | SceneItem::LidBox(_) => self.links,
+        };
+        if solids > MAX_SOLIDS {
+            return Err(Excess {
+                problem: "with it there are too many solids",
+                expected: format!("at most {MAX_SOLIDS} solids"),
+            });
+        }
+        if links > MAX_LINKS {
+            return Err(Excess {
+                problem: "with it there are too many links",
+                expected: format!("at most {MAX_LINKS} links"),
+            });
+        }
+        if !self.overlaps.add(&bodies, MAX_OVERLAPS) {
+            return Err(Excess {
+                problem: "with it too many solids of different objects overlap",
+                expected: format!("at most {MAX_OVERLAPS} overlaps"),
+            });
+        }
+        self.solids = solids;
+        self.links = links;
+        Ok(())
+    }
+}
+
+/// The bodies of an element, each as the bounds of its solids.
+fn bodies(item: &SceneItem) -> Vec<Vec<Bounds>> {
+    match item {
+        SceneItem::Object(object) => vec![solids(&object.shape, object.pose)],
+        SceneItem::Chain(chain) => links(chain),
+        SceneItem::LidBox(lidbox) => vec![parts_of_lidbox(lidbox)],
+    }
+}
+
+fn solids(shape: &Shape, at: Pose) -> Vec<Bounds> {
+    let bounds = |part| Bounds::of_primitive(part, at);
+    shape.colliding().into_iter().map(bounds).collect()
+}
+
+fn links(chain: &ChainSpec) -> Vec<Vec<Bounds>> {
+    let link = Shape::Block {
+        span: chain.link_span,
+        color: chain.color,
+    };
+    let pose = |index| chain.link_pose(index);
+    (0..chain.links())
+        .map(|index| solids(&link, pose(index)))
+        .collect()
+}
+
+/// Box and lid, which do not collide with each other.
+fn parts_of_lidbox(lidbox: &LidBoxSpec) -> Vec<Bounds> {
+    let container = Shape::Box {
+        span: lidbox.span,
+        thickness: lidbox.thickness,
+        color: lidbox.color,
+    };
+    let lid = Shape::Lid {
+        span: lidbox.span.with_z(lidbox.thickness),
+        color: lidbox.color,
+        handle_span: lidbox.handle_span,
+        handle_thickness: lidbox.handle_thickness,
+        handle_color: lidbox.handle_color,
+    };
+    let height = (lidbox.span.z + lidbox.thickness) / 2.0;
+    let on_top = lidbox.pose * Pose::at(bevy::math::Vec3::Z * height);
+    [solids(&container, lidbox.pose), solids(&lid, on_top)].concat()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::test_support::{lines_of, scene_of};
+
+    fn composite(solids: usize) -> String {
+        let spheres = "<sphere location='(0,0,0)'/>".repeat(solids);
+        format!("<composite location='(0,0,9)'>{spheres}</composite>")
+    }
+
+    #[test]
+    fn objects_in_one_place_are_limited() {
+        let balls = "<sphere location='(0,0,1)'/>".repeat(250);
+        let problem = "sphere: with it too many solids of different objects overlap, expected at most 20000 overlaps";
+        assert_eq!(lines_of(&balls), [problem; 50]);
+        assert_eq!(scene_of("", &balls).items.len(), 200);
+        assert_eq!(lines_of(&composite(98).repeat(20)).len(), 18);
+        assert_eq!(lines_of(&composite(5_000)), [""; 0]);
+    }
+
+    #[test]
+    fn solids_are_limited() {
+        let apart = |index: usize| {
+            let (x, y) = (index % 100 * 2, index / 100 * 2);
+            format!("<box location='({x},{y},1)'/>")
+        };
+        let boxes: String = (0..4_002).map(apart).collect();
+        let problem = "box: with it there are too many solids, expected at most 20000 solids";
+        assert_eq!(lines_of(&boxes), [problem; 2]);
+        let blocks: String = (0..10_000).map(apart).collect();
+        assert_eq!(lines_of(&blocks.replace("box", "block")), [""; 0]);
+    }
+
+    #[test]
+    fn links_are_limited() {
+        let chain = |y: usize| format!("<chain start='(0,{y},1)' end='(900,{y},1)'/>");
+        let chains: String = (0..6).map(chain).collect();
+        let problem = "chain: with it there are too many links, expected at most 5000 links";
+        assert_eq!(lines_of(&chains), [problem]);
+        let squeezed = "<chain start='(0,0,1)' end='(1,0,1)' linkCount='1000'/>";
+        assert_eq!(lines_of(squeezed).len(), 1);
+    }
+}
