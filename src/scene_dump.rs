@@ -96,7 +96,7 @@ struct SpanDump {
 struct JointDump<'a> {
     kind: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
-    travel: Option<f32>,
+    limits: Option<[f32; 2]>,
     objects: &'a [String; 2],
     frames: [PoseDump; 2],
 }
@@ -113,13 +113,16 @@ impl<'a> From<&'a Assembly> for SceneDump<'a> {
                 .joints
                 .iter()
                 .map(|joint| {
-                    let (kind, travel) = match joint.kind {
+                    let (kind, limits) = match joint.kind {
                         JointKind::Ball => ("ball", None),
-                        JointKind::Slider { travel, .. } => ("slider", Some(travel)),
+                        JointKind::Slider { min, max, .. } => ("slider", Some([min, max])),
+                        JointKind::Hinge { min, max, .. } => {
+                            ("hinge", Some([min.to_degrees(), max.to_degrees()]))
+                        }
                     };
                     JointDump {
                         kind,
-                        travel,
+                        limits,
                         objects: &joint.objects,
                         frames: joint.frames.map(PoseDump::from),
                     }

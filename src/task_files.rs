@@ -126,6 +126,7 @@ mod tests {
         let pose = |item: &SceneItem| match item {
             SceneItem::Object(object) => Some(object.pose),
             SceneItem::LidBox(lidbox) => Some(lidbox.pose),
+            SceneItem::Jointed(jointed) => Some(jointed.pose),
             SceneItem::Chain(_) => None,
         };
         for (one, other) in one.items.iter_mut().zip(&other.items) {
@@ -137,6 +138,7 @@ mod tests {
             match one {
                 SceneItem::Object(object) => object.pose.rotation = theirs.rotation,
                 SceneItem::LidBox(lidbox) => lidbox.pose.rotation = theirs.rotation,
+                SceneItem::Jointed(jointed) => jointed.pose.rotation = theirs.rotation,
                 SceneItem::Chain(_) => {}
             }
         }

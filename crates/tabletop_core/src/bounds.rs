@@ -30,6 +30,12 @@ impl Bounds {
             SceneItem::Object(object) => Self::of_shape(&object.shape, object.pose),
             SceneItem::Chain(chain) => Self::of_chain(chain),
             SceneItem::LidBox(lidbox) => Self::of_lidbox(lidbox),
+            SceneItem::Jointed(jointed) => {
+                let [first, second] = jointed
+                    .placed()
+                    .map(|object| Self::of_shape(&object.shape, object.pose));
+                first.union(second)
+            }
         }
     }
 

@@ -26,6 +26,7 @@ mod command;
 mod fact;
 mod figure;
 mod hand;
+mod jointed;
 mod keymap;
 mod light;
 mod mount;
@@ -65,6 +66,7 @@ pub use command::{
 pub use fact::SimFact;
 pub use figure::{CarriesHeadCamera, Figure, Triangles};
 pub use hand::{Hand, Hands, Held};
+pub use jointed::{JointMotion, JointedSpec};
 pub use keymap::{
     Action, ActionGroup, Binding, BindingError, KeyLetters, KeyboardFocus, Keymap, Keys, Modifiers,
     Situation, Way, was_struck,

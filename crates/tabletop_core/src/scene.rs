@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{ObjectSpec, Pose, Primitive, Rgb, Rollback, Solid};
+use crate::{JointedSpec, ObjectSpec, Pose, Primitive, Rgb, Rollback, Solid};
 
 /// The content of a task file, in the file's order, before ids are made unique.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -57,6 +57,8 @@ pub enum SceneItem {
     Chain(ChainSpec),
     /// A box with a sliding lid.
     LidBox(LidBoxSpec),
+    /// Two objects with a joint between them.
+    Jointed(JointedSpec),
 }
 
 /// A string of links between two fixed ends (report section 6.2, `<chain>`). Lengths in units.
@@ -137,16 +139,32 @@ pub struct LidBoxSpec {
 pub enum JointKind {
     /// The origins of both joint frames coincide; all rotations are free.
     Ball,
-    /// The second frame slides along -X of the first, by 0 to `travel` units; nothing turns.
+    /// The second frame slides along -X of the first; nothing turns.
     Slider {
-        /// Greatest distance along -X of the first frame.
-        travel: f32,
+        /// Least distance along -X of the first frame, in units.
+        #[serde(default)]
+        min: f32,
+        /// Greatest distance along -X of the first frame, in units.
+        #[serde(alias = "travel")]
+        max: f32,
         /// Coefficient of the dry friction, as a fraction of the second object's weight.
         friction: f32,
+        /// The share of its speed that the joint takes away in a tick, 0 to 1.
+        #[serde(default)]
+        damping: f32,
+    },
+    /// The second frame turns about X of the first, and nothing slides.
+    Hinge {
+        /// Least angle, in radians.
+        min: f32,
+        /// Greatest angle, in radians.
+        max: f32,
+        /// The share of its speed that the joint takes away in a tick, 0 to 1.
+        damping: f32,
     },
 }
 
-/// A connection between two objects, which do not collide with each other.
+/// A connection between two objects.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointSpec {
     /// Ids of the two objects.
@@ -155,6 +173,9 @@ pub struct JointSpec {
     pub frames: [Pose; 2],
     /// What the joint leaves free.
     pub kind: JointKind,
+    /// Whether the objects collide with each other.
+    #[serde(default)]
+    pub collides: bool,
 }
 
 /// A joint on the table. Its entity is a child of the second object's, and is gone with either of the two.
@@ -168,4 +189,6 @@ pub struct Joint {
     pub frames: [Pose; 2],
     /// What the joint leaves free.
     pub kind: JointKind,
+    /// Whether the objects collide with each other.
+    pub collides: bool,
 }

@@ -79,6 +79,7 @@ fn index_of(scene: &SceneSpec, id: &str) -> Result<usize, String> {
         .position(|item| match item {
             SceneItem::Object(object) => object.id == id,
             SceneItem::LidBox(lidbox) => lidbox.id == id,
+            SceneItem::Jointed(jointed) => jointed.objects[0].id == id,
             SceneItem::Chain(_) => false,
         })
         .ok_or_else(|| {
@@ -94,6 +95,7 @@ fn moved(item: &SceneItem, place: &Place, random: &mut Random) -> SceneItem {
     let pose = match &mut item {
         SceneItem::Object(object) => &mut object.pose,
         SceneItem::LidBox(lidbox) => &mut lidbox.pose,
+        SceneItem::Jointed(jointed) => &mut jointed.pose,
         SceneItem::Chain(_) => return item,
     };
     *pose = Pose::new(

@@ -1,6 +1,7 @@
 //! From what a task file says to the bodies and joints it stands for.
 
 mod chain;
+mod jointed;
 mod lidbox;
 
 use serde::Serialize;
@@ -52,6 +53,11 @@ impl Assembly {
             }
             SceneItem::LidBox(spec) => {
                 let (objects, joint) = lidbox::build(spec, ids);
+                self.objects.extend(objects);
+                self.joints.push(joint);
+            }
+            SceneItem::Jointed(spec) => {
+                let (objects, joint) = jointed::build(spec, ids);
                 self.objects.extend(objects);
                 self.joints.push(joint);
             }

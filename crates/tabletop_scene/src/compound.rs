@@ -3,11 +3,11 @@
 use bevy::prelude::*;
 use tabletop_core::SceneItem;
 
-/// The chains and lid boxes of the present scene.
+/// The chains, lid boxes and jointed objects of the present scene.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct Compounds(Vec<Compound>);
 
-/// A chain or a lid box.
+/// A chain, a lid box, or two jointed objects.
 #[derive(Clone, Debug)]
 pub(crate) struct Compound {
     /// What the scene said.

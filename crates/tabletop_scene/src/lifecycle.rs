@@ -146,6 +146,7 @@ fn set_scene(world: &mut World, scene: &SceneSpec) {
                 objects: [first, second],
                 frames: joint.frames,
                 kind: joint.kind,
+                collides: joint.collides,
             };
             world.spawn((joint, ChildOf(second)));
         }

@@ -113,6 +113,9 @@ impl Inventory<'_> {
                 SceneItem::Chain(_) => format!(
                     "a task file cannot say how a chain hangs: that of `{id}` is saved in a straight line"
                 ),
+                SceneItem::Jointed(_) => format!(
+                    "a task file says where jointed objects are to {UNNOTICED}: `{id}` and what it is jointed to are farther apart"
+                ),
                 SceneItem::LidBox(_) | SceneItem::Object(_) => {
                     format!(
                         "a task file cannot say that a lid is open: that of `{id}` is saved shut"
@@ -129,17 +132,15 @@ impl Inventory<'_> {
             .iter()
             .filter_map(|&object| self.spec(object).map(|spec| spec.id.clone()))
             .collect();
-        let written = id(&item).to_owned();
-        let base = written.split('#').next().unwrap_or_default().to_owned();
-        let loads = [base, with_marks_of_ids(&written)].map(|id| {
-            let item = with_id(&item, id);
+        let base = |id: &str| id.split('#').next().unwrap_or_default().to_owned();
+        let loads = [with_ids(&item, base), with_ids(&item, with_marks_of_ids)].map(|item| {
             let mut allocator = self.ids.clone();
             let mut assembly = Assembly::on(Table::default());
             assembly.add(&item, &mut allocator);
             (item, allocator, assembly.objects)
         });
         let gives_ids = |(item, _, objects): &(SceneItem, IdAllocator, Vec<ObjectSpec>)| {
-            with_marks_of_ids(id(item)) == id(item)
+            with_ids(item, with_marks_of_ids) == *item
                 && objects.iter().map(|object| &object.id).eq(&ids)
         };
         let [as_base, as_marks] = loads;
@@ -175,6 +176,16 @@ impl Inventory<'_> {
                 pose: first,
                 ..lidbox.clone()
             })),
+            SceneItem::Jointed(jointed) => {
+                let second = self.pose(*compound.members.get(1)?)?;
+                let mut jointed = jointed.clone();
+                jointed.init = jointed.displacement([first, second]);
+                jointed.pose = first * jointed.objects[0].pose.inverse();
+                for (object, &member) in jointed.objects.iter_mut().zip(&compound.members) {
+                    object.id.clone_from(&self.spec(member)?.id);
+                }
+                Some(SceneItem::Jointed(jointed))
+            }
             SceneItem::Object(_) => None,
         }
     }
@@ -221,20 +232,18 @@ fn sayable(shape: &Shape) -> (Shape, Option<&'static str>) {
     }
 }
 
-fn id(item: &SceneItem) -> &str {
-    match item {
-        SceneItem::Object(spec) => &spec.id,
-        SceneItem::Chain(spec) => &spec.id,
-        SceneItem::LidBox(spec) => &spec.id,
-    }
-}
-
-fn with_id(item: &SceneItem, new: String) -> SceneItem {
+/// The item with other ids.
+fn with_ids(item: &SceneItem, mut new: impl FnMut(&str) -> String) -> SceneItem {
     let mut item = item.clone();
     match &mut item {
         SceneItem::Object(ObjectSpec { id, .. })
         | SceneItem::Chain(ChainSpec { id, .. })
-        | SceneItem::LidBox(LidBoxSpec { id, .. }) => *id = new,
+        | SceneItem::LidBox(LidBoxSpec { id, .. }) => *id = new(id),
+        SceneItem::Jointed(jointed) => {
+            for object in &mut jointed.objects {
+                object.id = new(&object.id);
+            }
+        }
     }
     item
 }
@@ -249,7 +258,7 @@ fn with_marks_of_ids(id: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Hand, StepApp as _, prelude::*};
+    use tabletop_core::{Hand, JointMotion, JointedSpec, StepApp as _, prelude::*};
     use tabletop_physics::PhysicsPlugin;
 
     use super::*;
@@ -342,7 +351,7 @@ mod tests {
         let items = (0..).zip(blocks).map(|(i, id)| block(id, i as f32 * 2.0));
         let present = present_scene(app(items.collect()).world());
         assert_eq!(unsaid(&present), [""; 0]);
-        let ids: Vec<_> = present.scene.items.iter().map(id).collect();
+        let ids: Vec<_> = present.scene.items.iter().flat_map(ids_of).collect();
         assert_eq!(ids, ["a", "a", "obj", "obj", "a"]);
     }
 
@@ -352,7 +361,7 @@ mod tests {
         let first = object(&app, "a");
         app.world_mut().despawn(first);
         let present = present_scene(app.world());
-        assert_eq!(id(&present.scene.items[0]), "a_0");
+        assert_eq!(ids_of(&present.scene.items[0]), ["a_0"]);
         assert_eq!(
             unsaid(&present),
             ["a task file cannot say all ids: saved are `a#0` as `a_0`"]
@@ -376,6 +385,47 @@ mod tests {
                 "a task file cannot say how a chain hangs: that of `c-start` is saved in a straight line"
             ]
         );
+    }
+
+    fn ids_of(item: &SceneItem) -> Vec<String> {
+        let mut ids = Vec::new();
+        let _unchanged = with_ids(item, |id| {
+            ids.push(id.to_owned());
+            id.to_owned()
+        });
+        ids
+    }
+
+    #[test]
+    fn jointed_objects_are_saved_where_they_are() {
+        for motion in [JointMotion::Slide, JointMotion::Turn] {
+            let color = Rgb::GRAY;
+            let ball = |id: &str, pose, mass| {
+                ObjectSpec::new(id, pose, mass, Shape::Sphere { radius: 0.5, color })
+            };
+            let spec = JointedSpec {
+                pose: Pose::from_degrees(Vec3::Z * 3.0, Vec3::Z * 30.0),
+                objects: [
+                    ball("a", Pose::at(Vec3::Z), 0.0),
+                    ball("a", Pose::from_degrees(Vec3::Y, Vec3::X * 20.0), 1.0),
+                ],
+                motion,
+                limits: [-3.0, 3.0],
+                init: 1.0,
+                collides: false,
+                damping: 1.0,
+            };
+            let app = app(vec![SceneItem::Jointed(spec.clone())]);
+            let present = present_scene(app.world());
+            assert_eq!(unsaid(&present), [""; 0]);
+            let [SceneItem::Jointed(saved)] = &present.scene.items[..] else {
+                panic!("{:?}", present.scene.items);
+            };
+            assert!((saved.init - 1.0).abs() < 0.1, "{saved:?}");
+            assert!(saved.pose.location.distance(spec.pose.location) < 1e-3);
+            let (pose, init) = (saved.pose, saved.init);
+            assert_eq!(*saved, JointedSpec { pose, init, ..spec });
+        }
     }
 
     #[test]
@@ -435,7 +485,7 @@ mod tests {
         }
         app.step(1);
         let present = present_scene(app.world());
-        let ids: Vec<_> = present.scene.items.iter().map(id).collect();
+        let ids: Vec<_> = present.scene.items.iter().flat_map(ids_of).collect();
         assert_eq!(ids, ["smallblock", "smallblock", "smallblock", "container"]);
         assert_eq!(unsaid(&present), [""; 0]);
     }

@@ -206,8 +206,8 @@ pub(crate) fn established(
 /// The joint along which an object slides: the object that it slides on, and the joint's frame in that one, with its travel.
 pub(crate) fn slider<'s>(joints: &'s [JointSpec], id: &str) -> Option<(&'s JointSpec, f32)> {
     joints.iter().find_map(|joint| match joint.kind {
-        JointKind::Slider { travel, .. } if joint.objects[1] == id => Some((joint, travel)),
-        JointKind::Slider { .. } | JointKind::Ball => None,
+        JointKind::Slider { max, .. } if joint.objects[1] == id => Some((joint, max)),
+        JointKind::Slider { .. } | JointKind::Hinge { .. } | JointKind::Ball => None,
     })
 }
 

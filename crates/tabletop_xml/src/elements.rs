@@ -4,12 +4,13 @@ pub(crate) mod attributes;
 mod chain;
 mod cost;
 mod hollow;
+mod jointed;
 mod lidbox;
 mod object;
 mod overlap;
 pub(crate) mod value;
 
-use tabletop_core::{SceneItem, SceneSpec, Table};
+use tabletop_core::{JointMotion, SceneItem, SceneSpec, Table};
 
 use crate::{
     NAMESPACE,
@@ -23,7 +24,7 @@ use crate::{
 };
 
 pub(crate) const DESCRIPTION: &str = "description";
-const ITEMS: [&str; 7] = [
+const ITEMS: [&str; 9] = [
     "block",
     "cylinder",
     "sphere",
@@ -31,13 +32,14 @@ const ITEMS: [&str; 7] = [
     "composite",
     "chain",
     "lidbox",
+    "sliderJoint",
+    "hingeJoint",
 ];
 /// Elements that only the later program has.
-const OF_THE_LATER_PROGRAM: [&str; 9] = [
+const OF_THE_LATER_PROGRAM: [&str; 8] = [
     "frustum",
     "ring",
     "custom",
-    "sliderJoint",
     "toggleSwitch",
     "indicatorLights",
     "customControl",
@@ -84,6 +86,12 @@ impl ElementReader<'_> {
             let item = match child.name {
                 "chain" => self.chain(child).map(SceneItem::Chain),
                 "lidbox" => self.lidbox(child).map(SceneItem::LidBox),
+                "sliderJoint" => self
+                    .jointed(child, JointMotion::Slide)
+                    .map(SceneItem::Jointed),
+                "hingeJoint" => self
+                    .jointed(child, JointMotion::Turn)
+                    .map(SceneItem::Jointed),
                 _ => self.object(child).map(SceneItem::Object),
             };
             let Some(item) = item else {
@@ -179,7 +187,8 @@ mod tests {
 
     #[test]
     fn elements_have_their_place() {
-        let whole = "block, cylinder, sphere, box, composite, chain, lidbox";
+        let whole =
+            "block, cylinder, sphere, box, composite, chain, lidbox, sliderJoint, hingeJoint";
         for (content, fault) in [
             ("<cube/>", format!("cube: it is not known, expected one of {whole}")),
             ("<Sphere/>", "Sphere: it is not known, expected <sphere>".into()),

@@ -8,7 +8,8 @@ use std::fmt::Write as _;
 use bevy::math::{DVec3, Vec3};
 use quick_xml::escape::escape;
 use tabletop_core::{
-    ChainSpec, LidBoxSpec, NAMED_COLORS, ObjectSpec, Part, Pose, Rgb, SceneItem, SceneSpec, Shape,
+    ChainSpec, JointMotion, JointedSpec, LidBoxSpec, NAMED_COLORS, ObjectSpec, Part, Pose, Rgb,
+    SceneItem, SceneSpec, Shape,
 };
 
 use crate::{
@@ -48,6 +49,7 @@ pub fn write(scene: &SceneSpec) -> String {
             SceneItem::Object(object) => writer.object(object),
             SceneItem::Chain(chain) => writer.chain(chain),
             SceneItem::LidBox(lidbox) => writer.lidbox(lidbox),
+            SceneItem::Jointed(jointed) => writer.jointed(jointed),
         }
     }
     writer.close();
@@ -157,6 +159,24 @@ impl Writer {
         self.number("handleThickness", lidbox.handle_thickness);
         self.color("handleColor", lidbox.handle_color);
         self.descriptions(&lidbox.descriptions);
+        self.close();
+    }
+
+    fn jointed(&mut self, jointed: &JointedSpec) {
+        self.open(match jointed.motion {
+            JointMotion::Slide => "sliderJoint",
+            JointMotion::Turn => "hingeJoint",
+        });
+        self.pose(jointed.pose);
+        let [min, max] = jointed.limits;
+        self.number("min", min);
+        self.number("max", max);
+        self.number("init", jointed.init);
+        self.attribute("collision", &jointed.collides.to_string());
+        self.number("damping", jointed.damping);
+        for object in &jointed.objects {
+            self.object(object);
+        }
         self.close();
     }
 

@@ -10,11 +10,12 @@ use tabletop_core::{
 };
 use tabletop_xml::read_task;
 
-const NAMES: [&str; 14] = [
+const NAMES: [&str; 15] = [
     "chain",
     "chains",
     "cylinders",
     "default",
+    "drawer",
     "empty",
     "gates",
     "hammer",
@@ -150,6 +151,15 @@ fn bodies(item: &SceneItem) -> Vec<Vec<Primitive>> {
         SceneItem::LidBox(lidbox) => {
             let (container, lid, lid_pose) = shapes_of(lidbox);
             vec![placed(&container, lidbox.pose), placed(&lid, lid_pose)]
+        }
+        SceneItem::Jointed(jointed) => {
+            let objects = jointed.placed();
+            vec![
+                objects
+                    .iter()
+                    .flat_map(|object| placed(&object.shape, object.pose))
+                    .collect(),
+            ]
         }
         SceneItem::Chain(chain) => {
             let axis = chain.end - chain.start;

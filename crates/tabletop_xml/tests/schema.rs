@@ -123,6 +123,9 @@ fn schema_and_parser_accept_the_same() {
          <composite location=\"(0,0,1)\"><description name=\"c\" value=\"d\"/><instance def=\"note\"/><instance def=\"parts\"/>\
          <composite location=\"(0,0,0)\"><instance def=\"parts\"/></composite></composite>\
          <sphere location=\"(0,0,1)\"><instance def=\"note\"/></sphere>",
+        "<sliderJoint id=\"j\" location=\"(0,0,1)\" rotation=\"(0,0,9)\" min=\"-1\" max=\"2\" init=\"5\" collision=\"true\" damping=\"1\" \
+         softness=\".5\" restitution=\"0\"><block id=\"a\" location=\"(0,0,0)\"/><box location=\"(0,0,1)\" mass=\"2\"/></sliderJoint>\
+         <hingeJoint location=\"(0,0,1)\" min=\"-180\" max=\"180\" init=\"5\"><sphere location=\"(0,0,0)\"/><sphere location=\"(0,0,1)\"/></hingeJoint>",
         "<def name=\"nothing\"/><block location=\"($1+2*3$,0,1)\"/>",
     ]
     .map(file)
@@ -174,6 +177,10 @@ fn schema_and_parser_reject_the_same() {
         "<chain start=\"(0,0,1)\" end=\"(5,0,1)\" linkPadding=\"-1\"/>",
         "<lidbox location=\"(0,0,1)\" handleXspan=\"0\"/>",
         "<ring location=\"(0,0,1)\"/>",
+        "<sliderJoint><block location=\"(0,0,0)\"/><block location=\"(0,0,1)\"/></sliderJoint>",
+        "<sliderJoint location=\"(0,0,0)\"/>",
+        "<sliderJoint location=\"(0,0,0)\" damping=\"2\"><block location=\"(0,0,0)\"/><block location=\"(0,0,1)\"/></sliderJoint>",
+        "<hingeJoint location=\"(0,0,0)\" max=\"181\"><block location=\"(0,0,0)\"/><block location=\"(0,0,1)\"/></hingeJoint>",
         "<include/>",
         "<def/>",
         "<def name=\"\"/>",

@@ -5,9 +5,9 @@ use std::ops::RangeInclusive;
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{
-    ChainSpec, ClockCommand, Drive, HandCommand, HeadCamera, JointKind, JointSpec, LidBoxSpec,
-    ObjectSpec, Pose, RecordingCommand, RobotCommand, SceneCommand, SceneItem, SceneSpec, Shape,
-    SimCommand, Table,
+    ChainSpec, ClockCommand, Drive, HandCommand, HeadCamera, JointKind, JointSpec, JointedSpec,
+    LidBoxSpec, ObjectSpec, Pose, RecordingCommand, RobotCommand, SceneCommand, SceneItem,
+    SceneSpec, Shape, SimCommand, Table,
 };
 
 /// Ticks from the first command of a log to its end: 30 days.
@@ -27,6 +27,11 @@ const MOST_VALUES: usize = 1 << 20;
 
 const SPANS: RangeInclusive<f32> = 0.001..=1000.0;
 const PADDINGS: RangeInclusive<f32> = 0.0..=1000.0;
+/// How far a joint slides in units, or is told to turn in degrees.
+const DISPLACEMENTS: RangeInclusive<f32> = -1000.0..=1000.0;
+/// How far a joint turns, in radians: half a turn to each side, and what is rounded.
+const ANGLES: RangeInclusive<f32> = -3.15..=3.15;
+const PROPORTIONS: RangeInclusive<f32> = 0.0..=1.0;
 const MASSES: RangeInclusive<f32> = 0.0..=1e6;
 const LINKS: RangeInclusive<u32> = 1..=1000;
 const PLACES: RangeInclusive<f32> = -1e6..=1e6;
@@ -78,9 +83,21 @@ pub(crate) fn check_joint(joint: &JointSpec) -> Checked {
     }
     match joint.kind {
         JointKind::Ball => Ok(()),
-        JointKind::Slider { travel, friction } => {
-            within("travel", travel, &PADDINGS)?;
-            within("friction", friction, &MASSES)
+        JointKind::Slider {
+            min,
+            max,
+            friction,
+            damping,
+        } => {
+            within("min", min, &DISPLACEMENTS)?;
+            within("max", max, &DISPLACEMENTS)?;
+            within("friction", friction, &MASSES)?;
+            within("damping", damping, &PROPORTIONS)
+        }
+        JointKind::Hinge { min, max, damping } => {
+            within("min", min, &ANGLES)?;
+            within("max", max, &ANGLES)?;
+            within("damping", damping, &PROPORTIONS)
         }
     }
 }
@@ -165,8 +182,32 @@ fn check_scene_spec(scene: &SceneSpec) -> Checked {
                 check_lid_box(lid_box).map_err(at(&lid_box.id))?;
                 parts += 2;
             }
+            SceneItem::Jointed(jointed) => check_jointed(jointed, &mut parts)?,
         }
         check_parts(parts)?;
+    }
+    Ok(())
+}
+
+fn check_jointed(jointed: &JointedSpec, parts: &mut usize) -> Checked {
+    let JointedSpec {
+        pose,
+        objects,
+        motion: _,
+        limits: [min, max],
+        init,
+        collides: _,
+        damping,
+    } = jointed;
+    check_place(*pose).map_err(at("joint"))?;
+    for displacement in [*min, *max, *init] {
+        within("displacement", displacement, &DISPLACEMENTS)?;
+    }
+    within("damping", *damping, &PROPORTIONS)?;
+    for object in objects {
+        check_place(object.pose)
+            .and_then(|()| check_object(object, parts))
+            .map_err(at(&object.id))?;
     }
     Ok(())
 }

@@ -64,6 +64,7 @@ impl Stage<'_, '_> {
             objects: [id(first)?, id(second)?],
             frames: joint.frames,
             kind: joint.kind,
+            collides: joint.collides,
         })
     }
 

@@ -32,6 +32,7 @@ pub(super) fn build(spec: &ChainSpec, ids: &mut IdAllocator) -> (Vec<ObjectSpec>
             objects: [first.to_owned(), second.to_owned()],
             frames: [Pose::at(pivot), Pose::at(second_pivot)],
             kind: JointKind::Ball,
+            collides: false,
         });
     };
 

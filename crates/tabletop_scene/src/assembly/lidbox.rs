@@ -41,9 +41,12 @@ pub(super) fn build(spec: &LidBoxSpec, ids: &mut IdAllocator) -> ([ObjectSpec; 2
         objects: [body.id.clone(), lid.id.clone()],
         frames: [top, lid_bottom],
         kind: JointKind::Slider {
-            travel: spec.span.x,
+            min: 0.0,
+            max: spec.span.x,
             friction: LID_FRICTION,
+            damping: 0.0,
         },
+        collides: false,
     };
     ([body, lid], joint)
 }

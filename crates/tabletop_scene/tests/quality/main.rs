@@ -5,5 +5,6 @@ mod world;
 
 mod chains;
 mod falling;
+mod joints;
 mod lids;
 mod resting;

@@ -33,7 +33,7 @@ impl Cost {
         let solids = self.solids + bodies.iter().map(Vec::len).sum::<usize>();
         let links = match item {
             SceneItem::Chain(chain) => self.links + chain.links() as usize,
-            SceneItem::Object(_) | SceneItem::LidBox(_) => self.links,
+            SceneItem::Object(_) | SceneItem::LidBox(_) | SceneItem::Jointed(_) => self.links,
         };
         if solids > MAX_SOLIDS {
             return Err(Excess {
@@ -65,6 +65,15 @@ fn bodies(item: &SceneItem) -> Vec<Vec<Bounds>> {
         SceneItem::Object(object) => vec![solids(&object.shape, object.pose)],
         SceneItem::Chain(chain) => links(chain),
         SceneItem::LidBox(lidbox) => vec![parts_of_lidbox(lidbox)],
+        SceneItem::Jointed(jointed) => {
+            let [first, second] = jointed
+                .placed()
+                .map(|object| solids(&object.shape, object.pose));
+            match jointed.collides {
+                true => vec![first, second],
+                false => vec![[first, second].concat()],
+            }
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::{
     elements::{DESCRIPTION, ElementReader},
 };
 
-const SHAPES: [&str; 5] = ["block", "cylinder", "sphere", "box", "composite"];
+pub(crate) const SHAPES: [&str; 5] = ["block", "cylinder", "sphere", "box", "composite"];
 pub(crate) const SPANS: [&str; 3] = ["xspan", "yspan", "zspan"];
 
 /// Where a shape stands.

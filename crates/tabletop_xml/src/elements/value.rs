@@ -21,6 +21,12 @@ pub(crate) const PADDINGS: RangeInclusive<f32> = 0.0..=1000.0;
 pub(crate) const LINK_COUNTS: RangeInclusive<u32> = 0..=1000;
 /// How long an id can be.
 const MAX_ID: usize = 200;
+/// How far joints slide, in units.
+pub(crate) const DISPLACEMENTS: RangeInclusive<f32> = -1000.0..=1000.0;
+/// How far joints turn, in degrees.
+pub(crate) const ANGLES: RangeInclusive<f32> = -180.0..=180.0;
+/// Shares of a whole.
+pub(crate) const PROPORTIONS: RangeInclusive<f32> = 0.0..=1.0;
 /// Numbers of sides.
 pub(crate) const SIDES: RangeInclusive<u32> = 3..=1_000_000;
 

@@ -61,6 +61,13 @@ fn assert_same(mut left: SceneSpec, right: &SceneSpec) {
             (SceneItem::LidBox(left), SceneItem::LidBox(right)) => {
                 take_over(&mut left.pose, &right.pose);
             }
+            (SceneItem::Jointed(left), SceneItem::Jointed(right)) => {
+                take_over(&mut left.pose, &right.pose);
+                for (left, right) in left.objects.iter_mut().zip(&right.objects) {
+                    take_over(&mut left.pose, &right.pose);
+                    take_over_parts(&mut left.shape, &right.shape);
+                }
+            }
             _ => {}
         }
     }

@@ -3,8 +3,8 @@
 use bevy::math::Vec3;
 use proptest::prelude::*;
 use tabletop_core::{
-    ChainSpec, LidBoxSpec, NAMED_COLORS, ObjectSpec, Part, Pose, Rgb, SceneItem, SceneSpec, Shape,
-    Table,
+    ChainSpec, JointMotion, JointedSpec, LidBoxSpec, NAMED_COLORS, ObjectSpec, Part, Pose, Rgb,
+    SceneItem, SceneSpec, Shape, Table,
 };
 
 fn vectors(most: f32) -> impl Strategy<Value = Vec3> {
@@ -152,6 +152,34 @@ fn lidboxes() -> impl Strategy<Value = LidBoxSpec> {
     )
 }
 
+fn joints() -> impl Strategy<Value = JointedSpec> {
+    let motion = prop_oneof![Just(JointMotion::Slide), Just(JointMotion::Turn)];
+    let limits = (-180.0..180.0_f32, -180.0..180.0_f32, 0.0..=1.0_f32);
+    (
+        poses(),
+        objects(),
+        objects(),
+        motion,
+        limits,
+        any::<bool>(),
+        0.0..=1.0_f32,
+    )
+        .prop_map(
+            |(pose, first, second, motion, (one, other, share), collides, damping)| {
+                let limits = [one.min(other), one.max(other)];
+                JointedSpec {
+                    pose,
+                    objects: [first, second],
+                    motion,
+                    limits,
+                    init: (limits[0] + share * (limits[1] - limits[0])).min(limits[1]),
+                    collides,
+                    damping,
+                }
+            },
+        )
+}
+
 /// Whole scenes.
 pub fn scenes() -> impl Strategy<Value = SceneSpec> {
     let table =
@@ -160,6 +188,7 @@ pub fn scenes() -> impl Strategy<Value = SceneSpec> {
         4 => objects().prop_map(SceneItem::Object),
         1 => chains().prop_map(SceneItem::Chain),
         1 => lidboxes().prop_map(SceneItem::LidBox),
+        1 => joints().prop_map(SceneItem::Jointed),
     ];
     (table, prop::collection::vec(item, 0..5)).prop_map(|(table, items)| SceneSpec { table, items })
 }

@@ -34,7 +34,7 @@ fn objects(scene: &SceneSpec) -> Vec<&ObjectSpec> {
     items
         .filter_map(|item| match item {
             SceneItem::Object(object) => Some(object),
-            SceneItem::Chain(_) | SceneItem::LidBox(_) => None,
+            SceneItem::Chain(_) | SceneItem::LidBox(_) | SceneItem::Jointed(_) => None,
         })
         .collect()
 }

@@ -1,0 +1,138 @@
+//! Two objects of a task file with a joint between them.
+
+use bevy::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::{JointKind, ObjectSpec, Pose};
+
+/// Two objects, of which the second one slides or turns against the first (`<sliderJoint>`, `<hingeJoint>`). Displacements are in
+/// units or degrees.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct JointedSpec {
+    /// The joint's frame.
+    pub pose: Pose,
+    /// The objects. The pose of the first is in the joint's frame, that of the second in the frame that has moved with it.
+    pub objects: [ObjectSpec; 2],
+    /// How the second object moves.
+    pub motion: JointMotion,
+    /// Its least and greatest displacement.
+    pub limits: [f32; 2],
+    /// Its displacement at first.
+    pub init: f32,
+    /// Whether the two objects collide with each other.
+    pub collides: bool,
+    /// The share of its speed that the joint takes away in a tick, 0 to 1.
+    pub damping: f32,
+}
+
+/// How a joint lets its second object move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum JointMotion {
+    /// It slides along -X of the joint.
+    Slide,
+    /// It turns about X of the joint.
+    Turn,
+}
+
+impl JointedSpec {
+    /// The frame that moves with the second object, in the joint's frame, at a displacement.
+    pub fn moved(&self, displacement: f32) -> Pose {
+        match self.motion {
+            JointMotion::Slide => Pose::at(Vec3::NEG_X * displacement),
+            JointMotion::Turn => {
+                Pose::new(Vec3::ZERO, Quat::from_rotation_x(displacement.to_radians()))
+            }
+        }
+    }
+
+    /// The displacement at which two objects are, by the poses of both in the world.
+    pub fn displacement(&self, poses: [Pose; 2]) -> f32 {
+        let [first, second] = [0, 1].map(|index| poses[index] * self.objects[index].pose.inverse());
+        let moved = first.inverse() * second;
+        let displacement = match self.motion {
+            JointMotion::Slide => -moved.location.x,
+            JointMotion::Turn => {
+                let angle = 2.0 * moved.rotation.x.atan2(moved.rotation.w).to_degrees();
+                // The rotation and its negative turn to the same.
+                angle - 360.0 * (angle / 360.0).round()
+            }
+        };
+        displacement.clamp(self.limits[0], self.limits[1])
+    }
+
+    /// The objects with their poses in the world.
+    pub fn placed(&self) -> [ObjectSpec; 2] {
+        let frames = [self.pose, self.pose * self.moved(self.init)];
+        [0, 1].map(|index| ObjectSpec {
+            pose: frames[index] * self.objects[index].pose,
+            ..self.objects[index].clone()
+        })
+    }
+
+    /// The joint's frame in the frames of the objects.
+    pub fn frames(&self) -> [Pose; 2] {
+        self.objects.each_ref().map(|object| object.pose.inverse())
+    }
+
+    /// What the joint leaves free.
+    pub fn kind(&self) -> JointKind {
+        let [min, max] = self.limits;
+        let damping = self.damping;
+        match self.motion {
+            JointMotion::Slide => JointKind::Slider {
+                min,
+                max,
+                friction: 0.0,
+                damping,
+            },
+            JointMotion::Turn => JointKind::Hinge {
+                min: min.to_radians(),
+                max: max.to_radians(),
+                damping,
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Rgb, Shape};
+
+    fn jointed(motion: JointMotion, init: f32) -> JointedSpec {
+        let object = |id: &str, x| {
+            let color = Rgb::GRAY;
+            let shape = Shape::Sphere { radius: 1.0, color };
+            let pose = Pose::from_degrees(Vec3::X * x, Vec3::new(30.0, 20.0, 10.0));
+            ObjectSpec::new(id, pose, 1.0, shape)
+        };
+        JointedSpec {
+            pose: Pose::from_degrees(Vec3::new(1.0, 2.0, 3.0), Vec3::new(0.0, 0.0, 90.0)),
+            objects: [object("a", 0.0), object("b", 0.5)],
+            motion,
+            limits: [-170.0, 170.0],
+            init,
+            collides: false,
+            damping: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_slider_moves_towards_minus_x() {
+        let slider = jointed(JointMotion::Slide, 2.0);
+        let [first, second] = slider.placed();
+        assert!((first.pose.location - Vec3::new(1.0, 2.0, 3.0)).length() < 1e-6);
+        assert!((second.pose.location - Vec3::new(1.0, 0.5, 3.0)).length() < 1e-6);
+    }
+
+    #[test]
+    fn displacements_are_found_again() {
+        for motion in [JointMotion::Slide, JointMotion::Turn] {
+            for init in [-160.0, -2.5, 0.0, 0.1, 90.0] {
+                let jointed = jointed(motion, init);
+                let found = jointed.displacement(jointed.placed().map(|object| object.pose));
+                assert!((found - init).abs() < 1e-3, "{motion:?} {init}: {found}");
+            }
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! Objects with a joint between them.
+
+use tabletop_core::{JointSpec, JointedSpec, ObjectSpec};
+
+use crate::ids::IdAllocator;
+
+/// The two objects, and the joint between them.
+pub(super) fn build(spec: &JointedSpec, ids: &mut IdAllocator) -> ([ObjectSpec; 2], JointSpec) {
+    let objects = spec.placed().map(|object| ObjectSpec {
+        id: ids.unique(&object.id),
+        ..object
+    });
+    let joint = JointSpec {
+        objects: objects.each_ref().map(|object| object.id.clone()),
+        frames: spec.frames(),
+        kind: spec.kind(),
+        collides: spec.collides,
+    };
+    (objects, joint)
+}
