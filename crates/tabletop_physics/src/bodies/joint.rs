@@ -2,8 +2,9 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Joint, JointKind, ObjectSpec, TICK_SECONDS};
+use tabletop_core::{Joint, JointKind, ObjectSpec, Pose, TICK_SECONDS};
 
+use super::mass::mass_properties;
 use crate::settings::PhysicsSettings;
 
 /// How fast dry friction takes up speed, in 1/s: within a tick.
@@ -13,13 +14,33 @@ const FRICTION_RATE: f32 = 60.0;
 pub(crate) fn add_joint(world: &mut World, entity: Entity, joint: &Joint) {
     let [first, second] = joint.objects;
     let gravity = world.resource::<PhysicsSettings>().gravity;
-    let mass = world
+    let load = world
         .get::<ObjectSpec>(second)
-        .map_or(0.0, |spec| spec.mass);
-    let constraint = constraint(joint, mass * gravity);
+        .map_or(Load::default(), |spec| Load {
+            weight: spec.mass * gravity,
+            inertia: inertia_about_x(spec, joint.frames[1]),
+        });
+    let constraint = constraint(joint, load);
     world
         .entity_mut(entity)
         .insert_if_new(ImpulseJoint::new(first, constraint));
+}
+
+/// What the second object is to a joint.
+#[derive(Clone, Copy, Default)]
+struct Load {
+    /// Its weight, in kg units/s².
+    weight: f32,
+    /// Its moment of inertia about the joint's X, in kg units².
+    inertia: f32,
+}
+
+fn inertia_about_x(spec: &ObjectSpec, frame: Pose) -> f32 {
+    let properties = mass_properties(&spec.shape, spec.mass);
+    let axis = frame.rotation * Vec3::X;
+    let in_principal = properties.principal_inertia_local_frame.inverse() * axis;
+    let own = (in_principal * in_principal).dot(properties.principal_inertia);
+    own + spec.mass * frame.location.reject_from(axis).length_squared()
 }
 
 /// How fast a damper takes up speed, in 1/s, that takes away a share of it in a tick.
@@ -28,7 +49,7 @@ fn rate(damping: f32) -> f32 {
     damping / (left * TICK_SECONDS)
 }
 
-fn constraint(joint: &Joint, weight_of_second: f32) -> TypedJoint {
+fn constraint(joint: &Joint, load: Load) -> TypedJoint {
     let locked = match joint.kind {
         JointKind::Ball => JointAxesMask::LOCKED_SPHERICAL_AXES,
         JointKind::Slider { .. } => JointAxesMask::LOCKED_PRISMATIC_AXES,
@@ -54,7 +75,7 @@ fn constraint(joint: &Joint, weight_of_second: f32) -> TypedJoint {
             if friction > 0.0 {
                 constraint
                     .set_motor_velocity(JointAxis::LinX, 0.0, FRICTION_RATE)
-                    .set_motor_max_force(JointAxis::LinX, friction * weight_of_second);
+                    .set_motor_max_force(JointAxis::LinX, friction * load.weight);
             } else if damping > 0.0 {
                 constraint.set_motor_velocity(JointAxis::LinX, 0.0, rate(damping));
             }
@@ -62,7 +83,10 @@ fn constraint(joint: &Joint, weight_of_second: f32) -> TypedJoint {
         JointKind::Hinge { min, max, damping } => {
             constraint.set_limits(JointAxis::AngX, [min, max]);
             if damping > 0.0 {
-                constraint.set_motor_velocity(JointAxis::AngX, 0.0, rate(damping));
+                // Rapier scales the motors of angles with the inertia about the body's centre, not about the hinge.
+                constraint
+                    .set_motor_model(JointAxis::AngX, MotorModel::ForceBased)
+                    .set_motor_velocity(JointAxis::AngX, 0.0, rate(damping) * load.inertia);
             }
         }
     }

@@ -16,7 +16,6 @@ fn doubling(last: &str) -> String {
 fn a_bomb_of_elements_is_a_fault() {
     for last in ["<sphere location='(0,0,1)'/>", ""] {
         let task = read(&doubling(last));
-        assert_eq!(task.faults.len(), 1, "{:?}", task.faults);
         let fault = task.faults[0].to_string();
         assert!(
             fault.contains("with everything put in there are too many elements"),
