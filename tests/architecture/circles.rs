@@ -12,7 +12,7 @@ use std::{
 use crate::source::{Source, Use};
 
 /// Circles that are still to be opened: files that need each other. This list may only become shorter.
-const KNOWN: [(&str, &[&str]); 9] = [
+const KNOWN: [(&str, &[&str]); 8] = [
     ("tabletop", &["replay", "replay::difference"]),
     (
         "tabletop",
@@ -40,18 +40,6 @@ const KNOWN: [(&str, &[&str]); 9] = [
             "window::opening",
             "window::redraw",
             "window::redraw::sight",
-        ],
-    ),
-    (
-        "tabletop_core",
-        &[
-            "clock",
-            "command",
-            "command::clock",
-            "command::issued",
-            "fact",
-            "robot",
-            "sensor",
         ],
     ),
     ("tabletop_core", &["robot::layout", "robot::layout_file"]),

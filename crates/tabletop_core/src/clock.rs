@@ -8,111 +8,11 @@ use bevy::{
     },
     prelude::*,
 };
-use serde::{Deserialize, Serialize};
 
-use crate::{ClockCommand, IssuedCommand, PictureDemand, PictureSystems, SimBlocked};
-
-/// Ticks per second of simulated time.
-pub const TICKS_PER_SECOND: u32 = 60;
-
-/// Length of a tick in seconds.
-pub const TICK_SECONDS: f32 = 1.0 / TICKS_PER_SECOND as f32;
-
-/// Everything of a tick: whatever is in [`FixedUpdate`] and in none of the [`OrderSystems`]. Does not run while
-/// [`SimBlocked`] is set.
-#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct TickSystems;
-
-/// The phases of a tick, in their order, all in the [`FixedUpdate`] schedule.
-#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum SimSystems {
-    /// Commands that name files become commands that hold their content.
-    Load,
-    /// Commands, scenarios and scripts are carried out: things appear, disappear and get targets. Runs while paused, too.
-    Ingest,
-    /// Hands, joints and grippers turn targets into kinematic poses and motor commands.
-    Actuate,
-    /// The physics engine makes one step.
-    Physics,
-    /// Global transforms are brought up to this tick. Runs while paused, too.
-    Propagate,
-    /// Contacts, grips and forward kinematics are read from the new state; then [the picture is taken](PictureSystems).
-    Sense,
-    /// Recorders and scripts get what this tick brought.
-    Record,
-    /// [`SimTick`] moves on.
-    Advance,
-}
-
-/// Who gives commands for the tick that begins, in this order, before [`TickSystems`].
-#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum OrderSystems {
-    /// Scenarios.
-    Scenario,
-    /// What a user holds down: keys and buttons.
-    User,
-    /// Scripts.
-    Script,
-}
-
-/// The phases in which commands are carried out, in this order, after [`SimSystems::Load`] and before [`SimSystems::Actuate`].
-/// [`SimCommand::phase`](crate::SimCommand::phase) says which command has which. They run while paused, too.
-#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum CommandSystems {
-    /// Recordings begin.
-    Recording,
-    /// The clock is stopped, or runs on.
-    Clock,
-    /// Objects appear and go. It is part of [`SimSystems::Ingest`].
-    Scene,
-    /// Undo and redo.
-    History,
-    /// The demonstrator's hands.
-    Hands,
-    /// The robot.
-    Robot,
-}
-
-/// Who moves things in [`SimSystems::Actuate`], in this order.
-#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum ActuateSystems {
-    /// The demonstrator's hands.
-    Hands,
-    /// The robot.
-    Robot,
-}
-
-/// How many ticks have been simulated.
-#[derive(
-    Resource, Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize,
-)]
-pub struct SimTick(pub u64);
-
-/// Whether the simulation stands still. Commands are still carried out, so files can be loaded.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Paused(pub bool);
-
-impl Paused {
-    /// Whether the tick that begins is one of a pause, which may have been asked for just now: for systems that give orders.
-    pub fn will_be(
-        mut commands: MessageReader<IssuedCommand>,
-        mut asked_for: Local<Option<bool>>,
-        paused: Res<Self>,
-    ) -> bool {
-        let commands = commands.read().filter_map(IssuedCommand::of_kind);
-        let pauses = commands.map(|(_, command)| match command {
-            ClockCommand::SetPaused(pause) => *pause,
-        });
-        // While the simulation is blocked, what was asked for in an earlier frame is still to be done.
-        *asked_for = pauses.last().or(*asked_for).filter(|ask| *ask != paused.0);
-        asked_for.unwrap_or(paused.0)
-    }
-
-    /// Run condition: the simulation is running.
-    pub fn is_running(paused: Res<Self>) -> bool {
-        !paused.0
-    }
-}
+use crate::{
+    ActuateSystems, CommandSystems, OrderSystems, Paused, PictureDemand, PictureSystems,
+    SimBlocked, SimSystems, SimTick, TICKS_PER_SECOND, TickSystems,
+};
 
 pub(crate) fn configure(app: &mut App) {
     app.init_resource::<SimTick>()
@@ -224,7 +124,7 @@ impl StepApp for App {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{CorePlugin, SceneCommand, WriteCommand as _};
+    use crate::{ClockCommand, CorePlugin, IssuedCommand, SceneCommand, WriteCommand as _};
 
     #[test]
     fn a_pause_stops_the_clock_and_not_the_commands() {

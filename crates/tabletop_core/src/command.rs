@@ -4,20 +4,23 @@
 //! with [`CommandWriter`] or [`WriteCommand`], and travels as an [`IssuedCommand`]: with its [id](CommandId), which the
 //! [facts](crate::SimFact) that come of it name, and with the [`Actor`] who gave it.
 
+mod carry_out;
 mod clock;
 mod hand;
 mod history;
+mod id;
 mod issued;
 mod recording;
 mod robot;
 mod scene;
 
+pub use carry_out::{Cause, carry_out};
 pub use clock::ClockCommand;
-pub(crate) use clock::carry_out as carry_out_clock;
 pub use hand::HandCommand;
 pub use history::HistoryCommand;
+pub use id::CommandId;
 pub(crate) use issued::NextCommandId;
-pub use issued::{Actor, Cause, CommandId, CommandWriter, IssuedCommand, WriteCommand, carry_out};
+pub use issued::{Actor, CommandWriter, IssuedCommand, WriteCommand};
 pub use recording::RecordingCommand;
 pub use robot::RobotCommand;
 pub use scene::SceneCommand;

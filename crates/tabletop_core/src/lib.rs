@@ -34,6 +34,8 @@ mod navigation;
 mod number;
 mod object;
 mod pace;
+mod paused;
+mod phase;
 mod playback;
 mod pose;
 mod preset;
@@ -47,16 +49,14 @@ mod scene;
 mod sensor;
 mod shape;
 mod shipped;
+mod tick;
 mod timeline;
 mod twist;
 mod user;
 
 pub use agent::{Agent, ScriptCommand, ScriptEvent, SimBlocked};
 pub use bounds::Bounds;
-pub use clock::{
-    ActuateSystems, CommandSystems, OrderSystems, Paused, SimSystems, SimTick, StepApp,
-    TICK_SECONDS, TICKS_PER_SECOND, TickSystems,
-};
+pub use clock::StepApp;
 pub use color::{ColorError, NAMED_COLORS, Rgb};
 pub use command::{
     Actor, Cause, ClockCommand, CommandId, CommandKind, CommandWriter, HandCommand, HistoryCommand,
@@ -76,6 +76,8 @@ pub use navigation::{CameraMotion, CameraView, Steering};
 pub use number::Decimal;
 pub use object::{ObjectIndex, ObjectSpec};
 pub use pace::{Pace, PacePlugin, SingleStep};
+pub use paused::Paused;
+pub use phase::{ActuateSystems, CommandSystems, OrderSystems, SimSystems, TickSystems};
 pub use playback::{Playback, PlaybackOrder};
 pub use pose::{Pose, UNITS_PER_METER, degrees_from_quat, quat_from_degrees};
 pub use preset::Preset;
@@ -92,6 +94,7 @@ pub use scene::{ChainSpec, Joint, JointKind, JointSpec, LidBoxSpec, SceneItem, S
 pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage};
 pub use shape::{Part, Primitive, Shape, Solid};
 pub use shipped::{ShippedFile, ShippedFiles, is_shipped, seen_from};
+pub use tick::{SimTick, TICK_SECONDS, TICKS_PER_SECOND};
 pub use timeline::{
     Act, Manipulator, Timeline, TimelineGrip, TimelinePicture, TimelineSegment, TimelineStage, Verb,
 };
@@ -152,10 +155,7 @@ impl Plugin for CorePlugin {
             .init_resource::<Steering>()
             .init_resource::<ObjectIndex>()
             .init_resource::<Timeline>()
-            .add_systems(
-                FixedUpdate,
-                command::carry_out_clock.in_set(CommandSystems::Clock),
-            )
+            .add_systems(FixedUpdate, paused::carry_out.in_set(CommandSystems::Clock))
             .configure_sets(
                 RunFixedMainLoop,
                 KeySystems.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),

@@ -140,8 +140,76 @@ fn ticks(seconds: f32) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use tabletop_core::RobotCommand;
+
     use super::*;
     use crate::{Outcome, test_stage::Stage};
+
+    /// The steps that give each kind of command.
+    const STEPS: [&str; 19] = [
+        "Start",
+        "Finish",
+        "Pause(true)",
+        "Load(file: \"a.xml\")",
+        "Clear",
+        "Make(BigBlock)",
+        "Undo",
+        "Redo",
+        "Select(Left)",
+        "Grasp(\"low\")",
+        "MoveTo((0, 0, 1))",
+        "MoveBy((0, 0, 1))",
+        "Turn(axis: Z, degrees: 5)",
+        "Release",
+        "Destroy",
+        "Robot(Show)",
+        "Robot(Close(Left))",
+        "Robot(ReachTo(arm: Left, at: (0, 0, 1)))",
+        "Robot(Face(Asleep))",
+    ];
+
+    /// Which of the [`STEPS`] gives such a command; none gives what only the program and scripts do.
+    fn step_of(command: &SimCommand) -> Option<&'static str> {
+        let place = match command {
+            SimCommand::Recording(RecordingCommand::Start) => 0,
+            SimCommand::Recording(RecordingCommand::Finish) => 1,
+            SimCommand::Clock(ClockCommand::SetPaused(_)) => 2,
+            // A scenario reads its files before it runs.
+            SimCommand::Scene(SceneCommand::Load(_)) => return None,
+            SimCommand::Scene(SceneCommand::Set(_)) => 3,
+            SimCommand::Scene(SceneCommand::Clear) => 4,
+            SimCommand::Scene(SceneCommand::Make { .. }) => 5,
+            SimCommand::History(HistoryCommand::Undo) => 6,
+            SimCommand::History(HistoryCommand::Redo) => 7,
+            SimCommand::Hand(HandCommand::Select(_)) => 8,
+            SimCommand::Hand(HandCommand::Grasp { .. }) => 9,
+            SimCommand::Hand(HandCommand::MoveTo { .. }) => 10,
+            SimCommand::Hand(HandCommand::MoveBy { .. }) => 11,
+            SimCommand::Hand(HandCommand::Turn { .. }) => 12,
+            SimCommand::Hand(HandCommand::Release(_)) => 13,
+            SimCommand::Hand(HandCommand::Destroy(_)) => 14,
+            SimCommand::Robot(RobotCommand::Show(_)) => 15,
+            SimCommand::Robot(RobotCommand::Drive(_)) => 16,
+            SimCommand::Robot(RobotCommand::ReachTo { .. }) => 17,
+            SimCommand::Robot(RobotCommand::ShowFace(_)) => 18,
+            SimCommand::Robot(RobotCommand::ShowMarkers(_)) => return None,
+        };
+        Some(STEPS[place])
+    }
+
+    #[test]
+    fn whatever_a_user_can_do_is_a_step() {
+        for step in STEPS {
+            let mut stage = Stage::new(step);
+            stage.holders[0] = Some(Hand::Any);
+            let command = stage.tick();
+            assert_eq!(
+                command.as_ref().and_then(step_of),
+                Some(step),
+                "{command:?}"
+            );
+        }
+    }
 
     #[test]
     fn waits_take_their_time_also_while_paused() {

@@ -254,21 +254,21 @@ mod tests {
     #[test]
     fn an_object_of_a_scene_names_the_command_that_it_came_of() {
         let mut app = app();
-        let set = app.world_mut().write_command(scene(&["a"]));
-        app.step(1);
-        let clear = app.world_mut().write_command(SceneCommand::Clear);
-        app.step(1);
-        let mut facts = app.world_mut().resource_mut::<Messages<SimFact>>();
-        let causes: Vec<_> = facts
-            .drain()
-            .map(|fact| match fact {
-                SimFact::ObjectCreated { cause, .. } | SimFact::ObjectDeleted { cause, .. } => {
-                    cause
-                }
-                other => panic!("{other:?}"),
-            })
-            .collect();
-        assert_eq!(causes, [Some(set), Some(clear)]);
+        for command in [scene(&["a"]), SceneCommand::Clear.into()] {
+            let id = app.world_mut().write_command(command);
+            app.step(1);
+            let mut facts = app.world_mut().resource_mut::<Messages<SimFact>>();
+            let causes: Vec<_> = facts
+                .drain()
+                .map(|fact| match fact {
+                    SimFact::ObjectCreated { cause, .. } | SimFact::ObjectDeleted { cause, .. } => {
+                        cause
+                    }
+                    other => panic!("{other:?}"),
+                })
+                .collect();
+            assert_eq!(causes, [Some(id)]);
+        }
     }
 
     #[test]

@@ -1,19 +1,9 @@
-//! Commands on their way: who gives them, and how they are told apart.
+//! Commands on their way, and who gives them.
 
-use bevy::{
-    ecs::system::{SystemParam, SystemState},
-    prelude::*,
-};
+use bevy::{ecs::system::SystemParam, prelude::*};
 use serde::{Deserialize, Serialize};
 
-use super::{CommandKind, SimCommand};
-use crate::SimFact;
-
-/// Tells a command from all others of an app. Of two commands, the one that was written later has the larger id.
-///
-/// A recording keeps no ids: a demonstration without what was undone is the same to the byte as one in which nothing was.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct CommandId(pub u64);
+use super::{CommandId, CommandKind, SimCommand};
 
 /// Who gives a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -115,97 +105,10 @@ impl WriteCommand for World {
     }
 }
 
-/// The command that is being carried out.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Cause(pub Option<CommandId>);
-
-/// Carries out the commands of one kind that a system has not read yet, one after the other, each on the world that the one
-/// before has left. Meanwhile [`Cause`] names the command. If it says why it cannot, that is [refused](SimFact::Refused).
-///
-/// # Errors
-///
-/// The world has no commands: [`CorePlugin`](crate::CorePlugin) is missing.
-pub fn carry_out<C: CommandKind>(
-    world: &mut World,
-    reader: &mut SystemState<MessageReader<IssuedCommand>>,
-    mut each: impl FnMut(&mut World, CommandId, C) -> Result<(), String>,
-) -> Result {
-    let mut issued = reader.get_mut(world)?;
-    let commands = issued.read().filter_map(IssuedCommand::of_kind);
-    let commands: Vec<_> = commands
-        .map(|(id, command): (_, &C)| (id, command.clone()))
-        .collect();
-    for (id, command) in commands {
-        world.insert_resource(Cause(Some(id)));
-        let refusal = each(world, id, command).err();
-        world.insert_resource(Cause(None));
-        if let Some(reason) = refusal {
-            world.write_message(SimFact::Refused {
-                cause: Some(id),
-                reason,
-            });
-        }
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{CommandSystems, CorePlugin, Hand, HandCommand, SceneCommand, StepApp as _};
-
-    #[derive(Resource, Default)]
-    struct CarriedOut(Vec<(CommandId, Cause)>);
-
-    fn carry_out_hands(
-        world: &mut World,
-        reader: &mut SystemState<MessageReader<IssuedCommand>>,
-    ) -> Result {
-        carry_out(world, reader, |world, id, command| {
-            let cause = *world.resource::<Cause>();
-            world.resource_mut::<CarriedOut>().0.push((id, cause));
-            match command {
-                HandCommand::Release(hand) => Err(format!("{hand} holds nothing")),
-                HandCommand::Select(_)
-                | HandCommand::Grasp { .. }
-                | HandCommand::MoveTo { .. }
-                | HandCommand::MoveBy { .. }
-                | HandCommand::Turn { .. }
-                | HandCommand::Destroy(_) => Ok(()),
-            }
-        })
-    }
-
-    #[test]
-    fn a_refusal_names_its_command_and_the_next_one_is_carried_out() {
-        let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default()))
-            .init_resource::<CarriedOut>()
-            .add_systems(FixedUpdate, carry_out_hands.in_set(CommandSystems::Hands))
-            .start();
-        let world = app.world_mut();
-        let release = world.write_command(HandCommand::Release(Hand::Left));
-        let clear = world.write_command(SceneCommand::Clear);
-        let select = world.write_command(HandCommand::Select(Hand::Left));
-        assert!(release < clear && clear < select);
-        app.step(1);
-        let carried_out = &app.world().resource::<CarriedOut>().0;
-        assert_eq!(
-            *carried_out,
-            [release, select].map(|id| (id, Cause(Some(id))))
-        );
-        assert_eq!(*app.world().resource::<Cause>(), Cause(None));
-        let facts: Vec<_> = app
-            .world_mut()
-            .resource_mut::<Messages<SimFact>>()
-            .drain()
-            .collect();
-        let refused = SimFact::Refused {
-            cause: Some(release),
-            reason: "LeftHand holds nothing".into(),
-        };
-        assert_eq!(facts, [refused]);
-    }
+    use crate::{CorePlugin, SceneCommand, StepApp as _};
 
     #[test]
     fn a_command_says_who_gives_it() {
