@@ -116,6 +116,9 @@ impl Replay {
                 .map_err(|error| fault("settings.physics", error.to_string()))?,
             None => PhysicsSettings::default(),
         };
+        if let Some(problem) = physics.fault() {
+            return Err(fault("settings.physics", problem));
+        }
         let robot_settings = match header.settings.get(ROBOT) {
             Some(robot) => RobotSettings::deserialize(robot)
                 .map_err(|error| fault("settings.robot", error.to_string()))?,

@@ -302,6 +302,12 @@ fn settings_that_this_program_does_not_have_are_located() {
             "settings.physics: unknown field `stickiness`",
         ),
         (
+            "weightless",
+            "\"gravity\":98.1",
+            "\"gravity\":1e300",
+            "settings.physics: gravity: inf is not a number from -10000 to 10000",
+        ),
+        (
             "ticks",
             "\"ticks_per_second\":60",
             "\"ticks_per_second\":50",
@@ -360,4 +366,25 @@ fn what_is_no_recording_is_exit_code_2() {
     let output = tabletop(&["replay", "no such folder"]);
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(stderr(&output).lines().count(), 1, "{}", stderr(&output));
+}
+
+#[test]
+fn a_camera_that_is_too_large_is_located() {
+    let folder = with_header("large_camera", "\"width\":200", "\"width\":20000");
+    let output = tabletop(&["replay", folder.to_str().unwrap(), "--verify"]);
+    assert_eq!(output.status.code(), Some(2));
+    let place = format!(
+        "{}:1: camera: 20000x150",
+        folder.join("session.jsonl").display()
+    );
+    assert!(stderr(&output).contains(&place), "{}", stderr(&output));
+}
+
+#[test]
+fn what_a_terminal_obeys_is_written_out() {
+    let scenario = scenario("escape.ron", "Grasp(\"\\u{1b}[31mred\"),");
+    let output = tabletop(&["run", scenario.to_str().unwrap()]);
+    let said = stderr(&output);
+    assert!(said.contains("\\u{1b}[31mred"), "{said}");
+    assert!(!said.contains('\u{1b}'), "{said}");
 }

@@ -16,8 +16,9 @@ END
 record=("$program" run "$place/undo.ron" --quiet --record "$place/demo")
 tried=0
 for call in write ftruncate rename mkdir openat unlink; do
-  rm -rf "$place/demo"
-  count=$(strace -f -c -S calls -e "trace=$call" -o "$place/count" "${record[@]}"; awk -v c="$call" '$NF == c {print $4}' "$place/count")
+  rm -rf "$place"/demo*
+  strace -f -c -e "trace=$call" -o "$place/count" "${record[@]}"
+  count=$(awk -v call="$call" '$NF == call { print $4 }' "$place/count")
   for ((n = 1; n <= ${count:-0}; n += every)); do
     for fault in error=ENOSPC error=EIO signal=KILL; do
       rm -rf "$place"/demo*

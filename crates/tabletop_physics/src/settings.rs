@@ -24,6 +24,34 @@ pub struct PhysicsSettings {
 }
 
 impl PhysicsSettings {
+    /// What makes no sense in them.
+    pub fn fault(&self) -> Option<String> {
+        let Self {
+            gravity,
+            friction,
+            restitution,
+            angular_damping,
+            rolling_damping,
+            link_damping,
+            sleep: _,
+        } = *self;
+        let numbers = [
+            ("gravity", gravity, -1e4..=1e4),
+            ("friction", friction, 0.0..=1e3),
+            ("restitution", restitution, 0.0..=1.0),
+            ("angular_damping", angular_damping, 0.0..=1e4),
+            ("rolling_damping", rolling_damping, 0.0..=1e4),
+            ("link_damping", link_damping, 0.0..=1e4),
+        ];
+        let (name, value, range) = numbers
+            .into_iter()
+            .find(|(_, value, range)| !range.contains(value))?;
+        let (least, most) = range.into_inner();
+        Some(format!(
+            "{name}: {value} is not a number from {least} to {most}"
+        ))
+    }
+
     /// The default settings.
     pub const DEFAULT: Self = Self {
         gravity: 98.1,

@@ -549,3 +549,50 @@ fn a_recording_whose_folder_cannot_be_made_fails() {
     assert!(!app.world().resource::<Recording>().0);
     app.step(20);
 }
+
+#[cfg(unix)]
+#[test]
+fn of_several_that_start_at_once_one_gets_the_folder_and_nothing_is_left_of_the_others() {
+    let place = Place::new();
+    for round in 1..=5 {
+        let begin = std::sync::Barrier::new(4);
+        let end = std::sync::Barrier::new(4);
+        let started: Vec<bool> = std::thread::scope(|scope| {
+            let starters: Vec<_> = (0..4)
+                .map(|_| {
+                    scope.spawn(|| {
+                        let mut app = app_into(place.demo());
+                        begin.wait();
+                        run(&mut app, &[(0, RecordingCommand::Start.into())]);
+                        let is_recording = app.world().resource::<Recording>().0;
+                        end.wait();
+                        is_recording
+                    })
+                })
+                .collect();
+            starters
+                .into_iter()
+                .map(|starter| starter.join().unwrap())
+                .collect()
+        });
+        let count = started.iter().filter(|started| **started).count();
+        assert_eq!(count, 1, "round {round}");
+        let folders = fs::read_dir(place.path()).unwrap();
+        let folders: Vec<_> = folders.map(|entry| entry.unwrap().path()).collect();
+        assert_eq!(folders.len(), round, "{folders:?}");
+        for folder in folders {
+            Session::read(folder.join("session.jsonl")).unwrap();
+        }
+    }
+}
+
+#[test]
+fn what_a_starter_left_that_was_killed_is_gone_with_the_next() {
+    let place = Place::new();
+    let left = place.path().join(".demo.new-1");
+    fs::create_dir_all(left.join("0")).unwrap();
+    fs::write(left.join("session.jsonl"), "half").unwrap();
+    let mut app = app(&place);
+    run(&mut app, &[(0, RecordingCommand::Start.into())]);
+    assert_eq!(left.exists(), cfg!(not(unix)));
+}
