@@ -8,7 +8,7 @@ command -v strace >/dev/null || { echo "strace is not installed: nothing was tri
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
 cat >"$place/undo.ron" <<'END'
-(setup: "tablesetup/default.xml", steps: [
+(setup: "shipped:tablesetup/default.xml", steps: [
   Start, Grasp("RedBlock"), MoveTo((-1.5, 0.2, 5)), Wait(0.2), Release, Wait(0.1), Undo, Undo, Wait(0.1), Redo, Redo, Wait(0.1),
   Undo, Grasp("GreenBlock"), Wait(0.3), Undo, Wait(0.3), Finish,
 ])
@@ -22,7 +22,7 @@ for call in write ftruncate rename mkdir openat unlink; do
   for ((n = 1; n <= ${count:-0}; n += every)); do
     for fault in error=ENOSPC error=EIO signal=KILL; do
       rm -rf "$place"/demo*
-      strace -f -qq -o /dev/null -e "trace=$call" -e "inject=$call:$fault:when=$n" "${record[@]}" >/dev/null 2>&1 || true
+      (strace -f -qq -o /dev/null -e "trace=$call" -e "inject=$call:$fault:when=$n" "${record[@]}" || true) >/dev/null 2>&1
       tried=$((tried + 1))
       [[ -e $place/demo ]] || continue
       "$program" replay "$place/demo" --verify 2>"$place/said" ||

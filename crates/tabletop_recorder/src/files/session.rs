@@ -195,10 +195,9 @@ struct Course {
 
 impl Course {
     fn of(header: &SessionHeader) -> Self {
-        let begin = header.begin_tick.unwrap_or(header.start_tick);
         Self {
-            begin,
-            tick: begin,
+            begin: header.begin_tick.unwrap_or(header.start_tick),
+            tick: header.begin_tick.unwrap_or(0),
             is_paused: false,
             is_finished: false,
         }
