@@ -2,7 +2,8 @@
 //!
 //! `cargo bench --bench headless_speed` prints, for unit blocks in towers of five that may not sleep, the median time of a
 //! tick of the whole simulator, of a step of Rapier alone with the same bodies, settings and effort, and their ratio. Both run in
-//! turns in one process, so that what else the machine does touches both.
+//! turns in one process, so that what else the machine does touches both. Then it prints what a tick costs when the blocks
+//! sleep: made like any other (another system is in the app), passed over by itself, and passed over with 59 others.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 
 #[path = "shared/towers.rs"]
@@ -29,6 +30,12 @@ const SETTINGS: PhysicsSettings = PhysicsSettings {
 };
 
 fn main() {
+    awake();
+    println!();
+    at_rest();
+}
+
+fn awake() {
     println!("blocks  simulator  bare Rapier  ratio");
     for blocks in [10, 50, 200] {
         let mut simulator = simulator(SETTINGS, towers_of_five(blocks));
@@ -50,6 +57,34 @@ fn main() {
             step.as_secs_f64() * 1e6,
             tick.as_secs_f64() / step.as_secs_f64()
         );
+    }
+}
+
+fn at_rest() {
+    println!("blocks  at rest: made  passed over  60 passed over");
+    for blocks in [10, 50, 200] {
+        let resting = || simulator(PhysicsSettings::DEFAULT, towers_of_five(blocks));
+        let (mut made, mut passed_over) = (resting(), resting());
+        made.add_systems(FixedUpdate, || {});
+        made.step(300);
+        passed_over.step(300);
+
+        let mut times = [const { Vec::new() }; 3];
+        for _ in 0..TURNS {
+            times[0].push(time(|| {
+                made.step(u64::from(TICKS_PER_TURN));
+            }));
+            times[1].push(time(|| {
+                for _ in 0..TICKS_PER_TURN {
+                    passed_over.step(1);
+                }
+            }));
+            times[2].push(time(|| {
+                passed_over.step(u64::from(TICKS_PER_TURN));
+            }));
+        }
+        let [made, alone, together] = times.map(|times| median(times).as_nanos() as f64 / 1e3);
+        println!("{blocks:6}  {made:10.2} µs  {alone:8.2} µs  {together:11.3} µs");
     }
 }
 

@@ -5,7 +5,9 @@ use std::path::absolute;
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use tabletop_core::{Robot, RobotMode, SimFact, SimSystems, TickSystems, is_shipped};
+use tabletop_core::{
+    RestingSystems, Robot, RobotMode, SimFact, SimSystems, TickSystems, is_shipped,
+};
 use tabletop_physics::PhysicsSettings;
 use tabletop_recorder::SessionSettings;
 use tabletop_robot::{Description, DescriptionError, RobotPlugin, Source};
@@ -101,6 +103,7 @@ impl Plugin for RecordedSettingsPlugin {
             )
                 .chain()
                 .in_set(TickSystems)
+                .in_set(RestingSystems)
                 .before(SimSystems::Load)
                 .run_if(resource_exists::<SessionSettings>),
         );

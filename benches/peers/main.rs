@@ -42,7 +42,9 @@ fn main() {
 
     println!();
     println!("How many times as fast as MuJoCo (towers of five, median of {TURNS} turns):");
-    println!("blocks  tick      awake, at 1/60 s  awake, at 0.002 s elliptic  at rest, at 1/60 s");
+    println!(
+        "blocks  tick      awake, at 1/60 s  awake, at 0.002 s elliptic  at rest, at 1/60 s, one a call, 60 a call"
+    );
     for blocks in [10, 50, 200] {
         let mut awake = simulator(AWAKE, towers_of_five(blocks));
         let mut resting = simulator(PhysicsSettings::DEFAULT, towers_of_five(blocks));
@@ -52,14 +54,23 @@ fn main() {
             let ours = time(&mut awake);
             let coarse = mujoco.ask("coarse", blocks, 1.0) / 1e9;
             let fine = mujoco.ask("fine", blocks, 1.0) / 1e9;
-            let rest = time(&mut resting);
-            [ours, coarse / ours, fine / ours, coarse / rest]
+            let one_by_one = time_one_by_one(&mut resting);
+            let together = time(&mut resting);
+            [
+                ours,
+                coarse / ours,
+                fine / ours,
+                coarse / one_by_one,
+                coarse / together,
+            ]
         };
         let turns: Vec<_> = std::iter::repeat_with(turn).take(TURNS).collect();
-        let [ours, coarse, fine, rest] =
-            [0, 1, 2, 3].map(|column| median(turns.iter().map(|turn| turn[column]).collect()));
+        let [ours, coarse, fine, one_by_one, together] =
+            [0, 1, 2, 3, 4].map(|column| median(turns.iter().map(|turn| turn[column]).collect()));
         let tick = ours / 60.0 * 1e6;
-        println!("{blocks:6}  {tick:6.1} µs {coarse:16.2}  {fine:26.1}  {rest:18.0}");
+        println!(
+            "{blocks:6}  {tick:6.1} µs {coarse:16.2}  {fine:26.1}  {one_by_one:30.0}  {together:9.0}"
+        );
     }
 }
 
@@ -67,6 +78,15 @@ fn main() {
 fn time(simulator: &mut App) -> f64 {
     let start = Instant::now();
     simulator.step(60);
+    start.elapsed().as_secs_f64()
+}
+
+/// How long it takes when each tick is asked for alone.
+fn time_one_by_one(simulator: &mut App) -> f64 {
+    let start = Instant::now();
+    for _ in 0..60 {
+        simulator.step(1);
+    }
     start.elapsed().as_secs_f64()
 }
 

@@ -13,8 +13,8 @@ use serde_json::json;
 use tabletop::{
     TabletopSimPlugins,
     core::{
-        ClockCommand, Recording, RecordingCommand, SceneCommand, SceneSpec, SimFact, SimTick,
-        StepApp as _, TICKS_PER_SECOND, WriteCommand as _,
+        ClockCommand, Recording, RecordingCommand, RestingSystems, SceneCommand, SceneSpec,
+        SimFact, SimTick, StepApp as _, TICKS_PER_SECOND, WriteCommand as _,
     },
     final_state, headless_app_with,
     recorder::{RecorderPlugin, UnrecordedPlugin},
@@ -97,7 +97,10 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
             let setup = args.setup.as_deref();
             let setup = setup.unwrap_or(Path::new(super::DEFAULT_SETUP));
             let (mut app, result) = put_on_table(setup, plugins(args)?)?;
-            app.add_systems(FixedLast, report_what_stops_the_robot);
+            app.add_systems(
+                FixedLast,
+                report_what_stops_the_robot.in_set(RestingSystems),
+            );
             args.robot.show(&mut app);
             let start = Instant::now();
             let script = Script::start(&mut app, args.script.is_some());
@@ -160,8 +163,10 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
 
     let mut app = headless_app_with((recording(plugins(args)?, args), ScenarioPlugin));
     let (limit, only_prepares) = (program.limit, program.only_prepares());
-    app.insert_resource(ScenarioRun::new(program))
-        .add_systems(FixedLast, report_what_stops_the_robot);
+    app.insert_resource(ScenarioRun::new(program)).add_systems(
+        FixedLast,
+        report_what_stops_the_robot.in_set(RestingSystems),
+    );
     args.robot.show(&mut app);
     let start = Instant::now();
     let mut script = Script::start(&mut app, args.script.is_some());

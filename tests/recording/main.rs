@@ -5,6 +5,7 @@ mod damaged;
 mod demonstration;
 mod ending;
 mod faults;
+mod passed_over;
 mod playback;
 mod random;
 mod rest;

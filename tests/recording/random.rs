@@ -122,7 +122,7 @@ pub fn scene() -> SimCommand {
     })))
 }
 
-fn hand_command(random: &mut Random) -> SimCommand {
+pub fn hand_command(random: &mut Random) -> SimCommand {
     let hand = random.of(&Hand::ALL);
     match random.below(8) {
         0..=2 => SimCommand::Hand(HandCommand::Grasp {
@@ -147,7 +147,7 @@ fn hand_command(random: &mut Random) -> SimCommand {
     }
 }
 
-fn robot_command(random: &mut Random) -> SimCommand {
+pub fn robot_command(random: &mut Random) -> SimCommand {
     let joint = random.of(&RobotJoint::ALL);
     let speed = f64::from(random.between(-3.0, 3.0));
     let arm = random.of(&Arm::BOTH);
@@ -171,7 +171,7 @@ fn robot_command(random: &mut Random) -> SimCommand {
     }
 }
 
-fn scene_command(random: &mut Random) -> SimCommand {
+pub fn scene_command(random: &mut Random) -> SimCommand {
     let preset = random.of(&[Preset::BigBlock, Preset::Stack(2), Preset::BoxContainer]);
     match random.below(8) {
         0 => SimCommand::Scene(SceneCommand::Clear),

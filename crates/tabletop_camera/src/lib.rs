@@ -59,7 +59,9 @@ pub mod prelude {
 }
 
 use bevy::prelude::*;
-use tabletop_core::{HeadCamera, Markers, PictureDemand, PictureSystems, SensorImage};
+use tabletop_core::{
+    HeadCamera, Markers, PictureDemand, PictureSystems, RestingSystems, SensorImage,
+};
 use tabletop_history::RollbackApp;
 
 /// Takes the head camera's picture when it is asked for: of [`HeadCamera`], on [`PictureDemand`], into [`SensorImage`].
@@ -80,7 +82,9 @@ impl Plugin for CameraPlugin {
             .add_observer(head_camera::remove_figure)
             .add_systems(
                 FixedUpdate,
-                head_camera::render_head_camera.in_set(PictureSystems),
+                head_camera::render_head_camera
+                    .in_set(PictureSystems)
+                    .in_set(RestingSystems),
             );
     }
 }

@@ -11,7 +11,7 @@ use bevy::{
 
 use crate::{
     ActuateSystems, CommandSystems, OrderSystems, Paused, PictureDemand, PictureSystems,
-    SimBlocked, SimSystems, SimTick, TICKS_PER_SECOND, TickSystems,
+    RestingSystems, SimBlocked, SimSystems, SimTick, TICKS_PER_SECOND, TickSystems, rest,
 };
 
 pub(crate) fn configure(app: &mut App) {
@@ -69,7 +69,12 @@ pub(crate) fn configure(app: &mut App) {
                 .chain()
                 .in_set(SimSystems::Actuate),
         )
-        .add_systems(FixedUpdate, advance_tick.in_set(SimSystems::Advance));
+        .add_systems(
+            FixedUpdate,
+            advance_tick
+                .in_set(SimSystems::Advance)
+                .in_set(RestingSystems),
+        );
 }
 
 fn advance_tick(mut tick: ResMut<SimTick>) {
@@ -94,7 +99,8 @@ pub trait StepApp {
     /// Finishes the plugins and runs the start-up schedules, once; afterwards the app can be [stepped](Self::step).
     fn start(&mut self) -> &mut Self;
 
-    /// Simulates so many ticks, with nothing of the frame around them: no wall clock, no [`Update`].
+    /// Simulates so many ticks, with nothing of the frame around them: no wall clock, no [`Update`]. Those [at rest](RestingSystems) are
+    /// passed over.
     fn step(&mut self, ticks: u64) -> &mut Self;
 }
 
@@ -110,15 +116,26 @@ impl StepApp for App {
 
     fn step(&mut self, ticks: u64) -> &mut Self {
         let world = self.world_mut();
-        for _ in 0..ticks {
-            world.run_schedule(FixedMain);
-            if let Err(error) = world.run_system_cached(message_update_system) {
-                error!("cannot clear old messages: {error}");
+        for tick in 0..ticks {
+            if rest::has_come(world) {
+                let left = ticks - tick;
+                rest::pass_over(world, left);
+                (0..left.min(2)).for_each(|_| end_tick(world));
+                break;
             }
-            world.clear_trackers();
+            world.run_schedule(FixedMain);
+            end_tick(world);
         }
         self
     }
+}
+
+/// Forgets the messages and removals of the tick before: after two ticks, nothing is left of them.
+fn end_tick(world: &mut World) {
+    if let Err(error) = world.run_system_cached(message_update_system) {
+        error!("cannot clear old messages: {error}");
+    }
+    world.clear_trackers();
 }
 
 #[cfg(test)]

@@ -63,6 +63,11 @@ impl Hands {
             .find(|&hand| self.held_by(hand) == Some(object))
     }
 
+    /// Whether any hand holds an object.
+    pub fn hold_something(&self) -> bool {
+        self.held.iter().any(Option::is_some)
+    }
+
     /// Puts an object into a hand, or takes away what it has.
     pub fn set_held(&mut self, hand: Hand, object: Option<Entity>) {
         self.held[hand as usize] = object;

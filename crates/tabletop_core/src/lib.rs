@@ -42,6 +42,7 @@ mod preset;
 mod random;
 mod ray;
 mod recording;
+mod rest;
 mod robot;
 mod robot_event;
 mod rollback;
@@ -83,6 +84,7 @@ pub use pose::{Pose, UNITS_PER_METER, degrees_from_quat, quat_from_degrees};
 pub use preset::Preset;
 pub use random::Random;
 pub use recording::{History, OpenRecording, Recording, Replaying};
+pub use rest::{RestApp, RestingSystems, Upkeep};
 pub use robot::{
     Arm, BaseLayout, CameraLayout, Drive, Face, FingerLook, Gripped, GripperKind, GripperLayout,
     JOINTS_PER_ARM, JointId, JointLayout, JointName, JointRole, JointState, LayoutError,
@@ -155,12 +157,18 @@ impl Plugin for CorePlugin {
             .init_resource::<Steering>()
             .init_resource::<ObjectIndex>()
             .init_resource::<Timeline>()
-            .add_systems(FixedUpdate, paused::carry_out.in_set(CommandSystems::Clock))
+            .add_systems(
+                FixedUpdate,
+                paused::carry_out
+                    .in_set(CommandSystems::Clock)
+                    .in_set(RestingSystems),
+            )
             .configure_sets(
                 RunFixedMainLoop,
                 KeySystems.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
             );
         clock::configure(app);
+        rest::configure(app);
         if self.one_thread {
             clock::run_ticks_on_one_thread(app);
         }

@@ -165,6 +165,11 @@ impl PictureDemand {
         self.is_insisted.store(true, Ordering::Relaxed);
     }
 
+    /// Whether a picture was asked for.
+    pub(crate) fn is_asked(&self) -> bool {
+        self.is_asked.load(Ordering::Relaxed)
+    }
+
     /// Whether a picture was asked for; afterwards none is.
     pub fn take(&mut self) -> bool {
         *self.is_insisted.get_mut() = false;

@@ -46,7 +46,7 @@ mod rules;
 pub use grasp::{Carry, CarryTarget};
 
 use bevy::prelude::*;
-use tabletop_core::{ActuateSystems, CommandSystems};
+use tabletop_core::{ActuateSystems, CommandSystems, RestingSystems};
 use tabletop_history::{RollbackApp, is_rolling_back};
 
 /// Adds the hands. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin); with
@@ -63,7 +63,8 @@ impl Plugin for DemonstratorPlugin {
                 (
                     grasp::obey.in_set(CommandSystems::Hands),
                     carry::carry.in_set(ActuateSystems::Hands),
-                ),
+                )
+                    .in_set(RestingSystems),
             )
             .add_observer(grasp::note_lost.run_if(not(is_rolling_back)));
     }

@@ -40,7 +40,7 @@ pub use segments::begin_segment;
 pub use snapshot::WorldSnapshot;
 
 use bevy::{prelude::*, transform::components::TransformTreeChanged};
-use tabletop_core::{CommandSystems, Hands, Held, ObjectIndex, SimTick};
+use tabletop_core::{CommandSystems, Hands, Held, ObjectIndex, RestingSystems, SimTick};
 
 use crate::segments::{Segments, undo_and_redo};
 
@@ -76,6 +76,11 @@ impl Plugin for HistoryPlugin {
             .rollback_resource::<Hands>()
             .rollback_resource::<ObjectIndex>()
             .rollback_resource::<SimTick>()
-            .add_systems(FixedUpdate, undo_and_redo.in_set(CommandSystems::History));
+            .add_systems(
+                FixedUpdate,
+                undo_and_redo
+                    .in_set(CommandSystems::History)
+                    .in_set(RestingSystems),
+            );
     }
 }

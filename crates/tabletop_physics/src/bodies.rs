@@ -13,7 +13,9 @@ pub use mass::mass_properties;
 
 use bevy::prelude::*;
 use bevy_rapier3d::plugin::systems::{init_colliders, init_joints, init_rigid_bodies};
-use tabletop_core::{CommandSystems, Joint, ObjectSpec, SimSystems, Table, TickSystems};
+use tabletop_core::{
+    CommandSystems, Joint, ObjectSpec, RestApp as _, RestingSystems, SimSystems, Table, TickSystems,
+};
 
 /// Gives new objects, tables and joints their bodies, in [`FixedUpdate`] after
 /// [`SimSystems::Ingest`]. Runs while paused, too.
@@ -36,7 +38,14 @@ pub(crate) fn plugin(app: &mut App) {
                 .after(SimSystems::Ingest)
                 .before(CommandSystems::History),
         )
-        .add_systems(FixedUpdate, take_in.run_if(any).in_set(BodySystems))
+        .add_systems(
+            FixedUpdate,
+            take_in
+                .run_if(any)
+                .in_set(BodySystems)
+                .in_set(RestingSystems),
+        )
+        .wake_while(any)
         .add_observer(note_object)
         .add_observer(note_table)
         .add_observer(note_joint);

@@ -32,6 +32,7 @@ mod bodies;
 mod effort;
 mod geometry;
 mod holding;
+mod rest;
 mod settings;
 mod snapshot;
 mod transforms;
@@ -50,7 +51,9 @@ use bevy_rapier3d::{
     prelude::*,
     rapier::dynamics::{IntegrationParameters, SpringCoefficients},
 };
-use tabletop_core::{CommandSystems, Paused, SimSystems, TICK_SECONDS, TickSystems, Twist};
+use tabletop_core::{
+    CommandSystems, Paused, RestingSystems, SimSystems, TICK_SECONDS, TickSystems, Twist,
+};
 use tabletop_history::RollbackApp;
 
 /// What Rapier scales its tolerances to. The parameters name them in units; a greater number would only fatten the boxes
@@ -114,16 +117,18 @@ impl Plugin for PhysicsPlugin {
                     RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::StepSimulation),
                     RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::Writeback),
                     (transforms::propagate(), twist::note_twists).in_set(SimSystems::Propagate),
-                ),
+                )
+                    .in_set(RestingSystems),
             )
-            .add_plugins(bodies::plugin)
+            .add_plugins((bodies::plugin, rest::plugin))
             .add_systems(
                 FixedUpdate,
                 holding::let_fall
                     .run_if(Paused::is_running)
                     .after(BodySystems)
                     .before(CommandSystems::History)
-                    .in_set(TickSystems),
+                    .in_set(TickSystems)
+                    .in_set(RestingSystems),
             )
             .rollback_component::<Velocity>()
             .rollback_component::<Sleeping>()

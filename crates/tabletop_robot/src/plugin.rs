@@ -2,8 +2,8 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    ActuateSystems, CommandSystems, Figure, Gripped, HeadCamera, Robot, RobotLayout, RobotMode,
-    SimSystems,
+    ActuateSystems, CommandSystems, Figure, Gripped, HeadCamera, RestApp as _, RestingSystems,
+    Robot, RobotLayout, RobotMode, SimSystems,
 };
 use tabletop_history::{RollbackApp, is_rolling_back};
 
@@ -97,10 +97,18 @@ impl Plugin for RobotPlugin {
                     show_figures
                         .run_if(resource_changed::<Robot>)
                         .in_set(SimSystems::Propagate),
-                ),
+                )
+                    .in_set(RestingSystems),
             )
+            .wake_while(can_move)
             .add_observer(grips::note_lost.run_if(not(is_rolling_back)));
     }
+}
+
+/// Whether the robot can move or touch anything.
+fn can_move(robot: Res<Robot>, targets: Res<JointTargets>, grips: Res<Grips>) -> bool {
+    let is_dynamic = robot.mode == RobotMode::Dynamic;
+    robot.is_shown || is_dynamic || targets.are_given() || grips.all().next().is_some()
 }
 
 /// Lets the head camera turn with the neck.

@@ -49,7 +49,7 @@ pub use step::{Axis, Step};
 use bevy::prelude::*;
 use tabletop_core::{
     Actor, CommandId, CommandWriter, Hands, ObjectIndex, ObjectSpec, OrderSystems, Paused, Pose,
-    Robot, SimFact, Table,
+    RestApp as _, RestingSystems, Robot, SimFact, Table,
 };
 
 use crate::seen::{Seen, SeenObject};
@@ -66,8 +66,10 @@ impl Plugin for ScenarioPlugin {
             FixedUpdate,
             take_due_steps
                 .in_set(OrderSystems::Scenario)
+                .in_set(RestingSystems)
                 .run_if(resource_exists::<ScenarioRun>),
-        );
+        )
+        .wake_while(resource_exists::<ScenarioRun>);
     }
 }
 

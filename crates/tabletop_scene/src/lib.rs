@@ -40,7 +40,7 @@ pub use ids::IdAllocator;
 pub use present::{PresentScene, present_scene};
 
 use bevy::prelude::*;
-use tabletop_core::{CommandSystems, SimSystems};
+use tabletop_core::{CommandSystems, RestingSystems, SimSystems};
 use tabletop_history::{RollbackApp, is_rolling_back};
 
 use crate::compound::Compounds;
@@ -61,7 +61,8 @@ impl Plugin for ScenePlugin {
                 (
                     lifecycle::carry_out_commands.in_set(CommandSystems::Scene),
                     lifecycle::remove_fallen.in_set(SimSystems::Sense),
-                ),
+                )
+                    .in_set(RestingSystems),
             )
             .add_observer(lifecycle::note_created.run_if(not(is_rolling_back)))
             .add_observer(lifecycle::note_despawned.run_if(not(is_rolling_back)))

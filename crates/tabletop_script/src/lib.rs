@@ -72,11 +72,12 @@ pub use tabletop_engine::{
 
 use bevy::{ecs::system::RunSystemOnce as _, prelude::*};
 use tabletop_core::{
-    HeadCamera, ObjectIndex, OrderSystems, Paused, PictureDemand, SensorImage, SimBlocked,
+    HeadCamera, ObjectIndex, OrderSystems, Paused, PictureDemand, RestApp as _, RestingSystems,
+    SensorImage, SimBlocked,
 };
 
 use blocked::{drop_overstep, keep_messages, try_again};
-use runner::{ScriptRunner, call};
+use runner::{ScriptRunner, call, is_running};
 
 /// Ends the script, if there is one, and waits until its engine has ended. What it still prints becomes events.
 pub fn shut_down(world: &mut World) {
@@ -108,8 +109,10 @@ impl Plugin for ScriptPlugin {
                     drop_overstep.run_if(not(SimBlocked::is_clear)),
                 )
                     .chain()
-                    .in_set(OrderSystems::Script),
+                    .in_set(OrderSystems::Script)
+                    .in_set(RestingSystems),
             )
+            .wake_while(is_running)
             .add_systems(
                 RunFixedMainLoop,
                 (try_again, keep_messages)

@@ -92,6 +92,11 @@ pub(crate) fn shut_down(mut runner: ResMut<ScriptRunner>, mut events: ScriptEven
     }
 }
 
+/// Whether there is a script, or what is left of one.
+pub(crate) fn is_running(runner: Res<ScriptRunner>) -> bool {
+    runner.session.is_some() || !runner.ending.is_empty()
+}
+
 /// Starts and stops the script on command, calls it for the tick that begins, and blocks the simulation until it has answered.
 pub(crate) fn call(
     In(will_be_paused): In<bool>,

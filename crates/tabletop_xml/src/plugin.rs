@@ -2,8 +2,8 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    IssuedCommand, SceneCommand, SceneSpec, ShippedFile, ShippedFiles, SimCommand, SimFact,
-    SimSystems,
+    IssuedCommand, RestingSystems, SceneCommand, SceneSpec, ShippedFile, ShippedFiles, SimCommand,
+    SimFact, SimSystems,
 };
 
 use crate::{ParsedTask, ReadError, TaskReader};
@@ -16,8 +16,10 @@ pub struct XmlPlugin;
 
 impl Plugin for XmlPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<ShippedFiles>()
-            .add_systems(FixedUpdate, load_tasks.in_set(SimSystems::Load));
+        app.init_resource::<ShippedFiles>().add_systems(
+            FixedUpdate,
+            load_tasks.in_set(SimSystems::Load).in_set(RestingSystems),
+        );
     }
 }
 

@@ -137,6 +137,11 @@ pub(crate) fn take_commands(
     }
 }
 
+/// Whether a tick leaves anything in a recording.
+pub(crate) fn is_recording(recorder: Res<Recorder>) -> bool {
+    recorder.episode.is_some()
+}
+
 /// Asks for a picture of a tick that is a frame.
 pub(crate) fn ask_for_picture(
     recorder: Res<Recorder>,

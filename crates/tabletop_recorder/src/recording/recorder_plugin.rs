@@ -4,14 +4,16 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 use serde_json::{Map, Value};
-use tabletop_core::{CommandSystems, PictureSystems, SimSystems, TickSystems};
+use tabletop_core::{
+    CommandSystems, PictureSystems, RestApp as _, RestingSystems, SimSystems, TickSystems,
+};
 
 use crate::{
     files::{
         channels::Channels, destination::Destination, durability::Durability,
         session::SessionSettings, storage::Storage,
     },
-    recording::recorder::{Recorder, ask_for_picture, record, take_commands},
+    recording::recorder::{Recorder, ask_for_picture, is_recording, record, take_commands},
 };
 
 /// Records the simulation into a folder from [`Start`] to [`Finish`], both ticks included.
@@ -68,7 +70,9 @@ impl Plugin for RecorderPlugin {
                     record.after(PictureSystems).before(SimSystems::Record),
                 )
                     .in_set(TickSystems),
-            ),
-        );
+            )
+                .in_set(RestingSystems),
+        )
+        .wake_while(is_recording);
     }
 }

@@ -2,7 +2,8 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    CommandSystems, IssuedCommand, Recording, RecordingCommand, SimFact, SimSystems, TickSystems,
+    CommandSystems, IssuedCommand, Recording, RecordingCommand, RestingSystems, SimFact,
+    SimSystems, TickSystems,
 };
 
 use crate::recording::recorder::{IS_RUNNING, NONE_IS_RUNNING, refused};
@@ -26,7 +27,8 @@ impl Plugin for UnrecordedPlugin {
                     .after(SimSystems::Sense)
                     .before(SimSystems::Record)
                     .in_set(TickSystems),
-            ),
+            )
+                .in_set(RestingSystems),
         );
     }
 }

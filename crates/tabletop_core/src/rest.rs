@@ -1,0 +1,241 @@
+//! Ticks that begin at rest: nothing can change in them but the clock, so nothing else is run.
+
+use bevy::{
+    app::FixedMainScheduleOrder,
+    ecs::{
+        message::signal_message_update_system,
+        schedule::{
+            BoxedCondition, InternedScheduleLabel, ScheduleError, SystemCondition, SystemKey,
+        },
+    },
+    platform::collections::HashMap,
+    prelude::*,
+};
+
+use crate::{
+    Agent, Hands, IssuedCommand, Paused, PictureDemand, Recording, ScriptCommand, SimBlocked,
+    SimFact, SimTick,
+};
+
+/// Systems that change nothing in a tick that begins at rest: when no [wake source](RestApp::wake_while) is awake. While all systems of
+/// the fixed schedules are among them, `StepApp::step` passes over such ticks; any other system that is added to an
+/// app runs in every tick.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct RestingSystems;
+
+/// Ticks at rest that are made before the first one is passed over: engines tidy up after the last thing has stopped.
+const SETTLING_TICKS: u32 = 16;
+
+/// Says when something can change.
+pub trait RestApp {
+    /// Makes every tick before which this condition holds: something can change in it. Time alone must not make it hold, as
+    /// nobody asks while time is passed over.
+    fn wake_while<M>(&mut self, is_awake: impl SystemCondition<M>) -> &mut Self;
+
+    /// Does this for ticks that are passed over, of which it is told the number.
+    fn at_rest(&mut self, upkeep: Upkeep) -> &mut Self;
+}
+
+/// What is left to be done for so many ticks at rest.
+pub type Upkeep = fn(&mut World, u64) -> Result;
+
+impl RestApp for App {
+    fn wake_while<M>(&mut self, is_awake: impl SystemCondition<M>) -> &mut Self {
+        let mut source: BoxedCondition = Box::new(IntoSystem::into_system(is_awake));
+        let world = self.world_mut();
+        source.initialize(world);
+        let mut rest = world.get_resource_or_init::<Rest>();
+        rest.wake_sources.push(source);
+        self
+    }
+
+    fn at_rest(&mut self, upkeep: Upkeep) -> &mut Self {
+        let mut rest = self.world_mut().get_resource_or_init::<Rest>();
+        rest.upkeep.push(upkeep);
+        self
+    }
+}
+
+/// Whether the world is at rest, and since when.
+#[derive(Resource, Default)]
+pub(crate) struct Rest {
+    wake_sources: Vec<BoxedCondition>,
+    upkeep: Vec<Upkeep>,
+    /// How many ticks have begun at rest, one after the other.
+    quiet_ticks: u32,
+    /// Which schedules hold none but [`RestingSystems`], with the sizes that they had then.
+    resting: HashMap<InternedScheduleLabel, (Sizes, bool)>,
+}
+
+/// How many systems a schedule has, and how many of them are [`RestingSystems`].
+type Sizes = (usize, usize);
+
+pub(crate) fn configure(app: &mut App) {
+    app.init_resource::<Rest>()
+        .wake_while(is_told_something)
+        .wake_while(is_used);
+}
+
+fn is_told_something(
+    commands: Res<Messages<IssuedCommand>>,
+    facts: Res<Messages<SimFact>>,
+    script_commands: Res<Messages<ScriptCommand>>,
+) -> bool {
+    !commands.is_empty() || !facts.is_empty() || !script_commands.is_empty()
+}
+
+fn is_used(
+    paused: Res<Paused>,
+    blocked: Res<SimBlocked>,
+    recording: Res<Recording>,
+    agent: Res<Agent>,
+    hands: Res<Hands>,
+    demand: Option<Res<PictureDemand>>,
+) -> bool {
+    let is_asked = demand.is_some_and(|demand| demand.is_asked());
+    paused.0 || blocked.0 || recording.0 || agent.is_on() || hands.hold_something() || is_asked
+}
+
+/// Whether nothing can change in the tick that begins, nor in any after it, unless the world is changed from outside.
+pub(crate) fn has_come(world: &mut World) -> bool {
+    let Some(mut rest) = world.get_resource_mut::<Rest>() else {
+        return false;
+    };
+    let mut rest = std::mem::take(&mut *rest);
+    // What cannot be asked is awake.
+    let is_awake = |source: &mut BoxedCondition| source.run_readonly((), world).unwrap_or(true);
+    rest.quiet_ticks = match rest.wake_sources.iter_mut().any(is_awake) {
+        true => 0,
+        false => rest.quiet_ticks.saturating_add(1),
+    };
+    let has_come = rest.quiet_ticks > SETTLING_TICKS && rest.holds_for_all_systems(world);
+    *world.resource_mut::<Rest>() = rest;
+    has_come
+}
+
+/// Lets the time of so many ticks go by.
+pub(crate) fn pass_over(world: &mut World, ticks: u64) {
+    let rest = world.resource::<Rest>();
+    for upkeep in rest.upkeep.clone() {
+        if let Err(error) = upkeep(world, ticks) {
+            error!("cannot pass over a tick: {error}");
+        }
+    }
+    world.resource_mut::<SimTick>().0 += ticks;
+}
+
+impl Rest {
+    fn holds_for_all_systems(&mut self, world: &World) -> bool {
+        let (Some(order), Some(schedules)) = (
+            world.get_resource::<FixedMainScheduleOrder>(),
+            world.get_resource::<Schedules>(),
+        ) else {
+            return false;
+        };
+        order.labels.iter().all(|&label| {
+            let schedule = schedules.get(label);
+            schedule.is_none_or(|schedule| self.holds_for(label, schedule))
+        })
+    }
+
+    fn holds_for(&mut self, label: InternedScheduleLabel, schedule: &Schedule) -> bool {
+        let resting = match schedule.graph().systems_in_set(RestingSystems.intern()) {
+            Ok(resting) => resting.len(),
+            Err(ScheduleError::SetNotFound) => 0,
+            Err(_) => return false, // Systems were added, and have not run yet.
+        };
+        let sizes = (schedule.systems_len(), resting);
+        match self.resting.get(&label) {
+            Some(&(known, rests)) if known == sizes => rests,
+            Some(_) | None => {
+                let rests = holds_resting_systems_only(schedule);
+                self.resting.insert(label, (sizes, rests));
+                rests
+            }
+        }
+    }
+}
+
+fn holds_resting_systems_only(schedule: &Schedule) -> bool {
+    let graph = schedule.graph();
+    let of_bevy = signal_message_update_system.into_system_set().intern();
+    let is_among = |set, key: SystemKey| {
+        let systems = graph.systems_in_set(set);
+        systems.is_ok_and(|systems| systems.contains(&key))
+    };
+    schedule.systems().is_ok_and(|mut systems| {
+        systems.all(|(key, system)| {
+            is_among(RestingSystems.intern(), key)
+                || is_among(of_bevy, key)
+                || system.system_type() == std::any::TypeId::of::<ApplyDeferred>()
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::ecs::schedule::ScheduleLabel as _;
+
+    use super::*;
+    use crate::{CorePlugin, SceneCommand, StepApp as _, WriteCommand as _};
+
+    #[derive(Resource, Default)]
+    struct Ticks(u32);
+
+    fn count(mut ticks: ResMut<Ticks>) {
+        ticks.0 += 1;
+    }
+
+    /// An app in which ticks are counted that are made.
+    fn app() -> App {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default()))
+            .init_resource::<Ticks>()
+            .add_systems(FixedUpdate, count.in_set(RestingSystems));
+        app
+    }
+
+    fn ticks_made(app: &mut App, ticks: u64) -> u32 {
+        let before = app.world().resource::<Ticks>().0;
+        app.step(ticks);
+        app.world().resource::<Ticks>().0 - before
+    }
+
+    #[test]
+    fn ticks_at_rest_are_passed_over_and_counted() {
+        let mut app = app();
+        app.start();
+        assert_eq!(ticks_made(&mut app, 100), SETTLING_TICKS);
+        assert_eq!(ticks_made(&mut app, 1), 0);
+        assert_eq!(app.world().resource::<SimTick>().0, 101);
+    }
+
+    #[test]
+    fn a_command_wakes() {
+        let mut app = app();
+        app.start().step(100);
+        app.world_mut().write_command(SceneCommand::Clear);
+        assert!(ticks_made(&mut app, 100) > SETTLING_TICKS);
+    }
+
+    #[test]
+    fn a_wake_source_that_is_awake_wakes() {
+        let mut app = app();
+        // Time alone makes it hold, between two calls of `step`.
+        app.wake_while(|tick: Res<SimTick>| (50..60).contains(&tick.0))
+            .start();
+        for (ticks, made) in [(50, SETTLING_TICKS), (1, 1), (9, 9), (40, SETTLING_TICKS)] {
+            assert_eq!(ticks_made(&mut app, ticks), made);
+        }
+    }
+
+    #[test]
+    fn another_system_sees_every_tick() {
+        for schedule in [FixedUpdate.intern(), FixedLast.intern()] {
+            let mut app = app();
+            app.start().step(100);
+            app.add_systems(schedule, || {});
+            assert_eq!(ticks_made(&mut app, 100), 100);
+        }
+    }
+}
