@@ -26,6 +26,7 @@ mod command;
 mod fact;
 mod figure;
 mod hand;
+mod joint;
 mod jointed;
 mod keymap;
 mod light;
@@ -67,6 +68,7 @@ pub use command::{
 pub use fact::SimFact;
 pub use figure::{CarriesHeadCamera, Figure, Triangles};
 pub use hand::{Hand, Hands, Held};
+pub use joint::{Joint, JointKind, JointSpec};
 pub use jointed::{JointMotion, JointedSpec};
 pub use keymap::{
     Action, ActionGroup, Binding, BindingError, KeyLetters, KeyboardFocus, Keymap, Keys, Modifiers,
@@ -92,7 +94,7 @@ pub use robot::{
     RobotJoint, RobotLayout, RobotMode, WIDEST_GRIP, robot_base,
 };
 pub use rollback::Rollback;
-pub use scene::{ChainSpec, Joint, JointKind, JointSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
+pub use scene::{ChainSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
 pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage};
 pub use shape::{Part, Primitive, Shape, Solid};
 pub use shipped::{ShippedFile, ShippedFiles, is_shipped, seen_from};

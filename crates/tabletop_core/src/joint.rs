@@ -1,0 +1,65 @@
+//! Joints between objects.
+
+use bevy::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::{Pose, Rollback};
+
+/// How two objects are connected.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum JointKind {
+    /// The origins of both joint frames coincide; all rotations are free.
+    Ball,
+    /// The second frame slides along -X of the first; nothing turns.
+    Slider {
+        /// Least distance along -X of the first frame, in units.
+        #[serde(default)]
+        min: f32,
+        /// Greatest distance along -X of the first frame, in units.
+        #[serde(alias = "travel")]
+        max: f32,
+        /// Coefficient of the dry friction, as a fraction of the second object's weight.
+        friction: f32,
+        /// The share of its speed that the joint takes away in a tick, 0 to 1.
+        #[serde(default)]
+        damping: f32,
+    },
+    /// The second frame turns about X of the first, and nothing slides.
+    Hinge {
+        /// Least angle, in radians.
+        min: f32,
+        /// Greatest angle, in radians.
+        max: f32,
+        /// The share of its speed that the joint takes away in a tick, 0 to 1.
+        damping: f32,
+    },
+}
+
+/// A connection between two objects.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct JointSpec {
+    /// Ids of the two objects.
+    pub objects: [String; 2],
+    /// The joint's frame in the frame of each object.
+    pub frames: [Pose; 2],
+    /// What the joint leaves free.
+    pub kind: JointKind,
+    /// Whether the objects collide with each other.
+    #[serde(default)]
+    pub collides: bool,
+}
+
+/// A joint on the table. Its entity is a child of the second object's, and is gone with either of the two.
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
+#[component(immutable)]
+#[require(Transform, Rollback)]
+pub struct Joint {
+    /// The two objects.
+    pub objects: [Entity; 2],
+    /// The joint's frame in the frame of each object.
+    pub frames: [Pose; 2],
+    /// What the joint leaves free.
+    pub kind: JointKind,
+    /// Whether the objects collide with each other.
+    pub collides: bool,
+}
