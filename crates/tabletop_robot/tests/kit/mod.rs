@@ -8,6 +8,7 @@ use bevy_rapier3d::{parry, prelude::Collider, rapier::prelude as rapier};
 use tabletop_core::CommandId;
 use tabletop_core::*;
 use tabletop_demonstrator::DemonstratorPlugin;
+use tabletop_history::HistoryPlugin;
 use tabletop_physics::PhysicsPlugin;
 use tabletop_robot::{RobotBody, RobotPlugin};
 use tabletop_scene::ScenePlugin;
@@ -50,6 +51,7 @@ impl Stage {
         app.add_plugins((
             MinimalPlugins,
             CorePlugin::default(),
+            HistoryPlugin::default(),
             PhysicsPlugin::default(),
         ))
         .add_plugins((ScenePlugin, DemonstratorPlugin, robot))
