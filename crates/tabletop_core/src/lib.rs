@@ -18,6 +18,8 @@
 //! assert_eq!(app.world().resource::<SimTick>().0, 60);
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 mod agent;
 mod bounds;
 mod clock;

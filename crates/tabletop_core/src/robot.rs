@@ -213,7 +213,19 @@ impl RobotJoint {
     pub const fn mirror(self) -> f64 {
         match self {
             Self::RightS0 | Self::RightE0 | Self::RightW0 | Self::RightW2 => -1.0,
-            _ => 1.0,
+            Self::LeftS0
+            | Self::LeftS1
+            | Self::LeftE0
+            | Self::LeftE1
+            | Self::LeftW0
+            | Self::LeftW1
+            | Self::LeftW2
+            | Self::RightS1
+            | Self::RightE1
+            | Self::RightW1
+            | Self::HeadPan
+            | Self::LeftGripper
+            | Self::RightGripper => 1.0,
         }
     }
 }

@@ -34,6 +34,12 @@ pub struct HeadCamera {
 }
 
 impl HeadCamera {
+    #[expect(
+        clippy::approx_constant,
+        reason = "an angle of view is smaller than π, however little"
+    )]
+    const WIDEST_VIEW: f32 = 3.141;
+
     /// The most pixels of a picture, whose rows and columns are at most [`MOST_SIDE`](Self::MOST_SIDE).
     pub const MOST_PIXELS: u64 = 1 << 24;
     /// The most rows, and the most columns, of a picture.
@@ -51,7 +57,7 @@ impl HeadCamera {
                 Self::MOST_PIXELS
             ));
         }
-        if !(0.001..=3.141).contains(&self.vertical_fov) {
+        if !(0.001..=Self::WIDEST_VIEW).contains(&self.vertical_fov) {
             return Some(format!(
                 "an angle of view of {} rad, expected 0.001 to 3.141",
                 self.vertical_fov

@@ -154,7 +154,11 @@ impl Shape {
                     add(pose, Shape::Block { span, color });
                     add(pose * on_top, handle);
                 }
-                _ => add(pose, shape.clone()),
+                Shape::Block { .. }
+                | Shape::Cylinder { .. }
+                | Shape::Sphere { .. }
+                | Shape::Box { .. }
+                | Shape::Link { .. } => add(pose, shape.clone()),
             }
         }
         let mut simple = Vec::new();

@@ -21,6 +21,8 @@
 //! # Ok::<_, tabletop_scenario::ScenarioError>(())
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
 mod act;
 mod check;
 mod error;

@@ -50,8 +50,8 @@ impl Program {
         let mut random = Random::new(seed);
         let steps = scenario.setup.iter().chain(&scenario.steps);
         let steps = steps.map(|LocatedStep { at, text, step }| {
-            let action = match step {
-                Step::Load { file, place } => load(&seen_from(folder, file))
+            let action = if let Step::Load { file, place } = step {
+                load(&seen_from(folder, file))
                     .and_then(|mut scene| {
                         place_all(&mut scene, place, &mut random)?;
                         Ok(Action::SetScene(Box::new(scene)))
@@ -60,8 +60,9 @@ impl Program {
                         at: at.clone(),
                         step: text.clone(),
                         what,
-                    })?,
-                other => Action::Do(other.clone()),
+                    })?
+            } else {
+                Action::Do(step.clone())
             };
             Ok(ProgramStep {
                 at: at.clone(),

@@ -254,9 +254,10 @@ impl Action {
 
     /// Its name in files: `pause`, `right_w2+`.
     pub fn name(self) -> String {
-        match self {
-            Self::Move(joint, way) => format!("{joint}{}", way.sign()),
-            _ => self.row().name.to_owned(),
+        if let Self::Move(joint, way) = self {
+            format!("{joint}{}", way.sign())
+        } else {
+            self.row().name.to_owned()
         }
     }
 
@@ -296,7 +297,43 @@ impl Action {
             Self::PlaneCounterClockwise | Self::PlaneClockwise | Self::PlanePerpendicular => {
                 Situation::Holding
             }
-            _ => Situation::Any,
+            Self::CameraForward
+            | Self::CameraBack
+            | Self::CameraLeft
+            | Self::CameraRight
+            | Self::CameraUp
+            | Self::CameraDown
+            | Self::LookLeft
+            | Self::LookRight
+            | Self::LookUp
+            | Self::LookDown
+            | Self::Move(..)
+            | Self::Pause
+            | Self::Quit
+            | Self::Step
+            | Self::Slower
+            | Self::Faster
+            | Self::ViewStart
+            | Self::ViewTop
+            | Self::ViewFront
+            | Self::ViewRobotEye
+            | Self::Undo
+            | Self::Redo
+            | Self::MakeBlock
+            | Self::MakeStack
+            | Self::ClearTable
+            | Self::OpenFile
+            | Self::SaveFile
+            | Self::ShowRobot
+            | Self::ShowHeadView
+            | Self::SaveHeadView
+            | Self::ShowNextFace
+            | Self::RunScript
+            | Self::ShowHelp
+            | Self::FillScreen
+            | Self::DrawLarger
+            | Self::DrawSmaller
+            | Self::DrawToFit => Situation::Any,
         }
     }
 

@@ -191,6 +191,10 @@ pub(super) fn is_function_key(key: KeyCode) -> bool {
 }
 
 /// What a US keyboard has at the place of a key.
+#[expect(
+    clippy::wildcard_enum_match_arm,
+    reason = "Bevy knows many more keys than need a name of their own"
+)]
 fn label(key: KeyCode) -> String {
     let label = match key {
         Backquote => "`",
