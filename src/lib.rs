@@ -15,6 +15,7 @@
 //! | [`recorder`] | recordings on disk |
 //! | [`script`] | users' Matlab, Octave and Python scripts drive the robot |
 //! | [`task`] | what a recording shows, as a task |
+//! | [`planner`] | how the robot does such a task |
 //! | [`scenario`] | scripted demonstrations, for tests and datasets |
 //!
 //! [`TabletopSimPlugins`] is the simulator without a window. It runs on Bevy's `MinimalPlugins`:
@@ -41,6 +42,7 @@ pub use tabletop_demonstrator as demonstrator;
 pub use tabletop_history as history;
 pub use tabletop_kinematics as kinematics;
 pub use tabletop_physics as physics;
+pub use tabletop_planner as planner;
 pub use tabletop_recorder as recorder;
 pub use tabletop_robot as robot;
 pub use tabletop_scenario as scenario;
@@ -51,6 +53,7 @@ pub use tabletop_xml as xml;
 
 pub mod final_state;
 mod headless;
+pub mod imitation;
 pub mod replay;
 pub mod scene_dump;
 mod settings;

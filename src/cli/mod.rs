@@ -5,6 +5,7 @@ mod completions;
 #[cfg(feature = "window")]
 mod display;
 mod explain;
+mod imitate;
 mod init;
 #[cfg(feature = "window")]
 mod keys;
@@ -52,6 +53,8 @@ enum Command {
     Explain(explain::ExplainArgs),
     /// Say what the objects of a recording's task must be, so that others can take their places
     Require(require::RequireArgs),
+    /// Let the robot do what a recording shows
+    Imitate(imitate::ImitateArgs),
     /// Check task files and name every fault with its place
     Check(check::CheckArgs),
     /// Answer questions about the robot's joints and frames for other programs
@@ -138,6 +141,7 @@ pub fn main() -> ExitCode {
         Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::Explain(args)) => explain::explain(&args),
         Some(Command::Require(args)) => require::require(&args),
+        Some(Command::Imitate(args)) => imitate::run(&args),
         Some(Command::Check(args)) => check::check(&args),
         Some(Command::Robot(args)) => robot::robot(&args),
         #[cfg(feature = "window")]

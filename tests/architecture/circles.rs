@@ -21,6 +21,7 @@ const KNOWN: [(&str, &[&str]); 8] = [
             "cli::check",
             "cli::completions",
             "cli::explain",
+            "cli::imitate",
             "cli::init",
             "cli::keys",
             "cli::replay",

@@ -9,7 +9,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// What each of our crates may depend on of ours, and whether it may name Rapier and enable what draws or opens windows.
-const RULES: [Rule; 17] = [
+const RULES: [Rule; 18] = [
     Rule::new("tabletop_core", &[]),
     Rule::new("tabletop_xml", &["tabletop_core"]),
     Rule::new("tabletop_history", &["tabletop_core"]),
@@ -41,6 +41,10 @@ const RULES: [Rule; 17] = [
     Rule::new("tabletop_recorder", &["tabletop_core"]),
     Rule::new("tabletop_scenario", &["tabletop_core"]),
     Rule::new("tabletop_task", &["tabletop_core", "tabletop_recorder"]),
+    Rule::new(
+        "tabletop_planner",
+        &["tabletop_core", "tabletop_kinematics", "tabletop_task"],
+    ),
     Rule::new("tabletop_view", &["tabletop_core"]).with_window(),
     Rule::new("tabletop_gui", &["tabletop_core"]).with_window(),
     Rule::new(
@@ -59,6 +63,7 @@ const RULES: [Rule; 17] = [
             "tabletop_recorder",
             "tabletop_scenario",
             "tabletop_task",
+            "tabletop_planner",
             "tabletop_view",
             "tabletop_gui",
         ],

@@ -4,6 +4,7 @@
 mod anywhere;
 mod examples;
 mod explain;
+mod imitate;
 #[cfg(feature = "window")]
 mod keys;
 mod kinematics;

@@ -4,9 +4,11 @@ use bevy::math::{Vec2, Vec3, Vec3Swizzles as _};
 use tabletop_core::{Pose, Primitive, Solid};
 
 /// A convex solid at its place, in the table's frame.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Convex {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Convex {
+    /// The pose of its centre.
     pub pose: Pose,
+    /// The solid.
     pub solid: Solid,
 }
 
@@ -31,6 +33,15 @@ impl Convex {
             Solid::Ball(radius) => d.normalize_or_zero() * radius,
         };
         self.pose * point
+    }
+
+    /// The radius of the ball about its centre that holds it.
+    pub fn radius(&self) -> f32 {
+        match self.solid {
+            Solid::Cuboid(span) => span.length() / 2.0,
+            Solid::Cylinder { radius, yspan } => radius.hypot(yspan / 2.0),
+            Solid::Ball(radius) => radius,
+        }
     }
 
     /// The lowest and the highest Z of it.

@@ -37,6 +37,7 @@ mod understanding;
 
 pub use arrangement::Arrangement;
 pub use binding::{Binding, Unbound};
+pub use convex::Convex;
 pub use demonstration::{Deed, Demonstration, HandAct, ShownObject};
 pub use detour::{Detour, DetourKind};
 pub use goal::{Freedom, Goal, Place, Reference};
@@ -46,6 +47,6 @@ pub use relation::{Relation, Side};
 pub use requirement::{RequirementError, Requirements};
 pub use role::Role;
 pub use step::Step;
-pub use symmetry::{Symmetry, Turns};
+pub use symmetry::{Symmetry, Turns, angle_between, twist_about};
 pub use task::Task;
 pub use track::Track;

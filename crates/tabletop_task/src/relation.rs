@@ -96,6 +96,21 @@ pub enum Side {
 }
 
 impl Side {
+    /// The way to it across the table, a unit vector.
+    pub fn way(self) -> Vec3 {
+        let way = match self {
+            Self::Left => Vec3::NEG_X,
+            Self::Right => Vec3::X,
+            Self::Front => Vec3::NEG_Y,
+            Self::FrontLeft => Vec3::NEG_X + Vec3::NEG_Y,
+            Self::FrontRight => Vec3::X + Vec3::NEG_Y,
+            Self::Behind => Vec3::Y,
+            Self::BehindLeft => Vec3::NEG_X + Vec3::Y,
+            Self::BehindRight => Vec3::X + Vec3::Y,
+        };
+        way.normalize()
+    }
+
     /// The side of what is this way across the table.
     pub fn of(way: Vec3) -> Self {
         // More than 22° off an axis is off both.

@@ -1,0 +1,295 @@
+//! The robot's body, as planning needs it.
+
+use bevy::math::{DAffine3, DQuat, Quat, Vec3};
+use tabletop_core::{Pose, Solid, UNITS_PER_METER};
+use tabletop_kinematics::{
+    ArmChain, Frames, Geometry, JointValues, LinkId, LinkShape, MOST_ARM_JOINTS, ModelError,
+    RobotModel, Target,
+};
+use tabletop_task::Convex;
+
+/// The angles of an arm from its base to its tip, in rad; 0 beyond its last joint.
+pub type Angles = [f64; MOST_ARM_JOINTS];
+
+/// A robot: its links, limbs and grippers.
+#[derive(Clone, Debug)]
+pub struct RobotBody {
+    model: RobotModel,
+    base: Pose,
+    /// Its limbs.
+    pub limbs: Vec<LimbBody>,
+    links: Vec<LinkBody>,
+    /// Pairs of links that cannot meet, or overlap as they are described.
+    apart: Vec<(usize, usize)>,
+}
+
+/// An arm with its gripper.
+#[derive(Clone, Debug)]
+pub struct LimbBody {
+    /// What it is called.
+    pub name: String,
+    chain: ArmChain,
+    end_effector: DAffine3,
+    /// Extents of a finger, in units, in the end effector's frame.
+    pub finger: Vec3,
+    /// How far its gripper opens, in units.
+    pub widest: f32,
+    /// How fast its joints are turned, in rad/s.
+    pub speeds: Angles,
+    /// The angles that it begins with.
+    pub home: Angles,
+}
+
+/// What is to be known of a limb.
+#[derive(Clone, Debug)]
+pub struct LimbSource {
+    /// What it is called.
+    pub name: String,
+    /// The link that carries the end effector.
+    pub tip: String,
+    /// The end effector's frame on that link: its x along the opening, its -z where the fingers point. In m.
+    pub end_effector: DAffine3,
+    /// Limits of its joints, in rad.
+    pub limits: Vec<[f64; 2]>,
+    /// How fast its joints are turned, in rad/s.
+    pub speeds: Angles,
+    /// Extents of a finger, in units, in the end effector's frame.
+    pub finger: Vec3,
+    /// How far its gripper opens, in units.
+    pub widest: f32,
+    /// The angles that it begins with.
+    pub home: Angles,
+}
+
+/// A link that can be touched.
+#[derive(Clone, Debug)]
+struct LinkBody {
+    link: LinkId,
+    /// The limb that moves it, and by how many of its joints.
+    carrier: Option<(usize, usize)>,
+    solids: Vec<(Pose, Solid)>,
+}
+
+impl LimbBody {
+    /// Least and largest angle of each joint, in rad.
+    pub fn limits(&self) -> &[[f64; 2]] {
+        self.chain.limits()
+    }
+
+    /// The angles that it has joints for.
+    fn own<'a>(&self, angles: &'a Angles) -> &'a [f64] {
+        &angles[..self.chain.joints().len()]
+    }
+}
+
+impl RobotBody {
+    /// A robot of this description, whose root link stands at `base` in the table's frame.
+    ///
+    /// # Errors
+    /// The description has no such limbs.
+    pub fn new(model: RobotModel, base: Pose, limbs: Vec<LimbSource>) -> Result<Self, ModelError> {
+        let limbs: Result<Vec<_>, ModelError> = limbs
+            .into_iter()
+            .map(|source| {
+                let chain = ArmChain::new(&model, model.root(), model.find_link(&source.tip)?)?;
+                Ok(LimbBody {
+                    name: source.name,
+                    chain: chain.with_limits(source.limits),
+                    end_effector: source.end_effector,
+                    finger: source.finger,
+                    widest: source.widest,
+                    speeds: source.speeds,
+                    home: source.home,
+                })
+            })
+            .collect();
+        let limbs = limbs?;
+        let links = model.links().iter().filter_map(|link| {
+            let solids: Vec<_> = link.collisions.iter().filter_map(solid).collect();
+            if solids.is_empty() || link.name.contains("_finger") {
+                return None;
+            }
+            let id = model.find_link(&link.name).ok()?;
+            Some(LinkBody {
+                carrier: carrier(&model, &limbs, id),
+                link: id,
+                solids,
+            })
+        });
+        let mut body = Self {
+            links: links.collect(),
+            apart: Vec::new(),
+            base,
+            limbs,
+            model,
+        };
+        body.apart = body.always_together();
+        Ok(body)
+    }
+
+    /// Pairs of links that touch at home, or hang on each other.
+    fn always_together(&self) -> Vec<(usize, usize)> {
+        let home: Vec<_> = self.limbs.iter().map(|limb| limb.home).collect();
+        let solids = self.links_at(&home);
+        let mut pairs = Vec::new();
+        for a in 0..self.links.len() {
+            for b in a + 1..self.links.len() {
+                let near = match (self.links[a].carrier, self.links[b].carrier) {
+                    (Some((one, i)), Some((other, j))) => one == other && i.abs_diff(j) < 3,
+                    (None, Some((_, place))) | (Some((_, place)), None) => place < 3,
+                    (None, None) => true,
+                };
+                let touch = || {
+                    solids[a]
+                        .iter()
+                        .any(|one| solids[b].iter().any(|other| is_within(one, other, 0.1)))
+                };
+                if near || touch() {
+                    pairs.push((a, b));
+                }
+            }
+        }
+        pairs
+    }
+
+    fn values(&self, angles: &[Angles]) -> JointValues {
+        let mut values = self.model.zero();
+        for (limb, angles) in self.limbs.iter().zip(angles) {
+            limb.chain.set_angles(limb.own(angles), &mut values);
+        }
+        values
+    }
+
+    /// The solids of each link with these angles of the limbs, in the table's frame.
+    fn links_at(&self, angles: &[Angles]) -> Vec<Vec<Convex>> {
+        let mut frames = Frames::default();
+        self.model.frames_into(&self.values(angles), &mut frames);
+        let placed = self.links.iter().map(|link| {
+            let frame = self.base * in_units(frames[link.link]);
+            let solids = link.solids.iter();
+            solids
+                .map(|(pose, solid)| Convex {
+                    pose: frame * *pose,
+                    solid: *solid,
+                })
+                .collect()
+        });
+        placed.collect()
+    }
+
+    /// The solids of a limb with these angles of all limbs, and those of everything else that it can meet, which is not all the same for each.
+    pub(crate) fn meet(&self, limb: usize, angles: &[Angles]) -> (Vec<Convex>, bool) {
+        let solids = self.links_at(angles);
+        let is_own = |link: usize| self.links[link].carrier.is_some_and(|(own, _)| own == limb);
+        let mut own = Vec::new();
+        let mut is_free = true;
+        for a in (0..self.links.len()).filter(|&link| is_own(link)) {
+            // The first two joints only turn what is beside the trunk.
+            if self.links[a].carrier.is_some_and(|(_, place)| place > 2) {
+                own.extend(solids[a].iter().copied());
+            }
+            for b in 0..self.links.len() {
+                let pair = (a.min(b), a.max(b));
+                let is_looked_at = a != b && !(is_own(b) && b < a) && !self.apart.contains(&pair);
+                if is_looked_at && is_free {
+                    let near =
+                        |one: &Convex| solids[b].iter().any(|other| is_within(one, other, 0.15));
+                    is_free &= !solids[a].iter().any(near);
+                }
+            }
+        }
+        (own, is_free)
+    }
+
+    /// The fingers of a limb whose end effector is here and whose gripper is open so far.
+    pub(crate) fn fingers(&self, limb: usize, end_effector: Pose, opening: f32) -> [Convex; 2] {
+        let finger = self.limbs[limb].finger;
+        [-1.0, 1.0].map(|side| Convex {
+            pose: end_effector * Pose::at(Vec3::X * side * (opening + finger.x) / 2.0),
+            solid: Solid::Cuboid(finger),
+        })
+    }
+
+    /// Where the end effector of a limb is, in the table's frame.
+    pub fn end_effector(&self, limb: usize, angles: &Angles) -> Pose {
+        let limb = &self.limbs[limb];
+        self.base * in_units(limb.chain.tip(limb.own(angles)) * limb.end_effector)
+    }
+
+    /// Angles that bring the end effector of a limb there, near the seed where there is a choice.
+    pub fn reach(&self, limb: usize, pose: Pose, seed: &Angles) -> Option<Angles> {
+        let limb = &self.limbs[limb];
+        let shoulder = limb.chain.tip(limb.own(&limb.home)).translation;
+        let target = in_meters(self.base.inverse() * pose) * limb.end_effector.inverse();
+        // What is far beyond an arm's length takes long to be found out of reach.
+        if (target.translation - shoulder).length() > 1.6 {
+            return None;
+        }
+        let solved = limb
+            .chain
+            .solve(&Target::Pose(target), limb.own(seed))
+            .ok()?;
+        let mut angles = Angles::default();
+        angles[..solved.len()].copy_from_slice(&solved);
+        Some(angles)
+    }
+}
+
+/// Whether two solids are nearer to each other than this.
+pub(crate) fn is_within(one: &Convex, other: &Convex, distance: f32) -> bool {
+    let between = one.pose.location.distance(other.pose.location);
+    between - one.radius() - other.radius() < distance && one.away_from(other).length() < distance
+}
+
+/// The limb whose joints move a link, and how many of them do.
+fn carrier(model: &RobotModel, limbs: &[LimbBody], link: LinkId) -> Option<(usize, usize)> {
+    let carriers: Vec<_> = std::iter::successors(Some(link), |&link| model.parent(link))
+        .filter_map(|link| model.link(link).joint)
+        .collect();
+    limbs.iter().enumerate().find_map(|(i, limb)| {
+        let own = limb
+            .chain
+            .joints()
+            .iter()
+            .filter(|joint| carriers.contains(joint));
+        let count = own.count();
+        (count > 0).then_some((i, count))
+    })
+}
+
+/// A body of a link as a solid; none for a mesh.
+fn solid(shape: &LinkShape) -> Option<(Pose, Solid)> {
+    let pose = in_units(shape.origin);
+    let units = |meters: f64| (meters * UNITS_PER_METER) as f32;
+    match shape.geometry {
+        Geometry::Box { size } => Some((pose, Solid::Cuboid((size * UNITS_PER_METER).as_vec3()))),
+        Geometry::Cylinder { radius, length } => Some((
+            // A solid cylinder is along y.
+            pose * Pose::new(
+                Vec3::ZERO,
+                Quat::from_rotation_x(std::f32::consts::FRAC_PI_2),
+            ),
+            Solid::Cylinder {
+                radius: units(radius),
+                yspan: units(length),
+            },
+        )),
+        Geometry::Sphere { radius } => Some((pose, Solid::Ball(units(radius)))),
+        Geometry::Mesh { .. } => None,
+    }
+}
+
+fn in_units(frame: DAffine3) -> Pose {
+    let rotation = DQuat::from_mat3(&frame.matrix3).normalize();
+    Pose::new(
+        (frame.translation * UNITS_PER_METER).as_vec3(),
+        rotation.as_quat(),
+    )
+}
+
+fn in_meters(pose: Pose) -> DAffine3 {
+    DAffine3::from_rotation_translation(
+        pose.rotation.as_dquat().normalize(),
+        pose.location.as_dvec3() / UNITS_PER_METER,
+    )
+}

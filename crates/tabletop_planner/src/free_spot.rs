@@ -1,0 +1,76 @@
+//! Free places on the table.
+
+use bevy::math::Vec3;
+use tabletop_core::Pose;
+use tabletop_task::Convex;
+
+use crate::{
+    body::RobotBody,
+    sight::{Sight, heights},
+};
+
+/// How far from others something is put, so that fingers reach it, in units.
+const ROOM: f32 = 0.9;
+/// How far from the table's edges, in units.
+const EDGE: f32 = 0.3;
+/// Distance between the places that are looked at, in units.
+const GRID: f32 = 0.5;
+
+/// Places where an object can be put, turned as it is, the nearest to `near` first. `kept` are solids of what will be there later.
+pub(crate) fn free_spots(
+    body: &RobotBody,
+    sight: &Sight,
+    id: &str,
+    near: Vec3,
+    limbs: &[usize],
+    kept: &[Convex],
+) -> Vec<Pose> {
+    let Some(object) = sight.objects.get(id) else {
+        return Vec::new();
+    };
+    let solids = object.solids_at(Pose::new(Vec3::ZERO, object.pose.rotation));
+    let [lowest, highest] = heights(&solids);
+    let reach = |way: Vec3| {
+        let all = solids.iter().map(|solid| solid.farthest(way).dot(way));
+        all.fold(0.0, f32::max)
+    };
+    let half = Vec3::new(sight.table.xspan, sight.table.yspan, 0.0) / 2.0 - EDGE;
+    let [left, right] = [-half.x + reach(Vec3::NEG_X), half.x - reach(Vec3::X)];
+    let [front, back] = [-half.y + reach(Vec3::NEG_Y), half.y - reach(Vec3::Y)];
+    let others: Vec<_> = sight
+        .objects
+        .iter()
+        .filter(|(other, _)| *other != id)
+        .flat_map(|(_, other)| other.solids())
+        .chain(kept.iter().copied())
+        .collect();
+    let steps = |from: f32, to: f32| {
+        let count = ((to - from) / GRID).max(0.0) as u16;
+        (0..=count).map(move |i| from + GRID * f32::from(i))
+    };
+    let mut spots: Vec<_> = steps(left, right)
+        .flat_map(|x| steps(front, back).map(move |y| Vec3::new(x, y, -lowest)))
+        .collect();
+    let distance = |spot: &Vec3| (*spot - near).truncate().length();
+    spots.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let is_free = |spot: &Vec3| {
+        let placed = solids.iter().map(|solid| solid.moved(*spot));
+        placed.into_iter().all(|solid| {
+            others
+                .iter()
+                .all(|other| solid.gap_from_above(other) > ROOM)
+        })
+    };
+    let is_reached = |spot: &Vec3| {
+        limbs.iter().all(|&limb| {
+            let home = body.limbs[limb].home;
+            let tops = [0.8_f32.max(highest - lowest), 2.5];
+            tops.into_iter()
+                .all(|z| body.reach(limb, Pose::at(spot.with_z(z)), &home).is_some())
+        })
+    };
+    let free = spots.into_iter().filter(is_free).filter(is_reached);
+    free.take(4)
+        .map(|spot| Pose::new(spot, object.pose.rotation))
+        .collect()
+}

@@ -1,0 +1,252 @@
+//! Where an object may be put to do a step.
+
+use std::collections::BTreeMap;
+
+use bevy::math::{Quat, Vec3};
+use tabletop_core::Pose;
+use tabletop_task::{
+    Arrangement, Binding, Place, Reference, Relation, Step, Symmetry, twist_about,
+};
+
+use crate::{
+    failure::Failure,
+    sight::{Sight, lean},
+};
+
+/// A place that does, and how much worse it is than the best.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Candidate {
+    pub pose: Pose,
+    pub cost: f32,
+}
+
+/// Where things were before.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Before {
+    /// In the beginning, by object.
+    pub beginning: BTreeMap<String, Pose>,
+    /// Before this step, the object that is moved.
+    pub step: Option<Pose>,
+}
+
+/// How near to where it is to be an object has to be, in units: relative to an object, and to a place.
+const NEAR: (f32, f32) = (0.15, 0.3);
+/// How far it may be turned from how it is to be, in rad.
+const TURNED: f32 = 0.14;
+/// How far what is upright may lean, in rad.
+const UPRIGHT: f32 = 0.1;
+
+/// The poses of its object with which a step is done, as far as they can be reached by turning it about the vertical.
+pub(crate) fn candidates(
+    step: &Step,
+    binding: &Binding,
+    sight: &Sight,
+    before: &Before,
+) -> Result<Vec<Candidate>, Failure> {
+    let id = bound(binding, &step.object)?;
+    let object = sight
+        .objects
+        .get(id)
+        .ok_or_else(|| Failure::Gone(id.to_owned()))?;
+    let mut found = Vec::<Candidate>::new();
+    for exact in exact(step, binding, sight, before)? {
+        let symmetry = Symmetry::of(&object.shape);
+        for variant in symmetry.variants(exact.pose) {
+            // What stands is turned about the vertical alone.
+            let turn = variant.rotation * object.pose.rotation.inverse();
+            if lean(turn) > UPRIGHT {
+                continue;
+            }
+            let upright = twist_about(turn, Vec3::Z) * object.pose.rotation;
+            let pose = Pose::new(variant.location, upright);
+            let is_new = found.iter().all(|known| {
+                known.pose.location.distance(pose.location) > 0.01
+                    || tabletop_task::angle_between(known.pose.rotation, pose.rotation) > 0.02
+            });
+            if is_new {
+                let cost = exact.cost;
+                found.push(Candidate { pose, cost });
+            }
+        }
+    }
+    if found.is_empty() {
+        return Err(Failure::Tipped(id.to_owned()));
+    }
+    if is_on(step) {
+        // Turned with its reference, a place may be beside what the object has to stand on.
+        let mut fitting = Vec::new();
+        for candidate in &found {
+            let arrangement = sight.arrangement_with(id, candidate.pose);
+            if stands(step, binding, &arrangement, id)? {
+                fitting.push(*candidate);
+            }
+        }
+        if !fitting.is_empty() {
+            return Ok(fitting);
+        }
+    }
+    Ok(found)
+}
+
+/// Whether an object stands on, in and around what a step puts it on, in and around.
+fn stands(
+    step: &Step,
+    binding: &Binding,
+    arrangement: &Arrangement,
+    id: &str,
+) -> Result<bool, Failure> {
+    for relation in &step.relations {
+        let is_so = match relation {
+            Relation::On { object } => arrangement.supports(id).contains(&bound(binding, object)?),
+            Relation::Inside { object } => arrangement
+                .containers(id)
+                .contains(&bound(binding, object)?),
+            Relation::Around { object } => arrangement.posts(id).contains(&bound(binding, object)?),
+            Relation::OnTable => arrangement.is_on_table(id),
+            Relation::Beside { .. }
+            | Relation::AlignedWith { .. }
+            | Relation::InPlaceOf { .. }
+            | Relation::Aside
+            | Relation::Slid { .. }
+            | Relation::Turned { .. }
+            | Relation::Destroyed
+            | Relation::Held => true,
+        };
+        if !is_so {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// The poses that a step's goal names, with the freedom that the symmetry of its reference leaves.
+fn exact(
+    step: &Step,
+    binding: &Binding,
+    sight: &Sight,
+    before: &Before,
+) -> Result<Vec<Candidate>, Failure> {
+    let Some(goal) = &step.goal else {
+        return Ok(Vec::new());
+    };
+    let gone = |id: &str| Failure::Gone(id.to_owned());
+    let frames = match &goal.reference {
+        Reference::Table => vec![Pose::IDENTITY],
+        Reference::Itself => {
+            let frame = before.step.ok_or_else(|| gone(&step.object))?;
+            vec![frame]
+        }
+        Reference::Object { object } => {
+            let id = bound(binding, object)?;
+            let seen = sight.objects.get(id).ok_or_else(|| gone(id))?;
+            Symmetry::of(&seen.shape).variants(seen.pose)
+        }
+        Reference::PlaceOf { object } => {
+            let id = bound(binding, object)?;
+            let pose = *before.beginning.get(id).ok_or_else(|| gone(id))?;
+            let symmetry = sight.objects.get(id).map(|seen| Symmetry::of(&seen.shape));
+            symmetry.map_or(vec![pose], |symmetry| symmetry.variants(pose))
+        }
+    };
+    let poses = frames.into_iter().map(|frame| {
+        let pose = frame * goal.pose;
+        Candidate {
+            cost: change_of_side(step, frame, pose),
+            pose,
+        }
+    });
+    let is_level = |candidate: &Candidate| candidate.pose.location.z > 0.0;
+    let upright = poses.filter(is_level);
+    // A reference that looks the same upside down does not turn a goal upside down.
+    let shown_height = goal.pose.location.length();
+    let mut all: Vec<_> = upright.collect();
+    let highest = all
+        .iter()
+        .map(|one| one.pose.location.z)
+        .fold(f32::NEG_INFINITY, f32::max);
+    if goal.place == Place::Exact && shown_height > 0.3 && is_on(step) {
+        all.retain(|one| one.pose.location.z > highest - 0.1);
+    }
+    all.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    Ok(all)
+}
+
+fn is_on(step: &Step) -> bool {
+    step.relations.iter().any(|relation| {
+        matches!(
+            relation,
+            Relation::On { .. } | Relation::Inside { .. } | Relation::Around { .. }
+        )
+    })
+}
+
+/// How far a goal is from the side of its reference on which it was shown, in rad.
+fn change_of_side(step: &Step, frame: Pose, pose: Pose) -> f32 {
+    let way = (pose.location - frame.location).with_z(0.0);
+    match step.relations.first() {
+        Some(Relation::Beside { side, .. }) if way.length() > 0.2 => way.angle_between(side.way()),
+        _ => 0.0,
+    }
+}
+
+/// Whether an object that is on its way to a candidate is where it has to be.
+pub(crate) fn is_met(
+    step: &Step,
+    binding: &Binding,
+    sight: &Sight,
+    before: &Before,
+) -> Result<bool, Failure> {
+    let id = bound(binding, &step.object)?;
+    let Some(object) = sight.objects.get(id) else {
+        return Ok(matches!(step.relations.first(), Some(Relation::Destroyed)));
+    };
+    let Some(goal) = &step.goal else {
+        return Ok(true);
+    };
+    if goal.place == Place::Anywhere {
+        return Ok(true);
+    }
+    if let Some(Relation::Slid { .. }) = step.relations.first() {
+        let targets = exact(step, binding, sight, before)?;
+        return Ok(targets
+            .iter()
+            .any(|target| target.pose.location.distance(object.pose.location) < 0.3));
+    }
+    if !stands(step, binding, &sight.arrangement(), id)? {
+        return Ok(false);
+    }
+    if goal.place == Place::Inside {
+        return Ok(true);
+    }
+    let near = match goal.reference {
+        Reference::Object { .. } => NEAR.0,
+        Reference::Table | Reference::PlaceOf { .. } | Reference::Itself => NEAR.1,
+    };
+    let symmetry = Symmetry::of(&object.shape);
+    let targets = exact(step, binding, sight, before)?;
+    Ok(targets.iter().any(|target| {
+        let (moved, turned) = symmetry.difference(object.pose, target.pose);
+        moved < near && turned < TURNED
+    }))
+}
+
+/// The object that takes a role.
+pub(crate) fn bound<'b>(binding: &'b Binding, role: &str) -> Result<&'b str, Failure> {
+    binding
+        .object(role)
+        .ok_or_else(|| Failure::Gone(role.to_owned()))
+}
+
+/// The rotations about the vertical by which a container can be searched for a free place.
+pub(crate) fn inside(pose: Pose, by: f32) -> impl Iterator<Item = Candidate> {
+    let steps = [0.0, 1.0, -1.0, 2.0, -2.0];
+    steps.into_iter().flat_map(move |x| {
+        steps.into_iter().map(move |y| {
+            let aside = Vec3::new(x, y, 0.0) * by;
+            Candidate {
+                pose: Pose::new(pose.location + aside, Quat::IDENTITY * pose.rotation),
+                cost: aside.length(),
+            }
+        })
+    })
+}

@@ -1,0 +1,187 @@
+//! How an object can be taken.
+
+use std::f32::consts::{FRAC_PI_2, PI};
+
+use bevy::math::{Quat, Vec3};
+use tabletop_core::{Pose, Shape, Solid};
+use tabletop_task::Convex;
+
+/// A way to take an object from above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grasp {
+    /// Where the end effector is then, in the object's frame.
+    pub end_effector: Pose,
+    /// How wide what is between the fingers is, in units.
+    pub width: f32,
+    /// How far it is off the middle of what is taken, and above the lowest hold of it, in units.
+    pub off: f32,
+}
+
+/// Least distance between a finger and what it is to take, in units.
+const PLAY: f32 = 0.05;
+/// How far fingers' ends stay above what an object stands on, in units.
+const ABOVE_GROUND: f32 = 0.03;
+/// How deep fingers reach down at least, in units.
+const SHALLOW: f32 = 0.2;
+/// How deep fingers reach down at a high object, in units.
+const DEPTH: f32 = 0.45;
+
+/// The ways to take an object that stands like this: from above, at the whole of it or at a part such as a handle, by opposite faces
+/// that fit between the fingers. `finger` is the length of a finger, `widest` the largest opening, in units.
+pub fn grasps(shape: &Shape, rotation: Quat, finger: f32, widest: f32) -> Vec<Grasp> {
+    let upright = Pose::new(Vec3::ZERO, rotation);
+    let solids = |shape: &Shape, pose: Pose| -> Vec<Convex> {
+        let solids = shape.colliding();
+        solids
+            .iter()
+            .map(|solid| Convex::of(solid, upright * pose))
+            .collect()
+    };
+    let mut wholes = vec![solids(shape, Pose::IDENTITY)];
+    let parts = shape.simple_parts();
+    if parts.len() > 1 {
+        wholes.extend(parts.iter().map(|part| solids(&part.shape, part.pose)));
+    }
+    // Whatever is taken, the fingers must not go below what the object stands on.
+    let ground = wholes[0]
+        .iter()
+        .map(|solid| solid.heights()[0])
+        .fold(f32::INFINITY, f32::min);
+    let mut all = Vec::<Grasp>::new();
+    for whole in wholes {
+        for yaw in yaws(&whole) {
+            let frame = Quat::from_rotation_z(yaw);
+            let [x, y] = [Vec3::X, Vec3::Y].map(|axis| extent(&whole, frame * axis));
+            let z = extent(&whole, Vec3::Z);
+            let width = x[1] - x[0];
+            if width > widest - PLAY {
+                continue;
+            }
+            let lowest = ground + ABOVE_GROUND + finger / 2.0;
+            let height = lowest.max(z[1] - DEPTH);
+            if height - finger / 2.0 > z[1] - 0.1 {
+                continue;
+            }
+            let middle = [x, y].map(|[low, high]| f32::midpoint(low, high));
+            let room = (y[1] - y[0]) / 2.0 - 0.3;
+            let offsets: &[f32] = if room > 0.4 {
+                &[0.0, 0.35, -0.35, 0.7, -0.7]
+            } else {
+                &[0.0]
+            };
+            // Higher holds leave room for what is below and around.
+            let highest = z[1] + finger / 2.0 - SHALLOW;
+            for share in [0.0, 0.5, 1.0] {
+                let rise = (highest - height).max(0.0) * share;
+                if share > 0.0 && rise < 0.05 {
+                    continue;
+                }
+                for offset in offsets {
+                    let aside = offset * room.max(0.0);
+                    let across = frame * Vec3::new(middle[0], middle[1] + aside, 0.0);
+                    let at = across + Vec3::Z * (height + rise);
+                    for turn in [0.0, PI] {
+                        let there = Pose::new(at, Quat::from_rotation_z(yaw + turn));
+                        all.push(Grasp {
+                            end_effector: upright.inverse() * there,
+                            width,
+                            off: aside.abs() + rise,
+                        });
+                    }
+                }
+            }
+        }
+    }
+    all
+}
+
+/// The angles about the vertical in which fingers meet opposite faces.
+fn yaws(solids: &[Convex]) -> Vec<f32> {
+    let Some(first) = solids.first() else {
+        return Vec::new();
+    };
+    let level = |axis: Vec3| axis.z.abs() < 0.1;
+    let angle = |axis: Vec3| axis.y.atan2(axis.x);
+    let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| first.pose.rotation * axis);
+    match first.solid {
+        Solid::Ball(_) => around(8),
+        Solid::Cylinder { .. } if !level(axes[1]) => around(8),
+        // Across a lying cylinder.
+        Solid::Cylinder { .. } => vec![angle(axes[1]) + FRAC_PI_2],
+        Solid::Cuboid(_) => {
+            let level: Vec<_> = axes.into_iter().filter(|axis| level(*axis)).collect();
+            level.into_iter().map(angle).collect()
+        }
+    }
+}
+
+fn around(count: u16) -> Vec<f32> {
+    (0..count)
+        .map(|i| PI * f32::from(i) / f32::from(count))
+        .collect()
+}
+
+/// From where to where solids reach along a way.
+fn extent(solids: &[Convex], way: Vec3) -> [f32; 2] {
+    let reach = |way: Vec3| {
+        let all = solids.iter().map(|solid| solid.farthest(way).dot(way));
+        all.fold(f32::NEG_INFINITY, f32::max)
+    };
+    [-reach(-way), reach(way)]
+}
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::Rgb;
+
+    use super::*;
+
+    fn block(x: f32, y: f32, z: f32) -> Shape {
+        Shape::Block {
+            span: Vec3::new(x, y, z),
+            color: Rgb::RED,
+        }
+    }
+
+    fn widths(shape: &Shape) -> Vec<f32> {
+        let all = grasps(shape, Quat::IDENTITY, 1.5, 2.0);
+        let mut widths: Vec<_> = all.iter().map(|grasp| grasp.width).collect();
+        widths.dedup_by(|a, b| (*a - *b).abs() < 1e-3);
+        widths
+    }
+
+    #[test]
+    fn a_block_is_taken_by_the_faces_that_fit() {
+        assert_eq!(widths(&block(1.0, 1.5, 1.0)), [1.0, 1.5]);
+        assert_eq!(widths(&block(1.0, 3.0, 1.0)), [1.0]);
+        assert!(widths(&block(2.5, 3.0, 1.0)).is_empty());
+    }
+
+    #[test]
+    fn a_lid_is_taken_by_its_handle() {
+        let lid = Shape::Lid {
+            span: Vec3::new(4.0, 4.0, 0.2),
+            color: Rgb::RED,
+            handle_span: Vec3::new(0.5, 0.8, 0.5),
+            handle_thickness: 0.1,
+            handle_color: Rgb::RED,
+        };
+        for grasp in grasps(&lid, Quat::IDENTITY, 1.5, 2.0) {
+            assert!(
+                grasp.width < 0.81 && grasp.end_effector.location.z > 0.5,
+                "{grasp:?}"
+            );
+        }
+        assert!(!grasps(&lid, Quat::IDENTITY, 1.5, 2.0).is_empty());
+    }
+
+    #[test]
+    fn fingers_stay_above_the_ground() {
+        for height in [0.3, 1.0, 3.0] {
+            for grasp in grasps(&block(1.0, 1.0, height), Quat::IDENTITY, 1.5, 2.0) {
+                let ends = grasp.end_effector.location.z - 0.75;
+                assert!(ends >= -height / 2.0 + 0.029, "{grasp:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,514 @@
+//! Doing a task: step by step, with a look after each.
+
+use bevy::math::Vec3;
+use tabletop_core::{JointKind, Pose};
+use tabletop_task::{Binding, Convex, Place, Reference, Relation, Step, Task};
+
+use crate::{
+    body::{Angles, RobotBody},
+    clearance::Clearance,
+    failure::Failure,
+    free_spot::free_spots,
+    goals::{Before, Candidate, bound, candidates, inside, is_met},
+    motion::{follow, wait},
+    path::transit,
+    sight::Sight,
+    stage::Stage,
+    transfer::Transfer,
+};
+
+/// What has become of a task.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Imitation {
+    /// How many steps were done.
+    pub steps_done: usize,
+    /// How often a step was tried again.
+    pub corrections: usize,
+    /// Why the robot gave up, and the number of the step, if it did.
+    pub failure: Option<(usize, Failure)>,
+}
+
+/// What the robot is doing.
+#[derive(Clone, Copy, Debug)]
+pub struct Doing<'a> {
+    /// The step.
+    pub step: &'a Step,
+    /// How often it was tried before.
+    pub tries: usize,
+}
+
+/// How often a step is tried.
+const TRIES: usize = 3;
+/// How many things are moved out of the way for a step.
+const MOST_CLEARED: usize = 4;
+/// Where limbs wait, so that they are not in each other's way: beside the table's front corners, in units.
+const PARKED: Vec3 = Vec3::new(7.0, -6.0, 4.5);
+
+/// Does a task. Whatever is tried by chance is decided by `seed`; `tell` hears of every step before it is tried.
+pub fn imitate(
+    stage: &mut impl Stage,
+    body: &RobotBody,
+    task: &Task,
+    binding: &Binding,
+    seed: u64,
+    tell: impl FnMut(Doing),
+) -> Imitation {
+    let sight = stage.sight();
+    let beginning = sight
+        .objects
+        .iter()
+        .map(|(id, object)| (id.clone(), object.pose));
+    let mut imitator = Imitator {
+        body,
+        task,
+        binding,
+        seed,
+        parked: Vec::new(),
+        before: Before {
+            beginning: beginning.collect(),
+            step: None,
+        },
+        outcome: Imitation::default(),
+    };
+    imitator.park_all(stage);
+    imitator.do_all(stage, tell);
+    imitator.outcome
+}
+
+struct Imitator<'a> {
+    body: &'a RobotBody,
+    task: &'a Task,
+    binding: &'a Binding,
+    seed: u64,
+    /// The posture in which each limb waits.
+    parked: Vec<Angles>,
+    before: Before,
+    outcome: Imitation,
+}
+
+impl Imitator<'_> {
+    fn do_all(&mut self, stage: &mut impl Stage, mut tell: impl FnMut(Doing)) {
+        for i in 0..self.task.steps.len() {
+            let step = &self.task.steps[i];
+            let sight = stage.sight();
+            let object = self.binding.object(&step.object);
+            self.before.step = object.and_then(|id| Some(sight.objects.get(id)?.pose));
+            let mut failure = None;
+            for tries in 0..TRIES {
+                tell(Doing { step, tries });
+                self.outcome.corrections += usize::from(tries > 0);
+                failure = self.do_step(stage, i).err();
+                let limbs = stage.sight().limbs.len();
+                wait(stage, limbs, 10);
+                let is_met = is_met(step, self.binding, &stage.sight(), &self.before);
+                match (is_met, &failure) {
+                    (Ok(true), None) => break,
+                    (Ok(true), Some(_))
+                        if step
+                            .goal
+                            .as_ref()
+                            .is_some_and(|goal| goal.place != Place::Anywhere) =>
+                    {
+                        failure = None;
+                        break;
+                    }
+                    (Ok(false), None) => {
+                        let object = self.binding.object(&step.object).unwrap_or(&step.object);
+                        failure = Some(Failure::Misplaced(object.to_owned()));
+                    }
+                    (Err(gone), _) => failure = Some(gone),
+                    (Ok(_), Some(_)) => {}
+                }
+                self.seed = self.seed.wrapping_add(1);
+            }
+            if let Some(failure) = failure {
+                self.outcome.failure = Some((step.number, failure));
+                break;
+            }
+            self.outcome.steps_done += 1;
+        }
+        if self.outcome.failure.is_none() {
+            self.outcome.failure = self.undone(&stage.sight());
+        }
+        let is_held = |step: &Step| step.relations.first() == Some(&Relation::Held);
+        if !self.task.steps.iter().any(is_held) {
+            for limb in 0..self.body.limbs.len() {
+                let _still_there = self.park(stage, limb);
+            }
+        }
+        let limbs = stage.sight().limbs.len();
+        wait(stage, limbs, 30);
+    }
+
+    /// The first step that a later one has undone, if one has.
+    fn undone(&self, sight: &Sight) -> Option<(usize, Failure)> {
+        let steps = &self.task.steps;
+        let is_last = |step: &&Step| {
+            !steps[step.number..]
+                .iter()
+                .any(|later| later.object == step.object)
+        };
+        let stays = |step: &&Step| {
+            step.goal
+                .as_ref()
+                .is_some_and(|goal| goal.reference != Reference::Itself)
+        };
+        let mut lasting = steps.iter().filter(is_last).filter(stays);
+        lasting.find_map(
+            |step| match is_met(step, self.binding, sight, &self.before) {
+                Ok(true) => None,
+                Ok(false) => {
+                    let object = self.binding.object(&step.object).unwrap_or(&step.object);
+                    Some((step.number, Failure::Misplaced(object.to_owned())))
+                }
+                Err(gone) => Some((step.number, gone)),
+            },
+        )
+    }
+
+    fn do_step(&self, stage: &mut impl Stage, i: usize) -> Result<(), Failure> {
+        let step = &self.task.steps[i];
+        let id = bound(self.binding, &step.object)?;
+        let sight = stage.sight();
+        let object = sight
+            .objects
+            .get(id)
+            .ok_or_else(|| Failure::Gone(id.to_owned()))?;
+        for above in sight.above(id) {
+            self.clear(stage, &above, i)?;
+        }
+        match step.relations.first() {
+            Some(Relation::Slid { object: holder, .. }) => {
+                let holder = bound(self.binding, holder)?;
+                let by = slide(&sight, step, id, holder)
+                    .ok_or_else(|| Failure::Gone(holder.to_owned()))?;
+                self.by_some_limb(stage, id, object.pose.location, |transfer, stage| {
+                    transfer.slide(stage, by)
+                })
+            }
+            Some(Relation::Held) => {
+                self.by_some_limb(stage, id, object.pose.location, |transfer, stage| {
+                    transfer.pick_up(stage)
+                })
+            }
+            Some(Relation::Destroyed) => self.clear(stage, id, i),
+            Some(Relation::Aside) => {
+                let near = step
+                    .goal
+                    .as_ref()
+                    .map_or(Vec3::ZERO, |goal| goal.pose.location);
+                self.put_aside(stage, id, near, i)
+            }
+            Some(
+                Relation::OnTable
+                | Relation::On { .. }
+                | Relation::Inside { .. }
+                | Relation::Around { .. }
+                | Relation::Beside { .. }
+                | Relation::AlignedWith { .. }
+                | Relation::InPlaceOf { .. }
+                | Relation::Turned { .. },
+            )
+            | None => {
+                for _ in 0..MOST_CLEARED {
+                    let Some(occupant) = self.occupant(&stage.sight(), step, id)? else {
+                        break;
+                    };
+                    self.clear(stage, &occupant, i)?;
+                }
+                self.put(stage, step, id, i)
+            }
+        }
+    }
+
+    /// Puts an object to where a step wants it; by way of a place that two limbs reach, if no limb reaches both ends.
+    fn put(&self, stage: &mut impl Stage, step: &Step, id: &str, i: usize) -> Result<(), Failure> {
+        let goals = |stage: &mut _| self.goals(stage, step);
+        let at = goals(stage)?
+            .first()
+            .map_or(Vec3::ZERO, |goal| goal.pose.location);
+        let straight = {
+            let goals = goals(stage)?;
+            self.by_some_limb(stage, id, at, |transfer, stage| {
+                transfer.carry_out(stage, &goals)
+            })
+        };
+        let Err(failure @ (Failure::OutOfReach(_) | Failure::NoWay(_))) = straight else {
+            return straight;
+        };
+        let sight = stage.sight();
+        let is_held = sight.limbs.iter().any(|limb| !limb.holds.is_empty());
+        let Some(object) = sight.objects.get(id).filter(|_| !is_held) else {
+            return Err(failure);
+        };
+        let all: Vec<_> = (0..self.body.limbs.len()).collect();
+        let near = object.pose.location.midpoint(at);
+        let kept = self.kept(&sight, i);
+        let spots = free_spots(self.body, &sight, id, near, &all, &kept);
+        let spots: Vec<_> = spots
+            .into_iter()
+            .flat_map(|pose| {
+                // Turned as it may be taken then.
+                [0.0_f32, 0.8, -0.8].map(|turn| Candidate {
+                    pose: Pose::new(
+                        pose.location,
+                        bevy::math::Quat::from_rotation_z(turn) * pose.rotation,
+                    ),
+                    cost: turn.abs() * 0.2,
+                })
+            })
+            .collect();
+        if spots.is_empty() {
+            return Err(failure);
+        }
+        self.by_some_limb(stage, id, near, |transfer, stage| {
+            transfer.carry_out(stage, &spots)
+        })?;
+        let goals = goals(stage)?;
+        self.by_some_limb(stage, id, at, |transfer, stage| {
+            transfer.carry_out(stage, &goals)
+        })
+    }
+
+    fn goals(&self, stage: &impl Stage, step: &Step) -> Result<Vec<Candidate>, Failure> {
+        let sight = stage.sight();
+        let goals = candidates(step, self.binding, &sight, &self.before)?;
+        let is_inside = step
+            .goal
+            .as_ref()
+            .is_some_and(|goal| goal.place == Place::Inside);
+        Ok(match is_inside {
+            true => goals
+                .iter()
+                .flat_map(|goal| inside(goal.pose, 0.3))
+                .collect(),
+            false => goals,
+        })
+    }
+
+    /// Lets the limb do it that is on the side of both ends; if it cannot, the others. They wait meanwhile.
+    fn by_some_limb<S: Stage>(
+        &self,
+        stage: &mut S,
+        id: &str,
+        towards: Vec3,
+        act: impl Fn(&Transfer, &mut S) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let sight = stage.sight();
+        let object = sight
+            .objects
+            .get(id)
+            .ok_or_else(|| Failure::Gone(id.to_owned()))?;
+        let middle = object.pose.location.midpoint(towards);
+        let mut limbs: Vec<_> = (0..self.body.limbs.len()).collect();
+        let distance = |limb: &usize| {
+            let parked = self.body.end_effector(*limb, &self.parked[*limb]);
+            parked.location.distance(middle)
+        };
+        limbs.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let mut failure = Failure::OutOfReach(id.to_owned());
+        for limb in limbs {
+            for other in (0..self.body.limbs.len()).filter(|&other| other != limb) {
+                self.park(stage, other)?;
+            }
+            let transfer = Transfer {
+                body: self.body,
+                limb,
+                object: id,
+                seed: self.seed,
+            };
+            match act(&transfer, stage) {
+                Ok(()) => return Ok(()),
+                Err(new) => {
+                    let is_telling = !matches!(new, Failure::OutOfReach(_));
+                    let has_acted = matches!(
+                        new,
+                        Failure::Blocked { .. } | Failure::NotHeld(_) | Failure::Gone(_)
+                    ) || stage.sight().limbs[limb]
+                        .holds
+                        .iter()
+                        .any(|held| held == id);
+                    if is_telling {
+                        failure = new;
+                    }
+                    if has_acted {
+                        self.set_down(stage, limb);
+                        return Err(failure);
+                    }
+                }
+            }
+        }
+        Err(failure)
+    }
+
+    /// Opens a gripper that still holds something after a failure, and lifts it.
+    fn set_down(&self, stage: &mut impl Stage, limb: usize) {
+        let widest = f64::from(self.body.limbs[limb].widest);
+        crate::motion::grip(stage, limb, widest);
+        let sight = stage.sight();
+        let clearance = Clearance::new(self.body, &sight, limb, &[]);
+        if let Some(up) = crate::path::lift(&clearance, &clearance.here(), 1.0) {
+            let _stopped = follow(stage, self.body, limb, &up, 2.5, "");
+        }
+    }
+
+    /// What is where a step's object is to be, and does not belong there.
+    fn occupant(&self, sight: &Sight, step: &Step, id: &str) -> Result<Option<String>, Failure> {
+        let goals = candidates(step, self.binding, sight, &self.before)?;
+        let object = sight
+            .objects
+            .get(id)
+            .ok_or_else(|| Failure::Gone(id.to_owned()))?;
+        let others = step.relations.iter().filter_map(Relation::object);
+        let meant: Vec<_> = others
+            .filter_map(|role| self.binding.object(role))
+            .collect();
+        let in_the_way = |goal: &Candidate| {
+            let solids = object.solids_at(Pose::new(
+                goal.pose.location + Vec3::Z * 0.02,
+                goal.pose.rotation,
+            ));
+            let others = sight.objects.iter().filter(|(other, seen)| {
+                *other != id && !seen.is_fixed && !meant.contains(&other.as_str())
+            });
+            let mut overlapping = others.filter(|(_, other)| {
+                let other = other.solids();
+                let meets = |solid: &Convex| {
+                    other
+                        .iter()
+                        .any(|other| crate::body::is_within(&solid.shrunk(0.01), other, 1e-3))
+                };
+                solids.iter().any(meets)
+            });
+            overlapping.next().map(|(id, _)| id.clone())
+        };
+        let occupants: Vec<_> = goals.iter().map(in_the_way).collect();
+        // Only if no goal is free.
+        Ok(match occupants.iter().any(Option::is_none) {
+            true => None,
+            false => occupants.into_iter().flatten().next(),
+        })
+    }
+
+    /// Moves something out of the way, with what stands on it.
+    fn clear(&self, stage: &mut impl Stage, id: &str, i: usize) -> Result<(), Failure> {
+        for above in stage.sight().above(id) {
+            self.clear(stage, &above, i)?;
+        }
+        let sight = stage.sight();
+        let near = sight
+            .objects
+            .get(id)
+            .map_or(Vec3::ZERO, |object| object.pose.location);
+        self.put_aside(stage, id, near, i)
+    }
+
+    fn put_aside(
+        &self,
+        stage: &mut impl Stage,
+        id: &str,
+        near: Vec3,
+        i: usize,
+    ) -> Result<(), Failure> {
+        let sight = stage.sight();
+        let kept = self.kept(&sight, i);
+        let mut spots = Vec::new();
+        let all: Vec<_> = (0..self.body.limbs.len()).collect();
+        for limbs in std::iter::once(all.clone()).chain(all.iter().map(|&limb| vec![limb])) {
+            spots.extend(free_spots(self.body, &sight, id, near, &limbs, &kept));
+        }
+        let goals: Vec<_> = spots
+            .into_iter()
+            .map(|pose| Candidate {
+                pose,
+                cost: pose.location.distance(near) * 0.1,
+            })
+            .collect();
+        if goals.is_empty() {
+            return Err(Failure::NoRoom(id.to_owned()));
+        }
+        self.by_some_limb(stage, id, near, |transfer, stage| {
+            transfer.carry_out(stage, &goals)
+        })
+    }
+
+    /// What will stand on the table when the steps from this one on have been done: nothing else is put there.
+    fn kept(&self, sight: &Sight, from: usize) -> Vec<Convex> {
+        let steps = self.task.steps[from..].iter();
+        let later = steps.filter(|step| {
+            let is_exact = step
+                .goal
+                .as_ref()
+                .is_some_and(|goal| goal.place == Place::Exact);
+            is_exact
+                && !matches!(
+                    step.relations.first(),
+                    Some(Relation::Slid { .. } | Relation::Turned { .. })
+                )
+        });
+        let places = later.filter_map(|step| {
+            let id = self.binding.object(&step.object)?;
+            let goals = candidates(step, self.binding, sight, &self.before).ok()?;
+            Some(sight.objects.get(id)?.solids_at(goals.first()?.pose))
+        });
+        places.flatten().collect()
+    }
+
+    fn park_all(&mut self, stage: &mut impl Stage) {
+        let sight = stage.sight();
+        for (limb, seen) in sight.limbs.iter().enumerate() {
+            let side = self
+                .body
+                .end_effector(limb, &seen.angles)
+                .location
+                .x
+                .signum();
+            let place = Pose::at(PARKED * Vec3::new(side, 1.0, 1.0));
+            let parked = self.body.reach(limb, place, &seen.angles);
+            self.parked
+                .push(parked.unwrap_or(self.body.limbs[limb].home));
+        }
+        for limb in 0..self.parked.len() {
+            let _still_there = self.park(stage, limb);
+        }
+    }
+
+    /// Brings a limb to where it waits.
+    fn park(&self, stage: &mut impl Stage, limb: usize) -> Result<(), Failure> {
+        let sight = stage.sight();
+        let clearance = Clearance::new(self.body, &sight, limb, &[]);
+        let here = clearance.here();
+        if crate::path::largest_turn(&here, &self.parked[limb]) < 1e-3 {
+            return Ok(());
+        }
+        let name = || format!("the {} arm", self.body.limbs[limb].name);
+        let way = transit(&clearance, &here, &self.parked[limb], self.seed);
+        let way = way.ok_or_else(|| Failure::NoWay(name()))?;
+        follow(stage, self.body, limb, &way, 6.0, &name())
+    }
+}
+
+/// By how much an object has to be slid for a step.
+fn slide(sight: &Sight, step: &Step, id: &str, holder: &str) -> Option<Vec3> {
+    let Some(Relation::Slid {
+        opening, travel, ..
+    }) = step.relations.first()
+    else {
+        return None;
+    };
+    let joint = sight
+        .joints
+        .iter()
+        .find(|joint| joint.objects == [holder.to_owned(), id.to_owned()])?;
+    let JointKind::Slider {
+        max: own_travel, ..
+    } = joint.kind
+    else {
+        return None;
+    };
+    let frame = sight.objects.get(holder)?.pose * joint.frames[0];
+    let own = sight.objects.get(id)?.pose * joint.frames[1];
+    let now = -(frame.inverse() * own.location).x;
+    let wanted = opening / travel * own_travel;
+    Some(frame.rotation * Vec3::NEG_X * (wanted - now))
+}

@@ -1,0 +1,129 @@
+//! Moving an arm and its gripper, tick by tick.
+
+use tabletop_core::TICK_SECONDS;
+
+use crate::{
+    body::{Angles, RobotBody},
+    failure::Failure,
+    sight::Sight,
+    stage::{LimbOrder, Stage},
+};
+
+/// How fast fingers move, in units/s.
+const FINGER_SPEED: f64 = 2.0;
+/// How far joints may lag behind, in rad.
+const LAG: f64 = 2e-3;
+/// After how many ticks without getting on an arm counts as stopped.
+const PATIENCE: u32 = 20;
+/// Most ticks for fingers to move.
+const FINGER_TICKS: u32 = 200;
+
+/// Lets time pass with nothing moving.
+pub(crate) fn wait(stage: &mut impl Stage, limbs: usize, ticks: u32) {
+    for _ in 0..ticks {
+        stage.tick(&vec![LimbOrder::default(); limbs]);
+    }
+}
+
+/// Moves an arm along a path, its end effector no faster than `speed`, in units/s.
+pub(crate) fn follow(
+    stage: &mut impl Stage,
+    body: &RobotBody,
+    limb: usize,
+    path: &[Angles],
+    speed: f64,
+    object: &str,
+) -> Result<(), Failure> {
+    let step = f64::from(TICK_SECONDS);
+    let start = stage.sight().limbs[limb].angles;
+    // When each posture is to be reached, in s.
+    let mut schedule = vec![(0.0, start)];
+    for next in path {
+        let (time, last) = schedule[schedule.len() - 1];
+        let speeds = body.limbs[limb].speeds;
+        let turns = (0..speeds.len()).map(|i| (next[i] - last[i]).abs() / speeds[i].max(0.1));
+        let [here, there] = [&last, next].map(|angles| body.end_effector(limb, angles).location);
+        let way = f64::from(here.distance(there)) / speed;
+        schedule.push((time + turns.fold(way, f64::max).max(1e-6), *next));
+    }
+    let end = schedule[schedule.len() - 1].0;
+    let mut time = 0.0_f64;
+    let mut stopped = 0;
+    loop {
+        let now = stage.sight();
+        let angles = now.limbs[limb].angles;
+        time = (time + step).min(end);
+        let wanted = at(&schedule, time);
+        let mut orders = vec![LimbOrder::default(); now.limbs.len()];
+        orders[limb].joints = std::array::from_fn(|i| (wanted[i] - angles[i]) / step);
+        stage.tick(&orders);
+        let sight = stage.sight();
+        let reached = sight.limbs[limb].angles;
+        let lag = (0..reached.len()).map(|i| (reached[i] - wanted[i]).abs());
+        if lag.fold(0.0, f64::max) > LAG {
+            stopped += 1;
+            time = (time - step).max(0.0);
+            if stopped > PATIENCE {
+                return Err(blocked(&sight, limb, object));
+            }
+        } else {
+            stopped = 0;
+            if time >= end {
+                wait(stage, sight.limbs.len(), 1);
+                return Ok(());
+            }
+        }
+    }
+}
+
+fn blocked(sight: &Sight, limb: usize, object: &str) -> Failure {
+    let by = sight.limbs[limb].blocked_by.clone();
+    Failure::Blocked {
+        object: object.to_owned(),
+        by: by.unwrap_or_else(|| "something that is pushed".into()),
+    }
+}
+
+fn at(schedule: &[(f64, Angles)], time: f64) -> Angles {
+    let next = schedule
+        .partition_point(|(then, _)| *then < time)
+        .min(schedule.len() - 1);
+    let (after, to) = schedule[next];
+    let (before, from) = schedule[next.saturating_sub(1)];
+    if after <= before {
+        return to;
+    }
+    let part = (time - before) / (after - before);
+    std::array::from_fn(|i| from[i] + (to[i] - from[i]) * part)
+}
+
+/// Opens or closes a gripper, until it is there, holds something, or is stopped.
+pub(crate) fn grip(stage: &mut impl Stage, limb: usize, opening: f64) {
+    let mut still = 0;
+    for _ in 0..FINGER_TICKS {
+        let sight = stage.sight();
+        let before = &sight.limbs[limb];
+        let left = opening - before.opening;
+        if left.abs() < 1e-4 {
+            break;
+        }
+        let mut orders = vec![LimbOrder::default(); sight.limbs.len()];
+        orders[limb].opening = (left / f64::from(TICK_SECONDS)).clamp(-FINGER_SPEED, FINGER_SPEED);
+        stage.tick(&orders);
+        let after = stage.sight();
+        let after = &after.limbs[limb];
+        if left < 0.0 && !after.holds.is_empty() {
+            break;
+        }
+        still = if (after.opening - before.opening).abs() < 1e-5 {
+            still + 1
+        } else {
+            0
+        };
+        if still > 6 {
+            break;
+        }
+    }
+    let limbs = stage.sight().limbs.len();
+    wait(stage, limbs, 1);
+}

@@ -1,0 +1,128 @@
+//! Ways of an arm.
+
+use bevy::math::Vec3;
+use tabletop_core::Pose;
+use tabletop_task::angle_between;
+
+use crate::{
+    body::Angles,
+    clearance::{Clearance, Margins},
+    rrt::connect,
+    sight::lean,
+};
+
+/// A way as postures, the first one not included.
+pub(crate) type Path = Vec<Angles>;
+
+/// Farthest apart postures of a straight line are, in units and rad.
+const LINE_STEP: (f32, f32) = (0.25, 0.25);
+/// How far a joint may turn from one posture of a line to the next, in rad.
+const JUMP: f64 = 0.5;
+/// How far a joint turns from one posture of a free way to the next, in rad.
+const JOINT_STEP: f64 = 0.06;
+/// Heights in which an arm goes across the table, in units.
+const TRAVERSES: [f32; 4] = [2.6, 3.4, 4.2, 5.0];
+
+/// The largest turn of a joint between two postures, in rad.
+pub(crate) fn largest_turn(a: &Angles, b: &Angles) -> f64 {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+}
+
+fn between(a: &Angles, b: &Angles, part: f64) -> Angles {
+    std::array::from_fn(|i| a[i] + (b[i] - a[i]) * part)
+}
+
+/// The way on which all joints turn evenly.
+pub(crate) fn even(from: &Angles, to: &Angles) -> Path {
+    let steps = (largest_turn(from, to) / JOINT_STEP).ceil().max(1.0) as u32;
+    (1..=steps)
+        .map(|step| between(from, to, f64::from(step) / f64::from(steps)))
+        .collect()
+}
+
+/// The way on which the end effector goes straight to a pose; none if the arm cannot.
+pub(crate) fn line(clearance: &Clearance, from: &Angles, to: Pose) -> Option<Path> {
+    let start = clearance.end_effector(from);
+    let length = start.location.distance(to.location);
+    let angle = angle_between(start.rotation, to.rotation);
+    let steps = (length / LINE_STEP.0)
+        .max(angle / LINE_STEP.1)
+        .ceil()
+        .max(1.0);
+    let mut angles = *from;
+    let mut path = Path::new();
+    for step in 1..=steps as u16 {
+        let part = f32::from(step) / steps;
+        let pose = Pose::new(
+            start.location.lerp(to.location, part),
+            start.rotation.slerp(to.rotation, part),
+        );
+        let next = clearance.reach(pose, &angles)?;
+        if largest_turn(&next, &angles) > JUMP {
+            return None;
+        }
+        path.push(next);
+        angles = next;
+    }
+    Some(path)
+}
+
+/// The way on which the end effector goes straight up.
+pub(crate) fn lift(clearance: &Clearance, from: &Angles, by: f32) -> Option<Path> {
+    let mut to = clearance.end_effector(from);
+    to.location += Vec3::Z * by;
+    line(clearance, from, to)
+}
+
+/// A free way from one posture to another: evenly, else at some height across, else found by trying (`seed` decides what is tried).
+pub(crate) fn transit(
+    clearance: &Clearance,
+    from: &Angles,
+    to: &Angles,
+    seed: u64,
+) -> Option<Path> {
+    let is_free = |path: &Path| clearance.is_way_free(path, Margins::WIDE);
+    let direct = even(from, to);
+    if is_free(&direct) {
+        return Some(direct);
+    }
+    let ends = [from, to].map(|angles| clearance.end_effector(angles));
+    let is_upright = ends.iter().all(|end| lean(end.rotation) < 0.05);
+    if is_upright {
+        for height in TRAVERSES {
+            let raised = |angles: &Angles, end: &Pose| match end.location.z > height - 0.05 {
+                true => Some(Path::new()),
+                false => lift(clearance, angles, height - end.location.z),
+            };
+            let (Some(up), Some(down)) = (raised(from, &ends[0]), raised(to, &ends[1])) else {
+                continue;
+            };
+            let [above, beyond] =
+                [(&up, from), (&down, to)].map(|(path, end)| *path.last().unwrap_or(end));
+            let descent: Path = match down.is_empty() {
+                true => Path::new(),
+                false => down.iter().rev().skip(1).chain([to]).copied().collect(),
+            };
+            let join = |across: Path| [up.clone(), across, descent.clone()].concat();
+            let path = join(even(&above, &beyond));
+            if is_free(&path) {
+                return Some(path);
+            }
+            let far = clearance.end_effector(&beyond);
+            if let Some(mut across) = line(clearance, &above, far) {
+                let last = *across.last().unwrap_or(&above);
+                if largest_turn(&last, &beyond) < 1.5 {
+                    across.extend(even(&last, &beyond));
+                    let path = join(across);
+                    if is_free(&path) {
+                        return Some(path);
+                    }
+                }
+            }
+        }
+    }
+    connect(clearance, from, to, seed)
+}

@@ -1,0 +1,143 @@
+//! A scene with everything elsewhere.
+
+use std::f32::consts::PI;
+
+use bevy::math::{Quat, Vec3};
+use tabletop_core::{Pose, Random, Table};
+use tabletop_task::{Arrangement, Convex};
+
+use crate::body::RobotBody;
+
+/// Something of a scene that is moved as one: the ids of its objects and where their solids are.
+#[derive(Clone, Debug)]
+pub struct Piece {
+    /// The ids of its objects.
+    pub ids: Vec<String>,
+    /// Their solids.
+    pub solids: Vec<Convex>,
+    /// The point about which it is turned.
+    pub centre: Vec3,
+    /// What the robot must reach of it.
+    pub reached: Vec<Vec3>,
+}
+
+/// Least distance between pieces, as seen from above, in units.
+const GAP: f32 = 0.3;
+/// How often a place is tried.
+const TRIES: u32 = 3000;
+/// How far from the table's edges pieces stay, in units.
+const EDGE: f32 = 0.05;
+
+/// A motion for every piece that brings all of them to random places within the robot's reach, turned by random angles; pieces that stand
+/// on, in or around others stay with them. None if there is no room.
+pub fn scatter(
+    pieces: &[Piece],
+    arrangement: &Arrangement,
+    table: &Table,
+    body: &RobotBody,
+    seed: u64,
+) -> Option<Vec<Pose>> {
+    let groups = groups(pieces, arrangement);
+    let mut random = Random::new(seed);
+    let mut placed = Vec::<Convex>::new();
+    let mut motions = vec![Pose::IDENTITY; pieces.len()];
+    let half = Vec3::new(table.xspan, table.yspan, 0.0) / 2.0 - EDGE;
+    for group in groups {
+        let centre = pieces[group[0]].centre.with_z(0.0);
+        let mut found = None;
+        for _ in 0..TRIES {
+            let at = Vec3::new(
+                random.between((-half.x, half.x)),
+                random.between((-half.y, half.y)),
+                0.0,
+            );
+            let turn = Quat::from_rotation_z(random.between((-PI, PI)));
+            let motion = Pose::new(at - turn * centre, turn);
+            let solids: Vec<_> = group
+                .iter()
+                .flat_map(|&piece| &pieces[piece].solids)
+                .map(|solid| Convex {
+                    pose: motion * solid.pose,
+                    solid: solid.solid,
+                })
+                .collect();
+            let reach = |solid: &Convex, way: Vec3| solid.farthest(way).dot(way);
+            let is_on_table = solids.iter().all(|solid| {
+                reach(solid, Vec3::X) < half.x
+                    && reach(solid, Vec3::NEG_X) < half.x
+                    && reach(solid, Vec3::Y) < half.y
+                    && reach(solid, Vec3::NEG_Y) < half.y
+            });
+            let is_apart = || {
+                solids
+                    .iter()
+                    .all(|solid| placed.iter().all(|other| solid.gap_from_above(other) > GAP))
+            };
+            let is_reached = || {
+                let mut points = group.iter().flat_map(|&piece| &pieces[piece].reached);
+                points.all(|point| reaches(body, motion * *point))
+            };
+            if is_on_table && is_apart() && is_reached() {
+                found = Some((motion, solids));
+                break;
+            }
+        }
+        let (motion, solids) = found?;
+        placed.extend(solids);
+        for piece in group {
+            motions[piece] = motion;
+        }
+    }
+    Some(motions)
+}
+
+/// Whether some limb reaches a point from above, and above it, whichever way its fingers are turned.
+fn reaches(body: &RobotBody, point: Vec3) -> bool {
+    (0..body.limbs.len()).any(|limb| {
+        let home = body.limbs[limb].home;
+        let there = |z: f32, turn: f32| {
+            let pose = Pose::new(point.with_z(z), Quat::from_rotation_z(turn));
+            body.reach(limb, pose, &home).is_some()
+        };
+        let low = point.z + 0.3;
+        [0.0, PI / 4.0, PI / 2.0, -PI / 4.0]
+            .into_iter()
+            .all(|turn| there(low, turn) && there(low + 2.5, turn))
+    })
+}
+
+/// The pieces that stand on, in or around each other, by index.
+fn groups(pieces: &[Piece], arrangement: &Arrangement) -> Vec<Vec<usize>> {
+    let mut group_of: Vec<usize> = (0..pieces.len()).collect();
+    for (i, piece) in pieces.iter().enumerate() {
+        for id in &piece.ids {
+            let carriers = [
+                arrangement.supports(id),
+                arrangement.containers(id),
+                arrangement.posts(id),
+            ]
+            .concat();
+            for (j, other) in pieces.iter().enumerate() {
+                if other
+                    .ids
+                    .iter()
+                    .any(|other| carriers.contains(&other.as_str()))
+                {
+                    let (old, new) = (group_of[i].max(group_of[j]), group_of[i].min(group_of[j]));
+                    group_of
+                        .iter_mut()
+                        .filter(|group| **group == old)
+                        .for_each(|group| *group = new);
+                }
+            }
+        }
+    }
+    let firsts = (0..pieces.len()).filter(|&i| group_of[i] == i);
+    firsts
+        .map(|first| {
+            (0..pieces.len())
+                .filter(|&i| group_of[i] == first)
+                .collect()
+        })
+        .collect()
+}

@@ -1,0 +1,268 @@
+//! `tabletop imitate`: the robot does what a recording shows.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    process::ExitCode,
+    time::Instant,
+};
+
+use bevy::prelude::*;
+use clap::Args;
+use tabletop::{
+    TabletopSimPlugins, headless_app_with,
+    imitation::{AppStage, baxter_body, scattered},
+    planner::{Doing, Imitation, RobotBody, imitate},
+    recorder::{RecorderPlugin, RecordingReader, UnrecordedPlugin},
+    scene::{IdAllocator, assemble},
+    task::{Requirements, Task},
+};
+use tabletop_core::{
+    RecordingCommand, RobotCommand, SceneCommand, SceneSpec, SimCommand, SimTick, StepApp as _,
+    TICKS_PER_SECOND, WriteCommand as _,
+};
+
+use super::{
+    Failure, Output,
+    explain::read,
+    run::read_faultless_task,
+    terminal::{say, show_warnings},
+};
+
+#[derive(Args)]
+pub(super) struct ImitateArgs {
+    /// The recording's folder
+    #[arg(value_name = "DIR")]
+    recording: PathBuf,
+    /// The task file to do it with [default: the scene of the recording]
+    #[arg(long, value_name = "FILE")]
+    setup: Option<PathBuf>,
+    /// Put everything to random places within reach, which this decides
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Do it so often, with random places by the seeds from `--seed` (or 0) on, and print what became of it
+    #[arg(long, value_name = "N")]
+    trials: Option<u64>,
+    /// Record what the robot does; of several trials, each to a folder of its own below
+    #[arg(long, value_name = "DIR")]
+    record: Option<PathBuf>,
+}
+
+/// What became of a trial.
+struct Trial {
+    seed: Option<u64>,
+    imitation: Option<Imitation>,
+    simulated: f64,
+    real: f64,
+}
+
+/// Lets the robot do it, once or several times. Exit code 1 if it has failed.
+pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
+    show_warnings();
+    let (task, requirements) = read(&args.recording)?;
+    let scene = match &args.setup {
+        Some(setup) => read_faultless_task(setup).map_err(Failure::input)?,
+        None => scene_of(&args.recording)?,
+    };
+    let body = baxter_body(&scene.table).map_err(Failure::run)?;
+    let seeds: Vec<_> = match (args.trials, args.seed) {
+        (None, seed) => vec![seed],
+        (Some(trials), seed) => {
+            let first = seed.unwrap_or(0);
+            (first..first.saturating_add(trials)).map(Some).collect()
+        }
+    };
+    let is_single = args.trials.is_none();
+    let mut trials = Vec::new();
+    for seed in seeds {
+        let folder = args.record.as_ref().map(|folder| match (seed, is_single) {
+            (Some(seed), false) => folder.join(seed.to_string()),
+            _ => folder.clone(),
+        });
+        let attempt = Attempt {
+            task: &task,
+            requirements: &requirements,
+            scene: &scene,
+            body: &body,
+            seed,
+            folder,
+        };
+        let trial = attempt.make(is_single)?;
+        if let (false, Some((step, failure))) = (
+            is_single,
+            trial.imitation.as_ref().and_then(|it| it.failure.as_ref()),
+        ) {
+            let seed = seed.unwrap_or(0);
+            say(format_args!(
+                "tabletop: seed {seed}: step {step}: {failure}"
+            ));
+        }
+        trials.push(trial);
+    }
+    let is_done = trials.iter().all(|trial| {
+        trial
+            .imitation
+            .as_ref()
+            .is_none_or(|it| it.failure.is_none())
+    });
+    let text = match (&trials[..], is_single) {
+        ([trial], true) => single(&task, trial),
+        _ => table(&trials),
+    };
+    Output::Stdout.write(text.as_bytes())?;
+    Ok(ExitCode::from(u8::from(!is_done)))
+}
+
+/// The last scene that was put on the table before a recording.
+fn scene_of(recording: &Path) -> Result<SceneSpec, Failure> {
+    let recording = RecordingReader::open(recording).map_err(Failure::input)?;
+    let commands = recording.session().earlier.iter().rev();
+    let mut scenes = commands.filter_map(|command| match &command.command {
+        SimCommand::Scene(SceneCommand::Set(scene)) => Some((**scene).clone()),
+        _ => None,
+    });
+    scenes.next().ok_or_else(|| {
+        Failure::input(
+            "the recording does not say which scene it began with; name one with --setup",
+        )
+    })
+}
+
+struct Attempt<'a> {
+    task: &'a Task,
+    requirements: &'a Requirements,
+    scene: &'a SceneSpec,
+    body: &'a RobotBody,
+    seed: Option<u64>,
+    folder: Option<PathBuf>,
+}
+
+impl Attempt<'_> {
+    fn make(&self, is_told: bool) -> Result<Trial, Failure> {
+        let start = Instant::now();
+        let scene = match self.seed {
+            Some(seed) => scattered(self.scene, self.body, seed),
+            None => Some(self.scene.clone()),
+        };
+        let Some(scene) = scene else {
+            return Ok(Trial {
+                seed: self.seed,
+                imitation: None,
+                simulated: 0.0,
+                real: 0.0,
+            });
+        };
+        let objects = assemble(&scene, &mut IdAllocator::default()).objects;
+        let binding = self
+            .task
+            .bind(self.requirements, &objects)
+            .map_err(Failure::run)?;
+        let plugins = TabletopSimPlugins.build();
+        let plugins = match &self.folder {
+            Some(folder) => plugins.set(RecorderPlugin {
+                folder: folder.clone(),
+                ..default()
+            }),
+            None => plugins.disable::<RecorderPlugin>().add(UnrecordedPlugin),
+        };
+        let mut app = headless_app_with(plugins);
+        app.world_mut()
+            .write_command(SceneCommand::Set(Box::new(scene)));
+        app.world_mut().write_command(RobotCommand::Show(true));
+        app.step(30);
+        if self.folder.is_some() {
+            app.world_mut().write_command(RecordingCommand::Start);
+            app.step(1);
+        }
+        let mut stage = AppStage::new(&mut app);
+        let tell = |doing: Doing| {
+            if is_told {
+                let again = if doing.tries > 0 { " (again)" } else { "" };
+                say(format_args!(
+                    "{}. {}{again}",
+                    doing.step.number, doing.step.sentence
+                ));
+            }
+        };
+        let imitation = imitate(
+            &mut stage,
+            self.body,
+            self.task,
+            &binding,
+            self.seed.unwrap_or(0),
+            tell,
+        );
+        if self.folder.is_some() {
+            app.world_mut().write_command(RecordingCommand::Finish);
+            app.step(1);
+        }
+        let ticks = app.world().resource::<SimTick>().0;
+        Ok(Trial {
+            seed: self.seed,
+            imitation: Some(imitation),
+            simulated: ticks as f64 / f64::from(TICKS_PER_SECOND),
+            real: start.elapsed().as_secs_f64(),
+        })
+    }
+}
+
+fn single(task: &Task, trial: &Trial) -> String {
+    let Some(imitation) = &trial.imitation else {
+        return "There is no room for everything within the robot's reach.\n".into();
+    };
+    let times = format!("{:.1} s simulated in {:.2} s", trial.simulated, trial.real);
+    match &imitation.failure {
+        None => format!(
+            "Done: {} steps, {} corrections; {times}.\n",
+            imitation.steps_done, imitation.corrections
+        ),
+        Some((step, failure)) => {
+            let sentence = task.step(*step).map_or("", |step| step.sentence.as_str());
+            format!("Step {step} failed ({sentence}): {failure}; {times}.\n")
+        }
+    }
+}
+
+/// What became of several trials.
+fn table(trials: &[Trial]) -> String {
+    let made: Vec<_> = trials
+        .iter()
+        .filter_map(|trial| Some((trial, trial.imitation.as_ref()?)))
+        .collect();
+    let mut failures = BTreeMap::<&str, Vec<String>>::new();
+    for (trial, imitation) in &made {
+        if let Some((_, failure)) = &imitation.failure {
+            let seed = trial.seed.unwrap_or(0).to_string();
+            failures.entry(failure.class()).or_default().push(seed);
+        }
+    }
+    let failed: usize = failures.values().map(Vec::len).sum();
+    let corrected = made
+        .iter()
+        .filter(|(_, imitation)| imitation.corrections > 0)
+        .count();
+    let mean = |time: fn(&Trial) -> f64| {
+        made.iter().map(|(trial, _)| time(trial)).sum::<f64>() / made.len().max(1) as f64
+    };
+    let mut lines = vec![
+        format!("{:<14}{:>5} of {}", "done", made.len() - failed, made.len()),
+        format!("{:<14}{corrected:>5}", "corrected"),
+    ];
+    for (class, seeds) in failures {
+        lines.push(format!(
+            "{class:<14}{:>5}  seeds {}",
+            seeds.len(),
+            seeds.join(", ")
+        ));
+    }
+    let without_room = trials.len() - made.len();
+    if without_room > 0 {
+        lines.push(format!("{:<14}{without_room:>5}  not tried", "no room"));
+    }
+    lines.push(format!(
+        "{:.1} s simulated and {:.2} s real on average",
+        mean(|trial| trial.simulated),
+        mean(|trial| trial.real)
+    ));
+    lines.join("\n") + "\n"
+}

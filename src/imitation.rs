@@ -1,0 +1,208 @@
+//! The simulator as a stage on which the robot does what was shown.
+
+use bevy::{
+    math::{DAffine3, DMat3, DVec3},
+    prelude::*,
+};
+use tabletop_core::{
+    Arm, Drive, Joint, JointSpec, ObjectIndex, ObjectSpec, Pose, Random, Robot, RobotCommand,
+    RobotJoint, RobotLayout, SceneItem, SceneSpec, StepApp as _, Table, WriteCommand as _,
+};
+use tabletop_kinematics::{ModelError, baxter};
+use tabletop_planner::{
+    Angles, LimbOrder, LimbSight, LimbSource, Piece, RobotBody, SeenObject, Sight, Stage, scatter,
+};
+use tabletop_scene::{IdAllocator, assemble};
+use tabletop_task::{Arrangement, Convex};
+
+/// An app whose robot is moved by commands, as scripts move it.
+pub struct AppStage<'a> {
+    app: &'a mut App,
+    table: Table,
+    joints: Vec<JointSpec>,
+}
+
+impl<'a> AppStage<'a> {
+    /// The app, with what is on its table.
+    pub fn new(app: &'a mut App) -> Self {
+        let world = app.world_mut();
+        let table = world.query::<&Table>().iter(world).next().copied();
+        let joints: Vec<_> = world.query::<&Joint>().iter(world).copied().collect();
+        let id = |entity: Entity| Some(world.get::<ObjectSpec>(entity)?.id.clone());
+        let joints = joints.into_iter().filter_map(|joint| {
+            let [first, second] = joint.objects.map(id);
+            Some(JointSpec {
+                objects: [first?, second?],
+                frames: joint.frames,
+                kind: joint.kind,
+                collides: joint.collides,
+            })
+        });
+        Self {
+            joints: joints.collect(),
+            table: table.unwrap_or_default(),
+            app,
+        }
+    }
+}
+
+impl Stage for AppStage<'_> {
+    fn sight(&self) -> Sight {
+        let world = self.app.world();
+        let objects = world.resource::<ObjectIndex>().iter().filter_map(|entity| {
+            let spec = world.get::<ObjectSpec>(entity)?;
+            let seen = SeenObject {
+                shape: spec.shape.clone(),
+                pose: Pose::from(world.get::<Transform>(entity)?),
+                is_fixed: spec.is_fixed(),
+            };
+            Some((spec.id.clone(), seen))
+        });
+        let robot = world.resource::<Robot>();
+        let id = |entity: &Entity| Some(world.get::<ObjectSpec>(*entity)?.id.clone());
+        let limbs = Arm::BOTH.map(|arm| LimbSight {
+            angles: padded(robot.angles(arm)),
+            opening: robot.joint(RobotJoint::gripper(arm)).position,
+            holds: robot.arm(arm).holds.iter().filter_map(id).collect(),
+            blocked_by: robot.arm(arm).blocked_by.clone(),
+        });
+        Sight {
+            table: self.table,
+            objects: objects.collect(),
+            joints: self.joints.clone(),
+            limbs: limbs.into(),
+        }
+    }
+
+    fn tick(&mut self, orders: &[LimbOrder]) {
+        let mut drives = Vec::new();
+        for (arm, order) in Arm::BOTH.into_iter().zip(orders) {
+            let joints = RobotJoint::of_arm(arm).into_iter().zip(order.joints);
+            let all = joints.chain([(RobotJoint::gripper(arm), order.opening)]);
+            let moving = all.filter(|(_, velocity)| *velocity != 0.0);
+            drives.extend(moving.map(|(joint, velocity)| (joint, Drive::Velocity(velocity))));
+        }
+        if !drives.is_empty() {
+            self.app
+                .world_mut()
+                .write_command(RobotCommand::Drive(drives));
+        }
+        self.app.step(1);
+    }
+}
+
+/// The part of their motors' speed at which joints are turned.
+const SHARE_OF_SPEED: f64 = 0.75;
+
+fn padded(angles: impl IntoIterator<Item = f64>) -> Angles {
+    let mut all = Angles::default();
+    for (place, angle) in all.iter_mut().zip(angles) {
+        *place = angle;
+    }
+    all
+}
+
+/// The Baxter of the report in front of a table, as planning needs it.
+///
+/// # Errors
+/// Never: a test reads its description.
+pub fn baxter_body(table: &Table) -> Result<RobotBody, ModelError> {
+    let layout = RobotLayout::baxter();
+    let model = baxter()?;
+    let limbs = layout.limbs.iter().filter_map(|limb| {
+        let frame = limb
+            .end_effector
+            .iter()
+            .find(|frame| model.find_link(&frame.link).is_ok())?;
+        let axes = frame.axes.map(DVec3::from_array);
+        let joints: Vec<_> = limb
+            .joints
+            .iter()
+            .map(|&joint| layout.joint(joint))
+            .collect();
+        Some(LimbSource {
+            name: limb.name.to_string(),
+            tip: frame.link.clone(),
+            end_effector: DAffine3::from_mat3_translation(
+                DMat3::from_cols(axes[0], axes[1], axes[2]),
+                DVec3::from_array(frame.at),
+            ),
+            limits: joints.iter().map(|joint| joint.limits).collect(),
+            speeds: padded(joints.iter().map(|joint| joint.speed * SHARE_OF_SPEED)),
+            finger: limb.gripper.finger,
+            widest: layout.joint(limb.gripper.joint).limits[1] as f32,
+            home: padded(joints.iter().map(|joint| joint.home)),
+        })
+    });
+    let limbs = limbs.collect();
+    RobotBody::new(model, layout.base.pose(table), limbs)
+}
+
+/// A scene with everything at random places within the robot's reach, decided by the seed; what stands on, in or around something stays with
+/// it. None if there is no room.
+pub fn scattered(scene: &SceneSpec, body: &RobotBody, seed: u64) -> Option<SceneSpec> {
+    let mut ids = IdAllocator::default();
+    let mut objects = Vec::new();
+    let pieces: Vec<_> = scene
+        .items
+        .iter()
+        .map(|item| {
+            let alone = SceneSpec {
+                table: scene.table,
+                items: vec![item.clone()],
+            };
+            let parts = assemble(&alone, &mut ids).objects;
+            let solids = parts.iter().flat_map(|part| {
+                let colliding = part.shape.colliding();
+                let pose = part.pose;
+                colliding
+                    .into_iter()
+                    .map(move |solid| Convex::of(&solid, pose))
+            });
+            let piece = Piece {
+                solids: solids.collect(),
+                ids: parts.iter().map(|part| part.id.clone()).collect(),
+                centre: parts.first().map_or(Vec3::ZERO, |part| part.pose.location),
+                reached: parts.iter().map(|part| part.pose.location).collect(),
+            };
+            objects.extend(parts);
+            piece
+        })
+        .collect();
+    let arrangement = Arrangement::new(
+        objects
+            .iter()
+            .map(|object| (object.id.as_str(), &object.shape, object.pose)),
+    );
+    let seed = Random::new(seed).bits();
+    let motions = scatter(&pieces, &arrangement, &scene.table, body, seed)?;
+    let items = scene
+        .items
+        .iter()
+        .zip(motions)
+        .map(|(item, motion)| match item {
+            SceneItem::Object(spec) => SceneItem::Object(ObjectSpec {
+                pose: motion * spec.pose,
+                ..spec.clone()
+            }),
+            SceneItem::LidBox(spec) => {
+                let mut spec = spec.clone();
+                spec.pose = motion * spec.pose;
+                SceneItem::LidBox(spec)
+            }
+            SceneItem::Chain(spec) => {
+                let mut spec = spec.clone();
+                (spec.start, spec.end) = (motion * spec.start, motion * spec.end);
+                SceneItem::Chain(spec)
+            }
+            SceneItem::Jointed(spec) => {
+                let mut spec = spec.clone();
+                spec.pose = motion * spec.pose;
+                SceneItem::Jointed(spec)
+            }
+        });
+    Some(SceneSpec {
+        table: scene.table,
+        items: items.collect(),
+    })
+}

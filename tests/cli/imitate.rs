@@ -1,0 +1,80 @@
+//! `tabletop imitate`: the robot does what was shown.
+
+use crate::support::{place, stderr, stdout, tabletop};
+
+fn recorded(scenario: &str) -> String {
+    let demo = place(&format!("imitate_{scenario}"));
+    let demo = demo.to_str().unwrap().to_owned();
+    let scenario = format!("shipped:scenarios/{scenario}.ron");
+    let output = tabletop(&["run", &scenario, "--record", &demo, "--quiet"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    demo
+}
+
+fn is_done(demo: &str, options: &[&str]) {
+    let output = tabletop(&[&["imitate", demo], options].concat());
+    let told = stdout(&output) + &stderr(&output);
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    assert!(told.contains("Done: "), "{told}");
+}
+
+#[test]
+fn a_stack_is_built_where_the_blocks_are_now() {
+    let demo = recorded("stack_three");
+    is_done(&demo, &[]);
+    for seed in ["1", "2", "3"] {
+        is_done(&demo, &["--seed", seed]);
+    }
+}
+
+#[test]
+fn two_blocks_change_places() {
+    is_done(&recorded("swap"), &["--seed", "1"]);
+}
+
+#[test]
+fn a_letter_is_built() {
+    is_done(&recorded("letter_u"), &["--seed", "1"]);
+}
+
+#[test]
+fn rings_go_from_peg_to_peg() {
+    is_done(&recorded("hanoi"), &[]);
+}
+
+#[test]
+fn what_the_robot_does_can_be_replayed() {
+    let demo = recorded("hand_over");
+    let robot = place("imitate_replayed");
+    let robot = robot.to_str().unwrap();
+    is_done(&demo, &["--record", robot]);
+    let output = tabletop(&["replay", robot, "--verify"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}
+
+#[test]
+fn trials_are_counted() {
+    let output = tabletop(&[
+        "imitate",
+        &recorded("stack_three"),
+        "--trials",
+        "2",
+        "--seed",
+        "5",
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let table = stdout(&output);
+    assert!(table.starts_with("done              2 of 2\n"), "{table}");
+}
+
+#[test]
+fn what_cannot_be_done_is_said_in_a_sentence() {
+    // The blocks of the default table are as wide as the gripper opens.
+    let output = tabletop(&["imitate", &recorded("stack_two_blocks")]);
+    assert_eq!(output.status.code(), Some(1));
+    let told = stdout(&output);
+    assert!(
+        told.contains("Step 1 failed (Put the red block on the green block.): RedBlock cannot be taken from above"),
+        "{told}"
+    );
+}
