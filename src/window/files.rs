@@ -318,6 +318,22 @@ mod tests {
     }
 
     #[test]
+    fn a_change_of_an_included_file_loads_the_task_anew() {
+        let folder = folder("included");
+        fs::write(folder.join("other.xml"), TASK).unwrap();
+        let including = TASK.replace("<sphere", "<include file='other.xml'/><sphere");
+        assert_ne!(including, TASK);
+        fs::write(folder.join("task.xml"), &including).unwrap();
+        let mut app = changed(&folder, &including, true, false);
+        let before = commands_of(&app).len();
+        let larger = TASK.replace("(0,0,1)", "(0,0,10)");
+        fs::write(folder.join("other.xml"), larger).unwrap();
+        app.world_mut().run_system_cached(reload::reload).unwrap();
+        let load = SimCommand::Scene(SceneCommand::Load(folder.join("task.xml")));
+        assert_eq!(commands_of(&app)[before..], [load]);
+    }
+
+    #[test]
     fn a_change_during_a_recording_or_with_faults_is_told_and_changes_nothing() {
         let folder = folder("no_reload");
         let larger = TASK.replace("(0,0,1)", "(0,0,10)");

@@ -11,7 +11,7 @@ use tabletop_core::{
 };
 use tabletop_gui::{Files, Notices, Preferences, Tone};
 
-use crate::xml::read_task;
+use crate::shipped::task_reader;
 
 /// How often the file is looked at.
 const PERIOD: Duration = Duration::from_millis(700);
@@ -19,10 +19,11 @@ const PERIOD: Duration = Duration::from_millis(700);
 /// What [`Preferences`] call the setting.
 const CONCERN: &str = "reload";
 
-/// The task file on the table, as it was when it was loaded or saved.
+/// The task file on the table and the files that it includes, as they were when they were loaded or saved.
 #[derive(Resource, Debug, Default)]
 pub(super) struct Watch {
-    file: Option<(PathBuf, Option<Stamp>)>,
+    task: Option<PathBuf>,
+    files: Vec<(PathBuf, Option<Stamp>)>,
 }
 
 /// What changes when a file is written.
@@ -52,21 +53,35 @@ impl Stamp {
 }
 
 impl Watch {
+    /// A task of these files is on the table.
+    fn begin(&mut self, task: &Path, files: Vec<PathBuf>) {
+        self.task = Some(task.to_owned());
+        let stamped = |file: PathBuf| {
+            let stamp = Stamp::of(&file);
+            (file, stamp)
+        };
+        self.files = files.into_iter().map(stamped).collect();
+    }
+
     /// The program itself has written this file.
     pub fn note_saved(&mut self, path: &Path) {
-        if let Some((watched, stamp)) = &mut self.file
-            && is_same(watched, path)
-        {
-            *stamp = Stamp::of(path);
+        for (watched, stamp) in &mut self.files {
+            if is_same(watched, path) {
+                *stamp = Stamp::of(path);
+            }
         }
     }
 
-    /// The file, if it has changed since the last time, and is there.
+    /// The task file, if a file of it has changed since the last time, and is there.
     fn take_change(&mut self) -> Option<PathBuf> {
-        let (path, stamp) = self.file.as_mut()?;
-        let now = Stamp::of(path).filter(|now| Some(*now) != *stamp)?;
-        *stamp = Some(now);
-        Some(path.clone())
+        let mut has_changed = false;
+        for (file, stamp) in &mut self.files {
+            if let Some(now) = Stamp::of(file).filter(|now| Some(*now) != *stamp) {
+                *stamp = Some(now);
+                has_changed = true;
+            }
+        }
+        self.task.clone().filter(|_| has_changed)
     }
 }
 
@@ -102,11 +117,15 @@ fn note_loaded(
 ) {
     for fact in facts.read() {
         if let SimFact::TaskLoaded { path, .. } = fact {
-            watch.file = Some((path.clone(), Stamp::of(path)));
+            let files = match task_reader().read(path) {
+                Ok(task) => task.files,
+                Err(_) => vec![path.clone()],
+            };
+            watch.begin(path, files);
         }
     }
     if recordings.read().count() > 0 {
-        watch.file = None;
+        *watch = Watch::default();
     }
 }
 
@@ -125,7 +144,7 @@ pub(super) fn reload(
     let Some(path) = watch.take_change() else {
         return;
     };
-    let fault = match read_task(&path) {
+    let fault = match task_reader().read(&path) {
         Ok(task) => task.faults.first().map(ToString::to_string),
         Err(error) => Some(error.to_string()),
     };
