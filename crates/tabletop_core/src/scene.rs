@@ -50,6 +50,10 @@ impl Default for Table {
 
 /// One element of a task file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a scene is read once and has few items; a box for each joint would only be in the way"
+)]
 pub enum SceneItem {
     /// A block, cylinder, sphere, box or composite.
     Object(ObjectSpec),
