@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use bevy::prelude::*;
 use tabletop::{
-    core::{Drive, RobotMode},
+    core::{Drive, RobotLayout, RobotMode},
     prelude::*,
     robot::RobotPlugin,
 };
@@ -94,11 +94,14 @@ impl Case {
         let forth = (self.tick / 60).is_multiple_of(2);
         self.tick += 1;
         let speed = if forth { 0.3 } else { -0.3 };
-        let joints = Arm::BOTH.into_iter().flat_map(RobotJoint::of_arm);
-        let drives = joints.map(|joint| (joint, Drive::Velocity(-joint.mirror() * speed)));
-        self.app
-            .world_mut()
-            .write_command(RobotCommand::Drive(drives.collect()));
+        let layout = self.app.world().resource::<RobotLayout>();
+        let joints = layout.limbs.iter().flat_map(|limb| &limb.joints);
+        let drives = joints.map(|&joint| {
+            let joint = layout.joint(joint);
+            (joint.name, Drive::Velocity(-joint.sign * speed))
+        });
+        let command = RobotCommand::drive(drives);
+        self.app.world_mut().write_command(command);
     }
 
     fn median(&mut self) -> Duration {

@@ -7,7 +7,7 @@ use std::{error::Error, fs::File, io::BufWriter, path::Path, sync::Arc};
 
 use bevy::prelude::*;
 use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Facets, Rasterizer, Scene};
-use tabletop_core::{Face, Picture, Pose, Rgb, RobotJoint, Solid, Table, robot_base};
+use tabletop_core::{Face, JointRole, Picture, Pose, Rgb, RobotLayout, Solid, Table};
 use tabletop_kinematics::{RobotModel, baxter};
 use tabletop_robot::look::{figure_of, merged, screen_with};
 
@@ -61,19 +61,21 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// The links of the robot where they are when the program starts.
 fn robot(model: &RobotModel) -> Result<Vec<DrawnFigure>, Box<dyn Error>> {
     let mut configuration = model.zero();
-    for joint in RobotJoint::ALL {
-        match joint.arm().filter(|_| joint.is_gripper()) {
-            None => configuration[model.find_joint(joint.name())?] = joint.home(),
-            Some(arm) => {
-                for finger in ["l", "r"] {
-                    let name = format!("{}_gripper_{finger}_finger_joint", &arm.name()[..1]);
-                    configuration[model.find_joint(&name)?] = joint.home() / 2.0 / UNITS;
+    let layout = RobotLayout::baxter();
+    for joint in &layout.joints {
+        match joint.role {
+            JointRole::Limb { .. } | JointRole::Neck => {
+                configuration[model.find_joint(joint.name.as_str())?] = joint.home;
+            }
+            JointRole::Gripper(limb) => {
+                for finger in &layout.limb(limb).gripper.finger_joints {
+                    configuration[model.find_joint(finger)?] = joint.home / 2.0 / UNITS;
                 }
             }
         }
     }
     let frames = model.frames(&configuration);
-    let base = robot_base(&Table::default());
+    let base = RobotLayout::baxter().base.pose(&Table::default());
     let mut figures = Vec::new();
     for link in model.links() {
         let visuals = link.visuals.iter();

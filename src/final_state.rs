@@ -4,7 +4,7 @@ use std::io::Write;
 
 use bevy::prelude::*;
 use serde_json::json;
-use tabletop_core::{Arm, Decimal, ObjectIndex, ObjectSpec, Pose, Robot, RobotJoint};
+use tabletop_core::{Decimal, ObjectIndex, ObjectSpec, Pose, Robot, RobotLayout};
 
 /// Writes where every object is as CSV, in the order of creation: `id,x,y,z,rx,ry,rz` in units and degrees, the numbers as
 /// recordings write them.
@@ -41,27 +41,28 @@ pub fn write_state(world: &World, out: impl Write) -> csv::Result<()> {
 pub fn write_robot(world: &World, mut out: impl Write) -> std::io::Result<()> {
     let robot = world.resource::<Robot>();
     let id = |&object: &Entity| Some(&*world.get::<ObjectSpec>(object)?.id);
-    let arms = Arm::BOTH.map(|arm| {
-        let state = robot.arm(arm);
+    let layout = world.resource::<RobotLayout>();
+    let limbs = layout.limbs.iter().zip(&robot.limbs);
+    let arms = limbs.map(|(limb, state)| {
         let Pose { location, rotation } = state.end_effector;
         let value = json!({
-            "angles": robot.angles(arm),
+            "angles": robot.positions_of(&limb.joints),
             "end_effector": {
                 "position": location.to_array(),
                 "quaternion_xyzw": rotation.to_array(),
             },
-            "gripper_opening": robot.joint(RobotJoint::gripper(arm)).position,
+            "gripper_opening": robot.joint(limb.gripper.joint).position,
             "holds": state.holds.iter().filter_map(id).collect::<Vec<_>>(),
             "blocked_by": state.blocked_by,
         });
-        (arm.name().to_owned(), value)
+        (limb.name.to_string(), value)
     });
     let mut json = serde_json::Map::from_iter(arms);
     json.insert("shown".into(), json!(robot.is_shown));
-    json.insert(
-        "head_pan".into(),
-        json!(robot.joint(RobotJoint::HeadPan).position),
-    );
+    if let Some(neck) = layout.neck {
+        let name = layout.joint(neck).name.to_string();
+        json.insert(name, json!(robot.joint(neck).position));
+    }
     serde_json::to_writer_pretty(&mut out, &json)?;
     writeln!(out)
 }

@@ -1,24 +1,24 @@
 //! `tabletop robot`: the robot's kinematics for other programs, a line of JSON for a line of JSON.
 
-use std::{fmt, io::BufRead as _, path::PathBuf, process::ExitCode};
+use std::{collections::BTreeMap, fmt, io::BufRead as _, path::PathBuf, process::ExitCode};
 
 use bevy::math::{DAffine3, DQuat, DVec3};
 use clap::{Args, Subcommand};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Value, json};
 use tabletop::{
-    core::{Arm, JOINTS_PER_ARM, RobotJoint, Table, UNITS_PER_METER, robot_base},
-    shipped::read_text,
+    core::{JointName, JointRole, LimbLayout, LimbName, RobotLayout, Table, UNITS_PER_METER},
+    robot::Description,
 };
-use tabletop_kinematics::{ArmChain, ModelError, RobotModel, Target, Unreachable, baxter};
+use tabletop_kinematics::{ArmChain, ModelError, RobotModel, Target, Unreachable};
 
-use super::{Failure, Output, WRONG_INPUT};
+use super::{Failure, Output, WRONG_INPUT, robot_options::describe};
 
 #[derive(Args)]
 pub(super) struct RobotArgs {
     #[command(subcommand)]
     question: Question,
-    /// A robot description (URDF) in place of the Baxter that comes with the program, with the same names of joints and hands
+    /// Another robot than the Baxter that comes with the program: a robot.ron (docs/robot.md), or a URDF with the same joints
     #[arg(long, value_name = "FILE", global = true)]
     robot: Option<PathBuf>,
 }
@@ -77,19 +77,20 @@ impl Fault {
     }
 }
 
-/// Angles in rad; what is left out is as in the robot's start posture.
+/// Angles in rad: seven of Baxter's `left` arm, one of `head_pan`. What is left out is as in the robot's start posture.
+type Posture = BTreeMap<String, Angles>;
+
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Posture {
-    left: Option<[f64; JOINTS_PER_ARM]>,
-    right: Option<[f64; JOINTS_PER_ARM]>,
-    head_pan: Option<f64>,
+#[serde(untagged)]
+enum Angles {
+    OfJoint(f64),
+    OfLimb(Vec<f64>),
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Reach {
-    arm: Side,
+    arm: LimbName,
     /// In m in the torso's frame, in units in the table's.
     position: [f64; 3],
     /// Any rotation does if it is left out.
@@ -99,23 +100,7 @@ struct Reach {
     /// What shall get there, in place of the end effector.
     link: Option<String>,
     /// Angles to stay near to, in rad.
-    seed: Option<[f64; JOINTS_PER_ARM]>,
-}
-
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Side {
-    Left,
-    Right,
-}
-
-impl From<Side> for Arm {
-    fn from(side: Side) -> Self {
-        match side {
-            Side::Left => Self::Left,
-            Side::Right => Self::Right,
-        }
-    }
+    seed: Option<Vec<f64>>,
 }
 
 #[derive(Clone, Copy, Default, Deserialize)]
@@ -134,25 +119,21 @@ struct Placed {
 
 struct Answerer {
     robot: RobotModel,
+    layout: RobotLayout,
     /// From the torso's frame (m) to the table's, in m as well.
     table_from_torso: DAffine3,
 }
 
 impl Answerer {
     fn new(args: &RobotArgs) -> Result<Self, Failure> {
-        let robot = match &args.robot {
-            None => baxter().map_err(Failure::input)?,
-            Some(file) => {
-                let at = |error: &dyn fmt::Display| {
-                    Failure::input(format!("{}: {error}", file.display()))
-                };
-                let text = read_text(file).map_err(|error| at(&error))?;
-                RobotModel::from_urdf(&text).map_err(|error| at(&error))?
-            }
+        let Description { model, layout, .. } = match &args.robot {
+            None => Description::baxter().map_err(Failure::input)?,
+            Some(file) => describe(file)?,
         };
-        let base = robot_base(&Table::default());
+        let base = layout.base.pose(&Table::default());
         Ok(Self {
-            robot,
+            robot: model,
+            layout,
             table_from_torso: DAffine3::from_rotation_translation(
                 base.rotation.as_dquat().normalize(),
                 base.location.as_dvec3() / UNITS_PER_METER,
@@ -160,29 +141,66 @@ impl Answerer {
         })
     }
 
+    fn limb(&self, name: LimbName) -> Result<&LimbLayout, Fault> {
+        let limb = self.layout.find_limb(name);
+        let limb = limb.map(|limb| self.layout.limb(limb));
+        limb.ok_or_else(|| {
+            let known = self.layout.limbs.iter().map(|limb| limb.name.as_str());
+            let known = known.collect::<Vec<_>>().join(", ");
+            Fault::Input(format!("the robot has no limb {name}, only {known}"))
+        })
+    }
+
+    /// The link that is the end effector of a limb.
+    fn end_effector(&self, limb: &LimbLayout) -> Option<String> {
+        let mut frames = limb.end_effector.iter();
+        let frame = frames.find(|frame| self.robot.find_link(&frame.link).is_ok())?;
+        Some(frame.link.clone())
+    }
+
     fn forward(&self, line: &[u8]) -> Result<Value, Fault> {
         let posture: Posture = read(line)?;
-        let mut configuration = self.robot.zero();
-        let mut set = |name: &str, position: f64| -> Result<(), ModelError> {
-            configuration[self.robot.find_joint(name)?] = position;
-            Ok(())
-        };
-        for (arm, angles) in [(Arm::Left, posture.left), (Arm::Right, posture.right)] {
-            let angles = angles.unwrap_or_else(|| home(arm));
-            for (joint, angle) in RobotJoint::of_arm(arm).into_iter().zip(angles) {
-                set(joint.name(), angle).map_err(Fault::input)?;
+        let layout = &self.layout;
+        let mut positions: Vec<f64> = layout.joints.iter().map(|joint| joint.home).collect();
+        for (name, angles) in posture {
+            match angles {
+                Angles::OfLimb(angles) => {
+                    let joints = &self.limb(LimbName::new(&name))?.joints;
+                    if joints.len() != angles.len() {
+                        return Err(Fault::Input(format!(
+                            "{name} has {} joints, not {}",
+                            joints.len(),
+                            angles.len()
+                        )));
+                    }
+                    for (joint, angle) in joints.iter().zip(angles) {
+                        positions[joint.index()] = angle;
+                    }
+                }
+                Angles::OfJoint(angle) => {
+                    let joint = layout.find_joint(JointName::new(&name));
+                    let joint = joint.filter(|joint| layout.neck == Some(*joint));
+                    let joint = joint.ok_or_else(|| {
+                        Fault::Input(format!("{name} is neither a limb nor the neck"))
+                    })?;
+                    positions[joint.index()] = angle;
+                }
             }
         }
-        let pan = RobotJoint::HeadPan;
-        set(pan.name(), posture.head_pan.unwrap_or(pan.home())).map_err(Fault::input)?;
-        for arm in Arm::BOTH {
-            let opening = RobotJoint::gripper(arm).home() / UNITS_PER_METER;
-            // Robots with other hands have other fingers.
-            for joint in fingers(arm)
-                .into_iter()
-                .flat_map(|name| self.robot.find_joint(name))
-            {
-                configuration[joint] = opening / 2.0;
+        let mut configuration = self.robot.zero();
+        for (joint, position) in layout.joints.iter().zip(&positions) {
+            match joint.role {
+                JointRole::Limb { .. } | JointRole::Neck => {
+                    let joint = self.robot.find_joint(joint.name.as_str());
+                    configuration[joint.map_err(Fault::input)?] = *position;
+                }
+                JointRole::Gripper(limb) => {
+                    // Robots with other hands have other fingers.
+                    let fingers = layout.limb(limb).gripper.finger_joints.iter();
+                    for finger in fingers.flat_map(|name| self.robot.find_joint(name)) {
+                        configuration[finger] = position / UNITS_PER_METER / 2.0;
+                    }
+                }
             }
         }
 
@@ -200,15 +218,28 @@ impl Answerer {
 
     fn inverse(&self, line: &[u8]) -> Result<Value, Fault> {
         let reach: Reach = read(line)?;
-        let arm = Arm::from(reach.arm);
+        let limb = self.limb(reach.arm)?;
+        let arm = limb.name;
+        let root = &self.robot.link(self.robot.root()).name;
         let tip = reach
             .link
-            .unwrap_or_else(|| format!("{}_end_effector", arm.name()));
-        let root = &self.robot.link(self.robot.root()).name;
+            .or_else(|| self.end_effector(limb))
+            .unwrap_or_else(|| format!("{arm}_end_effector"));
         let chain = ArmChain::between(&self.robot, root, &tip).map_err(Fault::input)?;
-        let shoulder = self.robot.find_joint(RobotJoint::of_arm(arm)[0].name());
-        if shoulder != Ok(chain.joints()[0]) {
+        let (joints, found) = (limb.joints.len(), chain.joints().len());
+        if joints != found {
+            return Err(Fault::input(ModelError::NoArm {
+                base: root.clone(),
+                tip,
+                reason: format!("there are {found} joints instead of {joints}"),
+            }));
+        }
+        let shoulder = self.layout.joint(limb.joints[0]).name;
+        if self.robot.find_joint(shoulder.as_str()) != Ok(chain.joints()[0]) {
             return Err(Fault::Input(format!("link {tip} is not on the {arm} arm")));
+        }
+        if reach.seed.as_ref().is_some_and(|seed| seed.len() != joints) {
+            return Err(Fault::Input(format!("seed: {arm} has {joints} joints")));
         }
 
         let (torso_from_given, units) = match reach.frame {
@@ -227,7 +258,11 @@ impl Answerer {
                 Target::Pose(torso_from_given * given)
             }
         };
-        let seed = reach.seed.unwrap_or_else(|| home(arm));
+        let home = || {
+            let joints = limb.joints.iter();
+            joints.map(|joint| self.layout.joint(*joint).home).collect()
+        };
+        let seed = reach.seed.unwrap_or_else(home);
         let angles = chain.solve(&target, &seed).map_err(Fault::Unreachable)?;
         let miss = chain.miss(&target, &angles);
         Ok(json!({
@@ -244,18 +279,6 @@ impl Placed {
             position: (frame.translation * units_per_meter).to_array(),
             quaternion_xyzw: DQuat::from_mat3(&frame.matrix3).to_array(),
         }
-    }
-}
-
-fn home(arm: Arm) -> [f64; JOINTS_PER_ARM] {
-    RobotJoint::of_arm(arm).map(RobotJoint::home)
-}
-
-/// Joints of the fingers of an arm's gripper.
-const fn fingers(arm: Arm) -> [&'static str; 2] {
-    match arm {
-        Arm::Left => ["l_gripper_l_finger_joint", "l_gripper_r_finger_joint"],
-        Arm::Right => ["r_gripper_l_finger_joint", "r_gripper_r_finger_joint"],
     }
 }
 

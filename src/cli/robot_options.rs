@@ -8,7 +8,7 @@ use std::{
 use bevy::prelude::*;
 use clap::Args;
 use tabletop::{
-    core::{RobotCommand, RobotMode, WriteCommand as _},
+    core::{LayoutFile, RobotCommand, RobotMode, WriteCommand as _},
     robot::{Description, RobotPlugin, Source},
     script::{
         ENGINE_VARIABLE, EngineChoice, EngineKind, EngineLocator, FieldPolicy, ScriptSettings,
@@ -20,7 +20,7 @@ use super::Failure;
 
 #[derive(Args, Clone)]
 pub(super) struct RobotOptions {
-    /// A robot description (URDF) in place of the Baxter that comes with the program; its arms must have the same joints
+    /// Another robot than the Baxter that comes with the program: a robot.ron (docs/robot.md), or a URDF with the same joints
     #[arg(long, value_name = "FILE")]
     robot: Option<PathBuf>,
     /// Move the arms by motors with limited torque instead of exactly as told
@@ -55,15 +55,30 @@ impl RobotOptions {
     }
 }
 
-fn describe(path: &Path) -> Result<Description, Failure> {
-    let at = |error: &dyn std::fmt::Display| Failure::input(format!("{}: {error}", path.display()));
-    let urdf = shipped::read_text(path).map_err(|error| at(&error))?;
-    let source = Source {
-        path: true_path(path),
-        urdf,
-        layout: None,
+/// Reads a `robot.ron` and the URDF beside it, or a URDF of a robot with Baxter's limbs and joints.
+pub(super) fn describe(path: &Path) -> Result<Description, Failure> {
+    let at = |path: &Path, error: &dyn std::fmt::Display| {
+        Failure::input(format!("{}: {error}", path.display()))
     };
-    Description::read(source).map_err(|error| at(&error))
+    let read = |path: &Path| shipped::read_text(path).map_err(|error| at(path, &error));
+    let text = read(path)?;
+    let source = match path.extension().is_some_and(|extension| extension == "ron") {
+        true => {
+            let file = LayoutFile::read(&text).map_err(|error| at(path, &error))?;
+            let urdf = path.with_file_name(&file.urdf);
+            Source {
+                urdf: read(&urdf)?,
+                path: true_path(&urdf),
+                layout: Some(text),
+            }
+        }
+        false => Source {
+            path: true_path(path),
+            urdf: text,
+            layout: None,
+        },
+    };
+    Description::read(source).map_err(|error| at(path, &error))
 }
 
 /// The language of scripts that a user's own driver runs.

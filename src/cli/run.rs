@@ -155,6 +155,10 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     if let Some(setup) = &args.setup {
         scenario.begin_with(&true_path(setup));
     }
+    let robot = args.robot.plugin()?;
+    let layout = robot.description.map(|robot| robot.layout);
+    let checked = scenario.check_for(&layout.unwrap_or_default());
+    checked.map_err(Failure::input)?;
     let mut program =
         Program::new(&scenario, read_faultless_task, args.seed).map_err(Failure::input)?;
     if let Some(seconds) = args.seconds {

@@ -82,7 +82,7 @@ impl Stage {
         self.app
             .world()
             .resource::<Robot>()
-            .arm(Arm::Right)
+            .limb(Arm::Right)
             .end_effector
             .location
     }

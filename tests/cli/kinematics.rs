@@ -189,7 +189,7 @@ fn wrong_lines_are_told_by_number_and_end_in_2() {
         ),
         (
             br#"{"arm":"third","position":[1,2,3]}"#,
-            "line 2: column 14: unknown variant `third`",
+            "line 2: the robot has no limb third, only left, right",
         ),
         (br#"{"arm":"left","position":[1,2]}"#, "line 2: "),
         (br#"{"arm":"left","position":[1,2,1e999]}"#, "line 2: "),

@@ -153,21 +153,21 @@ pub fn robot_command(random: &mut Random) -> SimCommand {
     let arm = random.of(&Arm::BOTH);
     match random.below(8) {
         0 => SimCommand::Robot(RobotCommand::Show(random.below(4) != 0)),
-        1 => SimCommand::Robot(RobotCommand::Drive(vec![(joint, Drive::Velocity(speed))])),
-        2 => SimCommand::Robot(RobotCommand::Drive(vec![(joint, Drive::Position(speed))])),
-        3 => SimCommand::Robot(RobotCommand::Drive(vec![(
+        1 => SimCommand::Robot(RobotCommand::drive([(joint, Drive::Velocity(speed))])),
+        2 => SimCommand::Robot(RobotCommand::drive([(joint, Drive::Position(speed))])),
+        3 => SimCommand::Robot(RobotCommand::drive([(
             RobotJoint::gripper(arm),
             Drive::Toward(0.0),
         )])),
         4 | 5 => SimCommand::Robot(RobotCommand::ReachTo {
-            arm,
+            arm: arm.name(),
             pose: Pose::at(Vec3::new(
                 random.between(-5.0, 5.0),
                 random.between(-5.0, -1.0),
                 random.between(0.9, 3.0),
             )),
         }),
-        _ => SimCommand::Robot(RobotCommand::Drive(vec![(joint, Drive::Toward(speed))])),
+        _ => SimCommand::Robot(RobotCommand::drive([(joint, Drive::Toward(speed))])),
     }
 }
 

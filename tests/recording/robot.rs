@@ -9,7 +9,7 @@ fn what_the_robot_did_before_and_in_a_recording_is_done_again() {
     let mut demonstration = Demonstration::new("robot");
     let load = || SimCommand::Scene(SceneCommand::Load("tablesetup/default.xml".into()));
     let drive = |joint, position| {
-        SimCommand::Robot(RobotCommand::Drive(vec![(joint, Drive::Toward(position))]))
+        SimCommand::Robot(RobotCommand::drive([(joint, Drive::Toward(position))]))
     };
     let hand = Hand::Any;
     let object = "RedBlock".to_owned();

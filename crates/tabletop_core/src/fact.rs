@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 
-use crate::{Arm, CommandId, Hand};
+use crate::{CommandId, Hand, LimbName};
 
 /// Something that has happened in this tick.
 #[derive(Message, Clone, Debug, PartialEq)]
@@ -109,14 +109,14 @@ pub enum SimFact {
     /// A gripper has closed on an object and holds it.
     GripMade {
         /// The arm.
-        arm: Arm,
+        arm: LimbName,
         /// Id of the object.
         id: String,
     },
     /// Both fingers of a closing gripper touch an object, and cannot hold it like this.
     GripRefused {
         /// The arm.
-        arm: Arm,
+        arm: LimbName,
         /// Id of the object.
         id: String,
         /// The angle θ of the report's figure 11, in rad, which had to be below π/16.
@@ -125,14 +125,14 @@ pub enum SimFact {
     /// A gripper has let go of an object, or it was taken from it.
     GripReleased {
         /// The arm.
-        arm: Arm,
+        arm: LimbName,
         /// Id of the object.
         id: String,
     },
     /// An arm was stopped by something that it cannot push away; reported once until it is free again.
     ArmBlocked {
         /// The arm.
-        arm: Arm,
+        arm: LimbName,
         /// What is in its way: an object's id, `table`, or a part of the robot.
         by: String,
     },

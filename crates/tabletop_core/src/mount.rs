@@ -2,29 +2,42 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use bevy::math::{DQuat, Vec3};
+use bevy::math::DQuat;
 
-use crate::{HeadCamera, Pose, Table};
+use serde::{Deserialize, Serialize};
 
-/// From the table's near edge back to the origin of the robot, in units.
-const ROBOT_BEHIND_EDGE: f32 = 3.0;
+use crate::{BaseLayout, CameraLayout, HeadCamera, Pose, RobotLayout, Table};
 
-/// The robot's origin above the table's top, in units.
-const ROBOT_HEIGHT: f32 = 2.0;
+/// The robot that carries the head camera.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CameraCarrier {
+    /// Where the robot stands.
+    pub base: BaseLayout,
+    /// Where the camera is on it.
+    pub camera: CameraLayout,
+}
 
-/// The axis of the neck in front of the robot's origin, and how far above it the neck joint is, in units.
-const NECK: Vec3 = Vec3::new(0.0, 0.5993, 6.9553);
+impl From<&RobotLayout> for CameraCarrier {
+    fn from(layout: &RobotLayout) -> Self {
+        Self {
+            base: layout.base,
+            camera: layout.camera,
+        }
+    }
+}
 
-/// The camera in the frame of the neck joint, in units.
-const CAMERA: Vec3 = Vec3::new(0.0, 1.2839, 2.6368);
-
-/// How far below the horizon the camera looks, in radians: 56°.
-const TILT: f64 = 0.97832;
+impl Default for CameraCarrier {
+    /// [Baxter](RobotLayout::baxter).
+    fn default() -> Self {
+        RobotLayout::baxter().into()
+    }
+}
 
 impl HeadCamera {
     /// Where it stands before this table. It looks along its own -Z with its Y up.
     pub fn pose(&self, table: &Table) -> Pose {
-        self.mount.unwrap_or_else(|| head_pose(self.pan, table))
+        self.mount
+            .unwrap_or_else(|| head_pose(&self.carrier, self.pan, table))
     }
 }
 
@@ -32,16 +45,18 @@ impl HeadCamera {
 /// before the middle of the table's near edge and looks along Y; the camera looks along its own -Z with its Y up.
 ///
 /// At a table of `yspan` 12 it is (0, -7.1168, 11.5921), looking along (0, 0.5584, -0.8296), as in the original program.
-fn head_pose(pan: f32, table: &Table) -> Pose {
-    let robot = Vec3::new(0.0, -(table.yspan / 2.0 + ROBOT_BEHIND_EDGE), ROBOT_HEIGHT);
+fn head_pose(carrier: &CameraCarrier, pan: f32, table: &Table) -> Pose {
+    let CameraCarrier { base, camera } = carrier;
     // Rounded from numbers of twice the length: the last bits of sine and cosine are not the same on every system.
     let turned = DQuat::from_rotation_z(f64::from(pan)).as_quat();
-    let tilted = DQuat::from_rotation_x(FRAC_PI_2 - TILT).as_quat();
-    Pose::new(robot + NECK, turned) * Pose::new(CAMERA, tilted)
+    let tilted = DQuat::from_rotation_x(FRAC_PI_2 - camera.tilt).as_quat();
+    Pose::new(base.pose(table).location + camera.neck, turned) * Pose::new(camera.at, tilted)
 }
 
 #[cfg(test)]
 mod tests {
+    use bevy::math::Vec3;
+
     use super::*;
 
     #[test]
@@ -58,7 +73,7 @@ mod tests {
                 Vec3::new(-0.26733, 0.49027, -0.82956),
             ),
         ] {
-            let pose = head_pose(pan, &Table::default());
+            let pose = head_pose(&CameraCarrier::default(), pan, &Table::default());
             assert!(
                 (pose.location - location).length() < 1e-4,
                 "{}",
@@ -76,7 +91,8 @@ mod tests {
             xspan: 8.0,
             yspan: 20.0,
         };
-        let moved = head_pose(0.0, &wide).location - head_pose(0.0, &Table::default()).location;
+        let moved = head_pose(&CameraCarrier::default(), 0.0, &wide).location
+            - head_pose(&CameraCarrier::default(), 0.0, &Table::default()).location;
         assert!((moved - Vec3::new(0.0, -4.0, 0.0)).length() < 1e-5);
     }
 }

@@ -48,14 +48,14 @@ mod tests {
         for (fact, expected) in [
             (
                 SimFact::GripMade {
-                    arm: Arm::Left,
+                    arm: Arm::Left.name(),
                     id: "red".into(),
                 },
                 "the left gripper holds red",
             ),
             (
                 SimFact::GripRefused {
-                    arm: Arm::Right,
+                    arm: Arm::Right.name(),
                     id: "red".into(),
                     angle: 0.5,
                 },
@@ -63,14 +63,14 @@ mod tests {
             ),
             (
                 SimFact::GripReleased {
-                    arm: Arm::Right,
+                    arm: Arm::Right.name(),
                     id: "red".into(),
                 },
                 "the right gripper holds red no longer",
             ),
             (
                 SimFact::ArmBlocked {
-                    arm: Arm::Left,
+                    arm: Arm::Left.name(),
                     by: "table".into(),
                 },
                 "the left arm is stopped by the table",

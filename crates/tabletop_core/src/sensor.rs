@@ -8,7 +8,7 @@ use std::{
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{Paused, Pose, SimTick};
+use crate::{CameraCarrier, Paused, Pose, SimTick};
 
 /// How the robot's head camera looks at the table (report section 4, "head camera").
 ///
@@ -28,6 +28,9 @@ pub struct HeadCamera {
     pub height: u32,
     /// Smooth edges, from four samples a pixel.
     pub antialiasing: bool,
+    /// The robot that carries it.
+    #[serde(default, skip_serializing_if = "is_baxter")]
+    pub carrier: CameraCarrier,
     /// Where it is instead of on the robot's head: it looks along its own -Z, with its Y up. Lengths in units.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mount: Option<Pose>,
@@ -72,6 +75,10 @@ impl HeadCamera {
     }
 }
 
+fn is_baxter(carrier: &CameraCarrier) -> bool {
+    *carrier == CameraCarrier::default()
+}
+
 impl Default for HeadCamera {
     fn default() -> Self {
         Self {
@@ -81,6 +88,7 @@ impl Default for HeadCamera {
             width: 200,
             height: 150,
             antialiasing: true,
+            carrier: CameraCarrier::default(),
             mount: None,
         }
     }

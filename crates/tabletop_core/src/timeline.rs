@@ -4,7 +4,7 @@ use std::{fmt, path::PathBuf};
 
 use bevy::prelude::*;
 
-use crate::{Arm, Hand, Rgb, SimFact, SimTick};
+use crate::{Hand, LimbName, Rgb, SimFact, SimTick};
 
 /// The recording that is being made, was made last, or is open. The recorder fills it in, or whoever replays a recording.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
@@ -87,7 +87,7 @@ pub enum Manipulator {
     /// A hand of the demonstrator.
     Hand(Hand),
     /// A gripper of the robot.
-    Gripper(Arm),
+    Gripper(LimbName),
 }
 
 /// What is done to an object.
@@ -171,7 +171,7 @@ impl fmt::Display for Manipulator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Hand(hand) => write!(f, "{hand}"),
-            Self::Gripper(arm) => write!(f, "{} gripper", arm.name()),
+            Self::Gripper(arm) => write!(f, "{} gripper", arm),
         }
     }
 }
@@ -246,7 +246,7 @@ mod tests {
             act(left, Verb::Release, None),
             "LeftHand releases what it held"
         );
-        let gripper = Manipulator::Gripper(Arm::Right);
+        let gripper = Manipulator::Gripper(LimbName::from_static("right"));
         assert_eq!(
             act(gripper, Verb::Destroy, Some("a")),
             "right gripper destroys a"

@@ -35,7 +35,6 @@ mod motion;
 mod plugin;
 
 pub use articulation::link_entities::RobotBody;
-pub use command::joint_targets::MANUAL_SPEED;
 pub use description::{Description, DescriptionError, Source};
 pub use gripper::closing::STEEPEST_GRIP;
 pub use plugin::RobotPlugin;

@@ -2,8 +2,8 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    ActuateSystems, CommandSystems, Figure, Gripped, HeadCamera, RestApp as _, RestingSystems,
-    Robot, RobotLayout, RobotMode, SimSystems,
+    ActuateSystems, CameraCarrier, CommandSystems, Figure, Gripped, HeadCamera, RestApp as _,
+    RestingSystems, Robot, RobotLayout, RobotMode, SimSystems,
 };
 use tabletop_history::{RollbackApp, is_rolling_back};
 
@@ -78,6 +78,9 @@ impl Plugin for RobotPlugin {
             mode: self.mode,
             ..Robot::at_home(&layout)
         });
+        if let Some(mut camera) = world.get_resource_mut::<HeadCamera>() {
+            camera.carrier = CameraCarrier::from(&layout);
+        }
         world.insert_resource(layout);
         app.add_systems(Startup, publish)
             .add_systems(

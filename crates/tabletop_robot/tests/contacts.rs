@@ -17,7 +17,7 @@ const RIGHT_FINGER: &str = "right-gripper-right-finger";
 const GRAVITY: f32 = 98.1;
 
 fn drive(stage: &mut Stage, joint: RobotJoint, drive: Drive) {
-    stage.tell(RobotCommand::Drive(vec![(joint, drive)]));
+    stage.tell(RobotCommand::drive([(joint, drive)]));
 }
 
 fn object(stage: &Stage, id: &str) -> Entity {
@@ -42,7 +42,10 @@ fn push(mut stage: Stage, mass: f32) -> Stage {
     let place = Pose::at(Vec3::new(4.0, -3.0, 0.5));
     stage.put("thing", block(Vec3::ONE), mass, place);
     let pose = Pose::at(Vec3::new(5.0, -3.0, 0.9));
-    stage.tell(RobotCommand::ReachTo { arm: ARM, pose });
+    stage.tell(RobotCommand::ReachTo {
+        arm: ARM.name(),
+        pose,
+    });
     stage
 }
 
@@ -159,7 +162,7 @@ fn what_stops_an_arm_is_touched() {
     for stage in [Stage::new(), Stage::dynamic()] {
         let mut stage = push(stage, 0.0);
         stage.app.step(200);
-        assert_eq!(stage.robot().arm(ARM).blocked_by.as_deref(), Some("thing"));
+        assert_eq!(stage.robot().limb(ARM).blocked_by.as_deref(), Some("thing"));
         assert_eq!(bodies(&stage), [RIGHT_FINGER]);
         let contact = &stage.robot().contacts[0];
         assert_eq!(

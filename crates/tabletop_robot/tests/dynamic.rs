@@ -36,7 +36,7 @@ fn stretched_with(mass: f32) -> Stage {
         &[(RobotJoint::gripper(ARM), Drive::Toward(0.0))],
     );
     stage.app.step(100);
-    assert_eq!(stage.robot().arm(ARM).holds.len(), 1);
+    assert_eq!(stage.robot().limb(ARM).holds.len(), 1);
     stage.reach(ARM, Vec3::new(3.0, -2.0, 4.0), 0.0);
     go(&mut stage, ARM, STRAIGHT);
     stage
@@ -45,8 +45,8 @@ fn stretched_with(mass: f32) -> Stage {
 #[test]
 fn a_pose_is_held_with_two_kilograms_at_full_stretch() {
     let mut stage = stretched_with(2.0);
-    let reach = stage.robot().arm(ARM).end_effector.location;
-    let shoulder = stage.robot().arm(ARM).joint_origins[0];
+    let reach = stage.robot().limb(ARM).end_effector.location;
+    let shoulder = stage.robot().limb(ARM).joint_origins[0];
     assert!((reach - shoulder).length() > 10.0, "stretched");
     let torque = stage.robot().joint(RobotJoint::RightS1).torque;
     let lever = (stage.place("payload").location - shoulder)
@@ -71,8 +71,8 @@ fn a_weight_that_nobody_told_of_is_held_too() {
     let mut stage = Stage::dynamic();
     go(&mut stage, ARM, STRAIGHT);
     let robot = stage.robot().clone();
-    let hand = robot.arm(ARM).end_effector.location;
-    let shoulder = robot.arm(ARM).joint_origins[0];
+    let hand = robot.limb(ARM).end_effector.location;
+    let shoulder = robot.limb(ARM).joint_origins[0];
     // Laid across the wrist.
     let place = hand.lerp(shoulder, 0.2) + Vec3::Z * 1.6;
     stage.put(
@@ -196,7 +196,7 @@ fn a_position_is_reached_as_fast_as_the_motors_can() {
     }
     let off = off(&stage, ARM, goal);
     assert!(off < 0.1, "{off}°: {:?}", stage.robot().angles(ARM));
-    assert!(!stage.robot().arm(ARM).is_moving);
+    assert!(!stage.robot().limb(ARM).is_moving);
 }
 
 /// Kinetic energy of an arm, in J.
@@ -249,7 +249,7 @@ fn a_free_arm_loses_only_what_damping_takes() {
         ((before - lost) / after - 1.0).abs() < 0.05,
         "{before} J - {lost} J = {after} J"
     );
-    assert_eq!(stage.robot().arm(ARM).blocked_by, None);
+    assert_eq!(stage.robot().limb(ARM).blocked_by, None);
 }
 
 fn any_drive() -> impl Strategy<Value = (RobotJoint, Drive)> {

@@ -28,7 +28,7 @@ fn gripper_around(shape: Shape, mass: f32, place: Vec3, degrees: Vec3) -> Stage 
 }
 
 fn close(stage: &mut Stage) -> Vec<SimFact> {
-    stage.tell(RobotCommand::Drive(vec![(
+    stage.tell(RobotCommand::drive([(
         RobotJoint::gripper(ARM),
         Drive::Toward(0.0),
     )]));
@@ -47,7 +47,7 @@ fn grip_facts(facts: Vec<SimFact>) -> Vec<SimFact> {
 
 fn made() -> Vec<SimFact> {
     vec![SimFact::GripMade {
-        arm: ARM,
+        arm: ARM.name(),
         id: "thing".into(),
     }]
 }
@@ -64,13 +64,13 @@ fn a_block_is_held_lifted_carried_and_let_go_of() {
     assert!((opening - 1.0).abs() < 0.01, "{opening}");
 
     let place = stage.place("thing");
-    let hand = stage.robot().arm(ARM).end_effector;
+    let hand = stage.robot().limb(ARM).end_effector;
     stage.reach(ARM, Vec3::new(4.0, -1.0, 3.0), 40.0);
-    let moved = stage.robot().arm(ARM).end_effector;
+    let moved = stage.robot().limb(ARM).end_effector;
     let expected = moved * (hand.inverse() * place);
     assert!((stage.place("thing").location - expected.location).length() < 1e-3);
 
-    stage.tell(RobotCommand::Drive(vec![(
+    stage.tell(RobotCommand::drive([(
         RobotJoint::gripper(ARM),
         Drive::Toward(2.0),
     )]));
@@ -86,7 +86,7 @@ fn a_block_is_held_lifted_carried_and_let_go_of() {
 fn a_block_off_the_centre_is_pushed_there_and_held() {
     let mut stage = gripper_around(unit_block(), 1.0, Vec3::new(0.2, 0.0, 0.5), Vec3::ZERO);
     assert_eq!(grip_facts(close(&mut stage)), made());
-    let hand = stage.robot().arm(ARM).end_effector.location;
+    let hand = stage.robot().limb(ARM).end_effector.location;
     let place = stage.place("thing").location;
     assert!((place.x - hand.x).abs() < 0.02, "{place} under {hand}");
 }
@@ -106,7 +106,7 @@ fn the_angle_of_figure_11_decides() {
             matches!(facts[..], [SimFact::GripRefused { angle, .. }] if angle > STEEPEST_GRIP),
             "{degrees}°: {facts:?}"
         );
-        assert!(stage.robot().arm(ARM).holds.is_empty());
+        assert!(stage.robot().limb(ARM).holds.is_empty());
     }
 }
 
@@ -164,13 +164,13 @@ fn two_blocks_are_held_at_once_and_let_go_of_together() {
     stage.app.step(5);
     let facts = grip_facts(close(&mut stage));
     assert_eq!(facts.len(), 2, "{facts:?}");
-    assert_eq!(stage.robot().arm(ARM).holds.len(), 2);
-    stage.tell(RobotCommand::Drive(vec![(
+    assert_eq!(stage.robot().limb(ARM).holds.len(), 2);
+    stage.tell(RobotCommand::drive([(
         RobotJoint::gripper(ARM),
         Drive::Velocity(1.0),
     )]));
     assert_eq!(grip_facts(stage.facts_of(2)).len(), 2);
-    assert!(stage.robot().arm(ARM).holds.is_empty());
+    assert!(stage.robot().limb(ARM).holds.is_empty());
 }
 
 /// A gripper that has come down around a block that is as wide as it opens.
@@ -200,12 +200,12 @@ fn a_block_as_wide_as_the_gripper_is_taken_carried_and_put_down() {
         stage.reach(ARM, Vec3::new(4.0, -1.0, 1.53), 0.0);
         let put = stage.place("thing").location.with_z(1.0);
 
-        stage.tell(RobotCommand::Drive(vec![(
+        stage.tell(RobotCommand::drive([(
             RobotJoint::gripper(ARM),
             Drive::Toward(2.0),
         )]));
         let released = SimFact::GripReleased {
-            arm: ARM,
+            arm: ARM.name(),
             id: "thing".into(),
         };
         assert_eq!(grip_facts(stage.facts_of(60)), [released], "{mode:?}");
@@ -222,7 +222,7 @@ fn a_block_as_wide_as_the_gripper_is_taken_carried_and_put_down() {
             0.005
         };
         assert!(away < most, "{mode:?}: {away}");
-        assert!(stage.robot().arm(ARM).holds.is_empty(), "{mode:?}");
+        assert!(stage.robot().limb(ARM).holds.is_empty(), "{mode:?}");
     }
 }
 
@@ -235,11 +235,11 @@ fn every_order_to_open_releases_what_is_as_wide_as_the_gripper() {
     ] {
         let mut stage = around_wide_block(Stage::new());
         close(&mut stage);
-        assert_eq!(stage.robot().arm(ARM).holds.len(), 1);
+        assert_eq!(stage.robot().limb(ARM).holds.len(), 1);
         let gripper = RobotJoint::gripper(ARM);
-        stage.tell(RobotCommand::Drive(vec![(gripper, order)]));
+        stage.tell(RobotCommand::drive([(gripper, order)]));
         stage.app.step(1);
-        assert!(stage.robot().arm(ARM).holds.is_empty(), "{order:?}");
+        assert!(stage.robot().limb(ARM).holds.is_empty(), "{order:?}");
     }
 }
 
@@ -253,9 +253,9 @@ fn an_order_to_close_or_stay_releases_nothing() {
         let mut stage = around_wide_block(Stage::new());
         close(&mut stage);
         let gripper = RobotJoint::gripper(ARM);
-        stage.tell(RobotCommand::Drive(vec![(gripper, order)]));
+        stage.tell(RobotCommand::drive([(gripper, order)]));
         stage.app.step(10);
-        assert_eq!(stage.robot().arm(ARM).holds.len(), 1, "{order:?}");
+        assert_eq!(stage.robot().limb(ARM).holds.len(), 1, "{order:?}");
     }
 }
 
@@ -269,10 +269,10 @@ fn a_gripper_that_cannot_open_releases_all_the_same() {
     }
     stage.app.step(5);
     let gripper = RobotJoint::gripper(ARM);
-    stage.tell(RobotCommand::Drive(vec![(gripper, Drive::Toward(2.0))]));
+    stage.tell(RobotCommand::drive([(gripper, Drive::Toward(2.0))]));
     stage.app.step(60);
     assert!(stage.robot().joint(gripper).position < 1.1);
-    assert!(stage.robot().arm(ARM).holds.is_empty());
+    assert!(stage.robot().limb(ARM).holds.is_empty());
 }
 
 #[test]
@@ -296,7 +296,7 @@ fn a_hand_takes_an_object_out_of_a_gripper() {
         matches!(facts[..], [SimFact::GripReleased { .. }]),
         "{facts:?}"
     );
-    assert!(stage.robot().arm(ARM).holds.is_empty());
+    assert!(stage.robot().limb(ARM).holds.is_empty());
 }
 
 #[test]
@@ -319,10 +319,10 @@ fn a_held_object_stays_when_the_table_is_cleared() {
     close(&mut stage);
     stage.tell(SceneCommand::Clear);
     stage.app.step(5);
-    assert_eq!(stage.robot().arm(ARM).holds.len(), 1);
+    assert_eq!(stage.robot().limb(ARM).holds.len(), 1);
     let robot = stage.app.world().resource::<Robot>().clone();
     let touched: Vec<_> = robot.contacts.iter().map(|contact| contact.thing).collect();
-    assert_eq!(touched, [robot.arm(ARM).holds[0]; 2]);
+    assert_eq!(touched, [robot.limb(ARM).holds[0]; 2]);
 }
 
 #[test]

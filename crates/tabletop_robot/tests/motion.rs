@@ -14,7 +14,7 @@ use tabletop_core::{
 };
 
 fn drive(stage: &mut Stage, joint: RobotJoint, drive: Drive) {
-    stage.tell(RobotCommand::Drive(vec![(joint, drive)]));
+    stage.tell(RobotCommand::drive([(joint, drive)]));
 }
 
 #[test]
@@ -72,12 +72,12 @@ fn an_arm_that_went_into_the_table_while_hidden_is_home_when_shown() {
         (RobotJoint::RightW2, 0.5),
     ];
     let down = down.map(|(joint, at)| (joint, Drive::Position(at)));
-    stage.tell(RobotCommand::Drive(down.into()));
+    stage.tell(RobotCommand::drive(down));
     stage.app.step(2);
     assert!(!inside_the_table(&mut stage).is_empty());
     stage.tell(RobotCommand::Show(true));
     let facts = stage.facts_of(2);
-    let blocked = |fact: &SimFact| matches!(fact, SimFact::ArmBlocked { arm: Arm::Left, .. });
+    let blocked = |fact: &SimFact| matches!(fact, SimFact::ArmBlocked { arm, .. } if *arm == Arm::Left.name());
     assert!(facts.iter().any(blocked), "{facts:?}");
     assert!(inside_the_table(&mut stage).is_empty());
     let robot = stage.robot();
@@ -98,16 +98,16 @@ fn an_arm_stops_at_the_table_and_says_so_once() {
         facts.extend(stage.facts_of(1));
     }
     let blocked = SimFact::ArmBlocked {
-        arm: Arm::Right,
+        arm: Arm::Right.name(),
         by: "table".into(),
     };
     assert_eq!(facts, [blocked]);
-    let tip = stage.robot().arm(Arm::Right).end_effector * Vec3::new(0.0, 0.0, -0.75);
+    let tip = stage.robot().limb(Arm::Right).end_effector * Vec3::new(0.0, 0.0, -0.75);
     assert!((0.0..0.3).contains(&tip.z), "{tip}");
     // It can go back.
     drive(&mut stage, RobotJoint::RightS1, Drive::Velocity(-1.0));
     stage.app.step(1);
-    assert_eq!(stage.robot().arm(Arm::Right).blocked_by, None);
+    assert_eq!(stage.robot().limb(Arm::Right).blocked_by, None);
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn an_arm_stops_at_a_fixed_object_and_pushes_a_free_one() {
         );
         let pose = Pose::at(Vec3::new(5.0, -3.0, 0.9));
         stage.tell(RobotCommand::ReachTo {
-            arm: Arm::Right,
+            arm: Arm::Right.name(),
             pose,
         });
         let facts = stage.facts_of(200);
@@ -153,7 +153,7 @@ fn an_arm_names_the_nearest_of_the_things_in_its_way() {
         let turned = stage.robot().joint(s0).position - 0.5;
         drive(&mut stage, s0, Drive::Position(turned));
         stage.app.step(1);
-        let by = stage.robot().arm(Arm::Right).blocked_by.as_deref();
+        let by = stage.robot().limb(Arm::Right).blocked_by.as_deref();
         assert_eq!(by, Some("near"), "shifted by {shift}");
     }
 }
@@ -165,12 +165,12 @@ fn the_arms_do_not_enter_each_other() {
     stage.reach(Arm::Left, Vec3::new(-2.0, -3.0, 3.0), 0.0);
     let pose = Pose::at(Vec3::new(3.0, -3.0, 3.0));
     stage.tell(RobotCommand::ReachTo {
-        arm: Arm::Left,
+        arm: Arm::Left.name(),
         pose,
     });
     let facts = stage.facts_of(300);
     let is_blocked = facts.iter().any(
-        |fact| matches!(fact, SimFact::ArmBlocked { arm: Arm::Left, by } if by.contains("right")),
+        |fact| matches!(fact, SimFact::ArmBlocked { arm, by } if *arm == Arm::Left.name() && by.contains("right")),
     );
     assert!(is_blocked, "{facts:?}");
 }
@@ -187,7 +187,7 @@ fn a_held_object_is_never_inside_the_table() {
     );
     drive(&mut stage, RobotJoint::RightGripper, Drive::Toward(0.0));
     stage.app.step(120);
-    assert_eq!(stage.robot().arm(Arm::Right).holds.len(), 1);
+    assert_eq!(stage.robot().limb(Arm::Right).holds.len(), 1);
     stage.reach(Arm::Right, Vec3::new(3.0, -2.0, 2.7), 0.0);
     for _ in 0..200 {
         drive(&mut stage, RobotJoint::RightS1, Drive::Velocity(1.0));
@@ -206,7 +206,7 @@ fn a_pose_out_of_reach_is_refused() {
     let mut stage = Stage::new();
     let pose = Pose::at(Vec3::new(30.0, 0.0, 1.0));
     stage.tell(RobotCommand::ReachTo {
-        arm: Arm::Left,
+        arm: Arm::Left.name(),
         pose,
     });
     let facts = stage.facts_of(1);
@@ -270,7 +270,7 @@ proptest! {
         let mut stage = Stage::new();
         for (is_shown, drives) in acts {
             stage.tell(RobotCommand::Show(is_shown));
-            stage.tell(RobotCommand::Drive(drives));
+            stage.tell(RobotCommand::drive(drives));
             stage.app.step(3);
             for joint in RobotJoint::ALL {
                 let position = stage.robot().joint(joint).position;
@@ -316,12 +316,12 @@ fn an_arm_that_presses_a_block_onto_the_table_stops() {
     stage.reach(Arm::Right, Vec3::new(3.0, -3.0, 2.5), 0.0);
     let pose = Pose::at(Vec3::new(3.0, -3.0, 0.9));
     stage.tell(RobotCommand::ReachTo {
-        arm: Arm::Right,
+        arm: Arm::Right.name(),
         pose,
     });
     stage.app.step(140);
     assert_eq!(
-        stage.robot().arm(Arm::Right).blocked_by.as_deref(),
+        stage.robot().limb(Arm::Right).blocked_by.as_deref(),
         Some("thing")
     );
     let place = stage.place("thing").location;

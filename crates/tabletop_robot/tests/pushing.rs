@@ -23,12 +23,12 @@ fn a_swing_into_a_fixed_block_stops_there_within_the_efforts() {
     stage.app.step(1);
     let (mut fastest, mut strongest) = (0.0_f32, 0.0_f64);
     let mut facts = Vec::new();
-    let mut before = stage.robot().arm(ARM).end_effector.location;
+    let mut before = stage.robot().limb(ARM).end_effector.location;
     for _ in 0..2 * SECOND {
         drive(&mut stage, &[(RobotJoint::RightS0, Drive::Velocity(1.5))]);
         facts.extend(stage.facts_of(1));
         check_limits(stage.robot());
-        let hand = stage.robot().arm(ARM).end_effector;
+        let hand = stage.robot().limb(ARM).end_effector;
         fastest = fastest.max((hand.location - before).length() / TICK_SECONDS);
         before = hand.location;
         strongest = strongest.max(stage.robot().joint(RobotJoint::RightS0).torque.abs());
@@ -38,7 +38,7 @@ fn a_swing_into_a_fixed_block_stops_there_within_the_efforts() {
     assert!(fastest > 10.0, "{fastest} units/s");
     assert!(strongest > 40.0, "it pressed: {strongest} N m");
     let blocked = SimFact::ArmBlocked {
-        arm: ARM,
+        arm: ARM.name(),
         by: "wall".into(),
     };
     assert_eq!(facts, [blocked]);
@@ -73,7 +73,10 @@ fn push(mass: f32, is_there: bool) -> Pushed {
     );
     stage.facts_of(30);
     let pose = Pose::at(Vec3::new(7.0, -3.0, 0.9));
-    stage.tell(RobotCommand::ReachTo { arm: ARM, pose });
+    stage.tell(RobotCommand::ReachTo {
+        arm: ARM.name(),
+        pose,
+    });
     let mut strongest = 0.0_f64;
     let mut facts = Vec::new();
     for tick in 0..SECOND {
@@ -86,7 +89,7 @@ fn push(mass: f32, is_there: bool) -> Pushed {
         }
     }
     Pushed {
-        hand: stage.robot().arm(ARM).end_effector.location.x - 2.0,
+        hand: stage.robot().limb(ARM).end_effector.location.x - 2.0,
         block: stage.place("thing").location.x - x,
         strongest,
         facts,
@@ -116,7 +119,7 @@ fn a_light_block_is_pushed_and_a_heavy_one_stalls_the_arm() {
     assert!(heavy.hand < 2.0, "the hand came {}", heavy.hand);
     assert_eq!(heavy.strongest, 1.0);
     let blocked = SimFact::ArmBlocked {
-        arm: ARM,
+        arm: ARM.name(),
         by: "thing".into(),
     };
     assert_eq!(heavy.facts, [blocked]);
@@ -138,13 +141,16 @@ fn an_arm_that_presses_a_block_onto_the_table_stops() {
     stage.reach(ARM, Vec3::new(3.0, -3.0, 2.5), 0.0);
     stage.app.step(60);
     let pose = Pose::at(Vec3::new(3.0, -3.0, 0.9));
-    stage.tell(RobotCommand::ReachTo { arm: ARM, pose });
+    stage.tell(RobotCommand::ReachTo {
+        arm: ARM.name(),
+        pose,
+    });
     for _ in 0..3 * SECOND {
         stage.app.step(1);
         check_limits(stage.robot());
     }
-    assert_eq!(stage.robot().arm(ARM).blocked_by.as_deref(), Some("thing"));
-    let hand = stage.robot().arm(ARM).end_effector.location;
+    assert_eq!(stage.robot().limb(ARM).blocked_by.as_deref(), Some("thing"));
+    let hand = stage.robot().limb(ARM).end_effector.location;
     assert!(
         hand.truncate().distance(Vec2::new(3.0, -3.0)) < 0.3,
         "it does not slip: {hand}"

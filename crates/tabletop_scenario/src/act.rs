@@ -71,7 +71,7 @@ impl ScenarioRun {
                 let moving = (self.robot_still < TICKS_TO_STILL).then_some("the robot");
                 return self.wait_while(moving, *timeout, "expected the robot to be still");
             }
-            Step::Robot(step) => match step.command() {
+            Step::Robot(step) => match step.command(seen.layout)? {
                 Some(command) => command,
                 None => return Ok(Progress::Over),
             },

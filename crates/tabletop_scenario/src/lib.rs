@@ -51,7 +51,7 @@ pub use step::{Axis, Step};
 use bevy::prelude::*;
 use tabletop_core::{
     Actor, CommandId, CommandWriter, Hands, ObjectIndex, ObjectSpec, OrderSystems, Paused, Pose,
-    RestApp as _, RestingSystems, Robot, SimFact, Table,
+    RestApp as _, RestingSystems, Robot, RobotLayout, SimFact, Table,
 };
 
 use crate::seen::{Seen, SeenObject};
@@ -86,6 +86,7 @@ fn take_due_steps(
     hands: Res<Hands>,
     paused: Res<Paused>,
     robot: Res<Robot>,
+    layout: Res<RobotLayout>,
 ) {
     let mut refusal = None;
     for fact in facts.read() {
@@ -116,6 +117,7 @@ fn take_due_steps(
         selected: hands.selected,
         paused: paused.0,
         robot: &robot,
+        layout: &layout,
     };
     *issued = run
         .tick(&seen, refusal)

@@ -3,7 +3,8 @@
 use bevy::prelude::*;
 use serde::Deserialize;
 use tabletop_core::{
-    Arm, Drive, Face, Pose, Robot, RobotCommand, RobotJoint, SimCommand, WIDEST_GRIP,
+    Drive, Face, JointId, JointName, LimbId, LimbName, Pose, Robot, RobotCommand, RobotLayout,
+    SimCommand,
 };
 
 use crate::{seen::Seen, step::fault_of_vector};
@@ -24,15 +25,15 @@ pub enum RobotStep {
     /// Take it away.
     Hide,
     /// Move joints to these positions at the speed of manual control.
-    Move(Vec<(RobotJoint, f64)>),
+    Move(Vec<(JointName, f64)>),
     /// Put joints to these positions at once.
-    Set(Vec<(RobotJoint, f64)>),
+    Set(Vec<(JointName, f64)>),
     /// Move all joints to where they are in the beginning.
     Home,
     /// Bring an end effector to a pose: with `degrees` 0 its fingers point down and open along X.
     ReachTo {
         /// The arm.
-        arm: Arm,
+        arm: LimbName,
         /// The location, in units.
         at: Vec3,
         /// The rotation about the fixed X, then Y, then Z axis.
@@ -40,9 +41,9 @@ pub enum RobotStep {
         degrees: Vec3,
     },
     /// Close a gripper until it holds or meets something.
-    Close(Arm),
+    Close(LimbName),
     /// Open a gripper, and let go of what it holds.
-    Open(Arm),
+    Open(LimbName),
     /// Show this face.
     Face(Face),
     /// Wait until nothing of the robot moves, at most so many seconds.
@@ -56,7 +57,7 @@ pub enum RobotCheck {
     /// A joint is at a position, in rad, or units for a gripper.
     Joint {
         /// The joint.
-        joint: RobotJoint,
+        joint: JointName,
         /// The position.
         at: f64,
         /// How far away from it is near enough.
@@ -66,7 +67,7 @@ pub enum RobotCheck {
     /// An end effector is at a location, in units.
     EndEffector {
         /// The arm.
-        arm: Arm,
+        arm: LimbName,
         /// The location.
         at: Vec3,
         /// How far away from it is near enough.
@@ -76,16 +77,16 @@ pub enum RobotCheck {
     /// A gripper holds an object.
     Holds {
         /// The arm.
-        arm: Arm,
+        arm: LimbName,
         /// The object's id.
         object: String,
     },
     /// A gripper holds nothing.
-    HoldsNothing(Arm),
+    HoldsNothing(LimbName),
     /// An arm is stopped by something: an object's id, `table` or a part of the robot.
     BlockedBy {
         /// The arm.
-        arm: Arm,
+        arm: LimbName,
         /// What is in its way.
         by: String,
     },
@@ -100,24 +101,17 @@ const fn close() -> f32 {
 }
 
 impl RobotStep {
-    /// What makes no sense in it.
+    /// What makes no sense in it, whatever the robot.
     pub(crate) fn fault(&self) -> Option<String> {
         match self {
-            Self::Move(positions) | Self::Set(positions) => {
-                positions.iter().find_map(|(joint, position)| {
-                    let (least, largest) = joint.limits();
-                    let is_there = (least..=largest).contains(position);
-                    (!is_there).then(|| {
-                        format!("joint {joint} goes from {least} to {largest}, not to {position}")
-                    })
-                })
-            }
             Self::ReachTo { at, degrees, .. } => {
                 fault_of_vector(*at).or_else(|| fault_of_vector(*degrees))
             }
             Self::WaitUntilStill(seconds) => crate::step::fault_of_time(*seconds),
             Self::Show
             | Self::Hide
+            | Self::Move(_)
+            | Self::Set(_)
             | Self::Home
             | Self::Close(_)
             | Self::Open(_)
@@ -126,35 +120,65 @@ impl RobotStep {
     }
 
     /// The command for it; `None` if it only waits.
-    pub(crate) fn command(&self) -> Option<SimCommand> {
-        let gripper = |arm: Arm, opening| vec![(RobotJoint::gripper(arm), Drive::Toward(opening))];
-        let drives = match self {
-            Self::Show => return Some(SimCommand::Robot(RobotCommand::Show(true))),
-            Self::Hide => return Some(SimCommand::Robot(RobotCommand::Show(false))),
-            Self::Face(face) => return Some(SimCommand::Robot(RobotCommand::ShowFace(*face))),
-            Self::ReachTo { arm, at, degrees } => {
-                return Some(SimCommand::Robot(RobotCommand::ReachTo {
-                    arm: *arm,
-                    pose: Pose::from_degrees(*at, *degrees),
-                }));
-            }
-            Self::WaitUntilStill(_) => return None,
-            Self::Move(positions) => each(positions, Drive::Toward),
-            Self::Set(positions) => each(positions, Drive::Position),
-            Self::Home => each(
-                &RobotJoint::ALL.map(|joint| (joint, joint.home())),
-                Drive::Toward,
-            ),
-            Self::Close(arm) => gripper(*arm, 0.0),
-            Self::Open(arm) => gripper(*arm, WIDEST_GRIP),
+    ///
+    /// # Errors
+    ///
+    /// This robot cannot do it.
+    pub(crate) fn command(&self, layout: &RobotLayout) -> Result<Option<SimCommand>, String> {
+        let gripper = |limb: LimbName, end: usize| {
+            let limb = layout.limb(limb_of(layout, limb)?);
+            let joint = layout.joint(limb.gripper.joint);
+            Ok::<_, String>(vec![(joint.name, Drive::Toward(joint.limits[end]))])
         };
-        Some(SimCommand::Robot(RobotCommand::Drive(drives)))
+        let home = || {
+            let joints = layout.joints.iter();
+            joints.map(|joint| (joint.name, Drive::Toward(joint.home)))
+        };
+        let command = match self {
+            Self::Show => RobotCommand::Show(true),
+            Self::Hide => RobotCommand::Show(false),
+            Self::Face(face) => RobotCommand::ShowFace(*face),
+            Self::ReachTo { arm, at, degrees } => RobotCommand::ReachTo {
+                arm: layout.limb(limb_of(layout, *arm)?).name,
+                pose: Pose::from_degrees(*at, *degrees),
+            },
+            Self::WaitUntilStill(_) => return Ok(None),
+            Self::Move(positions) => RobotCommand::Drive(each(layout, positions, Drive::Toward)?),
+            Self::Set(positions) => RobotCommand::Drive(each(layout, positions, Drive::Position)?),
+            Self::Home => RobotCommand::Drive(home().collect()),
+            Self::Close(arm) => RobotCommand::Drive(gripper(*arm, 0)?),
+            Self::Open(arm) => RobotCommand::Drive(gripper(*arm, 1)?),
+        };
+        Ok(Some(SimCommand::Robot(command)))
     }
 }
 
-fn each(positions: &[(RobotJoint, f64)], drive: fn(f64) -> Drive) -> Vec<(RobotJoint, Drive)> {
-    let positions = positions.iter();
-    positions.map(|(joint, at)| (*joint, drive(*at))).collect()
+fn each(
+    layout: &RobotLayout,
+    positions: &[(JointName, f64)],
+    drive: fn(f64) -> Drive,
+) -> Result<Vec<(JointName, Drive)>, String> {
+    let positions = positions.iter().map(|&(name, position)| {
+        let joint = layout.joint(joint_of(layout, name)?);
+        let [least, largest] = joint.limits;
+        if !(least..=largest).contains(&position) {
+            return Err(format!(
+                "joint {name} goes from {least} to {largest}, not to {position}"
+            ));
+        }
+        Ok((joint.name, drive(position)))
+    });
+    positions.collect()
+}
+
+fn joint_of(layout: &RobotLayout, name: JointName) -> Result<JointId, String> {
+    let joint = layout.find_joint(name);
+    joint.ok_or_else(|| format!("the robot {} has no joint {name}", layout.name))
+}
+
+fn limb_of(layout: &RobotLayout, name: LimbName) -> Result<LimbId, String> {
+    let limb = layout.find_limb(name);
+    limb.ok_or_else(|| format!("the robot {} has no limb {name}", layout.name))
 }
 
 /// Whether nothing of the robot has moved in the last tick.
@@ -169,7 +193,7 @@ impl RobotCheck {
         let robot = seen.robot;
         match self {
             Self::Joint { joint, at, within } => {
-                let found = robot.joint(*joint).position;
+                let found = robot.joint(joint_of(seen.layout, *joint)?).position;
                 let is_there = (found - at).abs() <= *within;
                 is_there.then_some(()).ok_or_else(|| {
                     format!(
@@ -178,7 +202,10 @@ impl RobotCheck {
                 })
             }
             Self::EndEffector { arm, at, within } => {
-                let found = robot.arm(*arm).end_effector.location;
+                let found = robot
+                    .limb(limb_of(seen.layout, *arm)?)
+                    .end_effector
+                    .location;
                 let away = found.distance(*at);
                 (away <= *within).then_some(()).ok_or_else(|| {
                     format!(
@@ -187,7 +214,7 @@ impl RobotCheck {
                 })
             }
             Self::Holds { arm, object } => {
-                let held = held(seen, *arm);
+                let held = held(seen, *arm)?;
                 held.contains(&object.as_str())
                     .then_some(())
                     .ok_or_else(|| {
@@ -198,7 +225,7 @@ impl RobotCheck {
                     })
             }
             Self::HoldsNothing(arm) => {
-                let held = held(seen, *arm);
+                let held = held(seen, *arm)?;
                 held.is_empty().then_some(()).ok_or_else(|| {
                     format!(
                         "expected nothing in the {arm} gripper, found {}",
@@ -207,7 +234,10 @@ impl RobotCheck {
                 })
             }
             Self::BlockedBy { arm, by } => {
-                let found = robot.arm(*arm).blocked_by.as_deref();
+                let found = robot
+                    .limb(limb_of(seen.layout, *arm)?)
+                    .blocked_by
+                    .as_deref();
                 (found == Some(by)).then_some(()).ok_or_else(|| {
                     format!(
                         "expected the {arm} arm blocked by {by}, found it {}",
@@ -220,13 +250,13 @@ impl RobotCheck {
 }
 
 /// The ids of what a gripper holds.
-fn held<'a>(seen: &'a Seen, arm: Arm) -> Vec<&'a str> {
-    let holds = &seen.robot.arm(arm).holds;
+fn held<'a>(seen: &'a Seen, arm: LimbName) -> Result<Vec<&'a str>, String> {
+    let holds = &seen.robot.limb(limb_of(seen.layout, arm)?).holds;
     let held = seen
         .objects
         .iter()
         .filter(|object| holds.contains(&object.entity));
-    held.map(|object| object.spec.id.as_str()).collect()
+    Ok(held.map(|object| object.spec.id.as_str()).collect())
 }
 
 fn in_words(ids: &[&str]) -> String {
@@ -238,6 +268,8 @@ fn in_words(ids: &[&str]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use tabletop_core::{Arm, RobotJoint};
+
     use super::*;
     use crate::test_stage::Stage;
 
@@ -252,16 +284,16 @@ mod tests {
             given,
             [
                 SimCommand::Robot(RobotCommand::Show(true)),
-                SimCommand::Robot(RobotCommand::Drive(vec![(
+                SimCommand::Robot(RobotCommand::drive([(
                     RobotJoint::RightE1,
                     Drive::Toward(1.5)
                 )])),
-                SimCommand::Robot(RobotCommand::Drive(vec![(
+                SimCommand::Robot(RobotCommand::drive([(
                     RobotJoint::LeftGripper,
                     Drive::Toward(0.0)
                 )])),
                 SimCommand::Robot(RobotCommand::ReachTo {
-                    arm: Arm::Right,
+                    arm: Arm::Right.name(),
                     pose: Pose::from_degrees(Vec3::new(3.0, -2.0, 1.0), Vec3::Z * 90.0),
                 }),
             ]
@@ -270,10 +302,15 @@ mod tests {
 
     #[test]
     fn a_position_out_of_limits_is_a_fault() {
-        let fault = RobotStep::Set(vec![(RobotJoint::LeftE1, 3.0)]).fault();
+        let step = |joint: &str, at| RobotStep::Set(vec![(JointName::new(joint), at)]);
+        let fault = |step: RobotStep| step.command(RobotLayout::baxter()).unwrap_err();
         assert_eq!(
-            fault.as_deref(),
-            Some("joint left_e1 goes from -0.05 to 2.618, not to 3")
+            fault(step("LeftE1", 3.0)),
+            "joint left_e1 goes from -0.05 to 2.618, not to 3"
+        );
+        assert_eq!(
+            fault(step("panda_joint1", 0.0)),
+            "the robot Baxter has no joint panda_joint1"
         );
     }
 

@@ -7,7 +7,7 @@ use std::{
 
 use ron::{Options, error::SpannedError, extensions::Extensions, value::RawValue};
 use serde::Deserialize;
-use tabletop_core::is_shipped;
+use tabletop_core::{RobotLayout, is_shipped};
 
 use crate::{ScenarioError, SourceLocation, Step};
 
@@ -93,6 +93,26 @@ impl Scenario {
             steps: steps.collect::<Result<_, _>>()?,
             path,
         })
+    }
+
+    /// Checks that this robot has the joints and limbs that the steps name, and can go where they send it.
+    ///
+    /// # Errors
+    ///
+    /// The first step that this robot cannot do, with its place.
+    pub fn check_for(&self, layout: &RobotLayout) -> Result<(), ScenarioError> {
+        for LocatedStep { at, text, step } in &self.steps {
+            if let Step::Robot(step) = step
+                && let Err(what) = step.command(layout)
+            {
+                return Err(ScenarioError::Step {
+                    at: at.clone(),
+                    step: text.clone(),
+                    what,
+                });
+            }
+        }
+        Ok(())
     }
 
     /// Lets it begin with this task file, which is relative to the working directory, in place of its own.

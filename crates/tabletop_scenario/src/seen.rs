@@ -1,7 +1,7 @@
 //! What a scenario sees of the world: its state at the end of the last tick.
 
 use bevy::prelude::*;
-use tabletop_core::{Bounds, Hand, ObjectSpec, Pose, Robot, Table};
+use tabletop_core::{Bounds, Hand, ObjectSpec, Pose, Robot, RobotLayout, Table};
 
 /// The world as a scenario sees it.
 #[derive(Clone, Debug)]
@@ -16,6 +16,8 @@ pub(crate) struct Seen<'a> {
     pub paused: bool,
     /// The robot.
     pub robot: &'a Robot,
+    /// Its limbs and joints.
+    pub layout: &'a RobotLayout,
 }
 
 /// An object as a scenario sees it.

@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use bevy::prelude::*;
-use tabletop_core::{Hand, ObjectSpec, Pose, Rgb, Robot, SceneSpec, Shape, SimCommand, Table};
+use tabletop_core::{
+    Hand, ObjectSpec, Pose, Rgb, Robot, RobotLayout, SceneSpec, Shape, SimCommand, Table,
+};
 
 use crate::{
     Outcome, Program, Scenario, ScenarioRun,
@@ -65,6 +67,7 @@ impl Stage {
             selected: self.selected,
             paused: self.paused,
             robot: &self.robot,
+            layout: RobotLayout::baxter(),
         };
         self.run.tick(&seen, refusal)
     }

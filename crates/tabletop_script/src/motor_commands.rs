@@ -1,7 +1,7 @@
 //! A script's replies as commands of the simulation.
 
 use bevy::prelude::*;
-use tabletop_core::{Drive, JointId, RobotCommand, RobotJoint, RobotLayout, RobotMode};
+use tabletop_core::{Drive, JointLayout, JointName, RobotCommand, RobotLayout, RobotMode};
 use tabletop_engine::{InitReply, JointMatrix, MotorCommand};
 
 /// The commands of an init script.
@@ -10,20 +10,19 @@ pub(crate) fn commands_of_init(reply: &InitReply, layout: &RobotLayout) -> Vec<R
     let markers = markers.map(|point| Vec3::from_array(point.map(|x| x as f32)));
     let mut commands = vec![RobotCommand::ShowMarkers(markers.collect())];
     let angles = reply.init_joint_angles.as_ref();
-    commands.extend(angles.map(|angles| drive(at_once(angles, layout))));
+    commands.extend(angles.map(|angles| RobotCommand::drive(at_once(angles, layout))));
     commands
 }
 
 /// The first angle of an init script that a joint cannot have.
 pub(crate) fn unreachable(reply: &InitReply, layout: &RobotLayout) -> Option<String> {
     let angles = reply.init_joint_angles.as_ref()?;
-    let mut joints = each_joint(angles, layout, |angle| angle);
-    let (joint, angle) = joints.find(|&(joint, angle)| {
-        let [least, largest] = layout.joint(joint).limits;
-        !(least..=largest).contains(&angle)
+    let mut joints = each_joint(angles, layout);
+    let (joint, angle) = joints.find(|(joint, angle)| {
+        let [least, largest] = joint.limits;
+        !(least..=largest).contains(angle)
     })?;
-    let joint = layout.joint(joint);
-    let (name, [least, largest]) = (&joint.name, joint.limits);
+    let (name, [least, largest]) = (joint.name, joint.limits);
     Some(format!(
         "aux.initJointAngles wants {name} at {angle}; it is moved to the nearest of its angles, {least} to {largest}"
     ))
@@ -39,48 +38,54 @@ pub(crate) fn command_of_motor(
     let torques = torques.filter(|_| mode == RobotMode::Dynamic);
     let mut drives = match (torques, &motor.joint_angles) {
         (_, Some(angles)) => at_once(angles, layout),
-        (Some(torques), None) => each_joint(torques, layout, Drive::Torque).collect(),
-        (None, None) => each_joint(&motor.joint_velocities, layout, Drive::Velocity).collect(),
+        (Some(torques), None) => drives(torques, layout, Drive::Torque),
+        (None, None) => drives(&motor.joint_velocities, layout, Drive::Velocity),
     };
     let grippers = layout.limbs.iter().map(|limb| limb.gripper.joint);
     let velocities = motor.gripper_velocities.iter().copied();
-    drives.extend(grippers.zip(velocities.map(Drive::Velocity)));
     let head = layout.neck.zip(motor.head_velocity);
-    drives.extend(head.map(|(neck, velocity)| (neck, Drive::Velocity(velocity))));
-    drive(drives)
+    let others = grippers.zip(velocities).chain(head);
+    drives.extend(others.map(|(joint, velocity)| {
+        let name = layout.joint(joint).name;
+        (name, Drive::Velocity(velocity))
+    }));
+    RobotCommand::Drive(drives)
 }
 
 /// The last command of a script that ends in a tick: velocities are zero from then on.
 pub(crate) fn last_command(motor: &MotorCommand, layout: &RobotLayout) -> Option<RobotCommand> {
     let angles = motor.joint_angles.as_ref();
-    angles.map(|angles| drive(at_once(angles, layout)))
+    angles.map(|angles| RobotCommand::drive(at_once(angles, layout)))
 }
 
-fn drive(drives: Vec<(JointId, Drive)>) -> RobotCommand {
-    let joints = drives.into_iter();
-    let joints = joints.filter_map(|(joint, drive)| {
-        let joint = RobotJoint::ALL.get(joint.index())?;
-        Some((*joint, drive))
-    });
-    RobotCommand::Drive(joints.collect())
+fn at_once(angles: &JointMatrix, layout: &RobotLayout) -> Vec<(JointName, Drive)> {
+    drives(angles, layout, Drive::Position)
 }
 
-fn at_once(angles: &JointMatrix, layout: &RobotLayout) -> Vec<(JointId, Drive)> {
-    each_joint(angles, layout, Drive::Position).collect()
-}
-
-fn each_joint<T>(
+fn drives(
     values: &JointMatrix,
     layout: &RobotLayout,
-    each: impl Fn(f64) -> T,
-) -> impl Iterator<Item = (JointId, T)> {
+    drive: fn(f64) -> Drive,
+) -> Vec<(JointName, Drive)> {
+    let joints = each_joint(values, layout);
+    joints
+        .map(|(joint, value)| (joint.name, drive(value)))
+        .collect()
+}
+
+fn each_joint<'a>(
+    values: &'a JointMatrix,
+    layout: &'a RobotLayout,
+) -> impl Iterator<Item = (&'a JointLayout, f64)> {
     let limbs = layout.limbs.iter().zip(values.rows());
     let joints = limbs.flat_map(|(limb, values)| limb.joints.iter().zip(values));
-    joints.map(move |(joint, value)| (*joint, each(*value)))
+    joints.map(|(joint, value)| (layout.joint(*joint), *value))
 }
 
 #[cfg(test)]
 mod tests {
+    use tabletop_core::RobotJoint;
+
     use super::*;
 
     fn motor() -> MotorCommand {
@@ -92,7 +97,7 @@ mod tests {
         motor
     }
 
-    fn drives(command: RobotCommand) -> Vec<(RobotJoint, Drive)> {
+    fn drives(command: RobotCommand) -> Vec<(JointName, Drive)> {
         match command {
             RobotCommand::Drive(drives) => drives,
             other => panic!("{other:?}"),
@@ -107,10 +112,13 @@ mod tests {
             RobotLayout::baxter(),
         ));
         assert_eq!(drives.len(), 16);
-        assert_eq!(drives[13], (RobotJoint::RightW2, Drive::Velocity(2.0)));
+        assert_eq!(
+            drives[13],
+            (RobotJoint::RightW2.name(), Drive::Velocity(2.0))
+        );
         assert_eq!(
             drives[15],
-            (RobotJoint::RightGripper, Drive::Velocity(-1.0))
+            (RobotJoint::RightGripper.name(), Drive::Velocity(-1.0))
         );
     }
 
@@ -161,7 +169,7 @@ mod tests {
         ));
         assert_eq!(
             drives.last(),
-            Some(&(RobotJoint::HeadPan, Drive::Velocity(0.1)))
+            Some(&(RobotJoint::HeadPan.name(), Drive::Velocity(0.1)))
         );
     }
 }

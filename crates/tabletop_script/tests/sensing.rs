@@ -79,8 +79,8 @@ aux.exit = 1;
         .filter_map(|word| word.parse().ok())
         .collect();
     let robot = stage.robot();
-    let arms = Arm::BOTH.map(|arm| robot.arm(arm).end_effector.location);
-    let wrist = robot.arm(Arm::Right).joint_origins[2].to_array();
+    let arms = Arm::BOTH.map(|arm| robot.limb(arm).end_effector.location);
+    let wrist = robot.limb(Arm::Right).joint_origins[2].to_array();
     let expected: Vec<f32> = wrist
         .into_iter()
         .chain(arms[0].to_array())

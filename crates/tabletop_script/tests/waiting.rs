@@ -133,7 +133,7 @@ fn nothing_that_is_told_meanwhile_gets_lost() {
         let goal = 0.3 + f64::from(call) / 10.0;
         let face = if call == 1 { Face::Happy } else { Face::Asleep };
         let drive = (RobotJoint::HeadPan, Drive::Position(goal));
-        stage.command(RobotCommand::Drive(vec![drive]));
+        stage.command(RobotCommand::drive([drive]));
         stage.command(RobotCommand::ShowFace(face));
         for _ in 0..10 {
             stage.frame();

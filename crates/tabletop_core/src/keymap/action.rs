@@ -5,7 +5,7 @@ use std::fmt;
 use bevy_input::keyboard::KeyCode::{self, *};
 
 use super::{Binding, Modifiers};
-use crate::{Arm, RobotJoint};
+use crate::{Arm, JointLayout, JointRole, RobotJoint};
 
 /// Something that a key does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -266,10 +266,18 @@ impl Action {
         Self::ALL.into_iter().find(|action| action.name() == name)
     }
 
+    /// The action whose keys move a joint of the robot: Baxter's joints have them, and joints of other robots that have the same keys.
+    pub fn moving(joint: &JointLayout, way: Way) -> Option<Self> {
+        let own = RobotJoint::ALL
+            .into_iter()
+            .find(|own| own.layout().keys == joint.keys)?;
+        (!joint.keys[0].is_empty()).then_some(Self::Move(own, way))
+    }
+
     /// What it does, in a few words.
     pub fn label(self) -> String {
         match (self, self.row().label) {
-            (Self::Move(joint, way), label) if !joint.is_gripper() => {
+            (Self::Move(joint, way), label) if !joint.layout().is_gripper() => {
                 format!("{label} {}", way.sign())
             }
             (_, label) => label.to_owned(),
@@ -448,48 +456,26 @@ impl Action {
 
 /// Joints have a key each, which with Shift moves them the other way; grippers have two (report section 5.1).
 fn row_of_joint(joint: RobotJoint, way: Way) -> Row {
-    use RobotJoint::*;
-    let (label, key) = match joint {
-        RightW2 => ("W2", KeyT),
-        RightW1 => ("W1", KeyY),
-        RightW0 => ("W0", KeyU),
-        RightE1 => ("E1", KeyI),
-        RightE0 => ("E0", KeyO),
-        RightS1 => ("S1", KeyP),
-        RightS0 => ("S0", BracketLeft),
-        LeftW2 => ("W2", KeyG),
-        LeftW1 => ("W1", KeyH),
-        LeftW0 => ("W0", KeyJ),
-        LeftE1 => ("E1", KeyK),
-        LeftE0 => ("E0", KeyL),
-        LeftS1 => ("S1", Semicolon),
-        LeftS0 => ("S0", Quote),
-        HeadPan => ("Head H0", BracketRight),
-        RightGripper => match way {
-            Way::Plus => ("Open gripper", Equal),
-            Way::Minus => ("Close gripper", Minus),
-        },
-        LeftGripper => match way {
-            Way::Plus => ("Open gripper", Digit0),
-            Way::Minus => ("Close gripper", Digit9),
-        },
-    };
-    let (tooltip, keys) = match (joint.is_gripper(), way) {
-        (true, Way::Plus) => ("Opens the gripper", vec![plain(key)]),
-        (true, Way::Minus) => ("Closes the gripper", vec![plain(key)]),
-        (false, Way::Plus) => ("Turns the joint", vec![plain(key)]),
-        (false, Way::Minus) => ("Turns the joint the other way", vec![shift(key)]),
+    let JointLayout {
+        role, label, keys, ..
+    } = joint.layout();
+    let [plus, minus] = keys;
+    let (label, tooltip, keys) = match (role, way) {
+        (JointRole::Gripper(_), Way::Plus) => ("Open gripper", "Opens the gripper", plus),
+        (JointRole::Gripper(_), Way::Minus) => ("Close gripper", "Closes the gripper", minus),
+        (_, Way::Plus) => (&**label, "Turns the joint", plus),
+        (_, Way::Minus) => (&**label, "Turns the joint the other way", minus),
     };
     Row {
-        group: match joint.arm() {
-            Some(Arm::Right) => ActionGroup::RightArm,
-            Some(Arm::Left) => ActionGroup::LeftArm,
+        group: match joint.layout().limb() {
+            Some(limb) if limb == Arm::Right.into() => ActionGroup::RightArm,
+            Some(_) => ActionGroup::LeftArm,
             None => ActionGroup::Robot,
         },
-        name: joint.name(),
+        name: joint.name().as_str(),
         label,
         tooltip,
-        keys,
+        keys: keys.clone(),
     }
 }
 

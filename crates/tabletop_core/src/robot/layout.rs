@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use bevy::prelude::*;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::{
     Binding, Pose, Table,
@@ -202,7 +202,7 @@ const fn unturned() -> [[f64; 3]; 3] {
 }
 
 /// Where the robot stands before the table.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BaseLayout {
     /// From the table's near edge back to the origin of the URDF's root link, in units.
@@ -222,7 +222,7 @@ impl BaseLayout {
 }
 
 /// Where the head camera is on the robot. Lengths in units, in axes like the table's: x right, y forward, z up.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CameraLayout {
     /// The axis of the neck, from the robot's origin.

@@ -2,17 +2,53 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Actor, CommandWriter, Drive, OrderSystems, Paused, RobotCommand, RobotJoint, SimSystems,
+    Actor, CommandWriter, Drive, JointId, JointName, MANUAL_SPEED, OrderSystems, Paused,
+    RobotCommand, RobotLayout, SimSystems,
 };
 
-/// Speed of manual control, in rad/s, and units/s for grippers.
-const SPEED: f64 = 1.0;
+/// Where the joints are to go: 1 and -1 are the directions of manual control, 0 is to stay.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Directions(Vec<i8>);
 
-/// Where the joints are to go, by [`RobotJoint::index`]: 1 and -1 are the directions of manual control, 0 is to stay.
-pub(crate) type Directions = [i8; RobotJoint::ALL.len()];
+impl Directions {
+    /// What this says of every joint of a layout.
+    pub fn of(layout: &RobotLayout, direction: impl FnMut(JointId) -> i8) -> Self {
+        Self(layout.joint_ids().map(direction).collect())
+    }
+
+    /// Where a joint is to go.
+    pub fn get(&self, joint: JointId) -> i8 {
+        self.0.get(joint.index()).copied().unwrap_or(0)
+    }
+
+    /// Lets a joint go somewhere.
+    pub fn set(&mut self, joint: JointId, direction: i8) {
+        if self.0.len() <= joint.index() {
+            self.0.resize(joint.index() + 1, 0);
+        }
+        self.0[joint.index()] = direction;
+    }
+
+    /// Whether nothing is to go anywhere.
+    pub fn are_none(&self) -> bool {
+        self.0.iter().all(|&direction| direction == 0)
+    }
+}
+
+/// Joints of which nothing is said are to stay.
+impl PartialEq for Directions {
+    fn eq(&self, other: &Self) -> bool {
+        let joints = self.0.len().max(other.0.len()) as u16;
+        (0..joints)
+            .map(JointId)
+            .all(|joint| self.get(joint) == other.get(joint))
+    }
+}
+
+impl Eq for Directions {}
 
 /// The keys, or the buttons, that move joints.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Controls {
     held: Directions,
     struck: Directions,
@@ -22,24 +58,29 @@ impl Controls {
     /// Takes what is held down now, and what has gone down since the last time.
     pub fn update(&mut self, held: Directions, struck: Directions) {
         self.held = held;
-        for (direction, struck) in self.struck.iter_mut().zip(struck) {
+        for (joint, &struck) in (0..).map(JointId).zip(&struck.0) {
             if struck != 0 {
-                *direction = struck;
+                self.struck.set(joint, struck);
             }
         }
     }
 
+    /// Whether nothing is or was held down.
+    fn are_idle(&self) -> bool {
+        self.held.are_none() && self.struck.are_none()
+    }
+
     /// What has gone down counts until a tick has seen it, even if it is up again.
-    fn direction(&self, joint: RobotJoint) -> i8 {
-        match self.struck[joint.index()] {
-            0 => self.held[joint.index()],
+    fn direction(&self, joint: JointId) -> i8 {
+        match self.struck.get(joint) {
+            0 => self.held.get(joint),
             struck => struck,
         }
     }
 }
 
 /// What the user holds down to move joints.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Jog {
     pub keys: Controls,
     pub buttons: Controls,
@@ -48,21 +89,21 @@ pub(crate) struct Jog {
 impl Jog {
     /// With what the user moves the joints.
     fn actor(&self) -> Actor {
-        let by_keys = |joint| self.keys.direction(joint) != 0;
-        match RobotJoint::ALL.into_iter().any(by_keys) {
-            true => Actor::Key,
-            false => Actor::Panel,
+        match self.keys.are_idle() {
+            false => Actor::Key,
+            true => Actor::Panel,
         }
     }
 
     /// What the joints are told in a tick. The arms move as mirror images.
-    fn drives(&self) -> Vec<(RobotJoint, Drive)> {
-        RobotJoint::ALL
-            .into_iter()
-            .filter_map(|joint| {
-                let direction = self.keys.direction(joint) + self.buttons.direction(joint);
-                let velocity = SPEED * joint.mirror() * f64::from(direction.signum());
-                (direction != 0).then_some((joint, Drive::Velocity(velocity)))
+    fn drives(&self, layout: &RobotLayout) -> Vec<(JointName, Drive)> {
+        layout
+            .joint_ids()
+            .filter_map(|id| {
+                let joint = layout.joint(id);
+                let direction = self.keys.direction(id) + self.buttons.direction(id);
+                let velocity = MANUAL_SPEED * joint.sign * f64::from(direction.signum());
+                (direction != 0).then_some((joint.name, Drive::Velocity(velocity)))
             })
             .collect()
     }
@@ -80,8 +121,8 @@ pub(crate) fn plugin(app: &mut App) {
     );
 }
 
-fn give_orders(jog: Res<Jog>, mut commands: CommandWriter) {
-    let drives = jog.drives();
+fn give_orders(jog: Res<Jog>, layout: Res<RobotLayout>, mut commands: CommandWriter) {
+    let drives = jog.drives(&layout);
     if !drives.is_empty() {
         commands.write(jog.actor(), RobotCommand::Drive(drives));
     }
@@ -89,7 +130,7 @@ fn give_orders(jog: Res<Jog>, mut commands: CommandWriter) {
 
 /// A tick has seen what has gone down.
 fn forget_struck(mut jog: ResMut<Jog>) {
-    let mut forgetful = *jog;
+    let mut forgetful = jog.clone();
     for controls in [&mut forgetful.keys, &mut forgetful.buttons] {
         controls.struck = Directions::default();
     }
@@ -99,11 +140,11 @@ fn forget_struck(mut jog: ResMut<Jog>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use RobotJoint::{HeadPan, LeftE1, RightE0};
+    use tabletop_core::RobotJoint::{self, HeadPan, LeftE1, RightE0};
 
     fn towards(joint: RobotJoint, direction: i8) -> Directions {
         let mut directions = Directions::default();
-        directions[joint.index()] = direction;
+        directions.set(joint.into(), direction);
         directions
     }
 
@@ -113,10 +154,13 @@ mod tests {
         jog.keys.update(towards(LeftE1, 1), Directions::default());
         jog.buttons
             .update(towards(LeftE1, 1), Directions::default());
-        assert_eq!(jog.drives(), [(LeftE1, Drive::Velocity(1.0))]);
+        assert_eq!(
+            jog.drives(RobotLayout::baxter()),
+            [(LeftE1.name(), Drive::Velocity(1.0))]
+        );
         jog.buttons
             .update(towards(LeftE1, -1), Directions::default());
-        assert_eq!(jog.drives(), []);
+        assert_eq!(jog.drives(RobotLayout::baxter()), []);
     }
 
     #[test]
@@ -126,10 +170,10 @@ mod tests {
         jog.buttons
             .update(towards(HeadPan, 1), Directions::default());
         let drives = [
-            (RightE0, Drive::Velocity(-1.0)),
-            (HeadPan, Drive::Velocity(1.0)),
+            (RightE0.name(), Drive::Velocity(-1.0)),
+            (HeadPan.name(), Drive::Velocity(1.0)),
         ];
-        assert_eq!(jog.drives(), drives);
+        assert_eq!(jog.drives(RobotLayout::baxter()), drives);
     }
 
     #[test]
@@ -138,7 +182,10 @@ mod tests {
         jog.keys.update(Directions::default(), towards(LeftE1, -1));
         jog.keys
             .update(Directions::default(), Directions::default());
-        assert_eq!(jog.drives(), [(LeftE1, Drive::Velocity(-1.0))]);
+        assert_eq!(
+            jog.drives(RobotLayout::baxter()),
+            [(LeftE1.name(), Drive::Velocity(-1.0))]
+        );
         let mut app = App::new();
         app.insert_resource(jog).add_systems(Update, forget_struck);
         app.update();

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Action, Actor, CommandWriter, KeySystems, Keys, Paused, Robot, RobotCommand, RobotJoint, Way,
+    Action, Actor, CommandWriter, KeySystems, Keys, Paused, Robot, RobotCommand, RobotLayout, Way,
     was_struck,
 };
 
@@ -40,21 +40,27 @@ fn show_next_face(robot: Res<Robot>, mut commands: CommandWriter) {
 }
 
 /// Reads the keys of joints and grippers, once a frame for all of its ticks.
-fn hold_joint_keys(keys: Keys, paused: Res<Paused>, mut jog: ResMut<Jog>) {
+fn hold_joint_keys(
+    keys: Keys,
+    paused: Res<Paused>,
+    layout: Res<RobotLayout>,
+    mut jog: ResMut<Jog>,
+) {
     let (held, struck) = match paused.0 {
         true => default(),
         false => (
-            directions(|action| keys.is_held(action)),
-            directions(|action| keys.was_struck(action)),
+            directions(&layout, |action| keys.is_held(action)),
+            directions(&layout, |action| keys.was_struck(action)),
         ),
     };
     jog.keys.update(held, struck);
 }
 
 /// Where these actions move the joints; those of a joint that contradict each other move nothing.
-fn directions(is_on: impl Fn(Action) -> bool) -> Directions {
-    RobotJoint::ALL.map(|joint| {
-        let is_on = |way| i8::from(is_on(Action::Move(joint, way)));
+fn directions(layout: &RobotLayout, is_on: impl Fn(Action) -> bool) -> Directions {
+    Directions::of(layout, |joint| {
+        let joint = layout.joint(joint);
+        let is_on = |way| i8::from(Action::moving(joint, way).is_some_and(&is_on));
         is_on(Way::Plus) - is_on(Way::Minus)
     })
 }
@@ -71,7 +77,6 @@ mod tests {
         Digit9, Equal, KeyG, KeyH, KeyI, KeyJ, KeyK, KeyL, KeyO, KeyP, KeyR, KeyT, KeyU, KeyY,
         Minus, Quote, Semicolon, ShiftLeft, ShiftRight, Space,
     };
-    use RobotJoint::*;
     use bevy::{
         input::{
             ButtonState, InputPlugin,
@@ -80,6 +85,7 @@ mod tests {
         time::TimeUpdateStrategy,
     };
     use std::time::Duration;
+    use tabletop_core::RobotJoint::{self, *};
     use tabletop_core::{ClockCommand, Drive, Face, SimCommand};
 
     fn test_world() -> TestWorld {
@@ -91,10 +97,7 @@ mod tests {
     }
 
     fn drive(joint: RobotJoint, velocity: f64) -> SimCommand {
-        SimCommand::Robot(RobotCommand::Drive(vec![(
-            joint,
-            Drive::Velocity(velocity),
-        )]))
+        SimCommand::Robot(RobotCommand::drive([(joint, Drive::Velocity(velocity))]))
     }
 
     /// What is asked for in a frame in which these keys are held down.
@@ -154,13 +157,13 @@ mod tests {
     #[test]
     fn several_keys_make_one_order() {
         let mut test = test_world();
-        let both = vec![
+        let both = [
             (LeftE1, Drive::Velocity(1.0)),
             (RightE1, Drive::Velocity(1.0)),
         ];
         assert_eq!(
             held(&mut test, &[KeyI, KeyK]),
-            [SimCommand::Robot(RobotCommand::Drive(both))]
+            [SimCommand::Robot(RobotCommand::drive(both))]
         );
     }
 

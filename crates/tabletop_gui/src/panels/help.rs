@@ -148,8 +148,8 @@ impl Line {
     fn of(action: Action, keymap: &Keymap) -> Option<Self> {
         let hint = keymap.hint(action);
         let (label, hint) = match action {
-            Action::Move(joint, Way::Minus) if !joint.is_gripper() => return None,
-            Action::Move(joint, Way::Plus) if !joint.is_gripper() => {
+            Action::Move(joint, Way::Minus) if !joint.layout().is_gripper() => return None,
+            Action::Move(joint, Way::Plus) if !joint.layout().is_gripper() => {
                 let back = keymap.hint(Action::Move(joint, Way::Minus));
                 let label = action.label().replace('+', "+ / −");
                 (label, format!("{} / {}", or_none(hint), or_none(back)))

@@ -9,8 +9,8 @@ use bevy_egui::{
     },
 };
 use tabletop_core::{
-    Action, Actor, Agent, Arm, CommandWriter, Drive, Face, Keymap, ObjectSpec, Robot, RobotCommand,
-    RobotJoint, ScriptCommand, Way,
+    Action, Actor, Agent, CommandWriter, Drive, Face, JointId, JointLayout, Keymap, LimbId,
+    ObjectSpec, Robot, RobotCommand, RobotLayout, ScriptCommand, Way,
 };
 
 use crate::{
@@ -40,7 +40,7 @@ pub(crate) fn plugin(app: &mut App) {
 
 /// The joint that the user has selected.
 struct Selection {
-    joint: RobotJoint,
+    joint: JointId,
     /// Where the user has sent it, while it is under way.
     goal: Option<f64>,
 }
@@ -48,7 +48,7 @@ struct Selection {
 impl Default for Selection {
     fn default() -> Self {
         Self {
-            joint: RobotJoint::LeftS0,
+            joint: JointId(0),
             goal: None,
         }
     }
@@ -58,8 +58,9 @@ impl Default for Selection {
 #[derive(Clone, Copy)]
 struct Model<'a> {
     robot: &'a Robot,
-    /// Ids of what the left and the right gripper hold.
-    held: &'a [Vec<&'a str>; 2],
+    layout: &'a RobotLayout,
+    /// Ids of what the grippers hold, by limb.
+    held: &'a [Vec<&'a str>],
     shows_head_view: bool,
     /// Whether a script moves the arms.
     is_scripted: bool,
@@ -68,8 +69,8 @@ struct Model<'a> {
 
 impl Model<'_> {
     /// Whether the user can move a joint.
-    fn is_free(&self, joint: RobotJoint) -> bool {
-        !self.is_scripted || joint == RobotJoint::HeadPan
+    fn is_free(&self, joint: JointId) -> bool {
+        !self.is_scripted || self.layout.neck == Some(joint)
     }
 }
 
@@ -98,7 +99,7 @@ enum Request {
     /// Bring all joints back to where they stood at the start.
     GoHome,
     /// Bring a joint to an angle in rad, or an opening in units.
-    Go(RobotJoint, f64),
+    Go(JointId, f64),
     ShowFace(Face),
 }
 
@@ -106,15 +107,16 @@ enum Request {
 #[derive(SystemParam)]
 struct Sources<'w, 's> {
     robot: Res<'w, Robot>,
+    layout: Res<'w, RobotLayout>,
     specs: Query<'w, 's, &'static ObjectSpec>,
     agent: Res<'w, Agent>,
     keymap: Res<'w, Keymap>,
 }
 
 impl Sources<'_, '_> {
-    /// Ids of what the gripper of an arm holds.
-    fn held_by(&self, arm: Arm) -> Vec<&str> {
-        let held = &self.robot.arm(arm).holds;
+    /// Ids of what the gripper of a limb holds.
+    fn held_by(&self, limb: LimbId) -> Vec<&str> {
+        let held = &self.robot.limb(limb).holds;
         self.specs.iter_many(held).map(|spec| &*spec.id).collect()
     }
 }
@@ -132,9 +134,13 @@ fn show_panel(
     let Ok(context) = contexts.ctx_mut() else {
         return;
     };
+    let held: Vec<_> = (sources.layout.limb_ids())
+        .map(|limb| sources.held_by(limb))
+        .collect();
     let model = Model {
         robot: &sources.robot,
-        held: &Arm::BOTH.map(|arm| sources.held_by(arm)),
+        layout: &sources.layout,
+        held: &held,
         shows_head_view: head_view.is_shown(),
         is_scripted: sources.agent.is_on(),
         keymap: &sources.keymap,
@@ -152,12 +158,14 @@ fn show_panel(
                 commands.write(Actor::Panel, RobotCommand::Show(is_shown));
             }
             Request::GoHome => {
-                let home = RobotJoint::ALL.map(|joint| (joint, Drive::Toward(joint.home())));
-                commands.write(Actor::Panel, RobotCommand::Drive(home.into()));
+                let joints = sources.layout.joints.iter();
+                let home = joints.map(|joint| (joint.name, Drive::Toward(joint.home)));
+                commands.write(Actor::Panel, RobotCommand::drive(home));
             }
             Request::Go(joint, goal) => {
                 let drive = Drive::Toward(goal);
-                commands.write(Actor::Panel, RobotCommand::Drive(vec![(joint, drive)]));
+                let joint = sources.layout.joint(joint).name;
+                commands.write(Actor::Panel, RobotCommand::drive([(joint, drive)]));
             }
             Request::ShowFace(face) => {
                 commands.write(Actor::Panel, RobotCommand::ShowFace(face));
@@ -173,7 +181,9 @@ fn show(ui: &mut Ui, model: &Model, selection: &mut Selection) -> Asked {
     joint(ui, model, selection, &mut asked);
     goal(ui, model, selection, &mut asked.requests);
     ui.separator();
-    face(ui, model, &mut asked.requests);
+    if model.layout.screen.is_some() {
+        face(ui, model, &mut asked.requests);
+    }
     CollapsingHeader::new("Joints and grippers").show(ui, |ui| state(ui, model, selection.joint));
     asked
 }
@@ -212,7 +222,7 @@ fn switches(ui: &mut Ui, model: &Model, requests: &mut Vec<Request>) {
 /// Selects a joint, and moves it while a button is held down.
 fn joint(ui: &mut Ui, model: &Model, selection: &mut Selection, asked: &mut Asked) {
     ui.horizontal(|ui| {
-        let joint = chosen_joint(ui, selection.joint);
+        let joint = chosen_joint(ui, model.layout, selection.joint);
         if joint != selection.joint {
             *selection = Selection { joint, goal: None };
         }
@@ -221,14 +231,14 @@ fn joint(ui: &mut Ui, model: &Model, selection: &mut Selection, asked: &mut Aske
                 ui,
                 model.is_free(joint),
                 RichText::new(text).strong().monospace(),
-                &model.keymap.tooltip(Action::Move(joint, way)),
+                &tooltip(model, joint, way),
                 SCRIPT_MOVES,
             );
             if button.is_held {
-                asked.pressed.held[joint.index()] = direction;
+                asked.pressed.held.set(joint, direction);
             }
             if button.was_struck {
-                asked.pressed.struck[joint.index()] = direction;
+                asked.pressed.struck.set(joint, direction);
             }
         }
         let home = "Bring every joint back to where it stood at the start";
@@ -243,15 +253,23 @@ fn joint(ui: &mut Ui, model: &Model, selection: &mut Selection, asked: &mut Aske
     });
 }
 
-fn chosen_joint(ui: &mut Ui, before: RobotJoint) -> RobotJoint {
+/// What a button does, and the keys that do it.
+fn tooltip(model: &Model, joint: JointId, way: Way) -> String {
+    match Action::moving(model.layout.joint(joint), way) {
+        Some(action) => model.keymap.tooltip(action),
+        None => "Moves the joint".to_owned(),
+    }
+}
+
+fn chosen_joint(ui: &mut Ui, layout: &RobotLayout, before: JointId) -> JointId {
     let mut joint = before;
     let list = ComboBox::from_id_salt("joint")
-        .selected_text(label(joint))
+        .selected_text(layout.label_of(joint))
         .width(120.0)
         .height(LIST_HEIGHT)
         .show_ui(ui, |ui| {
-            for choice in RobotJoint::ALL {
-                ui.selectable_value(&mut joint, choice, label(choice));
+            for choice in layout.joint_ids() {
+                ui.selectable_value(&mut joint, choice, layout.label_of(choice));
             }
         });
     name(&list.response, WidgetType::ComboBox, "Joint");
@@ -263,15 +281,16 @@ fn chosen_joint(ui: &mut Ui, before: RobotJoint) -> RobotJoint {
 fn goal(ui: &mut Ui, model: &Model, selection: &mut Selection, requests: &mut Vec<Request>) {
     let joint = selection.joint;
     let state = model.robot.joint(joint);
-    let (least, largest) = joint.limits();
+    let layout = model.layout.joint(joint);
+    let [least, largest] = layout.limits;
     let shown = selection
         .goal
-        .unwrap_or_else(|| joint.clamp(state.position));
+        .unwrap_or_else(|| layout.clamp(state.position));
     let mut value = shown;
     ui.spacing_mut().slider_width = TRACK_WIDTH;
     let slider = Slider::new(&mut value, least..=largest)
         .custom_formatter(|value, _| number(value, 3))
-        .suffix(unit(joint))
+        .suffix(unit(layout))
         .update_while_editing(false);
     let slider = ui
         .add_enabled(model.is_free(joint), slider)
@@ -279,7 +298,7 @@ fn goal(ui: &mut Ui, model: &Model, selection: &mut Selection, requests: &mut Ve
         .on_disabled_hover_text(SCRIPT_MOVES);
     name(&slider, WidgetType::Slider, "Goal");
     // What is as wide as a gripper opens is released where the slider cannot go any farther.
-    let is_wide_open = joint.is_gripper() && state.position >= largest && value >= largest;
+    let is_wide_open = layout.is_gripper() && state.position >= largest && value >= largest;
     if value != shown || is_wide_open && is_confirmed(&slider) {
         selection.goal = Some(value);
         requests.push(Request::Go(joint, value));
@@ -295,10 +314,11 @@ fn is_confirmed(slider: &Response) -> bool {
 }
 
 /// The arms side by side.
-fn state(ui: &mut Ui, model: &Model, selected: RobotJoint) {
-    let value = |joint: RobotJoint| {
+fn state(ui: &mut Ui, model: &Model, selected: JointId) {
+    let layout = model.layout;
+    let value = |joint: JointId| {
         let position = model.robot.joint(joint).position;
-        let text = RichText::new(reading(joint, position)).monospace();
+        let text = RichText::new(reading(layout.joint(joint), position)).monospace();
         if joint == selected {
             text.strong()
         } else {
@@ -310,35 +330,42 @@ fn state(ui: &mut Ui, model: &Model, selected: RobotJoint) {
         .spacing(egui::vec2(12.0, 2.0))
         .max_col_width(ARM_WIDTH);
     grid.show(ui, |ui| {
-        let row = |ui: &mut Ui, name: &str, cell: &dyn Fn(Arm) -> RichText| {
+        let row = |ui: &mut Ui, name: &str, cell: &dyn Fn(LimbId) -> RichText| {
             ui.label(name);
-            for arm in Arm::BOTH {
-                ui.add(Label::new(cell(arm)).truncate());
+            for limb in layout.limb_ids() {
+                ui.add(Label::new(cell(limb)).truncate());
             }
             ui.end_row();
         };
-        row(ui, "rad, °", &|arm| match arm {
-            Arm::Left => RichText::new("Left").strong(),
-            Arm::Right => RichText::new("Right").strong(),
+        row(ui, "rad, °", &|limb| {
+            RichText::new(&layout.limb(limb).label).strong()
         });
-        for (i, joint) in RobotJoint::of_arm(Arm::Left).into_iter().enumerate() {
-            let name = label(joint).trim_start_matches("Left ");
-            row(ui, name, &|arm| value(RobotJoint::of_arm(arm)[i]));
+        for i in 0..layout.most_joints_of_a_limb() {
+            let named = layout.limbs.iter().find_map(|limb| limb.joints.get(i));
+            let name = named.map_or("", |joint| &layout.joint(*joint).label);
+            row(ui, name, &|limb| match layout.limb(limb).joints.get(i) {
+                Some(joint) => value(*joint),
+                None => NOTHING.into(),
+            });
         }
-        row(ui, "Gripper", &|arm| value(RobotJoint::gripper(arm)));
-        row(ui, "Holds", &|arm| held(model, arm).into());
-        row(ui, "Blocked", &|arm| {
-            let blocked_by = model.robot.arm(arm).blocked_by.as_deref();
+        row(ui, "Gripper", &|limb| {
+            value(layout.limb(limb).gripper.joint)
+        });
+        row(ui, "Holds", &|limb| held(model, limb).into());
+        row(ui, "Blocked", &|limb| {
+            let blocked_by = model.robot.limb(limb).blocked_by.as_deref();
             blocked_by.unwrap_or(NOTHING).into()
         });
-        ui.label("Head H0");
-        ui.label(value(RobotJoint::HeadPan));
-        ui.end_row();
+        if let Some(neck) = layout.neck {
+            ui.label(layout.label_of(neck));
+            ui.label(value(neck));
+            ui.end_row();
+        }
     });
 }
 
-fn held(model: &Model, arm: Arm) -> String {
-    match &*model.held[arm as usize] {
+fn held(model: &Model, limb: LimbId) -> String {
+    match &*model.held[limb.index()] {
         [] => NOTHING.into(),
         ids => ids.join(", "),
     }
@@ -373,37 +400,13 @@ fn name(response: &egui::Response, kind: WidgetType, name: &str) {
 
 const NOTHING: &str = "-";
 
-/// Name of a joint, as in the report's figure 10.
-const fn label(joint: RobotJoint) -> &'static str {
-    const LABELS: [&str; RobotJoint::ALL.len()] = [
-        "Left S0",
-        "Left S1",
-        "Left E0",
-        "Left E1",
-        "Left W0",
-        "Left W1",
-        "Left W2",
-        "Right S0",
-        "Right S1",
-        "Right E0",
-        "Right E1",
-        "Right W0",
-        "Right W1",
-        "Right W2",
-        "Head H0",
-        "Left gripper",
-        "Right gripper",
-    ];
-    LABELS[joint.index()]
-}
-
 /// What a joint's position is measured in.
-const fn unit(joint: RobotJoint) -> &'static str {
+const fn unit(joint: &JointLayout) -> &'static str {
     if joint.is_gripper() { "" } else { " rad" }
 }
 
 /// Where a joint stands: an angle in rad and degrees, an opening in units.
-fn reading(joint: RobotJoint, position: f64) -> String {
+fn reading(joint: &JointLayout, position: f64) -> String {
     let value = number(position, 3);
     if joint.is_gripper() {
         format!("{value:>6}")
@@ -426,15 +429,18 @@ mod tests {
     use bevy_egui::egui::{Event, Modifiers, PointerButton, accesskit::Role};
     use egui_kittest::{Harness, kittest::Queryable as _};
 
+    use tabletop_core::RobotJoint;
+
     use super::*;
 
     #[test]
     fn joints_are_labelled_by_arm_and_name() {
-        for joint in RobotJoint::ALL {
-            let label = label(joint).to_lowercase().replace(' ', "_");
-            let expected = match joint {
-                RobotJoint::HeadPan => "head_h0",
-                _ => joint.name(),
+        let baxter = RobotLayout::baxter();
+        for id in baxter.joint_ids() {
+            let label = baxter.label_of(id).to_lowercase().replace(' ', "_");
+            let expected = match baxter.joint(id).name.as_str() {
+                "head_pan" => "head_h0",
+                name => name,
             };
             assert_eq!(label, expected);
         }
@@ -448,7 +454,7 @@ mod tests {
             (RobotJoint::HeadPan, -0.0001, " 0.000    0.0°"),
             (RobotJoint::LeftGripper, 1.5, " 1.500"),
         ] {
-            assert_eq!(reading(joint, position), expected);
+            assert_eq!(reading(joint.layout(), position), expected);
         }
         assert_eq!(number(-0.001, 3), "-0.001");
     }
@@ -477,6 +483,7 @@ mod tests {
             let frame = |ui: &mut Ui, stage: &mut Self| {
                 let model = Model {
                     robot: &stage.robot,
+                    layout: RobotLayout::baxter(),
                     held: &[vec![], vec!["red", "blue"]],
                     shows_head_view: false,
                     is_scripted: stage.is_scripted,
@@ -485,7 +492,7 @@ mod tests {
                 let asked = show(ui, &model, &mut stage.selection);
                 stage.requests.extend(asked.requests);
                 stage.pressed = asked.pressed;
-                stage.struck.push(of_first_joint(stage.pressed.struck));
+                stage.struck.push(of_first_joint(&stage.pressed.struck));
             };
             Harness::builder()
                 .with_size(egui::vec2(Panel::Robot.width(), 600.0))
@@ -500,9 +507,10 @@ mod tests {
         }
     }
 
-    fn of_first_joint(directions: Directions) -> i8 {
-        assert!(directions[1..].iter().all(|&direction| direction == 0));
-        directions[0]
+    fn of_first_joint(directions: &Directions) -> i8 {
+        let mut others = RobotLayout::baxter().joint_ids().skip(1);
+        assert!(others.all(|joint| directions.get(joint) == 0));
+        directions.get(JointId(0))
     }
 
     #[test]
@@ -530,7 +538,7 @@ mod tests {
         for (name, direction) in [("−", -1), ("+", 1)] {
             let mut harness = Stage::default().harness();
             let at = harness.get_by_label(name).rect().center();
-            let held = |harness: &Harness<Stage>| of_first_joint(harness.state().pressed.held);
+            let held = |harness: &Harness<Stage>| of_first_joint(&harness.state().pressed.held);
             harness.hover_at(at);
             harness.drag_at(at);
             harness.run();
@@ -567,11 +575,12 @@ mod tests {
 
     #[test]
     fn every_joint_can_be_selected() {
-        for joint in RobotJoint::ALL {
+        let baxter = RobotLayout::baxter();
+        for joint in baxter.joint_ids() {
             let mut harness = Stage::default().harness();
             harness.get_by_label("Joint").click();
             harness.run();
-            let choices = harness.query_all_by_label(label(joint));
+            let choices = harness.query_all_by_label(&baxter.label_of(joint));
             choices.last().unwrap().click();
             harness.run();
             assert_eq!(harness.state().selection.joint, joint);
@@ -605,7 +614,7 @@ mod tests {
         harness.hover_at(at);
         harness.drag_at(at);
         harness.run();
-        let [Request::Go(RobotJoint::LeftS0, goal)] = harness.state().requests[..] else {
+        let [Request::Go(JointId(0), goal)] = harness.state().requests[..] else {
             panic!("{:?}", harness.state().requests);
         };
         assert!((-0.2..0.2).contains(&goal), "{goal}");
@@ -613,7 +622,7 @@ mod tests {
 
     #[test]
     fn a_wide_open_gripper_is_told_to_open_by_its_slider() {
-        let joint = RobotJoint::LeftGripper;
+        let joint = JointId::from(RobotJoint::LeftGripper);
         let stage = || Stage {
             selection: Selection { joint, goal: None },
             ..default()
@@ -626,7 +635,7 @@ mod tests {
         harness.run();
         harness.drop_at(end);
         harness.run();
-        let widest = Request::Go(joint, joint.limits().1);
+        let widest = Request::Go(joint, 2.0);
         assert_eq!(harness.state().requests, [widest]);
 
         let mut harness = stage().harness();

@@ -311,7 +311,7 @@ mod tests {
             // Between 1/16 and 16: what joints are told.
             let value = f64::from_bits(0x3fb0_0000_0000_0000 + bits % 0x0080_0000_0000_0000);
             let drive = (RobotJoint::LeftS0, Drive::Velocity(value));
-            let command = given(1, RobotCommand::Drive(vec![drive]));
+            let command = given(1, RobotCommand::drive([drive]));
             let line = command_line(&command).unwrap();
             let read = serde_json::from_slice::<SessionCommand>(&line).unwrap();
             assert_eq!(read, command);

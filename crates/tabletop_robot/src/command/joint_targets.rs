@@ -1,10 +1,7 @@
 //! Where the joints are to go.
 
 use bevy::prelude::*;
-use tabletop_core::{Drive, JointId, JointRole, LimbId, RobotLayout, TICK_SECONDS};
-
-/// Speed of manual control, in rad/s, and units/s for grippers (report section 5.1).
-pub const MANUAL_SPEED: f64 = 1.0;
+use tabletop_core::{Drive, JointId, JointRole, LimbId, MANUAL_SPEED, RobotLayout, TICK_SECONDS};
 
 /// What the joints are to do in this tick and later.
 #[derive(Resource, Clone, Debug)]

@@ -2,7 +2,7 @@
 
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
-    Drive, IssuedCommand, JointId, JointLayout, JointRole, LimbId, Markers, Paused, Robot,
+    Drive, IssuedCommand, JointId, JointLayout, JointName, JointRole, Markers, Paused, Robot,
     RobotCommand, RobotLayout, RobotMode, carry_out,
 };
 
@@ -21,7 +21,13 @@ pub(crate) fn obey(
         RobotCommand::Drive(drives) => drive(world, drives),
         RobotCommand::ReachTo { arm, pose } => {
             refuse_while_paused(world)?;
-            let limb = LimbId::from(arm);
+            let layout = world.resource::<RobotLayout>();
+            let limb = layout.find_limb(arm).ok_or_else(|| {
+                format!(
+                    "the robot has no limb {arm}, only {}",
+                    listed(&layout.limbs, |it| it.name)
+                )
+            })?;
             let angles = reach::solve(world, limb, pose)?;
             world.resource_scope(|world, mut targets: Mut<JointTargets>| {
                 targets.send(world.resource::<RobotLayout>(), limb, angles);
@@ -36,17 +42,22 @@ pub(crate) fn obey(
     })
 }
 
-fn drive(world: &mut World, drives: Vec<(tabletop_core::RobotJoint, Drive)>) -> Result<(), String> {
+fn drive(world: &mut World, drives: Vec<(JointName, Drive)>) -> Result<(), String> {
     refuse_while_paused(world)?;
     let mode = world.resource::<Robot>().mode;
     let layout = world.resource::<RobotLayout>();
-    for &(joint, drive) in &drives {
-        check(mode, layout.joint(joint.into()), drive)?;
-    }
+    let drives = drives.into_iter().map(|(name, drive)| {
+        let joint = layout.find_joint(name).ok_or_else(|| {
+            let known = listed(&layout.joints, |it| it.name);
+            format!("the robot has no joint {name}, only {known}")
+        })?;
+        check(mode, layout.joint(joint), drive)?;
+        Ok((joint, drive))
+    });
+    let drives = drives.collect::<Result<Vec<(JointId, Drive)>, String>>()?;
     world.resource_scope(|world, mut targets: Mut<JointTargets>| {
         let layout = world.resource::<RobotLayout>();
         for (joint, drive) in drives {
-            let joint = JointId::from(joint);
             match drive {
                 Drive::Position(there) if has_motor(mode, layout.joint(joint)) => {
                     targets.rush(layout, joint, there);
@@ -58,6 +69,11 @@ fn drive(world: &mut World, drives: Vec<(tabletop_core::RobotJoint, Drive)>) -> 
         }
     });
     Ok(())
+}
+
+fn listed<T, N: ToString>(parts: &[T], name: impl Fn(&T) -> N) -> String {
+    let names: Vec<_> = parts.iter().map(|part| name(part).to_string()).collect();
+    names.join(", ")
 }
 
 fn show_markers(world: &mut World, points: Vec<Vec3>) -> Result<(), String> {

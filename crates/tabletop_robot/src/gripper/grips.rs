@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{GravityScale, Velocity};
 use tabletop_core::{
-    Arm, Gripped, Held, Joint, LimbId, ObjectSpec, Pose, Robot, RobotLayout, SimFact,
+    Gripped, Held, Joint, LimbId, LimbName, ObjectSpec, Pose, Robot, RobotLayout, SimFact,
 };
 use tabletop_physics::{JustReleased, hold, let_go, pull_velocity};
 
@@ -12,6 +12,8 @@ use crate::gripper::closing::Touched;
 /// What the grippers hold, and how.
 #[derive(Resource, Clone, Debug)]
 pub(crate) struct Grips {
+    /// The limbs, by [`LimbId`].
+    names: Vec<LimbName>,
     held: Vec<Vec<Grip>>,
     /// Objects that a closing gripper could not hold, until it opens.
     pub refused: Vec<Vec<Entity>>,
@@ -34,6 +36,7 @@ impl Grips {
     /// Empty grippers.
     pub fn none(layout: &RobotLayout) -> Self {
         Self {
+            names: layout.limbs.iter().map(|limb| limb.name).collect(),
             held: vec![Vec::new(); layout.limbs.len()],
             refused: vec![Vec::new(); layout.limbs.len()],
         }
@@ -47,6 +50,11 @@ impl Grips {
     /// What a gripper holds, in the order in which it took it.
     pub fn of(&self, limb: LimbId) -> &[Grip] {
         &self.held[limb.index()]
+    }
+
+    /// What a limb is called.
+    pub fn name_of(&self, limb: LimbId) -> LimbName {
+        self.names[limb.index()]
     }
 
     /// Everything that is held.
@@ -69,42 +77,38 @@ pub(crate) fn take(world: &mut World, limb: LimbId, touched: Touched) {
         .query::<&Joint>()
         .iter(world)
         .any(|joint| joint.objects.contains(&object));
-    world.resource_mut::<Grips>().held[limb.index()].push(Grip {
+    let mut grips = world.resource_mut::<Grips>();
+    let arm = grips.name_of(limb);
+    grips.held[limb.index()].push(Grip {
         object,
         pose: end_effector.inverse() * here,
         points: touched.points.map(|point| end_effector.inverse() * point),
         is_jointed,
     });
     let mut body = world.entity_mut(object);
-    body.insert(Gripped {
-        by: Arm::BOTH[limb.index()],
-    });
+    body.insert(Gripped { by: arm });
     if is_jointed {
         body.insert(GravityScale(0.0));
         body.remove::<JustReleased>();
     } else {
         hold(body);
     }
-    world.write_message(SimFact::GripMade {
-        arm: Arm::BOTH[limb.index()],
-        id,
-    });
+    world.write_message(SimFact::GripMade { arm, id });
 }
 
 /// Lets go of everything that a gripper holds.
 pub(crate) fn release(world: &mut World, limb: LimbId) {
-    let grips = std::mem::take(&mut world.resource_mut::<Grips>().held[limb.index()]);
-    for Grip { object, .. } in grips {
+    let mut grips = world.resource_mut::<Grips>();
+    let arm = grips.name_of(limb);
+    let held = std::mem::take(&mut grips.held[limb.index()]);
+    for Grip { object, .. } in held {
         let Some(id) = id(world, object) else {
             continue;
         };
         let mut body = world.entity_mut(object);
         body.remove::<Gripped>();
         let_go(body);
-        world.write_message(SimFact::GripReleased {
-            arm: Arm::BOTH[limb.index()],
-            id,
-        });
+        world.write_message(SimFact::GripReleased { arm, id });
     }
 }
 
@@ -135,13 +139,14 @@ pub(crate) fn give_to_hands(
         return;
     }
     for limb in grips.limbs() {
+        let arm = grips.name_of(limb);
         grips.held[limb.index()].retain(|grip| {
             let Ok(spec) = held.get(grip.object) else {
                 return true;
             };
             commands.entity(grip.object).remove::<Gripped>();
             facts.write(SimFact::GripReleased {
-                arm: Arm::BOTH[limb.index()],
+                arm,
                 id: spec.id.clone(),
             });
             false
@@ -157,6 +162,7 @@ pub(crate) fn note_lost(
     mut facts: MessageWriter<SimFact>,
 ) {
     for limb in grips.limbs() {
+        let arm = grips.name_of(limb);
         let held = &mut grips.held[limb.index()];
         let Some(place) = held.iter().position(|grip| grip.object == remove.entity) else {
             continue;
@@ -164,7 +170,7 @@ pub(crate) fn note_lost(
         held.remove(place);
         if let Ok(spec) = objects.get(remove.entity) {
             facts.write(SimFact::GripReleased {
-                arm: Arm::BOTH[limb.index()],
+                arm,
                 id: spec.id.clone(),
             });
         }

@@ -2,7 +2,7 @@
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Arm, LimbId, Robot, RobotMode, SimFact};
+use tabletop_core::{LimbId, LimbName, Robot, RobotMode, SimFact};
 use tabletop_physics::PhysicsSettings;
 
 use crate::{
@@ -88,7 +88,7 @@ pub(crate) fn advance(
             motors.stay(limb);
             if robot.limb(limb).blocked_by.as_ref() != Some(by) {
                 let by = by.clone();
-                let arm = Arm::BOTH[limb.index()];
+                let arm = layout.limb(limb).name;
                 facts.write(SimFact::ArmBlocked { arm, by });
             }
         }
@@ -135,7 +135,7 @@ enum Action {
     Take(LimbId, Touched),
     Release(LimbId),
     Refuse {
-        limb: LimbId,
+        arm: LimbName,
         id: String,
         angle: f32,
     },
@@ -150,8 +150,7 @@ impl Action {
             Self::Release(limb) => {
                 commands.queue(move |world: &mut World| grips::release(world, limb));
             }
-            Self::Refuse { limb, id, angle } => {
-                let arm = Arm::BOTH[limb.index()];
+            Self::Refuse { arm, id, angle } => {
                 facts.write(SimFact::GripRefused { arm, id, angle });
             }
         }
@@ -182,7 +181,9 @@ fn decide(
         } else if !grips.refused[limb.index()].contains(&object) {
             grips.refused[limb.index()].push(object);
             let id = known.name(Owner::Thing(object));
-            actions.push(Action::Refuse { limb, id, angle });
+            let arm = grips.name_of(limb);
+            let arm = grips.name_of(limb);
+            actions.push(Action::Refuse { arm, id, angle });
         }
     }
     actions

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Arm, Robot, SimFact, Table};
+use tabletop_core::{Robot, SimFact, Table};
 
 use crate::{
     articulation::link_entities, command::joint_targets::JointTargets, gripper::grips::Grips,
@@ -46,7 +46,7 @@ pub(crate) fn leave_obstacles(
         }
         let by = known.name(obstacle);
         facts.write(SimFact::ArmBlocked {
-            arm: Arm::BOTH[limb.index()],
+            arm: layout.limb(limb).name,
             by,
         });
     }

@@ -101,10 +101,13 @@ impl Stage {
     /// Brings an end effector to a place, its fingers pointing down and opening along X, turned about Z.
     pub fn reach(&mut self, arm: Arm, location: Vec3, yaw_degrees: f32) {
         let pose = Pose::from_degrees(location, Vec3::Z * yaw_degrees);
-        self.tell(RobotCommand::ReachTo { arm, pose });
+        self.tell(RobotCommand::ReachTo {
+            arm: arm.name(),
+            pose,
+        });
         let mut facts = self.facts_of(1);
         for _ in 0..600 {
-            if !self.robot().arm(arm).is_moving {
+            if !self.robot().limb(arm).is_moving {
                 break;
             }
             facts.extend(self.facts_of(1));
@@ -118,7 +121,7 @@ impl Stage {
             RobotMode::Kinematic => 1e-3,
             RobotMode::Dynamic => 5e-3,
         };
-        let there = self.robot().arm(arm).end_effector;
+        let there = self.robot().limb(arm).end_effector;
         assert!(
             (there.location - location).length() < near,
             "{there:?} instead of {pose:?}: {facts:?}"

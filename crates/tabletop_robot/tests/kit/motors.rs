@@ -11,7 +11,7 @@ pub const ARM: Arm = Arm::Right;
 pub const SECOND: u64 = 60;
 
 pub fn drive(stage: &mut Stage, drives: &[(RobotJoint, Drive)]) {
-    stage.tell(RobotCommand::Drive(drives.to_vec()));
+    stage.tell(RobotCommand::drive(drives.iter().copied()));
 }
 
 /// Sends an arm to angles, and waits until it is there.
@@ -24,7 +24,7 @@ pub fn go(stage: &mut Stage, arm: Arm, angles: [f64; JOINTS_PER_ARM]) {
         drive(stage, &drives);
         stage.app.step(1);
         for _ in 0..400 {
-            if !stage.robot().arm(arm).is_moving {
+            if !stage.robot().limb(arm).is_moving {
                 break;
             }
             stage.app.step(1);
@@ -35,7 +35,7 @@ pub fn go(stage: &mut Stage, arm: Arm, angles: [f64; JOINTS_PER_ARM]) {
     assert!(
         off < 0.1,
         "{off}° off: {:?}",
-        stage.robot().arm(arm).blocked_by
+        stage.robot().limb(arm).blocked_by
     );
 }
 

@@ -23,7 +23,7 @@ mod tests {
 
     fn made(id: &str) -> SimFact {
         SimFact::GripMade {
-            arm: Arm::Left,
+            arm: Arm::Left.name(),
             id: id.into(),
         }
     }

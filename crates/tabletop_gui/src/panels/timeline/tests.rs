@@ -92,7 +92,7 @@ fn timeline() -> Timeline {
         grips: vec![TimelineGrip {
             tick: SimTick(400),
             act: Act {
-                manipulator: Manipulator::Gripper(Arm::Left),
+                manipulator: Manipulator::Gripper(Arm::Left.name()),
                 verb: Verb::Grasp,
                 object: Some("Ball".into()),
             },
