@@ -30,10 +30,22 @@ static CONTENTS: [Dir; WORKING_FOLDERS.len()] = [
 const ENDINGS: [&str; 5] = ["xml", "xsd", "m", "ron", "py"];
 
 /// The descriptions of robots; what they name is known to the program.
-const ROBOTS: [ShippedFile; 2] = [
+const ROBOTS: [ShippedFile; 5] = [
     ShippedFile {
         path: "assets/baxter/baxter.urdf",
         text: include_str!("../assets/baxter/baxter.urdf"),
+    },
+    ShippedFile {
+        path: "assets/baxter/robot.ron",
+        text: include_str!("../assets/baxter/robot.ron"),
+    },
+    ShippedFile {
+        path: "assets/panda/panda.urdf",
+        text: include_str!("../assets/panda/panda.urdf"),
+    },
+    ShippedFile {
+        path: "assets/panda/robot.ron",
+        text: include_str!("../assets/panda/robot.ron"),
     },
     ShippedFile {
         path: "assets/baxter/baxter_smile.urdf",

@@ -115,6 +115,24 @@ fn a_run_ends_with_what_was_done() {
 }
 
 #[test]
+fn another_robot_of_one_arm_builds_a_tower() {
+    let robot = ["--robot", "assets/panda/robot.ron"];
+    passes_with("panda_stack.ron", &robot);
+    passes_with("panda_stack.ron", &[&robot[..], &["--dynamic"]].concat());
+}
+
+#[test]
+fn a_scenario_of_another_robot_is_refused_before_it_begins() {
+    let output = run(&shipped("scenarios", "panda_stack.ron"), &[]);
+    assert_eq!(output.status.code(), Some(2));
+    let said = stderr(&output);
+    assert!(
+        said.contains("the robot Baxter has no limb panda"),
+        "{said}"
+    );
+}
+
+#[test]
 fn every_shipped_scenario_has_its_test() {
     let files = fs::read_dir(shipped("scenarios", "")).unwrap();
     let mut names: Vec<_> = files
@@ -125,6 +143,7 @@ fn every_shipped_scenario_has_its_test() {
         "break_chain.ron",
         "build_letters.ron",
         "lidbox.ron",
+        "panda_stack.ron",
         "presets.ron",
         "robot_place.ron",
         "robot_stack.ron",

@@ -138,7 +138,7 @@ fn task(file: &str) -> SimCommand {
 }
 
 fn drive(joint: RobotJoint, speed: f64) -> SimCommand {
-    RobotCommand::Drive(vec![(joint, Drive::Velocity(speed))]).into()
+    RobotCommand::drive([(joint, Drive::Velocity(speed))]).into()
 }
 
 fn with_undo(calls: Calls) {

@@ -16,7 +16,7 @@ use tabletop::{
     history::RollbackRegistry,
     prelude::*,
     recorder::RecorderPlugin,
-    robot::RobotPlugin,
+    robot::{Description, RobotPlugin, Source},
     scenario::{Outcome, Program, Scenario, ScenarioPlugin, ScenarioRun},
     xml::read_task,
 };
@@ -120,6 +120,17 @@ fn no_component_that_a_shipped_scenario_changes_is_forgotten() {
     );
 }
 
+/// The shipped robot of one arm.
+fn panda() -> Description {
+    let read = |name: &str| fs::read_to_string(Path::new("assets/panda").join(name)).unwrap();
+    let source = Source {
+        path: "assets/panda/panda.urdf".into(),
+        urdf: read("panda.urdf"),
+        layout: Some(read("robot.ron")),
+    };
+    Description::read(source).unwrap()
+}
+
 /// Performs a scenario.
 fn perform(path: &Path, mode: RobotMode, forgotten: &mut BTreeSet<String>) {
     let text = fs::read_to_string(path).unwrap();
@@ -131,7 +142,11 @@ fn perform(path: &Path, mode: RobotMode, forgotten: &mut BTreeSet<String>) {
         ..default()
     };
     let _not_there = fs::remove_dir_all(&recorder.folder);
-    let robot = RobotPlugin { mode, ..default() };
+    let is_of_panda = path.ends_with("panda_stack.ron");
+    let robot = RobotPlugin {
+        mode,
+        description: is_of_panda.then(panda),
+    };
     let plugins = TabletopSimPlugins.build().set(recorder).set(robot);
     let mut app = headless_app_with((plugins, ScenarioPlugin));
     app.insert_resource(ScenarioRun::new(program));

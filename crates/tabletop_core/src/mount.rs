@@ -17,6 +17,18 @@ pub struct CameraCarrier {
     pub camera: CameraLayout,
 }
 
+impl CameraCarrier {
+    /// Whether all of its numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        let Self { base, camera } = self;
+        let numbers = [base.behind_edge, base.height];
+        numbers.into_iter().all(f32::is_finite)
+            && camera.neck.is_finite()
+            && camera.at.is_finite()
+            && camera.tilt.is_finite()
+    }
+}
+
 impl From<&RobotLayout> for CameraCarrier {
     fn from(layout: &RobotLayout) -> Self {
         Self {

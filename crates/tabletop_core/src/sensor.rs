@@ -67,6 +67,7 @@ impl HeadCamera {
             ));
         }
         let is_finite = self.pan.is_finite()
+            && self.carrier.is_finite()
             && self.mount.is_none_or(|mount| {
                 mount.location.is_finite() && (mount.rotation.length_squared() - 1.0).abs() < 0.01
             });

@@ -135,7 +135,7 @@ fn a_torque_accelerates_as_the_masses_have_it() {
         let mut configuration = model.zero();
         let mut accelerations = model.zero();
         for (joint, angle) in joints.into_iter().zip(angles) {
-            let id = model.find_joint(joint.name()).unwrap();
+            let id = model.find_joint(joint.name().as_str()).unwrap();
             configuration[id] = angle;
             accelerations[id] = stage.robot().joint(joint).velocity / SECONDS;
         }
@@ -144,7 +144,8 @@ fn a_torque_accelerates_as_the_masses_have_it() {
         let found = model.inverse_dynamics(&frames, &model.zero(), &accelerations, gravity, &[]);
         for (joint, torque) in joints.into_iter().zip(torques) {
             let state = stage.robot().joint(joint);
-            let needs = found[model.find_joint(joint.name()).unwrap()] + 0.7 * state.velocity;
+            let needs =
+                found[model.find_joint(joint.name().as_str()).unwrap()] + 0.7 * state.velocity;
             assert!(
                 (needs - torque).abs() < 1e-3,
                 "{joint}: {needs} instead of {torque} N m"
@@ -204,7 +205,7 @@ fn energy(stage: &Stage, arm: Arm) -> f64 {
     let model = baxter().unwrap();
     let mut configuration = model.zero();
     let states = RobotJoint::of_arm(arm).map(|joint| {
-        let id = model.find_joint(joint.name()).unwrap();
+        let id = model.find_joint(joint.name().as_str()).unwrap();
         configuration[id] = stage.robot().joint(joint).position;
         (id, stage.robot().joint(joint).velocity)
     });

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use thiserror::Error;
 
 use crate::{
-    Binding, BindingError, Modifiers,
+    Binding, BindingError, CameraCarrier, Modifiers,
     robot::{
         layout::{
             BaseLayout, CameraLayout, FingerLook, GripperKind, GripperLayout, JointId, JointLayout,
@@ -171,6 +171,9 @@ impl LayoutFile {
             known_postures: self.known_postures.clone(),
             may_touch: self.may_touch.clone(),
         };
+        if !CameraCarrier::from(&layout).is_finite() {
+            return Err(fault("base or camera: a number is not finite"));
+        }
         for (i, joint) in layout.joints.iter().enumerate() {
             if layout.find_joint(joint.name) != Some(JointId(i as u16)) {
                 return Err(fault(format!("there are two joints {}", joint.name)));

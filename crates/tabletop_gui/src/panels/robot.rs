@@ -580,7 +580,8 @@ mod tests {
             let mut harness = Stage::default().harness();
             harness.get_by_label("Joint").click();
             harness.run();
-            let choices = harness.query_all_by_label(&baxter.label_of(joint));
+            let label = baxter.label_of(joint);
+            let choices = harness.query_all_by_label(&label);
             choices.last().unwrap().click();
             harness.run();
             assert_eq!(harness.state().selection.joint, joint);

@@ -1,16 +1,17 @@
-//! The shapes of Baxter's links, as part of the program.
+//! The shapes of links that are part of the program.
 
 macro_rules! shapes {
-    ($($name:literal),* $(,)?) => {
+    ($($robot:literal: $($name:literal),* $(,)?;)*) => {
         /// Names and texts of the files.
-        pub(super) const PARTS: &[(&str, &str)] = &[$((
+        pub(super) const PARTS: &[(&str, &str)] = &[$($((
             concat!($name, ".shape.json"),
-            include_str!(concat!("../../../../assets/baxter/", $name, ".shape.json")),
-        )),*];
+            include_str!(concat!("../../../../assets/", $robot, "/", $name, ".shape.json")),
+        ),)*)*];
     };
 }
 
 shapes![
+    "baxter":
     "finger",
     "gripper_base",
     "head",
@@ -23,5 +24,6 @@ shapes![
     "upper_elbow",
     "upper_forearm",
     "upper_shoulder",
-    "wrist",
+    "wrist";
+    "panda": "panda_finger";
 ];

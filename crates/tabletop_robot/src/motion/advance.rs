@@ -182,7 +182,6 @@ fn decide(
             grips.refused[limb.index()].push(object);
             let id = known.name(Owner::Thing(object));
             let arm = grips.name_of(limb);
-            let arm = grips.name_of(limb);
             actions.push(Action::Refuse { arm, id, angle });
         }
     }
