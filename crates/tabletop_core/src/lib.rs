@@ -77,7 +77,6 @@ pub use keymap::{
     Situation, Way, was_struck,
 };
 pub use light::{LIGHT, Light};
-pub use mount::CameraCarrier;
 pub use navigation::{CameraMotion, CameraView, Steering};
 pub use number::Decimal;
 pub use object::{ObjectIndex, ObjectSpec};
@@ -91,10 +90,10 @@ pub use random::Random;
 pub use recording::{History, OpenRecording, Recording, Replaying};
 pub use rest::{RestApp, RestingSystems, Upkeep};
 pub use robot::{
-    Arm, BaseLayout, CameraLayout, Drive, Face, FingerLook, Gripped, GripperKind, GripperLayout,
-    JOINTS_PER_ARM, JointId, JointLayout, JointName, JointRole, JointState, LayoutError,
-    LayoutFile, LimbId, LimbLayout, LimbName, LimbState, LinkFrame, MANUAL_SPEED, Markers, Robot,
-    RobotContact, RobotJoint, RobotLayout, RobotMode, WIDEST_GRIP,
+    Arm, BaseLayout, CameraCarrier, CameraLayout, Drive, Face, FingerLook, Gripped, GripperKind,
+    GripperLayout, JOINTS_PER_ARM, JointId, JointLayout, JointName, JointRole, JointState,
+    LayoutError, LayoutFile, LimbId, LimbLayout, LimbName, LimbState, LinkFrame, MANUAL_SPEED,
+    Markers, Robot, RobotContact, RobotJoint, RobotLayout, RobotMode, WIDEST_GRIP,
 };
 pub use rollback::Rollback;
 pub use scene::{ChainSpec, LidBoxSpec, SceneItem, SceneSpec, Table};

@@ -4,46 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use bevy::math::DQuat;
 
-use serde::{Deserialize, Serialize};
-
-use crate::{BaseLayout, CameraLayout, HeadCamera, Pose, RobotLayout, Table};
-
-/// The robot that carries the head camera.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CameraCarrier {
-    /// Where the robot stands.
-    pub base: BaseLayout,
-    /// Where the camera is on it.
-    pub camera: CameraLayout,
-}
-
-impl CameraCarrier {
-    /// Whether all of its numbers are finite.
-    pub fn is_finite(&self) -> bool {
-        let Self { base, camera } = self;
-        let numbers = [base.behind_edge, base.height];
-        numbers.into_iter().all(f32::is_finite)
-            && camera.neck.is_finite()
-            && camera.at.is_finite()
-            && camera.tilt.is_finite()
-    }
-}
-
-impl From<&RobotLayout> for CameraCarrier {
-    fn from(layout: &RobotLayout) -> Self {
-        Self {
-            base: layout.base,
-            camera: layout.camera,
-        }
-    }
-}
-
-impl Default for CameraCarrier {
-    /// [Baxter](RobotLayout::baxter).
-    fn default() -> Self {
-        RobotLayout::baxter().into()
-    }
-}
+use crate::{CameraCarrier, HeadCamera, Pose, Table};
 
 impl HeadCamera {
     /// Where it stands before this table. It looks along its own -Z with its Y up.

@@ -7,8 +7,8 @@ mod name;
 
 pub use baxter::{Arm, JOINTS_PER_ARM, RobotJoint, WIDEST_GRIP};
 pub use layout::{
-    BaseLayout, CameraLayout, FingerLook, GripperKind, GripperLayout, JointId, JointLayout,
-    JointRole, LimbId, LimbLayout, LinkFrame, RobotLayout,
+    BaseLayout, CameraCarrier, CameraLayout, FingerLook, GripperKind, GripperLayout, JointId,
+    JointLayout, JointRole, LimbId, LimbLayout, LinkFrame, RobotLayout,
 };
 pub use layout_file::{LayoutError, LayoutFile};
 pub use name::{JointName, LimbName};
@@ -167,6 +167,11 @@ impl Robot {
     /// What is known of a limb.
     pub fn limb(&self, limb: impl Into<LimbId>) -> &LimbState {
         &self.limbs[limb.into().index()]
+    }
+
+    /// Angles of the joints of an arm of Baxter, in rad.
+    pub fn angles(&self, arm: Arm) -> [f64; JOINTS_PER_ARM] {
+        RobotJoint::of_arm(arm).map(|joint| self.joint(joint).position)
     }
 
     /// Positions of these joints, in rad.

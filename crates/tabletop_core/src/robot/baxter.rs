@@ -2,12 +2,9 @@
 
 use std::fmt;
 
-use crate::{
-    Robot,
-    robot::{
-        layout::{JointId, JointLayout, LimbId, RobotLayout},
-        name::{JointName, LimbName},
-    },
+use crate::robot::{
+    layout::{JointId, JointLayout, LimbId, RobotLayout},
+    name::{JointName, LimbName},
 };
 
 /// Joints of an arm of Baxter.
@@ -160,13 +157,6 @@ impl From<RobotJoint> for JointId {
 impl From<RobotJoint> for JointName {
     fn from(joint: RobotJoint) -> Self {
         joint.name()
-    }
-}
-
-impl Robot {
-    /// Angles of the joints of an arm of Baxter, in rad.
-    pub fn angles(&self, arm: Arm) -> [f64; JOINTS_PER_ARM] {
-        RobotJoint::of_arm(arm).map(|joint| self.joint(joint).position)
     }
 }
 

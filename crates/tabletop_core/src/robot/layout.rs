@@ -233,6 +233,43 @@ pub struct CameraLayout {
     pub tilt: f64,
 }
 
+/// The robot that carries the head camera.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CameraCarrier {
+    /// Where the robot stands.
+    pub base: BaseLayout,
+    /// Where the camera is on it.
+    pub camera: CameraLayout,
+}
+
+impl CameraCarrier {
+    /// Whether all of its numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        let Self { base, camera } = self;
+        let numbers = [base.behind_edge, base.height];
+        numbers.into_iter().all(f32::is_finite)
+            && camera.neck.is_finite()
+            && camera.at.is_finite()
+            && camera.tilt.is_finite()
+    }
+}
+
+impl From<&RobotLayout> for CameraCarrier {
+    fn from(layout: &RobotLayout) -> Self {
+        Self {
+            base: layout.base,
+            camera: layout.camera,
+        }
+    }
+}
+
+impl Default for CameraCarrier {
+    /// [Baxter](RobotLayout::baxter).
+    fn default() -> Self {
+        RobotLayout::baxter().into()
+    }
+}
+
 impl RobotLayout {
     /// The Baxter of the report, with the limits of its table 1.
     pub fn baxter() -> &'static Self {

@@ -8,11 +8,11 @@ use serde::Deserialize;
 use thiserror::Error;
 
 use crate::{
-    Binding, BindingError, CameraCarrier, Modifiers,
+    Binding, BindingError, Modifiers,
     robot::{
         layout::{
-            BaseLayout, CameraLayout, FingerLook, GripperKind, GripperLayout, JointId, JointLayout,
-            JointRole, LimbId, LimbLayout, LinkFrame, RobotLayout,
+            BaseLayout, CameraCarrier, CameraLayout, FingerLook, GripperKind, GripperLayout,
+            JointId, JointLayout, JointRole, LimbId, LimbLayout, LinkFrame, RobotLayout,
         },
         name::{JointName, LimbName},
     },
