@@ -73,10 +73,3 @@ impl Hands {
         self.held[hand as usize] = object;
     }
 }
-
-/// Marks an object that a hand holds: it stays when the table is cleared.
-#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Held {
-    /// The hand.
-    pub by: Hand,
-}

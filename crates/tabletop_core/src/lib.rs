@@ -28,6 +28,7 @@ mod command;
 mod fact;
 mod figure;
 mod hand;
+mod holder;
 mod joint;
 mod jointed;
 mod keymap;
@@ -69,7 +70,8 @@ pub use command::{
 };
 pub use fact::SimFact;
 pub use figure::{CarriesHeadCamera, Figure, Triangles};
-pub use hand::{Hand, Hands, Held};
+pub use hand::{Hand, Hands};
+pub use holder::{Held, Holder};
 pub use joint::{Joint, JointKind, JointSpec};
 pub use jointed::{JointMotion, JointedSpec};
 pub use keymap::{
@@ -90,7 +92,7 @@ pub use random::Random;
 pub use recording::{History, OpenRecording, Recording, Replaying};
 pub use rest::{RestApp, RestingSystems, Upkeep};
 pub use robot::{
-    Arm, BaseLayout, CameraCarrier, CameraLayout, Drive, Face, FingerLook, Gripped, GripperKind,
+    Arm, BaseLayout, CameraCarrier, CameraLayout, Drive, Face, FingerLook, GripperKind,
     GripperLayout, JOINTS_PER_ARM, JointId, JointLayout, JointName, JointRole, JointState,
     LayoutError, LayoutFile, LimbId, LimbLayout, LimbName, LimbState, LinkFrame, MANUAL_SPEED,
     Markers, Robot, RobotContact, RobotJoint, RobotLayout, RobotMode, WIDEST_GRIP,

@@ -191,13 +191,6 @@ impl Robot {
     }
 }
 
-/// Marks an object that a gripper holds: it stays when the table is cleared.
-#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Gripped {
-    /// The limb.
-    pub by: LimbName,
-}
-
 /// Points that a script wants to see: transparent blue balls that nothing touches.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
 pub struct Markers(pub Vec<Vec3>);

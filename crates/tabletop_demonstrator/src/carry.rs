@@ -3,12 +3,9 @@
 use bevy::prelude::*;
 use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*, rapier::prelude as rapier};
 use tabletop_core::{Hand, Hands, Pose, TICK_SECONDS};
-use tabletop_physics::{Convex, convex_parts, nearby, nearest, pull_velocity};
+use tabletop_physics::{Carry, Convex, convex_parts, nearby, nearest, pull_velocity};
 
-use crate::{
-    grasp::{Carry, CarryTarget},
-    obstacles::slide,
-};
+use crate::{grasp::CarryTarget, obstacles::slide};
 
 /// Fastest a hand moves, in units/s, and turns, in rad/s.
 const FASTEST: (f32, f32) = (40.0, 10.0);

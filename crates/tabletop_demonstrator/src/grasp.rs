@@ -1,28 +1,18 @@
 //! Taking objects into hands and letting go of them.
 
 use bevy::{ecs::system::SystemState, prelude::*};
-use bevy_rapier3d::prelude::*;
 use tabletop_core::{
-    Cause, CommandId, Hand, HandCommand, Hands, Held, IssuedCommand, Joint, ObjectIndex,
+    Cause, CommandId, Hand, HandCommand, Hands, Held, Holder, IssuedCommand, ObjectIndex,
     ObjectSpec, Paused, Pose, SimFact, carry_out,
 };
 use tabletop_history::begin_segment;
-use tabletop_physics::{JustReleased, hold, let_go, remove_object};
+use tabletop_physics::{hold, let_go, remove_object};
 
 use crate::rules;
 
 /// Where a held object is to be.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct CarryTarget(pub Pose);
-
-/// How a held object is carried.
-#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Carry {
-    /// Moved exactly to its target, as far as nothing immovable is in the way.
-    Freely,
-    /// Drawn towards its target, as far as its joints let it.
-    AgainstJoints,
-}
 
 /// Carries out the commands to hands, one after the other.
 pub(crate) fn obey(
@@ -94,25 +84,11 @@ fn grasp(world: &mut World, cause: CommandId, hand: Hand, id: &str) -> Result<()
     }
 
     begin_segment(world, cause);
-    let is_jointed = world
-        .query::<&Joint>()
-        .iter(world)
-        .any(|joint| joint.objects.contains(&object));
-    let is_fixed = world
-        .get::<ObjectSpec>(object)
-        .is_some_and(ObjectSpec::is_fixed);
+    hold(world, object, Holder::Hand(hand));
     let here = world
         .get::<Transform>(object)
         .map_or(Pose::IDENTITY, Pose::from);
-    let mut body = world.entity_mut(object);
-    body.insert((Held { by: hand }, CarryTarget(here)));
-    if is_jointed && !is_fixed {
-        body.insert((Carry::AgainstJoints, GravityScale(0.0)));
-        body.remove::<JustReleased>();
-    } else {
-        body.insert(Carry::Freely);
-        hold(body);
-    }
+    world.entity_mut(object).insert(CarryTarget(here));
     world.resource_mut::<Hands>().set_held(hand, Some(object));
     world.write_message(SimFact::Grasped {
         cause,
@@ -128,9 +104,8 @@ fn release(world: &mut World, cause: CommandId, hand: Hand) {
     };
     begin_segment(world, cause);
     world.resource_mut::<Hands>().set_held(hand, None);
-    let mut body = world.entity_mut(object);
-    body.remove::<(Held, CarryTarget, Carry)>();
-    let_go(body);
+    world.entity_mut(object).remove::<CarryTarget>();
+    let_go(world, object);
     let cause = Some(cause);
     world.write_message(SimFact::Released { cause, hand, id });
 }
@@ -141,9 +116,7 @@ fn destroy(world: &mut World, cause: CommandId, hand: Hand) -> Result<(), String
     };
     begin_segment(world, cause);
     world.resource_mut::<Hands>().set_held(hand, None);
-    world
-        .entity_mut(object)
-        .remove::<(Held, CarryTarget, Carry)>();
+    world.entity_mut(object).remove::<CarryTarget>();
     remove_object(world, object);
     world.write_message(SimFact::Destroyed { cause, hand, id });
     Ok(())

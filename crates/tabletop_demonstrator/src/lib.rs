@@ -45,7 +45,7 @@ mod grasp;
 mod obstacles;
 mod rules;
 
-pub use grasp::{Carry, CarryTarget};
+pub use grasp::CarryTarget;
 
 use bevy::prelude::*;
 use tabletop_core::{ActuateSystems, CommandSystems, RestingSystems};
@@ -59,7 +59,6 @@ pub struct DemonstratorPlugin;
 impl Plugin for DemonstratorPlugin {
     fn build(&self, app: &mut App) {
         app.rollback_component::<CarryTarget>()
-            .rollback_component::<Carry>()
             .add_systems(
                 FixedUpdate,
                 (

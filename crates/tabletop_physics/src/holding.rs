@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{ObjectSpec, Pose, SimTick, TICK_SECONDS};
+use tabletop_core::{Held, Holder, Joint, ObjectSpec, Pose, SimTick, TICK_SECONDS};
 
 /// An object that was let go of in this tick.
 ///
@@ -23,19 +23,44 @@ const PULLED_PER_TICK: f32 = 0.25;
 /// Fastest that it is pulled, in units/s, and turned, in rad/s.
 const FASTEST: (f32, f32) = (40.0, 10.0);
 
-/// Makes an object go exactly where its [`Transform`] says, whatever acts on it.
-pub fn hold(mut object: EntityWorldMut) {
-    object.insert(RigidBody::KinematicPositionBased);
-    object.remove::<JustReleased>();
+/// How a held object follows who holds it.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carry {
+    /// It goes exactly where its [`Transform`] says, whatever acts on it.
+    Freely,
+    /// It is pulled towards its place, as far as its joints let it.
+    AgainstJoints,
 }
 
-/// Leaves an object to itself, at rest.
-pub fn let_go(mut object: EntityWorldMut) {
+/// Gives an object to who holds it from now on. Says how it is carried.
+pub fn hold(world: &mut World, object: Entity, by: Holder) -> Carry {
+    let is_jointed = world
+        .query::<&Joint>()
+        .iter(world)
+        .any(|joint| joint.objects.contains(&object));
+    let mut object = world.entity_mut(object);
+    let is_fixed = object.get().is_some_and(ObjectSpec::is_fixed);
+    let carry = match is_jointed && !is_fixed {
+        true => Carry::AgainstJoints,
+        false => Carry::Freely,
+    };
+    object.insert((Held { by }, carry)).remove::<JustReleased>();
+    match carry {
+        Carry::Freely => object.insert(RigidBody::KinematicPositionBased),
+        Carry::AgainstJoints => object.insert(GravityScale(0.0)),
+    };
+    carry
+}
+
+/// Leaves an object to itself, at rest. Nobody holds it from now on.
+pub fn let_go(world: &mut World, object: Entity) {
+    let at = *world.resource::<SimTick>();
+    let mut object = world.entity_mut(object);
+    object.remove::<(Held, Carry)>();
     let is_fixed = object.get().is_some_and(ObjectSpec::is_fixed);
     if is_fixed {
         object.insert(RigidBody::Fixed);
     } else {
-        let at = *object.world().resource::<SimTick>();
         object.insert((
             RigidBody::Dynamic,
             GravityScale(0.0),

@@ -41,7 +41,7 @@ mod twist;
 pub use bodies::{BodySystems, collider, mass_properties};
 pub use effort::{Care, Engine, impulse_share};
 pub use geometry::{Convex, Nearby, Nearest, contact, convex_parts, nearby, nearest, to_rapier};
-pub use holding::{JustReleased, hold, let_go, pull_velocity};
+pub use holding::{Carry, JustReleased, hold, let_go, pull_velocity};
 pub use settings::PhysicsSettings;
 pub use snapshot::{PhysicsSnapshot, remove_object, renew_if_empty};
 
@@ -136,6 +136,7 @@ impl Plugin for PhysicsPlugin {
             .rollback_component::<GravityScale>()
             .rollback_component::<RigidBodyDisabled>()
             .rollback_component::<JustReleased>()
+            .rollback_component::<Carry>()
             .rollback_resource::<Care>()
             .rollback_state::<PhysicsSnapshot>()
             .derived_component::<Twist>();

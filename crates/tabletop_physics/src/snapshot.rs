@@ -10,9 +10,10 @@ use bevy_rapier3d::{
         IslandManager, NarrowPhase, PhysicsPipeline, RigidBody,
     },
 };
+use tabletop_core::Held;
 use tabletop_history::{RollbackState, Since, despawn_or_park};
 
-use crate::effort::Care;
+use crate::{effort::Care, holding::Carry};
 
 /// The physics engine's whole state: not poses alone, but contacts, sleep and everything else that decides what comes next.
 /// A world that is [restored](RollbackState::restore) goes on bit for bit as the one that was [saved](RollbackState::save), if the
@@ -180,9 +181,10 @@ pub fn renew_if_empty(world: &mut World) {
     }
 }
 
-/// Removes an object from the world, for good or until undo brings it back. Its body goes at once, so that it makes no difference to
+/// Takes an object from who holds it and removes it from the world, for good or until undo brings it back. Its body goes at once, so that it makes no difference to
 /// the others whether the object is kept.
 pub fn remove_object(world: &mut World, object: Entity) {
+    world.entity_mut(object).remove::<(Held, Carry)>();
     remove_body(world, object);
     despawn_or_park(world, object);
 }

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    ActuateSystems, CameraCarrier, CommandSystems, Figure, Gripped, HeadCamera, RestApp as _,
+    ActuateSystems, CameraCarrier, CommandSystems, Figure, HeadCamera, RestApp as _,
     RestingSystems, Robot, RobotLayout, RobotMode, SimSystems,
 };
 use tabletop_history::{RollbackApp, is_rolling_back};
@@ -66,7 +66,6 @@ impl Plugin for RobotPlugin {
             .insert_resource(Grips::none(&layout))
             .init_resource::<Motors>()
             .init_resource::<HeadCamera>()
-            .rollback_component::<Gripped>()
             .derived_component::<Figure>()
             .rollback_resource::<Robot>()
             .rollback_resource::<JointTargets>()
@@ -93,7 +92,7 @@ impl Plugin for RobotPlugin {
                     )
                         .chain()
                         .in_set(CommandSystems::Robot),
-                    (advance, grips::draw_jointed, turn_camera)
+                    (advance, grips::pull_jointed, turn_camera)
                         .chain()
                         .in_set(ActuateSystems::Robot),
                     sense::sense_contacts.in_set(SimSystems::Sense),

@@ -8,8 +8,8 @@ use bevy::{
     prelude::*,
 };
 use tabletop_core::{
-    Cause, Gripped, Held, IssuedCommand, Joint, ObjectIndex, ObjectSpec, SceneCommand, SceneSpec,
-    SimFact, Table, carry_out,
+    Cause, Held, IssuedCommand, Joint, ObjectIndex, ObjectSpec, SceneCommand, SceneSpec, SimFact,
+    Table, carry_out,
 };
 use tabletop_history::Parked;
 use tabletop_physics::{remove_object, renew_if_empty};
@@ -158,7 +158,7 @@ fn clear(world: &mut World) {
     let objects: Vec<_> = world.resource::<ObjectIndex>().iter().collect();
     for object in objects {
         let object_is = world.entity(object);
-        if !object_is.contains::<Held>() && !object_is.contains::<Gripped>() {
+        if !object_is.contains::<Held>() {
             remove_object(world, object);
         }
     }
@@ -181,7 +181,7 @@ pub(crate) fn remove_fallen(
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::prelude::*;
+    use tabletop_core::{Holder, prelude::*};
     use tabletop_physics::PhysicsPlugin;
 
     use super::*;
@@ -242,9 +242,9 @@ mod tests {
         app.step(1);
         let held = app.world().resource::<ObjectIndex>().get("a");
         let held = held.unwrap();
-        app.world_mut()
-            .entity_mut(held)
-            .insert(Held { by: Hand::Left });
+        app.world_mut().entity_mut(held).insert(Held {
+            by: Holder::Hand(Hand::Left),
+        });
         app.world_mut().write_command(scene(&["a"]));
         app.step(1);
         assert_eq!(ids(&app), ["a", "a#0"]);

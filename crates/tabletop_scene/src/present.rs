@@ -2,7 +2,8 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    ChainSpec, Held, LidBoxSpec, ObjectIndex, ObjectSpec, Pose, SceneItem, SceneSpec, Shape, Table,
+    ChainSpec, Held, Holder, LidBoxSpec, ObjectIndex, ObjectSpec, Pose, SceneItem, SceneSpec,
+    Shape, Table,
 };
 
 use crate::{
@@ -192,7 +193,7 @@ impl Inventory<'_> {
 
     fn note_holder(&mut self, object: Entity) {
         let holder = self.world.get::<Held>(object).map(|held| held.by);
-        if let (Some(hand), Some(spec)) = (holder, self.spec(object)) {
+        if let (Some(Holder::Hand(hand)), Some(spec)) = (holder, self.spec(object)) {
             let unsaid = format!(
                 "a task file has no hands: `{}`, which {hand} holds, is saved as let go",
                 spec.id
@@ -466,7 +467,7 @@ mod tests {
     fn what_a_hand_holds_is_saved_as_let_go() {
         let mut app = app(vec![block("a", 0.0)]);
         let held = object(&app, "a");
-        let by = Hand::Left;
+        let by = Holder::Hand(Hand::Left);
         app.world_mut().entity_mut(held).insert(Held { by });
         let present = present_scene(app.world());
         assert_eq!(present.scene.items.len(), 1);

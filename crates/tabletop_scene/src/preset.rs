@@ -4,9 +4,7 @@ use std::f32::consts::FRAC_PI_2;
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{Collider, RigidBodyDisabled};
-use tabletop_core::{
-    Gripped, Held, ObjectIndex, ObjectSpec, Pose, Preset, Random, Rgb, Shape, Table,
-};
+use tabletop_core::{Held, ObjectIndex, ObjectSpec, Pose, Preset, Random, Rgb, Shape, Table};
 use tabletop_physics::{Convex, collider, convex_parts};
 
 use crate::IdAllocator;
@@ -158,16 +156,15 @@ impl Surroundings {
             Option<&ObjectSpec>,
             Option<&Collider>,
             Has<Held>,
-            Has<Gripped>,
         ), (Without<Table>, Without<RigidBodyDisabled>)>();
-        for (place, spec, body, by_hand, by_gripper) in things.iter(world) {
+        for (place, spec, body, is_held) in things.iter(world) {
             // An object that has just appeared has no body yet.
             let own = || spec.map(|spec| collider(&spec.shape));
             let Some(body) = body.cloned().or_else(own) else {
                 continue;
             };
             let solids = convex_parts(place.into(), &body.raw);
-            if by_hand || by_gripper || spec.is_none() {
+            if is_held || spec.is_none() {
                 surroundings.held.extend(solids.iter().cloned());
             }
             surroundings.solids.extend(solids);
@@ -213,7 +210,7 @@ fn cuboid(span: Vec3, pose: Pose) -> Convex {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Hand, StepApp as _, prelude::*};
+    use tabletop_core::{Hand, Holder, StepApp as _, prelude::*};
     use tabletop_physics::PhysicsPlugin;
 
     use super::*;
@@ -353,7 +350,9 @@ mod tests {
         let wall = ObjectSpec::new("wall", Pose::at(Vec3::new(3.0, 0.0, 5.0)), 1.0, wall);
         for seed in 0..20 {
             let mut app = app();
-            let held = Held { by: Hand::Left };
+            let held = Held {
+                by: Holder::Hand(Hand::Left),
+            };
             app.world_mut()
                 .spawn((Transform::from(wall.pose), wall.clone(), held));
             make(&mut app, Preset::BigBlock, seed);

@@ -1,11 +1,11 @@
 //! What the grippers hold.
 
 use bevy::prelude::*;
-use bevy_rapier3d::prelude::{GravityScale, Velocity};
+use bevy_rapier3d::prelude::Velocity;
 use tabletop_core::{
-    Gripped, Held, Joint, LimbId, LimbName, ObjectSpec, Pose, Robot, RobotLayout, SimFact,
+    Held, Holder, LimbId, LimbName, ObjectSpec, Pose, Robot, RobotLayout, SimFact,
 };
-use tabletop_physics::{JustReleased, hold, let_go, pull_velocity};
+use tabletop_physics::{Carry, hold, let_go, pull_velocity};
 
 use crate::gripper::closing::Touched;
 
@@ -28,7 +28,7 @@ pub(crate) struct Grip {
     pub pose: Pose,
     /// Where the left and the right finger touch it, in the end effector's frame.
     pub points: [Vec3; 2],
-    /// Whether joints hold it, too: then it is pull_velocity along as far as they let it.
+    /// Whether joints hold it, too: then it is pulled along as far as they let it.
     pub is_jointed: bool,
 }
 
@@ -73,26 +73,14 @@ pub(crate) fn take(world: &mut World, limb: LimbId, touched: Touched) {
     let Some(id) = id(world, object) else {
         return;
     };
-    let is_jointed = world
-        .query::<&Joint>()
-        .iter(world)
-        .any(|joint| joint.objects.contains(&object));
-    let mut grips = world.resource_mut::<Grips>();
-    let arm = grips.name_of(limb);
-    grips.held[limb.index()].push(Grip {
+    let arm = world.resource::<Grips>().name_of(limb);
+    let carry = hold(world, object, Holder::Gripper(arm));
+    world.resource_mut::<Grips>().held[limb.index()].push(Grip {
         object,
         pose: end_effector.inverse() * here,
         points: touched.points.map(|point| end_effector.inverse() * point),
-        is_jointed,
+        is_jointed: carry == Carry::AgainstJoints,
     });
-    let mut body = world.entity_mut(object);
-    body.insert(Gripped { by: arm });
-    if is_jointed {
-        body.insert(GravityScale(0.0));
-        body.remove::<JustReleased>();
-    } else {
-        hold(body);
-    }
     world.write_message(SimFact::GripMade { arm, id });
 }
 
@@ -105,15 +93,13 @@ pub(crate) fn release(world: &mut World, limb: LimbId) {
         let Some(id) = id(world, object) else {
             continue;
         };
-        let mut body = world.entity_mut(object);
-        body.remove::<Gripped>();
-        let_go(body);
+        let_go(world, object);
         world.write_message(SimFact::GripReleased { arm, id });
     }
 }
 
-/// Draws along what joints hold as well.
-pub(crate) fn draw_jointed(
+/// Pulls along what joints hold as well.
+pub(crate) fn pull_jointed(
     grips: Res<Grips>,
     robot: Res<Robot>,
     mut objects: Query<(&Transform, &mut Velocity)>,
@@ -130,33 +116,29 @@ pub(crate) fn draw_jointed(
 
 /// Gives up what a hand has taken out of a gripper.
 pub(crate) fn give_to_hands(
-    held: Query<&ObjectSpec, (With<Held>, With<Gripped>)>,
+    taken: Query<(&ObjectSpec, &Held), Changed<Held>>,
     mut grips: ResMut<Grips>,
-    mut commands: Commands,
     mut facts: MessageWriter<SimFact>,
 ) {
-    if held.is_empty() {
+    if taken.is_empty() {
         return;
     }
     for limb in grips.limbs() {
         let arm = grips.name_of(limb);
-        grips.held[limb.index()].retain(|grip| {
-            let Ok(spec) = held.get(grip.object) else {
-                return true;
-            };
-            commands.entity(grip.object).remove::<Gripped>();
-            facts.write(SimFact::GripReleased {
-                arm,
-                id: spec.id.clone(),
-            });
-            false
+        grips.held[limb.index()].retain(|grip| match taken.get(grip.object) {
+            Ok((spec, held)) if held.by != Holder::Gripper(arm) => {
+                let id = spec.id.clone();
+                facts.write(SimFact::GripReleased { arm, id });
+                false
+            }
+            _ => true,
         });
     }
 }
 
 /// A gripper whose object goes without it is empty.
 pub(crate) fn note_lost(
-    remove: On<Remove, Gripped>,
+    remove: On<Remove, Held>,
     objects: Query<&ObjectSpec>,
     mut grips: ResMut<Grips>,
     mut facts: MessageWriter<SimFact>,
@@ -178,13 +160,10 @@ pub(crate) fn note_lost(
 }
 
 /// Whether a gripper can take an object: it has mass, and nothing holds it.
-pub(crate) fn can_take(
-    object: Entity,
-    objects: &Query<(&ObjectSpec, Has<Held>, Has<Gripped>)>,
-) -> bool {
+pub(crate) fn can_take(object: Entity, objects: &Query<(&ObjectSpec, Has<Held>)>) -> bool {
     objects
         .get(object)
-        .is_ok_and(|(spec, is_held, is_gripped)| !spec.is_fixed() && !is_held && !is_gripped)
+        .is_ok_and(|(spec, is_held)| !spec.is_fixed() && !is_held)
 }
 
 fn id(world: &World, object: Entity) -> Option<String> {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*};
-use tabletop_core::{Gripped, Held, LimbId, ObjectSpec, Pose, Robot, Table};
+use tabletop_core::{Held, LimbId, ObjectSpec, Pose, Robot, Table};
 use tabletop_physics::convex_parts;
 
 use crate::{
@@ -30,7 +30,7 @@ pub(crate) struct RobotView<'w, 's> {
     pub parts: Res<'w, LinkEntities>,
     pub tables: Query<'w, 's, &'static Table>,
     pub bodies: Query<'w, 's, (), With<RobotBody>>,
-    pub objects: Query<'w, 's, (&'static ObjectSpec, Has<Held>, Has<Gripped>)>,
+    pub objects: Query<'w, 's, (&'static ObjectSpec, Has<Held>)>,
 }
 
 impl RobotView<'_, '_> {
