@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop_core::{
-    Actor, Agent, ClockCommand, CommandWriter, HandCommand, IssuedCommand, Paused,
+    Actor, Agent, ClockCommand, CommandSystems, CommandWriter, HandCommand, IssuedCommand, Paused,
     RecordingCommand, Replaying, RobotCommand, ScriptEvent, SimCommand, SimFact, SimSystems,
     SimTick, TickSystems,
 };
@@ -23,6 +23,8 @@ pub struct Player {
     start: SimTick,
     /// Whether the recording has paused the simulation.
     has_paused: bool,
+    /// Whether a pause begins in this tick after its commands were carried out.
+    pauses_late: bool,
     /// Whether a recording is to be made of it.
     records: bool,
     /// Whether it has been said that a script watches.
@@ -45,6 +47,7 @@ impl Player {
             given: 0,
             start,
             has_paused: false,
+            pauses_late: false,
             records: false,
             is_watched: false,
         }
@@ -93,12 +96,22 @@ impl Player {
         self.start
     }
 
-    /// The commands that are due. What was given in one tick at several moments of a pause is given at several moments.
+    /// The commands that are due. What was given in one tick at several moments of a pause is given at several moments. A pause that
+    /// undo has brought into a tick whose commands were carried out before begins after them.
     fn due(&mut self, tick: SimTick) -> Vec<SessionCommand> {
         let mut due = Vec::new();
         while let Some(next) = self.commands.get(self.given) {
-            let has_moment = begins_moment(&next.command) && self.has_paused && !due.is_empty();
-            if next.tick > tick.0 || has_moment {
+            if next.tick > tick.0 {
+                break;
+            }
+            let last = due.last().map(|last: &SessionCommand| &last.command);
+            if last.is_some_and(|last| self.has_paused && begins_moment(&next.command, last)) {
+                break;
+            }
+            if last.is_some_and(|last| !self.has_paused && is_late_pause(&next.command, last)) {
+                self.given += 1;
+                self.has_paused = true;
+                self.pauses_late = true;
                 break;
             }
             if let SimCommand::Clock(ClockCommand::SetPaused(paused)) = next.command {
@@ -114,27 +127,44 @@ impl Player {
 }
 
 /// Whether a command that comes after another one in a pause was given at another moment of it: it would be carried out before.
-fn begins_moment(command: &SimCommand) -> bool {
+fn begins_moment(command: &SimCommand, last: &SimCommand) -> bool {
     match command {
         SimCommand::Recording(RecordingCommand::Start)
         | SimCommand::Clock(ClockCommand::SetPaused(false))
         | SimCommand::Scene(_) => true,
-        SimCommand::Recording(RecordingCommand::Finish)
-        | SimCommand::Clock(ClockCommand::SetPaused(true))
+        SimCommand::Recording(RecordingCommand::Finish) => false,
+        SimCommand::Clock(ClockCommand::SetPaused(true))
         | SimCommand::History(_)
         | SimCommand::Hand(_)
-        | SimCommand::Robot(_) => false,
+        | SimCommand::Robot(_) => command.phase() < last.phase(),
     }
+}
+
+/// Whether a command begins a pause and comes after one that could not be carried out in it.
+fn is_late_pause(command: &SimCommand, last: &SimCommand) -> bool {
+    *command == ClockCommand::SetPaused(true).into() && command.phase() < last.phase()
 }
 
 /// Lets the [`Player`] of an app play, if it has one.
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(
         FixedUpdate,
-        play.run_if(resource_exists::<Player>)
-            .in_set(TickSystems)
-            .before(SimSystems::Load),
+        (
+            play.before(SimSystems::Load),
+            pause_late
+                .after(CommandSystems::Robot)
+                .before(SimSystems::Actuate),
+        )
+            .run_if(resource_exists::<Player>)
+            .in_set(TickSystems),
     );
+}
+
+/// Begins a pause after the tick's commands were carried out.
+fn pause_late(mut player: ResMut<Player>, mut paused: ResMut<Paused>) {
+    if std::mem::take(&mut player.pauses_late) {
+        paused.0 = true;
+    }
 }
 
 fn play(

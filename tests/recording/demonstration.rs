@@ -5,15 +5,16 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use bevy::prelude::*;
+use bevy::{app::PluginGroupBuilder, prelude::*};
 use bevy_rapier3d::prelude::{Sleeping, Velocity};
 use tabletop::{
-    core::{HeadCamera, History, Twist},
+    core::{HeadCamera, History, RobotMode, Twist},
     headless_app_with,
     physics::PhysicsSettings,
     prelude::*,
     recorder::{Durability, RecorderPlugin},
     replay::Replay,
+    robot::RobotPlugin,
 };
 
 /// A folder in memory, where there is one: for hundreds of recordings.
@@ -38,6 +39,11 @@ pub fn fresh_folder(name: &str) -> PathBuf {
 
 /// The replay of a whole recording has the same bytes.
 pub fn assert_replays(folder: &Path) {
+    assert_eq!(difference_of_replay(folder), None);
+}
+
+/// In which file the replay of a whole recording differs, and how.
+pub fn difference_of_replay(folder: &Path) -> Option<String> {
     let replay = Replay::read(folder).unwrap();
     assert_eq!(replay.cut_off_at(), None);
     let name = folder.file_name().unwrap().to_string_lossy();
@@ -48,7 +54,7 @@ pub fn assert_replays(folder: &Path) {
         ..default()
     };
     replay.record(recorder, replay.camera()).unwrap();
-    assert_eq!(replay.first_difference(&replayed).unwrap(), None);
+    replay.first_difference(&replayed).unwrap()
 }
 
 pub struct Demonstration {
@@ -62,14 +68,22 @@ impl Demonstration {
     }
 
     pub fn with_physics(name: &str, settings: PhysicsSettings) -> Self {
+        let plugins = TabletopSimPlugins.build();
+        Self::with(name, plugins.set(PhysicsPlugin { settings }))
+    }
+
+    pub fn with_robot(name: &str, mode: RobotMode) -> Self {
+        let robot = RobotPlugin { mode, ..default() };
+        Self::with(name, TabletopSimPlugins.build().set(robot))
+    }
+
+    fn with(name: &str, plugins: PluginGroupBuilder) -> Self {
         let folder = fresh_folder(name);
         let recorder = RecorderPlugin {
             folder: folder.clone(),
             ..default()
         };
-        let plugins = TabletopSimPlugins.build();
-        let plugins = plugins.set(recorder).set(PhysicsPlugin { settings });
-        let mut app = headless_app_with(plugins);
+        let mut app = headless_app_with(plugins.set(recorder));
         app.insert_resource(HeadCamera {
             width: 40,
             height: 30,

@@ -4,6 +4,7 @@
 mod damaged;
 mod demonstration;
 mod ending;
+mod every_command;
 mod faults;
 mod passed_over;
 mod playback;

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 
-use crate::{Arm, Hand};
+use crate::{Hand, LimbName};
 
 /// Who holds an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -10,7 +10,7 @@ pub enum Holder {
     /// One of the demonstrator's hands.
     Hand(Hand),
     /// The gripper of one of the robot's arms.
-    Gripper(Arm),
+    Gripper(LimbName),
 }
 
 /// Marks an object that a hand or a gripper holds: it stays when the table is cleared.

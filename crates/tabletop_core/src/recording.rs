@@ -19,6 +19,8 @@ pub struct History {
     pub undoable: usize,
     /// How many segments can be redone.
     pub redoable: usize,
+    /// How many segments can no longer be undone, because there was no memory left for them.
+    pub dropped: usize,
     /// The memory, in bytes, that the snapshots of the world take.
     pub bytes: usize,
     /// The most memory, in bytes, that they may take; when there is more, the oldest segment can no longer be undone.

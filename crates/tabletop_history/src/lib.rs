@@ -42,7 +42,7 @@ pub use segments::begin_segment;
 pub use snapshot::WorldSnapshot;
 
 use bevy::{prelude::*, transform::components::TransformTreeChanged};
-use tabletop_core::{CommandSystems, Hands, Held, ObjectIndex, RestingSystems, SimTick};
+use tabletop_core::{CommandSystems, Hands, Held, Markers, ObjectIndex, RestingSystems, SimTick};
 
 use crate::segments::{Segments, undo_and_redo};
 
@@ -76,6 +76,7 @@ impl Plugin for HistoryPlugin {
             .derived_component::<Children>()
             .derived_component::<TransformTreeChanged>()
             .rollback_resource::<Hands>()
+            .rollback_resource::<Markers>()
             .rollback_resource::<ObjectIndex>()
             .rollback_resource::<SimTick>()
             .add_systems(

@@ -26,6 +26,8 @@ pub(crate) struct Segments {
     last: Option<(Arc<WorldSnapshot>, Tick)>,
     /// Most memory in bytes.
     most_bytes: usize,
+    /// How many could not be kept.
+    dropped: usize,
 }
 
 /// A segment that was undone.
@@ -41,6 +43,7 @@ impl Segments {
             redoable: Vec::new(),
             last: None,
             most_bytes,
+            dropped: 0,
         }
     }
 
@@ -53,6 +56,7 @@ impl Segments {
     fn drop_oldest(&mut self) {
         while self.undoable.len() > 1 && self.bytes() > self.most_bytes {
             self.undoable.pop_front();
+            self.dropped += 1;
         }
     }
 
@@ -70,8 +74,8 @@ impl Segments {
     }
 }
 
-/// Reports that a hand is about to act because of a command, and remembers the world before it if a recording is running, so that it can be undone. Without
-/// [`HistoryPlugin`](crate::HistoryPlugin), nothing can.
+/// Reports that a hand is about to act because of a command. While a recording runs, remembers the world before it, so that it can be
+/// undone. Without [`HistoryPlugin`](crate::HistoryPlugin), nothing can.
 pub fn begin_segment(world: &mut World, cause: CommandId) {
     world.write_message(SimFact::SegmentBegun { cause });
     if !world.resource::<Recording>().0 || !world.contains_resource::<Segments>() {
@@ -152,6 +156,7 @@ fn publish(world: &mut World) {
     let history = History {
         undoable: segments.undoable.len(),
         redoable: segments.redoable.len(),
+        dropped: segments.dropped,
         bytes: segments.bytes(),
         most_bytes: segments.most_bytes,
     };
@@ -168,6 +173,121 @@ fn forget(world: &mut World) {
     segments.undoable.clear();
     segments.redoable.clear();
     segments.last = None;
+    segments.dropped = 0;
     publish(world);
     drop_removed(world);
+}
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::{CorePlugin, Rollback, StepApp as _, WriteCommand as _};
+
+    use super::*;
+    use crate::{HistoryPlugin, RollbackApp as _, is_rolling_back};
+
+    #[derive(Component, Clone, Copy, Debug, PartialEq)]
+    struct Lamp([u8; 1000]);
+
+    /// Lamps, and a history of at most so many bytes.
+    fn app(most_bytes: usize) -> (App, Vec<Entity>) {
+        let mut app = App::new();
+        let history = HistoryPlugin { most_bytes };
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), history))
+            .rollback_component::<Lamp>()
+            .start();
+        app.insert_resource(Recording(true));
+        let lamps = (0..160).map(|_| app.world_mut().spawn((Rollback, Lamp([0; 1000]))).id());
+        let lamps = lamps.collect();
+        (app, lamps)
+    }
+
+    fn begin(app: &mut App) -> History {
+        let cause = app.world_mut().write_command(HistoryCommand::Redo);
+        begin_segment(app.world_mut(), cause);
+        *app.world().resource::<History>()
+    }
+
+    fn tell(app: &mut App, command: HistoryCommand) {
+        app.world_mut().write_command(command);
+        app.step(1);
+    }
+
+    #[test]
+    fn snapshots_share_what_has_not_changed() {
+        let (mut app, lamps) = app(usize::MAX);
+        let first = begin(&mut app).bytes;
+        assert!(first > 160_000, "{first}");
+        app.world_mut().entity_mut(lamps[7]).insert(Lamp([1; 1000]));
+        let second = begin(&mut app).bytes - first;
+        assert!((16_000..40_000).contains(&second), "{second}");
+        let third = begin(&mut app).bytes - first - second;
+        assert!(third < 20_000, "{third}");
+    }
+
+    #[test]
+    fn what_is_shared_comes_back_as_it_was() {
+        let (mut app, lamps) = app(usize::MAX);
+        for number in 1..5 {
+            begin(&mut app);
+            for lamp in lamps.iter().skip(number).step_by(29) {
+                app.world_mut()
+                    .entity_mut(*lamp)
+                    .insert(Lamp([number as u8; 1000]));
+            }
+        }
+        let lit = |app: &App| -> Vec<_> {
+            lamps
+                .iter()
+                .map(|lamp| app.world().get::<Lamp>(*lamp).unwrap().0[0])
+                .collect()
+        };
+        let end = lit(&app);
+        for number in (1..5).rev() {
+            tell(&mut app, HistoryCommand::Undo);
+            let expected = end
+                .iter()
+                .map(|&by| if usize::from(by) < number { by } else { 0 });
+            assert_eq!(lit(&app), expected.collect::<Vec<_>>(), "before {number}");
+        }
+        for _ in 1..5 {
+            tell(&mut app, HistoryCommand::Redo);
+        }
+        assert_eq!(lit(&app), end);
+    }
+
+    #[test]
+    fn the_oldest_go_when_there_is_no_memory_left_and_the_last_one_stays() {
+        let (mut app, lamps) = app(1_000_000);
+        for _ in 0..20 {
+            for lamp in &lamps {
+                app.world_mut().entity_mut(*lamp).insert(Lamp([1; 1000]));
+            }
+            begin(&mut app);
+        }
+        let history = *app.world().resource::<History>();
+        assert!(history.bytes <= 1_000_000, "{history:?}");
+        assert!(history.undoable >= 4, "{history:?}");
+        assert_eq!(history.undoable + history.dropped, 20);
+
+        let (mut app, _) = self::app(1);
+        begin(&mut app);
+        assert_eq!(begin(&mut app).undoable, 1);
+    }
+
+    #[test]
+    fn observers_are_silent_while_the_world_is_put_back() {
+        #[derive(Resource, Default)]
+        struct Heard(usize);
+        let (mut app, lamps) = app(usize::MAX);
+        app.init_resource::<Heard>().add_observer(
+            (|_: On<Remove, Lamp>, mut heard: ResMut<Heard>| heard.0 += 1)
+                .run_if(not(is_rolling_back)),
+        );
+        app.world_mut().entity_mut(lamps[0]).remove::<Lamp>();
+        begin(&mut app);
+        app.world_mut().entity_mut(lamps[0]).insert(Lamp([1; 1000]));
+        tell(&mut app, HistoryCommand::Undo);
+        assert_eq!(app.world().get::<Lamp>(lamps[0]), None);
+        assert_eq!(app.world().resource::<Heard>().0, 1);
+    }
 }

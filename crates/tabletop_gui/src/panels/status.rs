@@ -148,6 +148,7 @@ struct Model {
     is_paused: bool,
     agent: Agent,
     film: Film,
+    history: History,
     renderer: Option<Renderer>,
 }
 
@@ -189,6 +190,7 @@ impl Sources<'_> {
             is_paused: self.paused.0,
             agent: self.agent.clone(),
             film: self.film(),
+            history: *self.history,
             renderer: self.renderer.as_deref().cloned(),
         }
     }
@@ -198,7 +200,7 @@ impl Sources<'_> {
         match (self.recording.0, self.replaying.0) {
             (true, _) => Film::Recorded {
                 folder: self.take.folder.clone(),
-                segment: self.history.undoable,
+                segment: self.history.dropped + self.history.undoable,
                 frame: ticks / TICKS_PER_FRAME,
             },
             (false, true) => Film::Replayed,
@@ -224,6 +226,9 @@ fn show(ui: &mut Ui, model: &Model) {
     row(ui, "Simulated", simulated(model));
     row(ui, "Matlab", matlab(&model.agent, model.mean.call));
     row(ui, "Recording", recording(&model.film));
+    if matches!(model.film, Film::Recorded { .. }) {
+        row(ui, "Undo", undo(&model.history));
+    }
     if let Some(renderer) = &model.renderer {
         row(ui, "Renderer", words_for(renderer));
     }
@@ -274,6 +279,17 @@ fn recording(film: &Film) -> String {
     }
 }
 
+/// How far the recording can be undone, and the memory that takes.
+fn undo(history: &History) -> String {
+    const MEGABYTE: usize = 1024 * 1024;
+    let [used, most] = [history.bytes, history.most_bytes].map(|bytes| bytes.div_ceil(MEGABYTE));
+    let memory = format!("{} segments, {used} of {most} MB", history.undoable);
+    match history.dropped {
+        0 => memory,
+        dropped => format!("{memory}; the first {dropped} are kept no longer"),
+    }
+}
+
 fn words_for(renderer: &Renderer) -> RichText {
     match renderer.is_software {
         true => RichText::new(format!("software renderer ({})", renderer.name)).color(WARNING),
@@ -311,6 +327,20 @@ mod tests {
         ] {
             assert_eq!(matlab(&agent, call), words);
         }
+    }
+
+    #[test]
+    fn the_memory_of_undo_is_told_and_what_did_not_fit() {
+        let mut history = History {
+            undoable: 12,
+            bytes: 3_500_000,
+            most_bytes: 512 * 1024 * 1024,
+            ..default()
+        };
+        assert_eq!(undo(&history), "12 segments, 4 of 512 MB");
+        history.dropped = 5;
+        let told = "12 segments, 4 of 512 MB; the first 5 are kept no longer";
+        assert_eq!(undo(&history), told);
     }
 
     fn app() -> App {
@@ -378,6 +408,7 @@ mod tests {
                 segment: 2,
                 frame: 57,
             },
+            history: History::default(),
             renderer: Some(Renderer {
                 name: "llvmpipe".into(),
                 is_software: true,
