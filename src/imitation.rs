@@ -5,8 +5,8 @@ use bevy::{
     prelude::*,
 };
 use tabletop_core::{
-    Arm, Drive, Joint, JointSpec, ObjectIndex, ObjectSpec, Pose, Random, Robot, RobotCommand,
-    RobotJoint, RobotLayout, SceneItem, SceneSpec, StepApp as _, Table, WriteCommand as _,
+    Drive, Joint, JointSpec, ObjectIndex, ObjectSpec, Pose, Random, Robot, RobotCommand,
+    RobotLayout, SceneItem, SceneSpec, StepApp as _, Table, WriteCommand as _,
 };
 use tabletop_kinematics::{ModelError, baxter};
 use tabletop_planner::{
@@ -60,27 +60,33 @@ impl Stage for AppStage<'_> {
         });
         let robot = world.resource::<Robot>();
         let id = |entity: &Entity| Some(world.get::<ObjectSpec>(*entity)?.id.clone());
-        let limbs = Arm::BOTH.map(|arm| LimbSight {
-            angles: padded(robot.angles(arm)),
-            opening: robot.joint(RobotJoint::gripper(arm)).position,
-            holds: robot.arm(arm).holds.iter().filter_map(id).collect(),
-            blocked_by: robot.arm(arm).blocked_by.clone(),
+        let layout = world.resource::<RobotLayout>();
+        let limbs = layout.limbs.iter().zip(&robot.limbs);
+        let limbs = limbs.map(|(limb, state)| LimbSight {
+            angles: padded(robot.positions_of(&limb.joints)),
+            opening: robot.joint(limb.gripper.joint).position,
+            holds: state.holds.iter().filter_map(id).collect(),
+            blocked_by: state.blocked_by.clone(),
         });
         Sight {
             table: self.table,
             objects: objects.collect(),
             joints: self.joints.clone(),
-            limbs: limbs.into(),
+            limbs: limbs.collect(),
         }
     }
 
     fn tick(&mut self, orders: &[LimbOrder]) {
+        let layout = self.app.world().resource::<RobotLayout>();
         let mut drives = Vec::new();
-        for (arm, order) in Arm::BOTH.into_iter().zip(orders) {
-            let joints = RobotJoint::of_arm(arm).into_iter().zip(order.joints);
-            let all = joints.chain([(RobotJoint::gripper(arm), order.opening)]);
+        for (limb, order) in layout.limbs.iter().zip(orders) {
+            let joints = limb.joints.iter().copied().zip(order.joints);
+            let all = joints.chain([(limb.gripper.joint, order.opening)]);
             let moving = all.filter(|(_, velocity)| *velocity != 0.0);
-            drives.extend(moving.map(|(joint, velocity)| (joint, Drive::Velocity(velocity))));
+            drives
+                .extend(moving.map(|(joint, velocity)| {
+                    (layout.joint(joint).name, Drive::Velocity(velocity))
+                }));
         }
         if !drives.is_empty() {
             self.app

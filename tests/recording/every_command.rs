@@ -188,16 +188,16 @@ fn robot_command(random: &mut Random) -> RobotCommand {
     let above = random.of(&[0.45, 0.45, 2.0, 3.0]);
     match random.below(14) {
         0 => RobotCommand::Show(random.below(3) != 0),
-        1 => RobotCommand::Drive(vec![(joint, Drive::Velocity(value))]),
-        2 => RobotCommand::Drive(vec![(joint, Drive::Position(value))]),
-        3 => RobotCommand::Drive(vec![(joint, Drive::Torque(10.0 * value))]),
-        4 => RobotCommand::Drive(vec![(joint, Drive::Toward(value))]),
+        1 => RobotCommand::Drive(vec![(joint.into(), Drive::Velocity(value))]),
+        2 => RobotCommand::Drive(vec![(joint.into(), Drive::Position(value))]),
+        3 => RobotCommand::Drive(vec![(joint.into(), Drive::Torque(10.0 * value))]),
+        4 => RobotCommand::Drive(vec![(joint.into(), Drive::Toward(value))]),
         5 => RobotCommand::ShowFace(random.of(&[Face::Happy, Face::Asleep, Face::Neutral])),
         6 => RobotCommand::ShowMarkers(vec![block]),
-        7 | 8 => RobotCommand::Drive(vec![(RobotJoint::gripper(arm), Drive::Toward(0.0))]),
-        9 => RobotCommand::Drive(vec![(RobotJoint::gripper(arm), Drive::Toward(2.0))]),
+        7 | 8 => RobotCommand::Drive(vec![(RobotJoint::gripper(arm).into(), Drive::Toward(0.0))]),
+        9 => RobotCommand::Drive(vec![(RobotJoint::gripper(arm).into(), Drive::Toward(2.0))]),
         _ => RobotCommand::ReachTo {
-            arm,
+            arm: arm.into(),
             pose: Pose::at(block + Vec3::Z * above),
         },
     }
