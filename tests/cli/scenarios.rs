@@ -39,6 +39,8 @@ fn two_blocks_are_stacked() {
 #[test]
 fn tasks_are_demonstrated() {
     for name in [
+        "drawer",
+        "gates",
         "stack_three",
         "swap",
         "wall",
@@ -142,12 +144,20 @@ fn every_shipped_scenario_has_its_test() {
     let tested = [
         "break_chain.ron",
         "build_letters.ron",
+        "drawer.ron",
+        "gates.ron",
+        "hand_over.ron",
+        "hanoi.ron",
+        "letter_u.ron",
         "lidbox.ron",
         "panda_stack.ron",
         "presets.ron",
         "robot_place.ron",
         "robot_stack.ron",
+        "stack_three.ron",
         "stack_two_blocks.ron",
+        "swap.ron",
+        "wall.ron",
     ];
     assert_eq!(names, tested);
 }

@@ -11,10 +11,10 @@ use crate::{
     free_spot::free_spots,
     goals::{Before, Candidate, bound, candidates, inside, is_met},
     motion::{follow, wait},
-    path::transit,
     sight::Sight,
     stage::Stage,
     transfer::Transfer,
+    transit::transit,
 };
 
 /// What has become of a task.

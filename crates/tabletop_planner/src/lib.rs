@@ -18,6 +18,7 @@ mod scatter;
 mod sight;
 mod stage;
 mod transfer;
+mod transit;
 
 pub use body::{Angles, LimbBody, LimbSource, RobotBody};
 pub use failure::Failure;

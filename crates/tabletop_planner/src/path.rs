@@ -4,12 +4,7 @@ use bevy::math::Vec3;
 use tabletop_core::Pose;
 use tabletop_task::angle_between;
 
-use crate::{
-    body::Angles,
-    clearance::{Clearance, Margins},
-    rrt::connect,
-    sight::lean,
-};
+use crate::{body::Angles, clearance::Clearance};
 
 /// A way as postures, the first one not included.
 pub(crate) type Path = Vec<Angles>;
@@ -20,8 +15,6 @@ const LINE_STEP: (f32, f32) = (0.25, 0.25);
 const JUMP: f64 = 0.5;
 /// How far a joint turns from one posture of a free way to the next, in rad.
 const JOINT_STEP: f64 = 0.06;
-/// Heights in which an arm goes across the table, in units.
-const TRAVERSES: [f32; 4] = [2.6, 3.4, 4.2, 5.0];
 
 /// The largest turn of a joint between two postures, in rad.
 pub(crate) fn largest_turn(a: &Angles, b: &Angles) -> f64 {
@@ -75,54 +68,4 @@ pub(crate) fn lift(clearance: &Clearance, from: &Angles, by: f32) -> Option<Path
     let mut to = clearance.end_effector(from);
     to.location += Vec3::Z * by;
     line(clearance, from, to)
-}
-
-/// A free way from one posture to another: evenly, else at some height across, else found by trying (`seed` decides what is tried).
-pub(crate) fn transit(
-    clearance: &Clearance,
-    from: &Angles,
-    to: &Angles,
-    seed: u64,
-) -> Option<Path> {
-    let is_free = |path: &Path| clearance.is_way_free(path, Margins::WIDE);
-    let direct = even(from, to);
-    if is_free(&direct) {
-        return Some(direct);
-    }
-    let ends = [from, to].map(|angles| clearance.end_effector(angles));
-    let is_upright = ends.iter().all(|end| lean(end.rotation) < 0.05);
-    if is_upright {
-        for height in TRAVERSES {
-            let raised = |angles: &Angles, end: &Pose| match end.location.z > height - 0.05 {
-                true => Some(Path::new()),
-                false => lift(clearance, angles, height - end.location.z),
-            };
-            let (Some(up), Some(down)) = (raised(from, &ends[0]), raised(to, &ends[1])) else {
-                continue;
-            };
-            let [above, beyond] =
-                [(&up, from), (&down, to)].map(|(path, end)| *path.last().unwrap_or(end));
-            let descent: Path = match down.is_empty() {
-                true => Path::new(),
-                false => down.iter().rev().skip(1).chain([to]).copied().collect(),
-            };
-            let join = |across: Path| [up.clone(), across, descent.clone()].concat();
-            let path = join(even(&above, &beyond));
-            if is_free(&path) {
-                return Some(path);
-            }
-            let far = clearance.end_effector(&beyond);
-            if let Some(mut across) = line(clearance, &above, far) {
-                let last = *across.last().unwrap_or(&above);
-                if largest_turn(&last, &beyond) < 1.5 {
-                    across.extend(even(&last, &beyond));
-                    let path = join(across);
-                    if is_free(&path) {
-                        return Some(path);
-                    }
-                }
-            }
-        }
-    }
-    connect(clearance, from, to, seed)
 }

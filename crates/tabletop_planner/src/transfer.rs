@@ -13,9 +13,10 @@ use crate::{
     goals::Candidate,
     grasp::{Grasp, grasps},
     motion::{follow, grip, wait},
-    path::{Path, largest_turn, lift, line, transit},
+    path::{Path, largest_turn, lift, line},
     sight::{SeenObject, Sight, heights},
     stage::Stage,
+    transit::transit,
 };
 
 /// How fast an end effector goes on its way, in units/s, and near what it takes or puts.
