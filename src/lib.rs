@@ -9,7 +9,7 @@
 //! | [`scene`] | the table and what comes and goes on it |
 //! | [`history`] | undo and redo |
 //! | [`demonstrator`] | the invisible hands |
-//! | [`baxter`] | the robot: how it looks, moves and grips |
+//! | [`robot`] | the robot: how it looks, moves and grips |
 //! | [`kinematics`] | robots as URDF describes them |
 //! | [`camera`] | what the robot's head camera sees |
 //! | [`recorder`] | recordings on disk |

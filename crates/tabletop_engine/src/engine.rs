@@ -144,7 +144,7 @@ impl EngineHandle {
         Some(Reply::Failed(EngineError::Timeout { what, limit, stack }))
     }
 
-    /// What the script has printed since the last call, as far as [`EngineConfig::output`] lets it be kept.
+    /// What the script has printed since the last call, as far as [`EngineConfig::console_limit`] lets it be kept.
     pub fn drain_console(&self) -> Vec<ConsoleLine> {
         self.0.console.drain()
     }

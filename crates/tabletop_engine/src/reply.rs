@@ -19,7 +19,7 @@ pub enum Reply {
     Init(InitReply),
     /// The callback script has run.
     Step(Box<StepReply>),
-    /// Something went wrong. If [`EngineError::is_fatal`], nothing more comes; else there may be another [`EngineHandle::init`].
+    /// Something went wrong. If [`EngineError::is_fatal`], nothing more comes; else there may be another `EngineHandle::init`.
     Failed(EngineError),
 }
 

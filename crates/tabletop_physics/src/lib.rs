@@ -3,7 +3,7 @@
 //! Every entity with an [`ObjectSpec`](tabletop_core::ObjectSpec) or a [`Table`](tabletop_core::Table) gets a rigid body,
 //! every [`Joint`](tabletop_core::Joint) a constraint, in the tick in which it appears. One step is made a tick, in
 //! [`SimSystems::Physics`]; the poses are in the entities' `Transform` afterwards, the velocities in
-//! their [`Twist`](tabletop_core::Twist).
+//! their [`Twist`].
 //!
 //! ```
 //! use bevy::prelude::*;

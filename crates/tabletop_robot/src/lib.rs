@@ -1,4 +1,4 @@
-//! The robot: a Baxter, or another robot with the same arms, in the world of the tabletop simulator (report section 5).
+//! The robot: a Baxter, or another robot that a `robot.ron` describes, in the world of the tabletop simulator (report section 5).
 //!
 //! It is told what to do by [`SimCommand`](tabletop_core::SimCommand)s and its state is in
 //! [`Robot`](tabletop_core::Robot). It starts hidden: it can neither be seen nor touched then, but its camera works.
@@ -16,7 +16,7 @@
 //! app.add_plugins((MinimalPlugins, CorePlugin::default(), PhysicsPlugin::default()))
 //!     .add_plugins(RobotPlugin::default())
 //!     .start();
-//! let there = vec![(RobotJoint::RightE1, Drive::Toward(1.5))];
+//! let there = vec![(RobotJoint::RightE1.into(), Drive::Toward(1.5))];
 //! app.world_mut().write_command(RobotCommand::Drive(there));
 //! app.step(120);
 //! let robot = app.world().resource::<Robot>();
