@@ -29,28 +29,22 @@ static CONTENTS: [Dir; WORKING_FOLDERS.len()] = [
 /// The endings of their files; what else a script may have left there is not shipped.
 const ENDINGS: [&str; 5] = ["xml", "xsd", "m", "ron", "py"];
 
+macro_rules! asset {
+    ($path:literal) => {
+        ShippedFile {
+            path: concat!("assets/", $path),
+            text: include_str!(concat!("../assets/", $path)),
+        }
+    };
+}
+
 /// The descriptions of robots; what they name is known to the program.
 const ROBOTS: [ShippedFile; 5] = [
-    ShippedFile {
-        path: "assets/baxter/baxter.urdf",
-        text: include_str!("../assets/baxter/baxter.urdf"),
-    },
-    ShippedFile {
-        path: "assets/baxter/robot.ron",
-        text: include_str!("../assets/baxter/robot.ron"),
-    },
-    ShippedFile {
-        path: "assets/panda/panda.urdf",
-        text: include_str!("../assets/panda/panda.urdf"),
-    },
-    ShippedFile {
-        path: "assets/panda/robot.ron",
-        text: include_str!("../assets/panda/robot.ron"),
-    },
-    ShippedFile {
-        path: "assets/baxter/baxter_smile.urdf",
-        text: include_str!("../assets/baxter/baxter_smile.urdf"),
-    },
+    asset!("baxter/baxter.urdf"),
+    asset!("baxter/robot.ron"),
+    asset!("panda/panda.urdf"),
+    asset!("panda/robot.ron"),
+    asset!("baxter/baxter_smile.urdf"),
 ];
 
 /// All files that are inside the program.

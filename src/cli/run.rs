@@ -197,8 +197,7 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     };
     let outcome = outcome.and_then(|done| {
         if only_prepares {
-            let mut left = ticks_taken..limit;
-            script.run_while(&mut app, |_| left.next().is_some())?;
+            script.run_for(&mut app, limit.saturating_sub(ticks_taken))?;
         }
         if script.is_running() {
             say("tabletop: the script was still running when the scenario ended; a Wait at its end gives it more time");

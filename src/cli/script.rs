@@ -78,10 +78,15 @@ impl Script {
 
     /// Lets the script act for so many ticks, or until it has ended.
     pub fn act(mut self, app: &mut App, ticks: u64) -> Result<(), Failure> {
-        let mut left = 0..ticks;
-        self.run_while(app, |_| left.next().is_some())?;
+        self.run_for(app, ticks)?;
         shut_down(app.world_mut());
         self.result()
+    }
+
+    /// Simulates so many ticks, or until the script has ended.
+    pub fn run_for(&mut self, app: &mut App, ticks: u64) -> Result<(), Failure> {
+        let mut left = 0..ticks;
+        self.run_while(app, |_| left.next().is_some())
     }
 
     /// Simulates as long as this is so, or until the script has ended.

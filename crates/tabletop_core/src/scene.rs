@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{JointedSpec, ObjectSpec, Pose, Primitive, Rgb, Rollback, Solid};
+use crate::{JointedSpec, ObjectSpec, Pose, Primitive, Rgb, Rollback, Shape, Solid};
 
 /// The content of a task file, in the file's order, before ids are made unique.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -136,4 +136,26 @@ pub struct LidBoxSpec {
     pub handle_color: Rgb,
     /// Symbolic properties for recordings.
     pub descriptions: Vec<(String, String)>,
+}
+
+impl LidBoxSpec {
+    /// The shape of the box, without its lid.
+    pub const fn container(&self) -> Shape {
+        Shape::Box {
+            span: self.span,
+            thickness: self.thickness,
+            color: self.color,
+        }
+    }
+
+    /// The shape of the lid.
+    pub const fn lid(&self) -> Shape {
+        Shape::Lid {
+            span: Vec3::new(self.span.x, self.span.y, self.thickness),
+            color: self.color,
+            handle_span: self.handle_span,
+            handle_thickness: self.handle_thickness,
+            handle_color: self.handle_color,
+        }
+    }
 }

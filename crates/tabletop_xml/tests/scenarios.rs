@@ -5,9 +5,7 @@
 use std::path::Path;
 
 use bevy::math::Vec3;
-use tabletop_core::{
-    LidBoxSpec, ObjectSpec, Pose, Primitive, SceneItem, SceneSpec, Shape, Solid, Table,
-};
+use tabletop_core::{ObjectSpec, Pose, Primitive, SceneItem, SceneSpec, Shape, Solid, Table};
 use tabletop_xml::read_task;
 
 const NAMES: [&str; 15] = [
@@ -149,8 +147,12 @@ fn bodies(item: &SceneItem) -> Vec<Vec<Primitive>> {
     match item {
         SceneItem::Object(object) => vec![placed(&object.shape, object.pose)],
         SceneItem::LidBox(lidbox) => {
-            let (container, lid, lid_pose) = shapes_of(lidbox);
-            vec![placed(&container, lidbox.pose), placed(&lid, lid_pose)]
+            let height = (lidbox.span.z + lidbox.thickness) / 2.0;
+            let on_top = lidbox.pose * Pose::at(Vec3::Z * height);
+            vec![
+                placed(&lidbox.container(), lidbox.pose),
+                placed(&lidbox.lid(), on_top),
+            ]
         }
         SceneItem::Jointed(jointed) => {
             let objects = jointed.placed();
@@ -175,23 +177,6 @@ fn bodies(item: &SceneItem) -> Vec<Vec<Primitive>> {
             vec![links.collect()]
         }
     }
-}
-
-fn shapes_of(lidbox: &LidBoxSpec) -> (Shape, Shape, Pose) {
-    let container = Shape::Box {
-        span: lidbox.span,
-        thickness: lidbox.thickness,
-        color: lidbox.color,
-    };
-    let lid = Shape::Lid {
-        span: lidbox.span.with_z(lidbox.thickness),
-        color: lidbox.color,
-        handle_span: lidbox.handle_span,
-        handle_thickness: lidbox.handle_thickness,
-        handle_color: lidbox.handle_color,
-    };
-    let height = (lidbox.span.z + lidbox.thickness) / 2.0;
-    (container, lid, lidbox.pose * Pose::at(Vec3::Z * height))
 }
 
 fn placed(shape: &Shape, pose: Pose) -> Vec<Primitive> {

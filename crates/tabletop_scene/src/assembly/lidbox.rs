@@ -1,7 +1,7 @@
 //! Lid boxes: a box and a lid that slides on top of it.
 
 use bevy::prelude::*;
-use tabletop_core::{JointKind, JointSpec, LidBoxSpec, ObjectSpec, Pose, Shape};
+use tabletop_core::{JointKind, JointSpec, LidBoxSpec, ObjectSpec, Pose};
 
 use crate::ids::IdAllocator;
 
@@ -17,24 +17,14 @@ pub(super) fn build(spec: &LidBoxSpec, ids: &mut IdAllocator) -> ([ObjectSpec; 2
         id: ids.unique(&format!("{id}-box")),
         pose: spec.pose,
         mass: spec.box_mass,
-        shape: Shape::Box {
-            span: spec.span,
-            thickness: spec.thickness,
-            color: spec.color,
-        },
+        shape: spec.container(),
         descriptions: spec.descriptions.clone(),
     };
     let lid = ObjectSpec {
         id: ids.unique(&format!("{id}-lid")),
         pose: spec.pose * top * lid_bottom.inverse(),
         mass: spec.lid_mass,
-        shape: Shape::Lid {
-            span: spec.span.with_z(spec.thickness),
-            color: spec.color,
-            handle_span: spec.handle_span,
-            handle_thickness: spec.handle_thickness,
-            handle_color: spec.handle_color,
-        },
+        shape: spec.lid(),
         descriptions: Vec::new(),
     };
     let joint = JointSpec {

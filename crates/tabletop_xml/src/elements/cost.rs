@@ -95,21 +95,13 @@ fn links(chain: &ChainSpec) -> Vec<Vec<Bounds>> {
 
 /// Box and lid, which do not collide with each other.
 fn parts_of_lidbox(lidbox: &LidBoxSpec) -> Vec<Bounds> {
-    let container = Shape::Box {
-        span: lidbox.span,
-        thickness: lidbox.thickness,
-        color: lidbox.color,
-    };
-    let lid = Shape::Lid {
-        span: lidbox.span.with_z(lidbox.thickness),
-        color: lidbox.color,
-        handle_span: lidbox.handle_span,
-        handle_thickness: lidbox.handle_thickness,
-        handle_color: lidbox.handle_color,
-    };
     let height = (lidbox.span.z + lidbox.thickness) / 2.0;
     let on_top = lidbox.pose * Pose::at(bevy::math::Vec3::Z * height);
-    [solids(&container, lidbox.pose), solids(&lid, on_top)].concat()
+    [
+        solids(&lidbox.container(), lidbox.pose),
+        solids(&lidbox.lid(), on_top),
+    ]
+    .concat()
 }
 
 #[cfg(test)]
