@@ -144,9 +144,14 @@ pub fn baxter_body(table: &Table) -> Result<RobotBody, ModelError> {
     RobotBody::new(model, layout.base.pose(table), limbs)
 }
 
-/// A scene with everything at random places within the robot's reach, decided by the seed; what stands on, in or around something stays with
-/// it. None if there is no room.
-pub fn scattered(scene: &SceneSpec, body: &RobotBody, seed: u64) -> Option<SceneSpec> {
+/// A scene with everything at random places, decided by the seed, and within reach of the robot if there is one; what stands on, in or around
+/// something stays with it, and nothing is put near what is `kept` free. None if there is no room.
+pub fn scattered(
+    scene: &SceneSpec,
+    kept: &[Convex],
+    body: Option<&RobotBody>,
+    seed: u64,
+) -> Option<SceneSpec> {
     let mut ids = IdAllocator::default();
     let mut objects = Vec::new();
     let pieces: Vec<_> = scene
@@ -181,7 +186,8 @@ pub fn scattered(scene: &SceneSpec, body: &RobotBody, seed: u64) -> Option<Scene
             .map(|object| (object.id.as_str(), &object.shape, object.pose)),
     );
     let seed = Random::new(seed).bits();
-    let motions = scatter(&pieces, &arrangement, &scene.table, body, seed)?;
+    let is_reached = |point| body.is_none_or(|body| body.reaches_from_above(point));
+    let motions = scatter(&pieces, &arrangement, &scene.table, kept, is_reached, seed)?;
     let items = scene
         .items
         .iter()

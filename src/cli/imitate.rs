@@ -114,7 +114,7 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
 }
 
 /// The last scene that was put on the table before a recording.
-fn scene_of(recording: &Path) -> Result<SceneSpec, Failure> {
+pub(super) fn scene_of(recording: &Path) -> Result<SceneSpec, Failure> {
     let recording = RecordingReader::open(recording).map_err(Failure::input)?;
     let commands = recording.session().earlier.iter().rev();
     let mut scenes = commands.filter_map(|command| match &command.command {
@@ -141,7 +141,7 @@ impl Attempt<'_> {
     fn make(&self, is_told: bool) -> Result<Trial, Failure> {
         let start = Instant::now();
         let scene = match self.seed {
-            Some(seed) => scattered(self.scene, self.body, seed),
+            Some(seed) => scattered(self.scene, &[], Some(self.body), seed),
             None => Some(self.scene.clone()),
         };
         let Some(scene) = scene else {

@@ -22,7 +22,7 @@ pub(crate) struct Candidate {
 
 /// Where things were before.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Before {
+pub struct Before {
     /// In the beginning, by object.
     pub beginning: BTreeMap<String, Pose>,
     /// Before this step, the object that is moved.
@@ -189,8 +189,11 @@ fn change_of_side(step: &Step, frame: Pose, pose: Pose) -> f32 {
     }
 }
 
-/// Whether an object that is on its way to a candidate is where it has to be.
-pub(crate) fn is_met(
+/// Whether the object of a step is where it has to be.
+///
+/// # Errors
+/// It is not there, or what it was put to is not.
+pub fn is_met(
     step: &Step,
     binding: &Binding,
     sight: &Sight,

@@ -75,6 +75,34 @@ pub fn imitate(
     imitator.outcome
 }
 
+/// The first step of a task that has been done of which the relations do not hold, if there is one: a later step has undone it. Of several steps
+/// with an object, only the last one counts.
+pub fn undone(
+    task: &Task,
+    binding: &Binding,
+    sight: &Sight,
+    before: &Before,
+) -> Option<(usize, Failure)> {
+    let is_last = |step: &&Step| {
+        let mut later = task.steps[step.number..].iter();
+        !later.any(|later| later.object == step.object)
+    };
+    let stays = |step: &&Step| {
+        step.goal
+            .as_ref()
+            .is_some_and(|goal| goal.reference != Reference::Itself)
+    };
+    let mut lasting = task.steps.iter().filter(is_last).filter(stays);
+    lasting.find_map(|step| match is_met(step, binding, sight, before) {
+        Ok(true) => None,
+        Ok(false) => {
+            let object = binding.object(&step.object).unwrap_or(&step.object);
+            Some((step.number, Failure::Misplaced(object.to_owned())))
+        }
+        Err(gone) => Some((step.number, gone)),
+    })
+}
+
 struct Imitator<'a> {
     body: &'a RobotBody,
     task: &'a Task,
@@ -128,7 +156,7 @@ impl Imitator<'_> {
             self.outcome.steps_done += 1;
         }
         if self.outcome.failure.is_none() {
-            self.outcome.failure = self.undone(&stage.sight());
+            self.outcome.failure = undone(self.task, self.binding, &stage.sight(), &self.before);
         }
         let is_held = |step: &Step| step.relations.first() == Some(&Relation::Held);
         if !self.task.steps.iter().any(is_held) {
@@ -138,32 +166,6 @@ impl Imitator<'_> {
         }
         let limbs = stage.sight().limbs.len();
         wait(stage, limbs, 30);
-    }
-
-    /// The first step that a later one has undone, if one has.
-    fn undone(&self, sight: &Sight) -> Option<(usize, Failure)> {
-        let steps = &self.task.steps;
-        let is_last = |step: &&Step| {
-            !steps[step.number..]
-                .iter()
-                .any(|later| later.object == step.object)
-        };
-        let stays = |step: &&Step| {
-            step.goal
-                .as_ref()
-                .is_some_and(|goal| goal.reference != Reference::Itself)
-        };
-        let mut lasting = steps.iter().filter(is_last).filter(stays);
-        lasting.find_map(
-            |step| match is_met(step, self.binding, sight, &self.before) {
-                Ok(true) => None,
-                Ok(false) => {
-                    let object = self.binding.object(&step.object).unwrap_or(&step.object);
-                    Some((step.number, Failure::Misplaced(object.to_owned())))
-                }
-                Err(gone) => Some((step.number, gone)),
-            },
-        )
     }
 
     fn do_step(&self, stage: &mut impl Stage, i: usize) -> Result<(), Failure> {

@@ -22,8 +22,9 @@ mod transit;
 
 pub use body::{Angles, LimbBody, LimbSource, RobotBody};
 pub use failure::Failure;
+pub use goals::{Before, is_met};
 pub use grasp::{Grasp, grasps};
-pub use imitation::{Doing, Imitation, imitate};
+pub use imitation::{Doing, Imitation, imitate, undone};
 pub use scatter::{Piece, scatter};
 pub use sight::{LimbSight, SeenObject, Sight};
 pub use stage::{LimbOrder, Stage};

@@ -28,18 +28,20 @@ const TRIES: u32 = 3000;
 /// How far from the table's edges pieces stay, in units.
 const EDGE: f32 = 0.05;
 
-/// A motion for every piece that brings all of them to random places within the robot's reach, turned by random angles; pieces that stand
-/// on, in or around others stay with them. None if there is no room.
+/// A motion for every piece that brings all of them to random places where `is_reached` holds of the points that must be reached, turned by
+/// random angles; pieces that stand on, in or around others stay with them. Nothing comes near what is to be `kept` free. None if there is
+/// no room.
 pub fn scatter(
     pieces: &[Piece],
     arrangement: &Arrangement,
     table: &Table,
-    body: &RobotBody,
+    kept: &[Convex],
+    is_reached: impl Fn(Vec3) -> bool,
     seed: u64,
 ) -> Option<Vec<Pose>> {
     let groups = groups(pieces, arrangement);
     let mut random = Random::new(seed);
-    let mut placed = Vec::<Convex>::new();
+    let mut placed = kept.to_vec();
     let mut motions = vec![Pose::IDENTITY; pieces.len()];
     let half = Vec3::new(table.xspan, table.yspan, 0.0) / 2.0 - EDGE;
     for group in groups {
@@ -73,11 +75,11 @@ pub fn scatter(
                     .iter()
                     .all(|solid| placed.iter().all(|other| solid.gap_from_above(other) > GAP))
             };
-            let is_reached = || {
+            let all_are_reached = || {
                 let mut points = group.iter().flat_map(|&piece| &pieces[piece].reached);
-                points.all(|point| reaches(body, motion * *point))
+                points.all(|point| is_reached(motion * *point))
             };
-            if is_on_table && is_apart() && is_reached() {
+            if is_on_table && is_apart() && all_are_reached() {
                 found = Some((motion, solids));
                 break;
             }
@@ -91,19 +93,21 @@ pub fn scatter(
     Some(motions)
 }
 
-/// Whether some limb reaches a point from above, and above it, whichever way its fingers are turned.
-fn reaches(body: &RobotBody, point: Vec3) -> bool {
-    (0..body.limbs.len()).any(|limb| {
-        let home = body.limbs[limb].home;
-        let there = |z: f32, turn: f32| {
-            let pose = Pose::new(point.with_z(z), Quat::from_rotation_z(turn));
-            body.reach(limb, pose, &home).is_some()
-        };
-        let low = point.z + 0.3;
-        [0.0, PI / 4.0, PI / 2.0, -PI / 4.0]
-            .into_iter()
-            .all(|turn| there(low, turn) && there(low + 2.5, turn))
-    })
+impl RobotBody {
+    /// Whether some limb reaches a point from above, and above it, whichever way its fingers are turned.
+    pub fn reaches_from_above(&self, point: Vec3) -> bool {
+        (0..self.limbs.len()).any(|limb| {
+            let home = self.limbs[limb].home;
+            let there = |z: f32, turn: f32| {
+                let pose = Pose::new(point.with_z(z), Quat::from_rotation_z(turn));
+                self.reach(limb, pose, &home).is_some()
+            };
+            let low = point.z + 0.3;
+            [0.0, PI / 4.0, PI / 2.0, -PI / 4.0]
+                .into_iter()
+                .all(|turn| there(low, turn) && there(low + 2.5, turn))
+        })
+    }
 }
 
 /// The pieces that stand on, in or around each other, by index.
