@@ -188,33 +188,24 @@ pub fn scattered(
     let seed = Random::new(seed).bits();
     let is_reached = |point| body.is_none_or(|body| body.reaches_from_above(point));
     let motions = scatter(&pieces, &arrangement, &scene.table, kept, is_reached, seed)?;
-    let items = scene
-        .items
-        .iter()
-        .zip(motions)
-        .map(|(item, motion)| match item {
-            SceneItem::Object(spec) => SceneItem::Object(ObjectSpec {
-                pose: motion * spec.pose,
-                ..spec.clone()
-            }),
-            SceneItem::LidBox(spec) => {
-                let mut spec = spec.clone();
-                spec.pose = motion * spec.pose;
-                SceneItem::LidBox(spec)
-            }
-            SceneItem::Chain(spec) => {
-                let mut spec = spec.clone();
-                (spec.start, spec.end) = (motion * spec.start, motion * spec.end);
-                SceneItem::Chain(spec)
-            }
-            SceneItem::Jointed(spec) => {
-                let mut spec = spec.clone();
-                spec.pose = motion * spec.pose;
-                SceneItem::Jointed(spec)
-            }
-        });
+    let items = scene.items.iter().zip(motions);
+    let items = items.map(|(item, motion)| moved(item, motion));
     Some(SceneSpec {
         table: scene.table,
         items: items.collect(),
     })
+}
+
+/// An item of a scene, moved.
+pub(crate) fn moved(item: &SceneItem, motion: Pose) -> SceneItem {
+    let mut item = item.clone();
+    match &mut item {
+        SceneItem::Object(spec) => spec.pose = motion * spec.pose,
+        SceneItem::LidBox(spec) => spec.pose = motion * spec.pose,
+        SceneItem::Chain(spec) => {
+            (spec.start, spec.end) = (motion * spec.start, motion * spec.end);
+        }
+        SceneItem::Jointed(spec) => spec.pose = motion * spec.pose,
+    }
+    item
 }

@@ -54,6 +54,7 @@ pub use tabletop_xml as xml;
 pub mod final_state;
 mod headless;
 pub mod imitation;
+pub mod multiplication;
 pub mod replay;
 pub mod scene_dump;
 mod settings;

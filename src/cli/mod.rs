@@ -9,6 +9,8 @@ mod imitate;
 mod init;
 #[cfg(feature = "window")]
 mod keys;
+mod multiply;
+mod progress;
 mod replay;
 mod require;
 mod robot;
@@ -55,6 +57,8 @@ enum Command {
     Require(require::RequireArgs),
     /// Let the robot do what a recording shows
     Imitate(imitate::ImitateArgs),
+    /// Make many demonstrations of one: with everything elsewhere, for those who train networks
+    Multiply(multiply::MultiplyArgs),
     /// Check task files and name every fault with its place
     Check(check::CheckArgs),
     /// Answer questions about the robot's joints and frames for other programs
@@ -81,6 +85,8 @@ Examples:
   tabletop run scenarios/stack_two_blocks.ron --record demo
                                                 perform a demonstration and record it
   tabletop replay demo --window                 watch the recording
+  tabletop explain demo                         say what it shows
+  tabletop multiply demo --count 100 --out many make a hundred of it, with everything elsewhere
   tabletop run --script python --seconds 20     let a script drive the robot
   tabletop init work                            write all shipped files to a folder, to change them
 
@@ -142,6 +148,7 @@ pub fn main() -> ExitCode {
         Some(Command::Explain(args)) => explain::explain(&args),
         Some(Command::Require(args)) => require::require(&args),
         Some(Command::Imitate(args)) => imitate::run(&args),
+        Some(Command::Multiply(args)) => multiply::run(&args),
         Some(Command::Check(args)) => check::check(&args),
         Some(Command::Robot(args)) => robot::robot(&args),
         #[cfg(feature = "window")]

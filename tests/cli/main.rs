@@ -8,6 +8,7 @@ mod imitate;
 #[cfg(feature = "window")]
 mod keys;
 mod kinematics;
+mod multiply;
 mod replay;
 mod robot;
 mod scenarios;

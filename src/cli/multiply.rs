@@ -1,0 +1,282 @@
+//! `tabletop multiply`: one demonstration becomes many.
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+    process::ExitCode,
+    sync::{
+        Mutex,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+        mpsc,
+    },
+    thread,
+    time::Instant,
+};
+
+use clap::Args;
+use serde_json::{Value, json};
+use tabletop::multiplication::{Demonstrator, Made, Multiplication, MultiplyError, Variation};
+
+use super::{
+    Failure, Output,
+    progress::Progress,
+    terminal::{say, show_warnings},
+};
+
+#[derive(Args)]
+pub(super) struct MultiplyArgs {
+    /// The recording's folder
+    #[arg(value_name = "DIR")]
+    recording: PathBuf,
+    /// How many demonstrations to make
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    count: u64,
+    /// The folder for them, each in a folder of its number; those that are there are kept
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// What decides places and everything else that differs [default: 0]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    seed: u64,
+    /// Let the robot show it, instead of the hand
+    #[arg(long)]
+    robot: bool,
+    /// Give the objects other colours, as far as what is required of them allows
+    #[arg(long)]
+    colors: bool,
+    /// Put up to so many other objects around
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    distractors: u32,
+    /// Move the head camera by up to so many units, and turn it by up to 2° for each
+    #[arg(long, value_name = "UNITS", value_parser = length, default_value_t = 0.0, hide_default_value = true)]
+    camera: f32,
+    /// How many to make at a time [default: as many as the processor can]
+    #[arg(long, value_name = "N")]
+    jobs: Option<usize>,
+}
+
+/// Reads a length of 0 to 10 units.
+fn length(text: &str) -> Result<f32, String> {
+    let length = text.parse().ok();
+    length
+        .filter(|length| (0.0..=10.0).contains(length))
+        .ok_or_else(|| "expected 0 to 10 units".into())
+}
+
+/// What a folder of demonstrations was made with, so that others are not mixed with them.
+const MANIFEST: &str = "multiply.json";
+/// What the folders of demonstrations begin with that are being made.
+const PART: &str = ".part-";
+
+/// Makes the demonstrations. Exit code 1 if some could not be made.
+pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
+    show_warnings();
+    let demonstrator = match args.robot {
+        true => Demonstrator::Robot,
+        false => Demonstrator::Hand,
+    };
+    let variation = Variation {
+        colors: args.colors,
+        sizes: 0.0,
+        distractors: args.distractors,
+        camera: args.camera,
+    };
+    let multiplication = Multiplication::of(&args.recording, demonstrator, variation, args.seed)
+        .map_err(Failure::input)?;
+    prepare(args)?;
+    let start = Instant::now();
+    let missing: Vec<_> = (0..args.count)
+        .filter(|number| !args.folder(*number).is_dir())
+        .collect();
+    let there = args.count - missing.len() as u64;
+    let outcome = make_all(args, &multiplication, &missing)?;
+    let real = start.elapsed().as_secs_f64();
+    Output::Stdout.write(outcome.summary(there, real).as_bytes())?;
+    Ok(ExitCode::from(u8::from(!outcome.given_up.is_empty())))
+}
+
+/// Makes the folder ready: it holds only demonstrations that were made with the same options, and none that is half made.
+fn prepare(args: &MultiplyArgs) -> Result<(), Failure> {
+    let failed = |path: &Path| {
+        let path = path.display().to_string();
+        move |error| Failure::run(format!("{path}: {error}"))
+    };
+    fs::create_dir_all(&args.out).map_err(failed(&args.out))?;
+    let path = args.out.join(MANIFEST);
+    let manifest = args.manifest();
+    match fs::read_to_string(&path) {
+        Ok(text) => {
+            let known: Option<Value> = serde_json::from_str(&text).ok();
+            if known.as_ref() != Some(&manifest) {
+                let reason = format!(
+                    "{}: the demonstrations there were made with other options; name a new folder",
+                    path.display()
+                );
+                return Err(Failure::input(reason));
+            }
+        }
+        Err(_) if is_empty(&args.out) => {
+            let text = format!("{manifest:#}\n");
+            fs::write(&path, text).map_err(failed(&path))?;
+        }
+        Err(_) => {
+            let reason = format!(
+                "{}: it holds something else; name a new folder",
+                args.out.display()
+            );
+            return Err(Failure::input(reason));
+        }
+    }
+    for entry in fs::read_dir(&args.out)
+        .map_err(failed(&args.out))?
+        .flatten()
+    {
+        let name = entry.file_name();
+        if name.to_string_lossy().starts_with(PART) {
+            fs::remove_dir_all(entry.path()).map_err(failed(&entry.path()))?;
+        }
+    }
+    Ok(())
+}
+
+fn is_empty(folder: &Path) -> bool {
+    fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none())
+}
+
+/// What became of all of them.
+#[derive(Default)]
+struct Outcome {
+    made: u64,
+    dropped: BTreeMap<String, u64>,
+    given_up: Vec<u64>,
+}
+
+impl Outcome {
+    fn note(&mut self, number: u64, made: &Made) {
+        match made.is_kept {
+            true => self.made += 1,
+            false => self.given_up.push(number),
+        }
+        for reason in &made.dropped {
+            *self.dropped.entry(reason.to_string()).or_default() += 1;
+        }
+    }
+
+    fn summary(&self, there: u64, real: f64) -> String {
+        let mut lines = Vec::new();
+        if there > 0 {
+            lines.push(format!("{there} were there"));
+        }
+        let rate = self.made as f64 / real.max(1e-3);
+        lines.push(format!(
+            "{} made in {real:.1} s: {rate:.1} a second",
+            self.made
+        ));
+        let dropped: u64 = self.dropped.values().sum();
+        if dropped > 0 {
+            lines.push(format!("{dropped} dropped and tried elsewhere:"));
+            let reasons = self.dropped.iter();
+            lines.extend(reasons.map(|(reason, count)| format!("{count:>6}  {reason}")));
+        }
+        if !self.given_up.is_empty() {
+            let numbers: Vec<_> = self.given_up.iter().map(u64::to_string).collect();
+            lines.push(format!("given up: {}", numbers.join(", ")));
+        }
+        lines.join("\n") + "\n"
+    }
+}
+
+/// Makes demonstrations on all cores. The first error ends it.
+fn make_all(
+    args: &MultiplyArgs,
+    multiplication: &Multiplication,
+    missing: &[u64],
+) -> Result<Outcome, Failure> {
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    let jobs = args.jobs.unwrap_or(cores).clamp(1, missing.len().max(1));
+    let next = AtomicU64::new(0);
+    let is_ended = AtomicBool::new(false);
+    let outcome = Mutex::new(Outcome::default());
+    let mut progress = Progress::new(missing.len() as u64);
+    let (sender, done) = mpsc::channel::<Result<(u64, Made), Failure>>();
+    thread::scope(|scope| {
+        for _ in 0..jobs {
+            let sender = sender.clone();
+            let (next, is_ended) = (&next, &is_ended);
+            scope.spawn(move || {
+                while !is_ended.load(Ordering::Relaxed) {
+                    let turn = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(&number) = missing.get(turn as usize) else {
+                        break;
+                    };
+                    let made = args.make(multiplication, number);
+                    if sender.send(made.map(|made| (number, made))).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        let mut result = Ok(());
+        for made in done {
+            match made {
+                Ok((number, made)) => {
+                    if let Ok(mut outcome) = outcome.lock() {
+                        outcome.note(number, &made);
+                        progress.advance(outcome.dropped.values().sum());
+                    }
+                }
+                Err(failure) => {
+                    is_ended.store(true, Ordering::Relaxed);
+                    result = Err(failure);
+                }
+            }
+        }
+        progress.end();
+        result
+    })?;
+    let mut outcome = outcome.into_inner().unwrap_or_default();
+    outcome.given_up.sort_unstable();
+    for number in &outcome.given_up {
+        say(format_args!(
+            "tabletop: demonstration {number} could not be made"
+        ));
+    }
+    Ok(outcome)
+}
+
+impl MultiplyArgs {
+    fn folder(&self, number: u64) -> PathBuf {
+        self.out.join(format!("{number:04}"))
+    }
+
+    /// Makes one, which is there when it is whole.
+    fn make(&self, multiplication: &Multiplication, number: u64) -> Result<Made, Failure> {
+        let part = self.out.join(format!("{PART}{number:04}"));
+        let made = multiplication.make(number, &part);
+        let made = made.map_err(|error| Failure::run(named(number, &error)))?;
+        if made.is_kept {
+            let folder = self.folder(number);
+            fs::rename(&part, &folder)
+                .map_err(|error| Failure::run(format!("{}: {error}", folder.display())))?;
+        }
+        Ok(made)
+    }
+
+    /// What decides what the demonstrations are; not how many there are.
+    fn manifest(&self) -> Value {
+        json!({
+            "demonstration": self.recording,
+            "program": env!("CARGO_PKG_VERSION"),
+            "seed": self.seed,
+            "robot": self.robot,
+            "colors": self.colors,
+            "distractors": self.distractors,
+            "camera": self.camera,
+        })
+    }
+}
+
+fn named(number: u64, error: &MultiplyError) -> String {
+    format!("demonstration {number}: {error}")
+}

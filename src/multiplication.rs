@@ -1,0 +1,247 @@
+//! One demonstration, many: the same task with everything elsewhere, shown again by the hand or by the robot (MimicGen's idea: Mandlekar
+//! et al., MimicGen: A Data Generation System for Scalable Robot Learning using Human Demonstrations, 2023).
+//!
+//! A demonstration of a number is decided by the seed and that number alone, so it does not matter which others were made, or where.
+
+mod beginning;
+mod performance;
+mod variation;
+mod way;
+
+pub use beginning::scene_at_beginning;
+pub use variation::Variation;
+
+use std::{fmt, fs, io, path::Path};
+
+use bevy::prelude::*;
+use serde_json::json;
+use tabletop_core::{
+    HeadCamera, Random, RecordingCommand, RobotCommand, SceneCommand, SceneSpec, SimFact,
+    StepApp as _, WriteCommand as _,
+};
+use tabletop_kinematics::ModelError;
+use tabletop_planner::{Failure, RobotBody, imitate};
+use tabletop_recorder::{Durability, RecorderError, RecorderPlugin, RecordingReader};
+use tabletop_scene::{IdAllocator, assemble};
+use tabletop_task::{Binding, Demonstration, RequirementError, Requirements, Task};
+
+use crate::{
+    TabletopSimPlugins, headless_app_with,
+    imitation::{AppStage, baxter_body},
+};
+use performance::perform;
+
+/// Who shows it again.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Demonstrator {
+    /// The hand that has shown it.
+    #[default]
+    Hand,
+    /// The robot.
+    Robot,
+}
+
+/// A demonstration, ready to be multiplied.
+#[derive(Debug)]
+pub struct Multiplication {
+    shown: Demonstration,
+    task: Task,
+    requirements: Requirements,
+    scene: SceneSpec,
+    /// The robot, if it shows it again.
+    body: Option<RobotBody>,
+    variation: Variation,
+    seed: u64,
+}
+
+/// What became of the demonstration of a number.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Made {
+    /// Whether it is there.
+    pub is_kept: bool,
+    /// What was wrong with those that were dropped before.
+    pub dropped: Vec<Dropped>,
+}
+
+/// Why a demonstration was not kept.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Dropped {
+    /// There was no room for everything.
+    NoRoom,
+    /// A step of the task has failed.
+    Step(usize, Failure),
+}
+
+/// Why a demonstration cannot be multiplied.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says it")]
+pub enum MultiplyError {
+    #[error(transparent)]
+    Recording(#[from] RecorderError),
+    #[error(transparent)]
+    Requirements(#[from] RequirementError),
+    #[error(transparent)]
+    Robot(#[from] ModelError),
+    #[error("nothing is moved for good in the recording, so there is nothing to show again")]
+    NoTask,
+    #[error("the recording does not say what was on the table when it began")]
+    NoScene,
+    #[error("{0}")]
+    Unbound(#[from] tabletop_task::Unbound),
+    #[error("{0}")]
+    Record(String),
+    #[error("{path}: {source}", path = .path.display())]
+    Io {
+        path: std::path::PathBuf,
+        source: io::Error,
+    },
+}
+
+/// How often a demonstration is tried with other places before it is given up.
+const TRIES: u64 = 20;
+/// Ticks after which what was put on the table is at rest.
+const SETTLING: u64 = 30;
+
+impl Multiplication {
+    /// Reads a recording, to show its task again.
+    ///
+    /// # Errors
+    /// It cannot be read, or shows no task.
+    pub fn of(
+        recording: &Path,
+        demonstrator: Demonstrator,
+        variation: Variation,
+        seed: u64,
+    ) -> Result<Self, MultiplyError> {
+        let reader = RecordingReader::open(recording)?;
+        let shown = Demonstration::of(&reader)?;
+        let task = Task::of(&shown);
+        if task.steps.is_empty() {
+            return Err(MultiplyError::NoTask);
+        }
+        let requirements = Requirements::read(recording)?;
+        let scene = scene_at_beginning(reader.session()).ok_or(MultiplyError::NoScene)?;
+        let body = match demonstrator {
+            Demonstrator::Hand => None,
+            Demonstrator::Robot => Some(baxter_body(&scene.table)?),
+        };
+        Ok(Self {
+            shown,
+            task,
+            requirements,
+            scene,
+            body,
+            variation,
+            seed,
+        })
+    }
+
+    /// Records the demonstration of a number in a new folder. It is tried with other places until the relations of the task hold in the end.
+    ///
+    /// # Errors
+    /// It cannot be recorded there.
+    pub fn make(&self, number: u64, folder: &Path) -> Result<Made, MultiplyError> {
+        let mut made = Made::default();
+        for attempt in 0..TRIES {
+            let mut random = Random::new(self.seed_of(number, attempt));
+            let Some(scene) = self.varied(&mut random) else {
+                made.dropped.push(Dropped::NoRoom);
+                continue;
+            };
+            match self.show(scene, number, attempt, &mut random, folder)? {
+                Ok(()) => {
+                    self.requirements.write(folder)?;
+                    made.is_kept = true;
+                    break;
+                }
+                Err((step, failure)) => {
+                    made.dropped.push(Dropped::Step(step, failure));
+                    let removed = fs::remove_dir_all(folder);
+                    removed.map_err(|source| MultiplyError::Io {
+                        path: folder.to_owned(),
+                        source,
+                    })?;
+                }
+            }
+        }
+        Ok(made)
+    }
+
+    fn seed_of(&self, number: u64, attempt: u64) -> u64 {
+        let mut mixed = self.seed;
+        for part in [number, attempt] {
+            mixed = Random::new(mixed ^ part.wrapping_mul(0xd6e8_feb8_6659_fd93)).bits();
+        }
+        mixed
+    }
+
+    /// Shows it once, and records that.
+    fn show(
+        &self,
+        scene: SceneSpec,
+        number: u64,
+        attempt: u64,
+        random: &mut Random,
+        folder: &Path,
+    ) -> Result<Result<(), (usize, Failure)>, MultiplyError> {
+        let objects = assemble(&scene, &mut IdAllocator::default()).objects;
+        let binding = self.task.bind(&self.requirements, &objects)?;
+        let camera = self.variation.camera(&scene.table, random);
+        let seed = random.bits();
+        let mut header = serde_json::Map::new();
+        header.insert(
+            "multiplied".into(),
+            json!({ "seed": self.seed, "number": number, "attempt": attempt }),
+        );
+        let mut app = headless_app_with(TabletopSimPlugins.build().set(RecorderPlugin {
+            folder: folder.to_owned(),
+            header,
+            // What a loss of power takes is made again.
+            durability: Durability::None,
+            ..default()
+        }));
+        if let Some(camera) = camera {
+            app.insert_resource::<HeadCamera>(camera);
+        }
+        let world = app.world_mut();
+        world.write_command(SceneCommand::Set(Box::new(scene)));
+        if self.body.is_some() {
+            world.write_command(RobotCommand::Show(true));
+        }
+        app.step(SETTLING);
+        app.world_mut().write_command(RecordingCommand::Start);
+        app.step(1);
+        let shown = self.act(&mut app, &binding, seed);
+        app.world_mut().write_command(RecordingCommand::Finish);
+        app.step(1);
+        let facts = app.world().resource::<Messages<SimFact>>();
+        let failed = facts.iter_current_update_messages().find_map(|fact| {
+            let SimFact::RecordingFailed { reason, .. } = fact else {
+                return None;
+            };
+            Some(reason.clone())
+        });
+        match failed {
+            Some(reason) => Err(MultiplyError::Record(reason)),
+            None => Ok(shown),
+        }
+    }
+
+    fn act(&self, app: &mut App, binding: &Binding, seed: u64) -> Result<(), (usize, Failure)> {
+        let Some(body) = &self.body else {
+            return perform(app, &self.shown, &self.task, binding);
+        };
+        let mut stage = AppStage::new(app);
+        let imitation = imitate(&mut stage, body, &self.task, binding, seed, |_| {});
+        imitation.failure.map_or(Ok(()), Err)
+    }
+}
+
+impl fmt::Display for Dropped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoRoom => f.write_str("there was no room for everything"),
+            Self::Step(step, failure) => write!(f, "step {step}: {failure}"),
+        }
+    }
+}

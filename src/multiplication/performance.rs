@@ -1,0 +1,408 @@
+//! A task, shown again by the hand that has shown it.
+
+use std::f32::consts::{PI, TAU};
+
+use bevy::prelude::*;
+use tabletop_core::{
+    Hand, HandCommand, Hands, ObjectIndex, Pose, SimTick, StepApp as _, WriteCommand as _,
+};
+use tabletop_planner::{Before, Failure, Sight, Stage as _, is_met, undone};
+use tabletop_task::{
+    Binding, Convex, Demonstration, Place, Reference, Relation, Step, Task, angle_between,
+};
+
+use super::way::{Carried, Moment};
+use crate::imitation::AppStage;
+
+/// Ticks between a release and the next grasp: as many as were shown, within these.
+const PAUSE: (u64, u64) = (15, 60);
+/// Ticks in which a held object does not move when it has arrived.
+const STILL: u32 = 4;
+/// The most ticks that a hand waits for that.
+const MOST_WAITING: u32 = 90;
+/// Ticks after the last step.
+const END: u64 = 60;
+/// How far, seen from above, what is put aside stays from everything, in units.
+const ASIDE: f32 = 0.4;
+/// The least angle that a hand is told to turn by, in rad.
+const LEAST_TURN: f32 = 1e-4;
+/// How far an object moves in a tick that stays where it is, in units.
+const SAME: f32 = 1e-3;
+
+/// Lets the hand do the task with the objects that take its roles, and looks whether its relations hold in the end. If not, it says of which step.
+pub(super) fn perform(
+    app: &mut App,
+    shown: &Demonstration,
+    task: &Task,
+    binding: &Binding,
+) -> Result<(), (usize, Failure)> {
+    let sight = AppStage::new(app).sight();
+    let beginning = sight
+        .objects
+        .iter()
+        .map(|(id, object)| (id.clone(), object.pose));
+    let mut performance = Performance {
+        binding,
+        before: Before {
+            beginning: beginning.collect(),
+            step: None,
+        },
+        acts: acts(shown, task)?,
+        app,
+    };
+    while !performance.is_over() {
+        performance.begin_what_is_due()?;
+        performance.move_hands();
+        performance.app.step(1);
+        performance.look()?;
+    }
+    performance.app.step(END);
+    performance.judge(task)
+}
+
+struct Performance<'a> {
+    app: &'a mut App,
+    binding: &'a Binding,
+    before: Before,
+    /// The steps, in the order in which their objects were grasped.
+    acts: Vec<Act<'a>>,
+}
+
+/// A step, as it is shown again.
+struct Act<'a> {
+    step: &'a Step,
+    carried: Carried,
+    progress: Progress,
+    /// Where its object was before.
+    from: Pose,
+}
+
+enum Progress {
+    Waiting,
+    Carrying {
+        begun: SimTick,
+        hand: Hand,
+        way: Vec<Moment>,
+        next: usize,
+        /// Where the object is to be.
+        target: Pose,
+        /// Where it was a tick ago.
+        last: Pose,
+        /// Since when it has been there, and since when it is expected there.
+        still: u32,
+        waited: u32,
+    },
+    Done(SimTick),
+}
+
+fn acts<'a>(shown: &Demonstration, task: &'a Task) -> Result<Vec<Act<'a>>, (usize, Failure)> {
+    let mut acts = Vec::new();
+    for step in &task.steps {
+        let carried = Carried::of(shown, step);
+        let carried = carried.ok_or_else(|| (step.number, Failure::Gone(step.object.clone())))?;
+        acts.push(Act {
+            step,
+            carried,
+            progress: Progress::Waiting,
+            from: Pose::IDENTITY,
+        });
+    }
+    acts.sort_by_key(|act| act.step.grasp);
+    Ok(acts)
+}
+
+impl Performance<'_> {
+    fn is_over(&self) -> bool {
+        let is_done = |act: &Act| matches!(act.progress, Progress::Done(_));
+        self.acts.iter().all(is_done)
+    }
+
+    fn now(&self) -> SimTick {
+        *self.app.world().resource::<SimTick>()
+    }
+
+    /// Whether those that were grasped before are as far as they were when this one was grasped.
+    fn is_due(&self, i: usize) -> bool {
+        let (now, own) = (self.now().0, self.acts[i].step);
+        self.acts[..i].iter().all(|earlier| {
+            let is_meanwhile = earlier.step.release > own.grasp;
+            match &earlier.progress {
+                Progress::Waiting => false,
+                Progress::Carrying { begun, .. } => {
+                    is_meanwhile && now - begun.0 >= own.grasp.0 - earlier.step.grasp.0
+                }
+                Progress::Done(since) => {
+                    let pause = own.grasp.0.saturating_sub(earlier.step.release.0);
+                    is_meanwhile || now - since.0 >= pause.clamp(PAUSE.0, PAUSE.1)
+                }
+            }
+        })
+    }
+
+    fn begin_what_is_due(&mut self) -> Result<(), (usize, Failure)> {
+        for i in 0..self.acts.len() {
+            if !matches!(self.acts[i].progress, Progress::Waiting) || !self.is_due(i) {
+                continue;
+            }
+            let step = self.acts[i].step;
+            let begun = self.begin(i);
+            begun.map_err(|failure| (step.number, failure))?;
+        }
+        Ok(())
+    }
+
+    fn begin(&mut self, i: usize) -> Result<(), Failure> {
+        let sight = AppStage::new(self.app).sight();
+        let step = self.acts[i].step;
+        let id = self.bound(&step.object)?.to_owned();
+        let object = sight
+            .objects
+            .get(&id)
+            .ok_or_else(|| Failure::Gone(id.clone()))?;
+        let from = object.pose;
+        let carried = &self.acts[i].carried;
+        let reference = self.reference(step, carried, &sight, from)?;
+        let obstacles = obstacles(step, &sight, &id);
+        let way = carried.retargeted(&object.shape, from, reference, &obstacles);
+        let hand = carried.first_hand().unwrap_or_default();
+        self.app
+            .world_mut()
+            .write_command(HandCommand::Grasp { hand, object: id });
+        let begun = self.now();
+        let act = &mut self.acts[i];
+        act.from = from;
+        act.progress = Progress::Carrying {
+            begun,
+            hand,
+            way,
+            next: 0,
+            target: from,
+            last: from,
+            still: 0,
+            waited: 0,
+        };
+        Ok(())
+    }
+
+    fn bound(&self, role: &str) -> Result<&str, Failure> {
+        let bound = self.binding.object(role);
+        bound.ok_or_else(|| Failure::Gone(role.to_owned()))
+    }
+
+    /// Where that is now to which the goal of a step is relative. Without a goal, nothing is.
+    fn reference(
+        &self,
+        step: &Step,
+        carried: &Carried,
+        sight: &Sight,
+        from: Pose,
+    ) -> Result<Option<Pose>, Failure> {
+        let Some(goal) = &step.goal else {
+            return Ok(None);
+        };
+        let gone = |id: &str| Failure::Gone(id.to_owned());
+        let pose = match &goal.reference {
+            Reference::Table if goal.place == Place::Anywhere => {
+                let id = self.bound(&step.object)?;
+                let aside = free_place(sight, id, carried, from);
+                aside.ok_or_else(|| Failure::NoRoom(id.to_owned()))?
+            }
+            Reference::Table => Pose::IDENTITY,
+            Reference::Itself => from,
+            Reference::Object { object } => {
+                let id = self.bound(object)?;
+                sight.objects.get(id).ok_or_else(|| gone(id))?.pose
+            }
+            Reference::PlaceOf { object } => {
+                let id = self.bound(object)?;
+                *self.before.beginning.get(id).ok_or_else(|| gone(id))?
+            }
+        };
+        Ok(Some(pose))
+    }
+
+    fn move_hands(&mut self) {
+        let now = self.now();
+        for act in &mut self.acts {
+            let Progress::Carrying {
+                hand,
+                way,
+                next,
+                target,
+                still,
+                waited,
+                ..
+            } = &mut act.progress
+            else {
+                continue;
+            };
+            let world = self.app.world_mut();
+            let Some(moment) = way.get(*next) else {
+                if *still < STILL && *waited < MOST_WAITING {
+                    *waited += 1;
+                    continue;
+                }
+                match act.step.relations.first() {
+                    Some(Relation::Held) => {}
+                    Some(Relation::Destroyed) => {
+                        world.write_command(HandCommand::Destroy(*hand));
+                    }
+                    _ => {
+                        world.write_command(HandCommand::Release(*hand));
+                    }
+                }
+                act.progress = Progress::Done(now);
+                continue;
+            };
+            *next += 1;
+            if let Some(taken_by) = moment.taken_by.filter(|taken_by| taken_by != hand) {
+                world.write_command(HandCommand::Release(*hand));
+                world.write_command(HandCommand::Grasp {
+                    hand: taken_by,
+                    object: self
+                        .binding
+                        .object(&act.step.object)
+                        .unwrap_or_default()
+                        .to_owned(),
+                });
+                *hand = taken_by;
+            }
+            let hand = *hand;
+            let (axis, angle) = (moment.pose.rotation * target.rotation.inverse()).to_axis_angle();
+            // The shorter way round.
+            let angle = (angle + PI).rem_euclid(TAU) - PI;
+            if angle.abs() > LEAST_TURN {
+                let degrees = angle.to_degrees();
+                world.write_command(HandCommand::Turn {
+                    hand,
+                    axis,
+                    degrees,
+                });
+                target.rotation = (Quat::from_axis_angle(axis, degrees.to_radians())
+                    * target.rotation)
+                    .normalize();
+            }
+            if moment.pose.location != target.location {
+                let location = moment.pose.location;
+                world.write_command(HandCommand::MoveTo { hand, location });
+                target.location = location;
+            }
+        }
+    }
+
+    /// Looks where what is held has come to.
+    fn look(&mut self) -> Result<(), (usize, Failure)> {
+        let world = self.app.world();
+        for act in &mut self.acts {
+            let Progress::Carrying {
+                hand, last, still, ..
+            } = &mut act.progress
+            else {
+                continue;
+            };
+            let id = self.binding.object(&act.step.object).unwrap_or_default();
+            let object = world.resource::<ObjectIndex>().get(id);
+            let held = world.resource::<Hands>().held_by(*hand);
+            let transform = object.and_then(|object| world.get::<Transform>(object));
+            let Some(transform) = transform.filter(|_| held == object) else {
+                return Err((act.step.number, Failure::NotHeld(id.to_owned())));
+            };
+            let here = Pose::from(transform);
+            let is_same = here.location.distance(last.location) < SAME
+                && angle_between(here.rotation, last.rotation) < SAME;
+            *still = if is_same { *still + 1 } else { 0 };
+            *last = here;
+        }
+        Ok(())
+    }
+
+    /// Whether all relations hold; else the step of one that does not.
+    fn judge(mut self, task: &Task) -> Result<(), (usize, Failure)> {
+        let sight = AppStage::new(self.app).sight();
+        if let Some(undone) = undone(task, self.binding, &sight, &self.before) {
+            return Err(undone);
+        }
+        for act in &self.acts {
+            let step = act.step;
+            let Some(id) = self.binding.object(&step.object) else {
+                return Err((step.number, Failure::Gone(step.object.clone())));
+            };
+            let is_last = !task.steps[step.number..]
+                .iter()
+                .any(|later| later.object == step.object);
+            if !is_last {
+                continue;
+            }
+            self.before.step = Some(act.from);
+            let is_so = match step.relations.first() {
+                Some(Relation::Destroyed) => Ok(!sight.objects.contains_key(id)),
+                Some(Relation::Turned { .. }) => is_met(step, self.binding, &sight, &self.before),
+                _ => Ok(true),
+            };
+            match is_so {
+                Ok(true) => {}
+                Ok(false) => return Err((step.number, Failure::Misplaced(id.to_owned()))),
+                Err(failure) => return Err((step.number, failure)),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What a hand has to keep clear of on its way with an object: not what it carries along, nor what the object slides on.
+fn obstacles(step: &Step, sight: &Sight, id: &str) -> Vec<Convex> {
+    if matches!(step.relations.first(), Some(Relation::Slid { .. })) {
+        return Vec::new();
+    }
+    let mut carried = vec![id.to_owned()];
+    let mut next = 0;
+    while next < carried.len() {
+        let above = sight.above(&carried[next]);
+        let new = above.into_iter().filter(|id| !carried.contains(id));
+        let new: Vec<_> = new.collect();
+        carried.extend(new);
+        next += 1;
+    }
+    let others = sight.objects.iter().filter(|(id, _)| !carried.contains(id));
+    others.flat_map(|(_, other)| other.solids()).collect()
+}
+
+/// Where the frame of the table would be for an object to be put aside at a free place: as far from where it stands as was shown, or near there.
+fn free_place(sight: &Sight, id: &str, carried: &Carried, from: Pose) -> Option<Pose> {
+    const AROUND: u16 = 12;
+    const RINGS: u16 = 12;
+    let object = sight.objects.get(id)?;
+    let others: Vec<_> = sight
+        .objects
+        .iter()
+        .filter(|(other, _)| *other != id)
+        .flat_map(|(_, other)| other.solids())
+        .collect();
+    let half = Vec3::new(sight.table.xspan, sight.table.yspan, 0.0) / 2.0;
+    let with_object = from * carried.first().inverse();
+    let offsets = (0..RINGS).flat_map(|ring| {
+        (0..AROUND).map(move |i| {
+            let angle = TAU * f32::from(i) / f32::from(AROUND);
+            Vec3::new(angle.cos(), angle.sin(), 0.0) * f32::from(ring) * 0.5
+        })
+    });
+    let mut frames = offsets.map(|offset| Pose {
+        location: with_object.location + offset,
+        ..with_object
+    });
+    frames.find(|frame| {
+        object
+            .solids_at(*frame * carried.last())
+            .iter()
+            .all(|solid| {
+                let reach = |way: Vec3| solid.farthest(way).dot(way);
+                let is_on_table = [Vec3::X, Vec3::Y]
+                    .into_iter()
+                    .all(|way| reach(way).max(reach(-way)) < half.dot(way));
+                is_on_table
+                    && others
+                        .iter()
+                        .all(|other| solid.gap_from_above(other) > ASIDE)
+            })
+    })
+}

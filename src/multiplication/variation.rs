@@ -1,0 +1,250 @@
+//! What differs from one demonstration to the next.
+
+use std::f32::consts::TAU;
+
+use bevy::math::{Quat, Vec3};
+use tabletop_core::{
+    HeadCamera, NAMED_COLORS, ObjectSpec, Part, Pose, Random, Rgb, SceneItem, SceneSpec, Shape,
+    Table,
+};
+use tabletop_scene::{IdAllocator, assemble};
+use tabletop_task::{Convex, Place, Reference, Requirements, Task};
+
+use super::Multiplication;
+use crate::imitation::scattered;
+
+/// What differs besides the places of things.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Variation {
+    /// Whether objects have other colours, as far as what is required of them allows.
+    pub colors: bool,
+    /// By which part of it, at most, sizes differ, as far as what is required allows; 0 for not at all.
+    pub sizes: f32,
+    /// How many objects that have nothing to do with the task stand around, at most.
+    pub distractors: u32,
+    /// How far the head camera is from where it was, at most, in units; it looks away by as many times 2°.
+    pub camera: f32,
+}
+
+/// Of how many arrangements one is taken in which everything is put on the table.
+const DRAWS: u32 = 50;
+/// How often a colour is drawn.
+const COLORS: u32 = 100;
+/// By how much a colour is lighter or darker than its name says.
+const SHADE: f32 = 0.12;
+/// The extents of distractors, in units.
+const DISTRACTOR: (f32, f32) = (0.6, 1.6);
+/// By which angle the camera is turned for each unit that it is moved, in rad.
+const TURN: f32 = 0.035;
+
+impl Variation {
+    /// The head camera, moved, if it is to be.
+    pub(super) fn camera(&self, table: &Table, random: &mut Random) -> Option<HeadCamera> {
+        let mut camera = HeadCamera::default();
+        let mut any = |most: f32| random.between((-most, most));
+        let by = Vec3::new(any(self.camera), any(self.camera), any(self.camera));
+        let turns = [Vec3::X, Vec3::Y, Vec3::Z]
+            .map(|axis| Quat::from_axis_angle(axis, any(self.camera * TURN)));
+        if self.camera == 0.0 {
+            return None;
+        }
+        let pose = camera.pose(table);
+        let turn = turns[0] * turns[1] * turns[2];
+        camera.mount = Some(Pose::new(
+            pose.location + by,
+            (turn * pose.rotation).normalize(),
+        ));
+        Some(camera)
+    }
+}
+
+impl Multiplication {
+    /// The scene, varied. None if there is no room for it.
+    pub(super) fn varied(&self, random: &mut Random) -> Option<SceneSpec> {
+        let mut scene = self.scene.clone();
+        let distractors = match self.variation.distractors {
+            0 => 0,
+            most => (random.bits() % (u64::from(most) + 1)) as u32,
+        };
+        if self.variation.colors {
+            for item in &mut scene.items {
+                self.recolor(item, random);
+            }
+        }
+        for i in 0..distractors {
+            let distractor = self.distractor(i, random)?;
+            scene.items.push(SceneItem::Object(distractor));
+        }
+        let kept = self.kept();
+        (0..DRAWS).find_map(|_| {
+            let scene = scattered(&scene, &kept, self.body.as_ref(), random.bits())?;
+            self.is_on_table(&scene).then_some(scene)
+        })
+    }
+
+    /// Where objects are put at places of the table.
+    fn kept(&self) -> Vec<Convex> {
+        let goals = self.task.steps.iter().filter_map(|step| {
+            let goal = step.goal.as_ref()?;
+            let is_place = goal.reference == Reference::Table && goal.place == Place::Exact;
+            let role = self.task.role(&step.object)?;
+            is_place.then_some((&role.shown.shape, goal.pose))
+        });
+        let solids = goals.flat_map(|(shape, pose)| {
+            let colliding = shape.colliding();
+            colliding
+                .into_iter()
+                .map(move |solid| Convex::of(&solid, pose))
+        });
+        solids.collect()
+    }
+
+    /// Whether all goals of the task are on the table, if things are where this scene puts them.
+    fn is_on_table(&self, scene: &SceneSpec) -> bool {
+        let objects = assemble(scene, &mut IdAllocator::default()).objects;
+        let Ok(binding) = self.task.bind(&self.requirements, &objects) else {
+            return false;
+        };
+        let half = Vec3::new(scene.table.xspan, scene.table.yspan, 0.0) / 2.0;
+        let beginning = |role: &str| {
+            let id = binding.object(role)?;
+            let object = objects.iter().find(|object| object.id == id)?;
+            Some((&object.shape, object.pose))
+        };
+        let mut now = std::collections::BTreeMap::new();
+        self.task.steps.iter().all(|step| {
+            let Some((shape, start)) = beginning(&step.object) else {
+                return false;
+            };
+            let Some(goal) = &step.goal else {
+                return true;
+            };
+            let from = now.get(step.object.as_str()).copied().unwrap_or(start);
+            let frame = match &goal.reference {
+                Reference::Table => Some(Pose::IDENTITY),
+                Reference::Itself => Some(from),
+                Reference::Object { object } => now
+                    .get(object.as_str())
+                    .copied()
+                    .or_else(|| Some(beginning(object)?.1)),
+                Reference::PlaceOf { object } => beginning(object).map(|(_, pose)| pose),
+            };
+            let Some(frame) = frame else {
+                return false;
+            };
+            let pose = frame * goal.pose;
+            now.insert(step.object.as_str(), pose);
+            goal.place == Place::Anywhere
+                || shape.colliding().iter().all(|solid| {
+                    let solid = Convex::of(solid, pose);
+                    [Vec3::X, Vec3::Y].into_iter().all(|way| {
+                        let reach = |way: Vec3| solid.farthest(way).dot(way);
+                        reach(way).max(reach(-way)) < half.dot(way)
+                    })
+                })
+        })
+    }
+
+    fn recolor(&self, item: &mut SceneItem, random: &mut Random) {
+        for _ in 0..COLORS {
+            let color = any_color(random);
+            let mut varied = item.clone();
+            match &mut varied {
+                SceneItem::Object(spec) => {
+                    paint(&mut spec.shape, color);
+                    if !self.may_be(spec) {
+                        continue;
+                    }
+                }
+                SceneItem::LidBox(spec) => spec.color = color,
+                SceneItem::Chain(spec) => spec.color = color,
+                SceneItem::Jointed(_) => {}
+            }
+            *item = varied;
+            return;
+        }
+    }
+
+    /// Whether an object still has what is required of the role that it takes by its id.
+    fn may_be(&self, spec: &ObjectSpec) -> bool {
+        let lacks = self.requirements.lacks(&spec.id, spec);
+        lacks.is_none_or(|lacks| lacks.is_empty())
+    }
+
+    /// An object that cannot take any role of which something is required.
+    fn distractor(&self, number: u32, random: &mut Random) -> Option<ObjectSpec> {
+        (0..COLORS).find_map(|_| {
+            let color = any_color(random);
+            let [x, y, z] = [(); 3].map(|()| random.between(DISTRACTOR));
+            let (shape, rotation, height) = match random.bits() % 2 {
+                0 => {
+                    let span = Vec3::new(x, y, z);
+                    (Shape::Block { span, color }, Quat::IDENTITY, z)
+                }
+                _ => {
+                    let shape = Shape::Cylinder {
+                        radius: x / 2.0,
+                        yspan: z,
+                        color,
+                    };
+                    (shape, Quat::from_rotation_x(TAU / 4.0), z)
+                }
+            };
+            // Apart from everything, so that it is put somewhere by itself.
+            let at = Vec3::new(1000.0 + 10.0 * number as f32, 0.0, height / 2.0);
+            let id = format!("Distractor{}", number + 1);
+            let spec = ObjectSpec::new(&id, Pose::new(at, rotation), 1.0, shape);
+            let is_other = |requirements: &Requirements, task: &Task| {
+                task.roles.iter().all(|role| {
+                    let lacks = requirements.lacks(&role.id, &spec);
+                    lacks.is_none_or(|lacks| !lacks.is_empty())
+                })
+            };
+            is_other(&self.requirements, &self.task).then_some(spec)
+        })
+    }
+}
+
+/// A colour with a name, or one near it.
+fn any_color(random: &mut Random) -> Rgb {
+    let (_, named) = NAMED_COLORS[(random.bits() % NAMED_COLORS.len() as u64) as usize];
+    let shade = random.between((-SHADE, SHADE));
+    let part = |part: f32| (part + shade).clamp(0.0, 1.0);
+    Rgb::new(part(named.red), part(named.green), part(named.blue))
+}
+
+/// Gives a shape this colour; of a composite, to those parts that have the colour of the first.
+fn paint(shape: &mut Shape, color: Rgb) {
+    let Some(old) = shape.drawn().first().map(|solid| solid.color) else {
+        return;
+    };
+    replace(shape, old, color);
+}
+
+fn replace(shape: &mut Shape, old: Rgb, new: Rgb) {
+    let put = |color: &mut Rgb| {
+        if *color == old {
+            *color = new;
+        }
+    };
+    match shape {
+        Shape::Block { color, .. }
+        | Shape::Cylinder { color, .. }
+        | Shape::Sphere { color, .. }
+        | Shape::Box { color, .. }
+        | Shape::Link { color, .. } => put(color),
+        Shape::Lid {
+            color,
+            handle_color,
+            ..
+        } => {
+            put(color);
+            put(handle_color);
+        }
+        Shape::Composite { parts } => {
+            for Part { shape, .. } in parts {
+                replace(shape, old, new);
+            }
+        }
+    }
+}

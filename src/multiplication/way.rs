@@ -1,0 +1,311 @@
+//! The way of a hand, for objects that are elsewhere.
+
+use bevy::math::{Quat, Vec3};
+use tabletop_core::{Hand, Pose, Primitive, Shape, SimTick};
+use tabletop_task::{Convex, Deed, Demonstration, Reference, Step, angle_between};
+
+/// How the object of a step was carried.
+#[derive(Clone, Debug)]
+pub(super) struct Carried {
+    /// Where it was, tick by tick, from before it was grasped until it was let go of.
+    poses: Vec<Pose>,
+    /// The hands that took it, and after which of its poses.
+    hands: Vec<(usize, Hand)>,
+    /// Where that was to which its goal is relative.
+    frame: Pose,
+}
+
+/// What a hand does in a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Moment {
+    /// Where the object is to be.
+    pub pose: Pose,
+    /// The hand that takes it.
+    pub taken_by: Option<Hand>,
+}
+
+/// Up to how far from where it stood, seen from above, an object is lifted or lowered, in units.
+const UPRIGHT: f32 = 0.3;
+/// The part of the way that is bent when nothing tells where lifting ends and lowering begins.
+const MIDDLE: (f32, f32) = (0.25, 0.75);
+/// How near what is carried comes to anything on its way, in units.
+const GAP: f32 = 0.1;
+/// The farthest, in units, and the largest angle, in rad, that a hand goes in a tick where it had not gone farther when it was shown.
+const STEP: (f32, f32) = (0.15, 0.08);
+
+impl Carried {
+    /// How the object of a step was carried in a demonstration. None if the demonstration does not say.
+    pub fn of(shown: &Demonstration, step: &Step) -> Option<Self> {
+        let track = &shown.named(&step.object)?.track;
+        let first = step.grasp.0.saturating_sub(1);
+        let poses: Option<Vec<_>> = (first..=step.release.0)
+            .map(|tick| track.at(SimTick(tick)))
+            .collect();
+        let poses = poses?;
+        let taken = shown.acts.iter().filter_map(|act| {
+            let is_meant = matches!(&act.deed, Deed::Grasp(id) if *id == step.object);
+            let is_meanwhile = (step.grasp..=step.release).contains(&act.tick);
+            let after = (act.tick.0 - first) as usize;
+            (is_meant && is_meanwhile).then_some((after, act.hand))
+        });
+        let reference = step.goal.as_ref().map(|goal| &goal.reference);
+        let frame = match reference {
+            None | Some(Reference::Table) => Pose::IDENTITY,
+            Some(Reference::Itself) => poses[0],
+            Some(Reference::Object { object }) => shown.named(object)?.track.at(step.release)?,
+            Some(Reference::PlaceOf { object }) => shown.named(object)?.track.at(shown.start)?,
+        };
+        Some(Self {
+            hands: taken.collect(),
+            frame,
+            poses,
+        })
+    }
+
+    /// Where it was before it was grasped.
+    pub fn first(&self) -> Pose {
+        self.poses[0]
+    }
+
+    /// Where it was when it was let go of.
+    pub fn last(&self) -> Pose {
+        self.poses[self.poses.len() - 1]
+    }
+
+    /// The hand that takes it first.
+    pub fn first_hand(&self) -> Option<Hand> {
+        self.hands.first().map(|(_, hand)| *hand)
+    }
+
+    /// The way from where the object is now, to where its goal's reference is now: with the object in the beginning, with the reference in the
+    /// end, bent between. Without a reference, with the object all along. The middle is lifted over obstacles.
+    pub fn retargeted(
+        &self,
+        shape: &Shape,
+        from: Pose,
+        reference: Option<Pose>,
+        obstacles: &[Convex],
+    ) -> Vec<Moment> {
+        let at_start = from * self.poses[0].inverse();
+        let at_end = reference.map_or(at_start, |now| now * self.frame.inverse());
+        let lengths = self.lengths();
+        let [lifted, lowered] = self.middle(&lengths);
+        let mut way = Vec::new();
+        for (i, shown) in self.poses.iter().enumerate() {
+            let span = lengths[lowered] - lengths[lifted];
+            let part = match span > 0.0 {
+                true => ((lengths[i] - lengths[lifted]) / span).clamp(0.0, 1.0),
+                false => f32::from(u8::from(i >= lowered)),
+            };
+            way.push(blended(
+                at_start * *shown,
+                at_end * *shown,
+                part * part * (3.0 - 2.0 * part),
+            ));
+        }
+        let solids = shape.colliding();
+        let lift = lift_over(&solids, &way[lifted..=lowered], obstacles);
+        let mut moments = Vec::<Moment>::new();
+        for (i, mut pose) in way.into_iter().enumerate() {
+            if (lifted..=lowered).contains(&i) {
+                pose.location.z += lift;
+            }
+            let longest = match i {
+                0 => STEP,
+                _ => (
+                    distance(self.poses[i - 1], self.poses[i]).max(STEP.0),
+                    angle_between(self.poses[i - 1].rotation, self.poses[i].rotation).max(STEP.1),
+                ),
+            };
+            if let Some(last) = moments.last().map(|moment| moment.pose) {
+                moments.extend(between(last, pose, longest).map(|pose| Moment {
+                    pose,
+                    taken_by: None,
+                }));
+            }
+            let taken_by = self.hands.iter().skip(1).find(|(after, _)| *after == i);
+            moments.push(Moment {
+                pose,
+                taken_by: taken_by.map(|(_, hand)| *hand),
+            });
+        }
+        moments
+    }
+
+    /// How long the way is up to each pose, with a little for every tick, so that it always ascends.
+    fn lengths(&self) -> Vec<f32> {
+        const OF_A_TICK: f32 = 1e-4;
+        let mut length = 0.0;
+        let mut lengths = vec![0.0];
+        for pair in self.poses.windows(2) {
+            length += distance(pair[0], pair[1]) + OF_A_TICK;
+            lengths.push(length);
+        }
+        lengths
+    }
+
+    /// The pose after which it is lifted, and that from which on it is lowered.
+    fn middle(&self, lengths: &[f32]) -> [usize; 2] {
+        let last = self.poses.len() - 1;
+        let across =
+            |pose: &Pose, from: Pose| (pose.location - from.location).truncate().length() > UPRIGHT;
+        let lifted = self
+            .poses
+            .iter()
+            .position(|pose| across(pose, self.poses[0]));
+        let lowered = self
+            .poses
+            .iter()
+            .rposition(|pose| across(pose, self.poses[last]));
+        if let (Some(lifted), Some(lowered)) = (lifted, lowered)
+            && lengths[lifted] < lengths[lowered]
+        {
+            return [lifted, lowered];
+        }
+        let whole = lengths[last];
+        let at = |part: f32| lengths.partition_point(|length| *length < part * whole);
+        [at(MIDDLE.0).min(last), at(MIDDLE.1).min(last)]
+    }
+}
+
+fn distance(a: Pose, b: Pose) -> f32 {
+    a.location.distance(b.location)
+}
+
+fn blended(a: Pose, b: Pose, part: f32) -> Pose {
+    Pose::new(
+        a.location.lerp(b.location, part),
+        slerp(a.rotation, b.rotation, part),
+    )
+}
+
+fn slerp(a: Quat, b: Quat, part: f32) -> Quat {
+    match part {
+        0.0 => a,
+        1.0 => b,
+        part => a.slerp(b, part).normalize(),
+    }
+}
+
+/// The poses between two, without them, such that no step is longer.
+fn between(from: Pose, to: Pose, (length, angle): (f32, f32)) -> impl Iterator<Item = Pose> {
+    let lengths = distance(from, to) / length;
+    let angles = angle_between(from.rotation, to.rotation) / angle;
+    let steps = (lengths.max(angles) - 1e-3).ceil().max(1.0) as u32;
+    (1..steps).map(move |step| blended(from, to, step as f32 / steps as f32))
+}
+
+/// By how much a way must be lifted for what goes along it to meet nothing; 0 if that does not help.
+fn lift_over(solids: &[Primitive], way: &[Pose], obstacles: &[Convex]) -> f32 {
+    const STEP: f32 = 0.25;
+    const MOST: u16 = 40;
+    let meets = |pose: Pose| {
+        let mut own = solids.iter().map(|solid| Convex::of(solid, pose));
+        own.any(|own| {
+            obstacles.iter().any(|other| {
+                let apart = own.pose.location.distance(other.pose.location);
+                apart < own.radius() + other.radius() + GAP && own.away_from(other).length() < GAP
+            })
+        })
+    };
+    let lifts = (0..MOST).map(|i| f32::from(i) * STEP);
+    let is_free = |lift: &f32| {
+        let mut lifted = way.iter().map(|pose| Pose {
+            location: pose.location + Vec3::Z * *lift,
+            ..*pose
+        });
+        !lifted.any(meets)
+    };
+    lifts.into_iter().find(is_free).unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::{Rgb, Solid};
+
+    use super::*;
+
+    /// Up by 3, across by 6, down by 2, in steps of a tenth.
+    fn carried() -> Carried {
+        let mut at = Vec3::new(0.0, 0.0, 0.5);
+        let mut poses = vec![Pose::at(at)];
+        for (way, steps) in [(Vec3::Z, 30), (Vec3::X, 60), (Vec3::NEG_Z, 20)] {
+            for _ in 0..steps {
+                at += way * 0.1;
+                poses.push(Pose::at(at));
+            }
+        }
+        Carried {
+            poses,
+            hands: vec![(1, Hand::Left), (60, Hand::Right)],
+            frame: Pose::at(Vec3::new(6.0, 0.0, 0.5)),
+        }
+    }
+
+    fn cube() -> Shape {
+        Shape::Block {
+            span: Vec3::ONE,
+            color: Rgb::RED,
+        }
+    }
+
+    fn turned(x: f32, y: f32, degrees: f32) -> Pose {
+        Pose::from_degrees(Vec3::new(x, y, 0.5), Vec3::new(0.0, 0.0, degrees))
+    }
+
+    #[test]
+    fn a_way_to_the_same_places_is_the_way_that_was_shown() {
+        let carried = carried();
+        let way = carried.retargeted(&cube(), carried.poses[0], Some(carried.frame), &[]);
+        let poses: Vec<_> = way.iter().map(|moment| moment.pose).collect();
+        assert_eq!(poses.len(), carried.poses.len());
+        for (pose, shown) in poses.iter().zip(&carried.poses) {
+            assert!(distance(*pose, *shown) < 1e-4);
+        }
+        assert_eq!(way[60].taken_by, Some(Hand::Right));
+    }
+
+    #[test]
+    fn start_and_end_go_with_object_and_reference() {
+        let carried = carried();
+        let (from, to) = (turned(-4.0, 2.0, 30.0), turned(5.0, -3.0, 200.0));
+        let way = carried.retargeted(&cube(), from, Some(to), &[]);
+        let last = way.last().unwrap().pose;
+        let shown = carried.poses.last().unwrap();
+        let expected = to * carried.frame.inverse() * *shown;
+        assert!(distance(last, expected) < 1e-4);
+        assert!(angle_between(last.rotation, expected.rotation) < 1e-3);
+        assert!(distance(way[0].pose, from) < 1e-5);
+        // Straight up first, and straight down in the end.
+        let is_above = |pose: Pose, other: Pose| {
+            (pose.location - other.location).truncate().length() < UPRIGHT + 0.01
+        };
+        assert!(way[..30].iter().all(|moment| is_above(moment.pose, from)));
+        let lowering = &way[way.len() - 20..];
+        assert!(lowering.iter().all(|moment| is_above(moment.pose, last)));
+        for pair in way.windows(2) {
+            assert!(distance(pair[0].pose, pair[1].pose) < STEP.0 + 0.01);
+            let turn = angle_between(pair[0].pose.rotation, pair[1].pose.rotation);
+            assert!(turn < STEP.1 + 0.01);
+        }
+    }
+
+    #[test]
+    fn what_stands_in_the_way_is_passed_above() {
+        let carried = carried();
+        let tower = Convex {
+            pose: Pose::at(Vec3::new(3.0, 0.0, 2.5)),
+            solid: Solid::Cuboid(Vec3::new(1.0, 1.0, 5.0)),
+        };
+        let way = carried.retargeted(&cube(), carried.poses[0], Some(carried.frame), &[tower]);
+        for moment in &way {
+            let own = Convex {
+                pose: moment.pose,
+                solid: Solid::Cuboid(Vec3::ONE),
+            };
+            assert!(own.away_from(&tower).length() > GAP - 0.01, "{moment:?}");
+        }
+        let highest = way.iter().map(|moment| moment.pose.location.z);
+        assert!(highest.fold(0.0, f32::max) < 6.5);
+    }
+}

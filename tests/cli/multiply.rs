@@ -1,0 +1,155 @@
+//! `tabletop multiply`: one demonstration becomes many.
+
+use std::{collections::BTreeMap, fs, path::Path};
+
+use crate::support::{place, stderr, stdout, tabletop};
+
+fn recorded(name: &str, scenario: &str) -> String {
+    let demo = place(name);
+    let demo = demo.to_str().unwrap().to_owned();
+    let scenario = format!("shipped:scenarios/{scenario}.ron");
+    let output = tabletop(&["run", &scenario, "--record", &demo, "--quiet"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    demo
+}
+
+fn multiply(demo: &str, out: &Path, options: &[&str]) -> String {
+    let out = out.to_str().unwrap();
+    let output = tabletop(&[&["multiply", demo, "--out", out], options].concat());
+    let told = stdout(&output) + &stderr(&output);
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    told
+}
+
+/// Every file below a folder, by its path in it.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path.strip_prefix(folder).unwrap().display().to_string();
+                found.insert(name, fs::read(path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+fn explained(demo: &Path) -> String {
+    let output = tabletop(&["explain", demo.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    stdout(&output)
+}
+
+#[test]
+fn one_demonstration_becomes_many_that_show_the_same() {
+    let demo = recorded("multiply_same", "stack_three");
+    let out = place("multiply_same_out");
+    multiply(&demo, &out, &["--count", "4", "--seed", "3"]);
+    let expected = explained(Path::new(&demo));
+    let mut sessions = Vec::new();
+    for number in ["0000", "0001", "0002", "0003"] {
+        let folder = out.join(number);
+        assert_eq!(explained(&folder), expected, "{number}");
+        assert!(folder.join("0/0.png").is_file(), "{number}");
+        sessions.push(fs::read(folder.join("session.jsonl")).unwrap());
+    }
+    sessions.dedup();
+    assert_eq!(sessions.len(), 4);
+    let replayed = tabletop(&["replay", out.join("0002").to_str().unwrap(), "--verify"]);
+    assert_eq!(replayed.status.code(), Some(0), "{}", stderr(&replayed));
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes_and_what_is_there_is_kept() {
+    let demo = recorded("multiply_bytes", "stack_three");
+    let [one, other] = ["multiply_bytes_one", "multiply_bytes_other"].map(place);
+    let options = ["--colors", "--distractors", "3", "--camera", "1"];
+    multiply(&demo, &one, &[&options[..], &["--count", "3"]].concat());
+    multiply(
+        &demo,
+        &other,
+        &[&options[..], &["--count", "1", "--jobs", "1"]].concat(),
+    );
+    // As if the program had been killed.
+    fs::create_dir(other.join(".part-0001")).unwrap();
+    fs::write(other.join(".part-0001/session.jsonl"), "{").unwrap();
+    let kept = fs::metadata(other.join("0000/states.csv"))
+        .unwrap()
+        .modified()
+        .unwrap();
+    let told = multiply(
+        &demo,
+        &other,
+        &[&options[..], &["--count", "3", "--jobs", "1"]].concat(),
+    );
+    assert!(told.contains("1 were there\n2 made in "), "{told}");
+    let still = fs::metadata(other.join("0000/states.csv"))
+        .unwrap()
+        .modified()
+        .unwrap();
+    assert_eq!(kept, still);
+    let (one, other) = (files(&one), files(&other));
+    assert!(one.len() > 30);
+    assert_eq!(
+        one.keys().collect::<Vec<_>>(),
+        other.keys().collect::<Vec<_>>()
+    );
+    for (name, bytes) in one {
+        assert!(other[&name] == bytes, "{name}");
+    }
+}
+
+#[test]
+fn demonstrations_of_other_options_are_not_mixed() {
+    let demo = recorded("multiply_mixed", "stack_three");
+    let out = place("multiply_mixed_out");
+    multiply(&demo, &out, &["--count", "1"]);
+    let out = out.to_str().unwrap();
+    let output = tabletop(&["multiply", &demo, "--out", out, "--seed", "1"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        stderr(&output).contains("made with other options"),
+        "{}",
+        stderr(&output)
+    );
+    // Nor is anything else in the folder touched.
+    let output = tabletop(&["multiply", &demo, "--out", &demo]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        stderr(&output).contains("it holds something else"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+#[test]
+fn what_is_required_of_an_object_stays_so() {
+    let demo = recorded("multiply_required", "stack_three");
+    let output = tabletop(&["require", &demo, "--step", "2", "color=red"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let out = place("multiply_required_out");
+    let options = ["--count", "3", "--colors", "--distractors", "2"];
+    multiply(&demo, &out, &options);
+    for number in ["0000", "0001", "0002"] {
+        let told = explained(&out.join(number));
+        assert!(told.contains("2. Put the red object on"), "{told}");
+        let events = fs::read_to_string(out.join(number).join("0.txt")).unwrap();
+        assert!(events.contains("create,Red,"), "{events}");
+    }
+}
+
+#[test]
+fn the_robot_can_show_it() {
+    let demo = recorded("multiply_robot", "stack_three");
+    let out = place("multiply_robot_out");
+    multiply(&demo, &out, &["--count", "1", "--robot"]);
+    let joints = fs::read_to_string(out.join("0000/joints.csv")).unwrap();
+    assert!(joints.lines().count() > 100);
+    let replayed = tabletop(&["replay", out.join("0000").to_str().unwrap(), "--verify"]);
+    assert_eq!(replayed.status.code(), Some(0), "{}", stderr(&replayed));
+}
