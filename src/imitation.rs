@@ -1,111 +1,131 @@
 //! The simulator as a stage on which the robot does what was shown.
 
-use bevy::{
-    math::{DAffine3, DMat3, DVec3},
-    prelude::*,
-};
+use bevy::prelude::*;
 use tabletop_core::{
     Drive, Joint, JointSpec, ObjectIndex, ObjectSpec, Pose, Random, Robot, RobotCommand,
     RobotLayout, SceneItem, SceneSpec, StepApp as _, Table, WriteCommand as _,
 };
 use tabletop_kinematics::{ModelError, baxter};
 use tabletop_planner::{
-    Angles, LimbOrder, LimbSight, LimbSource, Piece, RobotBody, SeenObject, Sight, Stage, scatter,
+    LimbOrder, LimbSight, Piece, RobotBody, SeenObject, Sight, Stage, Stopped, angles, scatter,
 };
 use tabletop_scene::{IdAllocator, assemble};
 use tabletop_task::{Arrangement, Convex};
 
+/// What there is to see in a world, with the robot at the table.
+pub fn sight(world: &mut World) -> Sight {
+    let table = world.query::<&Table>().iter(world).next().copied();
+    let joints: Vec<_> = world.query::<&Joint>().iter(world).copied().collect();
+    let id = |entity: &Entity| Some(world.get::<ObjectSpec>(*entity)?.id.clone());
+    let joints = joints.into_iter().filter_map(|joint| {
+        let [first, second] = joint.objects.map(|entity| id(&entity));
+        Some(JointSpec {
+            objects: [first?, second?],
+            frames: joint.frames,
+            kind: joint.kind,
+            collides: joint.collides,
+        })
+    });
+    let objects = world.resource::<ObjectIndex>().iter().filter_map(|entity| {
+        let spec = world.get::<ObjectSpec>(entity)?;
+        let seen = SeenObject {
+            shape: spec.shape.clone(),
+            pose: Pose::from(world.get::<Transform>(entity)?),
+            is_fixed: spec.is_fixed(),
+        };
+        Some((spec.id.clone(), seen))
+    });
+    Sight {
+        table: table.unwrap_or_default(),
+        objects: objects.collect(),
+        joints: joints.collect(),
+        limbs: limbs(world),
+    }
+}
+
+fn limbs(world: &World) -> Vec<LimbSight> {
+    let robot = world.resource::<Robot>();
+    let id = |entity: &Entity| Some(world.get::<ObjectSpec>(*entity)?.id.clone());
+    let layout = world.resource::<RobotLayout>();
+    let limbs = layout.limbs.iter().zip(&robot.limbs);
+    let limbs = limbs.map(|(limb, state)| LimbSight {
+        angles: angles(robot.positions_of(&limb.joints)),
+        opening: robot.joint(limb.gripper.joint).position,
+        holds: state.holds.iter().filter_map(id).collect(),
+        blocked_by: state.blocked_by.clone(),
+    });
+    limbs.collect()
+}
+
+/// The command that carries out orders for the limbs; none if nothing is to move.
+pub fn command(layout: &RobotLayout, orders: &[LimbOrder]) -> Option<RobotCommand> {
+    let mut drives = Vec::new();
+    for (limb, order) in layout.limbs.iter().zip(orders) {
+        let joints = limb.joints.iter().copied().zip(order.joints);
+        let all = joints.chain([(limb.gripper.joint, order.opening)]);
+        let moving = all.filter(|(_, velocity)| *velocity != 0.0);
+        drives.extend(
+            moving.map(|(joint, velocity)| (layout.joint(joint).name, Drive::Velocity(velocity))),
+        );
+    }
+    (!drives.is_empty()).then_some(RobotCommand::Drive(drives))
+}
+
 /// An app whose robot is moved by commands, as scripts move it.
 pub struct AppStage<'a> {
     app: &'a mut App,
-    table: Table,
-    joints: Vec<JointSpec>,
+    sight: Sight,
+    objects: Vec<Entity>,
 }
 
 impl<'a> AppStage<'a> {
     /// The app, with what is on its table.
     pub fn new(app: &'a mut App) -> Self {
-        let world = app.world_mut();
-        let table = world.query::<&Table>().iter(world).next().copied();
-        let joints: Vec<_> = world.query::<&Joint>().iter(world).copied().collect();
-        let id = |entity: Entity| Some(world.get::<ObjectSpec>(entity)?.id.clone());
-        let joints = joints.into_iter().filter_map(|joint| {
-            let [first, second] = joint.objects.map(id);
-            Some(JointSpec {
-                objects: [first?, second?],
-                frames: joint.frames,
-                kind: joint.kind,
-                collides: joint.collides,
-            })
-        });
-        Self {
-            joints: joints.collect(),
-            table: table.unwrap_or_default(),
+        let mut stage = Self {
             app,
+            sight: Sight::default(),
+            objects: Vec::new(),
+        };
+        stage.look();
+        stage
+    }
+
+    /// Sees what is there now. Of the same objects, only the poses are new.
+    fn look(&mut self) {
+        let world = self.app.world();
+        let index = world.resource::<ObjectIndex>();
+        if !index.iter().eq(self.objects.iter().copied()) {
+            self.objects = index.iter().collect();
+            self.sight = sight(self.app.world_mut());
+            return;
         }
+        for &entity in &self.objects {
+            if let (Some(spec), Some(transform)) = (
+                world.get::<ObjectSpec>(entity),
+                world.get::<Transform>(entity),
+            ) && let Some(seen) = self.sight.objects.get_mut(&spec.id)
+            {
+                seen.pose = Pose::from(transform);
+            }
+        }
+        self.sight.limbs = limbs(world);
     }
 }
 
 impl Stage for AppStage<'_> {
-    fn sight(&self) -> Sight {
-        let world = self.app.world();
-        let objects = world.resource::<ObjectIndex>().iter().filter_map(|entity| {
-            let spec = world.get::<ObjectSpec>(entity)?;
-            let seen = SeenObject {
-                shape: spec.shape.clone(),
-                pose: Pose::from(world.get::<Transform>(entity)?),
-                is_fixed: spec.is_fixed(),
-            };
-            Some((spec.id.clone(), seen))
-        });
-        let robot = world.resource::<Robot>();
-        let id = |entity: &Entity| Some(world.get::<ObjectSpec>(*entity)?.id.clone());
-        let layout = world.resource::<RobotLayout>();
-        let limbs = layout.limbs.iter().zip(&robot.limbs);
-        let limbs = limbs.map(|(limb, state)| LimbSight {
-            angles: padded(robot.positions_of(&limb.joints)),
-            opening: robot.joint(limb.gripper.joint).position,
-            holds: state.holds.iter().filter_map(id).collect(),
-            blocked_by: state.blocked_by.clone(),
-        });
-        Sight {
-            table: self.table,
-            objects: objects.collect(),
-            joints: self.joints.clone(),
-            limbs: limbs.collect(),
-        }
+    fn sight(&self) -> &Sight {
+        &self.sight
     }
 
-    fn tick(&mut self, orders: &[LimbOrder]) {
+    fn tick(&mut self, orders: &[LimbOrder]) -> Result<(), Stopped> {
         let layout = self.app.world().resource::<RobotLayout>();
-        let mut drives = Vec::new();
-        for (limb, order) in layout.limbs.iter().zip(orders) {
-            let joints = limb.joints.iter().copied().zip(order.joints);
-            let all = joints.chain([(limb.gripper.joint, order.opening)]);
-            let moving = all.filter(|(_, velocity)| *velocity != 0.0);
-            drives
-                .extend(moving.map(|(joint, velocity)| {
-                    (layout.joint(joint).name, Drive::Velocity(velocity))
-                }));
-        }
-        if !drives.is_empty() {
-            self.app
-                .world_mut()
-                .write_command(RobotCommand::Drive(drives));
+        if let Some(command) = command(layout, orders) {
+            self.app.world_mut().write_command(command);
         }
         self.app.step(1);
+        self.look();
+        Ok(())
     }
-}
-
-/// The part of their motors' speed at which joints are turned.
-const SHARE_OF_SPEED: f64 = 0.75;
-
-fn padded(angles: impl IntoIterator<Item = f64>) -> Angles {
-    let mut all = Angles::default();
-    for (place, angle) in all.iter_mut().zip(angles) {
-        *place = angle;
-    }
-    all
 }
 
 /// The Baxter of the report in front of a table, as planning needs it.
@@ -113,35 +133,7 @@ fn padded(angles: impl IntoIterator<Item = f64>) -> Angles {
 /// # Errors
 /// Never: a test reads its description.
 pub fn baxter_body(table: &Table) -> Result<RobotBody, ModelError> {
-    let layout = RobotLayout::baxter();
-    let model = baxter()?;
-    let limbs = layout.limbs.iter().filter_map(|limb| {
-        let frame = limb
-            .end_effector
-            .iter()
-            .find(|frame| model.find_link(&frame.link).is_ok())?;
-        let axes = frame.axes.map(DVec3::from_array);
-        let joints: Vec<_> = limb
-            .joints
-            .iter()
-            .map(|&joint| layout.joint(joint))
-            .collect();
-        Some(LimbSource {
-            name: limb.name.to_string(),
-            tip: frame.link.clone(),
-            end_effector: DAffine3::from_mat3_translation(
-                DMat3::from_cols(axes[0], axes[1], axes[2]),
-                DVec3::from_array(frame.at),
-            ),
-            limits: joints.iter().map(|joint| joint.limits).collect(),
-            speeds: padded(joints.iter().map(|joint| joint.speed * SHARE_OF_SPEED)),
-            finger: limb.gripper.finger,
-            widest: layout.joint(limb.gripper.joint).limits[1] as f32,
-            home: padded(joints.iter().map(|joint| joint.home)),
-        })
-    });
-    let limbs = limbs.collect();
-    RobotBody::new(model, layout.base.pose(table), limbs)
+    RobotBody::new(RobotLayout::baxter(), baxter()?, table)
 }
 
 /// A scene with everything at random places, decided by the seed, and within reach of the robot if there is one; what stands on, in or around

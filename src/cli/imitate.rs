@@ -178,9 +178,14 @@ impl Attempt<'_> {
         let tell = |doing: Doing| {
             if is_told {
                 let again = if doing.tries > 0 { " (again)" } else { "" };
+                let sentence = self
+                    .task
+                    .step(doing.step)
+                    .map(|step| step.sentence.as_str());
                 say(format_args!(
                     "{}. {}{again}",
-                    doing.step.number, doing.step.sentence
+                    doing.step,
+                    sentence.unwrap_or_default()
                 ));
             }
         };

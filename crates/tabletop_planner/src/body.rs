@@ -1,7 +1,7 @@
 //! The robot's body, as planning needs it.
 
-use bevy::math::{DAffine3, DQuat, Quat, Vec3};
-use tabletop_core::{Pose, Solid, UNITS_PER_METER};
+use bevy::math::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
+use tabletop_core::{LimbLayout, LinkFrame, Pose, RobotLayout, Solid, Table, UNITS_PER_METER};
 use tabletop_kinematics::{
     ArmChain, Frames, Geometry, JointValues, LinkId, LinkShape, MOST_ARM_JOINTS, ModelError,
     RobotModel, Target,
@@ -10,6 +10,15 @@ use tabletop_task::Convex;
 
 /// The angles of an arm from its base to its tip, in rad; 0 beyond its last joint.
 pub type Angles = [f64; MOST_ARM_JOINTS];
+
+/// These angles, 0 beyond the last.
+pub fn angles(each: impl IntoIterator<Item = f64>) -> Angles {
+    let mut all = Angles::default();
+    for (place, angle) in all.iter_mut().zip(each) {
+        *place = angle;
+    }
+    all
+}
 
 /// A robot: its links, limbs and grippers.
 #[derive(Clone, Debug)]
@@ -40,27 +49,6 @@ pub struct LimbBody {
     pub home: Angles,
 }
 
-/// What is to be known of a limb.
-#[derive(Clone, Debug)]
-pub struct LimbSource {
-    /// What it is called.
-    pub name: String,
-    /// The link that carries the end effector.
-    pub tip: String,
-    /// The end effector's frame on that link: its x along the opening, its -z where the fingers point. In m.
-    pub end_effector: DAffine3,
-    /// Limits of its joints, in rad.
-    pub limits: Vec<[f64; 2]>,
-    /// How fast its joints are turned, in rad/s.
-    pub speeds: Angles,
-    /// Extents of a finger, in units, in the end effector's frame.
-    pub finger: Vec3,
-    /// How far its gripper opens, in units.
-    pub widest: f32,
-    /// The angles that it begins with.
-    pub home: Angles,
-}
-
 /// A link that can be touched.
 #[derive(Clone, Debug)]
 struct LinkBody {
@@ -70,7 +58,48 @@ struct LinkBody {
     solids: Vec<(Pose, Solid)>,
 }
 
+/// The part of their motors' speed at which joints are turned.
+const SHARE_OF_SPEED: f64 = 0.75;
+/// How fast joints without a motor are turned, in rad/s.
+const SPEED: f64 = 1.0;
+
 impl LimbBody {
+    fn new<'l>(
+        layout: &RobotLayout,
+        limb: &'l LimbLayout,
+        model: &RobotModel,
+    ) -> Result<Self, ModelError> {
+        let found = |frame: &'l LinkFrame| Some((frame, model.find_link(&frame.link).ok()?));
+        let (frame, tip) = match limb.end_effector.iter().find_map(found) {
+            Some(found) => found,
+            None => {
+                return Err(ModelError::NoSuchLink {
+                    robot: layout.name.clone(),
+                    link: format!("of an end effector of limb {}", limb.name),
+                });
+            }
+        };
+        let axes = frame.axes.map(DVec3::from_array);
+        let joints = limb.joints.iter().map(|&joint| layout.joint(joint));
+        let joints: Vec<_> = joints.collect();
+        let chain = ArmChain::new(model, model.root(), tip)?;
+        Ok(Self {
+            name: limb.name.to_string(),
+            chain: chain.with_limits(joints.iter().map(|joint| joint.limits)),
+            end_effector: DAffine3::from_mat3_translation(
+                DMat3::from_cols(axes[0], axes[1], axes[2]),
+                DVec3::from_array(frame.at),
+            ),
+            finger: limb.gripper.finger,
+            widest: layout.joint(limb.gripper.joint).limits[1] as f32,
+            speeds: angles(joints.iter().map(|joint| match joint.speed > 0.0 {
+                true => joint.speed * SHARE_OF_SPEED,
+                false => SPEED,
+            })),
+            home: angles(joints.iter().map(|joint| joint.home)),
+        })
+    }
+
     /// Least and largest angle of each joint, in rad.
     pub fn limits(&self) -> &[[f64; 2]] {
         self.chain.limits()
@@ -83,25 +112,15 @@ impl LimbBody {
 }
 
 impl RobotBody {
-    /// A robot of this description, whose root link stands at `base` in the table's frame.
+    /// The robot of this layout and description, at this table.
     ///
     /// # Errors
     /// The description has no such limbs.
-    pub fn new(model: RobotModel, base: Pose, limbs: Vec<LimbSource>) -> Result<Self, ModelError> {
-        let limbs: Result<Vec<_>, ModelError> = limbs
-            .into_iter()
-            .map(|source| {
-                let chain = ArmChain::new(&model, model.root(), model.find_link(&source.tip)?)?;
-                Ok(LimbBody {
-                    name: source.name,
-                    chain: chain.with_limits(source.limits),
-                    end_effector: source.end_effector,
-                    finger: source.finger,
-                    widest: source.widest,
-                    speeds: source.speeds,
-                    home: source.home,
-                })
-            })
+    pub fn new(layout: &RobotLayout, model: RobotModel, table: &Table) -> Result<Self, ModelError> {
+        let limbs: Result<Vec<_>, ModelError> = layout
+            .limbs
+            .iter()
+            .map(|limb| LimbBody::new(layout, limb, &model))
             .collect();
         let limbs = limbs?;
         let links = model.links().iter().filter_map(|link| {
@@ -119,7 +138,7 @@ impl RobotBody {
         let mut body = Self {
             links: links.collect(),
             apart: Vec::new(),
-            base,
+            base: layout.base.pose(table),
             limbs,
             model,
         };

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::stage::Stopped;
+
 /// What went wrong, in words for who watches.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Failure {
@@ -28,6 +30,14 @@ pub enum Failure {
     NoRoom(String),
     /// It was put down, and is not where it belongs.
     Misplaced(String),
+    /// Somebody stopped the robot.
+    Stopped,
+}
+
+impl From<Stopped> for Failure {
+    fn from(_: Stopped) -> Self {
+        Self::Stopped
+    }
 }
 
 impl Failure {
@@ -43,6 +53,7 @@ impl Failure {
             Self::Blocked { .. } => "blocked",
             Self::NoRoom(_) => "no room",
             Self::Misplaced(_) => "misplaced",
+            Self::Stopped => "stopped",
         }
     }
 }
@@ -72,6 +83,7 @@ impl fmt::Display for Failure {
             }
             Self::NoRoom(object) => write!(f, "there is no free place on the table for {object}"),
             Self::Misplaced(object) => write!(f, "{object} is not where it was put"),
+            Self::Stopped => write!(f, "the robot was stopped"),
         }
     }
 }

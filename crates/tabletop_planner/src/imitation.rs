@@ -12,7 +12,7 @@ use crate::{
     goals::{Before, Candidate, bound, candidates, inside, is_met},
     motion::{follow, wait},
     sight::Sight,
-    stage::Stage,
+    stage::{Stage, Stopped},
     transfer::Transfer,
     transit::transit,
 };
@@ -29,10 +29,10 @@ pub struct Imitation {
 }
 
 /// What the robot is doing.
-#[derive(Clone, Copy, Debug)]
-pub struct Doing<'a> {
-    /// The step.
-    pub step: &'a Step,
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Doing {
+    /// The number of the step.
+    pub step: usize,
     /// How often it was tried before.
     pub tries: usize,
 }
@@ -46,15 +46,15 @@ const PARKED: Vec3 = Vec3::new(7.0, -6.0, 4.5);
 
 /// Does a task. Whatever is tried by chance is decided by `seed`; `tell` hears of every step before it is tried.
 pub fn imitate(
-    stage: &mut impl Stage,
+    stage: &mut dyn Stage,
     body: &RobotBody,
     task: &Task,
     binding: &Binding,
     seed: u64,
-    tell: impl FnMut(Doing),
+    mut tell: impl FnMut(Doing),
 ) -> Imitation {
-    let sight = stage.sight();
-    let beginning = sight
+    let beginning = stage
+        .sight()
         .objects
         .iter()
         .map(|(id, object)| (id.clone(), object.pose));
@@ -70,8 +70,10 @@ pub fn imitate(
         },
         outcome: Imitation::default(),
     };
-    imitator.park_all(stage);
-    imitator.do_all(stage, tell);
+    if imitator.do_all(stage, &mut tell).is_err() {
+        let step = imitator.outcome.steps_done + 1;
+        imitator.outcome.failure = Some((step, Failure::Stopped));
+    }
     imitator.outcome
 }
 
@@ -103,6 +105,34 @@ pub fn undone(
     })
 }
 
+/// Where the steps of a task will put their objects, as far as that is known before the robot begins: the number of the step, the object,
+/// and its pose.
+pub fn goal_poses(task: &Task, binding: &Binding, sight: &Sight) -> Vec<(usize, String, Pose)> {
+    let mut sight = sight.clone();
+    let poses = sight.objects.iter();
+    let mut before = Before {
+        beginning: poses
+            .map(|(id, object)| (id.clone(), object.pose))
+            .collect(),
+        step: None,
+    };
+    let mut goals = Vec::new();
+    for step in &task.steps {
+        let Some(id) = binding.object(&step.object) else {
+            continue;
+        };
+        before.step = sight.objects.get(id).map(|object| object.pose);
+        let Ok(found) = candidates(step, binding, &sight, &before) else {
+            continue;
+        };
+        if let (Some(goal), Some(object)) = (found.first(), sight.objects.get_mut(id)) {
+            object.pose = goal.pose;
+            goals.push((step.number, id.to_owned(), goal.pose));
+        }
+    }
+    goals
+}
+
 struct Imitator<'a> {
     body: &'a RobotBody,
     task: &'a Task,
@@ -115,20 +145,29 @@ struct Imitator<'a> {
 }
 
 impl Imitator<'_> {
-    fn do_all(&mut self, stage: &mut impl Stage, mut tell: impl FnMut(Doing)) {
+    fn do_all(
+        &mut self,
+        stage: &mut dyn Stage,
+        tell: &mut dyn FnMut(Doing),
+    ) -> Result<(), Stopped> {
+        self.park_all(stage)?;
         for i in 0..self.task.steps.len() {
             let step = &self.task.steps[i];
-            let sight = stage.sight();
             let object = self.binding.object(&step.object);
-            self.before.step = object.and_then(|id| Some(sight.objects.get(id)?.pose));
+            self.before.step = object.and_then(|id| Some(stage.sight().objects.get(id)?.pose));
             let mut failure = None;
             for tries in 0..TRIES {
-                tell(Doing { step, tries });
+                tell(Doing {
+                    step: step.number,
+                    tries,
+                });
                 self.outcome.corrections += usize::from(tries > 0);
                 failure = self.do_step(stage, i).err();
-                let limbs = stage.sight().limbs.len();
-                wait(stage, limbs, 10);
-                let is_met = is_met(step, self.binding, &stage.sight(), &self.before);
+                if failure == Some(Failure::Stopped) {
+                    return Err(Stopped);
+                }
+                wait(stage, 10)?;
+                let is_met = is_met(step, self.binding, stage.sight(), &self.before);
                 match (is_met, &failure) {
                     (Ok(true), None) => break,
                     (Ok(true), Some(_))
@@ -156,22 +195,21 @@ impl Imitator<'_> {
             self.outcome.steps_done += 1;
         }
         if self.outcome.failure.is_none() {
-            self.outcome.failure = undone(self.task, self.binding, &stage.sight(), &self.before);
+            self.outcome.failure = undone(self.task, self.binding, stage.sight(), &self.before);
         }
         let is_held = |step: &Step| step.relations.first() == Some(&Relation::Held);
         if !self.task.steps.iter().any(is_held) {
             for limb in 0..self.body.limbs.len() {
-                let _still_there = self.park(stage, limb);
+                self.try_to_park(stage, limb)?;
             }
         }
-        let limbs = stage.sight().limbs.len();
-        wait(stage, limbs, 30);
+        wait(stage, 30)
     }
 
-    fn do_step(&self, stage: &mut impl Stage, i: usize) -> Result<(), Failure> {
+    fn do_step(&self, stage: &mut dyn Stage, i: usize) -> Result<(), Failure> {
         let step = &self.task.steps[i];
         let id = bound(self.binding, &step.object)?;
-        let sight = stage.sight();
+        let sight = stage.sight().clone();
         let object = sight
             .objects
             .get(id)
@@ -213,7 +251,7 @@ impl Imitator<'_> {
             )
             | None => {
                 for _ in 0..MOST_CLEARED {
-                    let Some(occupant) = self.occupant(&stage.sight(), step, id)? else {
+                    let Some(occupant) = self.occupant(stage.sight(), step, id)? else {
                         break;
                     };
                     self.clear(stage, &occupant, i)?;
@@ -224,8 +262,8 @@ impl Imitator<'_> {
     }
 
     /// Puts an object to where a step wants it; by way of a place that two limbs reach, if no limb reaches both ends.
-    fn put(&self, stage: &mut impl Stage, step: &Step, id: &str, i: usize) -> Result<(), Failure> {
-        let goals = |stage: &mut _| self.goals(stage, step);
+    fn put(&self, stage: &mut dyn Stage, step: &Step, id: &str, i: usize) -> Result<(), Failure> {
+        let goals = |stage: &mut dyn Stage| self.goals(stage, step);
         let at = goals(stage)?
             .first()
             .map_or(Vec3::ZERO, |goal| goal.pose.location);
@@ -238,7 +276,7 @@ impl Imitator<'_> {
         let Err(failure @ (Failure::OutOfReach(_) | Failure::NoWay(_))) = straight else {
             return straight;
         };
-        let sight = stage.sight();
+        let sight = stage.sight().clone();
         let is_held = sight.limbs.iter().any(|limb| !limb.holds.is_empty());
         let Some(object) = sight.objects.get(id).filter(|_| !is_held) else {
             return Err(failure);
@@ -272,9 +310,9 @@ impl Imitator<'_> {
         })
     }
 
-    fn goals(&self, stage: &impl Stage, step: &Step) -> Result<Vec<Candidate>, Failure> {
+    fn goals(&self, stage: &dyn Stage, step: &Step) -> Result<Vec<Candidate>, Failure> {
         let sight = stage.sight();
-        let goals = candidates(step, self.binding, &sight, &self.before)?;
+        let goals = candidates(step, self.binding, sight, &self.before)?;
         let is_inside = step
             .goal
             .as_ref()
@@ -289,14 +327,14 @@ impl Imitator<'_> {
     }
 
     /// Lets the limb do it that is on the side of both ends; if it cannot, the others. They wait meanwhile.
-    fn by_some_limb<S: Stage>(
+    fn by_some_limb(
         &self,
-        stage: &mut S,
+        stage: &mut dyn Stage,
         id: &str,
         towards: Vec3,
-        act: impl Fn(&Transfer, &mut S) -> Result<(), Failure>,
+        act: impl Fn(&Transfer, &mut dyn Stage) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        let sight = stage.sight();
+        let sight = stage.sight().clone();
         let object = sight
             .objects
             .get(id)
@@ -333,8 +371,11 @@ impl Imitator<'_> {
                     if is_telling {
                         failure = new;
                     }
+                    if failure == Failure::Stopped {
+                        return Err(failure);
+                    }
                     if has_acted {
-                        self.set_down(stage, limb);
+                        self.set_down(stage, limb)?;
                         return Err(failure);
                     }
                 }
@@ -344,14 +385,19 @@ impl Imitator<'_> {
     }
 
     /// Opens a gripper that still holds something after a failure, and lifts it.
-    fn set_down(&self, stage: &mut impl Stage, limb: usize) {
+    fn set_down(&self, stage: &mut dyn Stage, limb: usize) -> Result<(), Failure> {
         let widest = f64::from(self.body.limbs[limb].widest);
-        crate::motion::grip(stage, limb, widest);
-        let sight = stage.sight();
+        crate::motion::grip(stage, limb, widest)?;
+        let sight = stage.sight().clone();
         let clearance = Clearance::new(self.body, &sight, limb, &[]);
         if let Some(up) = crate::path::lift(&clearance, &clearance.here(), 1.0) {
-            let _stopped = follow(stage, self.body, limb, &up, 2.5, "");
+            match follow(stage, self.body, limb, &up, 2.5, "") {
+                Err(Failure::Stopped) => return Err(Failure::Stopped),
+                // It stays where it is.
+                Ok(()) | Err(_) => {}
+            }
         }
+        Ok(())
     }
 
     /// What is where a step's object is to be, and does not belong there.
@@ -393,11 +439,11 @@ impl Imitator<'_> {
     }
 
     /// Moves something out of the way, with what stands on it.
-    fn clear(&self, stage: &mut impl Stage, id: &str, i: usize) -> Result<(), Failure> {
+    fn clear(&self, stage: &mut dyn Stage, id: &str, i: usize) -> Result<(), Failure> {
         for above in stage.sight().above(id) {
             self.clear(stage, &above, i)?;
         }
-        let sight = stage.sight();
+        let sight = stage.sight().clone();
         let near = sight
             .objects
             .get(id)
@@ -407,12 +453,12 @@ impl Imitator<'_> {
 
     fn put_aside(
         &self,
-        stage: &mut impl Stage,
+        stage: &mut dyn Stage,
         id: &str,
         near: Vec3,
         i: usize,
     ) -> Result<(), Failure> {
-        let sight = stage.sight();
+        let sight = stage.sight().clone();
         let kept = self.kept(&sight, i);
         let mut spots = Vec::new();
         let all: Vec<_> = (0..self.body.limbs.len()).collect();
@@ -456,9 +502,8 @@ impl Imitator<'_> {
         places.flatten().collect()
     }
 
-    fn park_all(&mut self, stage: &mut impl Stage) {
-        let sight = stage.sight();
-        for (limb, seen) in sight.limbs.iter().enumerate() {
+    fn park_all(&mut self, stage: &mut dyn Stage) -> Result<(), Stopped> {
+        for (limb, seen) in stage.sight().limbs.iter().enumerate() {
             let side = self
                 .body
                 .end_effector(limb, &seen.angles)
@@ -471,13 +516,25 @@ impl Imitator<'_> {
                 .push(parked.unwrap_or(self.body.limbs[limb].home));
         }
         for limb in 0..self.parked.len() {
-            let _still_there = self.park(stage, limb);
+            self.try_to_park(stage, limb)?;
+        }
+        Ok(())
+    }
+
+    /// Brings a limb to where it waits, if a way is free.
+    fn try_to_park(&self, stage: &mut dyn Stage, limb: usize) -> Result<(), Stopped> {
+        match self.park(stage, limb) {
+            Err(Failure::Stopped) => Err(Stopped),
+            Ok(()) | Err(_) => Ok(()),
         }
     }
 
     /// Brings a limb to where it waits.
-    fn park(&self, stage: &mut impl Stage, limb: usize) -> Result<(), Failure> {
-        let sight = stage.sight();
+    ///
+    /// # Errors
+    /// No way is free, or something stops it.
+    fn park(&self, stage: &mut dyn Stage, limb: usize) -> Result<(), Failure> {
+        let sight = stage.sight().clone();
         let clearance = Clearance::new(self.body, &sight, limb, &[]);
         let here = clearance.here();
         if crate::path::largest_turn(&here, &self.parked[limb]) < 1e-3 {

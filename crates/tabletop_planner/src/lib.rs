@@ -6,6 +6,7 @@
 
 mod body;
 mod clearance;
+mod execution;
 mod failure;
 mod free_spot;
 mod goals;
@@ -20,11 +21,12 @@ mod stage;
 mod transfer;
 mod transit;
 
-pub use body::{Angles, LimbBody, LimbSource, RobotBody};
+pub use body::{Angles, LimbBody, RobotBody, angles};
+pub use execution::{Execution, Turn};
 pub use failure::Failure;
 pub use goals::{Before, is_met};
 pub use grasp::{Grasp, grasps};
-pub use imitation::{Doing, Imitation, imitate, undone};
+pub use imitation::{Doing, Imitation, goal_poses, imitate, undone};
 pub use scatter::{Piece, scatter};
 pub use sight::{LimbSight, SeenObject, Sight};
-pub use stage::{LimbOrder, Stage};
+pub use stage::{LimbOrder, Stage, Stopped};

@@ -6,7 +6,7 @@ use crate::{
     body::{Angles, RobotBody},
     failure::Failure,
     sight::Sight,
-    stage::{LimbOrder, Stage},
+    stage::{LimbOrder, Stage, Stopped},
 };
 
 /// How fast fingers move, in units/s.
@@ -19,15 +19,17 @@ const PATIENCE: u32 = 20;
 const FINGER_TICKS: u32 = 200;
 
 /// Lets time pass with nothing moving.
-pub(crate) fn wait(stage: &mut impl Stage, limbs: usize, ticks: u32) {
+pub(crate) fn wait(stage: &mut dyn Stage, ticks: u32) -> Result<(), Stopped> {
+    let still = vec![LimbOrder::default(); stage.sight().limbs.len()];
     for _ in 0..ticks {
-        stage.tick(&vec![LimbOrder::default(); limbs]);
+        stage.tick(&still)?;
     }
+    Ok(())
 }
 
 /// Moves an arm along a path, its end effector no faster than `speed`, in units/s.
 pub(crate) fn follow(
-    stage: &mut impl Stage,
+    stage: &mut dyn Stage,
     body: &RobotBody,
     limb: usize,
     path: &[Angles],
@@ -49,27 +51,25 @@ pub(crate) fn follow(
     let end = schedule[schedule.len() - 1].0;
     let mut time = 0.0_f64;
     let mut stopped = 0;
+    let mut orders = vec![LimbOrder::default(); stage.sight().limbs.len()];
     loop {
-        let now = stage.sight();
-        let angles = now.limbs[limb].angles;
+        let angles = stage.sight().limbs[limb].angles;
         time = (time + step).min(end);
         let wanted = at(&schedule, time);
-        let mut orders = vec![LimbOrder::default(); now.limbs.len()];
         orders[limb].joints = std::array::from_fn(|i| (wanted[i] - angles[i]) / step);
-        stage.tick(&orders);
-        let sight = stage.sight();
-        let reached = sight.limbs[limb].angles;
+        stage.tick(&orders)?;
+        let reached = stage.sight().limbs[limb].angles;
         let lag = (0..reached.len()).map(|i| (reached[i] - wanted[i]).abs());
         if lag.fold(0.0, f64::max) > LAG {
             stopped += 1;
             time = (time - step).max(0.0);
             if stopped > PATIENCE {
-                return Err(blocked(&sight, limb, object));
+                return Err(blocked(stage.sight(), limb, object));
             }
         } else {
             stopped = 0;
             if time >= end {
-                wait(stage, sight.limbs.len(), 1);
+                wait(stage, 1)?;
                 return Ok(());
             }
         }
@@ -98,24 +98,22 @@ fn at(schedule: &[(f64, Angles)], time: f64) -> Angles {
 }
 
 /// Opens or closes a gripper, until it is there, holds something, or is stopped.
-pub(crate) fn grip(stage: &mut impl Stage, limb: usize, opening: f64) {
+pub(crate) fn grip(stage: &mut dyn Stage, limb: usize, opening: f64) -> Result<(), Stopped> {
     let mut still = 0;
+    let mut orders = vec![LimbOrder::default(); stage.sight().limbs.len()];
     for _ in 0..FINGER_TICKS {
-        let sight = stage.sight();
-        let before = &sight.limbs[limb];
-        let left = opening - before.opening;
+        let before = stage.sight().limbs[limb].opening;
+        let left = opening - before;
         if left.abs() < 1e-4 {
             break;
         }
-        let mut orders = vec![LimbOrder::default(); sight.limbs.len()];
         orders[limb].opening = (left / f64::from(TICK_SECONDS)).clamp(-FINGER_SPEED, FINGER_SPEED);
-        stage.tick(&orders);
-        let after = stage.sight();
-        let after = &after.limbs[limb];
+        stage.tick(&orders)?;
+        let after = &stage.sight().limbs[limb];
         if left < 0.0 && !after.holds.is_empty() {
             break;
         }
-        still = if (after.opening - before.opening).abs() < 1e-5 {
+        still = if (after.opening - before).abs() < 1e-5 {
             still + 1
         } else {
             0
@@ -124,6 +122,5 @@ pub(crate) fn grip(stage: &mut impl Stage, limb: usize, opening: f64) {
             break;
         }
     }
-    let limbs = stage.sight().limbs.len();
-    wait(stage, limbs, 1);
+    wait(stage, 1)
 }

@@ -52,16 +52,16 @@ struct Taking {
 
 impl Transfer<'_> {
     /// Takes the object, and puts it to one of these places.
-    pub fn carry_out(&self, stage: &mut impl Stage, goals: &[Candidate]) -> Result<(), Failure> {
-        let sight = stage.sight();
+    pub fn carry_out(&self, stage: &mut dyn Stage, goals: &[Candidate]) -> Result<(), Failure> {
+        let sight = stage.sight().clone();
         let (taking, approach) = self.plan(&sight, goals)?;
         self.take(stage, &taking, &approach)?;
         self.put(stage, goals)
     }
 
     /// Takes the object, and lifts it.
-    pub fn pick_up(&self, stage: &mut impl Stage) -> Result<(), Failure> {
-        let sight = stage.sight();
+    pub fn pick_up(&self, stage: &mut dyn Stage) -> Result<(), Failure> {
+        let sight = stage.sight().clone();
         let object = self.seen(&sight)?;
         let goal = Candidate {
             pose: Pose::new(object.pose.location + Vec3::Z, object.pose.rotation),
@@ -69,15 +69,15 @@ impl Transfer<'_> {
         };
         let (taking, approach) = self.plan(&sight, &[goal])?;
         self.take(stage, &taking, &approach)?;
-        let sight = stage.sight();
+        let sight = stage.sight().clone();
         let clearance = Clearance::new(self.body, &sight, self.limb, &[self.object]);
         let up = lift(&clearance, &clearance.here(), 1.0).ok_or_else(|| self.no_way())?;
         follow(stage, self.body, self.limb, &up, SLOW, self.object)
     }
 
     /// Takes the object, and moves it along a straight line by so much, as a joint lets it.
-    pub fn slide(&self, stage: &mut impl Stage, by: Vec3) -> Result<(), Failure> {
-        let sight = stage.sight();
+    pub fn slide(&self, stage: &mut dyn Stage, by: Vec3) -> Result<(), Failure> {
+        let sight = stage.sight().clone();
         let object = self.seen(&sight)?.clone();
         let goal = Candidate {
             pose: Pose::new(object.pose.location + by, object.pose.rotation),
@@ -85,7 +85,7 @@ impl Transfer<'_> {
         };
         let (taking, approach) = self.plan(&sight, &[goal])?;
         self.take(stage, &taking, &approach)?;
-        let sight = stage.sight();
+        let sight = stage.sight().clone();
         let clearance = Clearance::new(self.body, &sight, self.limb, &[self.object]);
         let here = clearance.here();
         let mut there = clearance.end_effector(&here);
@@ -303,16 +303,15 @@ impl Transfer<'_> {
 
     fn take(
         &self,
-        stage: &mut impl Stage,
+        stage: &mut dyn Stage,
         taking: &Taking,
         [way, down]: &[Path; 2],
     ) -> Result<(), Failure> {
-        grip(stage, self.limb, f64::from(taking.opening));
+        grip(stage, self.limb, f64::from(taking.opening))?;
         follow(stage, self.body, self.limb, way, FAST, self.object)?;
         follow(stage, self.body, self.limb, down, SLOW, self.object)?;
-        grip(stage, self.limb, 0.0);
-        let sight = stage.sight();
-        let holds = &sight.limbs[self.limb].holds;
+        grip(stage, self.limb, 0.0)?;
+        let holds = &stage.sight().limbs[self.limb].holds;
         if holds.iter().any(|id| id == self.object) {
             return Ok(());
         }
@@ -321,14 +320,14 @@ impl Transfer<'_> {
     }
 
     /// Opens the gripper, and goes up.
-    fn retreat(&self, stage: &mut impl Stage) -> Result<(), Failure> {
+    fn retreat(&self, stage: &mut dyn Stage) -> Result<(), Failure> {
         let limb = &self.body.limbs[self.limb];
-        grip(stage, self.limb, f64::from(limb.widest));
+        grip(stage, self.limb, f64::from(limb.widest))?;
         self.go_up(stage)
     }
 
-    fn go_up(&self, stage: &mut impl Stage) -> Result<(), Failure> {
-        let sight = stage.sight();
+    fn go_up(&self, stage: &mut dyn Stage) -> Result<(), Failure> {
+        let sight = stage.sight().clone();
         let clearance = Clearance::new(self.body, &sight, self.limb, &[self.object]);
         let here = clearance.here();
         let by = [1.4, 1.0, 0.6]
@@ -340,19 +339,17 @@ impl Transfer<'_> {
         }
     }
 
-    fn let_go(&self, stage: &mut impl Stage) -> Result<(), Failure> {
+    fn let_go(&self, stage: &mut dyn Stage) -> Result<(), Failure> {
         let opening = stage.sight().limbs[self.limb].opening;
         let widest = f64::from(self.body.limbs[self.limb].widest);
-        grip(stage, self.limb, (opening + 0.35).min(widest));
+        grip(stage, self.limb, (opening + 0.35).min(widest))?;
         self.go_up(stage)?;
-        let limbs = stage.sight().limbs.len();
-        wait(stage, limbs, 15);
-        Ok(())
+        Ok(wait(stage, 15)?)
     }
 
     /// Puts what is held to one of these places: as it lies in the fingers now.
-    fn put(&self, stage: &mut impl Stage, goals: &[Candidate]) -> Result<(), Failure> {
-        let sight = stage.sight();
+    fn put(&self, stage: &mut dyn Stage, goals: &[Candidate]) -> Result<(), Failure> {
+        let sight = stage.sight().clone();
         let object = self.seen(&sight)?;
         let here = sight.limbs[self.limb].angles;
         let end_effector = self.body.end_effector(self.limb, &here);

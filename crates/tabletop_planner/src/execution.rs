@@ -1,0 +1,246 @@
+//! Doing a task beside the simulation, tick by tick.
+
+use std::{
+    io,
+    sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel},
+    thread,
+    time::Duration,
+};
+
+use bevy::platform::cell::SyncCell;
+use tabletop_task::{Binding, Task};
+
+use crate::{
+    body::RobotBody,
+    failure::Failure,
+    imitation::{Doing, Imitation, imitate},
+    sight::Sight,
+    stage::{LimbOrder, Stage, Stopped},
+};
+
+/// A robot that does a task, for those who let time pass themselves: it asks for a tick, and goes on when it has seen it. It plans in a
+/// thread of its own, and stops when it is dropped.
+pub struct Execution {
+    sights: Sender<Sight>,
+    news: SyncCell<Receiver<News>>,
+    doing: Option<Doing>,
+    over: Option<Imitation>,
+}
+
+/// What an execution is about.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Turn {
+    /// It plans.
+    Planning,
+    /// It waits for a tick with these orders, one for each limb; then [`Execution::see`].
+    Orders(Vec<LimbOrder>),
+    /// Nothing more is done.
+    Over(Imitation),
+}
+
+enum News {
+    Doing(Doing),
+    Orders(Vec<LimbOrder>),
+    Over(Imitation),
+}
+
+/// The world as its thread knows it.
+struct Correspondence {
+    sight: Sight,
+    sights: Receiver<Sight>,
+    news: Sender<News>,
+}
+
+impl Stage for Correspondence {
+    fn sight(&self) -> &Sight {
+        &self.sight
+    }
+
+    fn tick(&mut self, orders: &[LimbOrder]) -> Result<(), Stopped> {
+        let orders = News::Orders(orders.to_vec());
+        self.news.send(orders).map_err(|_| Stopped)?;
+        self.sight = self.sights.recv().map_err(|_| Stopped)?;
+        Ok(())
+    }
+}
+
+impl Execution {
+    /// Begins a task in a world that looks like this. Whatever is tried by chance is decided by `seed`.
+    ///
+    /// # Errors
+    /// The system has no thread for it.
+    pub fn begin(
+        body: RobotBody,
+        task: Task,
+        binding: Binding,
+        sight: Sight,
+        seed: u64,
+    ) -> io::Result<Self> {
+        let (sights, seen) = channel();
+        let (news, heard) = channel();
+        let plan = move || {
+            let told = news.clone();
+            let mut stage = Correspondence {
+                sight,
+                sights: seen,
+                news,
+            };
+            // Nobody listens any more if it is dropped.
+            let tell = |doing| drop(told.send(News::Doing(doing)));
+            let imitation = imitate(&mut stage, &body, &task, &binding, seed, tell);
+            drop(told.send(News::Over(imitation)));
+        };
+        thread::Builder::new().name("planner".into()).spawn(plan)?;
+        Ok(Self {
+            sights,
+            news: SyncCell::new(heard),
+            doing: None,
+            over: None,
+        })
+    }
+
+    /// What is to be done next, as soon as it is known, or after this long.
+    pub fn turn(&mut self, within: Duration) -> Turn {
+        if let Some(imitation) = &self.over {
+            return Turn::Over(imitation.clone());
+        }
+        loop {
+            match self.news.get().recv_timeout(within) {
+                Ok(News::Doing(doing)) => self.doing = Some(doing),
+                Ok(News::Orders(orders)) => return Turn::Orders(orders),
+                Ok(News::Over(imitation)) => return self.end(imitation),
+                Err(RecvTimeoutError::Timeout) => return Turn::Planning,
+                Err(RecvTimeoutError::Disconnected) => {
+                    let step = self.doing.map_or(1, |doing| doing.step);
+                    return self.end(Imitation {
+                        failure: Some((step, Failure::Stopped)),
+                        ..Imitation::default()
+                    });
+                }
+            }
+        }
+    }
+
+    fn end(&mut self, imitation: Imitation) -> Turn {
+        self.over = Some(imitation.clone());
+        Turn::Over(imitation)
+    }
+
+    /// Tells it what is seen after the tick that it has asked for.
+    pub fn see(&self, sight: Sight) {
+        // After its end, nobody looks.
+        drop(self.sights.send(sight));
+    }
+
+    /// The step that is done, since the last [`Execution::turn`].
+    pub fn doing(&self) -> Option<Doing> {
+        self.doing
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::{RobotLayout, TICK_SECONDS, Table};
+    use tabletop_kinematics::baxter;
+
+    use super::*;
+    use crate::{body::angles, sight::LimbSight};
+
+    fn body() -> RobotBody {
+        RobotBody::new(RobotLayout::baxter(), baxter().unwrap(), &Table::default()).unwrap()
+    }
+
+    fn at_home(body: &RobotBody) -> Sight {
+        let limbs = body.limbs.iter().map(|limb| LimbSight {
+            angles: limb.home,
+            ..LimbSight::default()
+        });
+        Sight {
+            limbs: limbs.collect(),
+            ..Sight::default()
+        }
+    }
+
+    /// What is seen after a tick with these orders, if nothing is in the way.
+    fn passed(mut sight: Sight, orders: &[LimbOrder]) -> Sight {
+        for (limb, order) in sight.limbs.iter_mut().zip(orders) {
+            let turns = limb.angles.into_iter().zip(order.joints);
+            limb.angles =
+                angles(turns.map(|(angle, speed)| angle + speed * f64::from(TICK_SECONDS)));
+        }
+        sight
+    }
+
+    struct Alone(Sight, Vec<Vec<LimbOrder>>);
+
+    impl Stage for Alone {
+        fn sight(&self) -> &Sight {
+            &self.0
+        }
+
+        fn tick(&mut self, orders: &[LimbOrder]) -> Result<(), Stopped> {
+            self.1.push(orders.to_vec());
+            self.0 = passed(self.0.clone(), orders);
+            Ok(())
+        }
+    }
+
+    fn nothing() -> Task {
+        Task {
+            table: Table::default(),
+            roles: Vec::new(),
+            joints: Vec::new(),
+            steps: Vec::new(),
+            detours: Vec::new(),
+        }
+    }
+
+    fn begun() -> (Execution, Sight) {
+        let body = body();
+        let sight = at_home(&body);
+        let begun = Execution::begin(body, nothing(), Binding::default(), sight.clone(), 7);
+        (begun.unwrap(), sight)
+    }
+
+    #[test]
+    fn tick_by_tick_it_does_the_same_as_at_a_stretch() {
+        let (mut execution, mut sight) = begun();
+        let mut orders = Vec::new();
+        let step_by_step = loop {
+            match execution.turn(Duration::MAX) {
+                Turn::Planning => {}
+                Turn::Orders(next) => {
+                    sight = passed(sight, &next);
+                    orders.push(next);
+                    execution.see(sight.clone());
+                }
+                Turn::Over(imitation) => break imitation,
+            }
+        };
+        let body = body();
+        let mut alone = Alone(at_home(&body), Vec::new());
+        let at_a_stretch = imitate(
+            &mut alone,
+            &body,
+            &nothing(),
+            &Binding::default(),
+            7,
+            |_| {},
+        );
+        assert_eq!(step_by_step, at_a_stretch);
+        assert!(orders.len() > 30);
+        assert_eq!(orders, alone.1);
+        assert_eq!(execution.turn(Duration::ZERO), Turn::Over(at_a_stretch));
+    }
+
+    #[test]
+    fn it_waits_for_the_tick_that_it_has_asked_for() {
+        let (mut execution, sight) = begun();
+        let Turn::Orders(_) = execution.turn(Duration::MAX) else {
+            panic!("arms are to be parked");
+        };
+        assert_eq!(execution.turn(Duration::from_millis(20)), Turn::Planning);
+        execution.see(sight);
+        assert!(matches!(execution.turn(Duration::MAX), Turn::Orders(_)));
+    }
+}
