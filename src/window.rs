@@ -3,6 +3,7 @@
 mod display;
 mod files;
 mod frame_rate;
+mod idle;
 mod no_window;
 mod opening;
 mod redraw;
@@ -137,6 +138,7 @@ fn build(options: WindowOptions) -> App {
         display::plugin,
         files::plugin,
         frame_rate::plugin,
+        idle::plugin,
         opening::plugin,
         redraw::plugin,
         replay::plugin,

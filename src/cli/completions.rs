@@ -2,10 +2,10 @@
 
 use std::process::ExitCode;
 
-use clap::{Args, CommandFactory as _};
+use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 
-use super::{Cli, Failure, Output};
+use super::{Failure, Output};
 
 #[derive(Args)]
 pub(super) struct CompletionsArgs {
@@ -13,9 +13,12 @@ pub(super) struct CompletionsArgs {
     shell: Shell,
 }
 
-pub(super) fn completions(args: &CompletionsArgs) -> Result<ExitCode, Failure> {
+pub(super) fn completions(
+    args: &CompletionsArgs,
+    commands: &mut Command,
+) -> Result<ExitCode, Failure> {
     let mut script = Vec::new();
-    generate(args.shell, &mut Cli::command(), "tabletop", &mut script);
+    generate(args.shell, commands, "tabletop", &mut script);
     Output::Stdout.write(&script)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -14,8 +14,8 @@ use tabletop::{
 
 use super::{
     Failure,
+    duration::{seconds, ticks},
     robot_options::{EngineOptions, script},
-    run::{seconds, ticks},
     script::{Script, headless_settings},
     temporary_folder::TemporaryFolder,
     terminal::{say, show_warnings},

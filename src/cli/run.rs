@@ -13,8 +13,8 @@ use serde_json::json;
 use tabletop::{
     TabletopSimPlugins,
     core::{
-        ClockCommand, Recording, RecordingCommand, RestingSystems, SceneCommand, SceneSpec,
-        SimFact, SimTick, StepApp as _, TICKS_PER_SECOND, WriteCommand as _,
+        Recording, RecordingCommand, RestingSystems, SceneCommand, SceneSpec, SimFact, SimTick,
+        StepApp as _, WriteCommand as _,
     },
     final_state, headless_app_with,
     recorder::{RecorderPlugin, UnrecordedPlugin},
@@ -26,10 +26,14 @@ use tabletop_scenario::{Outcome, Program, ScenarioPlugin, ScenarioRun};
 
 use super::{
     Failure, Output, WRONG_INPUT,
+    duration::{pass, seconds, ticks},
     robot_options::{EngineOptions, RobotOptions, script},
     script::{Script, headless_settings},
     terminal::{say, show_warnings},
 };
+
+/// The task file that is loaded when none is named.
+pub(super) const DEFAULT_SETUP: &str = "tablesetup/default.xml";
 
 #[derive(Args)]
 #[command(mut_group("EngineOptions", |options| options.requires("script")))]
@@ -78,15 +82,6 @@ pub(super) struct RunArgs {
     quiet: bool,
 }
 
-/// Reads a time of 0 to a year.
-pub(super) fn seconds(text: &str) -> Result<f64, String> {
-    const YEAR: f64 = 366.0 * 24.0 * 3600.0;
-    text.parse()
-        .ok()
-        .filter(|seconds| (0.0..=YEAR).contains(seconds))
-        .ok_or_else(|| format!("expected a number of seconds from 0 to {YEAR}"))
-}
-
 pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
     show_warnings();
     args.check_ends()?;
@@ -95,7 +90,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
         Some(scenario) => perform(scenario, args),
         None => {
             let setup = args.setup.as_deref();
-            let setup = setup.unwrap_or(Path::new(super::DEFAULT_SETUP));
+            let setup = setup.unwrap_or(Path::new(DEFAULT_SETUP));
             let (mut app, result) = put_on_table(setup, plugins(args)?)?;
             app.add_systems(
                 FixedLast,
@@ -123,14 +118,6 @@ pub(super) fn simulate(
     pass(&mut app, ticks(seconds));
     write_final_state(&app, final_state)?;
     Ok(result)
-}
-
-/// Simulates so many ticks. If there are none, all is put on the table nevertheless.
-pub(super) fn pass(app: &mut App, ticks: u64) {
-    if ticks == 0 {
-        app.world_mut().write_command(ClockCommand::SetPaused(true));
-    }
-    app.step(ticks.max(1));
 }
 
 /// The simulator that loads a task file in its first tick, and the exit code for the file's faults.
@@ -365,10 +352,6 @@ pub(super) fn read_faultless_task(file: &Path) -> Result<SceneSpec, String> {
         true => Ok(task.scene),
         false => Err(faults.join("\n")),
     }
-}
-
-pub(super) fn ticks(seconds: f64) -> u64 {
-    (seconds * f64::from(TICKS_PER_SECOND)).round() as u64
 }
 
 fn write_final_state(app: &App, output: &Output) -> Result<(), Failure> {

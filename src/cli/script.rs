@@ -8,8 +8,8 @@ use tabletop::{
 
 use super::{
     Failure,
+    duration::pass,
     robot_options::{EngineOptions, check_scripts},
-    run::pass,
     terminal::{is_unheard, say},
 };
 

@@ -7,6 +7,7 @@ use tabletop::{replay::Replay, script::ScriptSettings};
 
 use super::{
     Failure, Output,
+    duration::seconds,
     robot_options::{EngineOptions, RobotOptions, script},
     run,
     terminal::say,
@@ -15,7 +16,7 @@ use super::{
 #[derive(Args)]
 pub(super) struct WindowArgs {
     /// The task file to begin with
-    #[arg(long, value_name = "FILE", default_value = super::DEFAULT_SETUP)]
+    #[arg(long, value_name = "FILE", default_value = run::DEFAULT_SETUP)]
     setup: PathBuf,
     /// The file that binds keys, instead of keys.ron in the folder of the preferences; see `tabletop keys`
     #[cfg(feature = "window")]
@@ -28,7 +29,7 @@ pub(super) struct WindowArgs {
     #[arg(long, value_name = "FILE")]
     screenshot: Option<PathBuf>,
     /// When to take the picture, in seconds of simulated time
-    #[arg(long, value_name = "S", default_value = "1", value_parser = run::seconds, allow_negative_numbers = true, requires = "screenshot")]
+    #[arg(long, value_name = "S", default_value = "1", value_parser = seconds, allow_negative_numbers = true, requires = "screenshot")]
     after: f64,
     /// The scripts that the key M starts: `matlab` (those that matlab/agentBehavior.m names), `matlab:FOLDER`, `octave:FOLDER`,
     /// `matlab:FOLDER#reach` (reachInit.m and reachCallback.m), `python:FILE`, or `other:FILE`, which the driver runs that `--engine` names

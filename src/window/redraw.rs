@@ -3,6 +3,7 @@
 //! After each frame of the main world, what there is to see is summed up ([`Sight`]). If it looks as in the last picture, that
 //! picture stays: nothing is extracted, rendered or presented.
 
+mod cause;
 mod sight;
 
 use std::time::Duration;
@@ -17,7 +18,10 @@ use bevy::{
 use tabletop_gui::Picture;
 use tabletop_view::Surface;
 
-use self::sight::{Drawn, Sight};
+use self::{
+    cause::RedrawCause,
+    sight::{Drawn, Sight},
+};
 use super::frame_rate::FrameRate;
 
 /// How many frames are drawn at the start, whatever there is to see.
@@ -32,62 +36,10 @@ const REFRESH: Duration = Duration::from_secs(5);
 /// For how long nothing may have moved in a picture that is still.
 const STILL: Duration = Duration::from_millis(500);
 
-/// Why a frame is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Cause {
-    /// The program has just started.
-    Start,
-    /// The window has another size, or has been uncovered.
-    Window,
-    /// Another camera, or another place of it.
-    Camera,
-    /// Something drawn has moved, come, gone, or become visible or invisible.
-    Scene,
-    /// The lines around what is held.
-    Lines,
-    /// The windows inside the window.
-    Panels,
-    /// A mesh, a material or a shader.
-    Asset,
-    /// A texture. Those of the panels change with their texts, and reach the graphics card in time.
-    Texture,
-    /// Someone waits for a picture.
-    Screenshot,
-    /// What was drawn last has not all reached the graphics card.
-    Settling,
-    /// The last picture is old.
-    Refresh,
-}
-
-impl Cause {
-    /// Whether something in the picture moves.
-    const fn is_motion(self) -> bool {
-        match self {
-            Self::Start
-            | Self::Window
-            | Self::Camera
-            | Self::Scene
-            | Self::Lines
-            | Self::Screenshot => true,
-            Self::Panels | Self::Asset | Self::Texture | Self::Settling | Self::Refresh => false,
-        }
-    }
-
-    /// Whether what is drawn does not all reach the graphics card at once.
-    const fn needs_settling(self) -> bool {
-        self.is_motion() || matches!(self, Self::Asset)
-    }
-
-    /// Whether the user sees something new.
-    const fn is_news(self) -> bool {
-        self.needs_settling() || matches!(self, Self::Panels | Self::Texture)
-    }
-}
-
 /// Whether the present frame is drawn.
 #[derive(Resource, Debug, Default)]
 pub(super) struct Redraw {
-    cause: Option<Cause>,
+    cause: Option<RedrawCause>,
     sight: Sight,
     /// Frames that are to be drawn whatever there is to see.
     left: u32,
@@ -109,12 +61,12 @@ impl Redraw {
     }
 
     /// Decides about a frame: what there is to see, what has happened that cannot be seen in that, and when (since the start).
-    fn decide(&mut self, sight: Sight, events: [Option<Cause>; 2], now: Duration) {
+    fn decide(&mut self, sight: Sight, events: [Option<RedrawCause>; 2], now: Duration) {
         self.frames = self.frames.saturating_add(1);
-        let start = (self.frames <= STARTING).then_some(Cause::Start);
+        let start = (self.frames <= STARTING).then_some(RedrawCause::Start);
         let difference = sight.difference(&self.sight);
-        let settling = (self.left > 0).then_some(Cause::Settling);
-        let refresh = (now >= self.drawn_at + REFRESH).then_some(Cause::Refresh);
+        let settling = (self.left > 0).then_some(RedrawCause::Settling);
+        let refresh = (now >= self.drawn_at + REFRESH).then_some(RedrawCause::Refresh);
         let [event, asset] = events;
         let causes = [start, event, difference, asset, settling, refresh];
         let mut causes = causes.into_iter().flatten().peekable();
@@ -140,25 +92,25 @@ impl Redraw {
 
 /// What has happened to assets since the last frame.
 #[derive(Resource, Default)]
-struct AssetChange(Option<Cause>);
+struct AssetChange(Option<RedrawCause>);
 
 /// Draws the frames that show something new, and only those. Needs pipelined rendering, which Bevy has wherever there are threads.
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Redraw>()
         .init_resource::<AssetChange>()
         .add_systems(Last, decide.after(GizmoMeshSystems));
-    watch_assets::<Image>(app, Cause::Texture);
-    watch_assets::<Mesh>(app, Cause::Asset);
-    watch_assets::<Shader>(app, Cause::Asset);
-    watch_assets::<Surface>(app, Cause::Asset);
+    watch_assets::<Image>(app, RedrawCause::Texture);
+    watch_assets::<Mesh>(app, RedrawCause::Asset);
+    watch_assets::<Shader>(app, RedrawCause::Asset);
+    watch_assets::<Surface>(app, RedrawCause::Asset);
     draw_when_due(app);
 }
 
 /// Changes of this kind of asset are seen.
-fn watch_assets<A: Asset>(app: &mut App, cause: Cause) {
+fn watch_assets<A: Asset>(app: &mut App, cause: RedrawCause) {
     let note = move |mut change: ResMut<AssetChange>| {
         // A texture must not hide what needs settling.
-        if change.0 != Some(Cause::Asset) {
+        if change.0 != Some(RedrawCause::Asset) {
             change.0 = Some(cause);
         }
     };
@@ -180,9 +132,9 @@ fn decide(
 ) {
     let is_uncovered = events.read().filter(|event| may_uncover(event)).count() > 0;
     let event = [
-        (is_uncovered, Cause::Window),
-        (line_config.is_changed(), Cause::Lines),
-        (!screenshots.is_empty(), Cause::Screenshot),
+        (is_uncovered, RedrawCause::Window),
+        (line_config.is_changed(), RedrawCause::Lines),
+        (!screenshots.is_empty(), RedrawCause::Screenshot),
     ]
     .into_iter()
     .find_map(|(happened, cause)| happened.then_some(cause));
@@ -272,7 +224,7 @@ mod tests {
         app
     }
 
-    fn causes(app: &mut App, frames: usize) -> Vec<Option<Cause>> {
+    fn causes(app: &mut App, frames: usize) -> Vec<Option<RedrawCause>> {
         let mut frame = || {
             app.update();
             app.world().resource::<Redraw>().cause
@@ -281,69 +233,73 @@ mod tests {
     }
 
     /// Frames that follow a change of what is drawn.
-    const MOTION: [Option<Cause>; 4] = [
-        Some(Cause::Settling),
-        Some(Cause::Settling),
-        Some(Cause::Settling),
+    const MOTION: [Option<RedrawCause>; 4] = [
+        Some(RedrawCause::Settling),
+        Some(RedrawCause::Settling),
+        Some(RedrawCause::Settling),
         None,
     ];
 
     #[test]
     fn the_first_frames_are_drawn_and_then_those_that_show_something_new() {
         let drawn = causes(&mut app(), 12);
-        assert!(drawn[..5].iter().all(|cause| *cause == Some(Cause::Start)));
+        assert!(
+            drawn[..5]
+                .iter()
+                .all(|cause| *cause == Some(RedrawCause::Start))
+        );
         assert_eq!(drawn[5..9], MOTION);
         assert_eq!(drawn[9..], [None; 3]);
     }
 
     #[test]
     fn a_change_of_anything_that_is_seen_is_drawn() {
-        let changes: [(Cause, fn(&mut World)); 11] = [
-            (Cause::Scene, |world| {
+        let changes: [(RedrawCause, fn(&mut World)); 11] = [
+            (RedrawCause::Scene, |world| {
                 let mut things = world.query_filtered::<&mut GlobalTransform, With<Mesh3d>>();
                 *things.single_mut(world).unwrap() = Transform::from_xyz(0.0, 0.0, 1e-3).into();
             }),
-            (Cause::Scene, |world| {
+            (RedrawCause::Scene, |world| {
                 world.spawn((Mesh3d::default(), ViewVisibility::VISIBLE));
             }),
-            (Cause::Scene, |world| {
+            (RedrawCause::Scene, |world| {
                 let mut things = world.query_filtered::<Entity, With<Mesh3d>>();
                 let thing = things.single(world).unwrap();
                 world.despawn(thing);
             }),
-            (Cause::Scene, |world| {
+            (RedrawCause::Scene, |world| {
                 let mut things = world.query_filtered::<&mut ViewVisibility, With<Mesh3d>>();
                 *things.single_mut(world).unwrap() = ViewVisibility::HIDDEN;
             }),
-            (Cause::Camera, |world| {
+            (RedrawCause::Camera, |world| {
                 let mut cameras = world.query_filtered::<&mut GlobalTransform, With<Camera>>();
                 *cameras.single_mut(world).unwrap() = Transform::from_xyz(1.0, 0.0, 0.0).into();
             }),
-            (Cause::Camera, |world| {
+            (RedrawCause::Camera, |world| {
                 let mut cameras = world.query::<&mut Msaa>();
                 *cameras.single_mut(world).unwrap() = Msaa::Sample4;
             }),
-            (Cause::Window, |world| {
+            (RedrawCause::Window, |world| {
                 let mut windows = world.query::<&mut Window>();
                 let mut window = windows.single_mut(world).unwrap();
                 window.resolution.set_physical_resolution(300, 200);
             }),
-            (Cause::Window, |world| {
+            (RedrawCause::Window, |world| {
                 let window = Entity::PLACEHOLDER;
                 world.write_message(WindowEvent::WindowFocused(WindowFocused {
                     window,
                     focused: true,
                 }));
             }),
-            (Cause::Asset, |world| {
+            (RedrawCause::Asset, |world| {
                 let id = AssetId::<Mesh>::default();
                 world.write_message(AssetEvent::Modified { id });
             }),
-            (Cause::Texture, |world| {
+            (RedrawCause::Texture, |world| {
                 let id = AssetId::<Image>::default();
                 world.write_message(AssetEvent::Modified { id });
             }),
-            (Cause::Lines, |world| {
+            (RedrawCause::Lines, |world| {
                 world.resource_mut::<GizmoConfigStore>().set_changed();
             }),
         ];
@@ -386,9 +342,9 @@ mod tests {
             }];
             causes(&mut app, 2)
         };
-        assert_eq!(draw(1.0), [Some(Cause::Panels), None]);
+        assert_eq!(draw(1.0), [Some(RedrawCause::Panels), None]);
         assert_eq!(draw(1.0), [None, None]);
-        assert_eq!(draw(2.0), [Some(Cause::Panels), None]);
+        assert_eq!(draw(2.0), [Some(RedrawCause::Panels), None]);
     }
 
     #[test]
@@ -407,7 +363,7 @@ mod tests {
     fn what_waits_for_a_picture_gets_one() {
         let mut app = still_app();
         let screenshot = app.world_mut().spawn(Screenshot::primary_window()).id();
-        assert_eq!(causes(&mut app, 3), [Some(Cause::Screenshot); 3]);
+        assert_eq!(causes(&mut app, 3), [Some(RedrawCause::Screenshot); 3]);
         app.world_mut().despawn(screenshot);
         assert_eq!(causes(&mut app, 4), MOTION);
     }
@@ -418,7 +374,7 @@ mod tests {
         let frames = (REFRESH.as_millis() / FRAME.as_millis()) as usize;
         let drawn = causes(&mut app, 2 * frames);
         let refreshed: Vec<_> = drawn.iter().flatten().collect();
-        assert_eq!(refreshed, [&Cause::Refresh; 2]);
+        assert_eq!(refreshed, [&RedrawCause::Refresh; 2]);
     }
 
     #[test]

@@ -11,53 +11,6 @@ use std::{
 
 use crate::source::{Source, Use};
 
-/// Circles that are still to be opened: files that need each other. This list may only become shorter.
-const KNOWN: [(&str, &[&str]); 8] = [
-    ("tabletop", &["replay", "replay::difference"]),
-    (
-        "tabletop",
-        &[
-            "cli",
-            "cli::check",
-            "cli::completions",
-            "cli::explain",
-            "cli::imitate",
-            "cli::init",
-            "cli::keys",
-            "cli::replay",
-            "cli::require",
-            "cli::robot",
-            "cli::robot_options",
-            "cli::run",
-            "cli::script",
-            "cli::window",
-        ],
-    ),
-    (
-        "tabletop",
-        &[
-            "window::display",
-            "window::frame_rate",
-            "window::opening",
-            "window::redraw",
-            "window::redraw::sight",
-        ],
-    ),
-    ("tabletop_core", &["robot::layout", "robot::layout_file"]),
-    ("tabletop_scenario", &["act", "run"]),
-    ("tabletop_scenario", &["check", "robot", "step"]),
-    (
-        "tabletop_xml",
-        &[
-            "expansion",
-            "expansion::inclusion",
-            "expansion::instance",
-            "parse",
-        ],
-    ),
-    ("tabletop_xml", &["fault", "origin"]),
-];
-
 #[test]
 fn no_two_files_of_a_crate_need_each_other() {
     let mut found: BTreeSet<(String, Vec<String>)> = BTreeSet::new();
@@ -67,18 +20,7 @@ fn no_two_files_of_a_crate_need_each_other() {
         let circles = modules.circles().into_iter();
         found.extend(circles.map(|circle| (name.clone(), circle)));
     }
-    let known = KNOWN.map(|(name, files)| {
-        let files = files.iter().map(|file| (*file).to_owned());
-        (name.to_owned(), files.collect())
-    });
-    let known = BTreeSet::from(known);
-    let new: Vec<_> = found.difference(&known).collect();
-    assert!(new.is_empty(), "files that need each other: {new:#?}");
-    let gone: Vec<_> = known.difference(&found).collect();
-    assert!(
-        gone.is_empty(),
-        "these circles are open now; take them from the list: {gone:#?}"
-    );
+    assert!(found.is_empty(), "files that need each other: {found:#?}");
 }
 
 /// The crates of this workspace and where their sources are.

@@ -2,11 +2,30 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    ClockCommand, Hand, HandCommand, HistoryCommand, RecordingCommand, SceneCommand, SimCommand,
-    TICKS_PER_SECOND,
+    ClockCommand, Hand, HandCommand, HistoryCommand, Random, RecordingCommand, SceneCommand,
+    SimCommand, TICKS_PER_SECOND,
 };
 
-use crate::{RobotStep, ScenarioRun, Step, program::Action, robot::TICKS_TO_STILL, seen::Seen};
+use crate::{
+    RobotStep, Step,
+    program::Action,
+    rest::Stillness,
+    robot::{TICKS_TO_STILL, is_still},
+    seen::Seen,
+};
+
+/// The step that is due, on its way.
+#[derive(Clone, Debug)]
+pub(crate) struct StepState {
+    random: Random,
+    /// For how many ticks the step has been due.
+    ticks: u64,
+    /// From where what is held glides in this step.
+    glides_from: Vec3,
+    stillness: Stillness,
+    /// For how many ticks nothing of the robot has moved.
+    robot_still: u64,
+}
 
 /// What comes of a step in a tick.
 pub(crate) enum Progress {
@@ -18,9 +37,40 @@ pub(crate) enum Progress {
     GoesOn(Option<SimCommand>),
 }
 
-impl ScenarioRun {
+impl StepState {
+    /// The state at the beginning of a scenario, with what is random in it.
+    pub fn new(random: Random) -> Self {
+        Self {
+            random,
+            ticks: 0,
+            glides_from: Vec3::ZERO,
+            stillness: Stillness::default(),
+            robot_still: 0,
+        }
+    }
+
+    /// Notes what a tick shows.
+    pub fn observe(&mut self, seen: &Seen) {
+        self.stillness.observe(seen);
+        self.robot_still = match is_still(seen.robot) {
+            true => self.robot_still + 1,
+            false => 0,
+        };
+    }
+
+    /// The same step is due in the next tick, too.
+    pub const fn go_on(&mut self) {
+        self.ticks += 1;
+    }
+
+    /// The next step is due.
+    pub const fn begin_next(&mut self) {
+        self.robot_still = 0;
+        self.ticks = 0;
+    }
+
     /// Takes the step that is due.
-    pub(crate) fn act(&mut self, action: &Action, seen: &Seen) -> Result<Progress, String> {
+    pub fn act(&mut self, action: &Action, seen: &Seen) -> Result<Progress, String> {
         match action {
             Action::SetScene(scene) => Ok(Progress::Command(SimCommand::Scene(SceneCommand::Set(
                 scene.clone(),
@@ -36,7 +86,7 @@ impl ScenarioRun {
             Step::Clear => SimCommand::Scene(SceneCommand::Clear),
             Step::Make(preset) => SimCommand::Scene(SceneCommand::Make {
                 preset: *preset,
-                seed: self.random().bits(),
+                seed: self.random.bits(),
             }),
             Step::Select(hand) => SimCommand::Hand(HandCommand::Select(*hand)),
             Step::Grasp(object) => SimCommand::Hand(HandCommand::Grasp {
@@ -93,7 +143,7 @@ impl ScenarioRun {
     }
 
     fn wait(&self, seconds: f32) -> Progress {
-        match self.ticks_in_step < ticks(seconds) {
+        match self.ticks < ticks(seconds) {
             true => Progress::GoesOn(None),
             false => Progress::Over,
         }
@@ -107,7 +157,7 @@ impl ScenarioRun {
     ) -> Result<Progress, String> {
         match moving {
             None => Ok(Progress::Over),
-            Some(_) if self.ticks_in_step < ticks(timeout) => Ok(Progress::GoesOn(None)),
+            Some(_) if self.ticks < ticks(timeout) => Ok(Progress::GoesOn(None)),
             Some(id) => Err(format!(
                 "{expected}, found `{id}` still moving after {timeout} s"
             )),
@@ -121,10 +171,10 @@ impl ScenarioRun {
         hand: Hand,
         seen: &Seen,
     ) -> Result<Progress, String> {
-        if self.ticks_in_step == 0 {
+        if self.ticks == 0 {
             self.glides_from = seen.held_by(hand)?.pose.location;
         }
-        let fraction = (self.ticks_in_step + 1) as f32 / ticks(seconds).max(1) as f32;
+        let fraction = (self.ticks + 1) as f32 / ticks(seconds).max(1) as f32;
         let location = self.glides_from.lerp(to, fraction.min(1.0));
         let command = SimCommand::Hand(HandCommand::MoveTo { hand, location });
         Ok(match fraction < 1.0 {

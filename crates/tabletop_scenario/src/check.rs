@@ -6,9 +6,9 @@ use tabletop_core::{Hand, quat_from_degrees};
 
 use crate::{
     RobotCheck,
+    fault::fault_of_vector,
     rest::Stillness,
     seen::{Seen, SeenObject},
-    step::fault_of_vector,
 };
 
 /// Something that is to be true. Lengths are in units of 10 cm, angles in degrees.

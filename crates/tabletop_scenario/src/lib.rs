@@ -26,6 +26,7 @@
 mod act;
 mod check;
 mod error;
+mod fault;
 mod place;
 mod program;
 mod rest;

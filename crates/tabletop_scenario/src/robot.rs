@@ -7,7 +7,10 @@ use tabletop_core::{
     SimCommand,
 };
 
-use crate::{seen::Seen, step::fault_of_vector};
+use crate::{
+    fault::{fault_of_time, fault_of_vector},
+    seen::Seen,
+};
 
 /// Ticks without any motion after which the robot is still: more than an arm waits for what it squeezes.
 pub(crate) const TICKS_TO_STILL: u64 = 15;
@@ -107,7 +110,7 @@ impl RobotStep {
             Self::ReachTo { at, degrees, .. } => {
                 fault_of_vector(*at).or_else(|| fault_of_vector(*degrees))
             }
-            Self::WaitUntilStill(seconds) => crate::step::fault_of_time(*seconds),
+            Self::WaitUntilStill(seconds) => fault_of_time(*seconds),
             Self::Show
             | Self::Hide
             | Self::Move(_)

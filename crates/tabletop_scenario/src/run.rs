@@ -1,14 +1,12 @@
 //! Running a scenario, tick by tick.
 
 use bevy::prelude::*;
-use tabletop_core::{Random, SimCommand, TICKS_PER_SECOND};
+use tabletop_core::{SimCommand, TICKS_PER_SECOND};
 
 use crate::{
     Program, ScenarioError, Step,
-    act::Progress,
+    act::{Progress, StepState},
     program::{Action, ProgramStep},
-    rest::Stillness,
-    robot::is_still,
     seen::Seen,
 };
 
@@ -18,16 +16,10 @@ pub struct ScenarioRun {
     program: Program,
     /// The step that is due.
     next: usize,
-    /// For how many ticks it has been.
-    pub(crate) ticks_in_step: u64,
-    /// From where what is held glides in this step.
-    pub(crate) glides_from: Vec3,
+    state: StepState,
     /// The step whose command was given in the last tick.
     commanded: Option<usize>,
     ticks: u64,
-    pub(crate) stillness: Stillness,
-    /// For how many ticks nothing of the robot has moved.
-    pub(crate) robot_still: u64,
     outcome: Outcome,
 }
 
@@ -47,14 +39,11 @@ impl ScenarioRun {
     /// A run of this program from its beginning.
     pub fn new(program: Program) -> Self {
         Self {
+            state: StepState::new(program.random.clone()),
             program,
             next: 0,
-            ticks_in_step: 0,
-            glides_from: Vec3::ZERO,
             commanded: None,
             ticks: 0,
-            stillness: Stillness::default(),
-            robot_still: 0,
             outcome: Outcome::Running,
         }
     }
@@ -62,11 +51,6 @@ impl ScenarioRun {
     /// How far it has come.
     pub const fn outcome(&self) -> &Outcome {
         &self.outcome
-    }
-
-    /// What is random.
-    pub(crate) fn random(&mut self) -> &mut Random {
-        &mut self.program.random
     }
 
     /// How many steps are done, with the one that loads the `setup`.
@@ -87,11 +71,7 @@ impl ScenarioRun {
         if self.outcome != Outcome::Running {
             return None;
         }
-        self.stillness.observe(seen);
-        self.robot_still = match is_still(seen.robot) {
-            true => self.robot_still + 1,
-            false => 0,
-        };
+        self.state.observe(seen);
         if let (Some(step), Some(reason)) = (self.commanded.take(), refusal) {
             return self.fail(step, format!("refused: {reason}"));
         }
@@ -105,7 +85,7 @@ impl ScenarioRun {
                 return self.fail(self.next, format!("the limit of {seconds} s is over"));
             }
             let action = action.clone();
-            let command = match self.act(&action, seen) {
+            let command = match self.state.act(&action, seen) {
                 Err(what) => return self.fail(self.next, what),
                 Ok(Progress::Over) => {
                     self.go_on();
@@ -118,7 +98,7 @@ impl ScenarioRun {
                 }
                 Ok(Progress::GoesOn(command)) => {
                     self.commanded = command.as_ref().map(|_| self.next);
-                    self.ticks_in_step += 1;
+                    self.state.go_on();
                     command
                 }
             };
@@ -138,9 +118,8 @@ impl ScenarioRun {
     }
 
     fn go_on(&mut self) {
-        self.robot_still = 0;
         self.next += 1;
-        self.ticks_in_step = 0;
+        self.state.begin_next();
     }
 
     fn fail(&mut self, step: usize, what: String) -> Option<SimCommand> {

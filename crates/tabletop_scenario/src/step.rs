@@ -6,10 +6,10 @@ use bevy::prelude::*;
 use serde::Deserialize;
 use tabletop_core::{Hand, Preset};
 
-use crate::{Check, Place, RobotStep};
-
-/// Longest time that a step may ask for, in seconds.
-const LONGEST: f32 = 24.0 * 3600.0;
+use crate::{
+    Check, Place, RobotStep,
+    fault::{fault_of_time, fault_of_vector},
+};
 
 /// One thing that the demonstrator of a scenario does, waits for or checks.
 ///
@@ -201,13 +201,4 @@ impl Step {
             | Self::Expect(_) => false,
         }
     }
-}
-
-pub(crate) fn fault_of_vector(vector: Vec3) -> Option<String> {
-    (!vector.is_finite()).then(|| "expected three finite numbers".to_owned())
-}
-
-pub(crate) fn fault_of_time(seconds: f32) -> Option<String> {
-    (!(0.0..=LONGEST).contains(&seconds))
-        .then(|| format!("expected a time of 0 to {LONGEST} seconds, found {seconds}"))
 }

@@ -1,6 +1,9 @@
 //! What is wrong with a task file, and where.
 
-pub(crate) mod position;
+mod position;
+
+pub use position::Position;
+pub(crate) use position::PositionCursor;
 
 use std::{fmt, path::PathBuf};
 
@@ -50,24 +53,6 @@ pub struct Fault {
     pub instances: Vec<Position>,
     /// How many other instances have the same fault at the same place.
     pub repeats: usize,
-}
-
-/// A place in a file.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Position {
-    /// The file.
-    pub file: PathBuf,
-    /// The line, from 1.
-    pub line: usize,
-    /// The column in characters, from 1.
-    pub column: usize,
-}
-
-impl fmt::Display for Position {
-    /// Writes `file:line:column`.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}:{}", self.file.display(), self.line, self.column)
-    }
 }
 
 impl fmt::Display for Fault {

@@ -38,7 +38,8 @@ mod write;
 mod test_support;
 
 pub use fault::{Fault, MAX_FAULTS, Position};
-pub use parse::{ExpandedTask, MAX_FILE_BYTES, ParsedTask, expand, is_task, parse};
+pub use files::MAX_FILE_BYTES;
+pub use parse::{ExpandedTask, ParsedTask, expand, is_task, parse};
 pub use plugin::XmlPlugin;
 pub use reader::{ReadError, TaskReader, read_task};
 pub use write::write;

@@ -5,7 +5,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::fault::{Position, position::PositionCursor};
+use crate::fault::{Position, PositionCursor};
 
 /// Where something comes from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]

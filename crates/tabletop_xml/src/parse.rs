@@ -9,13 +9,10 @@ use crate::{
     elements,
     expansion::{self, Inclusion},
     fault::{Fault, Faults, Place},
-    files::{Arena, FileTree, TaskPath},
+    files::{Arena, FileTree, MAX_FILE_BYTES, TaskPath},
     origin::Sources,
     write::expanded::write_expanded,
 };
-
-/// The most bytes that a task file can have, with all that it includes: 16 MiB.
-pub const MAX_FILE_BYTES: usize = 16 << 20;
 
 /// What a task file says, and what is wrong with it.
 #[derive(Clone, Debug, Default, PartialEq)]

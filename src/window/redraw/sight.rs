@@ -19,7 +19,7 @@ use bevy_egui::{
 };
 use tabletop_view::Surface;
 
-use super::Cause;
+use super::cause::RedrawCause;
 
 /// How far (units) a thing, or how much (of its size) a side of it, moves unseen: about a hundredth of a pixel. Bodies at rest
 /// tremble by less than that.
@@ -55,13 +55,13 @@ impl Thing {
 
 impl Sight {
     /// What is different in another sight.
-    pub fn difference(&self, other: &Self) -> Option<Cause> {
+    pub fn difference(&self, other: &Self) -> Option<RedrawCause> {
         [
-            (self.window != other.window, Cause::Window),
-            (self.camera != other.camera, Cause::Camera),
-            (self.scene_differs(other), Cause::Scene),
-            (self.lines != other.lines, Cause::Lines),
-            (self.panels != other.panels, Cause::Panels),
+            (self.window != other.window, RedrawCause::Window),
+            (self.camera != other.camera, RedrawCause::Camera),
+            (self.scene_differs(other), RedrawCause::Scene),
+            (self.lines != other.lines, RedrawCause::Lines),
+            (self.panels != other.panels, RedrawCause::Panels),
         ]
         .into_iter()
         .find_map(|(differs, cause)| differs.then_some(cause))

@@ -1,9 +1,12 @@
-//! Baxter's arms and joints by name, for programs and tests that are made for it. Everything else asks the [`RobotLayout`].
+//! Baxter, the robot of the report: its layout, and its arms and joints by name, for programs and tests that are made for it. Everything else asks the [`RobotLayout`].
 
-use std::fmt;
+use std::{fmt, sync::LazyLock};
+
+use bevy::prelude::*;
 
 use crate::robot::{
-    layout::{JointId, JointLayout, LimbId, RobotLayout},
+    layout::{BaseLayout, CameraCarrier, CameraLayout, JointId, JointLayout, LimbId, RobotLayout},
+    layout_file::LayoutFile,
     name::{JointName, LimbName},
 };
 
@@ -12,6 +15,56 @@ pub const JOINTS_PER_ARM: usize = 7;
 
 /// Largest inner distance of the fingers of Baxter's grippers, in units.
 pub const WIDEST_GRIP: f64 = 2.0;
+
+impl RobotLayout {
+    /// The Baxter of the report, with the limits of its table 1.
+    pub fn baxter() -> &'static Self {
+        static BAXTER: LazyLock<RobotLayout> = LazyLock::new(|| {
+            let text = include_str!("../../../../assets/baxter/robot.ron");
+            let layout = LayoutFile::read(text).and_then(|file| file.layout(|_| None));
+            layout.unwrap_or_else(|error| {
+                error!("assets/baxter/robot.ron: {error}");
+                RobotLayout::empty()
+            })
+        });
+        &BAXTER
+    }
+
+    fn empty() -> Self {
+        Self {
+            name: String::new(),
+            joints: Vec::new(),
+            limbs: Vec::new(),
+            neck: None,
+            base: BaseLayout {
+                behind_edge: 0.0,
+                height: 0.0,
+            },
+            camera: CameraLayout {
+                neck: Vec3::ZERO,
+                at: Vec3::ZERO,
+                tilt: 0.0,
+            },
+            screen: None,
+            known_postures: Vec::new(),
+            may_touch: Vec::new(),
+        }
+    }
+}
+
+impl Default for RobotLayout {
+    /// [Baxter](Self::baxter).
+    fn default() -> Self {
+        Self::baxter().clone()
+    }
+}
+
+impl Default for CameraCarrier {
+    /// [Baxter](RobotLayout::baxter).
+    fn default() -> Self {
+        RobotLayout::baxter().into()
+    }
+}
 
 /// One of Baxter's arms, as the robot sees them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

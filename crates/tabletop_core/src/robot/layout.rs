@@ -1,16 +1,11 @@
 //! Which limbs and joints the robot has.
 
-use std::sync::LazyLock;
-
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::{
     Binding, Pose, Table,
-    robot::{
-        layout_file::LayoutFile,
-        name::{JointName, LimbName},
-    },
+    robot::name::{JointName, LimbName},
 };
 
 /// A joint of the robot, by its place in [`RobotLayout::joints`].
@@ -263,48 +258,7 @@ impl From<&RobotLayout> for CameraCarrier {
     }
 }
 
-impl Default for CameraCarrier {
-    /// [Baxter](RobotLayout::baxter).
-    fn default() -> Self {
-        RobotLayout::baxter().into()
-    }
-}
-
 impl RobotLayout {
-    /// The Baxter of the report, with the limits of its table 1.
-    pub fn baxter() -> &'static Self {
-        static BAXTER: LazyLock<RobotLayout> = LazyLock::new(|| {
-            let text = include_str!("../../../../assets/baxter/robot.ron");
-            let layout = LayoutFile::read(text).and_then(|file| file.layout(|_| None));
-            layout.unwrap_or_else(|error| {
-                error!("assets/baxter/robot.ron: {error}");
-                RobotLayout::empty()
-            })
-        });
-        &BAXTER
-    }
-
-    fn empty() -> Self {
-        Self {
-            name: String::new(),
-            joints: Vec::new(),
-            limbs: Vec::new(),
-            neck: None,
-            base: BaseLayout {
-                behind_edge: 0.0,
-                height: 0.0,
-            },
-            camera: CameraLayout {
-                neck: Vec3::ZERO,
-                at: Vec3::ZERO,
-                tilt: 0.0,
-            },
-            screen: None,
-            known_postures: Vec::new(),
-            may_touch: Vec::new(),
-        }
-    }
-
     /// A joint.
     pub fn joint(&self, joint: JointId) -> &JointLayout {
         &self.joints[joint.index()]
@@ -353,13 +307,6 @@ impl RobotLayout {
     pub fn most_joints_of_a_limb(&self) -> usize {
         let counts = self.limbs.iter().map(|limb| limb.joints.len());
         counts.max().unwrap_or(0)
-    }
-}
-
-impl Default for RobotLayout {
-    /// [Baxter](Self::baxter).
-    fn default() -> Self {
-        Self::baxter().clone()
     }
 }
 

@@ -6,9 +6,8 @@ use crate::{
     document::{self, build::MAX_ELEMENTS, decode::decode, tree::Element},
     elements::attributes::AttributeReader,
     fault::{Excerpt, Faults},
-    files::{Arena, FileTree, TaskPath},
+    files::{Arena, FileTree, MAX_FILE_BYTES, TaskPath},
     origin::Sources,
-    parse::MAX_FILE_BYTES,
 };
 
 /// The element that includes a file.

@@ -1,4 +1,24 @@
-//! Byte offsets of a text as line and column.
+//! Places in files: byte offsets of a text as line and column.
+
+use std::{fmt, path::PathBuf};
+
+/// A place in a file.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Position {
+    /// The file.
+    pub file: PathBuf,
+    /// The line, from 1.
+    pub line: usize,
+    /// The column in characters, from 1.
+    pub column: usize,
+}
+
+impl fmt::Display for Position {
+    /// Writes `file:line:column`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}:{}", self.file.display(), self.line, self.column)
+    }
+}
 
 /// Walks once through a text, from offset to offset, and counts lines and characters on the way.
 pub(crate) struct PositionCursor<'a> {

@@ -4,13 +4,16 @@ mod check;
 mod completions;
 #[cfg(feature = "window")]
 mod display;
+mod duration;
 mod explain;
+mod failure;
 mod imitate;
 mod init;
 #[cfg(feature = "window")]
 mod keys;
 mod multiply;
 mod progress;
+mod output;
 mod replay;
 mod require;
 mod robot;
@@ -21,16 +24,13 @@ mod temporary_folder;
 mod terminal;
 mod window;
 
-use std::{
-    fmt, fs,
-    io::{self, ErrorKind, IsTerminal as _, Write as _},
-    path::PathBuf,
-    process::ExitCode,
-};
+use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 
-use terminal::{printable, say};
+use failure::{Failure, WRONG_INPUT};
+use output::Output;
+use terminal::say;
 
 /// A virtual demonstrator environment for robot imitation learning.
 ///
@@ -99,46 +99,6 @@ Exit codes:
   1  the run failed: a step or check of a scenario, a script, a replay that differs, a file that cannot be written
   2  wrong usage or input: an unknown option, a file that is missing or wrong";
 
-/// The task file that is loaded when none is named.
-const DEFAULT_SETUP: &str = "tablesetup/default.xml";
-
-/// Wrong usage or input.
-const WRONG_INPUT: u8 = 2;
-
-/// Why the program ends before it is done.
-#[derive(Debug)]
-struct Failure {
-    /// What is wrong, if nobody has said it yet.
-    message: Option<String>,
-    code: u8,
-}
-
-impl Failure {
-    /// The user's input is at fault.
-    fn input(error: impl fmt::Display) -> Self {
-        Self {
-            message: Some(error.to_string()),
-            code: WRONG_INPUT,
-        }
-    }
-
-    /// The run failed.
-    fn run(error: impl fmt::Display) -> Self {
-        Self {
-            message: Some(error.to_string()),
-            code: 1,
-        }
-    }
-
-    /// The run failed, and there is nothing more to say.
-    fn silent() -> Self {
-        Self {
-            message: None,
-            code: 1,
-        }
-    }
-}
-
 /// Reads the command line and does what it says.
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -154,7 +114,7 @@ pub fn main() -> ExitCode {
         #[cfg(feature = "window")]
         Some(Command::Keys(args)) => keys::list(&args),
         Some(Command::Init(args)) => init::init(&args),
-        Some(Command::Completions(args)) => completions::completions(&args),
+        Some(Command::Completions(args)) => completions::completions(&args, &mut Cli::command()),
         None => window::open(cli.window),
     };
     result.unwrap_or_else(|failure| {
@@ -163,63 +123,4 @@ pub fn main() -> ExitCode {
         }
         ExitCode::from(failure.code)
     })
-}
-
-/// A path, or `-` for standard output.
-#[derive(Clone, Debug)]
-enum Output {
-    Stdout,
-    File(PathBuf),
-}
-
-impl From<std::ffi::OsString> for Output {
-    fn from(name: std::ffi::OsString) -> Self {
-        match name.to_str() {
-            Some("-") => Self::Stdout,
-            _ => Self::File(name.into()),
-        }
-    }
-}
-
-impl Output {
-    /// Whether it can be written. This leaves no trace.
-    fn check(&self) -> Result<(), Failure> {
-        let Self::File(path) = self else {
-            return Ok(());
-        };
-        // A pipe that is opened and closed has told its reader that all has come.
-        if path.exists() && !path.is_file() && !path.is_dir() {
-            return Ok(());
-        }
-        let is_new = path.symlink_metadata().is_err();
-        let mut options = fs::OpenOptions::new();
-        let opened = options.append(true).create(true).open(path);
-        opened
-            .and_then(|_| match is_new {
-                true => fs::remove_file(path),
-                false => Ok(()),
-            })
-            .map_err(|error| Failure::run(format!("{}: {error}", path.display())))
-    }
-
-    /// Writes all of it, or says where it could not be written.
-    fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
-        match self {
-            Self::Stdout => {
-                let mut stdout = io::stdout().lock();
-                let text = String::from_utf8_lossy(bytes);
-                let written = match stdout.is_terminal() {
-                    true => stdout.write_all(printable(&text).as_bytes()),
-                    false => stdout.write_all(bytes),
-                };
-                let written = written.and_then(|()| stdout.flush());
-                written.map_err(|error| match error.kind() {
-                    ErrorKind::BrokenPipe => Failure::silent(),
-                    _ => Failure::run(format!("standard output: {error}")),
-                })
-            }
-            Self::File(path) => fs::write(path, bytes)
-                .map_err(|error| Failure::run(format!("{}: {error}", path.display()))),
-        }
-    }
 }

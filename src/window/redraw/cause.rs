@@ -1,0 +1,53 @@
+//! Why a frame is drawn.
+
+/// Why a frame is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RedrawCause {
+    /// The program has just started.
+    Start,
+    /// The window has another size, or has been uncovered.
+    Window,
+    /// Another camera, or another place of it.
+    Camera,
+    /// Something drawn has moved, come, gone, or become visible or invisible.
+    Scene,
+    /// The lines around what is held.
+    Lines,
+    /// The windows inside the window.
+    Panels,
+    /// A mesh, a material or a shader.
+    Asset,
+    /// A texture. Those of the panels change with their texts, and reach the graphics card in time.
+    Texture,
+    /// Someone waits for a picture.
+    Screenshot,
+    /// What was drawn last has not all reached the graphics card.
+    Settling,
+    /// The last picture is old.
+    Refresh,
+}
+
+impl RedrawCause {
+    /// Whether something in the picture moves.
+    pub const fn is_motion(self) -> bool {
+        match self {
+            Self::Start
+            | Self::Window
+            | Self::Camera
+            | Self::Scene
+            | Self::Lines
+            | Self::Screenshot => true,
+            Self::Panels | Self::Asset | Self::Texture | Self::Settling | Self::Refresh => false,
+        }
+    }
+
+    /// Whether what is drawn does not all reach the graphics card at once.
+    pub const fn needs_settling(self) -> bool {
+        self.is_motion() || matches!(self, Self::Asset)
+    }
+
+    /// Whether the user sees something new.
+    pub const fn is_news(self) -> bool {
+        self.needs_settling() || matches!(self, Self::Panels | Self::Texture)
+    }
+}
