@@ -12,8 +12,8 @@ mod init;
 #[cfg(feature = "window")]
 mod keys;
 mod multiply;
-mod progress;
 mod output;
+mod progress;
 mod replay;
 mod require;
 mod robot;

@@ -10,10 +10,7 @@ pub use error::ReplayError;
 pub use playback::PlaybackPlugin;
 pub use player::Player;
 
-use std::{
-    io,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use bevy::{app::PluginGroupBuilder, ecs::message::MessageCursor, prelude::*};
 use serde::Deserialize as _;
@@ -23,7 +20,7 @@ use tabletop_core::{
 };
 use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
 use tabletop_recorder::{
-    RecorderError, RecorderPlugin, RecordingReader, Session, SessionCommand, TICKS_PER_FRAME,
+    RecorderPlugin, RecordingReader, Session, SessionCommand, TICKS_PER_FRAME,
 };
 use tabletop_robot::RobotPlugin;
 

@@ -68,14 +68,14 @@ mod tests {
     use super::*;
 
     #[derive(Parser)]
-    struct Line {
+    struct CommandLine {
         #[command(flatten)]
         display: DisplayArgs,
     }
 
     fn options(words: &str) -> Option<DisplayOptions> {
         let words = ["tabletop"].into_iter().chain(words.split_whitespace());
-        let line = Line::try_parse_from(words).ok()?;
+        let line = CommandLine::try_parse_from(words).ok()?;
         Some(line.display.options())
     }
 

@@ -23,7 +23,7 @@ pub(super) struct InitArgs {
 }
 
 /// What is at the place of a file.
-enum Found {
+enum Existing {
     Nothing,
     TheSame,
     SomethingElse,
@@ -37,9 +37,9 @@ pub(super) fn init(args: &InitArgs) -> Result<ExitCode, Failure> {
         for file in shipped_files().in_folder(folder) {
             let path = args.folder.join(file.path);
             match look_at(&path, file)? {
-                Found::Nothing => missing.push((path, file)),
-                Found::TheSame => {}
-                Found::SomethingElse => differing.push(path),
+                Existing::Nothing => missing.push((path, file)),
+                Existing::TheSame => {}
+                Existing::SomethingElse => differing.push(path),
             }
         }
     }
@@ -76,12 +76,12 @@ pub(super) fn init(args: &InitArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn look_at(path: &Path, file: &ShippedFile) -> Result<Found, Failure> {
+fn look_at(path: &Path, file: &ShippedFile) -> Result<Existing, Failure> {
     match fs::read(path) {
-        Ok(bytes) if bytes == file.text.as_bytes() => Ok(Found::TheSame),
-        Ok(_) => Ok(Found::SomethingElse),
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Found::Nothing),
-        Err(error) if error.kind() == ErrorKind::IsADirectory => Ok(Found::SomethingElse),
+        Ok(bytes) if bytes == file.text.as_bytes() => Ok(Existing::TheSame),
+        Ok(_) => Ok(Existing::SomethingElse),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Existing::Nothing),
+        Err(error) if error.kind() == ErrorKind::IsADirectory => Ok(Existing::SomethingElse),
         Err(error) => Err(Failure::run(format!("{}: {error}", path.display()))),
     }
 }

@@ -46,11 +46,11 @@ pub(super) fn robot(args: &RobotArgs) -> Result<ExitCode, Failure> {
             Question::Ik => answerer.inverse(&line),
         };
         let answer = answer.unwrap_or_else(|fault| match fault {
-            Fault::Input(message) => {
+            NoAnswer::Input(message) => {
                 unreadable = true;
                 json!({ "error": format!("line {}: {message}", i + 1) })
             }
-            Fault::Unreachable(error) => {
+            NoAnswer::Unreachable(error) => {
                 code = ExitCode::FAILURE;
                 json!({ "error": error.to_string() })
             }
@@ -64,14 +64,14 @@ pub(super) fn robot(args: &RobotArgs) -> Result<ExitCode, Failure> {
 }
 
 /// Why a line has no answer.
-enum Fault {
+enum NoAnswer {
     /// The line is wrong.
     Input(String),
     /// No angles do what it asks for.
     Unreachable(Unreachable),
 }
 
-impl Fault {
+impl NoAnswer {
     fn input(error: impl fmt::Display) -> Self {
         Self::Input(error.to_string())
     }
@@ -96,7 +96,7 @@ struct Reach {
     /// Any rotation does if it is left out.
     quaternion_xyzw: Option<[f64; 4]>,
     #[serde(default)]
-    frame: Frame,
+    frame: BaseFrame,
     /// What shall get there, in place of the end effector.
     link: Option<String>,
     /// Angles to stay near to, in rad.
@@ -105,14 +105,14 @@ struct Reach {
 
 #[derive(Clone, Copy, Default, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum Frame {
+enum BaseFrame {
     #[default]
     Table,
     Torso,
 }
 
 #[derive(Serialize)]
-struct Placed {
+struct PlacedFrame {
     position: [f64; 3],
     quaternion_xyzw: [f64; 4],
 }
@@ -141,13 +141,13 @@ impl Answerer {
         })
     }
 
-    fn limb(&self, name: LimbName) -> Result<&LimbLayout, Fault> {
+    fn limb(&self, name: LimbName) -> Result<&LimbLayout, NoAnswer> {
         let limb = self.layout.find_limb(name);
         let limb = limb.map(|limb| self.layout.limb(limb));
         limb.ok_or_else(|| {
             let known = self.layout.limbs.iter().map(|limb| limb.name.as_str());
             let known = known.collect::<Vec<_>>().join(", ");
-            Fault::Input(format!("the robot has no limb {name}, only {known}"))
+            NoAnswer::Input(format!("the robot has no limb {name}, only {known}"))
         })
     }
 
@@ -158,7 +158,7 @@ impl Answerer {
         Some(frame.link.clone())
     }
 
-    fn forward(&self, line: &[u8]) -> Result<Value, Fault> {
+    fn forward(&self, line: &[u8]) -> Result<Value, NoAnswer> {
         let posture: Posture = read(line)?;
         let layout = &self.layout;
         let mut positions: Vec<f64> = layout.joints.iter().map(|joint| joint.home).collect();
@@ -167,7 +167,7 @@ impl Answerer {
                 Angles::OfLimb(angles) => {
                     let joints = &self.limb(LimbName::new(&name))?.joints;
                     if joints.len() != angles.len() {
-                        return Err(Fault::Input(format!(
+                        return Err(NoAnswer::Input(format!(
                             "{name} has {} joints, not {}",
                             joints.len(),
                             angles.len()
@@ -181,7 +181,7 @@ impl Answerer {
                     let joint = layout.find_joint(JointName::new(&name));
                     let joint = joint.filter(|joint| layout.neck == Some(*joint));
                     let joint = joint.ok_or_else(|| {
-                        Fault::Input(format!("{name} is neither a limb nor the neck"))
+                        NoAnswer::Input(format!("{name} is neither a limb nor the neck"))
                     })?;
                     positions[joint.index()] = angle;
                 }
@@ -192,7 +192,7 @@ impl Answerer {
             match joint.role {
                 JointRole::Limb { .. } | JointRole::Neck => {
                     let joint = self.robot.find_joint(joint.name.as_str());
-                    configuration[joint.map_err(Fault::input)?] = *position;
+                    configuration[joint.map_err(NoAnswer::input)?] = *position;
                 }
                 JointRole::Gripper(limb) => {
                     // Robots with other hands have other fingers.
@@ -208,15 +208,15 @@ impl Answerer {
         let mut answer = json!({ "torso": {}, "table": {} });
         for link in self.robot.links() {
             let name = &link.name;
-            let in_torso = frames[self.robot.find_link(name).map_err(Fault::input)?];
+            let in_torso = frames[self.robot.find_link(name).map_err(NoAnswer::input)?];
             let in_table = self.table_from_torso * in_torso;
-            answer["torso"][name] = json!(Placed::new(&in_torso, 1.0));
-            answer["table"][name] = json!(Placed::new(&in_table, UNITS_PER_METER));
+            answer["torso"][name] = json!(PlacedFrame::new(&in_torso, 1.0));
+            answer["table"][name] = json!(PlacedFrame::new(&in_table, UNITS_PER_METER));
         }
         Ok(answer)
     }
 
-    fn inverse(&self, line: &[u8]) -> Result<Value, Fault> {
+    fn inverse(&self, line: &[u8]) -> Result<Value, NoAnswer> {
         let reach: Reach = read(line)?;
         let limb = self.limb(reach.arm)?;
         let arm = limb.name;
@@ -225,10 +225,10 @@ impl Answerer {
             .link
             .or_else(|| self.end_effector(limb))
             .unwrap_or_else(|| format!("{arm}_end_effector"));
-        let chain = ArmChain::between(&self.robot, root, &tip).map_err(Fault::input)?;
+        let chain = ArmChain::between(&self.robot, root, &tip).map_err(NoAnswer::input)?;
         let (joints, found) = (limb.joints.len(), chain.joints().len());
         if joints != found {
-            return Err(Fault::input(ModelError::NoArm {
+            return Err(NoAnswer::input(ModelError::NoArm {
                 base: root.clone(),
                 tip,
                 reason: format!("there are {found} joints instead of {joints}"),
@@ -236,15 +236,17 @@ impl Answerer {
         }
         let shoulder = self.layout.joint(limb.joints[0]).name;
         if self.robot.find_joint(shoulder.as_str()) != Ok(chain.joints()[0]) {
-            return Err(Fault::Input(format!("link {tip} is not on the {arm} arm")));
+            return Err(NoAnswer::Input(format!(
+                "link {tip} is not on the {arm} arm"
+            )));
         }
         if reach.seed.as_ref().is_some_and(|seed| seed.len() != joints) {
-            return Err(Fault::Input(format!("seed: {arm} has {joints} joints")));
+            return Err(NoAnswer::Input(format!("seed: {arm} has {joints} joints")));
         }
 
         let (torso_from_given, units) = match reach.frame {
-            Frame::Table => (self.table_from_torso.inverse(), UNITS_PER_METER),
-            Frame::Torso => (DAffine3::IDENTITY, 1.0),
+            BaseFrame::Table => (self.table_from_torso.inverse(), UNITS_PER_METER),
+            BaseFrame::Torso => (DAffine3::IDENTITY, 1.0),
         };
         let position = DVec3::from_array(reach.position) / units;
         let target = match reach.quaternion_xyzw.map(DQuat::from_array) {
@@ -252,7 +254,7 @@ impl Answerer {
             Some(rotation) => {
                 let length = rotation.length();
                 if !(length.is_finite() && length > 1e-6) {
-                    return Err(Fault::input("quaternion_xyzw is no rotation"));
+                    return Err(NoAnswer::input("quaternion_xyzw is no rotation"));
                 }
                 let given = DAffine3::from_rotation_translation(rotation / length, position);
                 Target::Pose(torso_from_given * given)
@@ -263,7 +265,7 @@ impl Answerer {
             joints.map(|joint| self.layout.joint(*joint).home).collect()
         };
         let seed = reach.seed.unwrap_or_else(home);
-        let angles = chain.solve(&target, &seed).map_err(Fault::Unreachable)?;
+        let angles = chain.solve(&target, &seed).map_err(NoAnswer::Unreachable)?;
         let miss = chain.miss(&target, &angles);
         Ok(json!({
             "angles": angles,
@@ -273,7 +275,7 @@ impl Answerer {
     }
 }
 
-impl Placed {
+impl PlacedFrame {
     fn new(frame: &DAffine3, units_per_meter: f64) -> Self {
         Self {
             position: (frame.translation * units_per_meter).to_array(),
@@ -282,14 +284,14 @@ impl Placed {
     }
 }
 
-fn read<T: DeserializeOwned>(line: &[u8]) -> Result<T, Fault> {
+fn read<T: DeserializeOwned>(line: &[u8]) -> Result<T, NoAnswer> {
     serde_json::from_slice(line).map_err(|error| {
         // Its own line is always the first.
         let message = error.to_string();
         let place = format!(" at line {} column {}", error.line(), error.column());
         match message.strip_suffix(&place) {
-            Some(message) => Fault::Input(format!("column {}: {message}", error.column())),
-            None => Fault::Input(message),
+            Some(message) => NoAnswer::Input(format!("column {}: {message}", error.column())),
+            None => NoAnswer::Input(message),
         }
     })
 }

@@ -14,7 +14,7 @@ use tabletop::{
     TabletopSimPlugins,
     core::{
         Recording, RecordingCommand, RestingSystems, SceneCommand, SceneSpec, SimFact, SimTick,
-        StepApp as _, WriteCommand as _,
+        StepApp as _, TICKS_PER_SECOND, WriteCommand as _,
     },
     final_state, headless_app_with,
     recorder::{RecorderPlugin, UnrecordedPlugin},

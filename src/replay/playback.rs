@@ -59,7 +59,7 @@ struct FreshTask(PathBuf);
 
 /// The world before its first tick.
 #[derive(Resource)]
-struct Beginning {
+struct InitialWorld {
     world: WorldSnapshot,
     camera: Option<HeadCamera>,
 }
@@ -72,7 +72,7 @@ struct Opened {
     /// Ticks from one keyframe to the next.
     spacing: u64,
     /// Where the world is being brought.
-    goal: Option<Goal>,
+    goal: Option<Destination>,
 }
 
 /// A moment that can be gone back to.
@@ -85,7 +85,7 @@ struct Keyframe {
 
 /// A moment that the world is being brought to.
 #[derive(Clone, Copy, Debug)]
-struct Goal {
+struct Destination {
     /// The tick that comes next there.
     tick: SimTick,
     /// Whether the simulation then stands still.
@@ -93,7 +93,7 @@ struct Goal {
 }
 
 fn remember_beginning(world: &mut World) {
-    let beginning = Beginning {
+    let beginning = InitialWorld {
         world: WorldSnapshot::take(world),
         camera: world.get_resource().copied(),
     };
@@ -143,7 +143,7 @@ fn try_open(world: &mut World, folder: PathBuf) -> Result<(), String> {
     world.insert_resource(replay.camera());
     set_earlier_commands(world, replay.begin, &[]);
     let player = Player::new(&replay.session);
-    let goal = Goal {
+    let goal = Destination {
         tick: player.start(),
         stops: false,
     };
@@ -165,7 +165,7 @@ fn try_open(world: &mut World, folder: PathBuf) -> Result<(), String> {
 fn begin_anew(world: &mut World) {
     put_away(world);
     world.resource_mut::<Messages<IssuedCommand>>().clear();
-    world.resource_scope(|world, beginning: Mut<Beginning>| {
+    world.resource_scope(|world, beginning: Mut<InitialWorld>| {
         beginning.world.restore(world);
         if let Some(camera) = beginning.camera {
             world.insert_resource(camera);
@@ -229,7 +229,7 @@ impl Opened {
     fn aim_at(&mut self, tick: SimTick, stops: bool) {
         let recording = self.replay.recording();
         let tick = tick.clamp(recording.first_tick(), recording.last_tick());
-        self.goal = Some(Goal {
+        self.goal = Some(Destination {
             tick: SimTick(tick.0 + 1),
             stops,
         });
@@ -260,7 +260,7 @@ fn go_on(world: &mut World) {
     };
     if opened.goal.is_none() && begins_again {
         let start = opened.replay.recording().first_tick();
-        opened.goal = Some(Goal {
+        opened.goal = Some(Destination {
             tick: start,
             stops: false,
         });
@@ -271,7 +271,7 @@ fn go_on(world: &mut World) {
     publish(world);
 }
 
-fn approach(world: &mut World, mut goal: Goal) {
+fn approach(world: &mut World, mut goal: Destination) {
     let deadline = Instant::now() + BUDGET;
     world.resource_mut::<Time<Virtual>>().pause();
     for issued in world.resource_mut::<Messages<IssuedCommand>>().drain() {

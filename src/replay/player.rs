@@ -265,16 +265,16 @@ mod tests {
             app.world_mut().write_command(command.clone());
         }
         app.step(1);
-        let mut carried_out = app.world_mut().resource_mut::<CarriedOut>();
+        let mut carried_out = app.world_mut().resource_mut::<SeenCommands>();
         std::mem::take(&mut carried_out.0)
     }
 
     #[derive(Resource, Default)]
-    struct CarriedOut(Vec<SimCommand>);
+    struct SeenCommands(Vec<SimCommand>);
 
     fn note_carried_out(
         mut commands: MessageReader<IssuedCommand>,
-        mut carried_out: ResMut<CarriedOut>,
+        mut carried_out: ResMut<SeenCommands>,
     ) {
         let issued = commands.read();
         carried_out
@@ -286,7 +286,7 @@ mod tests {
     fn only_the_recording_acts_and_the_user_can_hold_it_up() {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default()))
-            .init_resource::<CarriedOut>()
+            .init_resource::<SeenCommands>()
             .add_systems(FixedUpdate, note_carried_out.in_set(SimSystems::Ingest))
             .start();
         let [left, right] =
@@ -329,7 +329,7 @@ mod tests {
     fn a_script_watches_and_then_acts() {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default()))
-            .init_resource::<CarriedOut>()
+            .init_resource::<SeenCommands>()
             .add_systems(FixedUpdate, note_carried_out.in_set(SimSystems::Ingest))
             .start();
         let left = SimCommand::Hand(HandCommand::Release(Hand::Left));

@@ -13,7 +13,7 @@ use tabletop_gui::{FileRequest, Files, Notices, Purpose, TaskFile, Tone};
 
 use self::{
     dialog::Dialog,
-    kind::Kind,
+    kind::FileKind,
     recent::remember,
     reload::{Watch, keep_setting},
 };
@@ -81,12 +81,12 @@ fn list_tasks(world: &mut World) {
 
 fn open(world: &mut World, path: &Path) {
     let path = std::path::absolute(path).unwrap_or(path.to_owned());
-    match Kind::of(&path) {
-        Ok(Kind::Task) => {
+    match FileKind::of(&path) {
+        Ok(FileKind::Task) => {
             world.write_command_of(Actor::Panel, SceneCommand::Load(path.clone()));
             remember(world, path);
         }
-        Ok(Kind::Recording(folder)) => {
+        Ok(FileKind::Recording(folder)) => {
             world.write_message(OpenRecording(folder.clone()));
             remember(world, folder);
         }

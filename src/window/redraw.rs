@@ -1,6 +1,6 @@
 //! The window is drawn when there is something new to see.
 //!
-//! After each frame of the main world, what there is to see is summed up ([`Sight`]). If it looks as in the last picture, that
+//! After each frame of the main world, what there is to see is summed up ([`Appearance`]). If it looks as in the last picture, that
 //! picture stays: nothing is extracted, rendered or presented.
 
 mod cause;
@@ -15,12 +15,12 @@ use bevy::{
     time::TimeReceiver,
     window::WindowEvent,
 };
-use tabletop_gui::Picture;
+use tabletop_gui::PictureStatus;
 use tabletop_view::Surface;
 
 use self::{
     cause::RedrawCause,
-    sight::{Drawn, Sight},
+    sight::{Appearance, DrawnQueries},
 };
 use super::frame_rate::FrameRate;
 
@@ -40,7 +40,7 @@ const STILL: Duration = Duration::from_millis(500);
 #[derive(Resource, Debug, Default)]
 pub(super) struct Redraw {
     cause: Option<RedrawCause>,
-    sight: Sight,
+    sight: Appearance,
     /// Frames that are to be drawn whatever there is to see.
     left: u32,
     drawn_at: Duration,
@@ -61,7 +61,7 @@ impl Redraw {
     }
 
     /// Decides about a frame: what there is to see, what has happened that cannot be seen in that, and when (since the start).
-    fn decide(&mut self, sight: Sight, events: [Option<RedrawCause>; 2], now: Duration) {
+    fn decide(&mut self, sight: Appearance, events: [Option<RedrawCause>; 2], now: Duration) {
         self.frames = self.frames.saturating_add(1);
         let start = (self.frames <= STARTING).then_some(RedrawCause::Start);
         let difference = sight.difference(&self.sight);
@@ -121,14 +121,14 @@ fn watch_assets<A: Asset>(app: &mut App, cause: RedrawCause) {
 }
 
 fn decide(
-    drawn: Drawn,
+    drawn: DrawnQueries,
     screenshots: Query<(), With<Screenshot>>,
     line_config: Res<GizmoConfigStore>,
     mut events: MessageReader<WindowEvent>,
     mut assets: ResMut<AssetChange>,
     time: Res<Time<Real>>,
     mut redraw: ResMut<Redraw>,
-    mut picture: ResMut<Picture>,
+    mut picture: ResMut<PictureStatus>,
 ) {
     let is_uncovered = events.read().filter(|event| may_uncover(event)).count() > 0;
     let event = [
@@ -170,7 +170,7 @@ fn draw_when_due(app: &mut App) {
     renderer.set_extract(move |main, renderer| {
         if main.resource::<Redraw>().is_due() {
             draw(main, renderer);
-            main.resource_mut::<Picture>().drawn += 1;
+            main.resource_mut::<PictureStatus>().drawn += 1;
         }
         // Here, and not at the end of a frame: the picture is being drawn meanwhile, and what the user does next is still read in time.
         main.resource_mut::<FrameRate>().wait();
@@ -201,7 +201,7 @@ mod tests {
             .init_resource::<GizmoHandles>()
             .init_resource::<GizmoConfigStore>()
             .init_resource::<Assets<GizmoAsset>>()
-            .init_resource::<Picture>()
+            .init_resource::<PictureStatus>()
             .add_message::<WindowEvent>()
             .add_message::<AssetEvent<Mesh>>()
             .add_message::<AssetEvent<Image>>()
@@ -384,10 +384,10 @@ mod tests {
         let id = AssetId::<Image>::default();
         app.world_mut().write_message(AssetEvent::Modified { id });
         causes(&mut app, 1);
-        assert!(app.world().resource::<Picture>().is_still);
+        assert!(app.world().resource::<PictureStatus>().is_still);
         app.world_mut()
             .spawn((Mesh3d::default(), ViewVisibility::VISIBLE));
         causes(&mut app, 1);
-        assert!(!app.world().resource::<Picture>().is_still);
+        assert!(!app.world().resource::<PictureStatus>().is_still);
     }
 }

@@ -53,7 +53,7 @@ impl Camera {
     /// The pixel in which a point is seen, as column and row; the centre of the upper left pixel is (0, 0). Points that are
     /// not in front of the camera are not seen, others may lie outside the picture.
     pub fn pixel_of(&self, point: Vec3) -> Option<Vec2> {
-        let view = View::of(self);
+        let view = PinholeView::of(self);
         view.pixel_of(point - view.eye)
     }
 }
@@ -62,7 +62,7 @@ impl Camera {
 /// has the direction `first + x * right + y * down`, whose component along the axis of view is 1. So what it meets after
 /// that direction times z lies at depth z.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct View {
+pub(crate) struct PinholeView {
     pub eye: Vec3,
     pub width: u32,
     pub height: u32,
@@ -79,7 +79,7 @@ pub(crate) struct Window {
     pub rows: Range<u32>,
 }
 
-impl View {
+impl PinholeView {
     pub fn of(camera: &Camera) -> Self {
         let (width, height) = (camera.width as f32, camera.height as f32);
         let fov = camera.vertical_fov;
@@ -229,7 +229,7 @@ mod tests {
     #[test]
     fn the_ray_through_a_pixel_leads_to_what_is_seen_there() {
         let camera = head(HeadCamera::default());
-        let view = View::of(&camera);
+        let view = PinholeView::of(&camera);
         for pixel in [Vec2::ZERO, Vec2::new(17.25, 140.5), Vec2::new(199.0, 3.0)] {
             let point = view.eye + view.rays.through(pixel.x, pixel.y) * 13.0;
             assert!((camera.pixel_of(point).unwrap() - pixel).length() < 1e-3);

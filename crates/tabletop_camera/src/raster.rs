@@ -27,7 +27,7 @@ use self::{
     visible::VisibleSurfaces,
 };
 use crate::{
-    camera::{Camera, View},
+    camera::{Camera, PinholeView},
     scene::Scene,
 };
 
@@ -50,7 +50,7 @@ impl Rasterizer {
     /// Draws what the camera sees. Of surfaces that are equally near, one of the first kind is seen (cuboids are before
     /// cylinders and balls, and these before figures), and of those the first in the scene.
     pub fn draw(&mut self, scene: &Scene, camera: &Camera, picture: &mut Picture) {
-        let view = View::of(camera);
+        let view = PinholeView::of(camera);
         self.visible.project(scene, &view);
         self.spheres.project(&scene.markers, &view);
         picture.resize(camera.width, camera.height);

@@ -5,7 +5,7 @@ mod binding;
 mod letters;
 
 pub use action::{Action, ActionGroup, Situation, Way};
-pub use binding::{Binding, BindingError, Modifiers};
+pub use binding::{BindingError, KeyBinding, Modifiers};
 pub use letters::KeyLetters;
 
 use std::{cmp::Reverse, collections::BTreeMap};
@@ -19,7 +19,7 @@ use crate::Hands;
 /// [Ctrl or the like](KeyLetters) is held down as well.
 #[derive(Resource, Clone, Debug, PartialEq, Eq)]
 pub struct Keymap {
-    bindings: BTreeMap<Action, Vec<Binding>>,
+    bindings: BTreeMap<Action, Vec<KeyBinding>>,
 }
 
 impl Default for Keymap {
@@ -33,19 +33,19 @@ impl Default for Keymap {
 
 impl Keymap {
     /// The keys of an action.
-    pub fn bindings(&self, action: Action) -> &[Binding] {
+    pub fn bindings(&self, action: Action) -> &[KeyBinding] {
         self.bindings.get(&action).map_or(&[], Vec::as_slice)
     }
 
     /// Gives an action these keys instead of those that it had. Another action that has one of them in the same situation keeps it:
     /// see [`conflicts`](Self::conflicts).
-    pub fn bind(&mut self, action: Action, bindings: impl IntoIterator<Item = Binding>) {
+    pub fn bind(&mut self, action: Action, bindings: impl IntoIterator<Item = KeyBinding>) {
         let bindings = bindings.into_iter().collect();
         self.bindings.insert(action, bindings);
     }
 
     /// Keys that two actions have in the same situation, so that the second one is out of reach.
-    pub fn conflicts(&self) -> Vec<(Binding, Action, Action)> {
+    pub fn conflicts(&self) -> Vec<(KeyBinding, Action, Action)> {
         let mut owners = BTreeMap::new();
         let mut conflicts = Vec::new();
         for action in Action::ALL {

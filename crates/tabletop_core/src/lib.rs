@@ -75,8 +75,8 @@ pub use holder::{Held, Holder};
 pub use joint::{Joint, JointKind, JointSpec};
 pub use jointed::{JointMotion, JointedSpec};
 pub use keymap::{
-    Action, ActionGroup, Binding, BindingError, KeyLetters, KeyboardFocus, Keymap, Keys, Modifiers,
-    Situation, Way, was_struck,
+    Action, ActionGroup, BindingError, KeyBinding, KeyLetters, KeyboardFocus, Keymap, Keys,
+    Modifiers, Situation, Way, was_struck,
 };
 pub use light::{LIGHT, Light};
 pub use navigation::{CameraMotion, CameraView, Steering};

@@ -91,7 +91,7 @@ pub struct PacePlugin;
 impl Plugin for PacePlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Pace>()
-            .init_resource::<Effort>()
+            .init_resource::<TickCost>()
             .add_message::<SingleStep>()
             .add_systems(FixedUpdate, make_steps.in_set(OrderSystems::User))
             .add_systems(
@@ -128,14 +128,14 @@ fn make_steps(
 
 /// How long ticks take.
 #[derive(Resource, Debug)]
-struct Effort {
+struct TickCost {
     begin: Instant,
     first: SimTick,
     /// Of a tick, as a mean of the last ones.
     tick: Duration,
 }
 
-impl Default for Effort {
+impl Default for TickCost {
     fn default() -> Self {
         Self {
             begin: Instant::now(),
@@ -145,7 +145,7 @@ impl Default for Effort {
     }
 }
 
-impl Effort {
+impl TickCost {
     /// Takes in that so many ticks took so long.
     fn note(&mut self, ticks: u32, took: Duration) {
         if let Some(tick) = took.checked_div(ticks) {
@@ -161,18 +161,18 @@ impl Effort {
     }
 }
 
-fn begin_effort(mut effort: ResMut<Effort>, tick: Res<SimTick>) {
+fn begin_effort(mut effort: ResMut<TickCost>, tick: Res<SimTick>) {
     effort.begin = Instant::now();
     effort.first = *tick;
 }
 
-fn end_effort(mut effort: ResMut<Effort>, tick: Res<SimTick>) {
+fn end_effort(mut effort: ResMut<TickCost>, tick: Res<SimTick>) {
     let took = effort.begin.elapsed();
     let ticks = tick.0.saturating_sub(effort.first.0);
     effort.note(u32::try_from(ticks).unwrap_or(u32::MAX), took);
 }
 
-fn go_at_pace(pace: Res<Pace>, effort: Res<Effort>, mut time: ResMut<Time<Virtual>>) {
+fn go_at_pace(pace: Res<Pace>, effort: Res<TickCost>, mut time: ResMut<Time<Virtual>>) {
     time.set_relative_speed(pace.factor());
     time.set_max_delta(effort.longest_frame(*pace));
 }
@@ -247,8 +247,8 @@ mod tests {
 
     #[test]
     fn a_frame_simulates_no_more_than_it_can() {
-        let mut effort = Effort::default();
-        let frame = |effort: &Effort, pace| effort.longest_frame(pace).as_secs_f32();
+        let mut effort = TickCost::default();
+        let frame = |effort: &TickCost, pace| effort.longest_frame(pace).as_secs_f32();
         assert_eq!(frame(&effort, Pace::Normal), 0.25);
         (0..100).for_each(|_| effort.note(10, Duration::from_millis(100)));
         assert!((frame(&effort, Pace::Normal) - 5.0 * TICK_SECONDS).abs() < 1e-4);

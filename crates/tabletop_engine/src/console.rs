@@ -220,7 +220,7 @@ pub(crate) struct Splitter {
 
 /// A line for a person or for the program.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) enum Piece<'a> {
+pub(crate) enum OutputPiece<'a> {
     /// Printed by the script.
     Text(&'a [u8]),
     /// Printed by the driver.
@@ -229,7 +229,7 @@ pub(crate) enum Piece<'a> {
 
 impl Splitter {
     /// Takes more bytes and calls `each` for every line that has become complete.
-    pub(crate) fn feed(&mut self, bytes: &[u8], mut each: impl FnMut(Piece)) {
+    pub(crate) fn feed(&mut self, bytes: &[u8], mut each: impl FnMut(OutputPiece)) {
         for part in bytes.split_inclusive(|byte| *byte == b'\n') {
             let mut rest = part;
             if let Some(mark) = part.iter().position(|byte| *byte == 1) {
@@ -254,10 +254,10 @@ impl Splitter {
             .extend_from_slice(bytes.get(..room).unwrap_or(bytes));
     }
 
-    fn end(&mut self, each: &mut impl FnMut(Piece)) {
+    fn end(&mut self, each: &mut impl FnMut(OutputPiece)) {
         match self.line.split_first() {
-            Some((1, mark)) => each(Piece::Mark(mark)),
-            _ => each(Piece::Text(
+            Some((1, mark)) => each(OutputPiece::Mark(mark)),
+            _ => each(OutputPiece::Text(
                 self.line.strip_suffix(b"\r").unwrap_or(&self.line),
             )),
         }
@@ -265,7 +265,7 @@ impl Splitter {
     }
 
     /// What is left when nothing more comes.
-    pub(crate) fn finish(&mut self, mut each: impl FnMut(Piece)) {
+    pub(crate) fn finish(&mut self, mut each: impl FnMut(OutputPiece)) {
         if !self.line.is_empty() {
             self.end(&mut each);
         }
@@ -279,9 +279,9 @@ mod tests {
     fn pieces(chunks: &[&[u8]]) -> Vec<String> {
         let mut splitter = Console::new(ConsoleLimit::Readable).splitter();
         let mut all = Vec::new();
-        let mut each = |piece: Piece| match piece {
-            Piece::Text(text) => all.push(String::from_utf8_lossy(text).into_owned()),
-            Piece::Mark(mark) => all.push(format!("<{}>", String::from_utf8_lossy(mark))),
+        let mut each = |piece: OutputPiece| match piece {
+            OutputPiece::Text(text) => all.push(String::from_utf8_lossy(text).into_owned()),
+            OutputPiece::Mark(mark) => all.push(format!("<{}>", String::from_utf8_lossy(mark))),
         };
         for chunk in chunks {
             splitter.feed(chunk, &mut each);

@@ -23,7 +23,7 @@ use serde::{
     Deserialize, Deserializer,
     de::{MapAccess, Visitor},
 };
-use tabletop_core::{Action, ActionGroup, Binding, Keymap, Situation};
+use tabletop_core::{Action, ActionGroup, KeyBinding, Keymap, Situation};
 
 use crate::{Notices, Preferences, Tone};
 
@@ -70,9 +70,9 @@ pub fn read(path: Option<&Path>, preferences: &Preferences) -> (Keymap, Vec<Stri
 }
 
 /// Where an action is named in a file, and its keys, each with its place.
-struct Entry<'a> {
+struct KeymapEntry<'a> {
     action: Action,
-    bindings: Vec<(&'a str, Binding)>,
+    bindings: Vec<(&'a str, KeyBinding)>,
 }
 
 /// Reads a keymap. What is wrong with it is told with line and column, and left out. An empty text binds nothing anew, as a shell leaves it that
@@ -116,13 +116,13 @@ fn entries_of<'a>(
     RawEntries(entries): &RawEntries<'a>,
     text: &str,
     faults: &mut Vec<String>,
-) -> Vec<Entry<'a>> {
+) -> Vec<KeymapEntry<'a>> {
     let mut named = BTreeSet::new();
     let mut read = Vec::new();
     for (name, bindings) in entries {
         let bindings = bindings.iter().filter_map(|binding| {
             let parsed = string(binding).and_then(|binding| {
-                let parsed = binding.parse::<Binding>();
+                let parsed = binding.parse::<KeyBinding>();
                 parsed.map_err(|error| error.to_string())
             });
             let part = binding.trim().get_ron();
@@ -139,7 +139,7 @@ fn entries_of<'a>(
         });
         let fault = match action {
             Ok(action) if named.insert(action) => {
-                read.push(Entry { action, bindings });
+                read.push(KeymapEntry { action, bindings });
                 continue;
             }
             Ok(action) => format!("`{action}` has its keys further up already"),
@@ -152,10 +152,10 @@ fn entries_of<'a>(
 }
 
 /// The keys of a file come before those of actions that it does not name, and what stands further up before the rest.
-fn bind(keymap: &mut Keymap, entries: Vec<Entry>, text: &str, faults: &mut Vec<String>) {
-    let mut owners: BTreeMap<(Binding, Situation), (Action, &str)> = BTreeMap::new();
+fn bind(keymap: &mut Keymap, entries: Vec<KeymapEntry>, text: &str, faults: &mut Vec<String>) {
+    let mut owners: BTreeMap<(KeyBinding, Situation), (Action, &str)> = BTreeMap::new();
     let named: BTreeSet<_> = entries.iter().map(|entry| entry.action).collect();
-    for Entry { action, bindings } in entries {
+    for KeymapEntry { action, bindings } in entries {
         let mut own = Vec::new();
         for (part, binding) in bindings {
             let key = (binding, action.situation());
@@ -239,7 +239,7 @@ impl<'de> Visitor<'de> for EntriesVisitor {
 mod tests {
     use super::*;
 
-    fn binding(text: &str) -> Binding {
+    fn binding(text: &str) -> KeyBinding {
         text.parse().unwrap()
     }
 

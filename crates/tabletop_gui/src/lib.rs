@@ -36,7 +36,7 @@ pub use panels::help::Help;
 pub use panels::messages::{Notices, Tone};
 pub use panels::status::Renderer;
 pub use panels::{Browser, Panel, Panels, Purpose};
-pub use picture::Picture;
+pub use picture::PictureStatus;
 pub use preferences::Preferences;
 pub use preset_seeds::PresetSeeds;
 pub use widget_list::WidgetListPlugin;

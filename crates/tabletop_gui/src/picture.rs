@@ -5,7 +5,7 @@ use bevy_egui::{EguiInput, EguiPreUpdateSet, egui};
 
 /// What the window has drawn. Whoever draws says so here; the Status window reads it.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Picture {
+pub struct PictureStatus {
     /// How many times it has been drawn since the start.
     pub drawn: u64,
     /// Whether nothing moves in it, so that texts which change all the time should not have it drawn all the time.
@@ -13,7 +13,7 @@ pub struct Picture {
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Picture>().add_systems(
+    app.init_resource::<PictureStatus>().add_systems(
         PreUpdate,
         drop_repeated_modifiers
             .after(EguiPreUpdateSet::ProcessInput)

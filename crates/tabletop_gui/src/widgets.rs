@@ -3,5 +3,6 @@
 pub(crate) mod button;
 pub(crate) mod clipboard;
 pub(crate) mod icon;
+pub(crate) mod name;
 pub(crate) mod slider;
 pub(crate) mod style;

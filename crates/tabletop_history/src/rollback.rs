@@ -30,7 +30,11 @@ pub trait RollbackApp {
 
 impl RollbackApp for App {
     fn rollback_component<C: Component + Clone>(&mut self) -> &mut Self {
-        registry(self).add(Kind::Component, TypeId::of::<C>(), component::save::<C>);
+        registry(self).add(
+            RollbackKind::Component,
+            TypeId::of::<C>(),
+            component::save::<C>,
+        );
         self
     }
 
@@ -40,12 +44,16 @@ impl RollbackApp for App {
     }
 
     fn rollback_resource<R: Resource + Clone>(&mut self) -> &mut Self {
-        registry(self).add(Kind::Resource, TypeId::of::<R>(), resource::save::<R>);
+        registry(self).add(
+            RollbackKind::Resource,
+            TypeId::of::<R>(),
+            resource::save::<R>,
+        );
         self
     }
 
     fn rollback_state<S: RollbackState>(&mut self) -> &mut Self {
-        registry(self).add(Kind::State, TypeId::of::<S>(), state::save::<S>);
+        registry(self).add(RollbackKind::State, TypeId::of::<S>(), state::save::<S>);
         self
     }
 }
@@ -60,14 +68,14 @@ fn registry(app: &mut App) -> Mut<'_, RollbackRegistry> {
 #[derive(Resource, Clone, Debug, Default)]
 pub struct RollbackRegistry {
     /// In the order in which they are put back.
-    parts: Vec<Part>,
+    parts: Vec<RollbackPart>,
     derived: Vec<TypeId>,
 }
 
 /// One thing that rolls back.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Part {
-    kind: Kind,
+pub(crate) struct RollbackPart {
+    kind: RollbackKind,
     of: TypeId,
     pub save: Save,
 }
@@ -77,31 +85,32 @@ type Save = fn(&mut World, &[Entity], Option<Earlier>) -> Box<dyn Saved>;
 
 /// In the order in which they are put back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
+enum RollbackKind {
     Resource,
     Component,
     State,
 }
 
 impl RollbackRegistry {
-    fn add(&mut self, kind: Kind, of: TypeId, save: Save) {
+    fn add(&mut self, kind: RollbackKind, of: TypeId, save: Save) {
         if self
             .parts
             .iter()
             .all(|part| (part.kind, part.of) != (kind, of))
         {
-            self.parts.push(Part { kind, of, save });
+            self.parts.push(RollbackPart { kind, of, save });
             self.parts.sort_by_key(|part| part.kind);
         }
     }
 
-    pub(crate) fn parts(&self) -> impl Iterator<Item = Part> {
+    pub(crate) fn parts(&self) -> impl Iterator<Item = RollbackPart> {
         self.parts.iter().copied()
     }
 
     /// Whether undo takes care of a component: it is put back, or derived from what is.
     pub fn covers(&self, component: TypeId) -> bool {
-        let is_put_back = |part: &Part| part.kind == Kind::Component && part.of == component;
+        let is_put_back =
+            |part: &RollbackPart| part.kind == RollbackKind::Component && part.of == component;
         self.parts.iter().any(is_put_back) || self.derived.contains(&component)
     }
 }

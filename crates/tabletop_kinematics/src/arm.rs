@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::{JointId, JointType, JointValues, LinkId, ModelError, RobotModel};
+use crate::{JointType, JointValues, LinkId, ModelError, ModelJointId, RobotModel};
 
 /// Most joints of an arm.
 pub const MOST_ARM_JOINTS: usize = 16;
@@ -21,7 +21,7 @@ pub struct DTwist {
 /// Everything is in the base link's frame, in m and rad; angles are in the order from the base to the tip.
 #[derive(Clone, Debug)]
 pub struct ArmChain {
-    joints: Vec<JointId>,
+    joints: Vec<ModelJointId>,
     limits: Vec<[f64; 2]>,
     segments: Vec<Segment>,
     /// From the tip link's frame to that of the last joint's child.
@@ -123,7 +123,7 @@ impl ArmChain {
     }
 
     /// The joints.
-    pub fn joints(&self) -> &[JointId] {
+    pub fn joints(&self) -> &[ModelJointId] {
         &self.joints
     }
 

@@ -6,7 +6,7 @@ use std::ops::Index;
 
 use glam::{DMat3, DVec3};
 
-use crate::{Frames, JointId, JointType, JointValues, LinkId, RobotModel};
+use crate::{Frames, JointType, JointValues, LinkId, ModelJointId, RobotModel};
 
 /// A point mass that a link carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,10 +27,10 @@ pub struct InertiaMatrix {
     values: Vec<f64>,
 }
 
-impl Index<(JointId, JointId)> for InertiaMatrix {
+impl Index<(ModelJointId, ModelJointId)> for InertiaMatrix {
     type Output = f64;
 
-    fn index(&self, (row, column): (JointId, JointId)) -> &f64 {
+    fn index(&self, (row, column): (ModelJointId, ModelJointId)) -> &f64 {
         &self.values[row.index() * self.joints + column.index()]
     }
 }
@@ -109,9 +109,9 @@ impl RobotModel {
         for (i, joint) in self.joints.iter().enumerate().rev() {
             let Wrench { force, torque } = wrenches[joint.child.index()];
             if joint.kind != JointType::Fixed {
-                let axis = self.axis_in_root(frames, JointId(i));
+                let axis = self.axis_in_root(frames, ModelJointId(i));
                 let along = if joint.kind.turns() { torque } else { force };
-                let (leader, multiplier) = self.leader(JointId(i));
+                let (leader, multiplier) = self.leader(ModelJointId(i));
                 torques[leader] += multiplier * axis.dot(along);
             }
             let arm = frames[joint.child].translation - frames[joint.parent].translation;
@@ -130,7 +130,7 @@ impl RobotModel {
             values: vec![0.0; joints * joints],
         };
         let bodies = self.composite_bodies(frames, loads);
-        for i in (0..joints).map(JointId) {
+        for i in (0..joints).map(ModelJointId) {
             let joint = self.joint(i);
             if joint.kind == JointType::Fixed {
                 continue;
@@ -188,8 +188,8 @@ impl RobotModel {
                 acceleration: parent.acceleration_at(arm),
                 ..parent
             };
-            let (leader, multiplier) = self.leader(JointId(i));
-            let axis = self.axis_in_root(frames, JointId(i)) * multiplier;
+            let (leader, multiplier) = self.leader(ModelJointId(i));
+            let axis = self.axis_in_root(frames, ModelJointId(i)) * multiplier;
             let (speed, rate) = (axis * velocities[leader], axis * accelerations[leader]);
             match joint.kind {
                 JointType::Fixed => {}

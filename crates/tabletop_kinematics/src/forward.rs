@@ -4,7 +4,7 @@ use std::ops::Index;
 
 use glam::{DAffine3, DVec3};
 
-use crate::{DTwist, JointId, JointValues, LinkId, RobotModel};
+use crate::{DTwist, JointValues, LinkId, ModelJointId, RobotModel};
 
 /// Where every link of a model is: from the link's frame to the root's, in m.
 #[derive(Clone, Debug, Default)]
@@ -39,7 +39,7 @@ impl RobotModel {
         frames.0.clear();
         frames.0.push(DAffine3::IDENTITY);
         for (i, joint) in self.joints.iter().enumerate() {
-            let motion = joint.motion(self.position(JointId(i), configuration));
+            let motion = joint.motion(self.position(ModelJointId(i), configuration));
             frames.0.push(frames[joint.parent] * motion);
         }
     }
@@ -65,7 +65,7 @@ impl RobotModel {
     }
 
     /// The unit vector that a joint turns about or slides along, in the root's frame.
-    pub(crate) fn axis_in_root(&self, frames: &Frames, joint: JointId) -> DVec3 {
+    pub(crate) fn axis_in_root(&self, frames: &Frames, joint: ModelJointId) -> DVec3 {
         let joint = self.joint(joint);
         frames[joint.child].transform_vector3(joint.axis)
     }

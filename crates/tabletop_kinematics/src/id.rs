@@ -13,9 +13,9 @@ impl LinkId {
 
 /// A joint of a [`RobotModel`](crate::RobotModel), by its place in [`RobotModel::joints`](crate::RobotModel::joints). It belongs to the model that it is from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct JointId(pub(crate) usize);
+pub struct ModelJointId(pub(crate) usize);
 
-impl JointId {
+impl ModelJointId {
     /// Its place in [`RobotModel::joints`](crate::RobotModel::joints).
     pub const fn index(self) -> usize {
         self.0

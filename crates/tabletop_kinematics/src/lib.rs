@@ -28,7 +28,9 @@
 /// The types that most users of the crate need.
 pub mod prelude {
     #[doc(hidden)]
-    pub use crate::{ArmChain, Frames, JointId, JointValues, LinkId, RobotModel, Target, baxter};
+    pub use crate::{
+        ArmChain, Frames, JointValues, LinkId, ModelJointId, RobotModel, Target, baxter,
+    };
 }
 
 mod arm;
@@ -49,7 +51,7 @@ pub use baxter::{baxter, baxter_smile};
 pub use dynamics::{InertiaMatrix, Load};
 pub use error::ModelError;
 pub use forward::Frames;
-pub use id::{JointId, LinkId};
+pub use id::{LinkId, ModelJointId};
 pub use inverse::{Miss, Target, Unreachable};
 pub use link::{Geometry, Inertial, Link, LinkShape};
 pub use model::{JointType, Mimic, ModelJoint, RobotModel};

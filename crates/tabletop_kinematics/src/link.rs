@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::JointId;
+use crate::ModelJointId;
 
 /// A rigid part of a robot.
 #[derive(Clone, Debug)]
@@ -10,7 +10,7 @@ pub struct Link {
     /// Its name, unique among links.
     pub name: String,
     /// The joint that carries it; `None` for the root.
-    pub joint: Option<JointId>,
+    pub joint: Option<ModelJointId>,
     /// Its mass and how that is spread.
     pub inertial: Inertial,
     /// What is seen of it.

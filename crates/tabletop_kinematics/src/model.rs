@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use crate::{JointId, JointValues, Link, LinkId, ModelError};
+use crate::{JointValues, Link, LinkId, ModelError, ModelJointId};
 
 /// What a joint leaves free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,7 +68,7 @@ impl ModelJoint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mimic {
     /// The joint that leads; it follows none itself.
-    pub leader: JointId,
+    pub leader: ModelJointId,
     /// Motion per motion of the leader.
     pub multiplier: f64,
     /// Position while the leader stands at 0, in rad or m.
@@ -112,7 +112,7 @@ impl RobotModel {
     }
 
     /// A joint.
-    pub fn joint(&self, joint: JointId) -> &ModelJoint {
+    pub fn joint(&self, joint: ModelJointId) -> &ModelJoint {
         &self.joints[joint.index()]
     }
 
@@ -134,20 +134,22 @@ impl RobotModel {
     /// # Errors
     ///
     /// There is none.
-    pub fn find_joint(&self, name: &str) -> Result<JointId, ModelError> {
+    pub fn find_joint(&self, name: &str) -> Result<ModelJointId, ModelError> {
         let found = self.joints.iter().position(|joint| joint.name == name);
-        found.map(JointId).ok_or_else(|| ModelError::NoSuchJoint {
-            robot: self.name.clone(),
-            joint: name.to_owned(),
-        })
+        found
+            .map(ModelJointId)
+            .ok_or_else(|| ModelError::NoSuchJoint {
+                robot: self.name.clone(),
+                joint: name.to_owned(),
+            })
     }
 
     /// The joints that can be told where to be: neither fixed nor following another one.
-    pub fn movable(&self) -> impl Iterator<Item = JointId> {
+    pub fn movable(&self) -> impl Iterator<Item = ModelJointId> {
         let joints = self.joints.iter().enumerate();
         joints
             .filter(|(_, joint)| joint.kind != JointType::Fixed && joint.mimic.is_none())
-            .map(|(i, _)| JointId(i))
+            .map(|(i, _)| ModelJointId(i))
     }
 
     /// The link that a link hangs on; `None` for the root.
@@ -161,7 +163,7 @@ impl RobotModel {
     }
 
     /// Where a joint is, in rad or m: its own number, or what the joint that it follows makes of it.
-    pub fn position(&self, joint: JointId, configuration: &JointValues) -> f64 {
+    pub fn position(&self, joint: ModelJointId, configuration: &JointValues) -> f64 {
         match self.joint(joint).mimic {
             Some(mimic) => mimic.multiplier * configuration[mimic.leader] + mimic.offset,
             None => configuration[joint],
@@ -169,7 +171,7 @@ impl RobotModel {
     }
 
     /// The joint whose number moves this one, and how much this one moves per motion of it.
-    pub(crate) fn leader(&self, joint: JointId) -> (JointId, f64) {
+    pub(crate) fn leader(&self, joint: ModelJointId) -> (ModelJointId, f64) {
         match self.joint(joint).mimic {
             Some(mimic) => (mimic.leader, mimic.multiplier),
             None => (joint, 1.0),
@@ -177,8 +179,8 @@ impl RobotModel {
     }
 
     /// The moving joints between a link and the root, from the link.
-    pub(crate) fn carriers(&self, link: LinkId) -> impl Iterator<Item = JointId> {
-        let next = |joint: &JointId| self.link(self.joint(*joint).parent).joint;
+    pub(crate) fn carriers(&self, link: LinkId) -> impl Iterator<Item = ModelJointId> {
+        let next = |joint: &ModelJointId| self.link(self.joint(*joint).parent).joint;
         std::iter::successors(self.link(link).joint, next)
             .filter(|&joint| self.joint(joint).kind != JointType::Fixed)
     }

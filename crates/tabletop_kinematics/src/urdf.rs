@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
 use crate::{
-    Geometry, Inertial, JointId, JointType, Link, LinkId, LinkShape, Mimic, ModelError, ModelJoint,
-    RobotModel,
+    Geometry, Inertial, JointType, Link, LinkId, LinkShape, Mimic, ModelError, ModelJoint,
+    ModelJointId, RobotModel,
     outline::{Child, Outline, outline},
 };
 
@@ -96,7 +96,7 @@ impl Lines {
     fn model(&self, robot: urdf_rs::Robot) -> Result<RobotModel, ModelError> {
         let link_of = self.names("link", robot.links.iter().map(|link| &link.name))?;
         let joint_of = self.names("joint", robot.joints.iter().map(|joint| &joint.name))?;
-        let tree = Tree::new(self, &robot, &link_of)?;
+        let tree = LinkTree::new(self, &robot, &link_of)?;
 
         let mut links = Vec::with_capacity(robot.links.len());
         let mut joints = Vec::with_capacity(robot.joints.len());
@@ -108,7 +108,7 @@ impl Lines {
             let mut link = self.read_link(index, &robot)?;
             if let Some(by) = tree.carrier[index] {
                 joint_place[by] = joints.len();
-                link.joint = Some(JointId(joints.len()));
+                link.joint = Some(ModelJointId(joints.len()));
                 let parent = link_of[robot.joints[by].parent.link.as_str()];
                 let (parent, child) = (LinkId(place[parent]), LinkId(place[index]));
                 joints.push(self.read_joint(by, &robot.joints[by], parent, child)?);
@@ -118,7 +118,7 @@ impl Lines {
         for (index, joint) in robot.joints.iter().enumerate() {
             if joint.mimic.is_some() {
                 let mut mimic = self.follow(index, &robot, &joint_of)?;
-                mimic.leader = JointId(joint_place[mimic.leader.index()]);
+                mimic.leader = ModelJointId(joint_place[mimic.leader.index()]);
                 joints[joint_place[index]].mimic = Some(mimic);
             }
         }
@@ -249,7 +249,7 @@ impl Lines {
     ) -> Result<Mimic, ModelError> {
         let follower = &robot.joints[index];
         let mut found = Mimic {
-            leader: JointId(index),
+            leader: ModelJointId(index),
             multiplier: 1.0,
             offset: 0.0,
         };
@@ -280,7 +280,7 @@ impl Lines {
                 return Err(fault(&mimic.joint, "there is no such joint"));
             };
             found = Mimic {
-                leader: JointId(leader),
+                leader: ModelJointId(leader),
                 multiplier: found.multiplier * multiplier,
                 offset: found.offset + found.multiplier * offset,
             };
@@ -295,14 +295,14 @@ impl Lines {
 }
 
 /// Who hangs on whom, by places in the text.
-struct Tree {
+struct LinkTree {
     /// The joint that carries each link.
     carrier: Vec<Option<usize>>,
     /// The links, each one after the link that it hangs on.
     order: Vec<usize>,
 }
 
-impl Tree {
+impl LinkTree {
     fn new(
         lines: &Lines,
         robot: &urdf_rs::Robot,

@@ -2,7 +2,7 @@
 
 use std::ops::{Index, IndexMut};
 
-use crate::JointId;
+use crate::ModelJointId;
 
 /// One number for every joint of a [`RobotModel`](crate::RobotModel): positions, velocities, accelerations or torques.
 ///
@@ -26,16 +26,16 @@ impl JointValues {
     }
 }
 
-impl Index<JointId> for JointValues {
+impl Index<ModelJointId> for JointValues {
     type Output = f64;
 
-    fn index(&self, joint: JointId) -> &f64 {
+    fn index(&self, joint: ModelJointId) -> &f64 {
         &self.0[joint.index()]
     }
 }
 
-impl IndexMut<JointId> for JointValues {
-    fn index_mut(&mut self, joint: JointId) -> &mut f64 {
+impl IndexMut<ModelJointId> for JointValues {
+    fn index_mut(&mut self, joint: ModelJointId) -> &mut f64 {
         &mut self.0[joint.index()]
     }
 }

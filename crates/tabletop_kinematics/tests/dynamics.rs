@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 use proptest::prelude::*;
-use tabletop_kinematics::{JointId, JointValues, LinkId, Load, RobotModel, baxter};
+use tabletop_kinematics::{JointValues, LinkId, Load, ModelJointId, RobotModel, baxter};
 
 const GRAVITY: DVec3 = DVec3::new(0.3, -0.2, -9.81);
 
@@ -121,7 +121,7 @@ fn kinetic_energy(
 
 fn product(
     robot: &RobotModel,
-    matrix: impl Fn(JointId, JointId) -> f64,
+    matrix: impl Fn(ModelJointId, ModelJointId) -> f64,
     by: &JointValues,
 ) -> JointValues {
     let mut product = robot.zero();
@@ -193,7 +193,7 @@ proptest! {
     ) {
         for robot in robots() {
             let matrix = robot.inertia_matrix(&robot.frames(&values(&robot, &angles)), &[]);
-            let joints: Vec<JointId> = robot.movable().collect();
+            let joints: Vec<ModelJointId> = robot.movable().collect();
             // Cholesky's factor exists just then.
             let mut factor = vec![vec![0.0; joints.len()]; joints.len()];
             for i in 0..joints.len() {

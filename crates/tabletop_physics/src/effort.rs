@@ -20,7 +20,7 @@ pub(crate) use substeps::{FEWEST_SUBSTEPS, SUBSTEPS_OF_FREE};
 
 use crate::{holding::JustReleased, settings::PhysicsSettings};
 use landing::landing_speed;
-use substeps::{MOST_SUBSTEPS, Situation};
+use substeps::{MOST_SUBSTEPS, SubstepFactors};
 use touches::{Touches, bodies_of};
 
 /// How far ahead contacts are looked for, in units.
@@ -125,7 +125,7 @@ impl Care {
             if !body.is_dynamic() {
                 continue;
             }
-            let situation = Situation::of(handle, &engine, &touches);
+            let situation = SubstepFactors::of(handle, &engine, &touches);
             let before = FEWEST_SUBSTEPS + body.additional_solver_iterations();
             let substeps = match is_handling {
                 true => MOST_SUBSTEPS,

@@ -23,19 +23,19 @@ pub struct PhysicsSnapshot {
     bodies: Arc<RapierRigidBodySet>,
     colliders: Arc<RapierContextColliders>,
     joints: Arc<RapierContextJoints>,
-    simulation: Arc<Simulation>,
+    simulation: Arc<EngineState>,
 }
 
 /// What of a [`RapierContextSimulation`] decides what comes next.
 #[derive(Default)]
-struct Simulation {
+struct EngineState {
     islands: IslandManager,
     broad_phase: DefaultBroadPhase,
     narrow_phase: NarrowPhase,
     ccd_solver: CCDSolver,
 }
 
-impl From<&RapierContextSimulation> for Simulation {
+impl From<&RapierContextSimulation> for EngineState {
     fn from(simulation: &RapierContextSimulation) -> Self {
         Self {
             islands: simulation.islands.clone(),
@@ -159,7 +159,7 @@ fn bytes_of_joints(set: &RapierContextJoints) -> usize {
     set.impulse_joints.len() * (size_of::<ImpulseJoint>() + BYTES_PER_ENTRY)
 }
 
-fn bytes_of_simulation(simulation: &Simulation) -> usize {
+fn bytes_of_simulation(simulation: &EngineState) -> usize {
     let manifold = |manifold: &ContactManifold| {
         size_of::<ContactManifold>()
             + size_of_val(&*manifold.points)

@@ -8,7 +8,7 @@ use tabletop_core::{
 
 use crate::{
     RobotStep, Step,
-    program::Action,
+    program::ProgramAction,
     rest::Stillness,
     robot::{TICKS_TO_STILL, is_still},
     seen::Seen,
@@ -28,7 +28,7 @@ pub(crate) struct StepState {
 }
 
 /// What comes of a step in a tick.
-pub(crate) enum Progress {
+pub(crate) enum StepProgress {
     /// It is over without having taken time.
     Over,
     /// It is over with this command.
@@ -70,17 +70,17 @@ impl StepState {
     }
 
     /// Takes the step that is due.
-    pub fn act(&mut self, action: &Action, seen: &Seen) -> Result<Progress, String> {
+    pub fn act(&mut self, action: &ProgramAction, seen: &Seen) -> Result<StepProgress, String> {
         match action {
-            Action::SetScene(scene) => Ok(Progress::Command(SimCommand::Scene(SceneCommand::Set(
-                scene.clone(),
-            )))),
-            Action::Do(step) => self.take(step, seen.selected, seen),
+            ProgramAction::SetScene(scene) => Ok(StepProgress::Command(SimCommand::Scene(
+                SceneCommand::Set(scene.clone()),
+            ))),
+            ProgramAction::Do(step) => self.take(step, seen.selected, seen),
         }
     }
 
-    fn take(&mut self, step: &Step, hand: Hand, seen: &Seen) -> Result<Progress, String> {
-        Ok(Progress::Command(match step {
+    fn take(&mut self, step: &Step, hand: Hand, seen: &Seen) -> Result<StepProgress, String> {
+        Ok(StepProgress::Command(match step {
             Step::With(hand, step) => return self.take(step, *hand, seen),
             Step::Load { file, .. } => SimCommand::Scene(SceneCommand::Load(file.clone())),
             Step::Clear => SimCommand::Scene(SceneCommand::Clear),
@@ -123,7 +123,7 @@ impl StepState {
             }
             Step::Robot(step) => match step.command(seen.layout)? {
                 Some(command) => command,
-                None => return Ok(Progress::Over),
+                None => return Ok(StepProgress::Over),
             },
             Step::Wait(seconds) => return Ok(self.wait(*seconds)),
             Step::WaitUntilRest(timeout) => {
@@ -137,15 +137,15 @@ impl StepState {
             }
             Step::Expect(check) => {
                 check.judge(seen, &self.stillness)?;
-                return Ok(Progress::Over);
+                return Ok(StepProgress::Over);
             }
         }))
     }
 
-    fn wait(&self, seconds: f32) -> Progress {
+    fn wait(&self, seconds: f32) -> StepProgress {
         match self.ticks < ticks(seconds) {
-            true => Progress::GoesOn(None),
-            false => Progress::Over,
+            true => StepProgress::GoesOn(None),
+            false => StepProgress::Over,
         }
     }
 
@@ -154,10 +154,10 @@ impl StepState {
         moving: Option<&str>,
         timeout: f32,
         expected: &str,
-    ) -> Result<Progress, String> {
+    ) -> Result<StepProgress, String> {
         match moving {
-            None => Ok(Progress::Over),
-            Some(_) if self.ticks < ticks(timeout) => Ok(Progress::GoesOn(None)),
+            None => Ok(StepProgress::Over),
+            Some(_) if self.ticks < ticks(timeout) => Ok(StepProgress::GoesOn(None)),
             Some(id) => Err(format!(
                 "{expected}, found `{id}` still moving after {timeout} s"
             )),
@@ -170,7 +170,7 @@ impl StepState {
         seconds: f32,
         hand: Hand,
         seen: &Seen,
-    ) -> Result<Progress, String> {
+    ) -> Result<StepProgress, String> {
         if self.ticks == 0 {
             self.glides_from = seen.held_by(hand)?.pose.location;
         }
@@ -178,8 +178,8 @@ impl StepState {
         let location = self.glides_from.lerp(to, fraction.min(1.0));
         let command = SimCommand::Hand(HandCommand::MoveTo { hand, location });
         Ok(match fraction < 1.0 {
-            true => Progress::GoesOn(Some(command)),
-            false => Progress::Command(command),
+            true => StepProgress::GoesOn(Some(command)),
+            false => StepProgress::Command(command),
         })
     }
 }

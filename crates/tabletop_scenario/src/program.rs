@@ -24,11 +24,11 @@ pub struct Program {
 pub(crate) struct ProgramStep {
     pub at: SourceLocation,
     pub text: String,
-    pub action: Action,
+    pub action: ProgramAction,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Action {
+pub(crate) enum ProgramAction {
     /// Put this on the table.
     SetScene(Box<SceneSpec>),
     /// Do what any other step says.
@@ -54,7 +54,7 @@ impl Program {
                 load(&seen_from(folder, file))
                     .and_then(|mut scene| {
                         place_all(&mut scene, place, &mut random)?;
-                        Ok(Action::SetScene(Box::new(scene)))
+                        Ok(ProgramAction::SetScene(Box::new(scene)))
                     })
                     .map_err(|what| ScenarioError::Setup {
                         at: at.clone(),
@@ -62,7 +62,7 @@ impl Program {
                         what,
                     })?
             } else {
-                Action::Do(step.clone())
+                ProgramAction::Do(step.clone())
             };
             Ok(ProgramStep {
                 at: at.clone(),
@@ -81,8 +81,8 @@ impl Program {
     /// Whether it only prepares: none of its steps lets time pass for something to happen, as `Wait` and `Glide` do.
     pub fn only_prepares(&self) -> bool {
         self.steps.iter().all(|step| match &step.action {
-            Action::SetScene(_) => true,
-            Action::Do(step) => !step.waits(),
+            ProgramAction::SetScene(_) => true,
+            ProgramAction::Do(step) => !step.waits(),
         })
     }
 }

@@ -5,8 +5,8 @@ use tabletop_core::{SimCommand, TICKS_PER_SECOND};
 
 use crate::{
     Program, ScenarioError, Step,
-    act::{Progress, StepState},
-    program::{Action, ProgramStep},
+    act::{StepProgress, StepState},
+    program::{ProgramAction, ProgramStep},
     seen::Seen,
 };
 
@@ -61,7 +61,7 @@ impl ScenarioRun {
     /// How many of them were checks.
     pub fn checks_passed(&self) -> usize {
         let done = self.program.steps.iter().take(self.next);
-        done.filter(|step| matches!(step.action, Action::Do(Step::Expect(_))))
+        done.filter(|step| matches!(step.action, ProgramAction::Do(Step::Expect(_))))
             .count()
     }
 
@@ -87,16 +87,16 @@ impl ScenarioRun {
             let action = action.clone();
             let command = match self.state.act(&action, seen) {
                 Err(what) => return self.fail(self.next, what),
-                Ok(Progress::Over) => {
+                Ok(StepProgress::Over) => {
                     self.go_on();
                     continue;
                 }
-                Ok(Progress::Command(command)) => {
+                Ok(StepProgress::Command(command)) => {
                     self.commanded = Some(self.next);
                     self.go_on();
                     Some(command)
                 }
-                Ok(Progress::GoesOn(command)) => {
+                Ok(StepProgress::GoesOn(command)) => {
                     self.commanded = command.as_ref().map(|_| self.next);
                     self.state.go_on();
                     command

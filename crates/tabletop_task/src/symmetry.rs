@@ -39,8 +39,8 @@ impl Symmetry {
         let centre = centre_of(&solids);
         let turns = if let Some(axis) = common_axis(&solids, centre) {
             match axis {
-                Axis::All => Turns::Any,
-                Axis::Along(axis) => Turns::About {
+                CommonAxis::All => Turns::Any,
+                CommonAxis::Along(axis) => Turns::About {
                     axis,
                     ends_alike: looks_the_same(&solids, centre, half_turn_across(axis)),
                 },
@@ -170,12 +170,12 @@ fn centre_of(solids: &[Primitive]) -> Vec3 {
 }
 
 /// What all solids can be turned about, if they are balls and cylinders on a line.
-enum Axis {
+enum CommonAxis {
     All,
     Along(Vec3),
 }
 
-fn common_axis(solids: &[Primitive], centre: Vec3) -> Option<Axis> {
+fn common_axis(solids: &[Primitive], centre: Vec3) -> Option<CommonAxis> {
     let mut axis = None;
     for solid in solids {
         let own = match solid.solid {
@@ -186,7 +186,7 @@ fn common_axis(solids: &[Primitive], centre: Vec3) -> Option<Axis> {
         axis = axis.or(own);
     }
     let Some(axis) = axis else {
-        return (!solids.is_empty()).then_some(Axis::All);
+        return (!solids.is_empty()).then_some(CommonAxis::All);
     };
     let is_on_axis = solids.iter().all(|solid| {
         let across = (solid.pose.location - centre).cross(axis).length();
@@ -196,7 +196,7 @@ fn common_axis(solids: &[Primitive], centre: Vec3) -> Option<Axis> {
         };
         across < SAME_LENGTH && is_along
     });
-    is_on_axis.then_some(Axis::Along(axis))
+    is_on_axis.then_some(CommonAxis::Along(axis))
 }
 
 /// The turns of a shape that has only so many: those of the cube, and those of prisms with up to 36 sides, about the axes of the

@@ -15,7 +15,7 @@ pub(crate) struct HeldVisual<'w, 's> {
 
 /// A held object as it is drawn.
 #[derive(Clone, Copy)]
-pub(crate) struct Held<'a> {
+pub(crate) struct DrawnHeld<'a> {
     /// Its picture.
     pub visual: Entity,
     /// Where it is drawn.
@@ -26,11 +26,11 @@ pub(crate) struct Held<'a> {
 
 impl HeldVisual<'_, '_> {
     /// The object as it is drawn, if the selected hand holds one.
-    pub fn get(&self) -> Option<Held<'_>> {
+    pub fn get(&self) -> Option<DrawnHeld<'_>> {
         let object = self.hands.held_by(self.hands.selected)?;
         let visual = self.visuals.of(object)?;
         let (transform, drawn) = self.drawn.get(visual).ok()?;
-        Some(Held {
+        Some(DrawnHeld {
             visual,
             pose: transform.into(),
             solids: &drawn.0,

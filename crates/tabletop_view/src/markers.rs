@@ -11,13 +11,13 @@ struct Marker;
 
 /// How all markers look.
 #[derive(Resource)]
-struct Looks {
+struct MarkerLooks {
     ball: Handle<Mesh>,
     surface: Handle<Surface>,
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Looks>().add_systems(
+    app.init_resource::<MarkerLooks>().add_systems(
         RunFixedMainLoop,
         show_markers
             .in_set(RunFixedMainLoopSystems::AfterFixedMainLoop)
@@ -27,7 +27,7 @@ pub(crate) fn plugin(app: &mut App) {
 
 fn show_markers(
     mut commands: Commands,
-    looks: Res<Looks>,
+    looks: Res<MarkerLooks>,
     markers: Res<Markers>,
     shown: Query<Entity, With<Marker>>,
 ) {
@@ -47,7 +47,7 @@ fn show_markers(
     }));
 }
 
-impl FromWorld for Looks {
+impl FromWorld for MarkerLooks {
     fn from_world(world: &mut World) -> Self {
         let ball = world.resource_mut::<Assets<Mesh>>().add(mesh::unit_ball());
         let surface = Surface::translucent(Markers::COLOR, Markers::OPACITY);

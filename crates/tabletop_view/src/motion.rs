@@ -9,12 +9,12 @@ const JUMP: f32 = 5.0;
 
 /// Where a body was at the last two ticks.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Motion {
+pub(crate) struct BodyMotion {
     previous: Pose,
     present: Pose,
 }
 
-impl Motion {
+impl BodyMotion {
     /// Of a body that stands here and did not come from anywhere.
     pub fn standing_at(pose: Pose) -> Self {
         Self {
@@ -56,7 +56,7 @@ mod tests {
     #[test]
     fn a_body_is_drawn_between_its_last_two_ticks() {
         let turned = |degrees| Pose::from_degrees(Vec3::X * degrees / 90.0, Vec3::Z * degrees);
-        let motion = Motion::standing_at(turned(0.0))
+        let motion = BodyMotion::standing_at(turned(0.0))
             .moved_to(turned(30.0))
             .moved_to(turned(90.0));
         for (fraction, degrees) in [(0.0, 30.0), (0.5, 60.0), (1.0, 90.0)] {
@@ -69,17 +69,17 @@ mod tests {
     #[test]
     fn a_body_that_stands_still_is_drawn_there() {
         let (from, to) = (Pose::IDENTITY, Pose::at(Vec3::X));
-        let motion = Motion::standing_at(from).moved_to(to).moved_to(to);
+        let motion = BodyMotion::standing_at(from).moved_to(to).moved_to(to);
         assert_eq!(motion.at(0.3).location, Vec3::X);
         let pose = Pose::from_degrees(Vec3::new(0.1, 0.7, 1.3), Vec3::new(10.0, 20.0, 30.0));
-        let motion = Motion::standing_at(pose);
+        let motion = BodyMotion::standing_at(pose);
         assert!((0..100u8).all(|part| motion.at(f32::from(part) / 100.0) == pose));
     }
 
     #[test]
     fn a_jump_is_not_drawn_as_a_move() {
         let far = Pose::at(Vec3::X * 10.0);
-        let motion = Motion::standing_at(Pose::IDENTITY).moved_to(far);
+        let motion = BodyMotion::standing_at(Pose::IDENTITY).moved_to(far);
         assert_eq!(motion.at(0.0), far);
     }
 }

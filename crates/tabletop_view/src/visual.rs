@@ -4,7 +4,7 @@
 use bevy::{ecs::entity::EntityHashMap, platform::collections::HashMap, prelude::*, time::Fixed};
 use tabletop_core::{Figure, ObjectSpec, Primitive, Rgb, Solid, Table};
 
-use crate::{mesh, motion::Motion, surface::Surface};
+use crate::{mesh, motion::BodyMotion, surface::Surface};
 
 /// The picture of an object, of the table or of a figure; its children are the drawn solids or the figure's surface.
 #[derive(Component, Clone, Copy, Debug)]
@@ -54,7 +54,7 @@ pub(crate) fn plugin(app: &mut App) {
 }
 
 /// Once a tick: where each body has come to.
-fn note_moves(mut visuals: Query<(&Visual, &mut Motion)>, bodies: Query<&Transform, Drawable>) {
+fn note_moves(mut visuals: Query<(&Visual, &mut BodyMotion)>, bodies: Query<&Transform, Drawable>) {
     for (visual, mut motion) in &mut visuals {
         if let Ok(body) = bodies.get(visual.of) {
             let moved = motion.moved_to(body.into());
@@ -116,7 +116,7 @@ fn make_pictures(
         let visual = commands
             .spawn((
                 Visual { of: body },
-                Motion::standing_at(place.into()),
+                BodyMotion::standing_at(place.into()),
                 *place,
             ))
             .with_children(|parts| {
@@ -137,7 +137,7 @@ fn make_pictures(
 }
 
 /// Once a frame: pictures move to where their bodies are at this moment.
-fn follow_bodies(time: Res<Time<Fixed>>, mut visuals: Query<(&Motion, &mut Transform)>) {
+fn follow_bodies(time: Res<Time<Fixed>>, mut visuals: Query<(&BodyMotion, &mut Transform)>) {
     for (motion, mut transform) in &mut visuals {
         transform.set_if_neq(motion.at(time.overstep_fraction()).into());
     }

@@ -72,13 +72,13 @@ mod tests {
     use super::*;
 
     #[derive(Resource, Default)]
-    struct Seen {
+    struct SeenMessages {
         commands: Vec<SimCommand>,
         facts: Vec<SimFact>,
     }
 
     fn see(
-        mut seen: ResMut<Seen>,
+        mut seen: ResMut<SeenMessages>,
         mut commands: MessageReader<IssuedCommand>,
         mut facts: MessageReader<SimFact>,
     ) {
@@ -90,7 +90,7 @@ mod tests {
     fn app() -> App {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default(), XmlPlugin))
-            .init_resource::<Seen>()
+            .init_resource::<SeenMessages>()
             .add_systems(FixedUpdate, see.in_set(SimSystems::Ingest))
             .start();
         app
@@ -116,7 +116,7 @@ mod tests {
             .write_command(SceneCommand::Load(path.clone()));
         app.world_mut().write_command(ClockCommand::SetPaused(true));
         app.step(1);
-        let seen = app.world().resource::<Seen>();
+        let seen = app.world().resource::<SeenMessages>();
         let [
             SimCommand::Scene(SceneCommand::Clear),
             SimCommand::Scene(SceneCommand::Set(scene)),
@@ -156,7 +156,7 @@ mod tests {
         app.world_mut()
             .write_command(SceneCommand::Load(CUBE.path.into()));
         app.step(1);
-        let seen = app.world().resource::<Seen>();
+        let seen = app.world().resource::<SeenMessages>();
         assert_eq!(
             seen.facts,
             [SimFact::TaskLoaded {
@@ -176,7 +176,7 @@ mod tests {
         app.world_mut()
             .write_command(SceneCommand::Load("missing.xml".into()));
         app.step(5);
-        let seen = app.world().resource::<Seen>();
+        let seen = app.world().resource::<SeenMessages>();
         assert_eq!((seen.commands.len(), seen.facts.len()), (1, 1));
     }
 
@@ -186,7 +186,7 @@ mod tests {
         app.world_mut()
             .write_command(SceneCommand::Load("missing.xml".into()));
         app.step(1);
-        let seen = app.world().resource::<Seen>();
+        let seen = app.world().resource::<SeenMessages>();
         assert_eq!(
             seen.commands,
             [SimCommand::Scene(SceneCommand::Set(Box::default()))]

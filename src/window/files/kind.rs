@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 /// Something that can be opened.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum FileKind {
     Task,
     /// A recording in this folder.
     Recording(PathBuf),
 }
 
-impl Kind {
+impl FileKind {
     /// What a path names, or why it cannot be opened. Every file of a recording names the recording.
     pub fn of(path: &Path) -> Result<Self, String> {
         let is_task = path

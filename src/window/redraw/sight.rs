@@ -27,24 +27,24 @@ const UNSEEN: f32 = 1e-4;
 
 /// What there is to see: the things, and a number for each other part, which is another one when the part looks different.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Sight {
+pub(super) struct Appearance {
     window: u64,
     camera: u64,
-    scene: Vec<Thing>,
+    scene: Vec<VisibleMesh>,
     lines: u64,
     panels: u64,
 }
 
 /// A visible part of the scene.
 #[derive(Clone, Copy, Debug)]
-struct Thing {
+struct VisibleMesh {
     entity: Entity,
     mesh: AssetId<Mesh>,
     surface: Option<AssetId<Surface>>,
     place: Affine3A,
 }
 
-impl Thing {
+impl VisibleMesh {
     fn looks_like(&self, other: &Self) -> bool {
         self.entity == other.entity
             && self.mesh == other.mesh
@@ -53,7 +53,7 @@ impl Thing {
     }
 }
 
-impl Sight {
+impl Appearance {
     /// What is different in another sight.
     pub fn difference(&self, other: &Self) -> Option<RedrawCause> {
         [
@@ -75,7 +75,7 @@ impl Sight {
 
 /// Everything that is drawn.
 #[derive(SystemParam)]
-pub(super) struct Drawn<'w, 's> {
+pub(super) struct DrawnQueries<'w, 's> {
     windows: Query<'w, 's, &'static Window, With<PrimaryWindow>>,
     cameras: Query<
         'w,
@@ -103,9 +103,9 @@ pub(super) struct Drawn<'w, 's> {
     panels: Query<'w, 's, &'static EguiRenderOutput>,
 }
 
-impl Drawn<'_, '_> {
-    pub fn sight(&self) -> Sight {
-        Sight {
+impl DrawnQueries<'_, '_> {
+    pub fn sight(&self) -> Appearance {
+        Appearance {
             window: self.window(),
             camera: self.camera(),
             scene: self.scene(),
@@ -134,10 +134,10 @@ impl Drawn<'_, '_> {
         digest.finish()
     }
 
-    fn scene(&self) -> Vec<Thing> {
+    fn scene(&self) -> Vec<VisibleMesh> {
         let visible = self.things.iter().filter(|(.., seen, _, _)| seen.get());
         visible
-            .map(|(entity, place, _, mesh, surface)| Thing {
+            .map(|(entity, place, _, mesh, surface)| VisibleMesh {
                 entity,
                 mesh: mesh.id(),
                 surface: surface.map(|surface| surface.id()),

@@ -1,8 +1,8 @@
 //! The depths of a face that stays where it is: the table.
 
 use crate::{
-    camera::{SampleOffset, View},
-    raster::face::Face,
+    camera::{PinholeView, SampleOffset},
+    raster::face::RasterFace,
 };
 
 /// How far a plane is away all over the picture, if it was the same in the picture before.
@@ -24,7 +24,7 @@ struct Key {
 
 impl Backdrop {
     /// Gets ready for a picture with this face.
-    pub fn prepare(&mut self, face: Option<&Face>, view: &View) {
+    pub fn prepare(&mut self, face: Option<&RasterFace>, view: &PinholeView) {
         let key = face.map(|face| Key {
             plane: face.plane.inverse_depth.bits(),
             width: view.width,

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use crate::{
-    camera::{SampleOffset, View, Window},
+    camera::{PinholeView, SampleOffset, Window},
     raster::{
         backdrop::Backdrop,
         coverage::Coverage,
@@ -22,7 +22,7 @@ use crate::{
 /// What is to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame<'a> {
-    pub view: &'a View,
+    pub view: &'a PinholeView,
     pub visible: &'a VisibleSurfaces,
     pub spheres: &'a TransparentSpheres,
     pub backdrop: &'a Backdrop,
@@ -33,7 +33,7 @@ pub(crate) struct Frame<'a> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Band {
     coverages: Vec<Coverage>,
-    rows: Vec<Row>,
+    rows: Vec<BandRow>,
     centers: CenterSamples,
     smooth: SmoothSamples,
     /// One row of one sample a pixel.
@@ -43,7 +43,7 @@ pub(crate) struct Band {
 
 /// A row of the band.
 #[derive(Clone, Debug, Default)]
-struct Row {
+struct BandRow {
     faces: SpanList,
     /// The pixels in which more than faces may be seen.
     dense: Range<u32>,
@@ -55,7 +55,7 @@ impl Band {
         let width = frame.view.width as usize;
         let count = pixels.depth.len() / width;
         let rows = first_row..first_row + count as u32;
-        self.rows.resize_with(ROWS, Row::default);
+        self.rows.resize_with(ROWS, BandRow::default);
         self.centers.resize(width, ROWS);
         if frame.is_smooth {
             self.smooth.resize(width, ROWS);
@@ -84,7 +84,7 @@ impl Band {
                 self.coverages.push(coverage);
             }
         }
-        for (row, Row { faces, .. }) in rows.zip(&mut self.rows) {
+        for (row, BandRow { faces, .. }) in rows.zip(&mut self.rows) {
             faces.clear(view.width);
             for added in self.coverages.iter().filter_map(|face| face.in_row(row)) {
                 faces.insert(&added, row, frame.is_smooth, |face| {
@@ -205,7 +205,7 @@ impl Band {
 
     /// Paints what is seen in a row.
     fn paint_row(&mut self, frame: &Frame, row: u32, i: usize, pixels: &mut Pixels) {
-        let Row { faces, dense } = &self.rows[i];
+        let BandRow { faces, dense } = &self.rows[i];
         let mut row = RowResolver {
             visible: frame.visible,
             backdrop: frame.backdrop,

@@ -3,10 +3,10 @@
 use bevy::math::{Mat3, Vec3};
 use tabletop_core::{Pose, Solid};
 
-use crate::{camera::View, scene::DrawnSolid};
+use crate::{camera::PinholeView, scene::DrawnSolid};
 
 /// The corners of the cuboid around a solid, relative to the eye, numbered as [`CUBOID`](super::face::CUBOID) has them.
-pub(crate) fn corners_of_solid(drawn: &DrawnSolid, view: &View) -> [Vec3; 8] {
+pub(crate) fn corners_of_solid(drawn: &DrawnSolid, view: &PinholeView) -> [Vec3; 8] {
     let half = match drawn.solid {
         Solid::Cuboid(span) => span / 2.0,
         Solid::Cylinder { radius, yspan } => Vec3::new(radius, yspan / 2.0, radius),
@@ -21,7 +21,7 @@ pub(crate) fn corners_of_solid(drawn: &DrawnSolid, view: &View) -> [Vec3; 8] {
 }
 
 /// The corners of a box with these least and largest coordinates in the frame of a body, relative to the eye.
-pub(crate) fn corners_of_box(body: Pose, bounds: [Vec3; 2], view: &View) -> [Vec3; 8] {
+pub(crate) fn corners_of_box(body: Pose, bounds: [Vec3; 2], view: &PinholeView) -> [Vec3; 8] {
     std::array::from_fn(|corner| {
         let coordinate = |axis: usize| bounds[corner >> axis & 1][axis];
         body * Vec3::new(coordinate(0), coordinate(1), coordinate(2)) - view.eye

@@ -7,7 +7,7 @@ use bevy::math::Vec4;
 use crate::{
     camera::SampleOffset,
     raster::{
-        face::{Columns, Face},
+        face::{Columns, RasterFace},
         samples::column,
         span::FaceInRow,
     },
@@ -28,7 +28,13 @@ pub(crate) struct Coverage {
 
 impl Coverage {
     /// Of the rows from this one on.
-    pub fn new(number: u32, face: &Face, first_row: u32, width: u32, is_smooth: bool) -> Self {
+    pub fn new(
+        number: u32,
+        face: &RasterFace,
+        first_row: u32,
+        width: u32,
+        is_smooth: bool,
+    ) -> Self {
         let center = face.columns(first_row, SampleOffset::CENTER, width);
         let smooth = is_smooth
             .then(|| SampleOffset::SMOOTH.map(|offset| face.columns(first_row, offset, width)));

@@ -9,8 +9,8 @@ use std::ops::Range;
 use bevy::math::Vec3;
 
 use crate::{
-    camera::{Linear, NEAR, SampleOffset, View},
-    raster::{span::Plane, surface::FlatLook},
+    camera::{Linear, NEAR, PinholeView, SampleOffset},
+    raster::{span::DepthPlane, surface::FlatLook},
 };
 
 /// Faces whose plane passes the eye nearer than this, in units, are seen edge-on: they are thinner than a pixel.
@@ -43,11 +43,11 @@ pub(crate) const ROWS: usize = 8;
 
 /// A face as it is seen.
 #[derive(Clone, Debug)]
-pub(crate) struct Face {
+pub(crate) struct RasterFace {
     /// The rows in which it may be seen.
     pub rows: Range<u32>,
     pub surface: u32,
-    pub plane: Plane,
+    pub plane: DepthPlane,
     pub look: FlatLook,
     edges: [Edge; 5],
 }
@@ -71,12 +71,12 @@ enum Edge {
     Level { first: f32, down: f32 },
 }
 
-impl Face {
+impl RasterFace {
     /// What is behind all else.
     pub const NOTHING: Self = Self {
         rows: 0..0,
         surface: 0,
-        plane: Plane::NOTHING,
+        plane: DepthPlane::NOTHING,
         look: FlatLook::NOTHING,
         edges: [Edge::Level {
             first: 0.0,
@@ -87,7 +87,7 @@ impl Face {
     /// The face with these corners, given relative to the eye and counter-clockwise as seen from outside, and with this
     /// normal of unit length; none if it is not seen from outside.
     pub fn seen(
-        view: &View,
+        view: &PinholeView,
         corners: [Vec3; 4],
         normal: Vec3,
         rows: Range<u32>,
@@ -110,7 +110,7 @@ impl Face {
             rows,
             surface,
             look: look(),
-            plane: Plane::new(inverse_depth, view.width, view.height),
+            plane: DepthPlane::new(inverse_depth, view.width, view.height),
             edges: [
                 edge(a, b),
                 edge(b, c),
@@ -213,8 +213,8 @@ mod tests {
     const WIDTH: u32 = 33;
     const HEIGHT: u32 = 25;
 
-    fn view() -> View {
-        View::of(&Camera {
+    fn view() -> PinholeView {
+        PinholeView::of(&Camera {
             pose: Pose::IDENTITY,
             vertical_fov: 1.0,
             square_fov: false,
@@ -231,7 +231,7 @@ mod tests {
         })
     }
 
-    fn columns_in(face: &Face, row: u32, offset: SampleOffset) -> Range<usize> {
+    fn columns_in(face: &RasterFace, row: u32, offset: SampleOffset) -> Range<usize> {
         let columns = face.columns(row, offset, WIDTH);
         let (start, end) = (columns.starts[0] as usize, columns.ends[0] as usize);
         start.min(end)..end
@@ -245,7 +245,7 @@ mod tests {
             let corners = face.map(|corner| corners[corner]);
             let normal = pose.rotation * normal;
             let Some(face) =
-                Face::seen(&view(), corners, normal, 0..HEIGHT, 1, || FlatLook::NOTHING)
+                RasterFace::seen(&view(), corners, normal, 0..HEIGHT, 1, || FlatLook::NOTHING)
             else {
                 continue;
             };
@@ -285,7 +285,7 @@ mod tests {
     fn samples_in(corners: [Vec3; 4]) -> Vec<u32> {
         let normal = (corners[1] - corners[0]).cross(corners[3] - corners[0]);
         let normal = normal.normalize();
-        let face = Face::seen(&view(), corners, normal, 0..HEIGHT, 1, || FlatLook::NOTHING)
+        let face = RasterFace::seen(&view(), corners, normal, 0..HEIGHT, 1, || FlatLook::NOTHING)
             .expect("it faces the eye");
         let row = |row| {
             let mut samples = [0; WIDTH as usize];

@@ -9,7 +9,7 @@
 use bevy::math::Vec3;
 
 use crate::{
-    camera::{Linear, NEAR, Rays, SampleOffset, View, Window},
+    camera::{Linear, NEAR, PinholeView, Rays, SampleOffset, Window},
     raster::samples::CenterRow,
 };
 
@@ -56,7 +56,7 @@ pub(crate) struct Ends {
 
 impl Curve {
     /// The surface of a ball around this centre, given relative to the eye.
-    pub fn around_point(view: &View, center: Vec3, radius: f32) -> Self {
+    pub fn around_point(view: &PinholeView, center: Vec3, radius: f32) -> Self {
         Self {
             eye: -center,
             rays: view.rays,
@@ -65,7 +65,7 @@ impl Curve {
     }
 
     /// The surface around this axis of unit length.
-    pub fn around_axis(view: &View, center: Vec3, axis: Vec3, radius: f32) -> Self {
+    pub fn around_axis(view: &PinholeView, center: Vec3, axis: Vec3, radius: f32) -> Self {
         let across = |vector: Vec3| vector - axis * axis.dot(vector);
         Self {
             eye: across(-center),
@@ -89,7 +89,7 @@ impl Ends {
     };
 
     /// Those of a cylinder; its centre is given relative to the eye.
-    pub fn of_cylinder(view: &View, center: Vec3, axis: Vec3, yspan: f32) -> Self {
+    pub fn of_cylinder(view: &PinholeView, center: Vec3, axis: Vec3, yspan: f32) -> Self {
         let mut ends = Self::NONE;
         for (outward, leave) in [axis, -axis].into_iter().zip(&mut ends.leave) {
             let eye_is_inside_by = not_zero(yspan / 2.0 + outward.dot(center));

@@ -24,9 +24,9 @@ pub(crate) struct SmoothRow<'a> {
 
 /// The samples of some rows.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Samples<Depth, Surface> {
+pub(crate) struct Samples<Depth, RasterSurface> {
     inverse_depth: Vec<Depth>,
-    surface: Vec<Surface>,
+    surface: Vec<RasterSurface>,
     width: usize,
 }
 
@@ -43,14 +43,14 @@ pub(crate) struct SmoothOnRow {
     step: Vec4,
 }
 
-impl<Depth: Clone + Default, Surface: Clone + Default> Samples<Depth, Surface> {
+impl<Depth: Clone + Default, RasterSurface: Clone + Default> Samples<Depth, RasterSurface> {
     /// Makes it so large, without saying what the samples see.
     pub fn resize(&mut self, width: usize, rows: usize) {
         self.width = width;
         let samples = width * rows + PADDING;
         if self.surface.len() != samples {
             self.inverse_depth.resize(samples, Depth::default());
-            self.surface.resize(samples, Surface::default());
+            self.surface.resize(samples, RasterSurface::default());
         }
     }
 
@@ -59,7 +59,7 @@ impl<Depth: Clone + Default, Surface: Clone + Default> Samples<Depth, Surface> {
         Vec4::splat(self.width as f32)
     }
 
-    fn row(&mut self, row: usize) -> (&mut [Depth], &mut [Surface]) {
+    fn row(&mut self, row: usize) -> (&mut [Depth], &mut [RasterSurface]) {
         let pixels = row * self.width..(row + 1) * self.width;
         (
             &mut self.inverse_depth[pixels.clone()],

@@ -23,7 +23,7 @@ pub(crate) enum Sees {
 
 /// The plane of a face: one over the depth where the rays meet it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Plane {
+pub(crate) struct DepthPlane {
     pub inverse_depth: Linear,
     /// By how much a number that is computed from it may be wrong anywhere in the picture.
     pub rounding: f32,
@@ -54,7 +54,7 @@ pub(crate) struct SpanList {
     before: Vec<Span>,
 }
 
-impl Plane {
+impl DepthPlane {
     /// Infinitely far away.
     pub const NOTHING: Self = Self {
         inverse_depth: Linear::constant(0.0),
@@ -111,7 +111,7 @@ impl SpanList {
         added: &FaceInRow,
         row: u32,
         is_smooth: bool,
-        plane_of: impl Fn(u32) -> &'a Plane,
+        plane_of: impl Fn(u32) -> &'a DepthPlane,
     ) {
         let Range { start, end } = added.outer;
         if start >= end {
@@ -219,12 +219,12 @@ mod tests {
     use super::*;
 
     /// Planes that lie parallel to the picture, so near.
-    fn planes(inverse_depths: &[f32]) -> Vec<Plane> {
-        let plane = |&near| Plane::new(Linear::constant(near), 20, 1);
+    fn planes(inverse_depths: &[f32]) -> Vec<DepthPlane> {
+        let plane = |&near| DepthPlane::new(Linear::constant(near), 20, 1);
         inverse_depths.iter().map(plane).collect()
     }
 
-    fn spans(planes: &[Plane], faces: &[(u32, Range<u32>)]) -> Vec<(u32, u32, Sees)> {
+    fn spans(planes: &[DepthPlane], faces: &[(u32, Range<u32>)]) -> Vec<(u32, u32, Sees)> {
         let mut list = SpanList::default();
         list.clear(20);
         for (face, outer) in faces {

@@ -12,7 +12,7 @@ use crate::{
 
 /// A surface of one colour: one face of a cuboid, an end or the side of a cylinder, a ball, a triangle of a figure.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Surface {
+pub(crate) struct RasterSurface {
     /// The number of its object.
     pub object: u32,
     /// Red, green, blue in 0..=255.
@@ -71,7 +71,7 @@ impl FlatLook {
     }
 }
 
-impl Surface {
+impl RasterSurface {
     /// What is seen where nothing is.
     pub const NOTHING: Self = Self {
         object: 0,

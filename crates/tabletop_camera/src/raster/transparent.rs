@@ -4,13 +4,13 @@ use bevy::math::{Vec3, Vec4};
 use tabletop_core::{Markers, Pose, Solid};
 
 use crate::{
-    camera::{SampleOffset, View, Window},
+    camera::{PinholeView, SampleOffset, Window},
     color::nearest_bytes,
     raster::{
         bounds::corners_of_solid,
         quadric::{Curve, Ends, Quadric},
         samples::CenterSamples,
-        surface::Surface,
+        surface::RasterSurface,
     },
     scene::DrawnSolid,
 };
@@ -34,12 +34,12 @@ pub(crate) struct Blend {
 struct Sphere {
     distance: f32,
     quadric: Quadric,
-    surface: Surface,
+    surface: RasterSurface,
 }
 
 impl TransparentSpheres {
     /// Forgets everything and looks at spheres around these points.
-    pub fn project(&mut self, markers: &[Vec3], view: &View) {
+    pub fn project(&mut self, markers: &[Vec3], view: &PinholeView) {
         self.spheres.clear();
         self.spheres.extend(
             markers
@@ -59,7 +59,7 @@ impl TransparentSpheres {
     /// and a column one over the depth of what is nearest there.
     pub fn blend(
         &self,
-        view: &View,
+        view: &PinholeView,
         row: u32,
         offsets: &[SampleOffset],
         nearest: impl Fn(usize, usize) -> f32,
@@ -104,7 +104,7 @@ impl TransparentSpheres {
 }
 
 impl Sphere {
-    fn seen(center: Vec3, view: &View) -> Option<Self> {
+    fn seen(center: Vec3, view: &PinholeView) -> Option<Self> {
         let drawn = DrawnSolid {
             pose: Pose::at(center),
             solid: Solid::Ball(Markers::RADIUS),
@@ -116,7 +116,7 @@ impl Sphere {
         Some(Self {
             distance: center.distance(view.eye),
             quadric: Quadric::new(curve, Ends::NONE, window, [1; 2]),
-            surface: Surface::curved(&drawn, curve),
+            surface: RasterSurface::curved(&drawn, curve),
         })
     }
 }

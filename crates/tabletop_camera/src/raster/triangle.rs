@@ -1,6 +1,6 @@
 //! Triangles of figures, of which there are many and small ones.
 //!
-//! They are bounded like [`Face`](super::face::Face)s, by planes through the eye and their edges, but several rows of samples
+//! They are bounded like [`RasterFace`](super::face::RasterFace)s, by planes through the eye and their edges, but several rows of samples
 //! are found at once and without branches. The near plane does not cut them.
 
 use std::ops::Range;
@@ -8,7 +8,7 @@ use std::ops::Range;
 use bevy::math::{Vec3, Vec4};
 
 use crate::{
-    camera::{Linear, Rays, SampleOffset, View},
+    camera::{Linear, PinholeView, Rays, SampleOffset},
     raster::samples::{CenterSamples, SmoothOnRow, SmoothSamples, column},
 };
 
@@ -38,7 +38,7 @@ impl Triangle {
     /// The triangle with these corners, given relative to the eye and counter-clockwise as seen from outside, and with this
     /// normal of unit length. It has to be seen from outside.
     pub fn seen(
-        view: &View,
+        view: &PinholeView,
         corners: [Vec3; 3],
         normal: Vec3,
         rows: Range<u32>,
@@ -104,7 +104,7 @@ impl Triangle {
 impl Edges {
     /// Those from each corner to the next one: where the ray's product with the normal of the plane through the eye and the edge
     /// is positive. As many at once as the processor can do.
-    fn of(view: &View, [a, b, c]: [Vec3; 3]) -> Self {
+    fn of(view: &PinholeView, [a, b, c]: [Vec3; 3]) -> Self {
         /// Where an edge is level, this stands for 0: it meets rows very far out, on the one or on the other side.
         const LEVEL: Vec4 = Vec4::splat(1e-30);
         let lanes = |part: fn(Vec3) -> f32| {

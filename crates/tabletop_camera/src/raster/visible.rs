@@ -6,13 +6,13 @@ use bevy::math::{Mat3, Mat3A, Vec2, Vec3, Vec3A};
 use tabletop_core::{LIGHT, Solid};
 
 use crate::{
-    camera::{Linear, View, Window},
+    camera::{Linear, PinholeView, Window},
     raster::{
         bounds::{corners_of_box, corners_of_solid},
         edge_table::EdgeTable,
-        face::{CUBOID, CUBOID_NORMALS, EDGE_ON, Face, ROWS, first_column},
+        face::{CUBOID, CUBOID_NORMALS, EDGE_ON, ROWS, RasterFace, first_column},
         quadric::{Curve, Ends, Quadric},
-        surface::{FlatLook, Surface, clamp_share},
+        surface::{FlatLook, RasterSurface, clamp_share},
         triangle::Triangle,
     },
     scene::{DrawnFigure, DrawnSolid, Facets, Scene},
@@ -22,11 +22,11 @@ use crate::{
 #[derive(Clone, Debug, Default)]
 pub(crate) struct VisibleSurfaces {
     /// What the surfaces look like; the first stands for nothing.
-    pub surfaces: Vec<Surface>,
+    pub surfaces: Vec<RasterSurface>,
     /// The patches of the surfaces. Surfaces of the same one are parts of a smooth surface, and between them is no edge.
     patches: Vec<u32>,
     /// Flat faces; the first stands for nothing.
-    pub faces: Vec<Face>,
+    pub faces: Vec<RasterFace>,
     /// The face that is most likely the same in the next picture: the upper one of the first solid.
     pub backdrop: Option<u32>,
     pub quadrics: Vec<Quadric>,
@@ -40,7 +40,7 @@ pub(crate) struct VisibleSurfaces {
     /// So many patches there are.
     patch_count: u32,
     /// The vertices of a figure.
-    vertices: Vec<Corner>,
+    vertices: Vec<VisibleCorner>,
 }
 
 /// A figure as it is seen.
@@ -59,7 +59,7 @@ struct ProjectedFigure {
 
 /// A corner of a triangle as it is seen.
 #[derive(Clone, Copy, Debug)]
-struct Corner {
+struct VisibleCorner {
     /// Where it is seen.
     pixel: Option<Vec2>,
     /// Where it is relative to the eye.
@@ -70,10 +70,10 @@ struct Corner {
 
 impl VisibleSurfaces {
     /// Looks at this scene, and forgets what was before.
-    pub fn project(&mut self, scene: &Scene, view: &View) {
+    pub fn project(&mut self, scene: &Scene, view: &PinholeView) {
         self.project_figures(&scene.figures, view);
         self.faces.clear();
-        self.faces.push(Face::NOTHING);
+        self.faces.push(RasterFace::NOTHING);
         self.quadrics.clear();
         self.backdrop = None;
         for (i, drawn) in scene.solids.iter().enumerate() {
@@ -94,7 +94,7 @@ impl VisibleSurfaces {
     }
 
     /// Looks at figures, but not at the first ones that are as they were in the picture before.
-    fn project_figures(&mut self, figures: &[DrawnFigure], view: &View) {
+    fn project_figures(&mut self, figures: &[DrawnFigure], view: &PinholeView) {
         let same_view = self.view.replace(view.bits()) == Some(view.bits());
         let pairs = self.figures.iter().zip(figures);
         let unchanged = pairs.take_while(|(before, now)| same_view && before.is_of(now));
@@ -136,7 +136,7 @@ impl VisibleSurfaces {
         self.patch_count = patches;
         self.figures.truncate(end);
         if surfaces == 0 {
-            self.add_surface(Surface::NOTHING);
+            self.add_surface(RasterSurface::NOTHING);
         }
     }
 
@@ -147,16 +147,22 @@ impl VisibleSurfaces {
             .filter_map(|figure| figure.window.as_ref())
     }
 
-    fn add_cuboid(&mut self, drawn: &DrawnSolid, view: &View, window: Window, corners: &[Vec3; 8]) {
+    fn add_cuboid(
+        &mut self,
+        drawn: &DrawnSolid,
+        view: &PinholeView,
+        window: Window,
+        corners: &[Vec3; 8],
+    ) {
         for (face, normal) in CUBOID.into_iter().zip(CUBOID_NORMALS) {
             let normal = drawn.pose.rotation * normal;
             let corners = face.map(|corner| corners[corner]);
             let surface = self.surfaces.len() as u32;
             let rows = window.rows.clone();
             let look = || FlatLook::of(drawn, normal);
-            if let Some(face) = Face::seen(view, corners, normal, rows, surface, look) {
+            if let Some(face) = RasterFace::seen(view, corners, normal, rows, surface, look) {
                 self.faces.push(face);
-                self.add_surface(Surface::flat(drawn, normal));
+                self.add_surface(RasterSurface::flat(drawn, normal));
             }
         }
     }
@@ -164,7 +170,7 @@ impl VisibleSurfaces {
     fn add_cylinder(
         &mut self,
         drawn: &DrawnSolid,
-        view: &View,
+        view: &PinholeView,
         window: Window,
         radius: f32,
         yspan: f32,
@@ -177,19 +183,19 @@ impl VisibleSurfaces {
         let side = self.surfaces.len() as u32;
         self.quadrics
             .push(Quadric::new(curve, ends, window, [side, side + 1]));
-        self.add_surface(Surface::curved(drawn, curve));
-        self.add_surface(Surface::flat(drawn, to_eye));
+        self.add_surface(RasterSurface::curved(drawn, curve));
+        self.add_surface(RasterSurface::flat(drawn, to_eye));
     }
 
-    fn add_ball(&mut self, drawn: &DrawnSolid, view: &View, window: Window, radius: f32) {
+    fn add_ball(&mut self, drawn: &DrawnSolid, view: &PinholeView, window: Window, radius: f32) {
         let curve = Curve::around_point(view, drawn.pose.location - view.eye, radius);
         let surface = self.surfaces.len() as u32;
         self.quadrics
             .push(Quadric::new(curve, Ends::NONE, window, [surface; 2]));
-        self.add_surface(Surface::curved(drawn, curve));
+        self.add_surface(RasterSurface::curved(drawn, curve));
     }
 
-    fn add_figure(&mut self, drawn: &DrawnFigure, view: &View, window: &Window) {
+    fn add_figure(&mut self, drawn: &DrawnFigure, view: &PinholeView, window: &Window) {
         let facets = &*drawn.facets;
         let axes = Mat3::from_quat(drawn.pose.rotation);
         let pixel_of = view.pixels_of(drawn.pose);
@@ -197,7 +203,7 @@ impl VisibleSurfaces {
         let (turned, location) = (Mat3A::from(axes), Vec3A::from(drawn.pose.location));
         let view_eye = Vec3A::from(view.eye);
         self.vertices
-            .extend(facets.vertices.iter().map(|vertex| Corner {
+            .extend(facets.vertices.iter().map(|vertex| VisibleCorner {
                 pixel: pixel_of(vertex.position),
                 place: (location + turned * vertex.position - view_eye).into(),
                 share: clamp_share(LIGHT.share((turned * vertex.normal).into())),
@@ -221,7 +227,7 @@ impl VisibleSurfaces {
             let surface = self.surfaces.len() as u32;
             self.triangles
                 .push(Triangle::seen(view, places, normal, rows, surface));
-            self.surfaces.push(Surface::gouraud(
+            self.surfaces.push(RasterSurface::gouraud(
                 drawn.object,
                 facet.color,
                 share_by_depth(view, &corners, normal),
@@ -232,7 +238,7 @@ impl VisibleSurfaces {
     }
 
     /// Adds a surface that is a patch of its own.
-    fn add_surface(&mut self, surface: Surface) {
+    fn add_surface(&mut self, surface: RasterSurface) {
         self.surfaces.push(surface);
         self.patches.push(self.patch_count);
         self.patch_count += 1;
@@ -261,7 +267,11 @@ impl ProjectedFigure {
 }
 
 /// The rows in which a triangle with these corners may be seen; `None` if no sample lies in it.
-fn rows_of(corners: &[Corner; 3], view: &View, window: &Window) -> Option<Range<u32>> {
+fn rows_of(
+    corners: &[VisibleCorner; 3],
+    view: &PinholeView,
+    window: &Window,
+) -> Option<Range<u32>> {
     /// The outermost samples of a pixel, and a bit for rounding.
     const REACH: f32 = 0.375 + 0.01;
     let [a, b, c] = corners;
@@ -279,17 +289,17 @@ fn rows_of(corners: &[Corner; 3], view: &View, window: &Window) -> Option<Range<
 }
 
 /// What a triangle shows of its colour, divided by the depth: as it is at the corners, and linear in between.
-fn share_by_depth(view: &View, corners: &[Corner; 3], normal: Vec3) -> Linear {
+fn share_by_depth(view: &PinholeView, corners: &[VisibleCorner; 3], normal: Vec3) -> Linear {
     let [
-        Corner {
+        VisibleCorner {
             place: a, share, ..
         },
-        Corner {
+        VisibleCorner {
             place: b,
             share: share_b,
             ..
         },
-        Corner {
+        VisibleCorner {
             place: c,
             share: share_c,
             ..

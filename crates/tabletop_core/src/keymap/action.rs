@@ -4,7 +4,7 @@ use std::fmt;
 
 use bevy_input::keyboard::KeyCode::{self, *};
 
-use super::{Binding, Modifiers};
+use super::{KeyBinding, Modifiers};
 use crate::{Arm, JointLayout, JointRole, RobotJoint};
 
 /// Something that a key does.
@@ -125,12 +125,12 @@ pub enum Situation {
 }
 
 /// A line of the table of actions.
-struct Row {
+struct ActionRow {
     group: ActionGroup,
     name: &'static str,
     label: &'static str,
     tooltip: &'static str,
-    keys: Vec<Binding>,
+    keys: Vec<KeyBinding>,
 }
 
 /// Actions without a joint.
@@ -295,7 +295,7 @@ impl Action {
     }
 
     /// The keys that do it unless the user binds others.
-    pub fn default_bindings(self) -> Vec<Binding> {
+    pub fn default_bindings(self) -> Vec<KeyBinding> {
         self.row().keys
     }
 
@@ -392,9 +392,9 @@ impl Action {
     }
 
     /// The table from which input, help, tooltips and documentation are made.
-    fn row(self) -> Row {
+    fn row(self) -> ActionRow {
         use ActionGroup::{Camera, Demonstration, Objects, Robot, Simulation, Window};
-        let row = |group, name, label, tooltip, keys| Row {
+        let row = |group, name, label, tooltip, keys| ActionRow {
             group,
             name,
             label,
@@ -455,7 +455,7 @@ impl Action {
 }
 
 /// Joints have a key each, which with Shift moves them the other way; grippers have two (report section 5.1).
-fn row_of_joint(joint: RobotJoint, way: Way) -> Row {
+fn row_of_joint(joint: RobotJoint, way: Way) -> ActionRow {
     let JointLayout {
         role, label, keys, ..
     } = joint.layout();
@@ -466,7 +466,7 @@ fn row_of_joint(joint: RobotJoint, way: Way) -> Row {
         (_, Way::Plus) => (&**label, "Turns the joint", plus),
         (_, Way::Minus) => (&**label, "Turns the joint the other way", minus),
     };
-    Row {
+    ActionRow {
         group: match joint.layout().limb() {
             Some(limb) if limb == Arm::Right.into() => ActionGroup::RightArm,
             Some(_) => ActionGroup::LeftArm,
@@ -479,20 +479,20 @@ fn row_of_joint(joint: RobotJoint, way: Way) -> Row {
     }
 }
 
-const fn plain(key: KeyCode) -> Binding {
-    Binding::new(Modifiers::NONE, key)
+const fn plain(key: KeyCode) -> KeyBinding {
+    KeyBinding::new(Modifiers::NONE, key)
 }
 
-const fn shift(key: KeyCode) -> Binding {
-    Binding::new(Modifiers::SHIFT, key)
+const fn shift(key: KeyCode) -> KeyBinding {
+    KeyBinding::new(Modifiers::SHIFT, key)
 }
 
-const fn ctrl(key: KeyCode) -> Binding {
-    Binding::new(Modifiers::CTRL, key)
+const fn ctrl(key: KeyCode) -> KeyBinding {
+    KeyBinding::new(Modifiers::CTRL, key)
 }
 
-const fn ctrl_shift(key: KeyCode) -> Binding {
-    Binding::new(Modifiers::CTRL.with_shift(), key)
+const fn ctrl_shift(key: KeyCode) -> KeyBinding {
+    KeyBinding::new(Modifiers::CTRL.with_shift(), key)
 }
 
 impl Way {

@@ -24,7 +24,7 @@ pub struct Modifiers {
 
 /// A key, by its place on the keyboard, and the modifiers with which it is struck. In text: `Space`, `Ctrl+Shift+KeyZ`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Binding {
+pub struct KeyBinding {
     /// What is held down with it.
     pub modifiers: Modifiers,
     /// The key.
@@ -88,7 +88,7 @@ impl Modifiers {
     }
 }
 
-impl Binding {
+impl KeyBinding {
     /// A key with modifiers.
     pub const fn new(modifiers: Modifiers, key: KeyCode) -> Self {
         Self { modifiers, key }
@@ -124,13 +124,13 @@ impl fmt::Display for Modifiers {
     }
 }
 
-impl fmt::Display for Binding {
+impl fmt::Display for KeyBinding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}{:?}", self.modifiers, self.key)
     }
 }
 
-impl FromStr for Binding {
+impl FromStr for KeyBinding {
     type Err = BindingError;
 
     fn from_str(text: &str) -> Result<Self, BindingError> {
@@ -244,7 +244,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn binding(text: &str) -> Binding {
+    fn binding(text: &str) -> KeyBinding {
         text.parse().unwrap()
     }
 
@@ -274,7 +274,7 @@ mod tests {
             ("Cmd+KeyZ", BindingError::UnknownModifier("Cmd".into())),
             ("+KeyZ", BindingError::UnknownModifier(String::new())),
         ] {
-            assert_eq!(text.parse::<Binding>(), Err(unknown), "{text}");
+            assert_eq!(text.parse::<KeyBinding>(), Err(unknown), "{text}");
         }
     }
 
@@ -319,8 +319,8 @@ mod tests {
     proptest! {
         #[test]
         fn no_text_is_misread(text in "(Ctrl|Alt|Shift|Super|\\+| |Key[A-Z]|F[1-9]|[a-z]|Space){0,6}") {
-            if let Ok(binding) = text.parse::<Binding>() {
-                prop_assert_eq!(binding.to_string().parse::<Binding>(), Ok(binding));
+            if let Ok(binding) = text.parse::<KeyBinding>() {
+                prop_assert_eq!(binding.to_string().parse::<KeyBinding>(), Ok(binding));
             }
         }
 
@@ -329,8 +329,8 @@ mod tests {
             ctrl: bool, alt: bool, shift: bool, super_key: bool,
             key in prop::sample::select(vec![KeyT, Space, ArrowLeft, Digit0, F35, NumpadAdd, ControlLeft, Escape]),
         ) {
-            let binding = Binding::new(Modifiers { ctrl, alt, shift, super_key }, key);
-            prop_assert_eq!(binding.to_string().parse::<Binding>(), Ok(binding));
+            let binding = KeyBinding::new(Modifiers { ctrl, alt, shift, super_key }, key);
+            prop_assert_eq!(binding.to_string().parse::<KeyBinding>(), Ok(binding));
         }
     }
 }

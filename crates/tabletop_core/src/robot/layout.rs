@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    Binding, Pose, Table,
+    KeyBinding, Pose, Table,
     robot::name::{JointName, LimbName},
 };
 
@@ -76,7 +76,7 @@ pub struct JointLayout {
     /// Largest speed of its motor, in rad/s, if the URDF names none.
     pub speed: f64,
     /// The keys that move it up, and those that move it down, unless the user binds others.
-    pub keys: [Vec<Binding>; 2],
+    pub keys: [Vec<KeyBinding>; 2],
 }
 
 impl JointLayout {

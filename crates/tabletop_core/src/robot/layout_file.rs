@@ -8,7 +8,7 @@ use serde::Deserialize;
 use thiserror::Error;
 
 use crate::{
-    Binding, BindingError, Modifiers,
+    BindingError, KeyBinding, Modifiers,
     robot::{
         layout::{
             BaseLayout, CameraCarrier, CameraLayout, FingerLook, GripperKind, GripperLayout,
@@ -236,7 +236,7 @@ impl JointEntry {
             return Err(fault(format!("joint {name}: its sign is neither 1 nor -1")));
         }
         let key = binding(name, self.key.as_deref())?;
-        let back = key.map(|key| Binding::new(Modifiers::SHIFT, key.key));
+        let back = key.map(|key| KeyBinding::new(Modifiers::SHIFT, key.key));
         Ok(JointLayout {
             name: JointName::new(name),
             label: self.label.clone(),
@@ -297,7 +297,7 @@ fn check_limits(joint: &str, [least, largest]: [f64; 2], home: f64) -> Result<()
     Ok(())
 }
 
-fn binding(joint: &str, key: Option<&str>) -> Result<Option<Binding>, LayoutError> {
+fn binding(joint: &str, key: Option<&str>) -> Result<Option<KeyBinding>, LayoutError> {
     let parsed = key.map(str::parse).transpose();
     parsed.map_err(|source| LayoutError::Key {
         joint: joint.to_owned(),

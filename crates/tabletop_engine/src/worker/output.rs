@@ -3,7 +3,7 @@
 use std::{io::Read, sync::mpsc::Sender};
 
 use crate::{
-    console::{Console, Piece, Stream},
+    console::{Console, OutputPiece, Stream},
     octave::warning_stack::WarningStack,
     worker::signal::Signal,
 };
@@ -17,12 +17,12 @@ pub(crate) fn read_output(
 ) {
     let mut splitter = console.splitter();
     let mut frames = WarningStack::default();
-    let mut each = |piece: Piece| match piece {
-        Piece::Text(text) if stream == Stream::Error => {
+    let mut each = |piece: OutputPiece| match piece {
+        OutputPiece::Text(text) if stream == Stream::Error => {
             frames.feed(text, |line| console.push(stream, line));
         }
-        Piece::Text(text) => console.push(stream, text),
-        Piece::Mark(mark) => {
+        OutputPiece::Text(text) => console.push(stream, text),
+        OutputPiece::Mark(mark) => {
             let seq = mark.strip_prefix(b"done ").unwrap_or_default();
             let seq = str::from_utf8(seq)
                 .ok()

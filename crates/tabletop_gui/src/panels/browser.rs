@@ -39,7 +39,7 @@ pub struct Browser {
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Search {
     purpose: Purpose,
-    folder: Folder,
+    folder: FolderContent,
     /// What is selected or typed.
     name: String,
     /// The file that would be replaced.
@@ -48,22 +48,22 @@ struct Search {
 
 /// What can be chosen in a folder.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-struct Folder {
+struct FolderContent {
     path: PathBuf,
-    entries: Vec<Entry>,
+    entries: Vec<FileEntry>,
     /// Why there are no entries.
     problem: Option<String>,
 }
 
 /// Something in a folder.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Entry {
-    kind: Kind,
+struct FileEntry {
+    kind: EntryKind,
     name: String,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
+enum EntryKind {
     Folder,
     Recording,
     Task,
@@ -89,7 +89,7 @@ impl Browser {
     pub fn ask(&mut self, purpose: Purpose, folder: &Path) {
         self.search = Some(Search {
             purpose,
-            folder: Folder::read(folder),
+            folder: FolderContent::read(folder),
             name: match purpose {
                 Purpose::Open => String::new(),
                 Purpose::Save => "task.xml".into(),
@@ -102,7 +102,7 @@ impl Browser {
     fn carry_out(&mut self, request: Request) -> Option<FileRequest> {
         let search = self.search.as_mut()?;
         match (request, search.purpose) {
-            (Request::Enter(folder), _) => search.folder = Folder::read(&folder),
+            (Request::Enter(folder), _) => search.folder = FolderContent::read(&folder),
             (Request::Keep, _) => search.replaces = None,
             (Request::Choose(path), Purpose::Save) if path.exists() => {
                 search.replaces = Some(path);
@@ -187,7 +187,7 @@ fn ask_to_replace(ui: &mut Ui, path: &Path) -> Option<Request> {
     }
 }
 
-fn place(ui: &mut Ui, folder: &Folder) -> Option<Request> {
+fn place(ui: &mut Ui, folder: &FolderContent) -> Option<Request> {
     ui.horizontal(|ui| {
         let above = folder.path.parent();
         let up = button(
@@ -215,20 +215,20 @@ fn entries(ui: &mut Ui, search: &mut Search) -> Option<Request> {
         } else if search.folder.entries.is_empty() {
             ui.weak("There are no folders, task files or recordings here.");
         }
-        for Entry { kind, name } in &search.folder.entries {
+        for FileEntry { kind, name } in &search.folder.entries {
             let text = match kind {
-                Kind::Folder => format!("{name}/"),
-                Kind::Recording => format!("{name} (recording)"),
-                Kind::Task => name.clone(),
+                EntryKind::Folder => format!("{name}/"),
+                EntryKind::Recording => format!("{name} (recording)"),
+                EntryKind::Task => name.clone(),
             };
             let entry = ui.selectable_label(search.name == *name, text);
             match (kind, search.purpose) {
-                (Kind::Folder, _) | (Kind::Recording, Purpose::Save) => {
+                (EntryKind::Folder, _) | (EntryKind::Recording, Purpose::Save) => {
                     if entry.clicked() {
                         request = Some(Request::Enter(search.folder.path.join(name)));
                     }
                 }
-                (Kind::Task, _) | (Kind::Recording, Purpose::Open) => {
+                (EntryKind::Task, _) | (EntryKind::Recording, Purpose::Open) => {
                     if entry.clicked() {
                         search.name.clone_from(name);
                     }
@@ -253,7 +253,7 @@ impl Search {
     }
 }
 
-impl Folder {
+impl FolderContent {
     fn read(path: &Path) -> Self {
         let path = std::path::absolute(path).unwrap_or(path.to_owned());
         match list(&path) {
@@ -272,7 +272,7 @@ impl Folder {
 }
 
 /// Folders, then recordings, then task files, each by name; without what is hidden.
-fn list(folder: &Path) -> io::Result<Vec<Entry>> {
+fn list(folder: &Path) -> io::Result<Vec<FileEntry>> {
     let found = fs::read_dir(folder)?;
     let mut entries: Vec<_> = found
         .flatten()
@@ -282,20 +282,20 @@ fn list(folder: &Path) -> io::Result<Vec<Entry>> {
     Ok(entries)
 }
 
-fn entry(path: &Path) -> Option<Entry> {
+fn entry(path: &Path) -> Option<FileEntry> {
     let name = short_name(path);
     let is_task = path
         .extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("xml"));
     let kind = if path.is_dir() {
         match path.join("session.jsonl").is_file() {
-            true => Kind::Recording,
-            false => Kind::Folder,
+            true => EntryKind::Recording,
+            false => EntryKind::Folder,
         }
     } else {
-        is_task.then_some(Kind::Task)?
+        is_task.then_some(EntryKind::Task)?
     };
-    (!name.starts_with('.')).then_some(Entry { kind, name })
+    (!name.starts_with('.')).then_some(FileEntry { kind, name })
 }
 
 #[cfg(test)]

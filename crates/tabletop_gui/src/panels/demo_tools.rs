@@ -1,5 +1,8 @@
 //! The Demonstration Tools (report section 4, figure 8): hands, what is held, rotations, recording.
 
+#[cfg(test)]
+mod tests;
+
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
@@ -67,7 +70,7 @@ struct Model<'a> {
 
 /// What the user does with the panel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Asked {
+struct ToolsInput {
     /// The buttons that are held down.
     plane: PlaneButtons,
     request: Option<Request>,
@@ -129,8 +132,8 @@ fn show_panel(
     };
     let model = sources.model(&turns);
     let hand = model.hand;
-    let asked = Panel::DemonstrationTools.show(context, &mut panels, |ui| show(ui, &model));
-    let Asked { plane, request } = asked.unwrap_or_default();
+    let input = Panel::DemonstrationTools.show(context, &mut panels, |ui| show(ui, &model));
+    let ToolsInput { plane, request } = input.unwrap_or_default();
     plane_buttons.set_if_neq(plane);
     if let Some(request) = request {
         commands.write_batch(Actor::Panel, command(request, hand, &mut turns));
@@ -153,7 +156,7 @@ fn command(request: Request, hand: Hand, turns: &mut Turns) -> Option<SimCommand
     })
 }
 
-fn show(ui: &mut Ui, model: &Model) -> Asked {
+fn show(ui: &mut Ui, model: &Model) -> ToolsInput {
     let hand = hands(ui, model);
     ui.separator();
     let object = held_object(ui, model);
@@ -167,7 +170,7 @@ fn show(ui: &mut Ui, model: &Model) -> Asked {
     let (plane, turn) = ui.add_enabled_ui(is_holding, rotation).inner;
     ui.separator();
     let recording = recording(ui, model);
-    Asked {
+    ToolsInput {
         plane,
         request: hand.or(object).or(turn).or(recording),
     }
@@ -278,227 +281,4 @@ fn recording(ui: &mut Ui, model: &Model) -> Option<Request> {
         asked
     };
     ui.horizontal(buttons).inner
-}
-
-#[cfg(test)]
-mod tests {
-    use bevy::time::TimeUpdateStrategy;
-    use egui_kittest::{Harness, kittest::Queryable as _};
-    use tabletop_core::CorePlugin;
-
-    use super::*;
-
-    #[test]
-    fn the_first_grasp_opens_the_panel_and_later_ones_leave_it_closed() {
-        let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default()))
-            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
-            .init_resource::<Panels>()
-            .add_systems(Update, open_at_first_grasp);
-        for is_open in [true, false] {
-            app.world_mut().write_message(SimFact::Grasped {
-                cause: tabletop_core::CommandId(0),
-                hand: Hand::Any,
-                id: "red".into(),
-            });
-            app.update();
-            let mut panels = app.world_mut().resource_mut::<Panels>();
-            assert_eq!(panels.is_open(Panel::DemonstrationTools), is_open);
-            panels.set_open(Panel::DemonstrationTools, false);
-        }
-    }
-
-    /// What the panel is shown with, and everything that was asked of it.
-    #[derive(Clone, Debug, Default)]
-    struct Stage {
-        hand: Hand,
-        held: Option<&'static str>,
-        is_recording: bool,
-        history: History,
-        keymap: Keymap,
-        plane: PlaneButtons,
-        requests: Vec<Request>,
-    }
-
-    impl Stage {
-        fn holding() -> Self {
-            Self {
-                held: Some("red"),
-                ..default()
-            }
-        }
-
-        fn recording(undoable: usize, redoable: usize) -> Self {
-            Self {
-                is_recording: true,
-                history: History {
-                    undoable,
-                    redoable,
-                    ..default()
-                },
-                ..default()
-            }
-        }
-
-        fn harness(self) -> Harness<'static, Self> {
-            let frame = |ui: &mut Ui, stage: &mut Self| {
-                let model = Model {
-                    hand: stage.hand,
-                    held: stage.held,
-                    turns: [10, 0, -20],
-                    is_recording: stage.is_recording,
-                    history: stage.history,
-                    keymap: &stage.keymap,
-                };
-                let asked = show(ui, &model);
-                stage.plane = asked.plane;
-                stage.requests.extend(asked.request);
-            };
-            Harness::builder()
-                .with_size(egui::vec2(Panel::DemonstrationTools.width(), 400.0))
-                .build_ui_state(frame, self)
-        }
-
-        fn after_click(self, name: &str) -> Vec<Request> {
-            let mut harness = self.harness();
-            harness.get_by_label(name).click();
-            harness.run();
-            harness.into_state().requests
-        }
-    }
-
-    #[test]
-    fn each_hand_can_be_selected() {
-        for hand in Hand::ALL {
-            let other = Hand::ALL.into_iter().find(|&other| other != hand);
-            let stage = Stage {
-                hand: other.unwrap(),
-                ..default()
-            };
-            let requests = stage.after_click(&format!("{hand:?}"));
-            assert_eq!(requests, [Request::Select(hand)]);
-        }
-    }
-
-    #[test]
-    fn what_is_held_is_named_released_and_destroyed() {
-        let harness = Stage::holding().harness();
-        assert!(harness.query_by_label("red").is_some());
-        for (name, request) in [("Release", Request::Release), ("Destroy", Request::Destroy)] {
-            assert_eq!(Stage::holding().after_click(name), [request]);
-        }
-    }
-
-    #[test]
-    fn what_is_held_is_turned_by_each_slider() {
-        for (axis, (name, degrees)) in [("X", 10), ("Y", 0), ("Z", -20)].into_iter().enumerate() {
-            for (step, way) in [(1, "up"), (-1, "down")] {
-                let requests = Stage::holding().after_click(&format!("{name} {way} by 1°"));
-                let degrees = degrees + step;
-                assert_eq!(requests, [Request::TurnTo { axis, degrees }]);
-            }
-        }
-    }
-
-    #[test]
-    fn an_empty_hand_can_do_nothing_with_objects() {
-        let harness = Stage::default().harness();
-        assert!(harness.query_by_label(EMPTY).is_some());
-        for name in ["Release", "Destroy", "X up by 1°", "Z down by 1°"] {
-            assert_eq!(Stage::default().after_click(name), [], "{name}");
-        }
-    }
-
-    #[test]
-    fn the_plane_turns_while_its_buttons_are_held_down() {
-        for (name, expected) in [("CCW", (true, false)), ("CW", (false, true))] {
-            let mut harness = Stage::holding().harness();
-            let at = harness.get_by_label(name).rect().center();
-            let plane = |harness: &Harness<Stage>| {
-                let plane = harness.state().plane;
-                (plane.counter_clockwise, plane.clockwise)
-            };
-            harness.hover_at(at);
-            harness.drag_at(at);
-            harness.run();
-            harness.run();
-            assert_eq!(plane(&harness), expected);
-            harness.drop_at(at);
-            harness.run();
-            assert_eq!(plane(&harness), (false, false));
-        }
-    }
-
-    #[test]
-    fn a_recording_is_started_or_finished_undone_and_redone() {
-        for (stage, allowed) in [
-            (Stage::default(), &["Start"][..]),
-            (Stage::recording(0, 0), &["Finish"]),
-            (Stage::recording(2, 0), &["Finish", "Undo"]),
-            (Stage::recording(0, 1), &["Finish", "Redo"]),
-        ] {
-            for (name, request) in [
-                ("Start", Request::Start),
-                ("Finish", Request::Finish),
-                ("Undo", Request::Undo),
-                ("Redo", Request::Redo),
-            ] {
-                let requests = stage.clone().after_click(name);
-                let expected = allowed.contains(&name).then_some(request);
-                assert_eq!(requests, expected.into_iter().collect::<Vec<_>>(), "{name}");
-            }
-        }
-    }
-
-    #[test]
-    fn every_request_becomes_its_command() {
-        let mut turns = Turns::default();
-        let hand = Hand::Left;
-        for (request, expected) in [
-            (
-                Request::Select(Hand::Both),
-                SimCommand::Hand(HandCommand::Select(Hand::Both)),
-            ),
-            (
-                Request::Release,
-                SimCommand::Hand(HandCommand::Release(hand)),
-            ),
-            (
-                Request::Destroy,
-                SimCommand::Hand(HandCommand::Destroy(hand)),
-            ),
-            (
-                Request::TurnTo {
-                    axis: 2,
-                    degrees: 30,
-                },
-                SimCommand::Hand(HandCommand::Turn {
-                    hand,
-                    axis: Vec3::Z,
-                    degrees: 30.0,
-                }),
-            ),
-            (
-                Request::Start,
-                SimCommand::Recording(RecordingCommand::Start),
-            ),
-            (
-                Request::Finish,
-                SimCommand::Recording(RecordingCommand::Finish),
-            ),
-            (Request::Undo, SimCommand::History(HistoryCommand::Undo)),
-            (Request::Redo, SimCommand::History(HistoryCommand::Redo)),
-        ] {
-            assert_eq!(command(request, hand, &mut turns), Some(expected));
-        }
-    }
-
-    #[test]
-    fn tooltips_name_the_keys() {
-        let mut harness = Stage::recording(1, 0).harness();
-        harness.get_by_label("Undo").hover();
-        harness.run_steps(8);
-        let told = harness.query_by_label_contains("(Ctrl+Z)");
-        assert!(told.is_some());
-    }
 }

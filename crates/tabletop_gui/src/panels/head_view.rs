@@ -59,20 +59,20 @@ fn ask_for_picture(demand: Res<PictureDemand>) {
 }
 
 /// A picture on the graphics card, and its pixels.
-struct Shown {
+struct ShownPicture {
     texture: TextureHandle,
     width: u32,
     rgb: Vec<u8>,
 }
 
-impl Shown {
+impl ShownPicture {
     fn shows(&self, picture: &Picture) -> bool {
         self.width == picture.width && self.rgb == picture.rgb
     }
 }
 
 fn show_inset(
-    mut shown: Local<Option<Shown>>,
+    mut shown: Local<Option<ShownPicture>>,
     mut contexts: EguiContexts,
     view: Res<HeadView>,
     camera: Res<HeadCamera>,
@@ -109,7 +109,7 @@ fn show_inset(
 }
 
 /// Brings a picture to the graphics card, unless it is there.
-fn upload(shown: &mut Option<Shown>, context: &egui::Context, picture: &Picture) {
+fn upload(shown: &mut Option<ShownPicture>, context: &egui::Context, picture: &Picture) {
     if picture.rgb.is_empty() || shown.as_ref().is_some_and(|shown| shown.shows(picture)) {
         return;
     }
@@ -122,7 +122,7 @@ fn upload(shown: &mut Option<Shown>, context: &egui::Context, picture: &Picture)
             shown.rgb.clone_from(&picture.rgb);
         }
         None => {
-            *shown = Some(Shown {
+            *shown = Some(ShownPicture {
                 texture: context.load_texture("head view", pixels, TextureOptions::NEAREST),
                 width: picture.width,
                 rgb: picture.rgb.clone(),

@@ -81,7 +81,7 @@ impl Help {
 
 /// What the sheet says: groups with their lines, column by column.
 #[derive(Clone, Debug, PartialEq)]
-struct Sheet {
+struct KeySheet {
     columns: Vec<Vec<Group>>,
 }
 
@@ -105,7 +105,7 @@ enum Request {
     Close,
 }
 
-impl Sheet {
+impl KeySheet {
     fn of(keymap: &Keymap) -> Self {
         let groups = |groups: &&[ActionGroup]| -> Vec<_> {
             let groups = groups.iter();
@@ -190,14 +190,14 @@ fn show_help(mut contexts: EguiContexts, keymap: Res<Keymap>, mut help: ResMut<H
     let Ok(context) = contexts.ctx_mut() else {
         return;
     };
-    match show_sheet(context, &Sheet::of(&keymap)) {
+    match show_sheet(context, &KeySheet::of(&keymap)) {
         Some(Request::Close) => help.is_open = false,
         None => {}
     }
 }
 
 /// Shows the sheet over everything else, also over what a pause lays over the window.
-fn show_sheet(context: &egui::Context, sheet: &Sheet) -> Option<Request> {
+fn show_sheet(context: &egui::Context, sheet: &KeySheet) -> Option<Request> {
     let id = egui::Id::new("help");
     let layer = egui::Modal::default_area(id).layer();
     // The click that opened the sheet does not close it.
@@ -210,7 +210,7 @@ fn show_sheet(context: &egui::Context, sheet: &Sheet) -> Option<Request> {
         .or(modal.inner)
 }
 
-fn show(ui: &mut egui::Ui, sheet: &Sheet) -> Option<Request> {
+fn show(ui: &mut egui::Ui, sheet: &KeySheet) -> Option<Request> {
     let mut is_closed = false;
     let screen = ui.ctx().content_rect().size() - egui::Vec2::splat(MARGIN);
     let shown_columns = (screen.x / COLUMN_WIDTH).floor().max(1.0) as usize;
@@ -267,7 +267,7 @@ mod tests {
 
     /// The sheet in a window, and whether it was closed.
     fn harness(size: egui::Vec2) -> Harness<'static, Option<Request>> {
-        let sheet = Sheet::of(&Keymap::default());
+        let sheet = KeySheet::of(&Keymap::default());
         Harness::builder().with_size(size).build_ui_state(
             move |ui, request| *request = show_sheet(ui.ctx(), &sheet).or(*request),
             None,

@@ -12,7 +12,7 @@ use tabletop_core::{
 };
 
 use crate::{
-    Picture,
+    PictureStatus,
     panels::{Panel, Panels},
     widgets::style::WARNING,
 };
@@ -79,7 +79,7 @@ struct Clock {
 fn tell_time(
     time: Res<Time<Real>>,
     tick: Res<SimTick>,
-    picture: Res<Picture>,
+    picture: Res<PictureStatus>,
     paused: Res<Paused>,
     mut clock: ResMut<Clock>,
 ) {
@@ -96,7 +96,7 @@ fn measure(
     time: Res<Time<Real>>,
     tick: Res<SimTick>,
     agent: Res<Agent>,
-    picture: Res<Picture>,
+    picture: Res<PictureStatus>,
     mut speed: ResMut<Speed>,
 ) {
     speed.since += time.delta();
@@ -348,7 +348,7 @@ mod tests {
         app.add_plugins(MinimalPlugins)
             .init_resource::<SimTick>()
             .init_resource::<Paused>()
-            .init_resource::<Picture>()
+            .init_resource::<PictureStatus>()
             .init_resource::<Speed>()
             .init_resource::<Clock>()
             .init_resource::<Agent>()
@@ -361,7 +361,7 @@ mod tests {
     fn frame(app: &mut App, is_drawn: bool) {
         app.world_mut().resource_mut::<SimTick>().0 += 3;
         app.update();
-        app.world_mut().resource_mut::<Picture>().drawn += u64::from(is_drawn);
+        app.world_mut().resource_mut::<PictureStatus>().drawn += u64::from(is_drawn);
     }
 
     #[test]
@@ -383,7 +383,7 @@ mod tests {
     fn a_still_picture_tells_the_time_once_a_second() {
         let mut app = app();
         for (is_still, different) in [(false, 30), (true, 3)] {
-            app.world_mut().resource_mut::<Picture>().is_still = is_still;
+            app.world_mut().resource_mut::<PictureStatus>().is_still = is_still;
             let mut told = std::collections::BTreeSet::new();
             for _ in 0..30 {
                 frame(&mut app, true);

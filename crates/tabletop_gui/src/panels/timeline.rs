@@ -16,7 +16,7 @@ use bevy_egui::{
 use tabletop_core::{History, Keymap, Paused, Playback, SimTick, Timeline, TimelineStage};
 
 use self::{
-    axis::Axis,
+    axis::TimeAxis,
     model::{Model, Moment, Request},
     pictures::Pictures,
 };
@@ -55,7 +55,7 @@ pub(crate) fn show(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> 
         egui::vec2(ui.available_width(), track::HEIGHT),
         egui::Sense::hover(),
     );
-    let axis = Axis::new(model.timeline, rect.x_range());
+    let axis = TimeAxis::new(model.timeline, rect.x_range());
     let mut moments = track::show(ui, model, axis, rect);
     moments.extend(film::show(ui, model, axis, &mut view.pictures));
     let mut dragged_to = None;

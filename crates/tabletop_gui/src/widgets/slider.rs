@@ -61,16 +61,16 @@ fn moved_on_track(ui: &mut Ui, name: &str, color: Color32, degrees: i32) -> Opti
     let (rect, response) = ui.allocate_exact_size(size, Sense::drag());
     let response = response.on_hover_cursor(CursorIcon::PointingHand);
     response.widget_info(|| WidgetInfo::slider(ui.is_enabled(), f64::from(degrees), name));
-    let track = Track::in_rect(rect);
+    let track = SliderTrack::in_rect(rect);
     paint(ui, &track, &response, color, degrees);
     let knob = response.id;
     let cursor = response.interact_pointer_pos()?;
     if response.drag_started() {
         match track.pressed(cursor, degrees) {
-            Pressed::Knob { offset } => {
+            SliderPress::Knob { offset } => {
                 ui.data_mut(|data| data.insert_temp(knob, offset));
             }
-            Pressed::Track { degrees } => {
+            SliderPress::Track { degrees } => {
                 ui.data_mut(|data| data.remove::<f32>(knob));
                 return Some(degrees);
             }
@@ -82,7 +82,7 @@ fn moved_on_track(ui: &mut Ui, name: &str, color: Color32, degrees: i32) -> Opti
         .then(|| track.degrees_at(cursor.x - offset))
 }
 
-fn paint(ui: &Ui, track: &Track, response: &Response, color: Color32, degrees: i32) {
+fn paint(ui: &Ui, track: &SliderTrack, response: &Response, color: Color32, degrees: i32) {
     let color = if ui.is_enabled() {
         color
     } else {
@@ -109,7 +109,7 @@ fn paint(ui: &Ui, track: &Track, response: &Response, color: Color32, degrees: i
 
 /// Where the angles lie on the screen.
 #[derive(Clone, Copy, Debug)]
-struct Track {
+struct SliderTrack {
     left: f32,
     right: f32,
     y: f32,
@@ -117,14 +117,14 @@ struct Track {
 
 /// What a press on a slider has hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Pressed {
+enum SliderPress {
     /// The knob, so far to the right of its middle.
     Knob { offset: f32 },
     /// The track beside it, which makes this angle of it.
     Track { degrees: i32 },
 }
 
-impl Track {
+impl SliderTrack {
     fn in_rect(rect: Rect) -> Self {
         Self {
             left: rect.left() + KNOB_RADIUS,
@@ -143,10 +143,10 @@ impl Track {
         (fraction * (2 * MAX_DEGREES) as f32).round() as i32 - MAX_DEGREES
     }
 
-    fn pressed(&self, at: Pos2, degrees: i32) -> Pressed {
+    fn pressed(&self, at: Pos2, degrees: i32) -> SliderPress {
         let offset = at.x - self.knob(degrees).x;
         if offset.abs() <= KNOB_RADIUS {
-            Pressed::Knob { offset }
+            SliderPress::Knob { offset }
         } else {
             let step = if offset > 0.0 {
                 TRACK_STEP
@@ -154,7 +154,7 @@ impl Track {
                 -TRACK_STEP
             };
             let stepped = (degrees + step).clamp(-MAX_DEGREES, MAX_DEGREES);
-            Pressed::Track { degrees: stepped }
+            SliderPress::Track { degrees: stepped }
         }
     }
 }
@@ -164,7 +164,7 @@ mod tests {
     use super::*;
     use bevy_egui::egui::{Context, Event, Modifiers, PointerButton, RawInput};
 
-    const TRACK: Track = Track {
+    const TRACK: SliderTrack = SliderTrack {
         left: 100.0,
         right: 280.0,
         y: 10.0,
@@ -183,7 +183,7 @@ mod tests {
     #[test]
     fn a_press_on_the_knob_holds_it_where_it_was_hit() {
         let hit = Pos2::new(193.0, 12.0);
-        assert_eq!(TRACK.pressed(hit, 0), Pressed::Knob { offset: 3.0 });
+        assert_eq!(TRACK.pressed(hit, 0), SliderPress::Knob { offset: 3.0 });
     }
 
     #[test]
@@ -195,7 +195,7 @@ mod tests {
             (101.0, -150, -180),
         ] {
             let pressed = TRACK.pressed(Pos2::new(x, 10.0), from);
-            assert_eq!(pressed, Pressed::Track { degrees: to });
+            assert_eq!(pressed, SliderPress::Track { degrees: to });
         }
     }
 

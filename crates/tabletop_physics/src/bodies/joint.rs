@@ -16,7 +16,7 @@ pub(crate) fn add_joint(world: &mut World, entity: Entity, joint: &Joint) {
     let gravity = world.resource::<PhysicsSettings>().gravity;
     let load = world
         .get::<ObjectSpec>(second)
-        .map_or(Load::default(), |spec| Load {
+        .map_or(JointLoad::default(), |spec| JointLoad {
             weight: spec.mass * gravity,
             inertia: inertia_about_x(spec, joint.frames[1]),
         });
@@ -28,7 +28,7 @@ pub(crate) fn add_joint(world: &mut World, entity: Entity, joint: &Joint) {
 
 /// What the second object is to a joint.
 #[derive(Clone, Copy, Default)]
-struct Load {
+struct JointLoad {
     /// Its weight, in kg units/s².
     weight: f32,
     /// Its moment of inertia about the joint's X, in kg units².
@@ -49,7 +49,7 @@ fn rate(damping: f32) -> f32 {
     damping / (left * TICK_SECONDS)
 }
 
-fn constraint(joint: &Joint, load: Load) -> TypedJoint {
+fn constraint(joint: &Joint, load: JointLoad) -> TypedJoint {
     let locked = match joint.kind {
         JointKind::Ball => JointAxesMask::LOCKED_SPHERICAL_AXES,
         JointKind::Slider { .. } => JointAxesMask::LOCKED_PRISMATIC_AXES,

@@ -33,7 +33,7 @@ const FAST: f32 = 20.0;
 
 /// What the number of a body's sub-steps depends on.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Situation {
+pub(crate) struct SubstepFactors {
     /// How deep it is in its stack, if it is supported.
     depth: Option<u32>,
     is_block: bool,
@@ -45,7 +45,7 @@ pub(crate) struct Situation {
     speed: f32,
 }
 
-impl Situation {
+impl SubstepFactors {
     pub fn of(handle: RigidBodyHandle, engine: &Engine, touches: &Touches) -> Self {
         let body = &engine.bodies[handle];
         let number = handle.into_raw_parts().0;
@@ -87,7 +87,7 @@ pub(crate) fn speed(body: &RigidBody) -> f32 {
 mod tests {
     use super::*;
 
-    const BLOCK: Situation = Situation {
+    const BLOCK: SubstepFactors = SubstepFactors {
         depth: Some(1),
         is_block: true,
         is_uneven: false,
@@ -100,7 +100,7 @@ mod tests {
     fn what_is_deeper_gets_more() {
         let substeps = |depth| {
             let depth = Some(depth);
-            Situation { depth, ..BLOCK }.substeps()
+            SubstepFactors { depth, ..BLOCK }.substeps()
         };
         assert_eq!([1, 5, 6, 16, 1000].map(substeps), [4, 6, 11, 16, 16]);
         assert!((1..40).all(|depth| substeps(depth) <= substeps(depth + 1)));
@@ -108,13 +108,13 @@ mod tests {
 
     #[test]
     fn the_greatest_need_counts() {
-        let uneven = Situation {
+        let uneven = SubstepFactors {
             is_uneven: true,
             is_block: false,
             ..BLOCK
         };
         assert_eq!(uneven.substeps(), SUBSTEPS_OF_UNEVEN);
-        let handled = Situation {
+        let handled = SubstepFactors {
             is_handled: true,
             ..uneven
         };
@@ -123,12 +123,12 @@ mod tests {
 
     #[test]
     fn a_link_that_swings_gets_no_more_than_one_that_hangs() {
-        let hanging = Situation {
+        let hanging = SubstepFactors {
             depth: None,
             is_jointed: true,
             ..BLOCK
         };
-        let swinging = Situation {
+        let swinging = SubstepFactors {
             speed: 2.0 * FAST,
             ..hanging
         };

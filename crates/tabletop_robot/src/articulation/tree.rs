@@ -15,8 +15,8 @@ use tabletop_core::{
     JointId, JointRole, LimbId, LimbLayout, LinkFrame, Pose, RobotLayout, UNITS_PER_METER,
 };
 use tabletop_kinematics::{
-    ArmChain, Frames, Geometry, JointId as ModelJointId, JointValues, LinkId, LinkShape, Load,
-    ModelError, RobotModel,
+    ArmChain, Frames, Geometry, JointValues, LinkId, LinkShape, Load, ModelError, ModelJointId,
+    RobotModel,
 };
 use tabletop_physics::Convex;
 

@@ -20,7 +20,7 @@ use crate::{
     dynamics::impulse::{ContactLoad, FrictionAxis},
     dynamics::matrix::{Joints, each},
     motion::environment::FreeObject,
-    motion::sweep::Motion,
+    motion::sweep::TickMotion,
 };
 
 /// Cosine of the angle to a direction within which something fixed is straight ahead.
@@ -29,7 +29,7 @@ const AHEAD: f32 = 0.7;
 /// What an arm touches or is about to be touched by: each thing once, where it is nearest. `gravity` in units/s²; `is_mine` tells
 /// the robot's bodies and what it holds.
 pub(crate) fn contact_loads(
-    motion: &mut Motion,
+    motion: &mut TickMotion,
     limb: LimbId,
     rapier: &RapierContextMut,
     gravity: f32,

@@ -35,7 +35,7 @@ pub(crate) struct LimbDynamics {
 
 /// What a step makes of an arm.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Step {
+pub(crate) struct DynamicsStep {
     /// How fast the joints are at its end and move in it, in rad/s.
     pub velocities: Joints,
     /// Torques of the motors, in N m.
@@ -56,7 +56,7 @@ const HALVINGS: usize = 30;
 
 impl LimbDynamics {
     /// What `seconds` make of the arm.
-    pub fn step(&self, motors: &[Motor], seconds: f64) -> Step {
+    pub fn step(&self, motors: &[Motor], seconds: f64) -> DynamicsStep {
         let smooth = self.minimum(motors, self.velocities.clone(), &[], seconds);
         let draws = self.draws(&smooth);
         let velocities = match draws.is_empty() {
@@ -73,7 +73,7 @@ impl LimbDynamics {
             };
             velocity.clamp(-speed, speed).min(largest).max(least)
         });
-        Step {
+        DynamicsStep {
             torques: each(motors.len(), |i| {
                 motors[i].torque(self.angles[i] + seconds * velocities[i], velocities[i])
             }),

@@ -12,10 +12,10 @@ use crate::{
     articulation::tree::{Articulation, Positions},
     command::joint_targets::{JointTargets, Setpoint},
     dynamics::impulse::ContactLoad,
-    dynamics::limb_dynamics::{LimbDynamics, Step},
+    dynamics::limb_dynamics::{DynamicsStep, LimbDynamics},
     dynamics::matrix::{Joints, Matrix, each, each_pair},
     dynamics::motor::{Motor, MotorTask, STRETCH},
-    motion::sweep::Motion,
+    motion::sweep::TickMotion,
 };
 
 /// Share of a motor's torque with which a joint is slowed down before its goal.
@@ -51,7 +51,7 @@ pub(crate) struct LimbStep {
     touched: Vec<Entity>,
     masses: LimbDynamics,
     motors: Vec<Motor>,
-    step: Step,
+    step: DynamicsStep,
 }
 
 impl Motors {
@@ -75,10 +75,10 @@ impl Motors {
     /// What the motors do in this tick. `gravity` in units/s².
     pub fn pull(
         &self,
-        motion: &mut Motion,
+        motion: &mut TickMotion,
         targets: &JointTargets,
         gravity: f32,
-        mut touches: impl FnMut(&mut Motion, LimbId) -> Vec<(Entity, ContactLoad)>,
+        mut touches: impl FnMut(&mut TickMotion, LimbId) -> Vec<(Entity, ContactLoad)>,
     ) -> Vec<LimbStep> {
         let limbs = motion.articulation.layout.limb_ids();
         let all_touches: Vec<_> = limbs.clone().map(|limb| touches(motion, limb)).collect();
@@ -146,7 +146,7 @@ impl Motors {
     }
 
     /// Notes what has become of a tick: how far the arms have come, and with which torques.
-    pub fn note(&mut self, pulls: &[LimbStep], motion: &mut Motion, robot: &mut Robot) {
+    pub fn note(&mut self, pulls: &[LimbStep], motion: &mut TickMotion, robot: &mut Robot) {
         let layout = &motion.articulation.layout;
         for (limb, pull) in layout.limb_ids().zip(pulls) {
             let joints = &layout.limb(limb).joints;
@@ -277,7 +277,7 @@ impl LimbStep {
 
     /// What a motor pushes in vain with all its might.
     fn stalled_by(&self) -> Option<Entity> {
-        let Step {
+        let DynamicsStep {
             velocities,
             torques,
         } = &self.step;

@@ -15,7 +15,7 @@ pub const STEEPEST_GRIP: f32 = PI / 16.0;
 const TOUCHING: f32 = 0.004;
 
 /// Something that may be between the fingers.
-pub(crate) struct Candidate {
+pub(crate) struct Graspable {
     /// The object.
     pub object: Entity,
     /// Its convex parts, in the table's frame.
@@ -47,7 +47,7 @@ pub(crate) fn close(
     end_effector: Pose,
     opening: f32,
     finger: Vec3,
-    between: &[Candidate],
+    between: &[Graspable],
 ) -> Closing {
     let pads = FingerPad::pair(end_effector, opening, finger);
     let mut closing = Closing {
@@ -85,7 +85,7 @@ fn angle(left: FingerTouch, right: FingerTouch, end_effector: Pose) -> f32 {
 fn add_thickness(
     thickness: &mut BTreeMap<ProbeRay, f32>,
     [left, right]: [FingerPad; 2],
-    candidate: &Candidate,
+    candidate: &Graspable,
     opening: f32,
 ) {
     let from_right: BTreeMap<_, _> = right.probe(&candidate.parts, opening).collect();
@@ -106,19 +106,19 @@ mod tests {
 
     const OBJECT: Entity = Entity::PLACEHOLDER;
 
-    fn candidate(shape: SharedShape, pose: Pose) -> Candidate {
-        Candidate {
+    fn candidate(shape: SharedShape, pose: Pose) -> Graspable {
+        Graspable {
             object: OBJECT,
             parts: vec![Convex { pose, shape }],
         }
     }
 
-    fn unit_block(pose: Pose) -> Candidate {
+    fn unit_block(pose: Pose) -> Graspable {
         candidate(SharedShape::cuboid(0.5, 0.5, 0.5), pose)
     }
 
     /// θ when the gripper has closed on this, without moving it.
-    fn theta(candidate: Candidate) -> f32 {
+    fn theta(candidate: Graspable) -> f32 {
         let candidates = [candidate];
         let free = close(Pose::IDENTITY, 2.0, FINGER, &candidates);
         let closed = close(Pose::IDENTITY, 2.0 - free.room, FINGER, &candidates);

@@ -6,7 +6,7 @@ use serde::Deserialize;
 /// An axis of a link's frame, and with it the two others: u, v and the axis are right-handed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum Axis {
+pub(super) enum LinkAxis {
     /// u is y, v is z.
     X,
     /// u is z, v is x.
@@ -15,7 +15,7 @@ pub(super) enum Axis {
     Z,
 }
 
-impl Axis {
+impl LinkAxis {
     /// The point with these coordinates, the last one along the axis.
     pub const fn point(self, u: f32, v: f32, along: f32) -> Vec3 {
         match self {

@@ -4,7 +4,7 @@ use bevy::math::Vec3;
 use serde::Deserialize;
 use tabletop_core::quat_from_degrees;
 
-use super::{axis::Axis, detail::Detail, extrusion::Extrusion, hull::Hull};
+use super::{axis::LinkAxis, detail::Detail, extrusion::Extrusion, hull::Hull};
 
 /// A cuboid. Lengths in m.
 #[derive(Clone, Debug, Deserialize)]
@@ -23,7 +23,7 @@ impl Cuboid {
     pub fn hull(&self) -> Hull {
         let half = self.size / 2.0;
         let plate = Extrusion {
-            axis: Axis::Z,
+            axis: LinkAxis::Z,
             from: -half.z,
             to: half.z,
             outline: [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]

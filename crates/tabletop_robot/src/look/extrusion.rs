@@ -3,13 +3,13 @@
 use bevy::math::{Vec2, Vec3};
 use serde::Deserialize;
 
-use super::{axis::Axis, detail::Detail, hull::Hull};
+use super::{axis::LinkAxis, detail::Detail, hull::Hull};
 
 /// A polygon drawn out along an axis. Lengths in m.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Extrusion {
-    pub axis: Axis,
+    pub axis: LinkAxis,
     /// Where on the axis it begins.
     pub from: f32,
     /// Where on the axis it ends.
@@ -107,7 +107,7 @@ mod tests {
                 .sum();
             assert!((area - twice_area(&corners).abs()).abs() < 1e-6);
             let plate = Extrusion {
-                axis: Axis::Y,
+                axis: LinkAxis::Y,
                 from: 0.5,
                 to: 1.0,
                 outline,
@@ -125,7 +125,7 @@ mod tests {
             vec![[0.0; 2]; 5],
         ] {
             let plate = Extrusion {
-                axis: Axis::Z,
+                axis: LinkAxis::Z,
                 from: 0.0,
                 to: 1.0,
                 outline,

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use bevy::math::Vec3;
 use serde::Deserialize;
 
-use super::{axis::Axis, detail::Detail, hull::Hull};
+use super::{axis::LinkAxis, detail::Detail, hull::Hull};
 
 /// What a lathe makes: a profile turned about an axis. Lengths in m.
 #[derive(Clone, Debug, Deserialize)]
@@ -13,7 +13,7 @@ use super::{axis::Axis, detail::Detail, hull::Hull};
 pub(super) struct Lathe {
     /// A point of the axis.
     pub origin: Vec3,
-    pub axis: Axis,
+    pub axis: LinkAxis,
     /// Points as radius and height above the origin. Where it does not start or end at the axis, it is closed straight to it.
     pub profile: Vec<[f32; 2]>,
 }

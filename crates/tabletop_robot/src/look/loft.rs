@@ -5,13 +5,13 @@ use std::f64::consts::TAU;
 use bevy::math::Vec3;
 use serde::Deserialize;
 
-use super::{axis::Axis, detail::Detail, hull::Hull};
+use super::{axis::LinkAxis, detail::Detail, hull::Hull};
 
 /// A surface through superellipses across an axis, closed flat at both ends. Lengths in m.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Loft {
-    axis: Axis,
+    axis: LinkAxis,
     sections: Vec<Section>,
 }
 
@@ -33,7 +33,7 @@ impl Section {
         ((self.u[1] - self.u[0]) / 2.0).max((self.v[1] - self.v[0]) / 2.0)
     }
 
-    fn middle(&self, axis: Axis) -> Vec3 {
+    fn middle(&self, axis: LinkAxis) -> Vec3 {
         axis.point(
             (self.u[0] + self.u[1]) / 2.0,
             (self.v[0] + self.v[1]) / 2.0,
@@ -41,7 +41,7 @@ impl Section {
         )
     }
 
-    fn ring(&self, axis: Axis, segments: usize) -> Vec<Vec3> {
+    fn ring(&self, axis: LinkAxis, segments: usize) -> Vec<Vec3> {
         let [u_half, v_half] = [self.u, self.v].map(|[least, most]| (most - least) / 2.0);
         (0..segments)
             .map(|i| {

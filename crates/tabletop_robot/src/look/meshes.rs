@@ -163,9 +163,9 @@ mod tests {
     use super::*;
 
     /// A folder of its own for each test, with files in it.
-    struct Folder(PathBuf);
+    struct MeshFolder(PathBuf);
 
-    impl Folder {
+    impl MeshFolder {
         fn with(name: &str, files: &[(&str, &str)]) -> Self {
             let folder =
                 std::env::temp_dir().join(format!("tabletop-{name}-{}", std::process::id()));
@@ -183,7 +183,7 @@ mod tests {
         }
     }
 
-    impl Drop for Folder {
+    impl Drop for MeshFolder {
         fn drop(&mut self) {
             fs::remove_dir_all(&self.0).unwrap();
         }
@@ -211,7 +211,7 @@ mod tests {
 
     #[test]
     fn meshes_are_read_scaled_and_keep_their_outside_outside() {
-        let folder = Folder::with("kinds", &[("a.stl", STL), ("a.obj", OBJ), ("a.dae", DAE)]);
+        let folder = MeshFolder::with("kinds", &[("a.stl", STL), ("a.obj", OBJ), ("a.dae", DAE)]);
         for file in ["a.stl", "a.obj", "a.dae"] {
             let figure = folder.look(file, "robot.urdf").unwrap();
             let surface = &*figure.fine;
@@ -231,7 +231,7 @@ mod tests {
 
     #[test]
     fn packages_are_found_in_the_folders_around_the_description() {
-        let folder = Folder::with("packages", &[("arm_description/meshes/a.stl", STL)]);
+        let folder = MeshFolder::with("packages", &[("arm_description/meshes/a.stl", STL)]);
         for urdf in [
             "robot.urdf",
             "arm_description/robot.urdf",
@@ -265,7 +265,7 @@ mod tests {
             ("text.txt", "what?"),
             ("a.shape.json", "{}"),
         ];
-        let folder = Folder::with("broken", &broken);
+        let folder = MeshFolder::with("broken", &broken);
         for (file, _) in broken.iter().chain([&("missing.stl", "")]) {
             let error = folder.look(file, "robot.urdf").unwrap_err().to_string();
             assert!(error.contains(file), "{error}");
@@ -284,7 +284,7 @@ mod tests {
             }
             text += &format!("f {} {} {}\n", 3 * i + 1, 3 * i + 2, 3 * i + 3);
         }
-        let folder = Folder::with("many", &[("a.obj", &text)]);
+        let folder = MeshFolder::with("many", &[("a.obj", &text)]);
         let figure = folder.look("a.obj", "robot.urdf").unwrap();
         assert_eq!(figure.fine.indices.len(), 2000);
         assert!((200..800).contains(&figure.coarse.indices.len()));

@@ -17,22 +17,22 @@ pub(super) struct ShapeFile {
     /// What it is, for readers of the file.
     #[serde(rename = "about")]
     _about: String,
-    parts: Vec<Part>,
+    parts: Vec<ShapePart>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Part {
+struct ShapePart {
     color: Paint,
     /// Whether it is there once more, mirrored in the plane y = 0.
     #[serde(default)]
     mirrored: bool,
-    solid: Form,
+    solid: ShapeForm,
 }
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum Form {
+enum ShapeForm {
     Lathe(Lathe),
     Loft(Loft),
     Extrusion(Extrusion),
@@ -40,7 +40,7 @@ enum Form {
     Box(Cuboid),
 }
 
-impl Form {
+impl ShapeForm {
     fn hull(&self, detail: Detail) -> Hull {
         match self {
             Self::Lathe(lathe) => lathe.hull(detail),

@@ -6,7 +6,7 @@ use bevy::math::Vec3;
 use tabletop_core::{Figure, Rgb, Triangles};
 use tabletop_kinematics::Geometry;
 
-use super::{axis::Axis, boxes::Cuboid, detail::Detail, hull::Hull, lathe::Lathe};
+use super::{axis::LinkAxis, boxes::Cuboid, detail::Detail, hull::Hull, lathe::Lathe};
 
 /// What a solid looks like, in its own frame, in units. Of a mesh nothing is seen.
 pub(super) fn figure(solid: &Geometry, color: Rgb) -> Figure {
@@ -51,7 +51,7 @@ fn hull(solid: &Geometry, detail: Detail) -> Hull {
 fn turned(profile: Vec<[f32; 2]>, detail: Detail) -> Hull {
     let lathe = Lathe {
         origin: Vec3::ZERO,
-        axis: Axis::Z,
+        axis: LinkAxis::Z,
         profile,
     };
     lathe.hull(detail)

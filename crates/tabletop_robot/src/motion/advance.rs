@@ -131,7 +131,7 @@ fn stand_still(robot: &mut ResMut<Robot>) {
 }
 
 /// What a gripper does besides moving its fingers.
-enum Action {
+enum GripChange {
     Take(LimbId, Touched),
     Release(LimbId),
     Refuse {
@@ -141,7 +141,7 @@ enum Action {
     },
 }
 
-impl Action {
+impl GripChange {
     fn carry_out(self, commands: &mut Commands, facts: &mut MessageWriter<SimFact>) {
         match self {
             Self::Take(limb, touched) => {
@@ -164,11 +164,14 @@ fn decide(
     opens: bool,
     closing: Closing,
     grips: &mut Grips,
-) -> Vec<Action> {
+) -> Vec<GripChange> {
     if opens {
         grips.refused[limb.index()].clear();
         let holds = !grips.of(limb).is_empty();
-        return holds.then_some(Action::Release(limb)).into_iter().collect();
+        return holds
+            .then_some(GripChange::Release(limb))
+            .into_iter()
+            .collect();
     }
     let mut actions = Vec::new();
     for touched in closing.touched {
@@ -177,12 +180,12 @@ fn decide(
             continue;
         }
         if angle < STEEPEST_GRIP {
-            actions.push(Action::Take(limb, touched));
+            actions.push(GripChange::Take(limb, touched));
         } else if !grips.refused[limb.index()].contains(&object) {
             grips.refused[limb.index()].push(object);
             let id = known.name(Owner::Thing(object));
             let arm = grips.name_of(limb);
-            actions.push(Action::Refuse { arm, id, angle });
+            actions.push(GripChange::Refuse { arm, id, angle });
         }
     }
     actions

@@ -12,7 +12,7 @@ use crate::{
     articulation::tree::{Articulation, Body, Carrier, Positions, Posture, TreePosition},
     clearance::{Owner, Solid, are_near, part_left},
     command::joint_targets::{JointTargets, Setpoint},
-    gripper::closing::{Candidate, Closing, close},
+    gripper::closing::{Closing, Graspable, close},
     motion::environment::Environment,
 };
 
@@ -55,7 +55,7 @@ pub(crate) struct Poses {
 const MOST_ASKED: usize = 4;
 
 /// The motion of a tick.
-pub(crate) struct Motion<'a> {
+pub(crate) struct TickMotion<'a> {
     /// The robot.
     pub articulation: &'a Articulation,
     /// Which of its bodies can meet.
@@ -84,7 +84,7 @@ pub(crate) struct Motion<'a> {
     pub scratch: Posture,
 }
 
-impl Motion<'_> {
+impl TickMotion<'_> {
     /// Turns the neck.
     pub fn turn_head(&mut self, targets: &JointTargets) {
         let layout = &self.articulation.layout;
@@ -157,13 +157,13 @@ impl Motion<'_> {
     }
 
     /// What may be between the fingers of a gripper.
-    fn between(&mut self, limb: LimbId) -> Vec<Candidate> {
+    fn between(&mut self, limb: LimbId) -> Vec<Graspable> {
         let at = self.end_effector(limb).location;
         let near = Aabb::new(at - BETWEEN, at + BETWEEN);
         let things = self.environment.free.iter();
         things
             .filter(|thing| are_near(&thing.bounds, &near))
-            .map(|thing| Candidate {
+            .map(|thing| Graspable {
                 object: thing.object,
                 parts: thing.parts.clone(),
             })

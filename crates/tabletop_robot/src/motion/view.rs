@@ -18,7 +18,7 @@ use crate::{
     gripper::grips::Grips,
     motion::{
         environment::Environment,
-        sweep::{Carried, Motion, reach},
+        sweep::{Carried, TickMotion, reach},
     },
 };
 
@@ -40,7 +40,7 @@ impl RobotView<'_, '_> {
         robot: &Robot,
         grips: &Grips,
         rapier: &RapierContextMut,
-    ) -> Motion<'a> {
+    ) -> TickMotion<'a> {
         let base = self.base();
         let positions = positions(robot);
         let posture = self.articulation.posture(&positions);
@@ -68,7 +68,7 @@ impl RobotView<'_, '_> {
                 })
                 .collect()
         });
-        Motion {
+        TickMotion {
             articulation: &self.articulation,
             self_collisions: &self.self_collisions,
             base,
@@ -95,7 +95,7 @@ impl RobotView<'_, '_> {
     pub fn blocked_by(
         &self,
         limb: LimbId,
-        motion: &Motion,
+        motion: &TickMotion,
         targets: &mut JointTargets,
     ) -> Option<String> {
         let squeezed = targets.wait_for(limb, motion.held_up_by[limb.index()]);
@@ -104,7 +104,7 @@ impl RobotView<'_, '_> {
     }
 
     /// Where the bodies are after a motion, and what the grippers hold rigidly.
-    pub fn places(&self, motion: &Motion, robot: &Robot, grips: &Grips) -> Vec<(Entity, Pose)> {
+    pub fn places(&self, motion: &TickMotion, robot: &Robot, grips: &Grips) -> Vec<(Entity, Pose)> {
         let posture = self.articulation.posture(&motion.positions);
         let poses = poses(&self.articulation, &posture, motion.base);
         let bodies = self.parts.0.iter().copied().zip(poses);
@@ -139,7 +139,7 @@ impl RobotView<'_, '_> {
     }
 
     /// The sleeping objects that the arms may touch in this tick: Rapier lets things move into sleeping ones for a tick.
-    pub fn near_arms(&self, motion: &mut Motion) -> Vec<Entity> {
+    pub fn near_arms(&self, motion: &mut TickMotion) -> Vec<Entity> {
         let mut bounds: Vec<Aabb> = Vec::new();
         if motion
             .environment

@@ -16,7 +16,7 @@ pub(crate) const SPANS: [&str; 3] = ["xspan", "yspan", "zspan"];
 
 /// Where a shape stands.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Role {
+enum ObjectRole {
     /// It is an object of its own.
     Whole,
     /// It is a part of a composite.
@@ -27,7 +27,7 @@ impl ElementReader<'_> {
     /// Reads an object.
     pub fn object(&mut self, element: &Element) -> Option<ObjectSpec> {
         let descriptions = self.descriptions(element);
-        let parts = self.parts(element, Role::Whole);
+        let parts = self.parts(element, ObjectRole::Whole);
         let mut attributes = AttributeReader::of(element, self.faults);
         let (id, pose) = (attributes.id(), attributes.pose());
         let mass = attributes.mass("mass", 1.0);
@@ -42,7 +42,7 @@ impl ElementReader<'_> {
     }
 
     fn part(&mut self, element: &Element) -> Option<Part> {
-        let parts = self.parts(element, Role::Part);
+        let parts = self.parts(element, ObjectRole::Part);
         let mut attributes = AttributeReader::of(element, self.faults);
         let (id, pose) = (attributes.id(), attributes.pose());
         attributes.forbid(
@@ -55,13 +55,13 @@ impl ElementReader<'_> {
     }
 
     /// The parts of a composite; none for a simple shape, whose content is checked.
-    fn parts(&mut self, element: &Element, role: Role) -> Vec<Part> {
+    fn parts(&mut self, element: &Element, role: ObjectRole) -> Vec<Part> {
         let is_composite = element.name == "composite";
         let mut allowed = Vec::new();
         if is_composite {
             allowed.extend(SHAPES);
         }
-        if role == Role::Whole {
+        if role == ObjectRole::Whole {
             allowed.push(DESCRIPTION);
         }
         let mut parts = Vec::new();

@@ -15,14 +15,14 @@ const MAX_CELLS: i32 = 9;
 #[derive(Debug, Default)]
 pub(crate) struct Overlaps {
     pairs: usize,
-    solids: Vec<Solid>,
+    solids: Vec<BodySolid>,
     /// The small solids by cell.
     cells: BTreeMap<[i32; 2], Vec<usize>>,
     large: Vec<usize>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Solid {
+struct BodySolid {
     bounds: Bounds,
     body: usize,
 }
@@ -42,20 +42,20 @@ impl Overlaps {
         for (index, body) in bodies.iter().enumerate() {
             for &bounds in body {
                 let body = first_body + index;
-                self.pairs += self.count(Solid { bounds, body }, most - self.pairs);
+                self.pairs += self.count(BodySolid { bounds, body }, most - self.pairs);
                 if self.pairs > most {
                     self.remove_from(solids_before);
                     self.pairs = pairs_before;
                     return false;
                 }
-                self.insert(Solid { bounds, body });
+                self.insert(BodySolid { bounds, body });
             }
         }
         true
     }
 
     /// How many solids of other bodies overlap with this one, at most one more than `most`.
-    fn count(&self, solid: Solid, most: usize) -> usize {
+    fn count(&self, solid: BodySolid, most: usize) -> usize {
         let is_overlapping = |&&other: &&usize| {
             let other = self.solids[other];
             other.body != solid.body && other.bounds.overlaps(solid.bounds, TOUCHING)
@@ -77,8 +77,8 @@ impl Overlaps {
         }
     }
 
-    fn all_overlapping(&self, solid: Solid, most: usize) -> usize {
-        let is_overlapping = |other: &&Solid| {
+    fn all_overlapping(&self, solid: BodySolid, most: usize) -> usize {
+        let is_overlapping = |other: &&BodySolid| {
             other.body != solid.body && other.bounds.overlaps(solid.bounds, TOUCHING)
         };
         self.solids
@@ -88,7 +88,7 @@ impl Overlaps {
             .count()
     }
 
-    fn insert(&mut self, solid: Solid) {
+    fn insert(&mut self, solid: BodySolid) {
         let index = self.solids.len();
         self.solids.push(solid);
         match Cells::of(solid.bounds) {

@@ -7,12 +7,12 @@ pub(crate) const MAX_TEXT: usize = 64 << 20;
 
 /// What is left of the work that a task may make.
 #[derive(Debug)]
-pub(crate) struct Effort {
+pub(crate) struct ExpansionBudget {
     elements: usize,
     text: usize,
 }
 
-impl Default for Effort {
+impl Default for ExpansionBudget {
     fn default() -> Self {
         Self {
             elements: MAX_ELEMENTS,
@@ -21,7 +21,7 @@ impl Default for Effort {
     }
 }
 
-impl Effort {
+impl ExpansionBudget {
     /// Accounts for an element, and says whether there may be one.
     pub fn is_left_for_element(&mut self) -> bool {
         take(&mut self.elements, 1)
@@ -46,7 +46,7 @@ mod tests {
 
     #[test]
     fn effort_ends() {
-        let mut effort = Effort::default();
+        let mut effort = ExpansionBudget::default();
         assert!(effort.is_left_for_text(MAX_TEXT) && !effort.is_left_for_text(1));
         assert!((0..MAX_ELEMENTS).all(|_| effort.is_left_for_element()));
         assert!(!effort.is_left_for_element());

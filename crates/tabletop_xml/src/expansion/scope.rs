@@ -4,7 +4,7 @@ use std::{borrow::Cow, cell::RefCell, collections::BTreeMap, rc::Rc};
 
 use crate::{
     expansion::{
-        effort::{Effort, MAX_TEXT},
+        effort::{ExpansionBudget, MAX_TEXT},
         expression::{ExpressionError, Value, substitute, value_of},
         variable::{Variable, Variables},
     },
@@ -24,11 +24,11 @@ pub(crate) struct Scope<'s, 'a> {
     /// Arguments that are about the instance's own variables.
     derived: Variables<'a>,
     defaults: Option<&'s Variables<'a>>,
-    values: RefCell<BTreeMap<String, Progress>>,
+    values: RefCell<BTreeMap<String, VariableProgress>>,
 }
 
 #[derive(Clone)]
-enum Progress {
+enum VariableProgress {
     Begun,
     Done(Value),
 }
@@ -36,7 +36,7 @@ enum Progress {
 /// What evaluating needs: where faults go, and what is left of the effort.
 pub(crate) struct Context<'f> {
     pub faults: &'f mut Faults,
-    effort: Effort,
+    effort: ExpansionBudget,
     is_exhausted: bool,
     needs: usize,
 }
@@ -45,7 +45,7 @@ impl<'f> Context<'f> {
     pub fn new(faults: &'f mut Faults) -> Self {
         Self {
             faults,
-            effort: Effort::default(),
+            effort: ExpansionBudget::default(),
             is_exhausted: false,
             needs: 0,
         }
@@ -116,7 +116,7 @@ impl<'s, 'a> Scope<'s, 'a> {
         for (name, argument) in given {
             let place = argument.place(None);
             let text = enclosing.substitute(&argument.text, place, context);
-            values.insert(name, Progress::Done(as_value(text)));
+            values.insert(name, VariableProgress::Done(as_value(text)));
         }
         Self {
             enclosing: Some(enclosing),
@@ -178,8 +178,8 @@ impl<'s, 'a> Scope<'s, 'a> {
             self.derived.get(name).or_else(default)
         };
         match progress {
-            Some(Progress::Done(value)) => Some(value),
-            Some(Progress::Begun) => {
+            Some(VariableProgress::Done(value)) => Some(value),
+            Some(VariableProgress::Begun) => {
                 let place = variable()?.place(self.instance);
                 let expected = "variables that do not need each other";
                 context
@@ -196,7 +196,7 @@ impl<'s, 'a> Scope<'s, 'a> {
 
     fn evaluate(&self, name: &str, variable: &Variable<'a>, context: &mut Context) -> Value {
         let note = |progress| self.values.borrow_mut().insert(name.to_owned(), progress);
-        note(Progress::Begun);
+        note(VariableProgress::Begun);
         let place = variable.place(self.instance);
         context.needs += 1;
         let value = if context.needs > MAX_NEEDS {
@@ -208,7 +208,7 @@ impl<'s, 'a> Scope<'s, 'a> {
             as_value(self.substitute_for(Some(name), &variable.text, place, context))
         };
         context.needs -= 1;
-        note(Progress::Done(value.clone()));
+        note(VariableProgress::Done(value.clone()));
         value
     }
 }

@@ -16,13 +16,13 @@ const STEPS: [f64; 14] = [
 
 /// The time of a recording, from left to right.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Axis {
+pub(super) struct TimeAxis {
     x: Rangef,
     start: u64,
     ticks: u64,
 }
 
-impl Axis {
+impl TimeAxis {
     pub fn new(timeline: &Timeline, x: Rangef) -> Self {
         let ticks = timeline.end.0.saturating_sub(timeline.start.0);
         Self {
@@ -79,13 +79,13 @@ pub(super) fn seconds(ticks: u64) -> String {
 mod tests {
     use super::*;
 
-    fn axis(ticks: u64) -> Axis {
+    fn axis(ticks: u64) -> TimeAxis {
         let timeline = Timeline {
             start: SimTick(100),
             end: SimTick(100 + ticks),
             ..Timeline::default()
         };
-        Axis::new(&timeline, Rangef::new(10.0, 610.0))
+        TimeAxis::new(&timeline, Rangef::new(10.0, 610.0))
     }
 
     #[test]

@@ -7,7 +7,7 @@ use bevy_egui::egui::{
 use tabletop_core::{SimTick, TimelinePicture};
 
 use super::{
-    axis::Axis,
+    axis::TimeAxis,
     model::{Model, Moment},
     pictures::Pictures,
     track,
@@ -22,7 +22,12 @@ const GAP: f32 = 4.0;
 const MISSING: Color32 = Color32::from_gray(30);
 
 /// Shows small pictures, each below its time, and returns the moments that the user points out.
-pub(super) fn show(ui: &mut Ui, model: &Model, axis: Axis, pictures: &mut Pictures) -> Vec<Moment> {
+pub(super) fn show(
+    ui: &mut Ui,
+    model: &Model,
+    axis: TimeAxis,
+    pictures: &mut Pictures,
+) -> Vec<Moment> {
     let size = vec2(ui.available_width(), SMALL.y);
     let (strip, _) = ui.allocate_exact_size(size, Sense::hover());
     let count = ((strip.width() + GAP) / (SMALL.x + GAP)).floor().max(1.0);

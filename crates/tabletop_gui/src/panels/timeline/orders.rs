@@ -120,12 +120,12 @@ mod tests {
     use super::*;
 
     #[derive(Resource, Default)]
-    struct Asked(Vec<Request>);
+    struct PendingRequests(Vec<Request>);
 
     #[derive(Resource, Default)]
-    struct Told(Vec<SimCommand>);
+    struct SentCommands(Vec<SimCommand>);
 
-    fn carry_out(mut asked: ResMut<Asked>, mut orders: Orders) {
+    fn carry_out(mut asked: ResMut<PendingRequests>, mut orders: Orders) {
         for request in asked.0.drain(..) {
             orders.carry_out(request);
         }
@@ -136,12 +136,12 @@ mod tests {
         app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
             .init_resource::<ButtonInput<KeyCode>>()
-            .init_resource::<Asked>()
-            .init_resource::<Told>()
+            .init_resource::<PendingRequests>()
+            .init_resource::<SentCommands>()
             .add_systems(Update, carry_out)
             .add_systems(
                 FixedLast,
-                |mut commands: MessageReader<IssuedCommand>, mut told: ResMut<Told>| {
+                |mut commands: MessageReader<IssuedCommand>, mut told: ResMut<SentCommands>| {
                     let issued = commands.read();
                     told.0.extend(issued.map(|issued| issued.command.clone()));
                 },
@@ -153,13 +153,19 @@ mod tests {
     }
 
     fn ask(app: &mut App, request: Request) -> Vec<SimCommand> {
-        app.world_mut().resource_mut::<Asked>().0.push(request);
+        app.world_mut()
+            .resource_mut::<PendingRequests>()
+            .0
+            .push(request);
         (0..6).for_each(|_| app.update());
-        std::mem::take(&mut app.world_mut().resource_mut::<Told>().0)
+        std::mem::take(&mut app.world_mut().resource_mut::<SentCommands>().0)
     }
 
     fn sent<M: Message + Clone>(app: &mut App, request: Request) -> Vec<M> {
-        app.world_mut().resource_mut::<Asked>().0.push(request);
+        app.world_mut()
+            .resource_mut::<PendingRequests>()
+            .0
+            .push(request);
         app.update();
         app.world_mut()
             .resource_mut::<Messages<M>>()

@@ -7,7 +7,7 @@ use bevy_egui::egui::{
 use tabletop_core::{Act, Rgb, SimTick, TimelineSegment, Verb};
 
 use super::{
-    axis::Axis,
+    axis::TimeAxis,
     model::{Model, Moment},
 };
 
@@ -35,7 +35,7 @@ pub(super) fn color(color: Rgb) -> Color32 {
 }
 
 /// Shows the track, and returns the moments that the user points out.
-pub(super) fn show(ui: &mut Ui, model: &Model, axis: Axis, rect: Rect) -> Vec<Moment> {
+pub(super) fn show(ui: &mut Ui, model: &Model, axis: TimeAxis, rect: Rect) -> Vec<Moment> {
     let ruler = Rect::from_min_size(rect.min, vec2(rect.width(), RULER));
     let lane = ruler
         .translate(vec2(0.0, RULER))
@@ -49,7 +49,7 @@ pub(super) fn show(ui: &mut Ui, model: &Model, axis: Axis, rect: Rect) -> Vec<Mo
     moments
 }
 
-fn show_ruler(ui: &mut Ui, model: &Model, axis: Axis, rect: Rect) -> Vec<Moment> {
+fn show_ruler(ui: &mut Ui, model: &Model, axis: TimeAxis, rect: Rect) -> Vec<Moment> {
     let response = ui.interact(rect, ui.id().with("ruler"), Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Slider, true, "Time"));
     let painter = ui.painter_at(rect.expand2(vec2(0.0, SEGMENTS)));
@@ -69,7 +69,13 @@ fn show_ruler(ui: &mut Ui, model: &Model, axis: Axis, rect: Rect) -> Vec<Moment>
     chosen
 }
 
-fn show_segment(ui: &mut Ui, model: &Model, axis: Axis, lane: Rect, number: usize) -> Vec<Moment> {
+fn show_segment(
+    ui: &mut Ui,
+    model: &Model,
+    axis: TimeAxis,
+    lane: Rect,
+    number: usize,
+) -> Vec<Moment> {
     let Some(segment) = model.segment(number) else {
         return Vec::new();
     };
@@ -132,7 +138,7 @@ fn texts(act: Option<&Act>) -> [String; 3] {
 }
 
 /// What the grippers took is marked upwards, what they let go of downwards.
-fn show_grips(ui: &mut Ui, model: &Model, axis: Axis, top: f32) {
+fn show_grips(ui: &mut Ui, model: &Model, axis: TimeAxis, top: f32) {
     for (number, grip) in model.timeline.grips.iter().enumerate() {
         let center = pos2(axis.x_of(grip.tick), top + GRIPS / 2.0);
         let rect = Rect::from_center_size(center, vec2(8.0, GRIPS));
@@ -149,7 +155,7 @@ fn show_grips(ui: &mut Ui, model: &Model, axis: Axis, top: f32) {
     }
 }
 
-fn paint_playhead(ui: &Ui, model: &Model, axis: Axis, rect: Rect) {
+fn paint_playhead(ui: &Ui, model: &Model, axis: TimeAxis, rect: Rect) {
     let painter = ui.painter();
     if let Some(goal) = model.playback.goal {
         let ink = ui.visuals().weak_text_color();
@@ -169,7 +175,7 @@ fn paint_mark(painter: &Painter, center: Pos2, up: f32, color: Color32) {
 }
 
 /// The moment under the mouse while it drags, or the one that is chosen: by a key or another program, the first one.
-pub(super) fn moment(response: &Response, axis: Axis, first: SimTick) -> Vec<Moment> {
+pub(super) fn moment(response: &Response, axis: TimeAxis, first: SimTick) -> Vec<Moment> {
     let under_mouse = response
         .interact_pointer_pos()
         .map(|place| axis.tick_at(place.x));

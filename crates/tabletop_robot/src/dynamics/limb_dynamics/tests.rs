@@ -36,7 +36,7 @@ fn at(angle: f64) -> MotorTask {
     }
 }
 
-fn go(masses: &mut LimbDynamics, motors: &[Motor; 7], seconds: f64) -> Step {
+fn go(masses: &mut LimbDynamics, motors: &[Motor; 7], seconds: f64) -> DynamicsStep {
     let step = masses.step(motors, seconds);
     for (angle, velocity) in masses.angles.iter_mut().zip(&step.velocities) {
         *angle += seconds * velocity;

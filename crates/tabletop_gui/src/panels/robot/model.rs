@@ -1,0 +1,54 @@
+//! What the Robot window shows, and what the user does with it.
+
+use tabletop_core::{Face, JointId, Keymap, Robot, RobotLayout};
+
+use crate::input::jog::Directions;
+
+/// What the window shows.
+#[derive(Clone, Copy)]
+pub(super) struct Model<'a> {
+    pub robot: &'a Robot,
+    pub layout: &'a RobotLayout,
+    /// Ids of what the grippers hold, by limb.
+    pub held: &'a [Vec<&'a str>],
+    pub shows_head_view: bool,
+    /// Whether a script moves the arms.
+    pub is_scripted: bool,
+    pub keymap: &'a Keymap,
+}
+
+impl Model<'_> {
+    /// Whether the user can move a joint.
+    pub fn is_free(&self, joint: JointId) -> bool {
+        !self.is_scripted || self.layout.neck == Some(joint)
+    }
+}
+
+/// What the user does with the window.
+#[derive(Default)]
+pub(super) struct RobotInput {
+    pub pressed: PressedButtons,
+    pub requests: Vec<Request>,
+}
+
+/// Where the buttons move the joints.
+#[derive(Default)]
+pub(super) struct PressedButtons {
+    /// Those that are held down.
+    pub held: Directions,
+    /// Those that have gone down in this frame.
+    pub struck: Directions,
+}
+
+/// What the user asks of the window once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Request {
+    ShowRobot(bool),
+    ToggleHeadView,
+    ToggleScript,
+    /// Bring all joints back to where they stood at the start.
+    GoHome,
+    /// Bring a joint to an angle in rad, or an opening in units.
+    Go(JointId, f64),
+    ShowFace(Face),
+}

@@ -1,0 +1,27 @@
+//! Positions of joints as numbers with units.
+
+use tabletop_core::JointLayout;
+
+/// What a joint's position is measured in.
+pub(super) const fn unit(joint: &JointLayout) -> &'static str {
+    if joint.is_gripper() { "" } else { " rad" }
+}
+
+/// Where a joint stands: an angle in rad and degrees, an opening in units.
+pub(super) fn reading(joint: &JointLayout, position: f64) -> String {
+    let value = number(position, 3);
+    if joint.is_gripper() {
+        format!("{value:>6}")
+    } else {
+        format!("{value:>6} {:>6}°", number(position.to_degrees(), 1))
+    }
+}
+
+/// A number with so many decimals; no zero has a sign.
+pub(super) fn number(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(zero) if zero.chars().all(|c| matches!(c, '0' | '.')) => zero.to_owned(),
+        _ => text,
+    }
+}
