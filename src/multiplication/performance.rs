@@ -6,13 +6,13 @@ use bevy::prelude::*;
 use tabletop_core::{
     Hand, HandCommand, Hands, ObjectIndex, Pose, SimTick, StepApp as _, WriteCommand as _,
 };
-use tabletop_planner::{Before, Failure, Sight, Stage as _, is_met, undone};
+use tabletop_planner::{Before, Failure, Sight, is_met, undone};
 use tabletop_task::{
     Binding, Convex, Demonstration, Place, Reference, Relation, Step, Task, angle_between,
 };
 
 use super::way::{Carried, Moment};
-use crate::imitation::AppStage;
+use crate::imitation::sight;
 
 /// Ticks between a release and the next grasp: as many as were shown, within these.
 const PAUSE: (u64, u64) = (15, 60);
@@ -36,7 +36,7 @@ pub(super) fn perform(
     task: &Task,
     binding: &Binding,
 ) -> Result<(), (usize, Failure)> {
-    let sight = AppStage::new(app).sight();
+    let sight = sight(app.world_mut());
     let beginning = sight
         .objects
         .iter()
@@ -152,7 +152,7 @@ impl Performance<'_> {
     }
 
     fn begin(&mut self, i: usize) -> Result<(), Failure> {
-        let sight = AppStage::new(self.app).sight();
+        let sight = sight(self.app.world_mut());
         let step = self.acts[i].step;
         let id = self.bound(&step.object)?.to_owned();
         let object = sight
@@ -318,7 +318,7 @@ impl Performance<'_> {
 
     /// Whether all relations hold; else the step of one that does not.
     fn judge(mut self, task: &Task) -> Result<(), (usize, Failure)> {
-        let sight = AppStage::new(self.app).sight();
+        let sight = sight(self.app.world_mut());
         if let Some(undone) = undone(task, self.binding, &sight, &self.before) {
             return Err(undone);
         }
