@@ -53,7 +53,7 @@ pub fn write_robot(world: &World, mut out: impl Write) -> std::io::Result<()> {
             },
             "gripper_opening": robot.joint(limb.gripper.joint).position,
             "holds": state.holds.iter().filter_map(id).collect::<Vec<_>>(),
-            "blocked_by": state.blocked_by,
+            "blocked_by": state.blocked_by.as_ref().map(ToString::to_string),
         });
         (limb.name.to_string(), value)
     });

@@ -52,7 +52,7 @@ fn limbs(world: &World) -> Vec<LimbSight> {
         angles: angles(robot.positions_of(&limb.joints)),
         opening: robot.joint(limb.gripper.joint).position,
         holds: state.holds.iter().filter_map(id).collect(),
-        blocked_by: state.blocked_by.clone(),
+        blocked_by: state.blocked_by.as_ref().map(ToString::to_string),
     });
     limbs.collect()
 }

@@ -3,10 +3,10 @@
 use std::{fmt::Write as _, path::PathBuf, process::ExitCode};
 
 use clap::Args;
-use tabletop::core::{ActionGroup, Keymap};
+use tabletop::core::{Keymap, RobotLayout};
 use tabletop_gui::{Preferences, keymap_file};
 
-use super::{Failure, Output, WRONG_INPUT, terminal::say};
+use super::{Failure, Output, WRONG_INPUT, robot_options::describe, terminal::say};
 
 #[derive(Args)]
 pub(super) struct KeysArgs {
@@ -16,12 +16,19 @@ pub(super) struct KeysArgs {
     /// Print a complete file to change and to keep as keys.ron
     #[arg(long)]
     ron: bool,
+    /// The robot whose joints the keys move: a robot.ron, or a URDF with Baxter's limbs and joints [default: Baxter]
+    #[arg(long, value_name = "FILE")]
+    robot: Option<PathBuf>,
 }
 
 /// Lists the keys, after what is wrong with the file that binds them.
 pub(super) fn list(args: &KeysArgs) -> Result<ExitCode, Failure> {
     let preferences = Preferences::default();
-    let (keymap, faults) = keymap_file::read(args.keys.as_deref(), &preferences);
+    let layout = match &args.robot {
+        Some(robot) => describe(robot)?.layout,
+        None => RobotLayout::default(),
+    };
+    let (keymap, faults) = keymap_file::read(args.keys.as_deref(), &preferences, &layout);
     faults.iter().for_each(say);
     let text = match args.ron {
         true => keymap_file::write(&keymap),
@@ -36,11 +43,11 @@ pub(super) fn list(args: &KeysArgs) -> Result<ExitCode, Failure> {
 
 fn table(keymap: &Keymap, preferences: &Preferences) -> String {
     let mut text = String::new();
-    for group in ActionGroup::ALL {
-        let _infallible = writeln!(text, "{}", group.label());
-        for action in group.actions() {
-            let (keys, name) = (keymap.hint(action), action.name());
-            let what = action.tooltip();
+    for (group, name) in keymap.groups() {
+        let _infallible = writeln!(text, "{name}");
+        for action in keymap.actions_of(group) {
+            let (keys, name) = (keymap.hint(action), action.to_string());
+            let what = keymap.description(action);
             let _infallible = writeln!(text, "  {keys:<24}{name:<26}{what}");
         }
         text.push('\n');

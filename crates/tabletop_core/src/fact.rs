@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 
-use crate::{CommandId, Hand, LimbName};
+use crate::{CommandId, Hand, LimbName, Obstacle};
 
 /// Something that has happened in this tick.
 #[derive(Message, Clone, Debug, PartialEq)]
@@ -133,8 +133,8 @@ pub enum SimFact {
     ArmBlocked {
         /// The arm.
         arm: LimbName,
-        /// What is in its way: an object's id, `table`, or a part of the robot.
-        by: String,
+        /// What is in its way.
+        by: Obstacle,
     },
     /// A command, or something else that was asked for, was not carried out.
     Refused {

@@ -3,35 +3,102 @@
 mod action;
 mod binding;
 mod letters;
+mod table;
 
-pub use action::{Action, ActionGroup, Situation, Way};
+pub use action::{Action, Way};
 pub use binding::{BindingError, KeyBinding, Modifiers};
 pub use letters::KeyLetters;
+pub use table::{ActionGroup, Situation};
 
 use std::{cmp::Reverse, collections::BTreeMap};
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_input::{ButtonInput, keyboard::KeyCode};
 
-use crate::Hands;
+use self::table::ActionRow;
+use crate::{Hands, RobotLayout};
 
 /// The keys of each action. Keys are told apart by their places on the keyboard, whatever is printed on them, unless
-/// [Ctrl or the like](KeyLetters) is held down as well.
+/// [Ctrl or the like](KeyLetters) is held down as well. The robot's layout says which joints there are to be moved.
 #[derive(Resource, Clone, Debug, PartialEq, Eq)]
 pub struct Keymap {
+    groups: Vec<(ActionGroup, String)>,
+    rows: Vec<ActionRow>,
     bindings: BTreeMap<Action, Vec<KeyBinding>>,
 }
 
 impl Default for Keymap {
+    /// The keys for [Baxter](RobotLayout::baxter).
     fn default() -> Self {
-        let bindings = Action::ALL.map(|action| (action, action.default_bindings()));
-        Self {
-            bindings: bindings.into(),
-        }
+        Self::of(RobotLayout::baxter())
     }
 }
 
 impl Keymap {
+    /// The keys for a robot, as they are shipped.
+    pub fn of(layout: &RobotLayout) -> Self {
+        let rows = table::rows(layout);
+        let bindings = rows
+            .iter()
+            .map(|row| (row.action, row.default_keys.clone()));
+        Self {
+            groups: table::groups(layout),
+            bindings: bindings.collect(),
+            rows,
+        }
+    }
+
+    /// All actions.
+    pub fn actions(&self) -> impl Iterator<Item = Action> {
+        self.rows.iter().map(|row| row.action)
+    }
+
+    /// The groups of actions with their names on the screen, in the order in which they are listed.
+    pub fn groups(&self) -> impl Iterator<Item = (ActionGroup, &str)> {
+        let groups = self.groups.iter();
+        groups.map(|(group, name)| (*group, name.as_str()))
+    }
+
+    /// The actions of a group.
+    pub fn actions_of(&self, group: ActionGroup) -> impl Iterator<Item = Action> {
+        let rows = self.rows.iter().filter(move |row| row.group == group);
+        rows.map(|row| row.action)
+    }
+
+    /// The action with this name in files.
+    pub fn find(&self, name: &str) -> Option<Action> {
+        self.actions().find(|action| action.to_string() == name)
+    }
+
+    fn row(&self, action: Action) -> Option<&ActionRow> {
+        self.rows.iter().find(|row| row.action == action)
+    }
+
+    /// The name of an action on the screen; empty if this robot cannot do it.
+    pub fn label(&self, action: Action) -> &str {
+        self.row(action).map_or("", |row| &row.label)
+    }
+
+    /// What an action does, in a sentence; empty if this robot cannot do it.
+    pub fn description(&self, action: Action) -> &'static str {
+        self.row(action).map_or("", |row| row.tooltip)
+    }
+
+    /// When an action can be asked for.
+    pub fn situation(&self, action: Action) -> Situation {
+        self.row(action).map_or(Situation::Any, |row| row.situation)
+    }
+
+    /// Whether an action goes on while its key is held down.
+    pub fn is_continuous(&self, action: Action) -> bool {
+        self.row(action).is_some_and(|row| row.is_continuous)
+    }
+
+    /// The keys that do an action unless the user binds others.
+    pub fn default_bindings(&self, action: Action) -> &[KeyBinding] {
+        self.row(action).map_or(&[], |row| &row.default_keys)
+    }
+
     /// The keys of an action.
     pub fn bindings(&self, action: Action) -> &[KeyBinding] {
         self.bindings.get(&action).map_or(&[], Vec::as_slice)
@@ -48,11 +115,13 @@ impl Keymap {
     pub fn conflicts(&self) -> Vec<(KeyBinding, Action, Action)> {
         let mut owners = BTreeMap::new();
         let mut conflicts = Vec::new();
-        for action in Action::ALL {
+        for ActionRow {
+            action, situation, ..
+        } in &self.rows
+        {
+            let action = *action;
             for &binding in self.bindings(action) {
-                let owner = *owners
-                    .entry((binding, action.situation()))
-                    .or_insert(action);
+                let owner = *owners.entry((binding, *situation)).or_insert(action);
                 if owner != action {
                     conflicts.push((binding, owner, action));
                 }
@@ -64,13 +133,13 @@ impl Keymap {
     /// What a key does that is struck with these modifiers: with Shift what it does without unless Shift has a meaning of its
     /// own, and with something in the hand first of all what is done to that.
     pub fn action(&self, key: KeyCode, held: Modifiers, is_holding: bool) -> Option<Action> {
-        let fitting = Action::ALL.into_iter().flat_map(|action| {
-            let bindings = self.bindings(action).iter();
-            bindings.map(move |binding| (*binding, action))
+        let fitting = self.rows.iter().flat_map(|row| {
+            let bindings = self.bindings(row.action).iter();
+            bindings.map(move |binding| (*binding, row))
         });
         fitting
-            .filter(|(binding, action)| {
-                let fits = match action.situation() {
+            .filter(|(binding, row)| {
+                let fits = match row.situation {
                     Situation::Any => binding.fits(held),
                     // Ctrl is a key of its own then.
                     Situation::Holding => {
@@ -79,11 +148,11 @@ impl Keymap {
                 };
                 binding.key == key && fits
             })
-            .min_by_key(|(binding, action)| {
+            .min_by_key(|(binding, row)| {
                 let uses_shift = binding.modifiers.shift;
-                (Reverse(uses_shift), Reverse(action.situation()))
+                (Reverse(uses_shift), Reverse(row.situation))
             })
-            .map(|(_, action)| action)
+            .map(|(_, row)| row.action)
     }
 
     /// The keys of an action as the user reads them: `Ctrl+Shift+Z or Ctrl+Y`. Empty if it has none.
@@ -94,7 +163,7 @@ impl Keymap {
 
     /// What an action does, and its keys: `Stops the simulation, or lets it run on (Space)`.
     pub fn tooltip(&self, action: Action) -> String {
-        match (action.tooltip(), self.hint(action)) {
+        match (self.description(action), self.hint(action)) {
             (tooltip, hint) if hint.is_empty() => tooltip.to_owned(),
             (tooltip, hint) => format!("{tooltip} ({hint})"),
         }
@@ -211,7 +280,8 @@ mod tests {
     fn held(world: &mut World, keys: &[KeyCode]) -> Vec<Action> {
         press(world, keys);
         let held = |keys: Keys| {
-            let all = Action::ALL.into_iter();
+            let all = Keymap::default();
+            let all = all.actions();
             all.filter(|action| keys.is_held(*action))
                 .collect::<Vec<_>>()
         };
@@ -226,9 +296,10 @@ mod tests {
     #[test]
     fn every_default_key_does_what_it_is_bound_to() {
         let mut world = world();
-        for action in Action::ALL {
-            for binding in action.default_bindings() {
-                if action.situation() == Situation::Holding {
+        let keymap = Keymap::default();
+        for action in keymap.actions() {
+            for binding in keymap.default_bindings(action) {
+                if keymap.situation(action) == Situation::Holding {
                     hold_something(&mut world);
                 }
                 let Modifiers { ctrl, shift, .. } = binding.modifiers;
@@ -246,7 +317,7 @@ mod tests {
     fn shift_changes_only_keys_that_have_a_meaning_with_it() {
         use Way::{Minus, Plus};
         let mut world = world();
-        let w2 = |way| Action::Move(RobotJoint::RightW2, way);
+        let w2 = |way| Action::Move(RobotJoint::RightW2.name(), way);
         assert_eq!(held(&mut world, &[KeyT]), [w2(Plus)]);
         assert_eq!(held(&mut world, &[ShiftLeft, KeyT]), [w2(Minus)]);
         let forward = Action::CameraForward;
@@ -295,7 +366,8 @@ mod tests {
         keys.iter().for_each(|&key| input.press(key));
         keys.iter().for_each(|&key| input.release(key));
         let struck = |keys: Keys| {
-            let all = Action::ALL.into_iter();
+            let all = Keymap::default();
+            let all = all.actions();
             all.filter(|action| keys.was_struck(*action))
                 .collect::<Vec<_>>()
         };

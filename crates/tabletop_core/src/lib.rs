@@ -95,7 +95,7 @@ pub use robot::{
     Arm, BaseLayout, CameraCarrier, CameraLayout, Drive, Face, FingerLook, GripperKind,
     GripperLayout, JOINTS_PER_ARM, JointId, JointLayout, JointName, JointRole, JointState,
     LayoutError, LayoutFile, LimbId, LimbLayout, LimbName, LimbState, LinkFrame, MANUAL_SPEED,
-    Markers, Robot, RobotContact, RobotJoint, RobotLayout, RobotMode, WIDEST_GRIP,
+    Markers, Obstacle, Robot, RobotContact, RobotJoint, RobotLayout, RobotMode, WIDEST_GRIP,
 };
 pub use rollback::Rollback;
 pub use scene::{ChainSpec, LidBoxSpec, SceneItem, SceneSpec, Table};

@@ -4,6 +4,7 @@ mod baxter;
 mod layout;
 mod layout_file;
 mod name;
+mod obstacle;
 
 pub use baxter::{Arm, JOINTS_PER_ARM, RobotJoint, WIDEST_GRIP};
 pub use layout::{
@@ -11,7 +12,9 @@ pub use layout::{
     JointLayout, JointRole, LimbId, LimbLayout, LinkFrame, RobotLayout,
 };
 pub use layout_file::{LayoutError, LayoutFile};
+pub(crate) use name::snake_case;
 pub use name::{JointName, LimbName};
+pub use obstacle::Obstacle;
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -98,7 +101,7 @@ pub struct LimbState {
     /// The objects that the gripper holds, in the order in which it took them.
     pub holds: Vec<Entity>,
     /// What the arm is stopped by; `None` if nothing is in its way.
-    pub blocked_by: Option<String>,
+    pub blocked_by: Option<Obstacle>,
     /// Whether it is on its way to a position that it was told to go to.
     pub is_moving: bool,
 }

@@ -1,6 +1,6 @@
 //! Events of the robot, in words.
 
-use crate::SimFact;
+use crate::{Obstacle, SimFact};
 
 /// The angle of the report's figure 11 has to be below this, in degrees.
 const LARGEST_GRIP_ANGLE: f32 = 180.0 / 16.0;
@@ -16,10 +16,12 @@ impl SimFact {
                 angle.to_degrees()
             ),
             Self::GripReleased { arm, id } => format!("the {arm} gripper holds {id} no longer"),
-            Self::ArmBlocked { arm, by } if by == "table" => {
-                format!("the {arm} arm is stopped by the table")
-            }
-            Self::ArmBlocked { arm, by } => format!("the {arm} arm is stopped by {by}"),
+            Self::ArmBlocked { arm, by } => match by {
+                Obstacle::Table => format!("the {arm} arm is stopped by the table"),
+                Obstacle::Object(name) | Obstacle::Link(name) => {
+                    format!("the {arm} arm is stopped by {name}")
+                }
+            },
             Self::TaskLoaded { .. }
             | Self::ObjectCreated { .. }
             | Self::ObjectDeleted { .. }
@@ -71,9 +73,16 @@ mod tests {
             (
                 SimFact::ArmBlocked {
                     arm: Arm::Left.name(),
-                    by: "table".into(),
+                    by: Obstacle::Table,
                 },
                 "the left arm is stopped by the table",
+            ),
+            (
+                SimFact::ArmBlocked {
+                    arm: Arm::Left.name(),
+                    by: Obstacle::Object("table".into()),
+                },
+                "the left arm is stopped by table",
             ),
         ] {
             assert_eq!(fact.robot_event().as_deref(), Some(expected));

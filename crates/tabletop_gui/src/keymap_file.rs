@@ -23,7 +23,7 @@ use serde::{
     Deserialize, Deserializer,
     de::{MapAccess, Visitor},
 };
-use tabletop_core::{Action, ActionGroup, KeyBinding, Keymap, Situation};
+use tabletop_core::{Action, KeyBinding, Keymap, RobotLayout, Situation};
 
 use crate::{Notices, Preferences, Tone};
 
@@ -38,35 +38,55 @@ pub(crate) fn plugin(app: &mut App) {
 fn load(
     named: Option<Res<KeymapFile>>,
     preferences: Res<Preferences>,
+    layout: Res<RobotLayout>,
     mut keymap: ResMut<Keymap>,
     mut notices: ResMut<Notices>,
 ) {
     let path = named.as_ref().map(|file| file.0.as_path());
-    let (read, faults) = read(path, &preferences);
+    let (read, faults) = read(path, &preferences, &layout);
     *keymap = read;
     for fault in faults {
         notices.add(Tone::Fault, &fault);
     }
 }
 
-/// Reads the keymap of a file, or that of the preferences, with what is wrong with it. Without a file, keys are as they are shipped.
-pub fn read(path: Option<&Path>, preferences: &Preferences) -> (Keymap, Vec<String>) {
+/// Reads the keymap of a file, or that of the preferences, for a robot, with what is wrong with it. Without a file, keys are as they are
+/// shipped.
+pub fn read(
+    path: Option<&Path>,
+    preferences: &Preferences,
+    layout: &RobotLayout,
+) -> (Keymap, Vec<String>) {
     let own = || preferences.file("keys").filter(|path| path.exists());
     let Some(path) = path.map(Path::to_owned).or_else(own) else {
-        return default();
+        return shipped(layout);
     };
     match fs::read_to_string(&path) {
         Ok(text) => {
-            let (keymap, faults) = parse(&text);
+            let (keymap, faults) = parse(&text, layout);
             let faults = faults.into_iter();
             let located = faults.map(|fault| format!("{}:{fault}", path.display()));
             (keymap, located.collect())
         }
         Err(error) => {
             let fault = format!("{}: {error}", path.display());
-            (Keymap::default(), vec![fault])
+            (Keymap::of(layout), vec![fault])
         }
     }
+}
+
+/// The keys of a robot as they are shipped, and those of its joints that have another meaning already.
+fn shipped(layout: &RobotLayout) -> (Keymap, Vec<String>) {
+    let keymap = Keymap::of(layout);
+    let conflicts = keymap.conflicts().into_iter();
+    let faults = conflicts.map(|(binding, owner, action)| {
+        format!(
+            "{}: `{binding}` is a key of `{owner}` already, so it does not do `{action}`",
+            layout.name
+        )
+    });
+    let faults = faults.collect();
+    (keymap, faults)
 }
 
 /// Where an action is named in a file, and its keys, each with its place.
@@ -77,15 +97,14 @@ struct KeymapEntry<'a> {
 
 /// Reads a keymap. What is wrong with it is told with line and column, and left out. An empty text binds nothing anew, as a shell leaves it that
 /// is about to write the file.
-pub fn parse(text: &str) -> (Keymap, Vec<String>) {
-    let mut faults = Vec::new();
-    let mut keymap = Keymap::default();
+pub fn parse(text: &str, layout: &RobotLayout) -> (Keymap, Vec<String>) {
+    let (mut keymap, mut faults) = shipped(layout);
     if text.trim().is_empty() {
         return (keymap, faults);
     }
     match ron::from_str::<RawEntries>(text) {
         Ok(entries) => {
-            let entries = entries_of(&entries, text, &mut faults);
+            let entries = entries_of(&entries, &keymap, text, &mut faults);
             bind(&mut keymap, entries, text, &mut faults);
         }
         Err(error) => faults.push(error.to_string()),
@@ -99,13 +118,13 @@ pub fn write(keymap: &Keymap) -> String {
         "// Keys are named after their places on a US keyboard: KeyA, Digit1, Slash, ArrowLeft, F1, Space.\n\
          // Ctrl, Alt, Shift and Super stand before a key: \"Ctrl+Shift+KeyZ\". Lines that are left out keep their keys.\n{\n",
     );
-    for group in ActionGroup::ALL {
-        let _infallible = writeln!(text, "    // {}", group.label());
-        for action in group.actions() {
+    for (group, name) in keymap.groups() {
+        let _infallible = writeln!(text, "    // {name}");
+        for action in keymap.actions_of(group) {
             let bindings = keymap.bindings(action).iter();
             let bindings: Vec<_> = bindings.map(|binding| format!("\"{binding}\"")).collect();
             let bindings = bindings.join(", ");
-            let label = action.label();
+            let label = keymap.label(action);
             let _infallible = writeln!(text, "    \"{action}\": [{bindings}], // {label}");
         }
     }
@@ -114,9 +133,11 @@ pub fn write(keymap: &Keymap) -> String {
 
 fn entries_of<'a>(
     RawEntries(entries): &RawEntries<'a>,
+    keymap: &Keymap,
     text: &str,
     faults: &mut Vec<String>,
 ) -> Vec<KeymapEntry<'a>> {
+    let of_baxter = Keymap::default();
     let mut named = BTreeSet::new();
     let mut read = Vec::new();
     for (name, bindings) in entries {
@@ -132,17 +153,22 @@ fn entries_of<'a>(
         });
         let bindings = bindings.collect();
         let action = string(name).and_then(|name| {
-            let action = Action::from_name(&name);
-            action.ok_or_else(|| {
+            let action = keymap.find(&name);
+            if action.is_none() && of_baxter.find(&name).is_some() {
+                return Ok(None);
+            }
+            action.map(Some).ok_or_else(|| {
                 format!("there is no action `{name}`; `tabletop keys` lists them all")
             })
         });
         let fault = match action {
-            Ok(action) if named.insert(action) => {
+            // The file is for Baxter, too, and this robot has no such joint.
+            Ok(None) => continue,
+            Ok(Some(action)) if named.insert(action) => {
                 read.push(KeymapEntry { action, bindings });
                 continue;
             }
-            Ok(action) => format!("`{action}` has its keys further up already"),
+            Ok(Some(action)) => format!("`{action}` has its keys further up already"),
             Err(fault) => fault,
         };
         let place = place(name.trim().get_ron(), text);
@@ -158,7 +184,7 @@ fn bind(keymap: &mut Keymap, entries: Vec<KeymapEntry>, text: &str, faults: &mut
     for KeymapEntry { action, bindings } in entries {
         let mut own = Vec::new();
         for (part, binding) in bindings {
-            let key = (binding, action.situation());
+            let key = (binding, keymap.situation(action));
             let (owner, _) = *owners.entry(key).or_insert((action, part));
             if owner == action {
                 own.push(binding);
@@ -171,13 +197,14 @@ fn bind(keymap: &mut Keymap, entries: Vec<KeymapEntry>, text: &str, faults: &mut
         }
         keymap.bind(action, own);
     }
-    for action in Action::ALL {
+    let actions: Vec<_> = keymap.actions().collect();
+    for action in actions {
         if named.contains(&action) {
             continue;
         }
-        let mut kept = action.default_bindings();
+        let mut kept = keymap.default_bindings(action).to_vec();
         kept.retain(|&binding| {
-            let Some((owner, part)) = owners.get(&(binding, action.situation())) else {
+            let Some((owner, part)) = owners.get(&(binding, keymap.situation(action))) else {
                 return true;
             };
             faults.push(format!(
@@ -239,12 +266,16 @@ impl<'de> Visitor<'de> for EntriesVisitor {
 mod tests {
     use super::*;
 
+    fn read_text(text: &str) -> (Keymap, Vec<String>) {
+        parse(text, RobotLayout::baxter())
+    }
+
     fn binding(text: &str) -> KeyBinding {
         text.parse().unwrap()
     }
 
     fn faults(text: &str) -> Vec<String> {
-        parse(text).1
+        read_text(text).1
     }
 
     #[test]
@@ -252,19 +283,19 @@ mod tests {
         let mut keymap = Keymap::default();
         keymap.bind(Action::Pause, [binding("Ctrl+KeyP"), binding("F5")]);
         keymap.bind(Action::ClearTable, []);
-        assert_eq!(parse(&write(&keymap)), (keymap, vec![]));
+        assert_eq!(read_text(&write(&keymap)), (keymap, vec![]));
     }
 
     #[test]
     fn actions_that_are_not_named_keep_their_keys() {
-        let (keymap, faults) = parse("{\"pause\": [\"KeyV\"], \"clear_table\": []}");
+        let (keymap, faults) = read_text("{\"pause\": [\"KeyV\"], \"clear_table\": []}");
         assert_eq!(faults, Vec::<String>::new());
         let mut expected = Keymap::default();
         expected.bind(Action::Pause, [binding("KeyV")]);
         expected.bind(Action::ClearTable, []);
         assert_eq!(keymap, expected);
         for nothing in ["{}", "", "\n"] {
-            assert_eq!(parse(nothing), (Keymap::default(), vec![]));
+            assert_eq!(read_text(nothing), (Keymap::default(), vec![]));
         }
     }
 
@@ -278,7 +309,7 @@ mod tests {
     "quit": ["KeyX"],
     "step": ["KeyQ"],
 }"#;
-        let (keymap, faults) = parse(text);
+        let (keymap, faults) = read_text(text);
         let expected = [
             "3:5: there is no action `pauze`; `tabletop keys` lists them all",
             "4:14: there is no key `Qu`; keys are named as on a US keyboard: KeyA, Digit1, Space, F1",
@@ -297,7 +328,7 @@ mod tests {
 
     #[test]
     fn a_key_that_is_taken_from_an_action_is_told() {
-        let (keymap, faults) = parse("{\"pause\": [\"KeyR\"]}");
+        let (keymap, faults) = read_text("{\"pause\": [\"KeyR\"]}");
         let expected = "1:12: `pause` takes `KeyR` from `show_robot`: give that another key, or none: \"show_robot\": []";
         assert_eq!(faults, [expected]);
         assert_eq!(keymap.bindings(Action::Pause), [binding("KeyR")]);
@@ -306,7 +337,7 @@ mod tests {
 
     #[test]
     fn two_actions_can_change_keys() {
-        let (keymap, faults) = parse("{\"pause\": [\"KeyR\"], \"show_robot\": [\"Space\"]}");
+        let (keymap, faults) = read_text("{\"pause\": [\"KeyR\"], \"show_robot\": [\"Space\"]}");
         assert_eq!(faults, Vec::<String>::new());
         assert_eq!(keymap.bindings(Action::ShowRobot), [binding("Space")]);
     }
@@ -323,6 +354,7 @@ mod tests {
         app.add_plugins(plugin)
             .insert_resource(Preferences::in_folder(&folder))
             .init_resource::<Keymap>()
+            .init_resource::<RobotLayout>()
             .init_resource::<Notices>();
         app.update();
         fs::remove_dir_all(folder).unwrap();
@@ -350,6 +382,7 @@ mod tests {
             .insert_resource(Preferences::nowhere())
             .insert_resource(KeymapFile("/no such folder/keys.ron".into()))
             .init_resource::<Keymap>()
+            .init_resource::<RobotLayout>()
             .init_resource::<Notices>();
         app.update();
         assert_eq!(app.world().resource::<Notices>().iter().len(), 1);
@@ -362,7 +395,7 @@ mod tests {
             ("{\n\n  \"pause\" [\"Space\"]}", "3:"),
             ("[\"Space\"]", "1:1"),
         ] {
-            let (keymap, faults) = parse(text);
+            let (keymap, faults) = read_text(text);
             assert_eq!(keymap, Keymap::default(), "{text}");
             assert_eq!(faults.len(), 1, "{text}");
             assert!(faults[0].starts_with(place), "{text}: {faults:?}");

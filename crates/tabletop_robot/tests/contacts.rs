@@ -6,8 +6,8 @@ mod kit;
 use bevy::prelude::*;
 use kit::{Stage, block};
 use tabletop_core::{
-    Arm, Drive, ObjectIndex, Pose, RobotCommand, RobotContact, RobotJoint, StepApp, TICK_SECONDS,
-    Table, Twist,
+    Arm, Drive, ObjectIndex, Obstacle, Pose, RobotCommand, RobotContact, RobotJoint, StepApp,
+    TICK_SECONDS, Table, Twist,
 };
 
 const ARM: Arm = Arm::Right;
@@ -162,7 +162,10 @@ fn what_stops_an_arm_is_touched() {
     for stage in [Stage::new(), Stage::dynamic()] {
         let mut stage = push(stage, 0.0);
         stage.app.step(200);
-        assert_eq!(stage.robot().limb(ARM).blocked_by.as_deref(), Some("thing"));
+        assert_eq!(
+            stage.robot().limb(ARM).blocked_by,
+            Some(Obstacle::Object("thing".into()))
+        );
         assert_eq!(bodies(&stage), [RIGHT_FINGER]);
         let contact = &stage.robot().contacts[0];
         assert_eq!(

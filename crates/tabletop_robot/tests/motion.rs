@@ -9,7 +9,7 @@ use bevy::prelude::*;
 use kit::{Stage, block, inside_the_table};
 use proptest::prelude::*;
 use tabletop_core::{
-    Arm, Drive, Hand, HandCommand, HeadCamera, HistoryCommand, Pose, Robot, RobotCommand,
+    Arm, Drive, Hand, HandCommand, HeadCamera, HistoryCommand, Obstacle, Pose, Robot, RobotCommand,
     RobotJoint, SimFact, StepApp, TICK_SECONDS,
 };
 
@@ -99,7 +99,7 @@ fn an_arm_stops_at_the_table_and_says_so_once() {
     }
     let blocked = SimFact::ArmBlocked {
         arm: Arm::Right.name(),
-        by: "table".into(),
+        by: Obstacle::Table,
     };
     assert_eq!(facts, [blocked]);
     let tip = stage.robot().limb(Arm::Right).end_effector * Vec3::new(0.0, 0.0, -0.75);
@@ -130,7 +130,7 @@ fn an_arm_stops_at_a_fixed_object_and_pushes_a_free_one() {
         let facts = stage.facts_of(200);
         let is_blocked = facts
             .iter()
-            .any(|fact| matches!(fact, SimFact::ArmBlocked { by, .. } if by == "thing"));
+            .any(|fact| matches!(fact, SimFact::ArmBlocked { by: Obstacle::Object(id), .. } if id == "thing"));
         assert_eq!(is_blocked, !moves, "{facts:?}");
         let place = stage.place("thing").location;
         assert_eq!(place.x > 5.0, moves, "{place}");
@@ -153,8 +153,12 @@ fn an_arm_names_the_nearest_of_the_things_in_its_way() {
         let turned = stage.robot().joint(s0).position - 0.5;
         drive(&mut stage, s0, Drive::Position(turned));
         stage.app.step(1);
-        let by = stage.robot().limb(Arm::Right).blocked_by.as_deref();
-        assert_eq!(by, Some("near"), "shifted by {shift}");
+        let by = stage.robot().limb(Arm::Right).blocked_by.clone();
+        assert_eq!(
+            by,
+            Some(Obstacle::Object("near".into())),
+            "shifted by {shift}"
+        );
     }
 }
 
@@ -170,7 +174,7 @@ fn the_arms_do_not_enter_each_other() {
     });
     let facts = stage.facts_of(300);
     let is_blocked = facts.iter().any(
-        |fact| matches!(fact, SimFact::ArmBlocked { arm, by } if *arm == Arm::Left.name() && by.contains("right")),
+        |fact| matches!(fact, SimFact::ArmBlocked { arm, by: Obstacle::Link(link) } if *arm == Arm::Left.name() && link.contains("right")),
     );
     assert!(is_blocked, "{facts:?}");
 }
@@ -321,8 +325,8 @@ fn an_arm_that_presses_a_block_onto_the_table_stops() {
     });
     stage.app.step(140);
     assert_eq!(
-        stage.robot().limb(Arm::Right).blocked_by.as_deref(),
-        Some("thing")
+        stage.robot().limb(Arm::Right).blocked_by,
+        Some(Obstacle::Object("thing".into()))
     );
     let place = stage.place("thing").location;
     assert!(

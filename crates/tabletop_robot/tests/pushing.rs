@@ -8,7 +8,9 @@ use kit::{
     Stage, block,
     motors::{ARM, SECOND, check_limits, drive, effort},
 };
-use tabletop_core::{Drive, Pose, Robot, RobotCommand, RobotJoint, SimFact, StepApp, TICK_SECONDS};
+use tabletop_core::{
+    Drive, Obstacle, Pose, Robot, RobotCommand, RobotJoint, SimFact, StepApp, TICK_SECONDS,
+};
 
 #[test]
 fn a_swing_into_a_fixed_block_stops_there_within_the_efforts() {
@@ -39,7 +41,7 @@ fn a_swing_into_a_fixed_block_stops_there_within_the_efforts() {
     assert!(strongest > 40.0, "it pressed: {strongest} N m");
     let blocked = SimFact::ArmBlocked {
         arm: ARM.name(),
-        by: "wall".into(),
+        by: Obstacle::Object("wall".into()),
     };
     assert_eq!(facts, [blocked]);
 }
@@ -120,7 +122,7 @@ fn a_light_block_is_pushed_and_a_heavy_one_stalls_the_arm() {
     assert_eq!(heavy.strongest, 1.0);
     let blocked = SimFact::ArmBlocked {
         arm: ARM.name(),
-        by: "thing".into(),
+        by: Obstacle::Object("thing".into()),
     };
     assert_eq!(heavy.facts, [blocked]);
 }
@@ -149,7 +151,10 @@ fn an_arm_that_presses_a_block_onto_the_table_stops() {
         stage.app.step(1);
         check_limits(stage.robot());
     }
-    assert_eq!(stage.robot().limb(ARM).blocked_by.as_deref(), Some("thing"));
+    assert_eq!(
+        stage.robot().limb(ARM).blocked_by,
+        Some(Obstacle::Object("thing".into()))
+    );
     let hand = stage.robot().limb(ARM).end_effector.location;
     assert!(
         hand.truncate().distance(Vec2::new(3.0, -3.0)) < 0.3,

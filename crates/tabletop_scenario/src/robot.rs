@@ -240,8 +240,9 @@ impl RobotCheck {
                 let found = robot
                     .limb(limb_of(seen.layout, *arm)?)
                     .blocked_by
-                    .as_deref();
-                (found == Some(by)).then_some(()).ok_or_else(|| {
+                    .as_ref()
+                    .map(ToString::to_string);
+                (found.as_ref() == Some(by)).then_some(()).ok_or_else(|| {
                     format!(
                         "expected the {arm} arm blocked by {by}, found it {}",
                         found.map_or("free".into(), |found| format!("blocked by {found}"))

@@ -7,6 +7,7 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
+use bevy::reflect::Reflect;
 use serde::{
     Deserialize, Deserializer, Serialize, Serializer,
     de::{DeserializeSeed, EnumAccess, Error, VariantAccess, Visitor},
@@ -27,7 +28,7 @@ fn interned(name: &str) -> &'static str {
 }
 
 /// `LeftE1` as `left_e1`, which stays as it is.
-fn snake_case(name: &str) -> Cow<'_, str> {
+pub(crate) fn snake_case(name: &str) -> Cow<'_, str> {
     if !name.contains(char::is_uppercase) {
         return Cow::Borrowed(name);
     }
@@ -77,7 +78,8 @@ macro_rules! name {
         $(#[$doc])*
         ///
         /// In files `left_e1` and `LeftE1` are the same.
-        #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Reflect)]
+        #[reflect(opaque)]
         pub struct $name(&'static str);
 
         impl $name {

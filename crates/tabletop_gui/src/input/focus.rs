@@ -91,7 +91,7 @@ fn is_press_of(event: &egui::Event, keys: &[egui::Key]) -> bool {
 mod tests {
     use super::*;
     use KeyCode::{ArrowRight, Digit1, Digit2, Enter, Escape, F1, KeyR, Space, Tab};
-    use tabletop_core::{Action, CorePlugin, KeySystems};
+    use tabletop_core::{Action, CorePlugin, KeySystems, Keymap};
 
     /// What there is to have the focus, and what came of it.
     #[derive(Resource, Default)]
@@ -140,8 +140,8 @@ mod tests {
         });
     }
 
-    fn note_struck(keys: Keys, mut struck: ResMut<Struck>) {
-        let all = Action::ALL.into_iter();
+    fn note_struck(keys: Keys, keymap: Res<Keymap>, mut struck: ResMut<Struck>) {
+        let all = keymap.actions();
         struck
             .0
             .extend(all.filter(|action| keys.was_struck(*action)));

@@ -60,7 +60,7 @@ fn hold_joint_keys(
 fn directions(layout: &RobotLayout, is_on: impl Fn(Action) -> bool) -> Directions {
     Directions::of(layout, |joint| {
         let joint = layout.joint(joint);
-        let is_on = |way| i8::from(Action::moving(joint, way).is_some_and(&is_on));
+        let is_on = |way| i8::from(is_on(Action::Move(joint.name, way)));
         is_on(Way::Plus) - is_on(Way::Minus)
     })
 }

@@ -4,17 +4,20 @@ use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 use tabletop_core::{Action, ActionGroup, KeySystems, Keymap, Way, was_struck};
 
-/// The groups of each column, from left to right.
-const COLUMNS: [&[ActionGroup]; 3] = [
-    &[
-        ActionGroup::Simulation,
-        ActionGroup::Demonstration,
-        ActionGroup::Objects,
-        ActionGroup::Window,
-    ],
-    &[ActionGroup::Camera, ActionGroup::Robot],
-    &[ActionGroup::RightArm, ActionGroup::LeftArm],
-];
+/// How many columns there are.
+const COLUMNS: usize = 3;
+
+/// The column of a group, from left to right.
+const fn column_of(group: ActionGroup) -> usize {
+    match group {
+        ActionGroup::Simulation
+        | ActionGroup::Demonstration
+        | ActionGroup::Objects
+        | ActionGroup::Window => 0,
+        ActionGroup::Camera | ActionGroup::Robot => 1,
+        ActionGroup::Limb(_) => 2,
+    }
+}
 
 /// What the mouse does beside the panels.
 const MOUSE: [(&str, &str, &str); 6] = [
@@ -87,7 +90,7 @@ struct KeySheet {
 
 #[derive(Clone, Debug, PartialEq)]
 struct Group {
-    name: &'static str,
+    name: String,
     lines: Vec<Line>,
 }
 
@@ -107,11 +110,10 @@ enum Request {
 
 impl KeySheet {
     fn of(keymap: &Keymap) -> Self {
-        let groups = |groups: &&[ActionGroup]| -> Vec<_> {
-            let groups = groups.iter();
-            groups.map(|&group| Group::of(group, keymap)).collect()
-        };
-        let mut columns: Vec<_> = COLUMNS.iter().map(groups).collect();
+        let mut columns = vec![Vec::new(); COLUMNS];
+        for (group, name) in keymap.groups() {
+            columns[column_of(group)].push(Group::of(group, name, keymap));
+        }
         if let Some(last) = columns.last_mut() {
             last.push(Group::mouse());
         }
@@ -120,10 +122,10 @@ impl KeySheet {
 }
 
 impl Group {
-    fn of(group: ActionGroup, keymap: &Keymap) -> Self {
-        let lines = group.actions();
+    fn of(group: ActionGroup, name: &str, keymap: &Keymap) -> Self {
+        let lines = keymap.actions_of(group);
         Self {
-            name: group.label(),
+            name: name.to_owned(),
             lines: lines
                 .filter_map(|action| Line::of(action, keymap))
                 .collect(),
@@ -137,7 +139,7 @@ impl Group {
             tooltip: tooltip.to_owned(),
         });
         Self {
-            name: "Mouse",
+            name: "Mouse".to_owned(),
             lines: lines.into(),
         }
     }
@@ -147,19 +149,20 @@ impl Line {
     /// A joint has one line for both ways.
     fn of(action: Action, keymap: &Keymap) -> Option<Self> {
         let hint = keymap.hint(action);
+        let label = keymap.label(action);
         let (label, hint) = match action {
-            Action::Move(joint, Way::Minus) if !joint.layout().is_gripper() => return None,
-            Action::Move(joint, Way::Plus) if !joint.layout().is_gripper() => {
+            Action::Move(_, Way::Minus) if label.ends_with('-') => return None,
+            Action::Move(joint, Way::Plus) if label.ends_with('+') => {
                 let back = keymap.hint(Action::Move(joint, Way::Minus));
-                let label = action.label().replace('+', "+ / −");
+                let label = label.replace('+', "+ / −");
                 (label, format!("{} / {}", or_none(hint), or_none(back)))
             }
-            _ => (action.label(), or_none(hint)),
+            _ => (label.to_owned(), or_none(hint)),
         };
         Some(Self {
             label,
             keys: hint,
-            tooltip: action.tooltip().to_owned(),
+            tooltip: keymap.description(action).to_owned(),
         })
     }
 }
@@ -241,14 +244,14 @@ fn show(ui: &mut egui::Ui, sheet: &KeySheet) -> Option<Request> {
 }
 
 fn show_column(ui: &mut egui::Ui, groups: &[Group]) {
-    let first = groups.first().map(|group| group.name);
+    let first = groups.first().map(|group| &group.name);
     let grid = egui::Grid::new(first).num_columns(2);
     grid.spacing([KEY_GAP, LINE_GAP]).show(ui, |ui| {
         for group in groups {
-            if Some(group.name) != first {
+            if Some(&group.name) != first {
                 ui.end_row();
             }
-            ui.strong(group.name);
+            ui.strong(&group.name);
             ui.end_row();
             for line in &group.lines {
                 ui.monospace(&line.keys);
@@ -275,10 +278,13 @@ mod tests {
     }
 
     #[test]
-    fn every_action_stands_in_one_column() {
-        let mut shown: Vec<_> = COLUMNS.concat();
+    fn every_group_stands_in_one_column() {
+        let keymap = Keymap::default();
+        let shown = KeySheet::of(&keymap).columns.concat();
+        let mut shown: Vec<_> = shown.into_iter().map(|group| group.name).collect();
         shown.sort();
-        let mut all = ActionGroup::ALL;
+        let mut all: Vec<_> = keymap.groups().map(|(_, name)| name.to_owned()).collect();
+        all.push("Mouse".to_owned());
         all.sort();
         assert_eq!(shown, all);
     }
@@ -292,7 +298,7 @@ mod tests {
         let some = |label: &str, keys: &str| Some((label.to_owned(), keys.to_owned()));
         assert_eq!(line(Action::Pause), some("Pause, resume", "F5"));
         assert_eq!(line(Action::Quit), some("Quit", "–"));
-        let w2 = |way| Action::Move(tabletop_core::RobotJoint::RightW2, way);
+        let w2 = |way| Action::Move(tabletop_core::RobotJoint::RightW2.name(), way);
         assert_eq!(line(w2(Way::Plus)), some("W2 + / −", "T / Shift+T"));
         assert_eq!(line(w2(Way::Minus)), None);
     }

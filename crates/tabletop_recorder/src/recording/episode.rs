@@ -186,14 +186,7 @@ impl Episode {
         let (turned, rest) = facts.split_at(last_turn.map_or(0, |last| last + 1));
         for facts in turned.split_inclusive(|fact| Turn::of(fact).is_some()) {
             let is_undo = facts.last().and_then(Turn::of) == Some(Turn::Undo);
-            let restored = if is_undo {
-                self.undoable.last().map(|start| &start.before)
-            } else {
-                self.redoable.last().map(|segment| &segment.end)
-            };
-            let facts = &facts[..facts.len() - 1];
-            let reported = restored.map_or(facts, |restored| restored.without_restored(facts));
-            self.write_events(reported, stage, timeline)?;
+            self.write_events(&facts[..facts.len() - 1], stage, timeline)?;
             if is_undo {
                 self.undo(timeline)?;
             } else {

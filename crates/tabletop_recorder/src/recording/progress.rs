@@ -1,6 +1,6 @@
 //! How far a recording has come, for undo and redo.
 
-use tabletop_core::{JointState, SimFact, SimTick};
+use tabletop_core::{JointState, SimTick};
 
 use crate::{
     files::{intent::Lengths, session::SessionCommand},
@@ -39,32 +39,4 @@ pub(crate) struct UndoneSegment {
     pub(crate) start: SegmentStart,
     pub(crate) end: Progress,
     pub(crate) timeline: TimelineTail,
-}
-
-impl Progress {
-    /// The facts without those at their end that only tell what turning the clock to here has brought back or taken away.
-    pub(crate) fn without_restored<'f>(&self, facts: &'f [SimFact]) -> &'f [SimFact] {
-        let is_there = |id: &str| self.objects.has(id);
-        let reported = facts.iter().rposition(|fact| match fact {
-            SimFact::ObjectCreated { id, .. } => !is_there(id),
-            SimFact::ObjectDeleted { id, .. } => is_there(id),
-            SimFact::TaskLoaded { .. }
-            | SimFact::SegmentBegun { .. }
-            | SimFact::Grasped { .. }
-            | SimFact::Released { .. }
-            | SimFact::Destroyed { .. }
-            | SimFact::RecordingStarted { .. }
-            | SimFact::RecordingFinished { .. }
-            | SimFact::RecordingFailed { .. }
-            | SimFact::Undone { .. }
-            | SimFact::Redone { .. }
-            | SimFact::RobotShown { .. }
-            | SimFact::GripMade { .. }
-            | SimFact::GripRefused { .. }
-            | SimFact::GripReleased { .. }
-            | SimFact::ArmBlocked { .. }
-            | SimFact::Refused { .. } => true,
-        });
-        &facts[..reported.map_or(0, |last| last + 1)]
-    }
 }

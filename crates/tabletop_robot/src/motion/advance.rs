@@ -7,7 +7,6 @@ use tabletop_physics::PhysicsSettings;
 
 use crate::{
     articulation::link_entities::{positions, put},
-    clearance::Owner,
     command::joint_targets::JointTargets,
     dynamics::{contact_loads::contact_loads, motors::Motors},
     gripper::{
@@ -181,9 +180,10 @@ fn decide(
         }
         if angle < STEEPEST_GRIP {
             actions.push(GripChange::Take(limb, touched));
-        } else if !grips.refused[limb.index()].contains(&object) {
+        } else if let Some(id) = known.id(object)
+            && !grips.refused[limb.index()].contains(&object)
+        {
             grips.refused[limb.index()].push(object);
-            let id = known.name(Owner::Thing(object));
             let arm = grips.name_of(limb);
             actions.push(GripChange::Refuse { arm, id, angle });
         }

@@ -44,7 +44,7 @@ pub(crate) fn leave_obstacles(
         for joint in &layout.limb(limb).joints {
             robot.joints[joint.index()].position = layout.joint(*joint).home;
         }
-        let by = known.name(obstacle);
+        let by = known.obstacle(obstacle);
         facts.write(SimFact::ArmBlocked {
             arm: layout.limb(limb).name,
             by,

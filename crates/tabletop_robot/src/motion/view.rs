@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*};
-use tabletop_core::{Held, LimbId, ObjectSpec, Pose, Robot, Table};
+use tabletop_core::{Held, LimbId, ObjectSpec, Obstacle, Pose, Robot, Table};
 use tabletop_physics::convex_parts;
 
 use crate::{
@@ -91,16 +91,16 @@ impl RobotView<'_, '_> {
         self.articulation.layout.base.pose(&table)
     }
 
-    /// What an arm was stopped by in a tick, by name: what cannot be passed, or what it has squeezed for too long.
+    /// What an arm was stopped by in a tick: what cannot be passed, or what it has squeezed for too long.
     pub fn blocked_by(
         &self,
         limb: LimbId,
         motion: &TickMotion,
         targets: &mut JointTargets,
-    ) -> Option<String> {
+    ) -> Option<Obstacle> {
         let squeezed = targets.wait_for(limb, motion.held_up_by[limb.index()]);
         let obstacle = motion.blocked_by[limb.index()].or(squeezed.map(Owner::Thing));
-        obstacle.map(|owner| self.name(owner))
+        obstacle.map(|owner| self.obstacle(owner))
     }
 
     /// Where the bodies are after a motion, and what the grippers hold rigidly.
@@ -116,15 +116,18 @@ impl RobotView<'_, '_> {
         bodies.chain(held).collect()
     }
 
-    /// What something is called.
-    pub fn name(&self, owner: Owner) -> String {
+    /// Something in the way.
+    pub fn obstacle(&self, owner: Owner) -> Obstacle {
         match owner {
-            Owner::Body(number) => self.articulation.bodies[number].name.clone(),
-            Owner::Thing(thing) => match self.objects.get(thing) {
-                Ok((spec, ..)) => spec.id.clone(),
-                Err(_) => "table".into(),
-            },
+            Owner::Body(number) => Obstacle::Link(self.articulation.bodies[number].name.clone()),
+            Owner::Thing(thing) => self.id(thing).map_or(Obstacle::Table, Obstacle::Object),
         }
+    }
+
+    /// The id of an object; the table has none.
+    pub fn id(&self, thing: Entity) -> Option<String> {
+        let (spec, ..) = self.objects.get(thing).ok()?;
+        Some(spec.id.clone())
     }
 
     /// Writes what is known of the arms.

@@ -75,10 +75,8 @@ pub(super) fn joint(
 
 /// What a button does, and the keys that do it.
 fn tooltip(model: &Model, joint: JointId, way: Way) -> String {
-    match Action::moving(model.layout.joint(joint), way) {
-        Some(action) => model.keymap.tooltip(action),
-        None => "Moves the joint".to_owned(),
-    }
+    let joint = model.layout.joint(joint).name;
+    model.keymap.tooltip(Action::Move(joint, way))
 }
 
 fn chosen_joint(ui: &mut Ui, layout: &RobotLayout, before: JointId) -> JointId {

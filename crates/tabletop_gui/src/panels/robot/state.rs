@@ -50,8 +50,10 @@ pub(super) fn state(ui: &mut Ui, model: &Model, selected: JointId) {
         });
         row(ui, "Holds", &|limb| held(model, limb).into());
         row(ui, "Blocked", &|limb| {
-            let blocked_by = model.robot.limb(limb).blocked_by.as_deref();
-            blocked_by.unwrap_or(NOTHING).into()
+            let blocked_by = model.robot.limb(limb).blocked_by.as_ref();
+            blocked_by
+                .map_or_else(|| NOTHING.into(), ToString::to_string)
+                .into()
         });
         if let Some(neck) = layout.neck {
             ui.label(layout.label_of(neck));

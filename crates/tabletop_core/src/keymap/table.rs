@@ -1,0 +1,297 @@
+//! The table of actions, from which input, help, tooltips and documentation are made.
+
+use bevy_input::keyboard::KeyCode::{self, *};
+
+use super::{
+    KeyBinding, Modifiers,
+    action::{Action, Way},
+};
+use crate::{JointId, JointLayout, JointRole, LimbId, LimbLayout, RobotLayout};
+
+/// What an action belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[expect(missing_docs, reason = "the names say it")]
+pub enum ActionGroup {
+    Simulation,
+    Camera,
+    Demonstration,
+    Objects,
+    Robot,
+    Limb(LimbId),
+    Window,
+}
+
+/// When an action can be asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Situation {
+    /// Always.
+    Any,
+    /// While the selected hand holds something. Then its keys come before those of [`Any`](Self::Any).
+    Holding,
+}
+
+/// A row of the table of actions.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct ActionRow {
+    pub action: Action,
+    pub group: ActionGroup,
+    pub label: String,
+    pub tooltip: &'static str,
+    pub situation: Situation,
+    pub is_continuous: bool,
+    /// The keys that do it unless the user binds others.
+    pub default_keys: Vec<KeyBinding>,
+}
+
+impl ActionRow {
+    /// It goes on while its key is held down; others are done once a press.
+    fn continuous(self) -> Self {
+        Self {
+            is_continuous: true,
+            ..self
+        }
+    }
+
+    /// It is done to what the selected hand holds.
+    fn while_holding(self) -> Self {
+        Self {
+            situation: Situation::Holding,
+            ..self
+        }
+    }
+}
+
+/// The table for a robot.
+pub(super) fn rows(layout: &RobotLayout) -> Vec<ActionRow> {
+    let mut rows = plain_rows();
+    rows.extend(joints_by_place(layout).flat_map(|joint| rows_of_joint(layout, joint)));
+    rows
+}
+
+/// The groups of a robot's actions with their names, in the order in which they are listed.
+pub(super) fn groups(layout: &RobotLayout) -> Vec<(ActionGroup, String)> {
+    use ActionGroup::{Camera, Demonstration, Objects, Robot, Simulation, Window};
+    let named = |group, name: &str| (group, name.to_owned());
+    let mut groups = vec![
+        named(Simulation, "Simulation"),
+        named(Camera, "Camera"),
+        named(Demonstration, "Demonstration"),
+        named(Objects, "Objects"),
+        named(Robot, "Robot"),
+    ];
+    let limbs = layout.limbs.iter().enumerate();
+    groups.extend(limbs.rev().map(|(i, LimbLayout { label: name, .. })| {
+        let is_arm = name.to_lowercase().contains("arm");
+        let name = if is_arm {
+            name.clone()
+        } else {
+            format!("{name} arm")
+        };
+        (ActionGroup::Limb(LimbId(i as u8)), name)
+    }));
+    groups.push(named(Window, "Window"));
+    groups
+}
+
+fn row(
+    action: Action,
+    group: ActionGroup,
+    label: &str,
+    tooltip: &'static str,
+    default_keys: Vec<KeyBinding>,
+) -> ActionRow {
+    ActionRow {
+        action,
+        group,
+        label: label.to_owned(),
+        tooltip,
+        situation: Situation::Any,
+        is_continuous: false,
+        default_keys,
+    }
+}
+
+/// The actions without a joint.
+#[rustfmt::skip]
+fn plain_rows() -> Vec<ActionRow> {
+    use ActionGroup::{Camera, Demonstration, Objects, Robot, Simulation, Window};
+    vec![
+        row(Action::Pause, Simulation, "Pause, resume", "Stops the simulation, or lets it run on", vec![plain(Space)]),
+        row(Action::Step, Simulation, "One step", "Pauses, and simulates a sixtieth of a second", vec![plain(Period)]),
+        row(Action::Slower, Simulation, "Slower", "Halves the pace of the simulation", vec![shift(Comma)]),
+        row(Action::Faster, Simulation, "Faster", "Doubles the pace of the simulation", vec![shift(Period)]),
+        row(Action::Quit, Simulation, "Quit", "Closes what is open over the window; else ends the program", vec![plain(Escape)]),
+
+        row(Action::CameraForward, Camera, "Forward", "Moves the camera along its direction of view", vec![plain(KeyW)]).continuous(),
+        row(Action::CameraBack, Camera, "Back", "Moves the camera against its direction of view", vec![plain(KeyS)]).continuous(),
+        row(Action::CameraLeft, Camera, "Left", "Moves the camera to its left", vec![plain(KeyA)]).continuous(),
+        row(Action::CameraRight, Camera, "Right", "Moves the camera to its right", vec![plain(KeyD)]).continuous(),
+        row(Action::CameraUp, Camera, "Up", "Raises the camera", vec![plain(KeyQ)]).continuous(),
+        row(Action::CameraDown, Camera, "Down", "Lowers the camera", vec![plain(KeyZ)]).continuous(),
+        row(Action::LookLeft, Camera, "Look left", "Turns the camera to its left", vec![plain(ArrowLeft)]).continuous(),
+        row(Action::LookRight, Camera, "Look right", "Turns the camera to its right", vec![plain(ArrowRight)]).continuous(),
+        row(Action::LookUp, Camera, "Look up", "Tilts the camera up", vec![plain(ArrowUp)]).continuous(),
+        row(Action::LookDown, Camera, "Look down", "Tilts the camera down", vec![plain(ArrowDown)]).continuous(),
+        row(Action::ViewStart, Camera, "View: start", "Looks at the table from where the camera starts", vec![plain(Digit3), plain(Home)]),
+        row(Action::ViewTop, Camera, "View: top", "Looks at the table from above", vec![plain(Digit4)]),
+        row(Action::ViewFront, Camera, "View: front", "Looks at the table from its front edge", vec![plain(Digit5)]),
+        row(Action::ViewRobotEye, Camera, "View: robot's eye", "Looks at the table from where the robot's head is", vec![plain(Digit6)]),
+
+        row(Action::PlaneCounterClockwise, Demonstration, "Plane CCW", "Turns the drag plane counter-clockwise", vec![plain(Slash)]).continuous().while_holding(),
+        row(Action::PlaneClockwise, Demonstration, "Plane CW", "Turns the drag plane clockwise", vec![shift(Slash)]).continuous().while_holding(),
+        row(Action::PlanePerpendicular, Demonstration, "Plane at right angles", "Shows the drag plane at right angles", vec![plain(ControlLeft)]).continuous().while_holding(),
+        row(Action::Undo, Demonstration, "Undo", "Discards the present segment of the recording", vec![ctrl(KeyZ)]),
+        row(Action::Redo, Demonstration, "Redo", "Brings back the segment that was undone last", vec![ctrl_shift(KeyZ), ctrl(KeyY)]),
+
+        row(Action::MakeBlock, Objects, "Big block", "Makes a big block somewhere on the table", vec![plain(KeyB)]),
+        row(Action::MakeStack, Objects, "Stack of five", "Makes a stack of five blocks somewhere on the table", vec![plain(KeyN)]),
+        row(Action::ClearTable, Objects, "Clear the table", "Removes every object that nobody holds", vec![plain(KeyC)]),
+        row(Action::OpenFile, Objects, "Open a file", "Opens a task file or a recording", vec![ctrl(KeyO)]),
+        row(Action::SaveFile, Objects, "Save as a file", "Saves what is on the table as a task file", vec![ctrl(KeyS)]),
+
+        row(Action::ShowRobot, Robot, "Show, hide", "Puts the robot to the table, or takes it away", vec![plain(KeyR)]),
+        row(Action::ShowHeadView, Robot, "Head view", "Shows or hides what the robot sees", vec![plain(Digit1)]),
+        row(Action::SaveHeadView, Robot, "Save the head view", "Saves what the robot sees as a picture", vec![plain(Digit2)]),
+        row(Action::ShowNextFace, Robot, "Next face", "Shows the robot's next face", vec![plain(Backslash)]),
+        row(Action::RunScript, Robot, "Script on, off", "Starts the script that drives the robot, or stops it", vec![plain(KeyM)]),
+
+        row(Action::ShowHelp, Window, "Help", "Shows or hides what the keys do", vec![plain(F1), shift(Slash)]),
+        row(Action::FillScreen, Window, "Full screen", "Fills the screen with the window, or no longer", vec![plain(F11)]),
+        row(Action::DrawLarger, Window, "Larger", "Draws everything larger", vec![ctrl(Equal), ctrl(NumpadAdd)]),
+        row(Action::DrawSmaller, Window, "Smaller", "Draws everything smaller", vec![ctrl(KeyCode::Minus), ctrl(NumpadSubtract)]),
+        row(Action::DrawToFit, Window, "Fit the window", "Draws everything as large as fits the window", vec![ctrl(Digit0), ctrl(Numpad0)]),
+    ]
+}
+
+/// All joints in the order in which their keys lie on the keyboard: the last limb before the first, each from its tip to its base.
+fn joints_by_place(layout: &RobotLayout) -> impl Iterator<Item = JointId> {
+    let limbs = layout.limbs.iter().rev();
+    let joints = limbs.flat_map(|limb| {
+        let joints = limb.joints.iter().rev();
+        joints.chain([&limb.gripper.joint]).copied()
+    });
+    joints.chain(layout.neck)
+}
+
+/// Joints have a key each, which with Shift moves them the other way; grippers have two (report section 5.1).
+fn rows_of_joint(layout: &RobotLayout, joint: JointId) -> [ActionRow; 2] {
+    let joint = layout.joint(joint);
+    [Way::Plus, Way::Minus].map(|way| {
+        let JointLayout {
+            name,
+            role,
+            label,
+            keys: [plus, minus],
+            ..
+        } = joint;
+        let (default_keys, sign) = match way {
+            Way::Plus => (plus, '+'),
+            Way::Minus => (minus, '-'),
+        };
+        let (group, label, tooltip) = match (role, way) {
+            (JointRole::Gripper(limb), Way::Plus) => (
+                ActionGroup::Limb(*limb),
+                "Open gripper".to_owned(),
+                "Opens the gripper",
+            ),
+            (JointRole::Gripper(limb), Way::Minus) => (
+                ActionGroup::Limb(*limb),
+                "Close gripper".to_owned(),
+                "Closes the gripper",
+            ),
+            (JointRole::Limb { limb, .. }, way) => (
+                ActionGroup::Limb(*limb),
+                format!("{label} {sign}"),
+                turns(way),
+            ),
+            (JointRole::Neck, way) => (ActionGroup::Robot, format!("{label} {sign}"), turns(way)),
+        };
+        let action = Action::Move(*name, way);
+        row(action, group, &label, tooltip, default_keys.clone()).continuous()
+    })
+}
+
+const fn turns(way: Way) -> &'static str {
+    match way {
+        Way::Plus => "Turns the joint",
+        Way::Minus => "Turns the joint the other way",
+    }
+}
+
+const fn plain(key: KeyCode) -> KeyBinding {
+    KeyBinding::new(Modifiers::NONE, key)
+}
+
+const fn shift(key: KeyCode) -> KeyBinding {
+    KeyBinding::new(Modifiers::SHIFT, key)
+}
+
+const fn ctrl(key: KeyCode) -> KeyBinding {
+    KeyBinding::new(Modifiers::CTRL, key)
+}
+
+const fn ctrl_shift(key: KeyCode) -> KeyBinding {
+    KeyBinding::new(Modifiers::CTRL.with_shift(), key)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use bevy::reflect::{Typed as _, enums::Enum as _};
+
+    use super::*;
+
+    fn all() -> Vec<ActionRow> {
+        rows(RobotLayout::baxter())
+    }
+
+    #[test]
+    fn every_action_has_a_row() {
+        let rows = all();
+        let listed: BTreeSet<_> = rows.iter().map(|row| row.action.variant_name()).collect();
+        let variants = Action::type_info().as_enum().unwrap().variant_names();
+        let missing: Vec<_> = variants
+            .iter()
+            .filter(|name| !listed.contains(**name))
+            .collect();
+        assert!(missing.is_empty(), "{missing:?}");
+    }
+
+    #[test]
+    fn no_two_rows_have_one_action_or_name() {
+        let rows = all();
+        let actions: BTreeSet<_> = rows.iter().map(|row| row.action).collect();
+        let names: BTreeSet<_> = rows.iter().map(|row| &row.action).collect();
+        assert_eq!((actions.len(), names.len()), (rows.len(), rows.len()));
+    }
+
+    #[test]
+    fn every_group_is_listed() {
+        let groups = groups(RobotLayout::baxter());
+        for row in all() {
+            let of_row = groups.iter().filter(|(group, _)| *group == row.group);
+            assert_eq!(of_row.count(), 1, "{}", row.action);
+        }
+    }
+
+    #[test]
+    fn every_action_has_a_key_and_says_what_it_does() {
+        for row in all() {
+            assert!(!row.default_keys.is_empty(), "{}", row.action);
+            assert!(!row.label.is_empty(), "{}", row.action);
+            assert!(!row.tooltip.is_empty(), "{}", row.action);
+        }
+    }
+
+    #[test]
+    fn every_joint_can_be_moved_both_ways() {
+        let layout = RobotLayout::baxter();
+        let actions: BTreeSet<_> = all().into_iter().map(|row| row.action).collect();
+        for joint in &layout.joints {
+            for way in [Way::Plus, Way::Minus] {
+                assert!(actions.contains(&Action::Move(joint.name, way)));
+            }
+        }
+    }
+}
