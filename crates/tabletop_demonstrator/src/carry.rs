@@ -55,7 +55,7 @@ fn collider_of<'a>(rapier: &'a RapierContext, object: Entity) -> Option<&'a rapi
     rapier.colliders.colliders.get(*handle)
 }
 
-/// Where an object comes to that is carried freely from one pose to another.
+/// The pose to which an object comes that is carried freely from one pose to another.
 fn carried(collider: &rapier::Collider, here: Pose, mut next: Pose, near: &Near) -> Pose {
     let held = convex_parts(Pose::IDENTITY, collider.shared_shape());
     next.location = here.location + pushing(next.location - here.location, &held, here, &near.free);
@@ -99,11 +99,11 @@ fn advanced(here: Pose, target: Pose) -> Pose {
     Pose::new(location, rotation)
 }
 
-/// What is near the way of a carried object, as convex parts in the frame of the world.
+/// The neighbourhood of a carried object's way, as convex parts in the frame of the world.
 struct Near {
-    /// What it cannot pass: everything that does not move by itself.
+    /// Obstacles: everything that does not move by itself.
     immovable: Vec<Convex>,
-    /// What it pushes.
+    /// Objects that it pushes.
     free: Vec<Convex>,
     /// The free objects that sleep.
     sleeping: Vec<Entity>,

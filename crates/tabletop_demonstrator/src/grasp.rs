@@ -10,7 +10,7 @@ use tabletop_physics::{hold, let_go, remove_object};
 
 use crate::rules;
 
-/// Where a held object is to be.
+/// The pose that a held object is to have.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct CarryTarget(pub Pose);
 
@@ -122,7 +122,7 @@ fn destroy(world: &mut World, cause: CommandId, hand: Hand) -> Result<(), String
     Ok(())
 }
 
-/// What a hand holds, and its id.
+/// The object in a hand, and its id.
 fn held_by(world: &World, hand: Hand) -> Option<(Entity, String)> {
     let object = world.resource::<Hands>().held_by(hand)?;
     Some((object, world.get::<ObjectSpec>(object)?.id.clone()))
@@ -154,7 +154,7 @@ fn turn(world: &mut World, hand: Hand, axis: Vec3, degrees: f32) -> Result<(), S
     Ok(())
 }
 
-/// Where what a hand holds is to be.
+/// The pose that a hand wants for its object.
 fn target_of(world: &mut World, hand: Hand) -> Option<Mut<'_, CarryTarget>> {
     let object = world.resource::<Hands>().held_by(hand)?;
     world.get_mut(object)

@@ -1,4 +1,4 @@
-//! What a held object cannot pass, and how it slides along it.
+//! Obstacles of a held object, and its way along them.
 
 use bevy::prelude::*;
 use tabletop_core::Pose;
@@ -37,7 +37,7 @@ fn pushed_out(
     None
 }
 
-/// Where an object comes to that moves from `from` to `to` and slides along what it cannot pass. It turns first, if there
+/// The pose to which an object comes that moves from `from` to `to` and slides along its obstacles. It turns first, if there
 /// is room for it. The result touches obstacles at most; if `from` is inside one, it is a way out or `from` itself.
 pub(crate) fn slide(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex]) -> Pose {
     let mut at = from;
@@ -73,7 +73,7 @@ pub(crate) fn slide(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex])
     at
 }
 
-/// How far the object may go in a direction: convex solids that are some distance apart stay apart while they come
+/// The distance that the object may go in a direction: convex solids that are some distance apart stay apart while they come
 /// nearer by less than that; but at least a step, from which it is pushed out again.
 fn free_way(held: &[Convex], at: Pose, direction: Vec3, length: f32, obstacles: &[Convex]) -> f32 {
     nearest(held, at, obstacles, length)
@@ -87,7 +87,7 @@ fn free_way(held: &[Convex], at: Pose, direction: Vec3, length: f32, obstacles: 
         .fold(length, f32::min)
 }
 
-/// What is left of a way when it may not go against any of these normals.
+/// The rest of a way that may not go against any of these normals.
 fn clipped(way: Vec3, normals: &[Vec3]) -> Vec3 {
     let mut clipped = way;
     for &normal in normals {

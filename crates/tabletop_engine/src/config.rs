@@ -1,4 +1,4 @@
-//! What an engine is started with, and what is wrong with it before an engine looks at it.
+//! The configuration of an engine, and its faults before an engine looks at it.
 
 use std::{
     env,
@@ -12,7 +12,7 @@ use crate::{
     octave::script_folder, private_folder::PrivateFolder,
 };
 
-/// How an engine learns of a request.
+/// The way in which an engine learns of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trigger {
     /// By a line on its standard input. Fast; not possible with MATLAB everywhere.
@@ -21,7 +21,7 @@ pub enum Trigger {
     Poll,
 }
 
-/// How long to wait for an engine. What takes longer is ended.
+/// The time limits of an engine, which is ended after them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Timeouts {
     /// For its start.
@@ -42,12 +42,12 @@ impl Default for Timeouts {
     }
 }
 
-/// What an engine is started with.
+/// The configuration with which an engine starts.
 #[derive(Clone, Debug)]
 pub struct EngineConfig {
     /// The engine.
     pub engine: FoundEngine,
-    /// How it learns of requests.
+    /// The way in which it learns of requests.
     pub trigger: Trigger,
     /// The folder that holds agentBehavior.m and the scripts that it names (MATLAB, Octave), or the file with the functions
     /// `init` and `callback` (Python), or whatever a user's driver runs. A relative path is one from the working directory.
@@ -56,13 +56,13 @@ pub struct EngineConfig {
     pub pair: Option<[String; 2]>,
     /// The directory in which the engine runs.
     pub working_dir: PathBuf,
-    /// How long to wait.
+    /// The time limits.
     pub timeouts: Timeouts,
-    /// Whether there is a display that figures can appear on.
+    /// True if there is a display that figures can appear on.
     pub display: bool,
-    /// How much is kept of what the script prints.
+    /// The limit of what is kept of the script's output.
     pub console_limit: ConsoleLimit,
-    /// Where the agent is if its files come from the program; it goes with the last of those that need it.
+    /// The agent's folder if its files come from the program; it goes with the last of those that need it.
     written: Option<Arc<PrivateFolder>>,
 }
 
@@ -110,12 +110,12 @@ impl EngineConfig {
         Ok(())
     }
 
-    /// Whether the agent goes with the engine.
+    /// True if the agent goes with the engine.
     pub(crate) fn is_agent_temporary(&self) -> bool {
         self.written.is_some()
     }
 
-    /// Where the scripts are, as a full path.
+    /// The full path of the scripts.
     pub(crate) fn agent_path(&self) -> PathBuf {
         let agent = self.working_dir.join(&self.agent);
         absolute(&agent).unwrap_or(agent)

@@ -1,4 +1,4 @@
-//! What scripts print: lines, as many as a person may want to read and never more than fit in memory.
+//! Output of scripts: as many lines as a person may want to read, and never more than fit in memory.
 
 use std::{
     collections::VecDeque,
@@ -6,12 +6,12 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How much of the standard error is kept for the case that the engine dies.
+/// Lines of the standard error that are kept for the case that the engine dies.
 const LAST_ERRORS: usize = 20;
 /// Time until the next note that lines were left out.
 const NOTE_INTERVAL: Duration = Duration::from_secs(1);
 
-/// How much is kept of what a script prints.
+/// The limit of what is kept of a script's output.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ConsoleLimit {
     /// As much as a person can look at: 200 lines a second.
@@ -29,7 +29,7 @@ impl ConsoleLimit {
         }
     }
 
-    /// How many bytes wait to be fetched, at most.
+    /// The most bytes that wait to be fetched.
     fn waiting(self) -> usize {
         match self {
             Self::Readable => 1 << 20,
@@ -37,7 +37,7 @@ impl ConsoleLimit {
         }
     }
 
-    /// How long a line may be, in bytes.
+    /// The greatest length of a line, in bytes.
     fn line(self) -> usize {
         match self {
             Self::Readable => 2000,
@@ -49,7 +49,7 @@ impl ConsoleLimit {
 /// A line that an engine has printed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConsoleLine {
-    /// Where it was printed.
+    /// The stream on which it was printed.
     pub stream: Stream,
     /// The line, without its end and without control characters.
     pub text: String,
@@ -214,7 +214,7 @@ fn clean(bytes: &[u8], limit: usize) -> String {
 #[derive(Debug)]
 pub(crate) struct Splitter {
     line: Vec<u8>,
-    /// How long a line may be, in bytes.
+    /// The greatest length of a line, in bytes.
     limit: usize,
 }
 
@@ -264,7 +264,7 @@ impl Splitter {
         self.line.clear();
     }
 
-    /// What is left when nothing more comes.
+    /// Hands over the rest when nothing more comes.
     pub(crate) fn finish(&mut self, mut each: impl FnMut(OutputPiece)) {
         if !self.line.is_empty() {
             self.end(&mut each);

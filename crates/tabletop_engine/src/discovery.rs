@@ -1,4 +1,4 @@
-//! Where engines are and which one is meant.
+//! Discovery of engines, and the choice among them.
 
 pub(crate) mod choice;
 pub(crate) mod locator;

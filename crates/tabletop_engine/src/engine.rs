@@ -18,14 +18,14 @@ use crate::{
     worker::{Worker, process::Killer, signal::Signal},
 };
 
-/// How long an engine that is not needed any more may take to end by itself.
+/// An engine that is no longer needed may take so long to end by itself.
 const FAREWELL: Duration = Duration::from_secs(10);
 /// The same while somebody waits for it.
 const SHORT_FAREWELL: Duration = Duration::from_secs(2);
 
-/// How long after the end of its time a request fails even if the engine's thread does not say so.
+/// So long after its time limit, a request fails even if the engine's thread does not say so.
 const BACKSTOP: Duration = Duration::from_secs(10);
-/// How long the end of that thread is waited for beyond the engine's farewell.
+/// The end of that thread is waited for so much longer than the engine's farewell.
 const LAST_WAIT: Duration = Duration::from_secs(8);
 
 /// An engine that runs, or is about to. Clones are the same engine; with the last of them it ends.
@@ -58,7 +58,7 @@ impl Pending {
         Self { what, since, limit }
     }
 
-    /// How long it may still take until nobody waits for the engine's thread any more, which should have ended it long before.
+    /// The time after which nobody waits for the engine's thread any more, which should have ended it long before.
     fn rest(&self) -> Duration {
         self.limit
             .saturating_add(BACKSTOP)
@@ -144,12 +144,12 @@ impl EngineHandle {
         Some(Reply::Failed(EngineError::Timeout { what, limit, stack }))
     }
 
-    /// What the script has printed since the last call, as far as [`EngineConfig::console_limit`] lets it be kept.
+    /// The output of the script since the last call, as far as [`EngineConfig::console_limit`] lets it be kept.
     pub fn drain_console(&self) -> Vec<ConsoleLine> {
         self.0.console.drain()
     }
 
-    /// Whether the engine has not ended.
+    /// True if the engine has not ended.
     pub fn is_alive(&self) -> bool {
         self.0
             .thread

@@ -1,4 +1,4 @@
-//! What can go wrong with an engine.
+//! Errors of engines.
 
 use std::{fmt, io, path::PathBuf, time::Duration};
 
@@ -32,7 +32,7 @@ pub enum EngineError {
     /// The script set a variable to what cannot be used.
     #[error("{field}{}", in_script(.script.as_ref()))]
     InvalidField {
-        /// What cannot be used.
+        /// The field that cannot be used.
         field: InvalidField,
         /// The script, if it is known.
         script: Option<PathBuf>,
@@ -45,11 +45,11 @@ pub enum EngineError {
         locations(.stack)
     )]
     Timeout {
-        /// What did not answer: the engine's start, the init script or the callback script.
+        /// The part that did not answer: the engine's start, the init script or the callback script.
         what: &'static str,
-        /// How long it was waited for.
+        /// The time for which it was waited.
         limit: Duration,
-        /// Where the script was then, innermost first, if the engine can say it.
+        /// The places at which the script was then, innermost first, if the engine can say them.
         stack: Vec<ScriptLocation>,
     },
     /// The engine ended by itself: it crashed, or the script called `exit`.
@@ -69,7 +69,7 @@ pub enum EngineError {
 }
 
 impl EngineError {
-    /// Whether the engine is gone, so that only a new one can go on.
+    /// True if the engine is gone, so that only a new one can go on.
     pub fn is_fatal(&self) -> bool {
         !matches!(self, Self::Script(_) | Self::InvalidField { .. })
     }
@@ -96,7 +96,7 @@ fn last_errors(stderr: &str) -> String {
     }
 }
 
-/// How to wait longer, if that can be chosen.
+/// The option that lets it wait longer, if there is one.
 fn way_to_wait(what: &str) -> &'static str {
     match what.ends_with("script") {
         true => " (--script-timeout says how long to wait)",
@@ -104,7 +104,7 @@ fn way_to_wait(what: &str) -> &'static str {
     }
 }
 
-/// What to do instead of ending the engine, if that may have been meant.
+/// Advice for who ended the engine and may have meant something else.
 fn way_to_end(status: &str) -> &'static str {
     match status {
         "exit status: 0" | "exit code: 0" => "; set aux.exit = true to end the script",
@@ -123,7 +123,7 @@ pub struct ScriptError {
     pub stack: Vec<ScriptLocation>,
 }
 
-/// How much of a message is shown, in letters.
+/// The most letters of a message that are shown.
 const MAX_MESSAGE: usize = 4000;
 
 /// A line of a script.
@@ -146,7 +146,7 @@ impl fmt::Display for ScriptLocation {
 }
 
 impl ScriptError {
-    /// Where the error happened, as far as the engine reports it.
+    /// The place of the error, as far as the engine reports it.
     pub fn location(&self) -> Option<&ScriptLocation> {
         self.stack.first()
     }

@@ -51,7 +51,7 @@ impl PrivateFolder {
         Ok(Self { path })
     }
 
-    /// Where it is.
+    /// Its place.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
@@ -73,7 +73,7 @@ impl Drop for PrivateFolder {
     }
 }
 
-/// Where folders may be made: in memory first.
+/// Folders in which others may be made: in memory first.
 fn bases() -> impl Iterator<Item = PathBuf> {
     let runtime = env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
     let memory = cfg!(unix).then(|| PathBuf::from("/dev/shm"));

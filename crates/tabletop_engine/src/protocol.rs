@@ -45,7 +45,7 @@ pub enum ProtocolError {
     Unwritable {
         /// The array's name.
         name: String,
-        /// What is wrong with it.
+        /// The fault.
         reason: &'static str,
     },
 }
@@ -73,7 +73,7 @@ impl Arrays {
     }
 }
 
-/// How many elements an array of this size has.
+/// The number of elements in an array of this size.
 fn elements(dims: &[u32]) -> usize {
     let dims = dims.iter().map(|dim| *dim as usize);
     dims.fold(1, usize::saturating_mul)

@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-/// Whether a path may lead through a link at its end.
+/// The treatment of a link at the end of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Links {
     /// It may.

@@ -1,4 +1,4 @@
-//! What comes back from an engine.
+//! Answers of engines.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use crate::{
     variables::{auxiliary::InitReply, motor::MotorCommand},
 };
 
-/// What comes back from an engine: one for its start, one for each request, and one when it ends.
+/// An answer of an engine: one for its start, one for each request, and one when it ends.
 #[derive(Clone, Debug)]
 pub enum Reply {
     /// The engine is there.
@@ -23,13 +23,13 @@ pub enum Reply {
     Failed(EngineError),
 }
 
-/// What a callback script wants.
+/// The orders of a callback script.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepReply {
-    /// What the robot shall do.
+    /// The command for the robot's motors.
     pub motor: MotorCommand,
-    /// Whether the script is done.
+    /// True if the script is done.
     pub exit: bool,
-    /// How long it took, from writing the request to having read the answer.
+    /// The time from writing the request to having read the answer.
     pub took: Duration,
 }

@@ -42,16 +42,16 @@ use crate::{
     variables::sensor::Sensor,
 };
 
-/// How often an engine that polls is shown that this program is alive, and one that waits is looked after.
+/// So often, an engine that polls is shown that this program is alive, and one that waits is looked after.
 const HEARTBEAT: Duration = Duration::from_secs(1);
-/// How often an engine that runs a script is looked after.
+/// So often, an engine that runs a script is looked after.
 const LOOK_AFTER: Duration = Duration::from_millis(50);
-/// How long an engine that does not listen or was interrupted may take to end by itself.
+/// An engine that does not listen or was interrupted may take so long to end by itself.
 const GRACE: Duration = Duration::from_secs(1);
 /// Figures are brought up to date at most this often.
 const DRAW_INTERVAL: Duration = Duration::from_millis(200);
 
-/// What the user should know of an agent that is not on disk.
+/// A note for the user about an agent that is not on disk.
 const TEMPORARY: &str = "the scripts that come with the program run in a temporary folder: what they save there goes with it";
 
 /// The engine's side of the program.
@@ -88,7 +88,7 @@ struct Running {
     seq: u32,
     open_outputs: u32,
     last_drawn: Option<Instant>,
-    /// How many limbs the robot has, and how many joints each.
+    /// The number of limbs, and of joints of each.
     size: [usize; 2],
     /// The script that is called back, if the engine has reported it.
     callback: Option<PathBuf>,
@@ -297,7 +297,7 @@ impl Running {
         })
     }
 
-    /// What a script has set that cannot be used.
+    /// The error for a field that a script has set and nobody can use.
     fn invalid_field(&self, field: InvalidField, script: Option<PathBuf>) -> EngineError {
         EngineError::InvalidField {
             field: field.written_for(self.worker.config.engine.kind),

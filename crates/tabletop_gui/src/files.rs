@@ -10,7 +10,7 @@ use tabletop_core::{Action, KeySystems, was_struck};
 pub struct TaskFile {
     /// What it is listed as.
     pub name: String,
-    /// Where it is.
+    /// Its place.
     pub path: PathBuf,
 }
 
@@ -21,7 +21,7 @@ pub struct Files {
     pub tasks: Vec<TaskFile>,
     /// Task files and folders of recordings that were opened from elsewhere, the last one first.
     pub recent: Vec<PathBuf>,
-    /// Whether the task file on the table is loaded anew when it changes on the disk.
+    /// True if the task file on the table is loaded anew when it changes on the disk.
     pub reloads: bool,
 }
 

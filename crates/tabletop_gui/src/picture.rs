@@ -8,7 +8,7 @@ use bevy_egui::{EguiInput, EguiPreUpdateSet, egui};
 pub struct PictureStatus {
     /// How many times it has been drawn since the start.
     pub drawn: u64,
-    /// Whether nothing moves in it, so that texts which change all the time should not have it drawn all the time.
+    /// True if nothing moves in it, so that texts which change all the time should not have it drawn all the time.
     pub is_still: bool,
 }
 

@@ -3,17 +3,17 @@
 use bevy::{ecs::entity_disabling::Disabled, prelude::*};
 use tabletop_core::Rollback;
 
-/// Whether, and what for, removed entities are kept, disabled, because a snapshot may bring them back.
+/// The reasons for which removed entities are kept, disabled, so that a snapshot can bring them back.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct KeepRemoved {
-    /// What was done can be undone.
+    /// Removed entities are kept for undo.
     pub for_undo: bool,
-    /// A recording is played, and its player goes back.
+    /// Removed entities are kept for a player that goes back.
     pub for_playback: bool,
 }
 
 impl KeepRemoved {
-    /// Whether anybody wants them.
+    /// True if anybody wants them.
     pub const fn is_on(self) -> bool {
         self.for_undo || self.for_playback
     }

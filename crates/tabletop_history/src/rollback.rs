@@ -1,4 +1,4 @@
-//! What rolls back, as those say who own it.
+//! The registry of what rolls back. Owners register.
 
 mod component;
 mod resource;
@@ -64,7 +64,7 @@ fn registry(app: &mut App) -> Mut<'_, RollbackRegistry> {
         .get_resource_or_init()
 }
 
-/// What rolls back.
+/// Everything that rolls back.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct RollbackRegistry {
     /// In the order in which they are put back.
@@ -107,7 +107,7 @@ impl RollbackRegistry {
         self.parts.iter().copied()
     }
 
-    /// Whether undo takes care of a component: it is put back, or derived from what is.
+    /// True if undo takes care of a component: it is put back, or derived from what is.
     pub fn covers(&self, component: TypeId) -> bool {
         let is_put_back =
             |part: &RollbackPart| part.kind == RollbackKind::Component && part.of == component;
@@ -115,7 +115,7 @@ impl RollbackRegistry {
     }
 }
 
-/// Whether the world is being put back to another moment. Observers of what rolls back do not act meanwhile: what they would do
+/// True if the world is being put back to another moment. Observers of what rolls back do not act meanwhile: what they would do
 /// is put back as well.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RollingBack(pub(crate) bool);

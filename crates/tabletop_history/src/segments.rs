@@ -26,7 +26,7 @@ pub(crate) struct Segments {
     last: Option<(Arc<WorldSnapshot>, Tick)>,
     /// Most memory in bytes.
     most_bytes: usize,
-    /// How many could not be kept.
+    /// The number of those that could not be kept.
     dropped: usize,
 }
 

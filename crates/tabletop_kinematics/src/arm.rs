@@ -7,7 +7,7 @@ use crate::{JointType, JointValues, LinkId, ModelError, ModelJointId, RobotModel
 /// Most joints of an arm.
 pub const MOST_ARM_JOINTS: usize = 16;
 
-/// How a body moves: the velocity of one of its points and its angular velocity.
+/// The motion of a body: the velocity of one of its points and its angular velocity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DTwist {
     /// Of the point, in m/s, or in m per rad of a joint.
@@ -153,7 +153,7 @@ impl ArmChain {
             .collect()
     }
 
-    /// Where the tip is: from its frame to the base's.
+    /// The tip's pose: from its frame to the base's.
     pub fn tip(&self, angles: &[f64]) -> DAffine3 {
         let mut frame = DAffine3::IDENTITY;
         for (segment, &angle) in self.segments.iter().zip(angles) {
@@ -162,7 +162,7 @@ impl ArmChain {
         frame * self.end
     }
 
-    /// How the tip moves per rad of each joint (the geometric Jacobian), in the base's frame.
+    /// The motion of the tip per rad of each joint (the geometric Jacobian), in the base's frame.
     pub fn jacobian(&self, angles: &[f64]) -> Vec<DTwist> {
         self.tip_and_jacobian(angles).1
     }

@@ -13,7 +13,7 @@ use crate::{Frames, JointType, JointValues, LinkId, ModelJointId, RobotModel};
 pub struct Load {
     /// The link that carries it.
     pub link: LinkId,
-    /// Where it is, in the link's frame, in m.
+    /// Its place in the link's frame, in m.
     pub point: DVec3,
     /// Its mass in kg.
     pub mass: f64,
@@ -168,7 +168,7 @@ impl RobotModel {
         matrix
     }
 
-    /// How the links move. Gravity is felt as an acceleration of the root the other way.
+    /// The motions of the links. Gravity is felt as an acceleration of the root the other way.
     fn motions(
         &self,
         frames: &Frames,
@@ -244,7 +244,7 @@ impl BodyMotion {
         self.acceleration + self.spin_rate.cross(arm) + self.spin.cross(self.spin.cross(arm))
     }
 
-    /// What it takes to move a point mass along with the body, this far from its frame's origin.
+    /// The inertia of a point mass that moves along with the body, this far from its frame's origin.
     fn of_mass(&self, mass: f64, arm: DVec3) -> Wrench {
         let force = mass * self.acceleration_at(arm);
         Wrench {

@@ -1,4 +1,4 @@
-//! What can be wrong with the description of a robot.
+//! Faults in the description of a robot.
 
 use thiserror::Error;
 
@@ -9,17 +9,17 @@ pub enum ModelError {
     /// The text is no URDF.
     #[error("line {line}: {element}: {message}")]
     Syntax {
-        /// Where the element starts.
+        /// The line in which the element starts.
         line: usize,
         /// The element that cannot be read, such as `joint left_s0`.
         element: String,
-        /// What the reader says of it.
+        /// The reader's message.
         message: String,
     },
     /// Elements inside elements without end.
     #[error("line {line}: elements are nested more than {deepest} deep")]
     TooDeep {
-        /// Where the first one too many starts.
+        /// The line in which the first one too many starts.
         line: usize,
         /// As deep as they may be.
         deepest: usize,
@@ -29,7 +29,7 @@ pub enum ModelError {
         "line {line}: there is already a {what} named {name}: give each {what} a name of its own"
     )]
     Duplicate {
-        /// Where the second one starts.
+        /// The line in which the second one starts.
         line: usize,
         /// `link` or `joint`.
         what: &'static str,
@@ -39,7 +39,7 @@ pub enum ModelError {
     /// A joint names a link that is not there.
     #[error("line {line}: joint {joint}: there is no link {link}")]
     MissingLink {
-        /// Where the joint starts.
+        /// The line in which the joint starts.
         line: usize,
         /// The joint.
         joint: String,
@@ -49,7 +49,7 @@ pub enum ModelError {
     /// Two joints carry one link.
     #[error("line {line}: joint {joint}: link {link} already hangs on joint {other}")]
     TwoParents {
-        /// Where the second joint starts.
+        /// The line in which the second joint starts.
         line: usize,
         /// The second joint.
         joint: String,
@@ -66,7 +66,7 @@ pub enum ModelError {
         "line {line}: link {link} hangs on no joint, and neither does {root}: only one link may be the root"
     )]
     SecondRoot {
-        /// Where the second root starts.
+        /// The line in which the second root starts.
         line: usize,
         /// The second root.
         link: String,
@@ -76,7 +76,7 @@ pub enum ModelError {
     /// Links hang on one another in a ring.
     #[error("line {line}: link {link} hangs on itself by way of its joints")]
     Cycle {
-        /// Where a link of the ring starts.
+        /// The line in which a link of the ring starts.
         line: usize,
         /// That link.
         link: String,
@@ -86,7 +86,7 @@ pub enum ModelError {
         "line {line}: joint {joint}: {kind} joints are not supported: use fixed, revolute, continuous or prismatic"
     )]
     JointType {
-        /// Where the joint starts.
+        /// The line in which the joint starts.
         line: usize,
         /// The joint.
         joint: String,
@@ -96,29 +96,29 @@ pub enum ModelError {
     /// A joint follows one that it cannot follow.
     #[error("line {line}: joint {joint}: it cannot mimic {leader}: {reason}")]
     Mimic {
-        /// Where the joint starts.
+        /// The line in which the joint starts.
         line: usize,
         /// The joint.
         joint: String,
         /// The joint that it names.
         leader: String,
-        /// What is wrong with it.
+        /// The fault.
         reason: &'static str,
     },
     /// A number that cannot be.
     #[error("line {line}: {element}: {fault}")]
     Number {
-        /// Where the element starts.
+        /// The line in which the element starts.
         line: usize,
         /// Whose number it is, such as `joint left_s0`.
         element: String,
-        /// What is wrong with it.
+        /// The fault.
         fault: &'static str,
     },
     /// A capsule, which is not supported.
     #[error("line {line}: {element}: capsules are not supported: use a cylinder and two spheres")]
     Capsule {
-        /// Where the element starts.
+        /// The line in which the element starts.
         line: usize,
         /// The link that has it.
         element: String,
@@ -142,11 +142,11 @@ pub enum ModelError {
     /// The way between two links is no arm.
     #[error("no arm leads from link {base} to link {tip}: {reason}")]
     NoArm {
-        /// Where the arm should start.
+        /// The link in which the arm should start.
         base: String,
-        /// Where it should end.
+        /// The link in which it should end.
         tip: String,
-        /// What is in the way.
+        /// The reason why it cannot.
         reason: String,
     },
 }

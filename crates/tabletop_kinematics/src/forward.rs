@@ -6,7 +6,7 @@ use glam::{DAffine3, DVec3};
 
 use crate::{DTwist, JointValues, LinkId, ModelJointId, RobotModel};
 
-/// Where every link of a model is: from the link's frame to the root's, in m.
+/// The pose of every link of a model: from the link's frame to the root's, in m.
 #[derive(Clone, Debug, Default)]
 pub struct Frames(Vec<DAffine3>);
 
@@ -19,7 +19,7 @@ impl Index<LinkId> for Frames {
 }
 
 impl RobotModel {
-    /// Where the links are.
+    /// The poses of the links.
     ///
     /// ```
     /// let robot = tabletop_kinematics::baxter()?;
@@ -44,7 +44,7 @@ impl RobotModel {
         }
     }
 
-    /// How a point of a link moves per motion of each joint: one twist for each of [`joints`](Self::joints), in the root's
+    /// The motion of a point of a link per motion of each joint: one twist for each of [`joints`](Self::joints), in the root's
     /// frame, 0 for those that do not move it. The point is given in the link's frame, in m.
     pub fn jacobian(&self, frames: &Frames, link: LinkId, point: DVec3) -> Vec<DTwist> {
         let mut jacobian = vec![DTwist::default(); self.joints.len()];

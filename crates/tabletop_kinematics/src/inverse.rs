@@ -6,7 +6,7 @@
 //! freedom that a tip's six coordinates leave to seven joints pulls them to where the search began, so that small motions
 //! of a target are small motions of the joints.
 //!
-//! Where the search gets stuck it begins anew, from a fixed sequence of postures: same question, same answer.
+//! A search that gets stuck begins anew, from a fixed sequence of postures: same question, same answer.
 //!
 //! The crate `k` solves the same problem, but has its own linear algebra (another version than ours), no limits inside the
 //! step and no say in what becomes of the seventh joint.
@@ -16,7 +16,7 @@ use thiserror::Error;
 
 use crate::{ArmChain, DTwist, MOST_ARM_JOINTS};
 
-/// Where the tip of an arm shall be, in the frame of the arm's base, in m.
+/// The goal of the tip of an arm, in the frame of the arm's base, in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
     /// There, turned like this: from the tip's frame to the base's. A rigid motion.
@@ -54,7 +54,7 @@ const TOLERANCE: Miss = Miss {
     rotation: 1e-6,
 };
 
-/// How much a rotation of the tip counts against its distance.
+/// The weight of a rotation of the tip against its distance.
 const METERS_PER_RAD: f64 = 0.3;
 /// Least squared damping, in m²: far below what an arm in a usual posture moves per rad.
 const LEAST_DAMPING: f64 = 1e-7;
@@ -68,7 +68,7 @@ const PULL: f64 = 0.5;
 const PULLED_STEPS: usize = 12;
 /// Steps of a search.
 const STEPS: usize = 100;
-/// How many steps a search may come no nearer, except the one from the seed, whose answer is wanted most.
+/// A search may come no nearer for so many steps, except the one from the seed, whose answer is wanted most.
 const PATIENCE: usize = 10;
 /// Postures that the search begins from.
 const STARTS: usize = 256;

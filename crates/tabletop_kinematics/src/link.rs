@@ -1,4 +1,4 @@
-//! What a link is made of.
+//! Links and their shapes.
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -13,9 +13,9 @@ pub struct Link {
     pub joint: Option<ModelJointId>,
     /// Its mass and how that is spread.
     pub inertial: Inertial,
-    /// What is seen of it.
+    /// Its shapes to be seen.
     pub visuals: Vec<LinkShape>,
-    /// What is touched of it.
+    /// Its shapes to be touched.
     pub collisions: Vec<LinkShape>,
 }
 
@@ -35,7 +35,7 @@ pub struct Inertial {
 pub struct LinkShape {
     /// From the body's own frame to the link's, in m.
     pub origin: DAffine3,
-    /// What it is.
+    /// The value.
     pub geometry: Geometry,
     /// Red, green, blue and opacity, 0 to 1; `None` where the description names no colour, as for collisions.
     pub color: Option<[f64; 4]>,

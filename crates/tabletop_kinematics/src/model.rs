@@ -4,7 +4,7 @@ use glam::{DAffine3, DVec3};
 
 use crate::{JointValues, Link, LinkId, ModelError, ModelJointId};
 
-/// What a joint leaves free.
+/// The degrees of freedom of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointType {
     /// Nothing.
@@ -18,7 +18,7 @@ pub enum JointType {
 }
 
 impl JointType {
-    /// Whether it turns about its axis.
+    /// True if it turns about its axis.
     pub const fn turns(self) -> bool {
         matches!(self, Self::Revolute | Self::Continuous)
     }
@@ -29,7 +29,7 @@ impl JointType {
 pub struct ModelJoint {
     /// Its name, unique among joints.
     pub name: String,
-    /// What it leaves free.
+    /// Its degrees of freedom.
     pub kind: JointType,
     /// The link that it hangs on.
     pub parent: LinkId,
@@ -64,7 +64,7 @@ impl ModelJoint {
     }
 }
 
-/// How a joint follows another one: its position is `multiplier * leader + offset`.
+/// A joint that follows another one: its position is `multiplier * leader + offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mimic {
     /// The joint that leads; it follows none itself.
@@ -162,7 +162,7 @@ impl RobotModel {
         JointValues(vec![0.0; self.joints.len()])
     }
 
-    /// Where a joint is, in rad or m: its own number, or what the joint that it follows makes of it.
+    /// The position of a joint, in rad or m: its own number, or what the joint that it follows makes of it.
     pub fn position(&self, joint: ModelJointId, configuration: &JointValues) -> f64 {
         match self.joint(joint).mimic {
             Some(mimic) => mimic.multiplier * configuration[mimic.leader] + mimic.offset,

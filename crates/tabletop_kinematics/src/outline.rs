@@ -1,4 +1,4 @@
-//! Where the elements of an XML text stand, found without understanding them.
+//! The places of the elements of an XML text, found without understanding them.
 //!
 //! The URDF reader keeps no places and descends by recursion; with the outline, faults get a line and a text that would
 //! exhaust the stack is refused before.
@@ -13,7 +13,7 @@ const DEEPEST: usize = 64;
 pub(crate) struct Child<'a> {
     /// `link`, `joint`, ...
     pub tag: &'a str,
-    /// Where it starts, from 1.
+    /// The line in which it starts, from 1.
     pub line: usize,
     /// All of it, with its own tags.
     pub text: &'a str,
@@ -34,7 +34,7 @@ impl Child<'_> {
     }
 }
 
-/// What was found in a text.
+/// The elements that were found in a text.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Outline<'a> {
     /// The children of the root element.

@@ -179,11 +179,11 @@ struct Mode {
     sweeps: Sweeps,
     /// How far ahead contacts are looked for, in units.
     prediction: f32,
-    /// Whether contacts of what has hardly moved are kept.
+    /// True if contacts of what has hardly moved are kept.
     recycles: bool,
-    /// Whether contacts of several parts that have the same normal are merged.
+    /// True if contacts of several parts that have the same normal are merged.
     clusters: bool,
-    /// Whether collision detection is continuous.
+    /// True if collision detection is continuous.
     is_continuous: bool,
 }
 

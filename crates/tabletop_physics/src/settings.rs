@@ -19,7 +19,7 @@ pub struct PhysicsSettings {
     pub rolling_damping: f32,
     /// Rate in 1/s at which the rotations of chain links die away, which makes a chain come to rest.
     pub link_damping: f32,
-    /// Whether objects at rest are left out of the computation until something touches them.
+    /// True if objects at rest are left out of the computation until something touches them.
     pub sleep: bool,
 }
 

@@ -97,7 +97,7 @@ pub enum RecorderError {
         path: PathBuf,
         /// Number of the line, from 1.
         line: usize,
-        /// What is wrong.
+        /// The fault.
         problem: String,
     },
     /// The files say what no recorder writes.
@@ -105,7 +105,7 @@ pub enum RecorderError {
     Files {
         /// The folder of the recording.
         folder: PathBuf,
-        /// What is wrong.
+        /// The fault.
         problem: String,
     },
     /// A line of another file is not what it should be.
@@ -115,7 +115,7 @@ pub enum RecorderError {
         path: PathBuf,
         /// Number of the line, from 1.
         line: u64,
-        /// What is wrong.
+        /// The fault.
         problem: String,
     },
     /// A line of a session log is not what it should be.

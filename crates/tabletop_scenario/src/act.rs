@@ -1,4 +1,4 @@
-//! What the steps of a scenario do.
+//! The action of each step of a scenario.
 
 use bevy::prelude::*;
 use tabletop_core::{
@@ -27,7 +27,7 @@ pub(crate) struct StepState {
     robot_still: u64,
 }
 
-/// What comes of a step in a tick.
+/// The outcome of a step in a tick.
 pub(crate) enum StepProgress {
     /// It is over without having taken time.
     Over,

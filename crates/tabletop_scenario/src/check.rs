@@ -1,4 +1,4 @@
-//! What a scenario can expect of the world.
+//! Checks of the world.
 
 use bevy::prelude::*;
 use serde::Deserialize;
@@ -21,7 +21,7 @@ pub enum Check {
         object: String,
         /// The location.
         at: Vec3,
-        /// How far away from it is near enough.
+        /// The distance that is near enough.
         #[serde(default = "close")]
         within: f32,
     },
@@ -59,7 +59,7 @@ pub enum Check {
         object: String,
         /// The outer object's id.
         of: String,
-        /// How far it may stand out.
+        /// The length that it may stand out.
         #[serde(default = "close")]
         within: f32,
     },
@@ -93,7 +93,7 @@ const fn nearly_parallel() -> f32 {
 }
 
 impl Check {
-    /// What makes no sense in it.
+    /// Its fault, if it makes no sense.
     pub(crate) fn fault(&self) -> Option<String> {
         match self {
             Self::Location {
@@ -211,7 +211,7 @@ fn is_on_table(object: &SeenObject, seen: &Seen, within: f32) -> Result<(), Stri
     })
 }
 
-/// Where something is instead of on its support, from which its lowest point is this far.
+/// The place of something that is not on its support, from which its lowest point is this far.
 fn lies_on(gap: f32, within: f32, is_over: bool) -> Result<(), String> {
     match (gap.abs() <= within, is_over) {
         (true, true) => Ok(()),

@@ -1,4 +1,4 @@
-//! What can be wrong with a scenario.
+//! Errors of scenarios.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ pub enum ScenarioError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the operating system says.
+        /// The operating system's message.
         reason: String,
     },
     /// The text is not that of a scenario.
@@ -20,37 +20,37 @@ pub enum ScenarioError {
     Syntax {
         /// Where.
         at: SourceLocation,
-        /// What is wrong there.
+        /// The fault.
         what: String,
     },
     /// A step asks for something that makes no sense.
     #[error("{at}: {step}: {what}")]
     Step {
-        /// Where the step begins.
+        /// The place in which the step begins.
         at: SourceLocation,
         /// Its text.
         step: String,
-        /// What is wrong with it.
+        /// The fault.
         what: String,
     },
     /// A task file cannot be loaded, or not be set up as the step asks for.
     #[error("{at}: {step}: {what}")]
     Setup {
-        /// Where the step begins.
+        /// The place in which the step begins.
         at: SourceLocation,
         /// Its text.
         step: String,
-        /// What is wrong.
+        /// The fault.
         what: String,
     },
     /// The scenario was run, and a step failed.
     #[error("{at}: {step}: {what}")]
     Failed {
-        /// Where the step begins.
+        /// The place in which the step begins.
         at: SourceLocation,
         /// Its text.
         step: String,
-        /// What was expected and what was found.
+        /// The expected and what was found.
         what: String,
     },
 }

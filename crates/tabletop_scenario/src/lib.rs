@@ -131,7 +131,7 @@ mod tests {
 
     use super::*;
 
-    /// Whether a scenario goes on after a command of its own or of somebody else was refused.
+    /// True if a scenario goes on after a command of its own or of somebody else was refused.
     fn goes_on_after(refuses_own: bool) -> bool {
         let scenario = Scenario::parse("s.ron", "(steps: [Select(Left), Wait(9)])").unwrap();
         let program = Program::new(&scenario, |_| Ok(SceneSpec::default()), 0).unwrap();

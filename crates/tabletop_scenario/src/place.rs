@@ -7,10 +7,10 @@ use tabletop_core::{Bounds, Pose, Random, SceneItem, SceneSpec};
 /// Least distance, in units, of an object that is placed to any other.
 const CLEARANCE: f32 = 0.05;
 
-/// How many places are tried for an object.
+/// The number of places that are tried for an object.
 const TRIES: u32 = 1000;
 
-/// Where an object of a task file is put instead, at random. It keeps its height, and a distance to everything else.
+/// A random place for an object of a task file. It keeps its height, and a distance to everything else.
 /// Lengths are in units of 10 cm, angles in degrees.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -27,7 +27,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// What makes no sense in it.
+    /// Its fault, if it makes no sense.
     pub(crate) fn fault(&self) -> Option<String> {
         [("x", self.x), ("y", self.y), ("turn", self.turn)]
             .into_iter()

@@ -15,7 +15,7 @@ pub struct Program {
     /// After how many ticks it fails if it is not done.
     pub limit: u64,
     pub(crate) steps: Vec<ProgramStep>,
-    /// What is random while it runs.
+    /// The random numbers of its run.
     pub(crate) random: Random,
 }
 
@@ -78,7 +78,7 @@ impl Program {
         })
     }
 
-    /// Whether it only prepares: none of its steps lets time pass for something to happen, as `Wait` and `Glide` do.
+    /// True if it only prepares: none of its steps lets time pass for something to happen, as `Wait` and `Glide` do.
     pub fn only_prepares(&self) -> bool {
         self.steps.iter().all(|step| match &step.action {
             ProgramAction::SetScene(_) => true,

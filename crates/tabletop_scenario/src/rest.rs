@@ -1,4 +1,4 @@
-//! What is at rest: what has stayed where it is for a while.
+//! Rest: an object is at rest if it has stayed where it is for a while.
 
 use std::collections::BTreeMap;
 
@@ -7,16 +7,16 @@ use tabletop_core::{Pose, TICKS_PER_SECOND};
 
 use crate::seen::{Seen, SeenObject};
 
-/// How far an object at rest may move, in units, and turn, in radians.
+/// The most that an object at rest may move, in units, and turn, in radians.
 const TREMBLE: (f32, f32) = (0.005, 0.005);
 
-/// How many ticks an object stays where it is before it is at rest.
+/// An object is at rest when it has stayed where it is for so many ticks.
 const TICKS_TO_REST: u32 = TICKS_PER_SECOND / 2;
 
-/// How many ticks what a hand holds stays where it is before it has arrived.
+/// An object in a hand has arrived when it has stayed where it is for so many ticks.
 const TICKS_TO_ARRIVE: u32 = TICKS_PER_SECOND / 5;
 
-/// How long every object has stayed where it is.
+/// The time for which every object has stayed where it is.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stillness(BTreeMap<Entity, Stay>);
 

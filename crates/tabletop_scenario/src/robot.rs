@@ -1,4 +1,4 @@
-//! What a scenario lets the robot do, and expects of it.
+//! Steps and checks of the robot.
 
 use bevy::prelude::*;
 use serde::Deserialize;
@@ -63,7 +63,7 @@ pub enum RobotCheck {
         joint: JointName,
         /// The position.
         at: f64,
-        /// How far away from it is near enough.
+        /// The distance that is near enough.
         #[serde(default = "precise")]
         within: f64,
     },
@@ -73,7 +73,7 @@ pub enum RobotCheck {
         arm: LimbName,
         /// The location.
         at: Vec3,
-        /// How far away from it is near enough.
+        /// The distance that is near enough.
         #[serde(default = "close")]
         within: f32,
     },
@@ -90,7 +90,7 @@ pub enum RobotCheck {
     BlockedBy {
         /// The arm.
         arm: LimbName,
-        /// What is in its way.
+        /// The obstacle's name.
         by: String,
     },
 }
@@ -104,7 +104,7 @@ const fn close() -> f32 {
 }
 
 impl RobotStep {
-    /// What makes no sense in it, whatever the robot.
+    /// Its fault, if it makes no sense for any robot.
     pub(crate) fn fault(&self) -> Option<String> {
         match self {
             Self::ReachTo { at, degrees, .. } => {
@@ -184,7 +184,7 @@ fn limb_of(layout: &RobotLayout, name: LimbName) -> Result<LimbId, String> {
     limb.ok_or_else(|| format!("the robot {} has no limb {name}", layout.name))
 }
 
-/// Whether nothing of the robot has moved in the last tick.
+/// True if nothing of the robot has moved in the last tick.
 pub(crate) fn is_still(robot: &Robot) -> bool {
     let mut joints = robot.joints.iter();
     joints.all(|joint| joint.velocity.abs() < STILL)

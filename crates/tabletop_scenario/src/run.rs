@@ -23,7 +23,7 @@ pub struct ScenarioRun {
     outcome: Outcome,
 }
 
-/// How far a scenario has come.
+/// The progress of a scenario.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Outcome {
     /// It goes on.
@@ -48,17 +48,17 @@ impl ScenarioRun {
         }
     }
 
-    /// How far it has come.
+    /// Its progress.
     pub const fn outcome(&self) -> &Outcome {
         &self.outcome
     }
 
-    /// How many steps are done, with the one that loads the `setup`.
+    /// The number of steps that are done, with the one that loads the `setup`.
     pub const fn steps_done(&self) -> usize {
         self.next
     }
 
-    /// How many of them were checks.
+    /// The number of checks among them.
     pub fn checks_passed(&self) -> usize {
         let done = self.program.steps.iter().take(self.next);
         done.filter(|step| matches!(step.action, ProgramAction::Do(Step::Expect(_))))

@@ -11,7 +11,7 @@ use tabletop_core::{RobotLayout, is_shipped};
 
 use crate::{ScenarioError, SourceLocation, Step};
 
-/// What a scenario file says.
+/// The content of a scenario file.
 ///
 /// ```
 /// use tabletop_scenario::{Scenario, Step};
@@ -37,7 +37,7 @@ pub struct Scenario {
 /// A step and where it stands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocatedStep {
-    /// Where it begins.
+    /// The place in which it begins.
     pub at: SourceLocation,
     /// Its text, on one line.
     pub text: String,
@@ -152,7 +152,7 @@ impl LocatedStep {
     }
 }
 
-/// Where a part of the text begins, and the part without blanks and comments around it.
+/// The place of a part of the text, and the part without blanks and comments around it.
 fn located<'a>(path: &Path, text: &str, part: &'a RawValue) -> (SourceLocation, &'a str) {
     let part = part.trim().get_ron();
     let offset = part.as_ptr() as usize - text.as_ptr() as usize;

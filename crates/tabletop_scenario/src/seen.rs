@@ -1,4 +1,4 @@
-//! What a scenario sees of the world: its state at the end of the last tick.
+//! The world as scenarios see it: its state at the end of the last tick.
 
 use bevy::prelude::*;
 use tabletop_core::{Bounds, Hand, ObjectSpec, Pose, Robot, RobotLayout, Table};
@@ -12,7 +12,7 @@ pub(crate) struct Seen<'a> {
     pub table: Option<Table>,
     /// The selected hand.
     pub selected: Hand,
-    /// Whether the simulation stands still.
+    /// True if the simulation stands still.
     pub paused: bool,
     /// The robot.
     pub robot: &'a Robot,
@@ -25,9 +25,9 @@ pub(crate) struct Seen<'a> {
 pub(crate) struct SeenObject<'a> {
     /// Its entity.
     pub entity: Entity,
-    /// What it is.
+    /// The value.
     pub spec: &'a ObjectSpec,
-    /// Where it is.
+    /// Its place.
     pub pose: Pose,
     /// Who holds it.
     pub holder: Option<Hand>,
@@ -49,7 +49,7 @@ impl<'a> Seen<'a> {
             .ok_or_else(|| format!("expected an object `{id}`, found none of that id"))
     }
 
-    /// What a hand holds, or why nothing.
+    /// The object in a hand, or the reason why there is none.
     pub fn held_by(&self, hand: Hand) -> Result<&SeenObject<'a>, String> {
         self.objects
             .iter()

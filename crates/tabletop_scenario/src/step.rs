@@ -22,7 +22,7 @@ pub enum Step {
     Load {
         /// The task file, relative to the scenario's folder.
         file: PathBuf,
-        /// What is put elsewhere, at random.
+        /// The objects that are put elsewhere, at random.
         #[serde(default)]
         place: Vec<Place>,
     },
@@ -51,7 +51,7 @@ pub enum Step {
     Turn {
         /// The axis.
         axis: Axis,
-        /// How far.
+        /// The angle.
         degrees: f32,
     },
     /// Let go of what is held.
@@ -103,7 +103,7 @@ impl Axis {
 }
 
 impl Step {
-    /// Whether it lets time pass for something to happen.
+    /// True if it lets time pass for something to happen.
     pub(crate) fn waits(&self) -> bool {
         match self {
             Self::With(_, step) => step.waits(),
@@ -142,7 +142,7 @@ impl Step {
         }
     }
 
-    /// What makes no sense in it.
+    /// Its fault, if it makes no sense.
     pub(crate) fn fault(&self) -> Option<String> {
         match self {
             Self::Load { place, .. } => place.iter().find_map(Place::fault),
@@ -174,7 +174,7 @@ impl Step {
         }
     }
 
-    /// Whether a hand does it.
+    /// True if a hand does it.
     pub(crate) const fn is_done_by_a_hand(&self) -> bool {
         match self {
             Self::Grasp(_)

@@ -1,4 +1,4 @@
-//! What scripts talk about: some of what can be sensed costs time, and most scripts do not ask for it.
+//! Words in scripts: some of what can be sensed costs time, and most scripts do not mention it.
 
 use std::{
     fs,
@@ -14,7 +14,7 @@ const MOST_ENTRIES: usize = 10_000;
 /// So many scripts are read, at most, the outermost first.
 const MOST_SCRIPTS: usize = 1000;
 
-/// Whether one of the scripts around an agent (a folder of `agentBehavior.m`, or a Python file) contains one of these words.
+/// True if one of the scripts around an agent (a folder of `agentBehavior.m`, or a Python file) contains one of these words.
 pub(crate) fn mention(agent: &Path, words: &[&str]) -> bool {
     let beside = agent.parent().filter(|folder| *folder != Path::new(""));
     let scripts = match agent.is_dir() {

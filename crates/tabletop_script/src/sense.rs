@@ -1,4 +1,4 @@
-//! What a script senses.
+//! The senses of scripts.
 
 use std::path::Path;
 
@@ -29,7 +29,7 @@ impl SensorFields {
     }
 }
 
-/// What can be sensed.
+/// Everything that can be sensed.
 #[derive(SystemParam)]
 pub(crate) struct Senses<'w, 's> {
     layout: Res<'w, RobotLayout>,
@@ -48,7 +48,7 @@ impl Senses<'_, '_> {
         &self.layout
     }
 
-    /// What an init script gets to know.
+    /// The knowledge of an init script.
     pub fn aux(&self) -> Aux {
         let limits = |end: usize| self.of_limbs(|joint| self.layout.joint(joint).limits[end]);
         Aux {
@@ -68,12 +68,12 @@ impl Senses<'_, '_> {
         &self.robot.joints[joint.index()]
     }
 
-    /// How the robot's joints move.
+    /// The mode in which the robot's joints move.
     pub fn mode(&self) -> RobotMode {
         self.robot.mode
     }
 
-    /// What a callback script gets to know, so many ticks after it was called before.
+    /// The senses of a callback script, so many ticks after its last call.
     pub fn sensor(&self, ticks: u64, picture: Option<RgbImage>, fields: SensorFields) -> Sensor {
         let dynamic = self.mode() == RobotMode::Dynamic;
         let grippers = self.layout.limbs.iter().map(|limb| limb.gripper.joint);
@@ -161,7 +161,7 @@ impl Senses<'_, '_> {
             .collect()
     }
 
-    /// What an object or the table is called.
+    /// The name of an object or the table.
     fn name(&self, thing: Entity) -> Option<String> {
         match self.objects.get(thing) {
             Ok((spec, _)) => Some(spec.id.clone()),

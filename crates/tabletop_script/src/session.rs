@@ -33,11 +33,11 @@ pub(crate) struct ScriptSession {
     answer: Option<Reply>,
     /// The tick of a picture that the script is to get next.
     picture: Option<SimTick>,
-    /// Whether the note was given that nothing obeys its torques.
+    /// True if the note was given that nothing obeys its torques.
     torques_noted: bool,
 }
 
-/// What is expected of the engine next.
+/// The next answer that is expected of the engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
     /// That it comes up.
@@ -52,7 +52,7 @@ enum Phase {
     Step,
 }
 
-/// What came of an answer.
+/// The outcome of an answer.
 pub(crate) enum Answer {
     /// The tick can begin.
     Commands,

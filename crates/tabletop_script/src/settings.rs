@@ -1,4 +1,4 @@
-//! What can be chosen about scripts.
+//! Settings of scripts.
 
 use std::{
     ffi::OsStr,
@@ -26,15 +26,15 @@ pub struct ScriptSettings {
     pub pair: Option<[String; 2]>,
     /// Ticks from one picture of the head camera to the next; 15 are the four a second of the original program.
     pub ticks_per_picture: u64,
-    /// Whether scripts get the objects, the contacts and what the grippers hold (`sensor.objects`, `contacts` and `held`).
+    /// The policy for the objects, the contacts and what the grippers hold (`sensor.objects`, `contacts` and `held`).
     pub objects: FieldPolicy,
-    /// Whether scripts get the points on the arms (`sensor.trackerLoc`). They cost Octave half a millisecond a tick.
+    /// The policy for the points on the arms (`sensor.trackerLoc`). They cost Octave half a millisecond a tick.
     pub trackers: FieldPolicy,
-    /// How long to wait for the engine before it is ended.
+    /// The time limits after which the engine is ended.
     pub timeouts: Timeouts,
-    /// How the simulation waits for the script.
+    /// The way in which the simulation waits for the script.
     pub waiting: Waiting,
-    /// Where engines are looked for.
+    /// The places in which engines are looked for.
     pub locator: EngineLocator,
     /// Agents of which nothing is on disk are taken from these files.
     pub shipped: ShippedFiles,
@@ -42,7 +42,7 @@ pub struct ScriptSettings {
     pub on_event: Option<fn(&ScriptEvent)>,
 }
 
-/// Whether scripts get fields of `sensor` that cost time.
+/// The policy for fields of `sensor` that cost time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FieldPolicy {
     /// If its name is in a script: an `.m` file in the agent's folder, or a `.py` file beside the agent's, or one up to three
@@ -56,7 +56,7 @@ pub enum FieldPolicy {
 }
 
 impl FieldPolicy {
-    /// Whether this agent gets the fields of these names.
+    /// True if this agent gets the fields of these names.
     pub(crate) fn holds_for(self, agent: &Path, names: &[&str]) -> bool {
         match self {
             Self::Auto => mention(agent, names),
@@ -66,7 +66,7 @@ impl FieldPolicy {
     }
 }
 
-/// How the simulation waits for the script.
+/// The way in which the simulation waits for the script.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Waiting {
     /// It does nothing else meanwhile: for programs without a window, whose runs are the same every time.
@@ -76,7 +76,7 @@ pub enum Waiting {
 }
 
 impl ScriptSettings {
-    /// What the engine is started with.
+    /// The configuration with which the engine starts.
     ///
     /// # Errors
     /// The engine that is wanted is not there, or scripts from the program cannot be written anywhere.

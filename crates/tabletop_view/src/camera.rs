@@ -183,7 +183,7 @@ fn carry_out_motions(
     }
 }
 
-/// What a camera takes in to the right and upwards at a distance of 1.
+/// The picture's size to the right and upwards at a distance of 1.
 fn picture_of(projection: &Projection) -> Vec2 {
     let (up, aspect) = match projection {
         Projection::Perspective(PerspectiveProjection {
@@ -200,7 +200,7 @@ fn place_camera(mut cameras: Query<(&Viewpoint, &mut Transform), Changed<Viewpoi
     }
 }
 
-/// What the keys ask of the camera.
+/// The camera's motion that the keys ask for.
 fn steering(keys: &Keys) -> Steering {
     Steering {
         forward: SPEED * keys.axis(Action::CameraForward, Action::CameraBack),
@@ -327,7 +327,7 @@ mod tests {
         }
     }
 
-    /// Where the camera is and what it looks along.
+    /// The camera's location and direction of view.
     fn view(app: &mut App) -> (Vec3, Vec3) {
         let mut cameras = app.world_mut().query::<(&UserCamera, &Transform)>();
         let place = cameras.single(app.world()).unwrap().1;

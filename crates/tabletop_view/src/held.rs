@@ -1,4 +1,4 @@
-//! What the selected hand holds, as it is drawn.
+//! The object in the selected hand, as it is drawn.
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{Hands, Pose, Primitive};
@@ -18,9 +18,9 @@ pub(crate) struct HeldVisual<'w, 's> {
 pub(crate) struct DrawnHeld<'a> {
     /// Its picture.
     pub visual: Entity,
-    /// Where it is drawn.
+    /// Its pose on the screen.
     pub pose: Pose,
-    /// What is drawn, in the frame of the object.
+    /// Its solids, in the frame of the object.
     pub solids: &'a [Primitive],
 }
 

@@ -1,7 +1,7 @@
 //! What the window shows: the table, the objects on it and what else has a figure, in the light of the original program, through the user's
 //! camera.
 //!
-//! What the selected hand holds is outlined, with the plane in which the mouse drags it, its axes and its shadow line.
+//! An outline shows the object in the selected hand, with the plane in which the mouse drags it, its axes and its shadow line.
 //!
 //! The view only reads. For each object and figure it makes a picture of its own, a [`Visual`], which follows the object smoothly
 //! at any frame rate; no entity of the simulation is touched.
@@ -65,7 +65,7 @@ mod tests {
 
     use super::*;
 
-    /// How many entities have changed since the last frame.
+    /// The number of entities that have changed since the last frame.
     #[derive(Resource, Default)]
     struct Changes(usize);
 

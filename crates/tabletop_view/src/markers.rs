@@ -9,7 +9,7 @@ use crate::{mesh, surface::Surface};
 #[derive(Component)]
 struct Marker;
 
-/// How all markers look.
+/// The look of all markers.
 #[derive(Resource)]
 struct MarkerLooks {
     ball: Handle<Mesh>,

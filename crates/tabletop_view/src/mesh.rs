@@ -29,7 +29,7 @@ pub(crate) fn unit_ball() -> Mesh {
     without_uv(Sphere::new(1.0).mesh().uv(SIDES, RINGS))
 }
 
-/// What stretches the unit mesh of its kind to this solid.
+/// The scale that stretches the unit mesh of its kind to this solid.
 pub(crate) fn scale_of(solid: Solid) -> Vec3 {
     match solid {
         Solid::Cuboid(span) => span,

@@ -7,7 +7,7 @@ use tabletop_core::Pose;
 /// its speed would be 30 m/s.
 const JUMP: f32 = 5.0;
 
-/// Where a body was at the last two ticks.
+/// The poses of a body at the last two ticks.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BodyMotion {
     previous: Pose,
@@ -34,7 +34,7 @@ impl BodyMotion {
         }
     }
 
-    /// Where to draw the body when `fraction` (0..=1) of the next tick has passed: one tick behind it. A body that stands still is
+    /// The pose to draw when `fraction` (0..=1) of the next tick has passed: one tick behind it. A body that stands still is
     /// drawn at the same place to the last bit.
     pub fn at(self, fraction: f32) -> Pose {
         if self.previous == self.present {

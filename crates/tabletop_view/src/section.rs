@@ -1,4 +1,4 @@
-//! Where a plane cuts a solid.
+//! The section of a solid with a plane.
 
 use bevy::prelude::*;
 use tabletop_core::{Pose, Solid};

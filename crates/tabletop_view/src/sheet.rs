@@ -18,7 +18,7 @@ use crate::{held::HeldVisual, visual::Drawn};
 /// outshine the black around the table: the graphics card blends linear values.
 const COLOR: LinearRgba = LinearRgba::new(0.12, 0.12, 0.8, 0.25);
 
-/// Where the sheet begins to fade: so far within the table's edges, and so far above what is held, in units.
+/// The border in which the sheet fades: so far within the table's edges, and so far above what is held, in units.
 const RIM: f32 = 2.0;
 const HEADROOM: f32 = 1.0;
 

@@ -35,7 +35,7 @@ pub(crate) fn outline(eye: Pose, body: Pose, solids: &[Primitive]) -> Vec<Vec<Ve
     lines
 }
 
-/// What a solid covers of the picture. Points are those of the solid in the frame of the eye, which looks along -Z, in
+/// The polygon that a solid covers of the picture. Points are those of the solid in the frame of the eye, which looks along -Z, in
 /// the picture counter-clockwise.
 struct Polygon {
     corners: Vec<Corner>,
@@ -44,7 +44,7 @@ struct Polygon {
 #[derive(Clone, Copy)]
 struct Corner {
     point: Vec3,
-    /// Where it is seen, at a distance of 1.
+    /// Its place in the picture, at a distance of 1.
     seen: Vec2,
 }
 

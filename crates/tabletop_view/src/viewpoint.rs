@@ -1,4 +1,4 @@
-//! Where the user stands and looks, and how that changes.
+//! The user's viewpoint and its motions.
 
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
@@ -17,16 +17,16 @@ const LOWEST: f32 = 0.25;
 /// As near as the camera comes to a point that it approaches, in units.
 const NEAREST: f32 = 0.5;
 
-/// How much more than the table a view of all of it shows.
+/// A view of the whole table is wider than the table by this factor.
 const MARGIN: f32 = 1.15;
 
 /// Height of the view from the front, in units.
 const FRONT_HEIGHT: f32 = 3.0;
 
-/// How far from what it is centred on a camera stands at least and at most, in units.
+/// The least and the largest distance of a camera from the centre of its view, in units.
 const CENTERED: std::ops::RangeInclusive<f32> = 6.0..=40.0;
 
-/// Where a camera stands and looks, always upright: Z is up in its picture.
+/// A camera's location and direction of view, always upright: Z is up in its picture.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 #[require(Transform)]
 pub struct Viewpoint {
@@ -218,7 +218,7 @@ mod tests {
         );
     }
 
-    /// Where a point is in the frame of the camera.
+    /// A point in the frame of the camera.
     fn seen_from(viewpoint: Viewpoint, point: Vec3) -> Vec3 {
         viewpoint.rotation().inverse() * (point - viewpoint.location)
     }

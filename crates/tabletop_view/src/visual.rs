@@ -18,7 +18,7 @@ pub struct Visual {
 #[derive(Component, Clone, Debug)]
 pub(crate) struct Drawn(pub Vec<Primitive>);
 
-/// What has a picture: the table, the objects and the figures.
+/// Everything that has a picture: the table, the objects and the figures.
 type Drawable = Or<(With<ObjectSpec>, With<Table>, With<Figure>)>;
 
 /// The picture of each body.
@@ -213,7 +213,7 @@ mod tests {
         }
     }
 
-    /// What is drawn: the body, where, and the scales of its parts.
+    /// Each drawn body with its location and the scales of its parts.
     fn drawn(app: &mut App) -> Vec<(Entity, Vec3, Vec<Vec3>)> {
         let world = app.world_mut();
         let mut visuals = world.query::<(&Visual, &Transform, &Children)>();

@@ -250,7 +250,7 @@ impl VisibleSurfaces {
         triangles.map(|&i| &self.triangles[i as usize])
     }
 
-    /// Whether there is an edge between any of these surfaces.
+    /// True if there is an edge between any of these surfaces.
     pub fn is_edge_between(&self, surfaces: [u32; 5]) -> bool {
         let [first, others @ ..] = surfaces.map(|i| self.patches[i as usize]);
         others.iter().any(|&patch| patch != first)
@@ -258,7 +258,7 @@ impl VisibleSurfaces {
 }
 
 impl ProjectedFigure {
-    /// Whether it is this one.
+    /// True if it is this one.
     fn is_of(&self, drawn: &DrawnFigure) -> bool {
         Arc::ptr_eq(&self.facets, &drawn.facets)
             && self.pose == drawn.pose_bits()

@@ -43,7 +43,7 @@ impl Facets {
         self.triangles.len()
     }
 
-    /// Whether there is nothing to be drawn.
+    /// True if there is nothing to be drawn.
     pub const fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }

@@ -7,7 +7,7 @@ use crate::kind::EngineKind;
 /// The variable that names the engine where nobody else does: "matlab", "octave", "python" or a program's path.
 pub const ENGINE_VARIABLE: &str = "TABLETOP_ENGINE";
 
-/// What was asked for.
+/// The engine that was asked for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum EngineChoice {
     /// The variable `TABLETOP_ENGINE`, else MATLAB if it is there, else Octave.

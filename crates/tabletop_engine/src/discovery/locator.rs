@@ -15,7 +15,7 @@ use crate::{
 /// An engine that is there.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FoundEngine {
-    /// What it is.
+    /// The value.
     pub kind: EngineKind,
     /// Its program.
     pub program: PathBuf,

@@ -1,4 +1,4 @@
-//! Where the platforms have their programs.
+//! The usual folders of programs on each platform.
 
 use std::path::{Path, PathBuf};
 

@@ -1,11 +1,11 @@
-//! What is to be done about errors that many scripts meet.
+//! Advice about errors that many scripts meet.
 
 use crate::{
     error::ScriptError,
     octave::script_folder::{SHARED, holds_function, is_function_file},
 };
 
-/// What a message says that a struct lacks, and when it is there.
+/// Fields that a message says to be missing, and when they are there.
 const FIELDS: [(&str, &str); 6] = [
     (
         "rgbVision",
@@ -27,7 +27,7 @@ const FIELDS: [(&str, &str); 6] = [
 const SENT_TOGETHER: &str = "sensor.objects, contacts and held are there only if one of these words stands in a file of the scripts' \
     folder, and not with --no-objects";
 
-/// What is there in every call of the callback.
+/// Fields that are there in every call of the callback.
 const ALWAYS: [&str; 6] = [
     "timeElapsed",
     "jointAngles",
@@ -37,7 +37,7 @@ const ALWAYS: [&str; 6] = [
     "headAngle",
 ];
 
-/// What to do about an error, if that is known.
+/// Advice about an error, if there is any.
 pub(crate) fn hint(error: &ScriptError, in_init: bool) -> Option<&'static str> {
     let message = error.message.as_str();
     let is_about_behavior = message.contains("agentBehavior");
@@ -79,7 +79,7 @@ pub(crate) fn hint(error: &ScriptError, in_init: bool) -> Option<&'static str> {
     missing_field(message, in_init)
 }
 
-/// Whether agentBehavior has called a script or function instead of naming it.
+/// True if agentBehavior has called a script or function instead of naming it.
 fn is_call_in_agent_behavior(error: &ScriptError) -> bool {
     let message = error.message.to_lowercase();
     let in_agent_behavior = error
@@ -91,7 +91,7 @@ fn is_call_in_agent_behavior(error: &ScriptError) -> bool {
     in_agent_behavior && calls.iter().any(|call| message.contains(call))
 }
 
-/// Whether a script has called a function that stands further down in it.
+/// True if a script has called a function that stands further down in it.
 fn is_of_own_script(error: &ScriptError) -> bool {
     let name = error
         .message
@@ -105,14 +105,14 @@ fn is_of_own_script(error: &ScriptError) -> bool {
     })
 }
 
-/// Whether there is no such variable, as Octave or MATLAB say it.
+/// True if there is no such variable, as Octave or MATLAB say it.
 fn is_undefined(name: &str, message: &str) -> bool {
     let quoted = format!("'{name}'");
     message.starts_with(&format!("{quoted} undefined"))
         || message.contains(&format!("function or variable {quoted}"))
 }
 
-/// What to do about a field that is not there.
+/// Advice about a field that is missing.
 fn missing_field(message: &str, in_init: bool) -> Option<&'static str> {
     let missing = ["member", "field", "attribute"]
         .iter()

@@ -56,7 +56,7 @@ pub(crate) fn fault(
     ))
 }
 
-/// What the user should know of a script that has run.
+/// A note for the user about a script that has run.
 pub(crate) fn note(script: &Path) -> Option<String> {
     let text = read(script).ok()?;
     let text = String::from_utf8_lossy(&text);
@@ -68,7 +68,7 @@ pub(crate) fn note(script: &Path) -> Option<String> {
     })
 }
 
-/// Whether a function declares one of the variables that it shares with the simulator, or acts in the base workspace.
+/// True if a function declares one of the variables that it shares with the simulator, or acts in the base workspace.
 fn reaches_shared(text: &str) -> bool {
     let declared = text
         .lines()
@@ -81,12 +81,12 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|letter: char| !letter.is_alphanumeric() && letter != '_')
 }
 
-/// Whether a script is a function.
+/// True if a script is a function.
 pub(crate) fn is_function_file(script: &Path) -> bool {
     read(script).is_ok_and(|text| is_function(&String::from_utf8_lossy(&text)))
 }
 
-/// Whether a file's first word that is no comment is "function".
+/// True if a file's first word that is no comment is "function".
 fn is_function(text: &str) -> bool {
     let mut in_comment = false;
     for line in text.lines().map(str::trim) {
@@ -103,7 +103,7 @@ fn is_function(text: &str) -> bool {
     false
 }
 
-/// How the scripts of a folder are written.
+/// The encoding of a folder's scripts.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Encoding {
     /// In UTF-8.
@@ -136,7 +136,7 @@ impl Encoding {
         }
     }
 
-    /// What the user should know.
+    /// A note for the user.
     pub(crate) fn note(&self) -> Option<String> {
         match self {
             Self::Utf8 => None,
@@ -167,13 +167,13 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Whether a file's name begins with a dot, as those have that macOS leaves beside others.
+/// True if a file's name begins with a dot, as those have that macOS leaves beside others.
 fn is_hidden(path: &Path) -> bool {
     path.file_name()
         .is_some_and(|name| name.as_encoded_bytes().starts_with(b"."))
 }
 
-/// Whether a script holds a function of this name.
+/// True if a script holds a function of this name.
 pub(crate) fn holds_function(script: &Path, name: &str) -> bool {
     let text = read(script).unwrap_or_default();
     let text = String::from_utf8_lossy(&text);

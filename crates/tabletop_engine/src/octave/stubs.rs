@@ -1,6 +1,6 @@
 //! Stubs in place of Octave's functions that need a person, a debugger or a display.
 
-/// What would wait for somebody, in Octave, where commands come in on the standard input; and what nobody can do.
+/// Functions that would wait for somebody, in Octave, where commands come in on the standard input; and those that nobody can use.
 const UNANSWERED: [(&str, &str); 5] = [
     ("input", "answer"),
     ("kbhit", "type"),
@@ -9,10 +9,10 @@ const UNANSWERED: [(&str, &str); 5] = [
     ("yes_or_no", "answer"),
 ];
 
-/// What would let Octave's debugger wait for commands.
+/// Functions that would let Octave's debugger wait for commands.
 const UNDEBUGGED: &str = "dbstop debug_on_error debug_on_interrupt debug_on_warning";
 
-/// What draws, in Octave. Where there is nothing to draw with, it does nothing.
+/// Functions of Octave that draw. Where there is nothing to draw with, they do nothing.
 const UNDRAWN: &str = "ancestor annotation area axes bar3 bar3h box camlight camlookat camorbit campos camroll camtarget camup camva camzoom cla \
     clabel clf close colorbar comet comet3 compass copyobj daspect datetick delaxes drawnow errorbar ezcontour ezcontourf \
     ezmesh ezmeshc ezplot ezplot3 ezpolar ezsurf ezsurfc feather figure fill fill3 fplot gca gcf grid gtext hggroup hgload \
@@ -27,16 +27,16 @@ const UNDRAWN: &str = "ancestor annotation area axes bar3 bar3h box camlight cam
 /// The limits of what is not drawn.
 const LIMITS: &str = "caxis clim xlim ylim zlim";
 
-/// What looks for what was drawn.
+/// Functions that look for drawings.
 const SOUGHT: &str = "allchild findall findobj";
 
-/// What can compute what it would draw.
+/// Functions that can compute what they would draw.
 const COMPUTED: &str = "bar barh contour contour3 contourf stairs";
 
-/// What would ask for a file in a window.
+/// Functions that would ask for a file in a window.
 const CHOSEN: &str = "uigetdir uigetfile uiputfile";
 
-/// What would make a file of a drawing.
+/// Functions that would make a file of a drawing.
 const PRINTED: &str = "hgsave print saveas savefig";
 
 /// Names and texts.
@@ -59,7 +59,7 @@ pub(crate) fn files() -> impl Iterator<Item = (String, String)> {
     all.map(|(folder, name, text)| (format!("{folder}/{name}.m"), text))
 }
 
-/// Whether the one in place of this function says that it does nothing.
+/// True if the one in place of this function says that it does nothing.
 pub(crate) fn warns(function: &str) -> bool {
     let mut names = [UNDEBUGGED, PRINTED]
         .into_iter()

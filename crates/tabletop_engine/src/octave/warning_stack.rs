@@ -41,7 +41,7 @@ fn function(line: &[u8]) -> Option<&str> {
     function.strip_prefix("    ")
 }
 
-/// Whether a function is one of the driver's, by its name.
+/// True if a function is one of the driver's, by its name.
 fn is_of_driver(function: &str) -> bool {
     let file = function.split('>').next().unwrap_or_default();
     file.starts_with("tabletop_") || file == "savepath" || stubs::warns(file)

@@ -49,7 +49,7 @@ impl Data {
         }
     }
 
-    /// How many elements there are, where the data say so themselves.
+    /// The number of elements, where the data say so themselves.
     pub(super) fn len(&self) -> Option<usize> {
         match self {
             Self::Double(data) => Some(data.len()),

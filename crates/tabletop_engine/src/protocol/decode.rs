@@ -54,7 +54,7 @@ impl Arrays {
     }
 }
 
-/// What the header says of an array.
+/// The header of an array.
 struct Header {
     code: u32,
     name: usize,

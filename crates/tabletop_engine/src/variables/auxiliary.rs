@@ -1,4 +1,4 @@
-//! What scripts and the program tell each other about the robot: the script's `aux` variable (report section 5.2).
+//! The script's `aux` variable (report section 5.2): facts about the robot, and wishes of the script.
 
 use crate::{
     protocol::{Array, Arrays},
@@ -9,7 +9,7 @@ use crate::{
     },
 };
 
-/// What an init script gets to know. For Baxter, rows are in the order left, right; joints in the order S0, S1, E0, E1, W0, W1,
+/// The knowledge of an init script. For Baxter, rows are in the order left, right; joints in the order S0, S1, E0, E1, W0, W1,
 /// W2.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Aux {
@@ -20,7 +20,7 @@ pub struct Aux {
 }
 
 impl Aux {
-    /// How many limbs the robot has, and how many joints the limb that has most.
+    /// The number of limbs, and of joints in the limb that has most.
     pub fn size(&self) -> [usize; 2] {
         self.min_joint_angles.size()
     }
@@ -38,14 +38,14 @@ impl Aux {
     }
 }
 
-/// What an init script wants.
+/// The wishes of an init script.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InitReply {
-    /// Where markers shall be, in units of 10 cm.
+    /// The places of markers, in units of 10 cm.
     pub draw_markers: Vec<[f64; 3]>,
     /// Angles that the limbs' joints shall have at first, in rad; not yet clamped to the limits.
     pub init_joint_angles: Option<JointMatrix>,
-    /// Whether the script is done already: it is not called back.
+    /// True if the script is done already: it is not called back.
     pub exit: bool,
 }
 

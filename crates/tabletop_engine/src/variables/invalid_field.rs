@@ -1,4 +1,4 @@
-//! What is wrong with a variable that a script has set.
+//! Faults in variables that a script has set.
 
 use std::fmt;
 
@@ -17,7 +17,7 @@ pub enum InvalidField {
         name: String,
         /// Size and class of what is there.
         found: String,
-        /// What should be there.
+        /// The content that was expected.
         expected: &'static str,
     },
     /// A field has another size or class.
@@ -27,7 +27,7 @@ pub enum InvalidField {
         field: String,
         /// Size and class of what is there.
         found: String,
-        /// What should be there.
+        /// The content that was expected.
         expected: String,
     },
     /// A number is not one.
@@ -43,7 +43,7 @@ pub enum InvalidField {
     TooFar {
         /// Which coordinate of which marker.
         element: MatrixElement,
-        /// What it is.
+        /// The value.
         found: f64,
     },
     /// There is a field that nobody knows.
@@ -75,7 +75,7 @@ pub struct MatrixElement {
     field: String,
     rows: usize,
     columns: usize,
-    /// Where it is, column by column.
+    /// Its place, column by column.
     place: usize,
     is_python: bool,
 }

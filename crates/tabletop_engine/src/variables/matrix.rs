@@ -44,7 +44,7 @@ impl JointMatrix {
         matrix
     }
 
-    /// How many limbs and joints it has.
+    /// The number of its limbs and joints.
     pub const fn size(&self) -> [usize; 2] {
         [self.limbs, self.joints]
     }

@@ -1,4 +1,4 @@
-//! What the robot shall do: the script's `motor` variable (report section 5.2), checked before anybody uses it.
+//! The script's `motor` variable (report section 5.2): commands to the robot, checked before anybody uses them.
 
 use crate::{
     protocol::{Array, Arrays, Data},
@@ -14,13 +14,13 @@ use crate::{
 pub struct MotorCommand {
     /// Velocities of the limbs' joints, in rad/s.
     pub joint_velocities: JointMatrix,
-    /// How fast each limb's gripper opens (positive) or closes, in units/s.
+    /// The speed at which each limb's gripper opens (positive) or closes, in units/s.
     pub gripper_velocities: Vec<f64>,
     /// Angles that the joints take at once, in rad. The velocities then mean nothing.
     pub joint_angles: Option<JointMatrix>,
     /// Torques of the limbs' joints, in N m, for a robot that is moved by forces.
     pub joint_torques: Option<JointMatrix>,
-    /// How fast the head turns, in rad/s, positive to the robot's left.
+    /// The speed of the head's turn, in rad/s, positive to the robot's left.
     pub head_velocity: Option<f64>,
 }
 

@@ -1,11 +1,11 @@
-//! What the robot senses: the script's `sensor` variable (report section 5.2).
+//! The script's `sensor` variable (report section 5.2): the robot's senses.
 
 use crate::{
     protocol::{Array, Arrays, Data},
     variables::matrix::JointMatrix,
 };
 
-/// What a script gets to know in a tick. For Baxter, rows are in the order left, right; joints in the order S0, S1, E0, E1, W0, W1,
+/// The senses of a script in a tick. For Baxter, rows are in the order left, right; joints in the order S0, S1, E0, E1, W0, W1,
 /// W2.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sensor {
@@ -13,21 +13,21 @@ pub struct Sensor {
     pub time_elapsed: f64,
     /// Angles of the limbs' joints, in rad.
     pub joint_angles: JointMatrix,
-    /// Where each limb's end effector is, in units of 10 cm.
+    /// The location of each limb's end effector, in units of 10 cm.
     pub end_eff_pos: Vec<[f64; 3]>,
-    /// How far each limb's gripper is open, in units.
+    /// The opening of each limb's gripper, in units.
     pub gripper_opening: Vec<f64>,
-    /// What the head camera sees, if there is a fresh picture.
+    /// The head camera's picture, if there is a fresh one.
     pub picture: Option<RgbImage>,
     /// Points on the arms by name, in units. A map costs Octave half a millisecond, so leave it out where nobody asks for it.
     pub tracker_loc: Option<Vec<(String, [f64; 3])>>,
-    /// Whether a demonstration is going on: one that is being recorded or replayed.
+    /// True if a demonstration is going on: one that is being recorded or replayed.
     pub demo_cue: bool,
     /// The head's angle, in rad, positive to the robot's left; a robot without a neck has none.
     pub head_angle: Option<f64>,
     /// The objects of the world, if the script may know them.
     pub objects: Option<Vec<SensedObject>>,
-    /// What touches what.
+    /// The contacts of the robot's bodies.
     pub contacts: Option<Vec<SensedContact>>,
     /// The limbs by their names, which are fields of the struct, with the ids of the objects that their grippers hold.
     pub held: Option<Vec<(String, Vec<String>)>>,
@@ -83,13 +83,13 @@ impl RgbImage {
 pub struct SensedObject {
     /// Its name.
     pub id: String,
-    /// Where its centre is, in units.
+    /// Its centre, in units.
     pub position: [f64; 3],
-    /// How it is turned: about the fixed axes X, then Y, then Z, in rad.
+    /// Its rotation about the fixed axes X, then Y, then Z, in rad.
     pub rotation: [f64; 3],
     /// Its mass, in kg; zero if nothing moves it.
     pub mass: f64,
-    /// What it is, in words.
+    /// Its description in words.
     pub description: String,
 }
 
@@ -98,9 +98,9 @@ pub struct SensedObject {
 pub struct SensedContact {
     /// The ids of the two.
     pub ids: [String; 2],
-    /// Where they touch, in units.
+    /// The point of contact, in units.
     pub point: [f64; 3],
-    /// How hard they pushed each other in the last tick, in kg units/s.
+    /// The impulse with which they pushed each other in the last tick, in kg units/s.
     pub impulse: f64,
 }
 

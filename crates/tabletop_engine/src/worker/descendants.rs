@@ -49,7 +49,7 @@ mod linux {
 
     use super::{Descendants, FOLDER_VARIABLE, Path};
 
-    /// How often it is looked again for processes, as killed ones may just have started others.
+    /// The number of searches for processes: killed ones may just have started others.
     const ROUNDS: usize = 50;
     const PAUSE: Duration = Duration::from_millis(2);
 
@@ -163,7 +163,7 @@ mod linux {
         entries.filter_map(|entry| entry.file_name().to_str()?.parse().ok())
     }
 
-    /// What the system says of a process.
+    /// The system's entry of a process.
     struct Status {
         pid: i32,
         is_zombie: bool,

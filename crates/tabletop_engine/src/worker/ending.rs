@@ -1,4 +1,4 @@
-//! How engines end: by themselves, when they are told to, or because they did not answer in time.
+//! The ends of engines: by themselves, when they are told to, or because they did not answer in time.
 
 use std::{
     process::ExitStatus,
@@ -13,9 +13,9 @@ use crate::{
     worker::{signal::Signal, trigger_file::Op},
 };
 
-/// How long the last output of an engine that has ended is waited for.
+/// The last output of an engine that has ended is waited for so long.
 const LAST_OUTPUT: Duration = Duration::from_millis(300);
-/// How long a script that was interrupted may take to clean up.
+/// A script that was interrupted may take so long to clean up.
 const CLEANUP: Duration = Duration::from_millis(200);
 /// Time from one further interrupt to the next: short, because a shell that gets one before it knows of interrupts ends as if it
 /// had got none.
@@ -46,7 +46,7 @@ impl Running {
         }
     }
 
-    /// Whether the engine reports within a while that it has left the script. A program that Octave's script has started may have got
+    /// True if the engine reports within a while that it has left the script. A program that Octave's script has started may have got
     /// the interrupt in its place, so there are more; Python's `finally` is let be.
     fn leaves_script(&mut self) -> bool {
         let repeats = self.worker.config.engine.kind == EngineKind::Octave;

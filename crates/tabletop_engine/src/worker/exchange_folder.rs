@@ -40,7 +40,7 @@ impl ExchangeFolder {
         self.folder.path()
     }
 
-    /// Where the driver's files are.
+    /// The folder of the driver's files.
     pub(crate) fn driver(&self) -> PathBuf {
         self.folder().join("driver")
     }

@@ -1,4 +1,4 @@
-//! How each engine is started.
+//! The command line of each engine.
 
 use std::{
     path::{MAIN_SEPARATOR, Path, absolute},
@@ -61,7 +61,7 @@ pub(crate) fn command(config: &EngineConfig, session: &ExchangeFolder) -> Result
     Ok(command)
 }
 
-/// What MATLAB and Octave are told first. The user's own startup file may have gone to another folder, and where it waits for
+/// The first commands to MATLAB and Octave. The user's own startup file may have gone to another folder, and where it waits for
 /// keys it takes some of the spaces. What the driver shadows is nobody's business.
 pub(crate) fn preparation(config: &EngineConfig, session: &ExchangeFolder) -> String {
     let home = absolute(&config.working_dir).unwrap_or_else(|_| config.working_dir.clone());

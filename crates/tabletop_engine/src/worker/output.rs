@@ -1,4 +1,4 @@
-//! What an engine prints: lines for a person and marks for the worker.
+//! Output of an engine: lines for a person and marks for the worker.
 
 use std::{io::Read, sync::mpsc::Sender};
 

@@ -11,7 +11,7 @@ use std::{
 
 use super::descendants::{Descendants, FOLDER_VARIABLE};
 
-/// How long a killed process may take to be gone.
+/// A killed process may take so long to be gone.
 const REAP_LIMIT: Duration = Duration::from_secs(2);
 
 /// Ends a process from any thread, also one that has not been started yet.
@@ -127,7 +127,7 @@ impl Process {
         self.descendants.reap();
     }
 
-    /// How it ended, if it has.
+    /// Its exit status, if it has ended.
     pub(crate) fn ended(&mut self) -> Option<ExitStatus> {
         let mut target = self.killer.0.lock().unwrap_or_else(PoisonError::into_inner);
         let status = self.child.try_wait().ok().flatten()?;
@@ -140,7 +140,7 @@ impl Process {
         Some(status)
     }
 
-    /// How it ended, waiting for at most `limit`.
+    /// Its exit status, waiting for at most `limit`.
     pub(crate) fn wait(&mut self, limit: Duration) -> Option<ExitStatus> {
         let start = Instant::now();
         loop {

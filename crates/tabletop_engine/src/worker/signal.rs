@@ -1,10 +1,10 @@
-//! What reaches the thread of an engine.
+//! Signals to the thread of an engine.
 
 use std::time::Duration;
 
 use crate::variables::{auxiliary::Aux, sensor::Sensor};
 
-/// What the worker hears.
+/// A signal to the worker.
 #[derive(Debug)]
 pub(crate) enum Signal {
     /// Run the init script.

@@ -1,4 +1,4 @@
-//! How an engine that polls learns what is to do, and this program what is done.
+//! The file by which an engine that polls learns of requests, and this program of answers.
 
 use std::{
     fs::{self, File, OpenOptions},
@@ -8,7 +8,7 @@ use std::{
 
 use crate::error::EngineError;
 
-/// What an engine is asked to do.
+/// The request to an engine.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Op {
     /// End.
@@ -104,7 +104,7 @@ impl TriggerFile {
             .map_err(|error| EngineError::file(&self.path, &error))
     }
 
-    /// Whether the engine has done a request.
+    /// True if the engine has done a request.
     pub(crate) fn is_done(&mut self, seq: u32) -> bool {
         let mut words = [0; 8];
         let read = self

@@ -38,7 +38,7 @@ pub struct DisplayOffer {
     pub modes: Vec<ScreenMode>,
     /// How edges can be smoothed, in rising order. `Off` is always offered.
     pub antialiasing: Vec<Antialiasing>,
-    /// Whether the processor draws.
+    /// True if the processor draws.
     pub is_software: bool,
 }
 

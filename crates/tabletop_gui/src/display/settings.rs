@@ -19,9 +19,9 @@ pub(super) const SIXTY: NonZeroU32 = NonZeroU32::new(60).expect("it is not zero"
 pub struct DisplaySettings {
     /// The size of the window, or of the screen if the window fills it.
     pub resolution: Resolution,
-    /// Whether the window fills the screen.
+    /// True if the window fills the screen.
     pub fullscreen: bool,
-    /// Whether a picture is only shown when the screen has shown the last one wholly.
+    /// True if a picture is only shown when the screen has shown the last one wholly.
     pub vsync: bool,
     /// Pictures a second, at most.
     pub refresh_rate: NonZeroU32,
@@ -29,7 +29,7 @@ pub struct DisplaySettings {
     pub color_depth: u16,
     /// How edges are smoothed.
     pub antialiasing: Antialiasing,
-    /// Whether the user is asked when the program starts.
+    /// True if the user is asked when the program starts.
     pub ask: bool,
 }
 

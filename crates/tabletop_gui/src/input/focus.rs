@@ -177,7 +177,7 @@ mod tests {
             keyboard
         }
 
-        /// Whether egui would take the keys for itself.
+        /// True if egui would take the keys for itself.
         fn has_egui(&mut self) -> bool {
             let world = self.app.world_mut();
             let mut contexts = world.query::<&mut EguiContext>();

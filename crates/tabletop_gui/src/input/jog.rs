@@ -29,7 +29,7 @@ impl Directions {
         self.0[joint.index()] = direction;
     }
 
-    /// Whether nothing is to go anywhere.
+    /// True if nothing is to go anywhere.
     pub fn are_none(&self) -> bool {
         self.0.iter().all(|&direction| direction == 0)
     }
@@ -65,7 +65,7 @@ impl Controls {
         }
     }
 
-    /// Whether nothing is or was held down.
+    /// True if nothing is or was held down.
     fn are_idle(&self) -> bool {
         self.held.are_none() && self.struck.are_none()
     }

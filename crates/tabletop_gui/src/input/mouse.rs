@@ -25,7 +25,7 @@ pub(crate) enum Press {
 }
 
 impl Press {
-    /// Whether the mouse moves something.
+    /// True if the mouse moves something.
     pub fn is_drag(&self) -> bool {
         matches!(self, Self::Drag(_))
     }

@@ -15,7 +15,7 @@ pub(crate) struct Pointer {
     pub ray: Option<Ray3d>,
     /// Where it is in the window, in its logical pixels from the upper left corner.
     pub cursor: Option<Vec2>,
-    /// Whether a press is for the panels.
+    /// True if a press is for the panels.
     pub is_panels: bool,
 }
 

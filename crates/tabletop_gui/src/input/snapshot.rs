@@ -32,7 +32,7 @@ impl Snapshots {
         self.is_wanted = true;
     }
 
-    /// Whether a picture is to be saved after the next tick.
+    /// True if a picture is to be saved after the next tick.
     pub const fn are_wanted(&self) -> bool {
         self.is_wanted
     }

@@ -30,7 +30,7 @@ impl Default for Panels {
 }
 
 impl Panels {
-    /// Whether a panel is open.
+    /// True if a panel is open.
     pub fn is_open(&self, panel: Panel) -> bool {
         self.open.contains(&panel)
     }

@@ -31,7 +31,7 @@ struct Model<'a> {
     /// How large everything is drawn.
     scale: f32,
     keymap: &'a Keymap,
-    /// Whether the display has settings.
+    /// True if the display has settings.
     has_display: bool,
 }
 

@@ -17,7 +17,7 @@ const BORDER: f32 = 1.0;
 
 const BORDER_COLOR: Color32 = Color32::GRAY;
 
-/// Whether the user sees what the robot sees.
+/// The state of the window with the robot's view: shown or hidden.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct HeadView(bool);
 

@@ -64,7 +64,7 @@ const FRAME_HEIGHT: f32 = 96.0;
 const FOOTNOTE: &str =
     "Keys are those at these places of a US keyboard, whatever is printed on them.";
 
-/// Whether the sheet is shown.
+/// The state of the sheet: shown or hidden.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Help {
     is_open: bool,
@@ -76,7 +76,7 @@ impl Help {
         self.is_open = !self.is_open;
     }
 
-    /// Whether the sheet is shown.
+    /// True if the sheet is shown.
     pub const fn is_open(self) -> bool {
         self.is_open
     }

@@ -35,7 +35,7 @@ const TICKS_PER_FRAME: u64 = TICKS_PER_SECOND as u64 / 4;
 pub struct Renderer {
     /// What it calls itself.
     pub name: String,
-    /// Whether it draws on the processor instead of a graphics card.
+    /// True if it draws on the processor instead of a graphics card.
     pub is_software: bool,
 }
 

@@ -20,7 +20,7 @@ pub(crate) fn switch(ui: &mut Ui, is_on: bool, text: &str, tooltip: &str) -> Res
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Hold {
     pub is_held: bool,
-    /// Whether it has gone down in this frame, even if it is up again.
+    /// True if it has gone down in this frame, even if it is up again.
     pub was_struck: bool,
 }
 

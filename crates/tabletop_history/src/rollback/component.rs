@@ -6,7 +6,7 @@ use bevy::prelude::*;
 
 use super::saved::{Earlier, Saved};
 
-/// How many entities share what is saved of them.
+/// The number of entities that share a saved chunk.
 const CHUNK: usize = 16;
 
 /// A component of entities, in their order.
@@ -34,7 +34,7 @@ pub(crate) fn save<C: Component + Clone>(
     Box::new(Column(chunks.collect()))
 }
 
-/// What was saved earlier of these entities, if nothing of it has changed.
+/// The chunk saved earlier of these entities, if nothing in it has changed.
 fn unchanged<C: Component + Clone>(
     world: &World,
     entities: &[Entity],

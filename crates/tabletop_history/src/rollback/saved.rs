@@ -16,7 +16,7 @@ pub(crate) trait Saved: Any + Send + Sync {
     fn bytes(&self, besides: Option<&dyn Saved>) -> usize;
 }
 
-/// What was saved earlier, for what has not changed since.
+/// An earlier snapshot, for what has not changed since.
 #[derive(Clone, Copy)]
 pub(crate) struct Earlier<'a> {
     pub entities: &'a [Entity],
@@ -46,7 +46,7 @@ impl Since {
         Self { then, now }
     }
 
-    /// Whether something has changed since, or may have.
+    /// True if something has changed since, or may have.
     pub fn has_changed(self, ticks: ComponentTicks) -> bool {
         let age = self.now.get().wrapping_sub(self.then.get());
         age > OLDEST || ticks.is_changed(self.then, self.now)

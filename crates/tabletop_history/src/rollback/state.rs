@@ -1,4 +1,4 @@
-//! What decides what comes next and is neither a component of what rolls back nor a resource.
+//! State that rolls back and is neither a component nor a resource.
 
 use std::any::Any;
 
@@ -6,7 +6,7 @@ use bevy::prelude::*;
 
 use super::saved::{Earlier, Saved, Since};
 
-/// What decides what comes next and is neither a component of an entity that rolls back nor a resource, such as the state of a
+/// State that decides what comes next and is neither a component of an entity that rolls back nor a resource, such as that of a
 /// physics engine.
 pub trait RollbackState: Send + Sync + Sized + 'static {
     /// The present state, sharing with an earlier one what has not changed since; `None` in a world that has none.

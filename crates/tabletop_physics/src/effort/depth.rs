@@ -27,7 +27,7 @@ impl Depths {
         depth.filter(|depth| *depth != UNSUPPORTED)
     }
 
-    /// Whether a body is less deep than it was known to be, because it touches this other one.
+    /// True if a body is less deep than it was known to be, because it touches this other one.
     fn lower(&mut self, body: u32, other: u32) -> bool {
         let by_other = self.0[other as usize].saturating_add(1);
         let depth = &mut self.0[body as usize];

@@ -49,7 +49,7 @@ pub(crate) fn landing_speed(engine: &Engine, handle: RigidBodyHandle) -> f32 {
 }
 
 impl Engine<'_> {
-    /// Whether a body moves against the body of a shape.
+    /// True if a body moves against the body of a shape.
     fn meets(&self, body: &RigidBody, other: ColliderHandle) -> bool {
         let other = self.colliders[other].parent();
         let other = other.and_then(|other| self.bodies.get(other));
@@ -58,13 +58,13 @@ impl Engine<'_> {
         closing >= LANDING_SPEED
     }
 
-    /// Whether an axis of a shape is parallel to one of another, so that a face may hit a face.
+    /// True if an axis of a shape is parallel to one of another, so that a face may hit a face.
     fn are_aligned(&self, shape: ColliderHandle, other: ColliderHandle) -> bool {
         let [first, second] = [shape, other].map(|it| self.colliders[it].rotation());
         are_aligned(first, second)
     }
 
-    /// Whether two shapes press on each other.
+    /// True if two shapes press on each other.
     fn presses(&self, shape: ColliderHandle, other: ColliderHandle) -> bool {
         let pair = self.narrow_phase.contact_pair(shape, other);
         pair.is_some_and(|pair| pair.total_impulse_magnitude() > 0.0)

@@ -38,9 +38,9 @@ pub(crate) struct SubstepFactors {
     depth: Option<u32>,
     is_block: bool,
     is_uneven: bool,
-    /// Whether joints hold it.
+    /// True if joints hold it.
     pub is_jointed: bool,
-    /// Whether a hand or a robot touches it.
+    /// True if a hand or a robot touches it.
     pub is_handled: bool,
     speed: f32,
 }

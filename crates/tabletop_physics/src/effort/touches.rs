@@ -18,7 +18,7 @@ pub(crate) struct Touches {
     pub uneven: BTreeSet<u32>,
     /// Those that touch what hands or robots move.
     pub handled: BTreeSet<u32>,
-    /// Whether any is near to what hands or robots move.
+    /// True if any is near to what hands or robots move.
     pub is_handling: bool,
 }
 

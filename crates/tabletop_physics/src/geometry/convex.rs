@@ -16,7 +16,7 @@ pub struct Convex {
 }
 
 impl Convex {
-    /// Whether it is within a distance, in units, of another solid that stands in the same frame.
+    /// True if it is within a distance, in units, of another solid that stands in the same frame.
     pub fn is_near(&self, other: &Self, within: f32) -> bool {
         let [at, other_at] = [self, other].map(|solid| to_rapier(solid.pose));
         let bounds = self.shape.compute_aabb(&at).loosened(within);

@@ -60,7 +60,7 @@ pub(crate) fn check_begin(
     }
 }
 
-/// Whether a recording can last from one tick to another.
+/// Checks that a recording can last from one tick to another.
 pub(crate) fn check_ticks(begin: u64, end: u64) -> Checked {
     match end.saturating_sub(begin) > MOST_TICKS {
         true => Err(format!(

@@ -21,7 +21,7 @@ impl FrameClock {
         self.elapsed(tick).div_ceil(TICKS_PER_FRAME)
     }
 
-    /// Whether a frame is taken at the end of this tick.
+    /// True if a frame is taken at the end of this tick.
     pub(crate) fn is_frame(self, tick: SimTick) -> bool {
         self.elapsed(tick).is_multiple_of(TICKS_PER_FRAME)
     }

@@ -115,7 +115,7 @@ impl SessionCommand {
     }
 }
 
-/// Whether a session log holds a command. It holds none that is about recordings; the one that ends them is added at the end.
+/// True if a session log holds a command. It holds none that is about recordings; the one that ends them is added at the end.
 pub(crate) fn is_logged(command: &SimCommand) -> bool {
     match command {
         SimCommand::Recording(_) | SimCommand::History(_) => false,

@@ -10,7 +10,7 @@ pub(crate) struct State {
 }
 
 impl State {
-    /// Whether two states are the same in every bit.
+    /// True if two states are the same in every bit.
     pub(crate) fn is_same(self, other: Self) -> bool {
         self.numbers().map(f32::to_bits) == other.numbers().map(f32::to_bits)
     }

@@ -67,7 +67,7 @@ impl Fault {
         }
     }
 
-    /// Whether the call that fails writes half of what it was to write.
+    /// True if the call that fails writes half of what it was to write.
     fn tears(self, call: u64, failing: u64) -> bool {
         match self {
             Self::FullOnce | Self::Full | Self::KilledWithin => call == failing,
@@ -305,7 +305,7 @@ impl StoredFile {
     }
 }
 
-/// Whether there is something of this name, be it a link to nothing.
+/// True if there is something of this name, be it a link to nothing.
 pub(crate) fn is_taken(path: &Path) -> bool {
     path.symlink_metadata().is_ok()
 }

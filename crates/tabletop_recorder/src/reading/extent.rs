@@ -25,7 +25,7 @@ const LONGEST_LINE: u64 = 1 << 16;
 const MOST_LINES_OF_A_ROW: usize = 64;
 
 impl Session {
-    /// Whether the recording has come to its end.
+    /// True if the recording has come to its end.
     pub fn is_finished(&self) -> bool {
         let last = self.commands.last();
         last.is_some_and(|last| last.command == SimCommand::Recording(RecordingCommand::Finish))

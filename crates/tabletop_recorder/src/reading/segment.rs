@@ -126,7 +126,7 @@ pub(super) fn begin_of<'c>(
     }
 }
 
-/// Whether a command is to do just this.
+/// True if a command is to do just this.
 fn is_told(act: &Act, command: &HandCommand) -> bool {
     let is = |verb, hand: &Hand| act.verb == verb && act.manipulator == Manipulator::Hand(*hand);
     match command {
@@ -142,7 +142,7 @@ fn is_told(act: &Act, command: &HandCommand) -> bool {
     }
 }
 
-/// Whether a command makes a hand let go, because another one takes what it holds, or needs it.
+/// True if a command makes a hand let go, because another one takes what it holds, or needs it.
 fn is_forced(act: &Act, command: &HandCommand) -> bool {
     match command {
         HandCommand::Grasp { .. } => act.verb == Verb::Release,

@@ -44,7 +44,7 @@ impl EarlierCommands {
         &self.lines
     }
 
-    /// Whether the simulation was paused before the commands of this tick.
+    /// True if the simulation was paused before the commands of this tick.
     pub(crate) fn is_paused(&self) -> bool {
         self.is_paused
     }

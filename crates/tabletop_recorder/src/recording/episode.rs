@@ -41,7 +41,7 @@ pub(crate) struct Episode {
     sight: Sight,
     /// The robot's joints at the end of the tick before.
     last_joints: Option<Vec<JointState>>,
-    /// Whether the simulation is paused where the session log ends.
+    /// True if the simulation is paused where the session log ends.
     is_paused: bool,
     channels: Channels,
     /// The tick before its commands were carried out; they may turn the clock.

@@ -137,7 +137,7 @@ pub(crate) fn take_commands(
     }
 }
 
-/// Whether a tick leaves anything in a recording.
+/// True if a tick leaves anything in a recording.
 pub(crate) fn is_recording(recorder: Res<Recorder>) -> bool {
     recorder.episode.is_some()
 }

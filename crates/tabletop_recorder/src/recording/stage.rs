@@ -119,6 +119,6 @@ pub(crate) enum Shown<'w> {
 pub(crate) struct Sight {
     /// The number of each object's `create` line, and how it looks.
     objects: Vec<(usize, Shape)>,
-    /// Whether the robot stands at the table.
+    /// True if the robot stands at the table.
     robot: bool,
 }

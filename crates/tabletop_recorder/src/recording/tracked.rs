@@ -33,7 +33,7 @@ impl Tracked {
         }
     }
 
-    /// Whether a frame at which it is here needs a `move` line: it was never reported; or has come to rest (it is, to the
+    /// True if a frame at which it is here needs a `move` line: it was never reported; or has come to rest (it is, to the
     /// bit, where it was a tick ago) somewhere else than last reported; or is farther from there than the thresholds.
     pub(crate) fn is_news(&self, pose: Pose) -> bool {
         self.reported.is_none_or(|reported| {
@@ -42,7 +42,7 @@ impl Tracked {
         })
     }
 
-    /// Whether it is anywhere else, by any bit, than its last `move` line says.
+    /// True if it is anywhere else, by any bit, than its last `move` line says.
     pub(crate) fn is_elsewhere(&self, pose: Pose) -> bool {
         self.reported
             .is_none_or(|reported| !is_same(reported, pose))

@@ -58,7 +58,7 @@ pub(crate) struct Notice {
     pub number: u64,
     pub tone: Tone,
     pub text: String,
-    /// Whether it is only listed.
+    /// True if it is only listed.
     pub is_quiet: bool,
 }
 
@@ -117,7 +117,7 @@ impl Notices {
         self.notices.iter().map(|notice| notice.text.as_str())
     }
 
-    /// Whether there is nothing to be said.
+    /// True if there is nothing to be said.
     pub fn is_empty(&self) -> bool {
         self.notices.is_empty()
     }

@@ -130,7 +130,7 @@ pub(super) fn goal(
     }
 }
 
-/// Whether the user has just let go of a slider, or has finished its number with Enter.
+/// True if the user has just let go of a slider, or has finished its number with Enter.
 fn is_confirmed(slider: &Response) -> bool {
     let has_entered = || slider.ctx.input(|input| input.key_pressed(Key::Enter));
     slider.drag_stopped() || slider.lost_focus() && has_entered()

@@ -12,13 +12,13 @@ pub(super) struct Model<'a> {
     /// Ids of what the grippers hold, by limb.
     pub held: &'a [Vec<&'a str>],
     pub shows_head_view: bool,
-    /// Whether a script moves the arms.
+    /// True if a script moves the arms.
     pub is_scripted: bool,
     pub keymap: &'a Keymap,
 }
 
 impl Model<'_> {
-    /// Whether the user can move a joint.
+    /// True if the user can move a joint.
     pub fn is_free(&self, joint: JointId) -> bool {
         !self.is_scripted || self.layout.neck == Some(joint)
     }
