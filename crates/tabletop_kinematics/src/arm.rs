@@ -162,6 +162,15 @@ impl ArmChain {
         frame * self.end
     }
 
+    /// The frames behind each joint, from the base to the tip: those of what the joints turn.
+    pub fn frames(&self, angles: &[f64]) -> impl Iterator<Item = DAffine3> {
+        let segments = self.segments.iter().zip(angles);
+        segments.scan(DAffine3::IDENTITY, |frame, (segment, &angle)| {
+            *frame = segment.turned(*frame, angle);
+            Some(*frame)
+        })
+    }
+
     /// The motion of the tip per rad of each joint (the geometric Jacobian), in the base's frame.
     pub fn jacobian(&self, angles: &[f64]) -> Vec<DTwist> {
         self.tip_and_jacobian(angles).1

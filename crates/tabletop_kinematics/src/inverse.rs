@@ -80,8 +80,22 @@ impl ArmChain {
     ///
     /// None were found: the target is out of reach, or not a number.
     pub fn solve(&self, target: &Target, seed: &[f64]) -> Result<Vec<f64>, Unreachable> {
+        self.solve_from(target, seed, STARTS)
+    }
+
+    /// The same, but the search begins from the seed and so many postures at most, one after the other. What is out of reach is found
+    /// so the sooner the fewer they are.
+    ///
+    /// # Errors
+    /// None were found.
+    pub fn solve_from(
+        &self,
+        target: &Target,
+        seed: &[f64],
+        starts: usize,
+    ) -> Result<Vec<f64>, Unreachable> {
         let mut nearest = (f64::INFINITY, self.clamp(seed));
-        for search in 0..STARTS {
+        for search in 0..starts.clamp(1, STARTS) {
             let (cost, angles) = match search {
                 0 => self.search(target, nearest.1.clone(), STEPS),
                 _ => self.search(target, self.posture(search), PATIENCE),

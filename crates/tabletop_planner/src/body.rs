@@ -47,6 +47,25 @@ pub struct LimbBody {
     pub speeds: Angles,
     /// The angles that it begins with.
     pub home: Angles,
+    /// What its joints carry.
+    solids: Vec<CarriedSolid>,
+}
+
+/// A solid that is rigid with what a joint of a limb turns.
+#[derive(Clone, Copy, Debug)]
+struct CarriedSolid {
+    link: usize,
+    joint: usize,
+    /// In the joint's frame, in units.
+    pose: Pose,
+    solid: Solid,
+}
+
+/// A solid of a link at its place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LinkSolid {
+    pub link: usize,
+    pub solid: Convex,
 }
 
 /// A link that can be touched.
@@ -58,6 +77,8 @@ struct LinkBody {
     solids: Vec<(Pose, Solid)>,
 }
 
+/// From how many postures it is tried to reach a pose.
+const STARTS: usize = 24;
 /// The part of their motors' speed at which joints are turned.
 const SHARE_OF_SPEED: f64 = 0.75;
 /// How fast joints without a motor are turned, in rad/s.
@@ -97,6 +118,7 @@ impl LimbBody {
                 false => SPEED,
             })),
             home: angles(joints.iter().map(|joint| joint.home)),
+            solids: Vec::new(),
         })
     }
 
@@ -143,7 +165,30 @@ impl RobotBody {
             model,
         };
         body.apart = body.always_together();
+        body.carry();
         Ok(body)
+    }
+
+    /// Notes which solids each joint carries.
+    fn carry(&mut self) {
+        let mut frames = Frames::default();
+        let zero = self.model.zero();
+        self.model.frames_into(&zero, &mut frames);
+        for (number, link) in self.links.iter().enumerate() {
+            let Some((limb, count)) = link.carrier else {
+                continue;
+            };
+            let limb = &mut self.limbs[limb];
+            let joints: Vec<_> = limb.chain.frames(&Angles::default()).collect();
+            let frame = joints[count - 1].inverse() * frames[link.link];
+            let solids = link.solids.iter().map(|(pose, solid)| CarriedSolid {
+                link: number,
+                joint: count - 1,
+                pose: in_units(frame) * *pose,
+                solid: *solid,
+            });
+            limb.solids.extend(solids);
+        }
     }
 
     /// Pairs of links that touch at home, or hang on each other.
@@ -161,7 +206,7 @@ impl RobotBody {
                 let touch = || {
                     solids[a]
                         .iter()
-                        .any(|one| solids[b].iter().any(|other| is_within(one, other, 0.1)))
+                        .any(|one| solids[b].iter().any(|other| one.is_within(0.1, other)))
                 };
                 if near || touch() {
                     pairs.push((a, b));
@@ -196,28 +241,47 @@ impl RobotBody {
         placed.collect()
     }
 
-    /// The solids of a limb with these angles of all limbs, and those of everything else that it can meet, which is not all the same for each.
-    pub(crate) fn meet(&self, limb: usize, angles: &[Angles]) -> (Vec<Convex>, bool) {
-        let solids = self.links_at(angles);
-        let is_own = |link: usize| self.links[link].carrier.is_some_and(|(own, _)| own == limb);
-        let mut own = Vec::new();
-        let mut is_free = true;
-        for a in (0..self.links.len()).filter(|&link| is_own(link)) {
-            // The first two joints only turn what is beside the trunk.
-            if self.links[a].carrier.is_some_and(|(_, place)| place > 2) {
-                own.extend(solids[a].iter().copied());
-            }
-            for b in 0..self.links.len() {
-                let pair = (a.min(b), a.max(b));
-                let is_looked_at = a != b && !(is_own(b) && b < a) && !self.apart.contains(&pair);
-                if is_looked_at && is_free {
-                    let near =
-                        |one: &Convex| solids[b].iter().any(|other| is_within(one, other, 0.15));
-                    is_free &= !solids[a].iter().any(near);
-                }
-            }
+    /// The solids of everything but this limb, with these angles of all limbs.
+    pub(crate) fn rest(&self, limb: usize, angles: &[Angles]) -> Vec<LinkSolid> {
+        let links = self.links_at(angles).into_iter().enumerate();
+        links
+            .filter(|(link, _)| !self.is_of(*link, limb))
+            .flat_map(|(link, solids)| {
+                let solids = solids.into_iter();
+                solids.map(move |solid| LinkSolid { link, solid })
+            })
+            .collect()
+    }
+
+    fn is_of(&self, link: usize, limb: usize) -> bool {
+        self.links[link].carrier.is_some_and(|(own, _)| own == limb)
+    }
+
+    /// The solids of a limb with these angles.
+    pub(crate) fn own(&self, limb: usize, angles: &Angles, solids: &mut Vec<LinkSolid>) {
+        let limb = &self.limbs[limb];
+        let mut frames = [Pose::IDENTITY; MOST_ARM_JOINTS];
+        for (frame, joint) in frames.iter_mut().zip(limb.chain.frames(limb.own(angles))) {
+            *frame = self.base * in_units(joint);
         }
-        (own, is_free)
+        solids.clear();
+        solids.extend(limb.solids.iter().map(|part| LinkSolid {
+            link: part.link,
+            solid: Convex {
+                pose: frames[part.joint] * part.pose,
+                solid: part.solid,
+            },
+        }));
+    }
+
+    /// Whether a solid of a limb can run into what is around: the first two joints only turn what is beside the trunk.
+    pub(crate) fn is_far_out(&self, link: usize) -> bool {
+        self.links[link].carrier.is_some_and(|(_, place)| place > 2)
+    }
+
+    /// Whether two links can meet.
+    pub(crate) fn can_meet(&self, one: usize, other: usize) -> bool {
+        one != other && !self.apart.contains(&(one.min(other), one.max(other)))
     }
 
     /// The fingers of a limb whose end effector is here and whose gripper is open so far.
@@ -237,6 +301,15 @@ impl RobotBody {
 
     /// Angles that bring the end effector of a limb there, near the seed where there is a choice.
     pub fn reach(&self, limb: usize, pose: Pose, seed: &Angles) -> Option<Angles> {
+        self.solve(limb, pose, seed, STARTS)
+    }
+
+    /// The same, if the seed leads there.
+    pub(crate) fn reach_from(&self, limb: usize, pose: Pose, seed: &Angles) -> Option<Angles> {
+        self.solve(limb, pose, seed, 1)
+    }
+
+    fn solve(&self, limb: usize, pose: Pose, seed: &Angles, starts: usize) -> Option<Angles> {
         let limb = &self.limbs[limb];
         let shoulder = limb.chain.tip(limb.own(&limb.home)).translation;
         let target = in_meters(self.base.inverse() * pose) * limb.end_effector.inverse();
@@ -246,18 +319,12 @@ impl RobotBody {
         }
         let solved = limb
             .chain
-            .solve(&Target::Pose(target), limb.own(seed))
+            .solve_from(&Target::Pose(target), limb.own(seed), starts)
             .ok()?;
         let mut angles = Angles::default();
         angles[..solved.len()].copy_from_slice(&solved);
         Some(angles)
     }
-}
-
-/// Whether two solids are nearer to each other than this.
-pub(crate) fn is_within(one: &Convex, other: &Convex, distance: f32) -> bool {
-    let between = one.pose.location.distance(other.pose.location);
-    between - one.radius() - other.radius() < distance && one.away_from(other).length() < distance
 }
 
 /// The limb whose joints move a link, and how many of them do.

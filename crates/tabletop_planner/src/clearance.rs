@@ -1,11 +1,13 @@
 //! Whether a posture of the robot is free.
 
-use bevy::math::Vec3;
+use std::cell::RefCell;
+
+use bevy::math::{Quat, Vec3};
 use tabletop_core::{Pose, Table};
 use tabletop_task::Convex;
 
 use crate::{
-    body::{Angles, RobotBody, is_within},
+    body::{Angles, LinkSolid, RobotBody},
     sight::{Sight, lean},
 };
 
@@ -17,11 +19,16 @@ pub(crate) struct Clearance<'a> {
     angles: Vec<Angles>,
     table: Table,
     obstacles: Vec<Convex>,
+    /// The rest of the robot, and the fingers of other limbs.
+    rest: Vec<LinkSolid>,
     others_fingers: Vec<Convex>,
+    scratch: RefCell<Vec<LinkSolid>>,
     /// How far the gripper is open, in units.
     pub opening: f32,
     /// What it holds, in the end effector's frame.
     pub held: Vec<Convex>,
+    /// From what is held, when it does not lean, to the end effector's frame.
+    upright: Quat,
 }
 
 /// How much is kept from what.
@@ -40,6 +47,13 @@ impl Margins {
         fingers: 0.1,
         held: 0.1,
         held_above_table: 0.08,
+        lean: 0.3,
+    };
+    /// On the way, where there is no room for more.
+    pub const TIGHT: Self = Self {
+        fingers: 0.04,
+        held: 0.03,
+        held_above_table: 0.03,
         lean: 0.3,
     };
     /// Where something is taken or put.
@@ -70,8 +84,11 @@ impl<'a> Clearance<'a> {
         Self {
             obstacles: obstacles.collect(),
             others_fingers: fingers.collect(),
+            rest: body.rest(limb, &angles),
+            scratch: RefCell::default(),
             opening: sight.limbs[limb].opening as f32,
             held: Vec::new(),
+            upright: Quat::IDENTITY,
             table: sight.table,
             angles,
             body,
@@ -79,8 +96,10 @@ impl<'a> Clearance<'a> {
         }
     }
 
-    /// Holding this object, which the end effector carries at `grip`, in its frame.
-    pub fn holding(mut self, solids: &[Convex], grip: Pose) -> Self {
+    /// Holding this object, which the end effector carries at `grip`, in its frame, and which is as it was when the end effector was turned
+    /// by the inverse of `upright`.
+    pub fn holding(mut self, solids: &[Convex], grip: Pose, upright: Quat) -> Self {
+        self.upright = upright;
         self.held = solids
             .iter()
             .map(|solid| Convex {
@@ -109,6 +128,10 @@ impl<'a> Clearance<'a> {
         self.body.reach(self.limb, pose, seed)
     }
 
+    pub fn reach_from(&self, pose: Pose, seed: &Angles) -> Option<Angles> {
+        self.body.reach_from(self.limb, pose, seed)
+    }
+
     /// Whether all of a way is free.
     pub fn is_way_free(&self, way: &[Angles], margins: Margins) -> bool {
         way.iter().all(|angles| self.is_free(angles, margins))
@@ -126,7 +149,7 @@ impl<'a> Clearance<'a> {
                 solid: solid.solid,
             })
             .collect();
-        if !held.is_empty() && lean(end_effector.rotation) > margins.lean {
+        if !held.is_empty() && lean(end_effector.rotation * self.upright) > margins.lean {
             return false;
         }
         if fingers
@@ -144,27 +167,47 @@ impl<'a> Clearance<'a> {
             let near = |one: &Convex| {
                 self.others_fingers
                     .iter()
-                    .any(|other| is_within(one, other, 0.15))
+                    .any(|other| one.is_within(0.15, other))
             };
             solids.iter().any(near)
         };
         if meets_fingers(&fingers) || meets_fingers(&held) {
             return false;
         }
-        let mut all = self.angles.clone();
-        all[self.limb] = *angles;
-        let (links, is_apart) = self.body.meet(self.limb, &all);
-        is_apart
-            && !links.iter().any(|link| self.is_at_table(link, LINKS))
-            && !self.meets(&links, LINKS)
-            && !meets_fingers(&links)
+        let mut own = self.scratch.borrow_mut();
+        self.body.own(self.limb, angles, &mut own);
+        let far_out = |link: &LinkSolid| self.body.is_far_out(link.link);
+        let is_clear = |solid: &Convex| {
+            !self.is_at_table(solid, LINKS)
+                && !self.meets(&[*solid], LINKS)
+                && !meets_fingers(&[*solid])
+        };
+        own.iter()
+            .filter(|link| far_out(link))
+            .all(|link| is_clear(&link.solid))
+            && own.iter().enumerate().all(|(i, one)| {
+                let others = own[..i].iter().chain(&self.rest);
+                others.into_iter().all(|other| {
+                    let between = one.solid.pose.location - other.solid.pose.location;
+                    let near = one.solid.radius() + other.solid.radius() + 0.15;
+                    between.length_squared() > near * near
+                        || !self.body.can_meet(one.link, other.link)
+                        || !one.solid.is_within(0.15, &other.solid)
+                })
+            })
+    }
+
+    /// Whether fingers that are open so far have room.
+    pub fn has_room_for_fingers(&self, end_effector: Pose, opening: f32, margin: f32) -> bool {
+        let fingers = self.body.fingers(self.limb, end_effector, opening);
+        !self.meets(&fingers, margin)
     }
 
     fn meets(&self, solids: &[Convex], margin: f32) -> bool {
         let near = |one: &Convex| {
             self.obstacles
                 .iter()
-                .any(|other| is_within(one, other, margin))
+                .any(|other| one.is_within(margin, other))
         };
         solids.iter().any(near)
     }

@@ -14,7 +14,7 @@ use crate::{
     sight::Sight,
     stage::{Stage, Stopped},
     transfer::Transfer,
-    transit::transit,
+    transit::{Search, transit},
 };
 
 /// What has become of a task.
@@ -349,7 +349,7 @@ impl Imitator<'_> {
         let mut failure = Failure::OutOfReach(id.to_owned());
         for limb in limbs {
             for other in (0..self.body.limbs.len()).filter(|&other| other != limb) {
-                self.park(stage, other)?;
+                self.try_to_park(stage, other)?;
             }
             let transfer = Transfer {
                 body: self.body,
@@ -424,7 +424,7 @@ impl Imitator<'_> {
                 let meets = |solid: &Convex| {
                     other
                         .iter()
-                        .any(|other| crate::body::is_within(&solid.shrunk(0.01), other, 1e-3))
+                        .any(|other| solid.shrunk(0.01).is_within(1e-3, other))
                 };
                 solids.iter().any(meets)
             });
@@ -541,7 +541,12 @@ impl Imitator<'_> {
             return Ok(());
         }
         let name = || format!("the {} arm", self.body.limbs[limb].name);
-        let way = transit(&clearance, &here, &self.parked[limb], self.seed);
+        let way = transit(
+            &clearance,
+            &here,
+            &self.parked[limb],
+            Search::Trying(self.seed),
+        );
         let way = way.ok_or_else(|| Failure::NoWay(name()))?;
         follow(stage, self.body, limb, &way, 6.0, &name())
     }

@@ -53,7 +53,7 @@ pub(crate) fn line(clearance: &Clearance, from: &Angles, to: Pose) -> Option<Pat
             start.location.lerp(to.location, part),
             start.rotation.slerp(to.rotation, part),
         );
-        let next = clearance.reach(pose, &angles)?;
+        let next = clearance.reach_from(pose, &angles)?;
         if largest_turn(&next, &angles) > JUMP {
             return None;
         }

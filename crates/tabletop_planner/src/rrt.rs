@@ -28,7 +28,13 @@ impl Tree {
     }
 
     /// Grows towards a posture, by one branch or as far as it is free. The last branch, and whether it is there.
-    fn grow(&mut self, clearance: &Clearance, to: &Angles, all_the_way: bool) -> (usize, bool) {
+    fn grow(
+        &mut self,
+        clearance: &Clearance,
+        to: &Angles,
+        margins: Margins,
+        all_the_way: bool,
+    ) -> (usize, bool) {
         let mut at = self.nearest(to);
         loop {
             let from = self.0[at].0;
@@ -38,7 +44,7 @@ impl Tree {
             }
             let part = (BRANCH / way).min(1.0);
             let next: Angles = std::array::from_fn(|i| from[i] + (to[i] - from[i]) * part);
-            if !clearance.is_way_free(&even(&from, &next), Margins::WIDE) {
+            if !clearance.is_way_free(&even(&from, &next), margins) {
                 return (at, false);
             }
             self.0.push((next, at));
@@ -68,14 +74,9 @@ pub(crate) fn connect(
     clearance: &Clearance,
     from: &Angles,
     to: &Angles,
+    margins: Margins,
     seed: u64,
 ) -> Option<Path> {
-    if ![from, to]
-        .into_iter()
-        .all(|end| clearance.is_free(end, Margins::WIDE))
-    {
-        return None;
-    }
     let mut random = Random::new(seed);
     let mut trees = [from, to].map(|root| Tree(vec![(*root, 0)]));
     let limits = clearance.body.limbs[clearance.limb].limits();
@@ -90,9 +91,9 @@ pub(crate) fn connect(
             }
         });
         let (growing, other) = if turn % 2 == 0 { (0, 1) } else { (1, 0) };
-        let (tip, _) = trees[growing].grow(clearance, &sample, false);
+        let (tip, _) = trees[growing].grow(clearance, &sample, margins, false);
         let reached = trees[growing].0[tip].0;
-        let (meeting, met) = trees[other].grow(clearance, &reached, true);
+        let (meeting, met) = trees[other].grow(clearance, &reached, margins, true);
         if met {
             let tips = if growing == 0 {
                 [tip, meeting]
@@ -101,13 +102,18 @@ pub(crate) fn connect(
             };
             let mut way = trees[0].way_from_root(tips[0]);
             way.extend(trees[1].way_from_root(tips[1]).into_iter().rev().skip(1));
-            return Some(shortened(clearance, way, &mut random));
+            return Some(shortened(clearance, way, margins, &mut random));
         }
     }
     None
 }
 
-fn shortened(clearance: &Clearance, mut way: Vec<Angles>, random: &mut Random) -> Path {
+fn shortened(
+    clearance: &Clearance,
+    mut way: Vec<Angles>,
+    margins: Margins,
+    random: &mut Random,
+) -> Path {
     for _ in 0..SHORTCUTS {
         if way.len() < 3 {
             break;
@@ -115,7 +121,7 @@ fn shortened(clearance: &Clearance, mut way: Vec<Angles>, random: &mut Random) -
         let mut pick = || (random.bits() % way.len() as u64) as usize;
         let (a, b) = (pick(), pick());
         let (a, b) = (a.min(b), a.max(b));
-        if b - a > 1 && clearance.is_way_free(&even(&way[a], &way[b]), Margins::WIDE) {
+        if b - a > 1 && clearance.is_way_free(&even(&way[a], &way[b]), margins) {
             way.drain(a + 1..b);
         }
     }

@@ -1,13 +1,13 @@
 //! Taking an object, and putting it somewhere.
 
-use std::collections::BTreeMap;
+use std::{cell::Cell, collections::BTreeMap};
 
 use bevy::math::Vec3;
 use tabletop_core::Pose;
-use tabletop_task::Convex;
+use tabletop_task::{Convex, angle_between};
 
 use crate::{
-    body::{Angles, RobotBody, is_within},
+    body::{Angles, RobotBody},
     clearance::{Clearance, Margins},
     failure::Failure,
     goals::Candidate,
@@ -16,7 +16,7 @@ use crate::{
     path::{Path, largest_turn, lift, line},
     sight::{SeenObject, Sight, heights},
     stage::Stage,
-    transit::transit,
+    transit::{Search, transit},
 };
 
 /// How fast an end effector goes on its way, in units/s, and near what it takes or puts.
@@ -30,8 +30,15 @@ const GENTLE_POSTURES: usize = 2;
 const DROP: f32 = 0.02;
 /// How much wider than what they take fingers are opened, in units: the most that has room.
 const OPENINGS: [f32; 3] = [0.35, 0.18, 0.1];
-/// How many pairs of grasp and goal are looked into.
+/// How much wider than what they hold fingers are opened to let go of it, in units: the most that has room.
+const RELEASES: [f32; 5] = [0.35, 0.22, 0.14, 0.08, 0.05];
+/// What opening fingers keep from what stands beside, in units.
+const BESIDE: f32 = 0.012;
+/// How many grasps are looked into at a time, the best first.
+const GRASPS: usize = 24;
+/// How many pairs of grasp and goal are looked into for each, and with ways that have to be searched for.
 const PAIRS: usize = 24;
+const SEARCHED_PAIRS: usize = 4;
 
 /// What is to be moved by whom.
 pub(crate) struct Transfer<'a> {
@@ -48,6 +55,26 @@ struct Taking {
     grasp: Grasp,
     opening: f32,
     at: Angles,
+}
+
+/// How what is held can be put down.
+struct Placing {
+    /// To above the place.
+    way: Path,
+    down: Path,
+    /// How far the fingers are opened there, in units.
+    opening: f32,
+}
+
+/// What stands in the way of a plan.
+#[derive(Clone, Copy, Debug, Default)]
+struct Found {
+    /// A grasp is within reach.
+    reached: bool,
+    /// A grasp is free.
+    free: bool,
+    /// A place is within reach with such a grasp.
+    put: bool,
 }
 
 impl Transfer<'_> {
@@ -92,7 +119,8 @@ impl Transfer<'_> {
         there.location += by;
         let way = line(&clearance, &here, there).ok_or_else(|| self.no_way())?;
         follow(stage, self.body, self.limb, &way, 1.5, self.object)?;
-        self.let_go(stage)
+        let opening = stage.sight().limbs[self.limb].opening as f32 + RELEASES[0];
+        self.let_go(stage, opening)
     }
 
     fn seen<'s>(&self, sight: &'s Sight) -> Result<&'s SeenObject, Failure> {
@@ -108,7 +136,7 @@ impl Transfer<'_> {
     fn plan(&self, sight: &Sight, goals: &[Candidate]) -> Result<(Taking, [Path; 2]), Failure> {
         let object = self.seen(sight)?;
         let limb = &self.body.limbs[self.limb];
-        let all = grasps(
+        let mut all = grasps(
             &object.shape,
             object.pose.rotation,
             limb.finger.z,
@@ -117,79 +145,164 @@ impl Transfer<'_> {
         if all.is_empty() {
             return Err(Failure::NoGrasp(self.object.to_owned()));
         }
+        all.sort_by(|a, b| a.off.total_cmp(&b.off));
+        let found = Cell::default();
+        let mut looked_into = Vec::new();
+        for some in all.chunks(GRASPS) {
+            let takings = self.takings(sight, object, some, &found);
+            if let Some(plan) = self.best(sight, &takings, goals, Search::Simple, &found) {
+                return Ok(plan);
+            }
+            looked_into.push(takings);
+        }
+        let search = Search::Trying(self.seed);
+        let searched = looked_into
+            .iter()
+            .find_map(|takings| self.best(sight, takings, goals, search, &found));
+        let found = found.get();
+        searched.ok_or_else(|| match found {
+            Found {
+                free: true,
+                put: true,
+                ..
+            }
+            | Found {
+                reached: true,
+                free: false,
+                ..
+            } => self.no_way(),
+            Found { .. } => Failure::OutOfReach(self.object.to_owned()),
+        })
+    }
+
+    /// Those of some grasps that can be done.
+    fn takings(
+        &self,
+        sight: &Sight,
+        object: &SeenObject,
+        grasps: &[Grasp],
+        found: &Cell<Found>,
+    ) -> Vec<Taking> {
+        let limb = &self.body.limbs[self.limb];
         let mut free = Clearance::new(self.body, sight, self.limb, &[self.object]);
         let here = free.here();
         let own = object.solids();
         let mut takings = Vec::new();
-        let mut is_reached = false;
-        for grasp in all {
+        for &grasp in grasps {
             let pose = object.pose * grasp.end_effector;
-            let seeds = [here, limb.home];
-            let postures = seeds.into_iter().filter_map(|seed| free.reach(pose, &seed));
-            for at in postures.collect::<Vec<_>>() {
-                is_reached = true;
-                let opening = OPENINGS
-                    .into_iter()
-                    .map(|more| (grasp.width + more).min(limb.widest))
-                    .find(|&opening| {
-                        free.opening = opening;
-                        free.is_free(&at, Margins::NARROW) && self.fits(&own, pose, opening)
-                    });
+            let openings = OPENINGS.map(|more| (grasp.width + more).min(limb.widest));
+            let mut fitting = openings.into_iter().filter(|&opening| {
+                self.fits(&own, pose, opening) && free.has_room_for_fingers(pose, opening, BESIDE)
+            });
+            let Some(widest) = fitting.next() else {
+                continue;
+            };
+            for seed in [here, limb.home] {
+                let Some(at) = free.reach(pose, &seed) else {
+                    break;
+                };
+                found.set(Found {
+                    reached: true,
+                    ..found.get()
+                });
+                let mut openings = openings.into_iter().filter(|opening| *opening <= widest);
+                let opening = openings.find(|&opening| {
+                    free.opening = opening;
+                    free.is_free(&at, Margins::NARROW)
+                });
                 if let Some(opening) = opening {
                     takings.push(Taking { grasp, opening, at });
                     break;
                 }
             }
         }
-        if takings.is_empty() {
-            let object = self.object.to_owned();
-            return Err(match is_reached {
-                true => Failure::NoWay(object),
-                false => Failure::OutOfReach(object),
-            });
-        }
+        found.set(Found {
+            free: found.get().free || !takings.is_empty(),
+            ..found.get()
+        });
+        takings
+    }
+
+    /// The first of some grasps, by how much they and the goals ask for, with which a goal can be reached, and the way to it.
+    fn best(
+        &self,
+        sight: &Sight,
+        takings: &[Taking],
+        goals: &[Candidate],
+        search: Search,
+        found: &Cell<Found>,
+    ) -> Option<(Taking, [Path; 2])> {
+        let object = self.seen(sight).ok()?;
+        let here = sight.limbs[self.limb].angles;
         let mut pairs = Vec::new();
         for (i, taking) in takings.iter().enumerate() {
+            let turns = largest_turn(&taking.at, &here) as f32 / 3.0;
+            let taken = object.pose * taking.grasp.end_effector;
+            let tightness = 2.0 * (OPENINGS[0] + taking.grasp.width - taking.opening);
             for goal in goals {
-                let pose = goal.pose * taking.grasp.end_effector;
-                let Some(put) = free.reach(pose, &taking.at) else {
-                    continue;
-                };
-                let turns = largest_turn(&put, &taking.at) + 0.5 * largest_turn(&taking.at, &here);
-                let width = f64::from(taking.opening - taking.grasp.width);
-                let cost =
-                    turns / 1.5 + f64::from(goal.cost + taking.grasp.off) + 2.0 * (0.35 - width);
-                pairs.push((cost, i, *goal, put));
+                let put = goal.pose * taking.grasp.end_effector;
+                let turned = angle_between(taken.rotation, put.rotation) / 1.5;
+                let cost = turns + turned + goal.cost + taking.grasp.off + tightness;
+                pairs.push((cost, i, *goal));
             }
-        }
-        if pairs.is_empty() {
-            return Err(Failure::OutOfReach(self.object.to_owned()));
         }
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut approaches = BTreeMap::new();
-        for (_, i, goal, put) in pairs.into_iter().take(PAIRS) {
+        let mut lifts = BTreeMap::new();
+        let mut tries = match search {
+            Search::Simple => PAIRS,
+            Search::Trying(_) => SEARCHED_PAIRS,
+        };
+        for (_, i, goal) in pairs {
             let taking = &takings[i];
+            let grip = taking.grasp.end_effector.inverse();
+            let holding = self.holding(sight, object, grip, taking.grasp.width, &taking.at);
+            let end = above_place(goal, grip);
+            let Some(put) = holding.reach(end, &taking.at) else {
+                continue;
+            };
+            found.set(Found {
+                put: true,
+                ..found.get()
+            });
+            if !holding.is_free(&put, Margins::NARROW) {
+                continue;
+            }
             let approach = approaches
                 .entry(i)
-                .or_insert_with(|| self.approach(sight, taking));
-            if let Some(approach) = approach
-                && self.can_put(sight, taking, goal, &put)
+                .or_insert_with(|| self.approach(sight, taking, search));
+            let Some(approach) = approach else {
+                continue;
+            };
+            let lift = lifts
+                .entry(i)
+                .or_insert_with(|| self.lifted(&holding, sight, &taking.at, object.pose));
+            let Some(lift) = lift else {
+                continue;
+            };
+            if self
+                .placing(&holding, sight, lift, goal, &put, search)
+                .is_some()
             {
-                return Ok((*taking, approach.clone()));
+                return Some((*taking, approach.clone()));
+            }
+            tries -= 1;
+            if tries == 0 {
+                break;
             }
         }
-        Err(self.no_way())
+        None
     }
 
     /// Whether fingers that are open so far are beside the object, not in another part of it.
     fn fits(&self, object: &[Convex], end_effector: Pose, opening: f32) -> bool {
         let fingers = self.body.fingers(self.limb, end_effector, opening);
-        let is_apart = |finger: &Convex| object.iter().all(|solid| !is_within(finger, solid, 0.02));
+        let is_apart = |finger: &Convex| object.iter().all(|solid| !finger.is_within(0.02, solid));
         fingers.iter().all(is_apart)
     }
 
     /// The ways to above the object, and down to it.
-    fn approach(&self, sight: &Sight, taking: &Taking) -> Option<[Path; 2]> {
+    fn approach(&self, sight: &Sight, taking: &Taking, search: Search) -> Option<[Path; 2]> {
         let object = self.seen(sight).ok()?;
         let near =
             Clearance::new(self.body, sight, self.limb, &[self.object]).opened(taking.opening);
@@ -205,7 +318,7 @@ impl Transfer<'_> {
                 if !near.is_way_free(&up, Margins::NARROW) {
                     return None;
                 }
-                let way = transit(&far, &far.here(), up.last()?, self.seed)?;
+                let way = transit(&far, &far.here(), up.last()?, search)?;
                 Some((up, way))
             })?;
         let down = up
@@ -218,23 +331,20 @@ impl Transfer<'_> {
         Some([way, down])
     }
 
-    /// Whether an object that is held like this can be put there.
-    fn can_put(&self, sight: &Sight, taking: &Taking, goal: Candidate, put: &Angles) -> bool {
-        let Ok(object) = self.seen(sight) else {
-            return false;
-        };
-        let grip = taking.grasp.end_effector.inverse();
-        let holding = self.holding(sight, object, grip).opened(taking.grasp.width);
-        let Some(lifted) = self.lifted(&holding, sight, &taking.at, object.pose) else {
-            return false;
-        };
-        self.lowering(&holding, sight, &lifted, goal, put, grip)
-            .is_some()
-    }
-
-    fn holding(&self, sight: &Sight, object: &SeenObject, grip: Pose) -> Clearance<'_> {
+    /// Holding the object like this, with fingers that are open so far, since the arm was `at` these angles.
+    fn holding(
+        &self,
+        sight: &Sight,
+        object: &SeenObject,
+        grip: Pose,
+        opening: f32,
+        at: &Angles,
+    ) -> Clearance<'_> {
         let solids = object.solids_at(Pose::IDENTITY);
-        Clearance::new(self.body, sight, self.limb, &[self.object]).holding(&solids, grip)
+        let upright = self.body.end_effector(self.limb, at).rotation.inverse();
+        Clearance::new(self.body, sight, self.limb, &[self.object])
+            .holding(&solids, grip, upright)
+            .opened(opening)
     }
 
     /// The way up with what is held, until it is above what is around it.
@@ -271,33 +381,36 @@ impl Transfer<'_> {
             .fold(0.4, |by, top| by.max(top + 0.2))
     }
 
-    /// The ways from where the object is lifted to above a goal, and down to it.
-    fn lowering(
+    /// The ways from where the object is lifted to above a goal, and down to where the arm has these angles.
+    fn placing(
         &self,
         holding: &Clearance,
         sight: &Sight,
         lifted: &Path,
         goal: Candidate,
         put: &Angles,
-        grip: Pose,
-    ) -> Option<[Path; 2]> {
-        let end =
-            Pose::new(goal.pose.location + Vec3::Z * DROP, goal.pose.rotation) * grip.inverse();
-        let put = holding.reach(end, put)?;
-        if !holding.is_free(&put, Margins::NARROW) {
+        search: Search,
+    ) -> Option<Placing> {
+        if !holding.is_free(put, Margins::NARROW) {
             return None;
         }
+        let end = holding.end_effector(put);
+        let widest = self.body.limbs[self.limb].widest;
+        let opening = RELEASES
+            .into_iter()
+            .map(|more| (holding.opening + more).min(widest))
+            .find(|opening| holding.has_room_for_fingers(end, *opening, BESIDE))?;
         let by = self.height(sight, goal.pose);
         [by, by + 0.5, (by - 0.4).max(0.3)]
             .into_iter()
             .find_map(|by| {
-                let up = lift(holding, &put, by)?;
+                let up = lift(holding, put, by)?;
                 if !holding.is_way_free(&up, Margins::NARROW) {
                     return None;
                 }
-                let way = transit(holding, lifted.last()?, up.last()?, self.seed)?;
-                let down = up.iter().rev().skip(1).chain([&put]).copied().collect();
-                Some([way, down])
+                let way = transit(holding, lifted.last()?, up.last()?, search)?;
+                let down = up.iter().rev().skip(1).chain([put]).copied().collect();
+                Some(Placing { way, down, opening })
             })
     }
 
@@ -339,10 +452,9 @@ impl Transfer<'_> {
         }
     }
 
-    fn let_go(&self, stage: &mut dyn Stage) -> Result<(), Failure> {
-        let opening = stage.sight().limbs[self.limb].opening;
-        let widest = f64::from(self.body.limbs[self.limb].widest);
-        grip(stage, self.limb, (opening + 0.35).min(widest))?;
+    fn let_go(&self, stage: &mut dyn Stage, opening: f32) -> Result<(), Failure> {
+        let widest = self.body.limbs[self.limb].widest;
+        grip(stage, self.limb, f64::from(opening.min(widest)))?;
         self.go_up(stage)?;
         Ok(wait(stage, 15)?)
     }
@@ -351,35 +463,43 @@ impl Transfer<'_> {
     fn put(&self, stage: &mut dyn Stage, goals: &[Candidate]) -> Result<(), Failure> {
         let sight = stage.sight().clone();
         let object = self.seen(&sight)?;
-        let here = sight.limbs[self.limb].angles;
+        let seen = &sight.limbs[self.limb];
+        let here = seen.angles;
         let end_effector = self.body.end_effector(self.limb, &here);
         let grip = end_effector.inverse() * object.pose;
-        let holding = self.holding(&sight, object, grip);
+        let holding = self.holding(&sight, object, grip, seen.opening as f32, &here);
         let lifted = self
             .lifted(&holding, &sight, &here, object.pose)
             .ok_or_else(|| self.no_way())?;
         let mut sorted: Vec<_> = goals
             .iter()
             .filter_map(|goal| {
-                let put = holding.reach(goal.pose * grip.inverse(), &here)?;
-                Some((
-                    largest_turn(&put, &here) / 1.5 + f64::from(goal.cost),
-                    *goal,
-                    put,
-                ))
+                let put = holding.reach(above_place(*goal, grip), &here)?;
+                let cost = largest_turn(&put, &here) / 1.5 + f64::from(goal.cost);
+                Some((cost, *goal, put))
             })
             .collect();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let ways = sorted
-            .into_iter()
-            .take(PAIRS)
-            .find_map(|(_, goal, put)| self.lowering(&holding, &sight, &lifted, goal, &put, grip));
-        let [way, down] = ways.ok_or_else(|| self.no_way())?;
+        let with = |search: Search, pairs: usize| {
+            let some = sorted.iter().take(pairs);
+            some.into_iter().find_map(|(_, goal, put)| {
+                self.placing(&holding, &sight, &lifted, *goal, put, search)
+            })
+        };
+        let placing = with(Search::Simple, PAIRS)
+            .or_else(|| with(Search::Trying(self.seed), PAIRS))
+            .ok_or_else(|| self.no_way())?;
+        let Placing { way, down, opening } = placing;
         follow(stage, self.body, self.limb, &lifted, SLOW, self.object)?;
         follow(stage, self.body, self.limb, &way, FAST, self.object)?;
         let (down, end) = down.split_at(down.len().saturating_sub(GENTLE_POSTURES));
         follow(stage, self.body, self.limb, down, SLOW, self.object)?;
         follow(stage, self.body, self.limb, end, GENTLE, self.object)?;
-        self.let_go(stage)
+        self.let_go(stage, opening)
     }
+}
+
+/// Where an end effector lets go of what it holds like this, so that it comes to rest at a goal.
+fn above_place(goal: Candidate, grip: Pose) -> Pose {
+    Pose::new(goal.pose.location + Vec3::Z * DROP, goal.pose.rotation) * grip.inverse()
 }

@@ -13,14 +13,38 @@ use crate::{
 /// Heights in which an arm goes across the table, in units.
 const TRAVERSES: [f32; 4] = [2.6, 3.4, 4.2, 5.0];
 
-/// A free way from one posture to another: evenly, else at some height across, else found by trying (`seed` decides what is tried).
+/// How a way is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Search {
+    /// Evenly, or at some height across.
+    Simple,
+    /// Else by trying, which this decides.
+    Trying(u64),
+}
+
+/// A free way from one posture to another.
 pub(crate) fn transit(
     clearance: &Clearance,
     from: &Angles,
     to: &Angles,
-    seed: u64,
+    search: Search,
 ) -> Option<Path> {
-    let is_free = |path: &Path| clearance.is_way_free(path, Margins::WIDE);
+    let ends_are_free = |margins| {
+        [from, to]
+            .into_iter()
+            .all(|end| clearance.is_free(end, margins))
+    };
+    let margins = [Margins::WIDE, Margins::TIGHT]
+        .into_iter()
+        .find(|margins| ends_are_free(*margins))?;
+    simple(clearance, from, to, margins).or_else(|| match search {
+        Search::Simple => None,
+        Search::Trying(seed) => connect(clearance, from, to, margins, seed),
+    })
+}
+
+fn simple(clearance: &Clearance, from: &Angles, to: &Angles, margins: Margins) -> Option<Path> {
+    let is_free = |path: &Path| clearance.is_way_free(path, margins);
     let direct = even(from, to);
     if is_free(&direct) {
         return Some(direct);
@@ -60,5 +84,5 @@ pub(crate) fn transit(
             }
         }
     }
-    connect(clearance, from, to, seed)
+    None
 }

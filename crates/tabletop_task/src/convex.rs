@@ -71,7 +71,18 @@ impl Convex {
 
     /// From the nearest point of the other solid to that of this one; zero if they overlap.
     pub fn away_from(&self, other: &Self) -> Vec3 {
-        nearest_to_origin(self.pose.location - other.pose.location, |way| {
+        self.away(other, None)
+    }
+
+    /// Whether they are nearer to each other than this.
+    pub fn is_within(&self, distance: f32, other: &Self) -> bool {
+        let between = self.pose.location.distance(other.pose.location);
+        between - self.radius() - other.radius() < distance
+            && self.away(other, Some(distance)).length() < distance
+    }
+
+    fn away(&self, other: &Self, enough: Option<f32>) -> Vec3 {
+        nearest_to_origin(self.pose.location - other.pose.location, enough, |way| {
             self.farthest(way) - other.farthest(-way)
         })
     }
@@ -80,7 +91,7 @@ impl Convex {
     pub fn gap_from_above(&self, other: &Self) -> f32 {
         let flat = |point: Vec3| point.xy().extend(0.0);
         let between = self.pose.location - other.pose.location;
-        nearest_to_origin(flat(between), |way| {
+        nearest_to_origin(flat(between), None, |way| {
             let way = flat(way);
             flat(self.farthest(way) - other.farthest(-way))
         })
@@ -137,25 +148,34 @@ impl Convex {
     }
 }
 
-/// The point of a convex set that is nearest to the origin, where the set is known by its farthest points.
-fn nearest_to_origin(inside: Vec3, farthest: impl Fn(Vec3) -> Vec3) -> Vec3 {
+/// The point of a convex set that is nearest to the origin, where the set is known by its farthest points. Once it is clear on which side
+/// of the distance `enough` it is, a point on that side does.
+fn nearest_to_origin(inside: Vec3, enough: Option<f32>, farthest: impl Fn(Vec3) -> Vec3) -> Vec3 {
     const STEPS: usize = 64;
-    let mut simplex = vec![farthest(-inside)];
-    let mut nearest = simplex[0];
+    let mut nearest = farthest(-inside);
+    let mut simplex = Simplex::of(nearest);
     for _ in 0..STEPS {
         let length = nearest.length_squared();
         if length < 1e-10 {
             return Vec3::ZERO;
         }
         let next = farthest(-nearest);
+        let towards = nearest.dot(next);
+        if let Some(enough) = enough {
+            // No point is nearer than its part along the nearest one known.
+            let is_beyond = towards > 0.0 && towards * towards > length * enough * enough;
+            if is_beyond || length < enough * enough {
+                break;
+            }
+        }
         // No point is nearer than this one.
-        let gain = length - nearest.dot(next);
-        if gain <= 1e-5 * length.max(1e-4) || simplex.contains(&next) {
+        let gain = length - towards;
+        if gain <= 1e-5 * length.max(1e-4) || simplex.corners().contains(&next) {
             break;
         }
-        simplex.push(next);
-        let (point, kept) = nearest_of_simplex(&simplex);
-        if kept.len() == 4 {
+        simplex.add(next);
+        let (point, kept) = simplex.nearest();
+        if kept.count == 4 {
             return Vec3::ZERO;
         }
         if point.length_squared() >= length {
@@ -166,66 +186,93 @@ fn nearest_to_origin(inside: Vec3, farthest: impl Fn(Vec3) -> Vec3) -> Vec3 {
     nearest
 }
 
-/// The point of a simplex that is nearest to the origin, and the corners that it lies between.
-fn nearest_of_simplex(corners: &[Vec3]) -> (Vec3, Vec<Vec3>) {
-    // Of every face, in ascending dimension, the foot of the origin if it is within the face.
-    let mut best: Option<(Vec3, Vec<Vec3>)> = None;
-    for chosen in 1_u32..1 << corners.len() {
-        let face: Vec<_> = (0..corners.len())
-            .filter(|i| chosen & (1 << i) != 0)
-            .map(|i| corners[i])
-            .collect();
-        if let Some(foot) = foot_in(&face)
-            && best.as_ref().is_none_or(|(nearest, kept)| {
-                let (new, old) = (foot.length_squared(), nearest.length_squared());
-                new < old - 1e-12 || (face.len() < kept.len() && new <= old)
-            })
-        {
-            best = Some((foot, face));
-        }
-    }
-    best.unwrap_or_else(|| (corners[0], vec![corners[0]]))
+/// Up to four corners.
+#[derive(Clone, Copy)]
+struct Simplex {
+    all: [Vec3; 4],
+    count: usize,
 }
 
-/// The foot of the perpendicular from the origin, if it is within the simplex of these corners.
-fn foot_in(corners: &[Vec3]) -> Option<Vec3> {
-    let weights: Vec<f32> = match *corners {
-        [_] => vec![1.0],
-        [a, b] => {
-            let along = b - a;
-            let t = -a.dot(along) / along.length_squared();
-            vec![1.0 - t, t]
+impl Simplex {
+    fn of(corner: Vec3) -> Self {
+        Self {
+            all: [corner; 4],
+            count: 1,
         }
-        [a, b, c] => {
-            let (u, v) = (b - a, c - a);
-            let (uu, uv, vv) = (u.dot(u), u.dot(v), v.dot(v));
-            let (au, av) = (-a.dot(u), -a.dot(v));
-            let det = uu * vv - uv * uv;
-            let (s, t) = ((au * vv - av * uv) / det, (av * uu - au * uv) / det);
-            vec![1.0 - s - t, s, t]
+    }
+
+    fn corners(&self) -> &[Vec3] {
+        &self.all[..self.count]
+    }
+
+    fn add(&mut self, corner: Vec3) {
+        self.all[self.count] = corner;
+        self.count += 1;
+    }
+
+    /// The point that is nearest to the origin, and the corners that it lies between.
+    fn nearest(&self) -> (Vec3, Self) {
+        // Of every face, in ascending dimension, the foot of the origin if it is within the face.
+        let mut best: Option<(Vec3, Self)> = None;
+        for chosen in 1_u32..1 << self.count {
+            let mut face = Self {
+                all: self.all,
+                count: 0,
+            };
+            for (i, corner) in self.corners().iter().enumerate() {
+                if chosen & (1 << i) != 0 {
+                    face.add(*corner);
+                }
+            }
+            if let Some(foot) = face.foot()
+                && best.as_ref().is_none_or(|(nearest, kept)| {
+                    let (new, old) = (foot.length_squared(), nearest.length_squared());
+                    new < old - 1e-12 || (face.count < kept.count && new <= old)
+                })
+            {
+                best = Some((foot, face));
+            }
         }
-        [a, b, c, d] => {
-            let (u, v, w) = (b - a, c - a, d - a);
-            let det = u.dot(v.cross(w));
-            let [r, s, t] = [
-                -a.dot(v.cross(w)) / det,
-                u.dot((-a).cross(w)) / det,
-                u.dot(v.cross(-a)) / det,
-            ];
-            vec![1.0 - r - s - t, r, s, t]
-        }
-        _ => return None,
-    };
-    let is_within = weights
-        .iter()
-        .all(|weight| weight.is_finite() && *weight >= 0.0);
-    is_within.then(|| {
-        corners
+        best.unwrap_or_else(|| (self.all[0], Self::of(self.all[0])))
+    }
+
+    /// The foot of the perpendicular from the origin, if it is within the simplex.
+    fn foot(&self) -> Option<Vec3> {
+        let weights: [f32; 4] = match *self.corners() {
+            [_] => [1.0, 0.0, 0.0, 0.0],
+            [a, b] => {
+                let along = b - a;
+                let t = -a.dot(along) / along.length_squared();
+                [1.0 - t, t, 0.0, 0.0]
+            }
+            [a, b, c] => {
+                let (u, v) = (b - a, c - a);
+                let (uu, uv, vv) = (u.dot(u), u.dot(v), v.dot(v));
+                let (au, av) = (-a.dot(u), -a.dot(v));
+                let det = uu * vv - uv * uv;
+                let (s, t) = ((au * vv - av * uv) / det, (av * uu - au * uv) / det);
+                [1.0 - s - t, s, t, 0.0]
+            }
+            [a, b, c, d] => {
+                let (u, v, w) = (b - a, c - a, d - a);
+                let det = u.dot(v.cross(w));
+                let [r, s, t] = [
+                    -a.dot(v.cross(w)) / det,
+                    u.dot((-a).cross(w)) / det,
+                    u.dot(v.cross(-a)) / det,
+                ];
+                [1.0 - r - s - t, r, s, t]
+            }
+            _ => return None,
+        };
+        let is_within = weights
             .iter()
-            .zip(weights)
-            .map(|(corner, weight)| *corner * weight)
-            .sum()
-    })
+            .all(|weight| weight.is_finite() && *weight >= 0.0);
+        is_within.then(|| {
+            let corners = self.corners().iter().zip(weights);
+            corners.map(|(corner, weight)| *corner * weight).sum()
+        })
+    }
 }
 
 #[cfg(test)]
@@ -304,6 +351,8 @@ mod tests {
             let away = a.away_from(&b);
             let back = b.away_from(&a);
             prop_assert!((away + back).length() < 1e-2, "{away} and back {back}");
+            prop_assert!(a.is_within(away.length() + 0.02, &b));
+            prop_assert!(!a.is_within(away.length() - 0.02, &b));
             if away.length() > 0.02 {
                 // All of `a` lies beyond all of `b` by the distance, in this direction.
                 let way = away.normalize();
