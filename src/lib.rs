@@ -39,6 +39,8 @@
 pub use tabletop_camera as camera;
 pub use tabletop_core as core;
 pub use tabletop_demonstrator as demonstrator;
+#[cfg(feature = "window")]
+pub use tabletop_gui as gui;
 pub use tabletop_history as history;
 pub use tabletop_kinematics as kinematics;
 pub use tabletop_physics as physics;
@@ -48,7 +50,10 @@ pub use tabletop_robot as robot;
 pub use tabletop_scenario as scenario;
 pub use tabletop_scene as scene;
 pub use tabletop_script as script;
+pub use tabletop_script::engine;
 pub use tabletop_task as task;
+#[cfg(feature = "window")]
+pub use tabletop_view as view;
 pub use tabletop_xml as xml;
 
 pub mod final_state;
@@ -85,7 +90,8 @@ pub mod prelude {
 /// Everything that simulates, nothing that shows: [`CorePlugin`](core::CorePlugin), [`HistoryPlugin`](history::HistoryPlugin), [`XmlPlugin`](xml::XmlPlugin),
 /// [`PhysicsPlugin`](physics::PhysicsPlugin), [`ScenePlugin`](scene::ScenePlugin),
 /// [`DemonstratorPlugin`](demonstrator::DemonstratorPlugin), [`RobotPlugin`](robot::RobotPlugin), [`CameraPlugin`](camera::CameraPlugin),
-/// [`RecorderPlugin`](recorder::RecorderPlugin), [`ScriptPlugin`](script::ScriptPlugin), [`RecordedSettingsPlugin`] and
+/// [`RecorderPlugin`](recorder::RecorderPlugin), [`ScriptPlugin`](script::ScriptPlugin),
+/// [`ScenarioPlugin`](scenario::ScenarioPlugin), [`RecordedSettingsPlugin`] and
 /// [`ShippedFilesPlugin`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TabletopSimPlugins;
@@ -103,7 +109,24 @@ impl PluginGroup for TabletopSimPlugins {
             .add(camera::CameraPlugin)
             .add(recorder::RecorderPlugin::default())
             .add(script::ScriptPlugin::default())
+            .add(scenario::ScenarioPlugin)
             .add(RecordedSettingsPlugin)
             .add(ShippedFilesPlugin)
+    }
+}
+
+/// The window on a simulation, beside Bevy's `DefaultPlugins`: [`ViewPlugin`](view::ViewPlugin) shows the world,
+/// [`GuiPlugin`](gui::GuiPlugin) has keys, mouse and panels, and [`PacePlugin`](core::PacePlugin) lets users choose how fast time passes.
+#[cfg(feature = "window")]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TabletopWindowPlugins;
+
+#[cfg(feature = "window")]
+impl PluginGroup for TabletopWindowPlugins {
+    fn build(self) -> PluginGroupBuilder {
+        PluginGroupBuilder::start::<Self>()
+            .add(view::ViewPlugin)
+            .add(gui::GuiPlugin)
+            .add(core::PacePlugin)
     }
 }

@@ -23,15 +23,12 @@ use bevy::{
     prelude::*,
     render::RenderPlugin,
 };
-use tabletop_core::{Actor, CommandWriter, OpenRecording, PacePlugin, RobotCommand, SceneCommand};
-use tabletop_gui::{
-    GuiPlugin, Preferences, PresetSeeds, WidgetListPlugin, keymap_file::KeymapFile,
-};
-use tabletop_view::ViewPlugin;
+use tabletop_core::{Actor, CommandWriter, OpenRecording, RobotCommand, SceneCommand};
+use tabletop_gui::{Preferences, PresetSeeds, WidgetListPlugin, keymap_file::KeymapFile};
 
 use self::opening::{Beginning, Opening};
 use crate::{
-    TabletopSimPlugins,
+    TabletopSimPlugins, TabletopWindowPlugins,
     replay::{PlaybackPlugin, Replay},
     robot::RobotPlugin,
     script::{ScriptPlugin, ScriptSettings, Waiting},
@@ -129,9 +126,7 @@ fn build(options: WindowOptions) -> App {
                 ..options.scripts
             },
         }),
-        ViewPlugin,
-        GuiPlugin,
-        PacePlugin,
+        TabletopWindowPlugins,
         PlaybackPlugin {
             task: options.show.task(),
         },

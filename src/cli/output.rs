@@ -56,9 +56,12 @@ impl Output {
                     false => stdout.write_all(bytes),
                 };
                 let written = written.and_then(|()| stdout.flush());
-                written.map_err(|error| match error.kind() {
-                    ErrorKind::BrokenPipe => Failure::silent(),
-                    _ => Failure::run(format!("standard output: {error}")),
+                written.map_err(|error| {
+                    if error.kind() == ErrorKind::BrokenPipe {
+                        Failure::silent()
+                    } else {
+                        Failure::run(format!("standard output: {error}"))
+                    }
                 })
             }
             Self::File(path) => fs::write(path, bytes)

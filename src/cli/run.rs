@@ -22,7 +22,7 @@ use tabletop::{
     shipped::{read_scenario, read_task, true_path},
     task_files::save_task,
 };
-use tabletop_scenario::{Outcome, Program, ScenarioPlugin, ScenarioRun};
+use tabletop_scenario::{Outcome, Program, ScenarioRun};
 
 use super::{
     Failure, Output, WRONG_INPUT,
@@ -152,7 +152,7 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
         program.limit = ticks(seconds);
     }
 
-    let mut app = headless_app_with((recording(plugins(args)?, args), ScenarioPlugin));
+    let mut app = headless_app_with(recording(plugins(args)?, args));
     let (limit, only_prepares) = (program.limit, program.only_prepares());
     app.insert_resource(ScenarioRun::new(program)).add_systems(
         FixedLast,

@@ -29,12 +29,13 @@ impl TemporaryFolder {
             let reason = format!("{}: {source}", path.display());
             io::Error::new(source.kind(), reason)
         };
-        let made = fs::create_dir(&path).or_else(|error| match error.kind() {
+        let made = fs::create_dir(&path).or_else(|error| {
             // Of a program that had this number.
-            io::ErrorKind::AlreadyExists => {
+            if error.kind() == io::ErrorKind::AlreadyExists {
                 fs::remove_dir_all(&path).and_then(|()| fs::create_dir(&path))
+            } else {
+                Err(error)
             }
-            _ => Err(error),
         });
         made.map_err(in_its_place)?;
         let lock = File::create(path.join(LOCK)).map_err(in_its_place)?;

@@ -10,7 +10,7 @@ use tabletop::{
     camera::Camera,
     core::{Agent, HeadCamera, Markers, ScriptCommand, ScriptEvent},
     prelude::*,
-    scenario::{Outcome, Program, Scenario, ScenarioPlugin, ScenarioRun},
+    scenario::{Outcome, Program, Scenario, ScenarioRun},
     script::{EngineChoice, ScriptPlugin, ScriptSettings},
     xml::read_task,
 };
@@ -34,7 +34,7 @@ impl Stage {
             ..default()
         };
         let plugins = TabletopSimPlugins.build().set(ScriptPlugin { settings });
-        let mut app = headless_app_with((plugins, ScenarioPlugin));
+        let mut app = headless_app_with(plugins);
         if let Some(name) = scenario {
             let scenario = Scenario::read(shipped("tests/scripts", name)).unwrap();
             let read = |file: &Path| Ok(read_task(file).map_err(|error| error.to_string())?.scene);

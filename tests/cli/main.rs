@@ -9,6 +9,7 @@ mod imitate;
 mod keys;
 mod kinematics;
 mod multiply;
+mod panda;
 mod replay;
 mod robot;
 mod scenarios;

@@ -7,7 +7,6 @@ use bevy::{
     prelude::*,
 };
 use tabletop::{TabletopSimPlugins, core::StepApp as _, headless_app_with};
-use tabletop_scenario::ScenarioPlugin;
 
 #[cfg(unix)]
 use crate::support::small_files;
@@ -350,7 +349,7 @@ fn another_task_file_can_be_named() {
 
 #[test]
 fn a_scenario_has_its_place_in_a_tick() {
-    let mut app = headless_app_with((TabletopSimPlugins, ScenarioPlugin));
+    let mut app = headless_app_with(TabletopSimPlugins);
     app.edit_schedule(FixedUpdate, |schedule| {
         schedule.set_build_settings(ScheduleBuildSettings {
             ambiguity_detection: LogLevel::Error,

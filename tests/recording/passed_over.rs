@@ -175,10 +175,14 @@ fn what_is_passed_over_leaves_no_trace() {
 
 /// The facts, without where recordings are.
 fn without_folders(facts: &[SimFact]) -> Vec<String> {
-    let facts = facts.iter().map(|fact| match fact {
-        SimFact::RecordingStarted { cause, .. } => format!("started {cause:?}"),
-        SimFact::RecordingFinished { cause, .. } => format!("finished {cause:?}"),
-        fact => format!("{fact:?}"),
+    let facts = facts.iter().map(|fact| {
+        if let SimFact::RecordingStarted { cause, .. } = fact {
+            format!("started {cause:?}")
+        } else if let SimFact::RecordingFinished { cause, .. } = fact {
+            format!("finished {cause:?}")
+        } else {
+            format!("{fact:?}")
+        }
     });
     facts.collect()
 }

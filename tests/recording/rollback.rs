@@ -17,7 +17,7 @@ use tabletop::{
     prelude::*,
     recorder::RecorderPlugin,
     robot::{Description, RobotPlugin, Source},
-    scenario::{Outcome, Program, Scenario, ScenarioPlugin, ScenarioRun},
+    scenario::{Outcome, Program, Scenario, ScenarioRun},
     xml::read_task,
 };
 
@@ -148,7 +148,7 @@ fn perform(path: &Path, mode: RobotMode, forgotten: &mut BTreeSet<String>) {
         description: is_of_panda.then(panda),
     };
     let plugins = TabletopSimPlugins.build().set(recorder).set(robot);
-    let mut app = headless_app_with((plugins, ScenarioPlugin));
+    let mut app = headless_app_with(plugins);
     app.insert_resource(ScenarioRun::new(program));
     while *app.world().resource::<ScenarioRun>().outcome() == Outcome::Running {
         watch(&mut app, forgotten);

@@ -44,7 +44,8 @@ pub enum ScriptEvent {
 }
 
 /// What the script that drives the robot is doing (report section 5.2).
-#[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Resource, Clone, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Resource)]
 pub enum Agent {
     /// Nothing: there is none.
     #[default]
@@ -76,7 +77,8 @@ impl Agent {
 }
 
 /// Whether something outside of the simulation is not ready, so that it stands still: no part of a tick runs.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Resource)]
 pub struct SimBlocked(pub bool);
 
 impl SimBlocked {

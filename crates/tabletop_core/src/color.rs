@@ -2,6 +2,7 @@
 
 use std::{fmt, str::FromStr};
 
+use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};
 
 /// A colour as it is displayed: red, green, blue in 0..=1, with no gamma to be applied.
@@ -13,7 +14,7 @@ use serde::{Deserialize, Serialize};
 /// assert_eq!("#00A57F".parse::<Rgb>().unwrap().to_string(), "#00a57f");
 /// assert!("vermilion".parse::<Rgb>().is_err());
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 pub struct Rgb {
     /// Red, 0..=1.
     pub red: f32,

@@ -33,7 +33,8 @@ pub struct Figure {
 }
 
 /// Marks a figure that carries the head camera: it is not in the camera's pictures.
-#[derive(Component, Clone, Copy, Debug, Default)]
+#[derive(Component, Clone, Copy, Debug, Default, Reflect)]
+#[reflect(Component)]
 pub struct CarriesHeadCamera;
 
 impl Triangles {

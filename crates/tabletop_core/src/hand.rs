@@ -7,7 +7,18 @@ use serde::{Deserialize, Serialize};
 
 /// One of the demonstrator's hands (report section 4, figure 8a). At most two of them hold something at a time.
 #[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    Reflect,
 )]
 pub enum Hand {
     /// The left hand.
@@ -43,7 +54,8 @@ impl fmt::Display for Hand {
 }
 
 /// Which hand is selected, and what each holds.
-#[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Resource, Clone, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Resource)]
 pub struct Hands {
     /// The hand that mouse and panels act with.
     pub selected: Hand,

@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use crate::{Hand, LimbName};
 
 /// Who holds an object.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Reflect)]
 pub enum Holder {
     /// One of the demonstrator's hands.
     Hand(Hand),
@@ -14,7 +14,8 @@ pub enum Holder {
 }
 
 /// Marks an object that a hand or a gripper holds: it stays when the table is cleared.
-#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Component)]
 pub struct Held {
     /// Who holds it.
     pub by: Holder,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::{Pose, Rollback};
 
 /// How two objects are connected.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 pub enum JointKind {
     /// The origins of both joint frames coincide; all rotations are free.
     Ball,
@@ -50,9 +50,10 @@ pub struct JointSpec {
 }
 
 /// A joint on the table. Its entity is a child of the second object's, and is gone with either of the two.
-#[derive(Component, Clone, Copy, Debug, PartialEq)]
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[component(immutable)]
 #[require(Transform, Rollback)]
+#[reflect(Component)]
 pub struct Joint {
     /// The two objects.
     pub objects: [Entity; 2],

@@ -18,8 +18,6 @@
 //! assert_eq!(app.world().resource::<SimTick>().0, 60);
 //! ```
 
-#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
-
 mod agent;
 mod bounds;
 mod clock;
@@ -46,6 +44,7 @@ mod preset;
 mod random;
 mod ray;
 mod recording;
+mod reflection;
 mod rest;
 mod robot;
 mod robot_event;
@@ -175,6 +174,7 @@ impl Plugin for CorePlugin {
             );
         clock::configure(app);
         rest::configure(app);
+        reflection::register(app);
         if self.one_thread {
             clock::run_ticks_on_one_thread(app);
         }

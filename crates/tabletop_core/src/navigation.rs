@@ -4,7 +4,8 @@ use bevy::prelude::*;
 
 /// How the camera is steered at the moment: speeds along and about its own directions. Panels set it while something in them is
 /// held down.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[reflect(Resource)]
 pub struct Steering {
     /// Along the direction of view, in units/s.
     pub forward: f32,

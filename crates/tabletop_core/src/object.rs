@@ -11,9 +11,10 @@ use crate::{Pose, Rollback, Shape};
 ///
 /// As a component it marks the entity of an object on the table; the entity's `Transform` is where the object is now,
 /// while [`pose`](Self::pose) stays where it was put.
-#[derive(Component, Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Component, Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 #[component(immutable)]
 #[require(Transform, Rollback)]
+#[reflect(Component)]
 pub struct ObjectSpec {
     /// Its id. In a [`SceneSpec`](crate::SceneSpec) it is the id that the file asks for (empty: any), on the table it is unique.
     pub id: String,
@@ -59,7 +60,8 @@ impl ObjectSpec {
 }
 
 /// The objects on the table: by id, and in the order in which they were created.
-#[derive(Resource, Clone, Debug, Default)]
+#[derive(Resource, Clone, Debug, Default, Reflect)]
+#[reflect(Resource)]
 pub struct ObjectIndex {
     by_id: BTreeMap<String, Entity>,
     in_order: Vec<Entity>,

@@ -13,7 +13,8 @@ const LONGEST_TICKS: Duration = Duration::from_millis(50);
 const LONGEST_FRAME: Duration = Duration::from_millis(250);
 
 /// How many times as fast as real time the simulation is to go. What it computes does not depend on it.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Reflect)]
+#[reflect(Resource)]
 pub enum Pace {
     /// A quarter.
     Quarter,

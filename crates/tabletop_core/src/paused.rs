@@ -5,7 +5,8 @@ use bevy::prelude::*;
 use crate::{ClockCommand, IssuedCommand};
 
 /// Whether the simulation stands still. Commands are still carried out, so files can be loaded.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Resource)]
 pub struct Paused(pub bool);
 
 impl Paused {

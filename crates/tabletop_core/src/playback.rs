@@ -5,7 +5,8 @@ use bevy::prelude::*;
 use crate::SimTick;
 
 /// How the open recording plays. Whoever replays it sets this.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Resource)]
 pub struct Playback {
     /// The moment that the world is being brought to.
     pub goal: Option<SimTick>,

@@ -22,7 +22,7 @@ pub const UNITS_PER_METER: f64 = 10.0;
 /// let pose = Pose::from_degrees(Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 90.0));
 /// assert!((pose * Vec3::X - Vec3::new(1.0, 1.0, 0.0)).length() < 1e-6);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 pub struct Pose {
     /// The body's origin, in units.
     pub location: Vec3,

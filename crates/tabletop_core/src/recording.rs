@@ -5,15 +5,18 @@ use std::path::PathBuf;
 use bevy::prelude::*;
 
 /// Whether a recording is running. The recorder sets it.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Resource)]
 pub struct Recording(pub bool);
 
 /// Whether a recording is being replayed. Whoever replays it sets it.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Resource)]
 pub struct Replaying(pub bool);
 
 /// How far the demonstration can be undone and redone. Whoever keeps the snapshots of the world sets it.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Resource)]
 pub struct History {
     /// How many segments can be undone.
     pub undoable: usize,

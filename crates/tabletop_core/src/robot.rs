@@ -38,7 +38,7 @@ pub enum Drive {
 }
 
 /// How the robot's joints move.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Reflect)]
 pub enum RobotMode {
     /// Exactly as told, without masses and forces.
     #[default]
@@ -48,7 +48,7 @@ pub enum RobotMode {
 }
 
 /// What the robot's screen shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Reflect)]
 pub enum Face {
     /// Calm, eyes open.
     #[default]
@@ -81,7 +81,7 @@ impl Face {
 }
 
 /// What is known of a joint.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 pub struct JointState {
     /// Angle in rad, opening in units.
     pub position: f64,
@@ -92,7 +92,7 @@ pub struct JointState {
 }
 
 /// What is known of a limb.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Reflect)]
 pub struct LimbState {
     /// The end effector: a point midway between the fingers, its x along the opening, its -z where the fingers point.
     pub end_effector: Pose,
@@ -107,7 +107,7 @@ pub struct LimbState {
 }
 
 /// A thing that a body of the robot touches.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Reflect)]
 pub struct RobotContact {
     /// The body: the link's name in the robot's description, or a finger (`left-gripper-right-finger`).
     pub body: String,
@@ -122,7 +122,8 @@ pub struct RobotContact {
 }
 
 /// The state of the robot after the last tick. Only the robot's own plugin writes it.
-#[derive(Resource, Clone, Debug, PartialEq)]
+#[derive(Resource, Clone, Debug, PartialEq, Reflect)]
+#[reflect(Resource)]
 pub struct Robot {
     /// Whether it stands at the table; hidden, it can neither be seen nor touched, but its camera works.
     pub is_shown: bool,
@@ -195,7 +196,8 @@ impl Robot {
 }
 
 /// Points that a script wants to see: transparent blue balls that nothing touches.
-#[derive(Resource, Clone, Debug, Default, PartialEq)]
+#[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
+#[reflect(Resource)]
 pub struct Markers(pub Vec<Vec3>);
 
 impl Markers {

@@ -15,9 +15,10 @@ pub struct SceneSpec {
 }
 
 /// The table: a white slab whose top lies in the XY plane, centred at the origin. As a component it marks the table's entity.
-#[derive(Component, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Component, Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 #[component(immutable)]
 #[require(Transform, Rollback)]
+#[reflect(Component)]
 pub struct Table {
     /// Extent along X in units.
     pub xspan: f32,
@@ -66,7 +67,7 @@ pub enum SceneItem {
 }
 
 /// A string of links between two fixed ends (report section 6.2, `<chain>`). Lengths in units.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 pub struct ChainSpec {
     /// Prefix of the ids of links and ends; empty for any.
     pub id: String,
@@ -112,7 +113,7 @@ impl ChainSpec {
 }
 
 /// A box whose lid slides open towards its -X (report section 6.2, `<lidbox>`). Lengths in units.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 pub struct LidBoxSpec {
     /// Prefix of the ids of box and lid; empty for any.
     pub id: String,

@@ -13,7 +13,8 @@ use crate::{CameraCarrier, Paused, Pose, SimTick};
 /// How the robot's head camera looks at the table (report section 4, "head camera").
 ///
 /// Where it is mounted follows from the table, in front of which the robot stands, unless it is said.
-#[derive(Resource, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Resource, Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Reflect)]
+#[reflect(Resource)]
 pub struct HeadCamera {
     /// Angle of the neck joint H0 in radians; positive turns the view to the robot's left.
     pub pan: f32,

@@ -7,7 +7,8 @@ use crate::{Pose, Rgb};
 
 /// The shape of an object or of a part of one (report section 6.2). Sizes are full extents in units of 10 cm;
 /// the shape's origin is its centre, for a composite its reference point.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
+#[reflect(opaque)]
 pub enum Shape {
     /// A solid cuboid.
     Block {

@@ -11,6 +11,18 @@ pub const TICK_SECONDS: f32 = 1.0 / TICKS_PER_SECOND as f32;
 
 /// How many ticks have been simulated.
 #[derive(
-    Resource, Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize,
+    Resource,
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    Reflect,
 )]
+#[reflect(Resource)]
 pub struct SimTick(pub u64);

@@ -3,7 +3,8 @@
 use bevy::prelude::*;
 
 /// How fast an object moves and turns at the end of a tick, in the table's frame. Physics writes it.
-#[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component)]
 pub struct Twist {
     /// Velocity of its centre of mass, in units/s.
     pub linear: Vec3,

@@ -7,7 +7,8 @@ use bevy::prelude::*;
 use crate::Table;
 
 /// Marks the camera through which the user looks. The view makes it; the panels are drawn over its picture.
-#[derive(Component, Clone, Copy, Debug, Default)]
+#[derive(Component, Clone, Copy, Debug, Default, Reflect)]
+#[reflect(Component)]
 pub struct UserCamera;
 
 /// Systems that read [`Keys`](crate::Keys), in [`RunFixedMainLoop`] before the ticks of a frame.
@@ -15,7 +16,8 @@ pub struct UserCamera;
 pub struct KeySystems;
 
 /// The upright plane through what the selected hand holds, in which the mouse drags it (report section 4, figure 8g).
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[reflect(Resource)]
 pub struct DragPlane {
     /// How far the plane is turned about Z, in radians. At 0 it lies along X and faces somebody who looks along Y.
     pub heading: f32,

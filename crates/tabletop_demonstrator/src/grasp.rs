@@ -11,7 +11,8 @@ use tabletop_physics::{hold, let_go, remove_object};
 use crate::rules;
 
 /// The pose that a held object is to have.
-#[derive(Component, Clone, Copy, Debug, PartialEq)]
+#[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Component)]
 pub struct CarryTarget(pub Pose);
 
 /// Carries out the commands to hands, one after the other.

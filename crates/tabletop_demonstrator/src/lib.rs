@@ -38,14 +38,18 @@
 //! assert_eq!(app.world().get::<Transform>(block).unwrap().translation, location);
 //! ```
 
-#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
-
 mod carry;
 mod grasp;
 mod obstacles;
 mod rules;
 
 pub use grasp::CarryTarget;
+
+/// The names that most users of this crate need.
+pub mod prelude {
+    #[doc(hidden)]
+    pub use crate::{CarryTarget, DemonstratorPlugin};
+}
 
 use bevy::prelude::*;
 use tabletop_core::{ActuateSystems, CommandSystems, RestingSystems};
@@ -58,7 +62,8 @@ pub struct DemonstratorPlugin;
 
 impl Plugin for DemonstratorPlugin {
     fn build(&self, app: &mut App) {
-        app.rollback_component::<CarryTarget>()
+        app.register_type::<CarryTarget>()
+            .rollback_component::<CarryTarget>()
             .add_systems(
                 FixedUpdate,
                 (

@@ -116,9 +116,12 @@ impl Running {
         let command = command(config, &session).map_err(start_fault)?;
         let piped = config.trigger == Trigger::Stdin;
         let process = Process::start(command, piped, session.folder(), worker.killer.clone());
-        let process = process.map_err(|error| match error.kind() {
-            io::ErrorKind::Interrupted => EngineError::Stopped,
-            _ => start_fault(error.to_string()),
+        let process = process.map_err(|error| {
+            if error.kind() == io::ErrorKind::Interrupted {
+                EngineError::Stopped
+            } else {
+                start_fault(error.to_string())
+            }
         })?;
         let mut running = Self {
             process,
@@ -366,7 +369,7 @@ impl Running {
         let config = &self.worker.config;
         let draw = match op {
             Op::Hello => config.display,
-            _ => {
+            Op::End | Op::Init | Op::Step => {
                 config.display
                     && self
                         .last_drawn

@@ -41,6 +41,12 @@ pub use preferences::Preferences;
 pub use preset_seeds::PresetSeeds;
 pub use widget_list::WidgetListPlugin;
 
+/// The names that most users of this crate need.
+pub mod prelude {
+    #[doc(hidden)]
+    pub use crate::{Files, GuiPlugin, Notices, Panel, Panels, Preferences, Tone};
+}
+
 use bevy::{asset::AssetEventSystems, prelude::*};
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPostUpdateSet, PrimaryEguiContext};
 use tabletop_core::UserCamera;

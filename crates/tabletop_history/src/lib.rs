@@ -27,8 +27,6 @@
 //! assert_eq!(app.world().get(switch), Some(&Switch(false)));
 //! ```
 
-#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
-
 mod removal;
 mod rollback;
 mod segments;
@@ -40,6 +38,12 @@ pub use rollback::{
 };
 pub use segments::begin_segment;
 pub use snapshot::WorldSnapshot;
+
+/// The names that most users of this crate need.
+pub mod prelude {
+    #[doc(hidden)]
+    pub use crate::{HistoryPlugin, RollbackApp, begin_segment, despawn_or_park, is_rolling_back};
+}
 
 use bevy::{prelude::*, transform::components::TransformTreeChanged};
 use tabletop_core::{CommandSystems, Hands, Held, Markers, ObjectIndex, RestingSystems, SimTick};
@@ -68,7 +72,9 @@ impl Default for HistoryPlugin {
 
 impl Plugin for HistoryPlugin {
     fn build(&self, app: &mut App) {
-        app.insert_resource(Segments::new(self.most_bytes))
+        app.register_type::<KeepRemoved>()
+            .register_type::<Parked>()
+            .insert_resource(Segments::new(self.most_bytes))
             .init_resource::<KeepRemoved>()
             .rollback_component::<Transform>()
             .rollback_component::<GlobalTransform>()

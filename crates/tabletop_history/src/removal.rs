@@ -4,7 +4,8 @@ use bevy::{ecs::entity_disabling::Disabled, prelude::*};
 use tabletop_core::Rollback;
 
 /// The reasons for which removed entities are kept, disabled, so that a snapshot can bring them back.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Resource)]
 pub struct KeepRemoved {
     /// Removed entities are kept for undo.
     pub for_undo: bool,
@@ -20,7 +21,8 @@ impl KeepRemoved {
 }
 
 /// Marks an entity that was removed from the world while removed entities are [kept](KeepRemoved).
-#[derive(Component, Clone, Copy, Debug)]
+#[derive(Component, Clone, Copy, Debug, Reflect)]
+#[reflect(Component)]
 pub struct Parked;
 
 /// Removes an entity from the world: for good, or until a snapshot brings it back.

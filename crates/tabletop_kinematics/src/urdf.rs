@@ -215,8 +215,10 @@ impl Lines {
         let limits = match kind {
             JointType::Fixed => [0.0; 2],
             JointType::Continuous => [f64::NEG_INFINITY, f64::INFINITY],
-            _ if lower <= upper => [lower, upper],
-            _ => return Err(read.fault("its lower limit is above its upper one")),
+            JointType::Revolute | JointType::Prismatic if lower <= upper => [lower, upper],
+            JointType::Revolute | JointType::Prismatic => {
+                return Err(read.fault("its lower limit is above its upper one"));
+            }
         };
         let damping = joint
             .dynamics

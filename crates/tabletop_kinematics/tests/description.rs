@@ -231,7 +231,9 @@ fn surface(shape: &LinkShape) -> impl Iterator<Item = DVec3> {
                 .map(|p| p * size)
                 .collect()
         }
-        _ => panic!("a body is a box or a cylinder"),
+        Geometry::Sphere { .. } | Geometry::Mesh { .. } => {
+            panic!("a body is a box or a cylinder")
+        }
     };
     points.into_iter()
 }

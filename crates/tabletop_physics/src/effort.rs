@@ -71,7 +71,8 @@ const LANDING_SWEEPS: Sweeps = Sweeps {
 };
 
 /// For how many ticks the engine takes more care than the state calls for.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Resource)]
 pub struct Care {
     handling: u32,
     landing: u32,

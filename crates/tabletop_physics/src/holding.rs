@@ -8,7 +8,8 @@ use tabletop_core::{Held, Holder, Joint, ObjectSpec, Pose, SimTick, TICK_SECONDS
 ///
 /// Rapier finds out what a body lies on when it has moved, so an object that was let go of at rest would fall freely for a
 /// tick, into what is below it. Instead it sinks for a tick by next to nothing, and falls from then on.
-#[derive(Component, Clone, Copy, Debug)]
+#[derive(Component, Clone, Copy, Debug, Reflect)]
+#[reflect(Component)]
 pub struct JustReleased {
     /// The tick.
     pub at: SimTick,
@@ -24,7 +25,8 @@ const PULLED_PER_TICK: f32 = 0.25;
 const FASTEST: (f32, f32) = (40.0, 10.0);
 
 /// How a held object follows who holds it.
-#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Component)]
 pub enum Carry {
     /// It goes exactly where its [`Transform`] says, whatever acts on it.
     Freely,

@@ -45,6 +45,12 @@ pub use holding::{Carry, JustReleased, hold, let_go, pull_velocity};
 pub use settings::PhysicsSettings;
 pub use snapshot::{PhysicsSnapshot, remove_object, renew_if_empty};
 
+/// The names that most users of this crate need.
+pub mod prelude {
+    #[doc(hidden)]
+    pub use crate::{Care, Carry, PhysicsPlugin, PhysicsSettings, hold, let_go, remove_object};
+}
+
 use bevy::{ecs::schedule::ScheduleConfigs, ecs::system::ScheduleSystem, prelude::*};
 use bevy_rapier3d::{
     plugin::systems,
@@ -73,7 +79,11 @@ impl Plugin for PhysicsPlugin {
             app.add_plugins(TransformPlugin);
         }
         // Before Rapier, which would insert these without making Bevy clear them.
-        app.add_message::<CollisionEvent>()
+        app.register_type::<Care>()
+            .register_type::<Carry>()
+            .register_type::<JustReleased>()
+            .register_type::<PhysicsSettings>()
+            .add_message::<CollisionEvent>()
             .add_message::<ContactForceEvent>()
             .add_message::<MassModifiedEvent>();
         app.init_resource::<Care>()

@@ -4,8 +4,9 @@ use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Constants of the simulated world. They are read when the plugin is built and when an object appears.
-#[derive(Resource, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Resource, Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 #[serde(default, deny_unknown_fields)]
+#[reflect(Resource)]
 pub struct PhysicsSettings {
     /// Downward acceleration in units/s². True gravity at this scale is 98.1.
     pub gravity: f32,

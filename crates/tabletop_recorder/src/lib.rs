@@ -25,8 +25,6 @@
 //! # Ok::<_, Box<dyn std::error::Error>>(())
 //! ```
 
-#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
-
 mod error;
 mod files;
 mod reading;
@@ -53,3 +51,9 @@ pub use reading::{
 pub use recording::{
     recorder::set_earlier_commands, recorder_plugin::RecorderPlugin, unrecorded::UnrecordedPlugin,
 };
+
+/// The names that most users of this crate need.
+pub mod prelude {
+    #[doc(hidden)]
+    pub use crate::{RecorderError, RecorderPlugin, RecordingReader, Session, UnrecordedPlugin};
+}

@@ -38,3 +38,9 @@ pub use articulation::link_entities::RobotBody;
 pub use description::{Description, DescriptionError, Source};
 pub use gripper::closing::STEEPEST_GRIP;
 pub use plugin::RobotPlugin;
+
+/// The names that most users of this crate need.
+pub mod prelude {
+    #[doc(hidden)]
+    pub use crate::{Description, RobotBody, RobotPlugin};
+}

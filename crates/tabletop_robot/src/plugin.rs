@@ -9,7 +9,9 @@ use tabletop_history::{RollbackApp, is_rolling_back};
 
 use crate::{
     articulation::{
-        link_entities::LinkEntities, self_collision::SelfCollisionMatrix, tree::Articulation,
+        link_entities::{LinkEntities, RobotBody},
+        self_collision::SelfCollisionMatrix,
+        tree::Articulation,
     },
     command::{joint_targets::JointTargets, obey::obey},
     contacts::sense,
@@ -57,7 +59,8 @@ impl Plugin for RobotPlugin {
             warn!("link {link} is not touched where this mesh would be: {error}");
         }
         let layout = description.layout.clone();
-        app.insert_resource(SelfCollisionMatrix::new(&articulation))
+        app.register_type::<RobotBody>()
+            .insert_resource(SelfCollisionMatrix::new(&articulation))
             .insert_resource(articulation)
             .insert_resource(description)
             .init_resource::<LinkFigures>()

@@ -21,8 +21,6 @@
 //! # Ok::<_, tabletop_scenario::ScenarioError>(())
 //! ```
 
-#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
-
 mod act;
 mod check;
 mod error;
@@ -48,6 +46,12 @@ pub use run::{Outcome, ScenarioRun};
 pub use scenario::{LocatedStep, Scenario};
 pub use source::SourceLocation;
 pub use step::{Axis, Step};
+
+/// The names that most users of this crate need.
+pub mod prelude {
+    #[doc(hidden)]
+    pub use crate::{Check, Outcome, Program, Scenario, ScenarioPlugin, ScenarioRun, Step};
+}
 
 use bevy::prelude::*;
 use tabletop_core::{

@@ -90,7 +90,7 @@ impl Stage {
         self.finish();
         match self.run.outcome() {
             Outcome::Failed(error) => error.to_string(),
-            other => format!("{other:?}"),
+            other @ (Outcome::Running | Outcome::Done) => format!("{other:?}"),
         }
     }
 }

@@ -28,8 +28,6 @@
 //! assert!((height - 0.5).abs() < 0.01, "it lies at {height}");
 //! ```
 
-#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
-
 mod assembly;
 mod compound;
 mod ids;
@@ -40,6 +38,12 @@ mod preset;
 pub use assembly::{Assembly, assemble};
 pub use ids::IdAllocator;
 pub use present::{PresentScene, present_scene};
+
+/// The names that most users of this crate need.
+pub mod prelude {
+    #[doc(hidden)]
+    pub use crate::{Assembly, IdAllocator, PresentScene, ScenePlugin, assemble, present_scene};
+}
 
 use bevy::prelude::*;
 use tabletop_core::{CommandSystems, RestingSystems, SimSystems};

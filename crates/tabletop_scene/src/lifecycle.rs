@@ -260,11 +260,13 @@ mod tests {
             let mut facts = app.world_mut().resource_mut::<Messages<SimFact>>();
             let causes: Vec<_> = facts
                 .drain()
-                .map(|fact| match fact {
-                    SimFact::ObjectCreated { cause, .. } | SimFact::ObjectDeleted { cause, .. } => {
-                        cause
-                    }
-                    other => panic!("{other:?}"),
+                .map(|fact| {
+                    let (SimFact::ObjectCreated { cause, .. }
+                    | SimFact::ObjectDeleted { cause, .. }) = fact
+                    else {
+                        panic!("{fact:?}");
+                    };
+                    cause
                 })
                 .collect();
             assert_eq!(causes, [Some(id)]);

@@ -46,8 +46,6 @@
 //! # }
 //! ```
 
-#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
-
 /// The types that most users of the crate need.
 pub mod prelude {
     #[doc(hidden)]

@@ -98,10 +98,10 @@ mod tests {
     }
 
     fn drives(command: RobotCommand) -> Vec<(JointName, Drive)> {
-        match command {
-            RobotCommand::Drive(drives) => drives,
-            other => panic!("{other:?}"),
-        }
+        let RobotCommand::Drive(drives) = command else {
+            panic!("{command:?}");
+        };
+        drives
     }
 
     #[test]

@@ -37,6 +37,12 @@ pub use surface::Surface;
 pub use viewpoint::Viewpoint;
 pub use visual::Visual;
 
+/// The names that most users of this crate need.
+pub mod prelude {
+    #[doc(hidden)]
+    pub use crate::{Surface, ViewPlugin, Viewpoint, Visual};
+}
+
 use bevy::prelude::*;
 
 /// Draws the simulation and moves the user's camera. Needs Bevy's renderer and [`CorePlugin`](tabletop_core::CorePlugin).

@@ -53,12 +53,13 @@ type Stretch = (f32, f32);
 
 impl Polygon {
     fn covered_by(solid: Solid, eye_from_solid: Pose) -> Option<Self> {
-        let points = match solid {
-            Solid::Ball(radius) => rim_of_ball(eye_from_solid.location, radius)?,
-            _ => polyhedron::corners(solid)
+        let points = if let Solid::Ball(radius) = solid {
+            rim_of_ball(eye_from_solid.location, radius)?
+        } else {
+            polyhedron::corners(solid)
                 .into_iter()
                 .map(|corner| eye_from_solid * corner)
-                .collect(),
+                .collect()
         };
         let corners: Option<Vec<Corner>> = points.into_iter().map(Corner::of).collect();
         Some(Self {

@@ -44,5 +44,11 @@ pub use plugin::XmlPlugin;
 pub use reader::{ReadError, TaskReader, read_task};
 pub use write::write;
 
+/// The names that most users of this crate need.
+pub mod prelude {
+    #[doc(hidden)]
+    pub use crate::{Fault, ParsedTask, TaskReader, XmlPlugin, parse, read_task, write};
+}
+
 /// The XML namespace of task files.
 pub const NAMESPACE: &str = "http://synapse.cs.umd.edu/tabletop-xml";

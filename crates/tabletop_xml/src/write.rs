@@ -86,6 +86,7 @@ impl Writer {
         self.close();
     }
 
+    #[expect(clippy::wildcard_enum_match_arm, reason = "few shapes have parts")]
     fn parts_of(&mut self, shape: &Shape) {
         match shape {
             Shape::Composite { parts } => parts.iter().for_each(|part| self.part(part)),

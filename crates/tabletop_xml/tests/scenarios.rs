@@ -39,7 +39,7 @@ fn objects(name: &str) -> Vec<ObjectSpec> {
         .into_iter()
         .filter_map(|item| match item {
             SceneItem::Object(object) => Some(object),
-            _ => None,
+            SceneItem::Chain(_) | SceneItem::LidBox(_) | SceneItem::Jointed(_) => None,
         })
         .collect()
 }

@@ -113,9 +113,10 @@ impl Way {
 impl fmt::Display for Action {
     /// Writes its name in files: `camera_up`, `right_w2+`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Move(joint, way) => write!(f, "{joint}{}", way.sign()),
-            plain => f.write_str(&snake_case(plain.variant_name())),
+        if let Self::Move(joint, way) = self {
+            write!(f, "{joint}{}", way.sign())
+        } else {
+            f.write_str(&snake_case(self.variant_name()))
         }
     }
 }

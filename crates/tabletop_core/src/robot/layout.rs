@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// A joint of the robot, by its place in [`RobotLayout::joints`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Reflect)]
 pub struct JointId(pub u16);
 
 impl JointId {
@@ -20,7 +20,7 @@ impl JointId {
 }
 
 /// A limb of the robot, by its place in [`RobotLayout::limbs`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Reflect)]
 pub struct LimbId(pub u8);
 
 impl LimbId {
@@ -197,7 +197,7 @@ const fn unturned() -> [[f64; 3]; 3] {
 }
 
 /// Where the robot stands before the table.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 #[serde(deny_unknown_fields)]
 pub struct BaseLayout {
     /// From the table's near edge back to the origin of the URDF's root link, in units.
@@ -217,7 +217,7 @@ impl BaseLayout {
 }
 
 /// Where the head camera is on the robot. Lengths in units, in axes like the table's: x right, y forward, z up.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 #[serde(deny_unknown_fields)]
 pub struct CameraLayout {
     /// The axis of the neck, from the robot's origin.
@@ -229,7 +229,7 @@ pub struct CameraLayout {
 }
 
 /// The robot that carries the head camera.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 pub struct CameraCarrier {
     /// Where the robot stands.
     pub base: BaseLayout,

@@ -76,18 +76,20 @@ impl Desk {
 
     pub fn heard(&mut self) -> Vec<String> {
         let facts = std::mem::take(&mut self.0.world_mut().resource_mut::<Heard>().0);
-        facts
-            .iter()
-            .map(|fact| match fact {
-                SimFact::SegmentBegun { .. } => "segment".into(),
-                SimFact::Grasped { hand, id, .. } => format!("{hand} grasps {id}"),
-                SimFact::Released { hand, id, .. } => format!("{hand} releases {id}"),
-                SimFact::Destroyed { hand, id, .. } => format!("{hand} destroys {id}"),
-                SimFact::ObjectDeleted { id, .. } => format!("{id} is gone"),
-                SimFact::Refused { reason, .. } => format!("refused: {reason}"),
-                other => format!("{other:?}"),
-            })
-            .collect()
+        facts.iter().map(line).collect()
+    }
+}
+
+#[expect(clippy::wildcard_enum_match_arm, reason = "other facts are of no hand")]
+fn line(fact: &SimFact) -> String {
+    match fact {
+        SimFact::SegmentBegun { .. } => "segment".into(),
+        SimFact::Grasped { hand, id, .. } => format!("{hand} grasps {id}"),
+        SimFact::Released { hand, id, .. } => format!("{hand} releases {id}"),
+        SimFact::Destroyed { hand, id, .. } => format!("{hand} destroys {id}"),
+        SimFact::ObjectDeleted { id, .. } => format!("{id} is gone"),
+        SimFact::Refused { reason, .. } => format!("refused: {reason}"),
+        other => format!("{other:?}"),
     }
 }
 

@@ -45,7 +45,7 @@ impl EngineLocator {
             variable: env::var(ENGINE_VARIABLE).ok(),
             root: match platform {
                 Platform::Windows => drive().unwrap_or_else(|_| "C:\\".into()),
-                _ => "/".into(),
+                Platform::Linux | Platform::MacOs => "/".into(),
             },
         }
     }

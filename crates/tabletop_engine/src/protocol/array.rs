@@ -149,9 +149,10 @@ impl Array {
 
     /// The text, if it is one.
     pub fn as_text(&self) -> Option<&str> {
-        match &self.data {
-            Data::Text(text) => Some(text),
-            _ => None,
+        if let Data::Text(text) = &self.data {
+            Some(text)
+        } else {
+            None
         }
     }
 }

@@ -104,10 +104,11 @@ impl Session {
 
     pub fn init(&self) -> Result<InitReply, EngineError> {
         self.engine.init(limits());
-        match next(&self.engine)? {
-            Reply::Init(reply) => Ok(reply),
-            other => panic!("{other:?}"),
-        }
+        let reply = next(&self.engine)?;
+        let Reply::Init(reply) = reply else {
+            panic!("{reply:?}");
+        };
+        Ok(reply)
     }
 
     pub fn step(&self, sensor: &Sensor) -> Result<StepReply, EngineError> {
@@ -136,10 +137,11 @@ impl Session {
 }
 
 fn next(engine: &EngineHandle) -> Result<Reply, EngineError> {
-    match engine.recv_timeout(PATIENCE).unwrap() {
-        Reply::Failed(error) => Err(error),
-        reply => Ok(reply),
+    let reply = engine.recv_timeout(PATIENCE).unwrap();
+    if let Reply::Failed(error) = reply {
+        return Err(error);
     }
+    Ok(reply)
 }
 
 /// The script's fault in what should be one.

@@ -41,11 +41,7 @@ pub(crate) fn add_object(world: &mut World, object: Entity, spec: &ObjectSpec) {
         AdditionalSolverIterations(SUBSTEPS_OF_FREE - FEWEST_SUBSTEPS),
         Damping {
             linear_damping: 0.0,
-            angular_damping: match spec.shape {
-                Shape::Cylinder { .. } | Shape::Sphere { .. } => settings.rolling_damping,
-                Shape::Link { .. } => settings.link_damping,
-                _ => settings.angular_damping,
-            },
+            angular_damping: angular_damping(&spec.shape, &settings),
         },
         if settings.sleep {
             SLEEP_THRESHOLDS
@@ -100,5 +96,18 @@ fn solid_collider(solid: Solid) -> Collider {
             None => Collider::cylinder(yspan / 2.0, radius),
         },
         Solid::Ball(radius) => Collider::ball(radius),
+    }
+}
+
+/// The share of its rotation that a body of this shape loses in a second.
+#[expect(
+    clippy::wildcard_enum_match_arm,
+    reason = "few shapes roll or hang in chains"
+)]
+const fn angular_damping(shape: &Shape, settings: &PhysicsSettings) -> f32 {
+    match shape {
+        Shape::Cylinder { .. } | Shape::Sphere { .. } => settings.rolling_damping,
+        Shape::Link { .. } => settings.link_damping,
+        _ => settings.angular_damping,
     }
 }

@@ -11,8 +11,9 @@ use tabletop_physics::to_rapier;
 use crate::articulation::tree::{Articulation, Body, Positions, Posture, TreePosition};
 
 /// A body of the robot: a link, or a finger of a gripper.
-#[derive(Component, Clone, Debug)]
+#[derive(Component, Clone, Debug, Reflect)]
 #[require(Transform, Rollback)]
+#[reflect(Component)]
 pub struct RobotBody {
     /// What it is called.
     pub name: String,

@@ -59,7 +59,9 @@ impl JointTargets {
             Drive::Toward(position) => {
                 self.toward[joint.index()] = Some(layout.joint(joint).clamp(position));
             }
-            _ => self.now[joint.index()] = Some(drive),
+            Drive::Velocity(_) | Drive::Position(_) | Drive::Torque(_) => {
+                self.now[joint.index()] = Some(drive);
+            }
         }
     }
 

@@ -223,7 +223,7 @@ impl Stage {
     pub fn printed(&self) -> String {
         let lines = self.events.iter().filter_map(|event| match event {
             ScriptEvent::Printed { line, .. } | ScriptEvent::Noted { line } => Some(line.as_str()),
-            _ => None,
+            ScriptEvent::Started { .. } | ScriptEvent::Stopped | ScriptEvent::Failed { .. } => None,
         });
         lines.collect::<Vec<_>>().join("\n")
     }

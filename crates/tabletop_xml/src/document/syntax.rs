@@ -37,6 +37,10 @@ pub(crate) const fn is_blank(character: char) -> bool {
 
 /// What is wrong where a file is not well formed, and what should be there.
 pub(crate) fn explain(error: &Error) -> (String, String) {
+    #[expect(
+        clippy::wildcard_enum_match_arm,
+        reason = "the reader has errors without number, and words for them"
+    )]
     let (problem, expected) = match error {
         Error::IllFormed(IllFormedError::MismatchedEndTag { expected, found }) => {
             return (

@@ -66,6 +66,10 @@ impl Pictures {
 }
 
 /// A picture of 8 bits a channel, as recordings have them.
+#[expect(
+    clippy::wildcard_enum_match_arm,
+    reason = "pictures of recordings are of these types"
+)]
 fn read(path: &Path) -> Option<ColorImage> {
     let file = BufReader::new(File::open(path).ok()?);
     let mut reader = png::Decoder::new(file).read_info().ok()?;

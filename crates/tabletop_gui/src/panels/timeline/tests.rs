@@ -25,10 +25,12 @@ impl Desk {
     fn new(stage: TimelineStage) -> Self {
         let timeline = match stage {
             TimelineStage::Absent => Timeline::default(),
-            stage => Timeline {
-                stage,
-                ..timeline()
-            },
+            stage @ (TimelineStage::Running | TimelineStage::Finished | TimelineStage::Open) => {
+                Timeline {
+                    stage,
+                    ..timeline()
+                }
+            }
         };
         Self {
             timeline,

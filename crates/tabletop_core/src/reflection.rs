@@ -1,0 +1,68 @@
+//! The types of the simulation that inspectors and scenes can look into.
+
+use bevy::prelude::*;
+
+use crate::{
+    Agent, CarriesHeadCamera, DragPlane, Hands, HeadCamera, Held, History, Joint, Markers,
+    ObjectIndex, ObjectSpec, Pace, Paused, Playback, Recording, Replaying, Robot, Rollback,
+    SimBlocked, SimTick, Steering, Table, Twist, UserCamera,
+};
+
+/// Registers components and resources with all that they consist of.
+pub(crate) fn register(app: &mut App) {
+    app.register_type::<Agent>()
+        .register_type::<CarriesHeadCamera>()
+        .register_type::<DragPlane>()
+        .register_type::<Hands>()
+        .register_type::<HeadCamera>()
+        .register_type::<Held>()
+        .register_type::<History>()
+        .register_type::<Joint>()
+        .register_type::<Markers>()
+        .register_type::<ObjectIndex>()
+        .register_type::<ObjectSpec>()
+        .register_type::<Pace>()
+        .register_type::<Paused>()
+        .register_type::<Playback>()
+        .register_type::<Recording>()
+        .register_type::<Replaying>()
+        .register_type::<Robot>()
+        .register_type::<Rollback>()
+        .register_type::<SimBlocked>()
+        .register_type::<SimTick>()
+        .register_type::<Steering>()
+        .register_type::<Table>()
+        .register_type::<Twist>()
+        .register_type::<UserCamera>();
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::{prelude::*, reflect::TypeRegistry};
+
+    use crate::{CorePlugin, Hands, ObjectSpec, Pose, Shape};
+
+    #[test]
+    fn objects_and_what_they_consist_of_are_registered() {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default()));
+        let registry = app.world().resource::<AppTypeRegistry>().read();
+        let registry: &TypeRegistry = &registry;
+        assert!(
+            registry
+                .get_type_data::<ReflectComponent>(std::any::TypeId::of::<ObjectSpec>())
+                .is_some()
+        );
+        assert!(
+            registry
+                .get_type_data::<ReflectResource>(std::any::TypeId::of::<Hands>())
+                .is_some()
+        );
+        for part in [
+            std::any::TypeId::of::<Shape>(),
+            std::any::TypeId::of::<Pose>(),
+        ] {
+            assert!(registry.contains(part));
+        }
+    }
+}
