@@ -9,6 +9,7 @@
 //! | [`scene`] | the table and what comes and goes on it |
 //! | [`history`] | undo and redo |
 //! | [`demonstrator`] | the invisible hands |
+//! | [`mechanism`] | controls and bonds: what objects do |
 //! | [`robot`] | the robot: how it looks, moves and grips |
 //! | [`kinematics`] | robots as URDF describes them |
 //! | [`camera`] | what the robot's head camera sees |
@@ -43,6 +44,7 @@ pub use tabletop_demonstrator as demonstrator;
 pub use tabletop_gui as gui;
 pub use tabletop_history as history;
 pub use tabletop_kinematics as kinematics;
+pub use tabletop_mechanism as mechanism;
 pub use tabletop_physics as physics;
 pub use tabletop_planner as planner;
 pub use tabletop_recorder as recorder;
@@ -89,7 +91,8 @@ pub mod prelude {
 
 /// Everything that simulates, nothing that shows: [`CorePlugin`](core::CorePlugin), [`HistoryPlugin`](history::HistoryPlugin), [`XmlPlugin`](xml::XmlPlugin),
 /// [`PhysicsPlugin`](physics::PhysicsPlugin), [`ScenePlugin`](scene::ScenePlugin),
-/// [`DemonstratorPlugin`](demonstrator::DemonstratorPlugin), [`RobotPlugin`](robot::RobotPlugin), [`CameraPlugin`](camera::CameraPlugin),
+/// [`DemonstratorPlugin`](demonstrator::DemonstratorPlugin), [`MechanismPlugin`](mechanism::MechanismPlugin),
+/// [`RobotPlugin`](robot::RobotPlugin), [`CameraPlugin`](camera::CameraPlugin),
 /// [`RecorderPlugin`](recorder::RecorderPlugin), [`ScriptPlugin`](script::ScriptPlugin),
 /// [`ScenarioPlugin`](scenario::ScenarioPlugin), [`RecordedSettingsPlugin`] and
 /// [`ShippedFilesPlugin`].
@@ -105,6 +108,7 @@ impl PluginGroup for TabletopSimPlugins {
             .add(physics::PhysicsPlugin::default())
             .add(scene::ScenePlugin)
             .add(demonstrator::DemonstratorPlugin)
+            .add(mechanism::MechanismPlugin)
             .add(robot::RobotPlugin::default())
             .add(camera::CameraPlugin)
             .add(recorder::RecorderPlugin::default())

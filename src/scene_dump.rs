@@ -115,6 +115,7 @@ impl<'a> From<&'a Assembly> for SceneDump<'a> {
                 .map(|joint| {
                     let (kind, limits) = match joint.kind {
                         JointKind::Ball => ("ball", None),
+                        JointKind::Fixed => ("fixed", None),
                         JointKind::Slider { min, max, .. } => ("slider", Some([min, max])),
                         JointKind::Hinge { min, max, .. } => {
                             ("hinge", Some([min.to_degrees(), max.to_degrees()]))
@@ -182,7 +183,9 @@ fn dump_part(part: Part) -> Option<PartDump> {
             },
             color,
         ),
-        Shape::Composite { .. } | Shape::Lid { .. } => return None,
+        Shape::Composite { .. } | Shape::Lid { .. } | Shape::Control(_) | Shape::BondPoint(_) => {
+            return None;
+        }
     };
     Some(PartDump {
         id: part.id,

@@ -239,6 +239,11 @@ fn stops_the_robot(fact: &SimFact) -> bool {
         | SimFact::ObjectCreated { .. }
         | SimFact::ObjectDeleted { .. }
         | SimFact::SegmentBegun { .. }
+        | SimFact::Triggered { .. }
+        | SimFact::ControlChanged { .. }
+        | SimFact::PointedTo { .. }
+        | SimFact::Fastened { .. }
+        | SimFact::Loosened { .. }
         | SimFact::Grasped { .. }
         | SimFact::Released { .. }
         | SimFact::Destroyed { .. }

@@ -136,6 +136,7 @@ fn begins_moment(command: &SimCommand, last: &SimCommand) -> bool {
         SimCommand::Clock(ClockCommand::SetPaused(true))
         | SimCommand::History(_)
         | SimCommand::Hand(_)
+        | SimCommand::Mechanism(_)
         | SimCommand::Robot(_) => command.phase() < last.phase(),
     }
 }
@@ -204,6 +205,7 @@ fn play(
             | SimCommand::Scene(_)
             | SimCommand::History(_)
             | SimCommand::Hand(_)
+            | SimCommand::Mechanism(_)
             | SimCommand::Robot(_) => {
                 facts.write(SimFact::Refused {
                     cause: Some(issued.id),

@@ -9,7 +9,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// What each of our crates may depend on of ours, and whether it may name Rapier and enable what draws or opens windows.
-const RULES: [Rule; 18] = [
+const RULES: [Rule; 19] = [
     Rule::new("tabletop_core", &[]),
     Rule::new("tabletop_xml", &["tabletop_core"]),
     Rule::new("tabletop_history", &["tabletop_core"]),
@@ -24,6 +24,10 @@ const RULES: [Rule; 18] = [
         &["tabletop_core", "tabletop_history", "tabletop_physics"],
     )
     .with_rapier(),
+    Rule::new(
+        "tabletop_mechanism",
+        &["tabletop_core", "tabletop_history", "tabletop_physics"],
+    ),
     Rule::new("tabletop_kinematics", &[]),
     Rule::new(
         "tabletop_robot",
@@ -55,6 +59,7 @@ const RULES: [Rule; 18] = [
             "tabletop_physics",
             "tabletop_scene",
             "tabletop_demonstrator",
+            "tabletop_mechanism",
             "tabletop_history",
             "tabletop_kinematics",
             "tabletop_robot",

@@ -40,6 +40,7 @@ fn tasks_are_demonstrated() {
     for name in [
         "drawer",
         "gates",
+        "panel",
         "stack_three",
         "swap",
         "wall",

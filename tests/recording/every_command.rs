@@ -11,6 +11,7 @@ use tabletop::{
 
 use crate::{
     demonstration::{Demonstration, difference_of_replay},
+    mechanisms,
     random::Random,
 };
 
@@ -41,7 +42,8 @@ fn wide(random: &mut Random, low: f32, high: f32) -> f32 {
 
 fn ids() -> Vec<String> {
     let named = [
-        "c-start", "c-link1", "c-link2", "b-box", "b-lid", "left", "right", "nothing",
+        "c-start", "c-link1", "c-link2", "b-box", "b-lid", "left", "right", "panel", "screw",
+        "nut", "dial", "nothing",
     ];
     let numbered = (0..MOST_OBJECTS).map(|number| format!("object{number}"));
     named
@@ -127,6 +129,9 @@ fn scene(random: &mut Random) -> SceneSpec {
             descriptions: Vec::new(),
         }));
     }
+    if random.below(2) == 0 {
+        items.extend(mechanisms::items(place(random)));
+    }
     SceneSpec { items, ..default() }
 }
 
@@ -206,7 +211,8 @@ fn robot_command(random: &mut Random) -> RobotCommand {
 /// The commands of a tick.
 fn commands(random: &mut Random) -> Vec<SimCommand> {
     match random.below(30) {
-        0..=5 => vec![SimCommand::Hand(hand_command(random))],
+        0..=4 => vec![SimCommand::Hand(hand_command(random))],
+        5 | 13 => vec![SimCommand::Mechanism(mechanisms::command(random))],
         6 | 7 => vec![SimCommand::Robot(robot_command(random))],
         8 => vec![SimCommand::History(HistoryCommand::Undo); 1 + random.below(3)],
         9 => vec![SimCommand::History(HistoryCommand::Redo); 1 + random.below(2)],
@@ -239,6 +245,10 @@ fn kind(command: &SimCommand) -> &'static str {
         SimCommand::Hand(HandCommand::Turn { .. }) => "Turn",
         SimCommand::Hand(HandCommand::Release(_)) => "Release",
         SimCommand::Hand(HandCommand::Destroy(_)) => "Destroy",
+        SimCommand::Mechanism(MechanismCommand::Trigger { .. }) => "Trigger",
+        SimCommand::Mechanism(MechanismCommand::PointTo { .. }) => "PointTo",
+        SimCommand::Mechanism(MechanismCommand::Fasten { .. }) => "Fasten",
+        SimCommand::Mechanism(MechanismCommand::Loosen { .. }) => "Loosen",
         SimCommand::Robot(RobotCommand::Show(_)) => "Show",
         SimCommand::Robot(RobotCommand::Drive(_)) => "Drive",
         SimCommand::Robot(RobotCommand::ReachTo { .. }) => "ReachTo",
@@ -248,7 +258,7 @@ fn kind(command: &SimCommand) -> &'static str {
 }
 
 /// How many kinds of commands there are.
-const KINDS: usize = 21;
+const KINDS: usize = 25;
 
 /// Records a random demonstration, and says in which file its replay differs, and how.
 fn difference(seed: u64, drawn: &mut BTreeMap<&'static str, usize>) -> Option<String> {

@@ -6,6 +6,7 @@ mod demonstration;
 mod ending;
 mod every_command;
 mod faults;
+mod mechanisms;
 mod passed_over;
 mod playback;
 mod random;

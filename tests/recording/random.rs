@@ -6,6 +6,8 @@ use tabletop::{
     prelude::*,
 };
 
+use crate::mechanisms;
+
 /// A small random stream (SplitMix64).
 pub struct Random(pub u64);
 
@@ -27,7 +29,7 @@ impl Random {
     }
 }
 
-const IDS: [&str; 16] = [
+const IDS: [&str; 20] = [
     "block0",
     "block1",
     "block2",
@@ -44,6 +46,10 @@ const IDS: [&str; 16] = [
     "largeblock",
     "smallblock",
     "container",
+    "panel",
+    "screw",
+    "nut",
+    "dial",
 ];
 
 fn object(id: &str, location: (f32, f32, f32), mass: f32, shape: Shape) -> SceneItem {
@@ -116,6 +122,7 @@ pub fn scene() -> SimCommand {
             descriptions: Vec::new(),
         }),
     ]);
+    items.extend(mechanisms::items(Vec3::new(0.0, 2.5, 4.0)));
     SimCommand::Scene(SceneCommand::Set(Box::new(SceneSpec {
         items,
         ..default()
@@ -189,6 +196,7 @@ pub fn script(random: &mut Random, ticks: u64) -> Vec<Vec<SimCommand>> {
             0 => vec![hand_command(random)],
             1 if random.below(2) == 0 => vec![robot_command(random)],
             2 if random.below(8) == 0 => vec![scene_command(random)],
+            3 if random.below(2) == 0 => vec![mechanisms::command(random).into()],
             _ => Vec::new(),
         })
         .collect()

@@ -53,6 +53,7 @@ pub(crate) fn configure(app: &mut App) {
                 SimSystems::Ingest,
                 CommandSystems::History,
                 CommandSystems::Hands,
+                CommandSystems::Mechanisms,
                 CommandSystems::Robot,
                 SimSystems::Actuate,
             )

@@ -30,7 +30,7 @@ pub const NAMED_COLORS: [(&str, Rgb); 14] = [
     ("blue", Rgb::BLUE),
     ("brown", Rgb::BROWN),
     ("cyan", Rgb::CYAN),
-    ("darkgray", Rgb::new(0.2, 0.2, 0.2)),
+    ("darkgray", Rgb::DARK_GRAY),
     ("gray", Rgb::GRAY),
     ("green", Rgb::GREEN),
     ("lightgray", Rgb::new(0.8, 0.8, 0.8)),
@@ -55,6 +55,8 @@ impl Rgb {
     pub const BROWN: Self = Self::new(65.0 / 255.0, 40.0 / 255.0, 25.0 / 255.0);
     /// Cyan.
     pub const CYAN: Self = Self::new(0.0, 1.0, 1.0);
+    /// Dark gray.
+    pub const DARK_GRAY: Self = Self::new(0.2, 0.2, 0.2);
     /// Green.
     pub const GREEN: Self = Self::new(0.0, 1.0, 0.0);
     /// Magenta.

@@ -10,6 +10,7 @@ mod hand;
 mod history;
 mod id;
 mod issued;
+mod mechanism;
 mod recording;
 mod robot;
 mod scene;
@@ -21,6 +22,7 @@ pub use history::HistoryCommand;
 pub use id::CommandId;
 pub(crate) use issued::NextCommandId;
 pub use issued::{Actor, CommandWriter, IssuedCommand, WriteCommand};
+pub use mechanism::MechanismCommand;
 pub use recording::RecordingCommand;
 pub use robot::RobotCommand;
 pub use scene::SceneCommand;
@@ -42,6 +44,8 @@ pub enum SimCommand {
     History(HistoryCommand),
     /// For the demonstrator's hands.
     Hand(HandCommand),
+    /// For what can be operated and fastened.
+    Mechanism(MechanismCommand),
     /// For the robot.
     Robot(RobotCommand),
 }
@@ -56,6 +60,7 @@ impl SimCommand {
             Self::Scene(_) => CommandSystems::Scene,
             Self::History(_) => CommandSystems::History,
             Self::Hand(_) => CommandSystems::Hands,
+            Self::Mechanism(_) => CommandSystems::Mechanisms,
             Self::Robot(_) => CommandSystems::Robot,
         }
     }
@@ -93,6 +98,7 @@ command_kinds! {
     Scene(SceneCommand),
     History(HistoryCommand),
     Hand(HandCommand),
+    Mechanism(MechanismCommand),
     Robot(RobotCommand),
 }
 
@@ -117,6 +123,7 @@ mod tests {
             CommandSystems::Scene,
             CommandSystems::History,
             CommandSystems::Hands,
+            CommandSystems::Mechanisms,
             CommandSystems::Robot,
         ];
         for phase in phases.into_iter().rev() {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 
-use crate::{CommandId, Hand, LimbName, Obstacle};
+use crate::{Bond, CommandId, Hand, LimbName, Obstacle, Operator};
 
 /// Something that has happened in this tick.
 #[derive(Message, Clone, Debug, PartialEq)]
@@ -65,6 +65,53 @@ pub enum SimFact {
         hand: Hand,
         /// Id of the object.
         id: String,
+    },
+    /// Somebody has operated a control.
+    Triggered {
+        /// The command that it came of, if it came of one.
+        cause: Option<CommandId>,
+        /// Who.
+        by: Operator,
+        /// Id of the control.
+        control: String,
+    },
+    /// A control has another state.
+    ControlChanged {
+        /// The command that it came of, if it came of one.
+        cause: Option<CommandId>,
+        /// Id of the control.
+        control: String,
+        /// The name of the state that it shows now.
+        state: String,
+    },
+    /// A hand has pointed to something.
+    PointedTo {
+        /// The command that it came of.
+        cause: CommandId,
+        /// The hand.
+        hand: Hand,
+        /// Id of the part, or of the whole object.
+        part: String,
+        /// Id of the object.
+        object: String,
+    },
+    /// A bond was made, or is tighter by a step.
+    Fastened {
+        /// The command that it came of, if it came of one.
+        cause: Option<CommandId>,
+        /// Who.
+        by: Operator,
+        /// What is bonded, and how tight it is now.
+        bond: Bond,
+    },
+    /// A bond is looser by a step, or no more.
+    Loosened {
+        /// The command that it came of, if it came of one.
+        cause: Option<CommandId>,
+        /// Who.
+        by: Operator,
+        /// What is bonded, and how tight it is now.
+        bond: Bond,
     },
     /// A recording has begun.
     RecordingStarted {

@@ -33,6 +33,8 @@ pub enum JointKind {
         /// The share of its speed that the joint takes away in a tick, 0 to 1.
         damping: f32,
     },
+    /// The frames coincide, and nothing moves.
+    Fixed,
 }
 
 /// A connection between two objects.

@@ -19,10 +19,12 @@
 //! ```
 
 mod agent;
+mod bond;
 mod bounds;
 mod clock;
 mod color;
 mod command;
+mod control;
 mod fact;
 mod figure;
 mod hand;
@@ -31,10 +33,12 @@ mod joint;
 mod jointed;
 mod keymap;
 mod light;
+mod mechanism;
 mod mount;
 mod navigation;
 mod number;
 mod object;
+mod operator;
 mod pace;
 mod paused;
 mod phase;
@@ -59,13 +63,18 @@ mod twist;
 mod user;
 
 pub use agent::{Agent, ScriptCommand, ScriptEvent, SimBlocked};
+pub use bond::{Bond, BondEnd, BondPoint, Bonds, GuestPoint, HostPoint, TightnessStep};
 pub use bounds::Bounds;
 pub use clock::StepApp;
 pub use color::{ColorError, NAMED_COLORS, Rgb};
 pub use command::{
     Actor, Cause, ClockCommand, CommandId, CommandKind, CommandWriter, HandCommand, HistoryCommand,
-    IssuedCommand, RecordingCommand, RobotCommand, SceneCommand, SimCommand, WriteCommand,
-    carry_out,
+    IssuedCommand, MechanismCommand, RecordingCommand, RobotCommand, SceneCommand, SimCommand,
+    WriteCommand, carry_out,
+};
+pub use control::{
+    Control, ControlKind, CustomControl, CustomState, IndicatorLights, LightState, Side,
+    ToggleSwitch,
 };
 pub use fact::SimFact;
 pub use figure::{CarriesHeadCamera, Figure, Triangles};
@@ -81,6 +90,7 @@ pub use light::{LIGHT, Light};
 pub use navigation::{CameraMotion, CameraView, Steering};
 pub use number::Decimal;
 pub use object::{ObjectIndex, ObjectSpec};
+pub use operator::{Operator, OperatorError};
 pub use pace::{Pace, PacePlugin, SingleStep};
 pub use paused::Paused;
 pub use phase::{ActuateSystems, CommandSystems, OrderSystems, SimSystems, TickSystems};
@@ -115,9 +125,9 @@ pub mod prelude {
     #[doc(hidden)]
     pub use crate::{
         Actor, Arm, ClockCommand, CommandWriter, CorePlugin, Drive, Hand, HandCommand, Hands,
-        HistoryCommand, IssuedCommand, ObjectIndex, ObjectSpec, Paused, Pose, Preset,
-        RecordingCommand, Rgb, Robot, RobotCommand, RobotJoint, SceneCommand, SceneItem, SceneSpec,
-        Shape, SimCommand, SimFact, SimSystems, SimTick, StepApp, Table, WriteCommand,
+        HistoryCommand, IssuedCommand, MechanismCommand, ObjectIndex, ObjectSpec, Paused, Pose,
+        Preset, RecordingCommand, Rgb, Robot, RobotCommand, RobotJoint, SceneCommand, SceneItem,
+        SceneSpec, Shape, SimCommand, SimFact, SimSystems, SimTick, StepApp, Table, WriteCommand,
     };
 }
 
@@ -144,6 +154,7 @@ impl Plugin for CorePlugin {
             .add_message::<CameraMotion>()
             .add_message::<PlaybackOrder>()
             .init_resource::<Agent>()
+            .init_resource::<Bonds>()
             .init_resource::<Cause>()
             .init_resource::<command::NextCommandId>()
             .init_resource::<SimBlocked>()

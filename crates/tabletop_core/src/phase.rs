@@ -53,6 +53,8 @@ pub enum CommandSystems {
     History,
     /// The demonstrator's hands.
     Hands,
+    /// Controls and bonds.
+    Mechanisms,
     /// The robot.
     Robot,
 }

@@ -1,6 +1,6 @@
 //! Events of the robot, in words.
 
-use crate::{Obstacle, SimFact};
+use crate::{Obstacle, Operator, SimFact};
 
 /// The angle of the report's figure 11 has to be below this, in degrees.
 const LARGEST_GRIP_ANGLE: f32 = 180.0 / 16.0;
@@ -22,7 +22,33 @@ impl SimFact {
                     format!("the {arm} arm is stopped by {name}")
                 }
             },
+            Self::Triggered {
+                by: Operator::Limb(arm),
+                control,
+                ..
+            } => format!("the {arm} arm presses {control}"),
+            Self::Fastened {
+                by: Operator::Limb(arm),
+                bond,
+                ..
+            } => format!(
+                "the {arm} arm fastens {} to {}: step {}",
+                bond.guest, bond.host, bond.tightness
+            ),
+            Self::Loosened {
+                by: Operator::Limb(arm),
+                bond,
+                ..
+            } => format!(
+                "the {arm} arm loosens {} from {}: step {}",
+                bond.guest, bond.host, bond.tightness
+            ),
             Self::TaskLoaded { .. }
+            | Self::Triggered { .. }
+            | Self::ControlChanged { .. }
+            | Self::PointedTo { .. }
+            | Self::Fastened { .. }
+            | Self::Loosened { .. }
             | Self::ObjectCreated { .. }
             | Self::ObjectDeleted { .. }
             | Self::SegmentBegun { .. }

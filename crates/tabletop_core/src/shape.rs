@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{Pose, Rgb};
+use crate::{BondEnd, BondPoint, Control, ControlKind, Pose, Rgb};
 
 /// The shape of an object or of a part of one (report section 6.2). Sizes are full extents in units of 10 cm;
 /// the shape's origin is its centre, for a composite its reference point.
@@ -69,6 +69,10 @@ pub enum Shape {
         /// Colour of the handle.
         handle_color: Rgb,
     },
+    /// A switch, lights, or shapes with states.
+    Control(Box<Control>),
+    /// A point at which a composite is fastened to another one. It has no extents.
+    BondPoint(Box<BondPoint>),
 }
 
 /// A shape as a part of a composite.
@@ -80,6 +84,21 @@ pub struct Part {
     pub pose: Pose,
     /// Its shape.
     pub shape: Shape,
+    /// Whether the demonstrator can point to it. Its id is then unique on the table.
+    #[serde(default)]
+    pub pointable: bool,
+}
+
+impl Part {
+    /// A part that cannot be pointed to.
+    pub fn new(id: impl Into<String>, pose: Pose, shape: Shape) -> Self {
+        Self {
+            id: id.into(),
+            pose,
+            shape,
+            pointable: false,
+        }
+    }
 }
 
 /// A convex solid: what every shape is made of in the end.
@@ -119,26 +138,47 @@ impl Shape {
             Self::Box { .. } => "box",
             Self::Composite { .. } => "composite",
             Self::Lid { .. } => "lid",
+            Self::Control(control) => match control.kind {
+                ControlKind::ToggleSwitch(_) => "toggleSwitch",
+                ControlKind::IndicatorLights(_) => "indicatorLights",
+                ControlKind::Custom(_) => "customControl",
+            },
+            Self::BondPoint(point) => match point.end {
+                BondEnd::Guest(_) => "guestBondPoint",
+                BondEnd::Host(_) => "hostBondPoint",
+            },
         }
     }
 
-    /// The simple shapes that it consists of, in the order of the task file, each with its pose in the frame of this shape:
+    /// The simple shapes that are to be seen of it, in the order of the task file, each with its pose in the frame of this shape:
     /// blocks, cylinders, spheres, boxes and links.
     pub fn simple_parts(&self) -> Vec<Part> {
-        fn collect(id: &str, pose: Pose, shape: &Shape, simple: &mut Vec<Part>) {
-            let mut add = |pose, shape| {
-                simple.push(Part {
-                    id: id.to_owned(),
-                    pose,
-                    shape,
-                });
-            };
+        self.simple_parts_with(Control::seen)
+    }
+
+    fn simple_parts_with(&self, of_control: fn(&Control) -> Vec<Part>) -> Vec<Part> {
+        fn collect(
+            id: &str,
+            pose: Pose,
+            shape: &Shape,
+            of_control: fn(&Control) -> Vec<Part>,
+            simple: &mut Vec<Part>,
+        ) {
+            let mut add = |pose, shape| simple.push(Part::new(id, pose, shape));
             match *shape {
                 Shape::Composite { ref parts } => {
                     for part in parts {
-                        collect(&part.id, pose * part.pose, &part.shape, simple);
+                        let pose = pose * part.pose;
+                        collect(&part.id, pose, &part.shape, of_control, simple);
                     }
                 }
+                Shape::Control(ref control) => {
+                    for part in of_control(control) {
+                        let pose = pose * part.pose;
+                        collect(&part.id, pose, &part.shape, of_control, simple);
+                    }
+                }
+                Shape::BondPoint(_) => {}
                 Shape::Lid {
                     span,
                     color,
@@ -163,62 +203,64 @@ impl Shape {
             }
         }
         let mut simple = Vec::new();
-        collect("", Pose::IDENTITY, self, &mut simple);
+        collect("", Pose::IDENTITY, self, of_control, &mut simple);
         simple
     }
 
     /// The solids to be drawn.
     pub fn drawn(&self) -> Vec<Primitive> {
-        self.primitives(|padding| padding)
+        primitives(self.simple_parts(), |padding| padding)
     }
 
     /// The solids that other bodies touch.
     pub fn colliding(&self) -> Vec<Primitive> {
-        self.primitives(|_| 0.0)
-    }
-
-    fn primitives(&self, padding_of_link: impl Fn(f32) -> f32) -> Vec<Primitive> {
-        let mut primitives = Vec::new();
-        for part in self.simple_parts() {
-            let mut add = |center: Vec3, solid, color| {
-                primitives.push(Primitive {
-                    pose: part.pose * Pose::at(center),
-                    solid,
-                    color,
-                });
-            };
-            match part.shape {
-                Self::Block { span, color } => add(Vec3::ZERO, Solid::Cuboid(span), color),
-                Self::Cylinder {
-                    radius,
-                    yspan,
-                    color,
-                } => add(Vec3::ZERO, Solid::Cylinder { radius, yspan }, color),
-                Self::Sphere { radius, color } => add(Vec3::ZERO, Solid::Ball(radius), color),
-                Self::Box {
-                    span,
-                    thickness,
-                    color,
-                } => {
-                    for (center, span) in box_plates(span, thickness) {
-                        add(center, Solid::Cuboid(span), color);
-                    }
-                }
-                Self::Link {
-                    span,
-                    padding,
-                    color,
-                } => {
-                    let ends = Vec3::Y * 2.0 * padding_of_link(padding);
-                    add(Vec3::ZERO, Solid::Cuboid(span + ends), color);
-                }
-                Self::Composite { .. } | Self::Lid { .. } => {}
-            }
-        }
-        primitives
+        primitives(self.simple_parts_with(Control::touched), |_| 0.0)
     }
 }
 
+fn primitives(simple_parts: Vec<Part>, padding_of_link: impl Fn(f32) -> f32) -> Vec<Primitive> {
+    let mut primitives = Vec::new();
+    for part in simple_parts {
+        let mut add = |center: Vec3, solid, color| {
+            primitives.push(Primitive {
+                pose: part.pose * Pose::at(center),
+                solid,
+                color,
+            });
+        };
+        match part.shape {
+            Shape::Block { span, color } => add(Vec3::ZERO, Solid::Cuboid(span), color),
+            Shape::Cylinder {
+                radius,
+                yspan,
+                color,
+            } => add(Vec3::ZERO, Solid::Cylinder { radius, yspan }, color),
+            Shape::Sphere { radius, color } => add(Vec3::ZERO, Solid::Ball(radius), color),
+            Shape::Box {
+                span,
+                thickness,
+                color,
+            } => {
+                for (center, span) in box_plates(span, thickness) {
+                    add(center, Solid::Cuboid(span), color);
+                }
+            }
+            Shape::Link {
+                span,
+                padding,
+                color,
+            } => {
+                let ends = Vec3::Y * 2.0 * padding_of_link(padding);
+                add(Vec3::ZERO, Solid::Cuboid(span + ends), color);
+            }
+            Shape::Composite { .. }
+            | Shape::Lid { .. }
+            | Shape::Control(_)
+            | Shape::BondPoint(_) => {}
+        }
+    }
+    primitives
+}
 impl Solid {
     /// Volume in cubic units.
     pub fn volume(self) -> f32 {
@@ -280,6 +322,7 @@ mod tests {
         };
         let inner = Shape::Composite {
             parts: vec![Part {
+                pointable: false,
                 id: "inner".into(),
                 pose: Pose::at(Vec3::X),
                 shape: block,
@@ -290,6 +333,7 @@ mod tests {
                 id: String::new(),
                 pose: Pose::from_degrees(Vec3::Z, Vec3::new(0.0, 0.0, 90.0)),
                 shape: inner,
+                pointable: false,
             }],
         };
         let [part] = &shape.simple_parts()[..] else {

@@ -4,7 +4,7 @@ use std::{fmt, path::PathBuf};
 
 use bevy::prelude::*;
 
-use crate::{Hand, LimbName, Rgb, SimFact, SimTick};
+use crate::{Hand, LimbName, Operator, Rgb, SimFact, SimTick};
 
 /// The recording that is being made, was made last, or is open. The recorder fills it in, or whoever replays a recording.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
@@ -99,6 +99,14 @@ pub enum Verb {
     Release,
     /// It is removed from the world.
     Destroy,
+    /// It is operated.
+    Trigger,
+    /// It is pointed to.
+    PointTo,
+    /// It is fastened to another one, or tighter.
+    Fasten,
+    /// It is loosened.
+    Loosen,
 }
 
 impl Timeline {
@@ -132,9 +140,31 @@ impl Act {
             SimFact::Grasped { hand, id, .. } => (Manipulator::Hand(*hand), Verb::Grasp, id),
             SimFact::Released { hand, id, .. } => (Manipulator::Hand(*hand), Verb::Release, id),
             SimFact::Destroyed { hand, id, .. } => (Manipulator::Hand(*hand), Verb::Destroy, id),
+            SimFact::Triggered {
+                by: Operator::Hand(hand),
+                control,
+                ..
+            } => (Manipulator::Hand(*hand), Verb::Trigger, control),
+            SimFact::PointedTo { hand, part, .. } => {
+                (Manipulator::Hand(*hand), Verb::PointTo, part)
+            }
+            SimFact::Fastened {
+                by: Operator::Hand(hand),
+                bond,
+                ..
+            } => (Manipulator::Hand(*hand), Verb::Fasten, &bond.guest),
+            SimFact::Loosened {
+                by: Operator::Hand(hand),
+                bond,
+                ..
+            } => (Manipulator::Hand(*hand), Verb::Loosen, &bond.guest),
             SimFact::GripMade { arm, id } => (Manipulator::Gripper(*arm), Verb::Grasp, id),
             SimFact::GripReleased { arm, id } => (Manipulator::Gripper(*arm), Verb::Release, id),
             SimFact::TaskLoaded { .. }
+            | SimFact::Triggered { .. }
+            | SimFact::ControlChanged { .. }
+            | SimFact::Fastened { .. }
+            | SimFact::Loosened { .. }
             | SimFact::ObjectCreated { .. }
             | SimFact::ObjectDeleted { .. }
             | SimFact::SegmentBegun { .. }
@@ -163,6 +193,10 @@ impl Verb {
             Self::Grasp => "grasps",
             Self::Release => "releases",
             Self::Destroy => "destroys",
+            Self::Trigger => "triggers",
+            Self::PointTo => "points to",
+            Self::Fasten => "fastens",
+            Self::Loosen => "loosens",
         }
     }
 }

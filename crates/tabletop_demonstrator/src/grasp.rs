@@ -6,7 +6,7 @@ use tabletop_core::{
     ObjectSpec, Paused, Pose, SimFact, carry_out,
 };
 use tabletop_history::begin_segment;
-use tabletop_physics::{hold, let_go, remove_object};
+use tabletop_physics::{Carry, hold, let_go, remove_object};
 
 use crate::rules;
 
@@ -179,5 +179,15 @@ pub(crate) fn note_lost(
             hand,
             id: spec.id.clone(),
         });
+    }
+}
+
+/// What a hand holds in another way than before, since it was fastened to something or loosened from it, is to be where it is now.
+pub(crate) fn note_carried_anew(
+    insert: On<Insert, Carry>,
+    mut held: Query<(&Transform, &mut CarryTarget)>,
+) {
+    if let Ok((here, mut target)) = held.get_mut(insert.entity) {
+        target.0 = here.into();
     }
 }

@@ -72,6 +72,7 @@ impl Plugin for DemonstratorPlugin {
                 )
                     .in_set(RestingSystems),
             )
-            .add_observer(grasp::note_lost.run_if(not(is_rolling_back)));
+            .add_observer(grasp::note_lost.run_if(not(is_rolling_back)))
+            .add_observer(grasp::note_carried_anew.run_if(not(is_rolling_back)));
     }
 }

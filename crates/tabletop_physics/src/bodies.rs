@@ -7,9 +7,11 @@ mod body;
 mod joint;
 mod mass;
 mod prism;
+mod reshape;
 
 pub use body::collider;
 pub use mass::mass_properties;
+pub use reshape::reshape;
 
 use bevy::prelude::*;
 use bevy_rapier3d::plugin::systems::{init_colliders, init_joints, init_rigid_bodies};
@@ -67,7 +69,12 @@ fn any(pending: Res<PendingBodies>) -> bool {
     !pending.bodies.is_empty() || !pending.joints.is_empty()
 }
 
-fn take_in(world: &mut World) -> Result {
+/// Gives what has appeared its bodies and joints at once.
+///
+/// # Errors
+///
+/// A world without Rapier's context.
+pub fn take_in(world: &mut World) -> Result {
     let PendingBodies { bodies, joints } =
         std::mem::take(&mut *world.resource_mut::<PendingBodies>());
     for entity in bodies {

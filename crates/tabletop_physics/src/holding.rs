@@ -51,6 +51,9 @@ pub fn hold(world: &mut World, object: Entity, by: Holder) -> Carry {
         Carry::Freely => object.insert(RigidBody::KinematicPositionBased),
         Carry::AgainstJoints => object.insert(GravityScale(0.0)),
     };
+    if carry == Carry::AgainstJoints && object.get() != Some(&RigidBody::Dynamic) {
+        object.insert(RigidBody::Dynamic);
+    }
     carry
 }
 
@@ -93,5 +96,17 @@ pub fn pull_velocity(here: Pose, target: Pose) -> Velocity {
     Velocity {
         linear: ((target.location - here.location) * per_second).clamp_length_max(FASTEST.0),
         angular: (turn * per_second).clamp_length_max(FASTEST.1),
+    }
+}
+
+/// Puts an object elsewhere at once, at rest.
+pub fn put(world: &mut World, object: Entity, pose: Pose) {
+    let mut object = world.entity_mut(object);
+    object.insert(Transform::from(pose));
+    if let Some(mut velocity) = object.get_mut::<Velocity>() {
+        *velocity = Velocity::default();
+    }
+    if let Some(mut sleeping) = object.get_mut::<Sleeping>() {
+        sleeping.sleeping = false;
     }
 }

@@ -38,12 +38,12 @@ mod snapshot;
 mod transforms;
 mod twist;
 
-pub use bodies::{BodySystems, collider, mass_properties};
+pub use bodies::{BodySystems, collider, mass_properties, reshape, take_in};
 pub use effort::{Care, Engine, impulse_share};
 pub use geometry::{Convex, Nearby, Nearest, contact, convex_parts, nearby, nearest, to_rapier};
-pub use holding::{Carry, JustReleased, hold, let_go, pull_velocity};
+pub use holding::{Carry, JustReleased, hold, let_go, pull_velocity, put};
 pub use settings::PhysicsSettings;
-pub use snapshot::{PhysicsSnapshot, remove_object, renew_if_empty};
+pub use snapshot::{PhysicsSnapshot, remove_joint, remove_object, renew_if_empty};
 
 /// The names that most users of this crate need.
 pub mod prelude {
@@ -58,7 +58,8 @@ use bevy_rapier3d::{
     rapier::dynamics::{IntegrationParameters, SpringCoefficients},
 };
 use tabletop_core::{
-    CommandSystems, Paused, RestingSystems, SimSystems, TICK_SECONDS, TickSystems, Twist,
+    CommandSystems, ObjectSpec, Paused, RestingSystems, SimSystems, TICK_SECONDS, TickSystems,
+    Twist,
 };
 use tabletop_history::RollbackApp;
 
@@ -140,6 +141,7 @@ impl Plugin for PhysicsPlugin {
                     .in_set(TickSystems)
                     .in_set(RestingSystems),
             )
+            .rollback_component::<ObjectSpec>()
             .rollback_component::<Velocity>()
             .rollback_component::<Sleeping>()
             .rollback_component::<RigidBody>()

@@ -189,6 +189,18 @@ pub fn remove_object(world: &mut World, object: Entity) {
     despawn_or_park(world, object);
 }
 
+/// Removes a joint between two objects that stay, for good or until undo brings it back.
+pub fn remove_joint(world: &mut World, joint: Entity) {
+    let mut contexts =
+        world.query_filtered::<&mut RapierContextJoints, With<DefaultRapierContext>>();
+    if let Ok(mut joints) = contexts.single_mut(world)
+        && let Some(handle) = joints.entity2impulse_joint().get(&joint).copied()
+    {
+        joints.impulse_joints.remove(handle, true);
+    }
+    despawn_or_park(world, joint);
+}
+
 /// Takes an entity's body, with its colliders and joints, out of the engine, and leaves the entity as it is.
 fn remove_body(world: &mut World, entity: Entity) {
     let mut contexts = world.query_filtered::<Context, With<DefaultRapierContext>>();

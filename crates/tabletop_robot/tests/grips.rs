@@ -124,11 +124,13 @@ fn round_things_and_composites_are_held() {
     let hammer = Shape::Composite {
         parts: vec![
             Part {
+                pointable: false,
                 id: String::new(),
                 pose: Pose::IDENTITY,
                 shape: block(Vec3::new(0.6, 2.0, 0.6)),
             },
             Part {
+                pointable: false,
                 id: String::new(),
                 pose: Pose::at(Vec3::new(0.0, 1.2, 0.0)),
                 shape: block(Vec3::new(1.8, 0.6, 0.6)),

@@ -2,8 +2,8 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    ClockCommand, Hand, HandCommand, HistoryCommand, Random, RecordingCommand, SceneCommand,
-    SimCommand, TICKS_PER_SECOND,
+    ClockCommand, Hand, HandCommand, HistoryCommand, MechanismCommand, Random, RecordingCommand,
+    SceneCommand, SimCommand, TICKS_PER_SECOND,
 };
 
 use crate::{
@@ -111,6 +111,28 @@ impl StepState {
                 SimCommand::Hand(HandCommand::Release(hand))
             }
             Step::Destroy => SimCommand::Hand(HandCommand::Destroy(hand)),
+            Step::Trigger(control) => SimCommand::Mechanism(MechanismCommand::Trigger {
+                hand,
+                control: control.clone(),
+                part: None,
+            }),
+            Step::TriggerPart(control, part) => SimCommand::Mechanism(MechanismCommand::Trigger {
+                hand,
+                control: control.clone(),
+                part: Some(*part),
+            }),
+            Step::PointTo(target) => SimCommand::Mechanism(MechanismCommand::PointTo {
+                hand,
+                target: target.clone(),
+            }),
+            Step::Fasten(guest) => SimCommand::Mechanism(MechanismCommand::Fasten {
+                hand,
+                guest: guest.clone(),
+            }),
+            Step::Loosen(guest) => SimCommand::Mechanism(MechanismCommand::Loosen {
+                hand,
+                guest: guest.clone(),
+            }),
             Step::Start => SimCommand::Recording(RecordingCommand::Start),
             Step::Finish => SimCommand::Recording(RecordingCommand::Finish),
             Step::Undo => SimCommand::History(HistoryCommand::Undo),
@@ -196,7 +218,7 @@ mod tests {
     use crate::{Outcome, test_stage::Stage};
 
     /// The steps that give each kind of command.
-    const STEPS: [&str; 19] = [
+    const STEPS: [&str; 23] = [
         "Start",
         "Finish",
         "Pause(true)",
@@ -212,6 +234,10 @@ mod tests {
         "Turn(axis: Z, degrees: 5)",
         "Release",
         "Destroy",
+        "Trigger(\"low\")",
+        "PointTo(\"low\")",
+        "Fasten(\"low\")",
+        "Loosen(\"low\")",
         "Robot(Show)",
         "Robot(Close(Left))",
         "Robot(ReachTo(arm: Left, at: (0, 0, 1)))",
@@ -238,10 +264,14 @@ mod tests {
             SimCommand::Hand(HandCommand::Turn { .. }) => 12,
             SimCommand::Hand(HandCommand::Release(_)) => 13,
             SimCommand::Hand(HandCommand::Destroy(_)) => 14,
-            SimCommand::Robot(RobotCommand::Show(_)) => 15,
-            SimCommand::Robot(RobotCommand::Drive(_)) => 16,
-            SimCommand::Robot(RobotCommand::ReachTo { .. }) => 17,
-            SimCommand::Robot(RobotCommand::ShowFace(_)) => 18,
+            SimCommand::Mechanism(MechanismCommand::Trigger { .. }) => 15,
+            SimCommand::Mechanism(MechanismCommand::PointTo { .. }) => 16,
+            SimCommand::Mechanism(MechanismCommand::Fasten { .. }) => 17,
+            SimCommand::Mechanism(MechanismCommand::Loosen { .. }) => 18,
+            SimCommand::Robot(RobotCommand::Show(_)) => 19,
+            SimCommand::Robot(RobotCommand::Drive(_)) => 20,
+            SimCommand::Robot(RobotCommand::ReachTo { .. }) => 21,
+            SimCommand::Robot(RobotCommand::ShowFace(_)) => 22,
             SimCommand::Robot(RobotCommand::ShowMarkers(_)) => return None,
         };
         Some(STEPS[place])

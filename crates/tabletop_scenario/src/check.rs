@@ -80,6 +80,20 @@ pub enum Check {
     },
     /// No hand holds the object of this id.
     Free(String),
+    /// A control is in a state.
+    State {
+        /// The control's id.
+        control: String,
+        /// The state's name in recordings: its own, or its number; 0 or 1 for a switch whose left or right side is down.
+        is: String,
+    },
+    /// An object is fastened.
+    Fastened {
+        /// Id of the object, or of its guest point.
+        guest: String,
+        /// How tight; 0 for not at all.
+        tightness: u32,
+    },
     /// The robot is as this says.
     Robot(RobotCheck),
 }
@@ -113,6 +127,8 @@ impl Check {
             | Self::Gone(_)
             | Self::HeldBy { .. }
             | Self::Free(_)
+            | Self::State { .. }
+            | Self::Fastened { .. }
             | Self::Robot(_) => None,
         }
     }
@@ -151,6 +167,8 @@ impl Check {
             },
             Self::HeldBy { object, hand } => is_held_by(seen.object(object)?, Some(*hand)),
             Self::Free(object) => is_held_by(seen.object(object)?, None),
+            Self::State { control, is } => is_in_state(seen, control, is),
+            Self::Fastened { guest, tightness } => is_fastened(seen, guest, *tightness),
         }
     }
 }
@@ -242,6 +260,27 @@ fn is_held_by(object: &SeenObject, hand: Option<Hand>) -> Result<(), String> {
             name(hand),
             name(object.holder)
         )
+    })
+}
+
+fn is_in_state(seen: &Seen, id: &str, expected: &str) -> Result<(), String> {
+    let mut specs = seen.objects.iter().map(|object| object.spec);
+    let control = specs
+        .find_map(|spec| spec.control(id))
+        .ok_or_else(|| format!("expected a control `{id}`, found none of that id"))?;
+    let found = control.state_name();
+    (found == expected)
+        .then_some(())
+        .ok_or_else(|| format!("expected `{id}` in state {expected}, found it in {found}"))
+}
+
+fn is_fastened(seen: &Seen, guest: &str, expected: u32) -> Result<(), String> {
+    let mut bonds = seen.bonds.0.iter();
+    let found = bonds
+        .find(|bond| bond.guest_point == guest || bond.guest == guest)
+        .map_or(0, |bond| bond.tightness);
+    (found == expected).then_some(()).ok_or_else(|| {
+        format!("expected `{guest}` fastened to tightness {expected}, found it at {found}")
     })
 }
 

@@ -55,8 +55,8 @@ pub mod prelude {
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Actor, CommandId, CommandWriter, Hands, ObjectIndex, ObjectSpec, OrderSystems, Paused, Pose,
-    RestApp as _, RestingSystems, Robot, RobotLayout, SimFact, Table,
+    Actor, Bonds, CommandId, CommandWriter, Hands, ObjectIndex, ObjectSpec, OrderSystems, Paused,
+    Pose, RestApp as _, RestingSystems, Robot, RobotLayout, SimFact, Table,
 };
 
 use crate::seen::{Seen, SeenObject};
@@ -91,6 +91,7 @@ fn take_due_steps(
     hands: Res<Hands>,
     paused: Res<Paused>,
     robot: Res<Robot>,
+    bonds: Res<Bonds>,
     layout: Res<RobotLayout>,
 ) {
     let mut refusal = None;
@@ -122,6 +123,7 @@ fn take_due_steps(
         selected: hands.selected,
         paused: paused.0,
         robot: &robot,
+        bonds: &bonds,
         layout: &layout,
     };
     *issued = run

@@ -1,7 +1,7 @@
 //! The world as scenarios see it: its state at the end of the last tick.
 
 use bevy::prelude::*;
-use tabletop_core::{Bounds, Hand, ObjectSpec, Pose, Robot, RobotLayout, Table};
+use tabletop_core::{Bonds, Bounds, Hand, ObjectSpec, Pose, Robot, RobotLayout, Table};
 
 /// The world as a scenario sees it.
 #[derive(Clone, Debug)]
@@ -14,6 +14,8 @@ pub(crate) struct Seen<'a> {
     pub selected: Hand,
     /// True if the simulation stands still.
     pub paused: bool,
+    /// What is fastened to what.
+    pub bonds: &'a Bonds,
     /// The robot.
     pub robot: &'a Robot,
     /// Its limbs and joints.

@@ -58,6 +58,16 @@ pub enum Step {
     Release,
     /// Remove what is held from the world.
     Destroy,
+    /// Press the switch of this id, or what leads to another state of a control.
+    Trigger(String),
+    /// Trigger the simple shape of this number, from 0, in the present state of a control.
+    TriggerPart(String, u32),
+    /// Point to the object or part of this id.
+    PointTo(String),
+    /// Fasten the guest point or object of this id to the nearest host, or by a step.
+    Fasten(String),
+    /// Loosen the guest point or object of this id by a step.
+    Loosen(String),
     /// Wait so many seconds.
     Wait(f32),
     /// Wait until everything is at rest, at most so many seconds.
@@ -122,6 +132,11 @@ impl Step {
             | Self::Turn { .. }
             | Self::Release
             | Self::Destroy
+            | Self::Trigger(_)
+            | Self::TriggerPart(..)
+            | Self::PointTo(_)
+            | Self::Fasten(_)
+            | Self::Loosen(_)
             | Self::Start
             | Self::Finish
             | Self::Undo
@@ -166,6 +181,11 @@ impl Step {
             | Self::Grasp(_)
             | Self::Release
             | Self::Destroy
+            | Self::Trigger(_)
+            | Self::TriggerPart(..)
+            | Self::PointTo(_)
+            | Self::Fasten(_)
+            | Self::Loosen(_)
             | Self::Start
             | Self::Finish
             | Self::Undo
@@ -184,6 +204,11 @@ impl Step {
             | Self::Turn { .. }
             | Self::Release
             | Self::Destroy
+            | Self::Trigger(_)
+            | Self::TriggerPart(..)
+            | Self::PointTo(_)
+            | Self::Fasten(_)
+            | Self::Loosen(_)
             | Self::WaitUntilThere(_) => true,
             Self::Load { .. }
             | Self::Clear

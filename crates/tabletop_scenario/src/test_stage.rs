@@ -4,7 +4,7 @@ use std::path::Path;
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Hand, ObjectSpec, Pose, Rgb, Robot, RobotLayout, SceneSpec, Shape, SimCommand, Table,
+    Bonds, Hand, ObjectSpec, Pose, Rgb, Robot, RobotLayout, SceneSpec, Shape, SimCommand, Table,
 };
 
 use crate::{
@@ -21,6 +21,7 @@ pub struct Stage {
     pub selected: Hand,
     pub paused: bool,
     pub robot: Robot,
+    pub bonds: Bonds,
 }
 
 impl Stage {
@@ -46,6 +47,7 @@ impl Stage {
             selected: Hand::Any,
             paused: false,
             robot: Robot::default(),
+            bonds: Bonds::default(),
         }
     }
 
@@ -67,6 +69,7 @@ impl Stage {
             selected: self.selected,
             paused: self.paused,
             robot: &self.robot,
+            bonds: &self.bonds,
             layout: RobotLayout::baxter(),
         };
         self.run.tick(&seen, refusal)

@@ -5,7 +5,7 @@ mod jointed;
 mod lidbox;
 
 use serde::Serialize;
-use tabletop_core::{JointSpec, ObjectSpec, SceneItem, SceneSpec, Table};
+use tabletop_core::{JointSpec, ObjectSpec, Part, SceneItem, SceneSpec, Shape, Table};
 
 use crate::ids::IdAllocator;
 
@@ -29,6 +29,27 @@ pub fn assemble(scene: &SceneSpec, ids: &mut IdAllocator) -> Assembly {
     assembly
 }
 
+/// The object with an id of its own, and so its controls, its bond points and what can be pointed to of it.
+pub(crate) fn with_unique_ids(mut object: ObjectSpec, ids: &mut IdAllocator) -> ObjectSpec {
+    object.id = ids.unique(&object.id);
+    if let Shape::Composite { parts } = &mut object.shape {
+        give_ids(parts, ids);
+    }
+    object
+}
+
+fn give_ids(parts: &mut [Part], ids: &mut IdAllocator) {
+    for part in parts {
+        let is_spoken_of = matches!(part.shape, Shape::Control(_) | Shape::BondPoint(_));
+        if is_spoken_of || part.pointable {
+            part.id = ids.unique(&part.id);
+        }
+        if let Shape::Composite { parts } = &mut part.shape {
+            give_ids(parts, ids);
+        }
+    }
+}
+
 impl Assembly {
     /// Nothing on this table.
     pub(crate) const fn on(table: Table) -> Self {
@@ -42,10 +63,7 @@ impl Assembly {
     /// Adds what an item consists of.
     pub(crate) fn add(&mut self, item: &SceneItem, ids: &mut IdAllocator) {
         match item {
-            SceneItem::Object(spec) => self.objects.push(ObjectSpec {
-                id: ids.unique(&spec.id),
-                ..spec.clone()
-            }),
+            SceneItem::Object(spec) => self.objects.push(with_unique_ids(spec.clone(), ids)),
             SceneItem::Chain(spec) => {
                 let (objects, joints) = chain::build(spec, ids);
                 self.objects.extend(objects);

@@ -229,7 +229,9 @@ fn sayable(shape: &Shape) -> (Shape, Option<&'static str>) {
         | Shape::Cylinder { .. }
         | Shape::Sphere { .. }
         | Shape::Box { .. }
-        | Shape::Composite { .. } => (shape.clone(), None),
+        | Shape::Composite { .. }
+        | Shape::Control(_)
+        | Shape::BondPoint(_) => (shape.clone(), None),
     }
 }
 

@@ -258,6 +258,7 @@ mod tests {
     #[test]
     fn a_ring_is_around_its_peg() {
         let plate = |x: f32, y: f32, at: Vec3| Part {
+            pointable: false,
             id: String::new(),
             pose: Pose::at(at),
             shape: Shape::Block {

@@ -183,6 +183,12 @@ impl Demonstration {
                     Occurrence::Grasp { hand, id } => act(*hand, Deed::Grasp(id.clone())),
                     Occurrence::Release { hand } => act(*hand, Deed::Release),
                     Occurrence::Destroy { hand } => act(*hand, Deed::Destroy),
+                    Occurrence::InitializeControl { .. }
+                    | Occurrence::ChangeControlState { .. }
+                    | Occurrence::Trigger { .. }
+                    | Occurrence::PointTo { .. }
+                    | Occurrence::Fasten { .. }
+                    | Occurrence::Loosen { .. } => {}
                 }
             }
         }

@@ -58,7 +58,7 @@ fn lengths(shape: &Shape) -> Vec<(&'static str, f32)> {
         | Shape::Lid { span, .. } => spans(*span),
         Shape::Cylinder { radius, yspan, .. } => vec![("radius", *radius), ("yspan", *yspan)],
         Shape::Sphere { radius, .. } => vec![("radius", *radius)],
-        Shape::Composite { .. } => spans(around(shape)),
+        Shape::Composite { .. } | Shape::Control(_) | Shape::BondPoint(_) => spans(around(shape)),
     }
 }
 

@@ -222,7 +222,9 @@ pub(crate) fn established(
 pub(crate) fn slider<'s>(joints: &'s [JointSpec], id: &str) -> Option<(&'s JointSpec, f32)> {
     joints.iter().find_map(|joint| match joint.kind {
         JointKind::Slider { max, .. } if joint.objects[1] == id => Some((joint, max)),
-        JointKind::Slider { .. } | JointKind::Hinge { .. } | JointKind::Ball => None,
+        JointKind::Slider { .. } | JointKind::Hinge { .. } | JointKind::Ball | JointKind::Fixed => {
+            None
+        }
     })
 }
 

@@ -312,6 +312,7 @@ mod tests {
 
     fn part(shape: Shape, at: Vec3, degrees: Vec3) -> Part {
         Part {
+            pointable: false,
             id: String::new(),
             pose: Pose::from_degrees(at, degrees),
             shape,

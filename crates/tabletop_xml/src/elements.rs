@@ -1,7 +1,9 @@
 //! Elements of the task file language as what they stand for (report section 6.2): the table, and what may stand where.
 
 pub(crate) mod attributes;
+mod bond;
 mod chain;
+mod control;
 mod cost;
 mod hollow;
 mod jointed;
@@ -24,27 +26,42 @@ use crate::{
 };
 
 pub(crate) const DESCRIPTION: &str = "description";
-const ITEMS: [&str; 9] = [
+/// Elements of objects.
+pub(crate) const OBJECTS: [&str; 8] = [
     "block",
     "cylinder",
     "sphere",
     "box",
     "composite",
+    "toggleSwitch",
+    "indicatorLights",
+    "customControl",
+];
+const ITEMS: [&str; 12] = [
+    "block",
+    "cylinder",
+    "sphere",
+    "box",
+    "composite",
+    "toggleSwitch",
+    "indicatorLights",
+    "customControl",
     "chain",
     "lidbox",
     "sliderJoint",
     "hingeJoint",
 ];
 /// Elements that only the later program has.
-const OF_THE_LATER_PROGRAM: [&str; 8] = [
-    "frustum",
-    "ring",
-    "custom",
-    "toggleSwitch",
-    "indicatorLights",
-    "customControl",
+const OF_THE_LATER_PROGRAM: [&str; 3] = ["frustum", "ring", "custom"];
+
+/// Elements that stand in others.
+const INNER: [&str; 6] = [
     "guestBondPoint",
     "hostBondPoint",
+    "tightness",
+    "downstream",
+    "state",
+    "light",
 ];
 
 /// Elements that are replaced before the others are read.
@@ -131,7 +148,10 @@ impl ElementReader<'_> {
         }
         let problem = if OF_THE_LATER_PROGRAM.contains(&name) {
             "it is of the later program and not supported".to_owned()
-        } else if ITEMS.contains(&name) || [ROOT, DESCRIPTION].contains(&name) {
+        } else if [&ITEMS[..], &INNER, &[ROOT, DESCRIPTION]]
+            .concat()
+            .contains(&name)
+        {
             format!("it cannot stand in <{}>", Excerpt(parent))
         } else {
             "it is not known".to_owned()
@@ -187,8 +207,7 @@ mod tests {
 
     #[test]
     fn elements_have_their_place() {
-        let whole =
-            "block, cylinder, sphere, box, composite, chain, lidbox, sliderJoint, hingeJoint";
+        let whole = "block, cylinder, sphere, box, composite, toggleSwitch, indicatorLights, customControl, chain, lidbox, sliderJoint, hingeJoint";
         for (content, fault) in [
             ("<cube/>", format!("cube: it is not known, expected one of {whole}")),
             ("<Sphere/>", "Sphere: it is not known, expected <sphere>".into()),
@@ -196,7 +215,7 @@ mod tests {
             ("<description name='a' value='b'/>", format!("description: it cannot stand in <tabletop>, expected one of {whole}")),
             ("<block location='(0,0,1)'><sphere/></block>", "sphere: it cannot stand in <block>, expected one of description".into()),
             ("<chain start='(0,0,1)' end='(0,0,2)'><sphere/></chain>", "sphere: it cannot stand in <chain>, expected no element in <chain>".into()),
-            ("<composite location='(0,0,1)'><chain/></composite>", "chain: it cannot stand in <composite>, expected one of block, cylinder, sphere, box, composite, description".into()),
+            ("<composite location='(0,0,1)'><chain/></composite>", "chain: it cannot stand in <composite>, expected one of block, cylinder, sphere, box, composite, toggleSwitch, indicatorLights, customControl, guestBondPoint, hostBondPoint, description".into()),
             ("<composite location='(0,0,1)'><block location='(0,0,0)'><description name='a' value='b'/></block></composite>", "description: it cannot stand in <block>, expected no element in <block>".into()),
             ("<u:block location='(0,0,1)'/>", format!("block: its prefix is not declared, expected the namespace {NAMESPACE}")),
             ("<block xmlns='' location='(0,0,1)'/>", format!("block: it has no namespace, expected the namespace {NAMESPACE}")),

@@ -8,8 +8,8 @@ use std::fmt::Write as _;
 use bevy::math::{DVec3, Vec3};
 use quick_xml::escape::escape;
 use tabletop_core::{
-    ChainSpec, JointMotion, JointedSpec, LidBoxSpec, NAMED_COLORS, ObjectSpec, Part, Pose, Rgb,
-    SceneItem, SceneSpec, Shape,
+    BondEnd, BondPoint, ChainSpec, Control, ControlKind, JointMotion, JointedSpec, LidBoxSpec,
+    NAMED_COLORS, ObjectSpec, Part, Pose, Rgb, SceneItem, SceneSpec, Shape, Side,
 };
 
 use crate::{
@@ -78,11 +78,31 @@ impl Writer {
     }
 
     fn part(&mut self, part: &Part) {
+        self.part_in_state(part, &mut std::iter::empty());
+    }
+
+    /// Writes a part, and to which states triggering its simple parts leads.
+    fn part_in_state(&mut self, part: &Part, next: &mut dyn Iterator<Item = Option<u32>>) {
         self.open(element_name(&part.shape));
         self.id(&part.id);
         self.pose(part.pose);
+        if part.pointable {
+            self.attribute("pointable", "true");
+        }
         self.attributes_of(&part.shape);
-        self.parts_of(&part.shape);
+        match &part.shape {
+            Shape::Composite { parts } => {
+                for part in parts {
+                    self.part_in_state(part, next);
+                }
+            }
+            shape => {
+                if let Some(next) = next.next().flatten() {
+                    self.attribute("nextStateWhenTriggered", &next.to_string());
+                }
+                self.parts_of(shape);
+            }
+        }
         self.close();
     }
 
@@ -95,7 +115,114 @@ impl Writer {
                     self.part(&part);
                 }
             }
-            _ => {}
+            Shape::Control(control) => self.content_of_control(control),
+            Shape::BondPoint(point) => self.steps_of(point),
+            Shape::Block { .. }
+            | Shape::Cylinder { .. }
+            | Shape::Sphere { .. }
+            | Shape::Box { .. }
+            | Shape::Link { .. } => {}
+        }
+    }
+
+    fn content_of_control(&mut self, control: &Control) {
+        for id in &control.downstream {
+            self.open("downstream");
+            self.attribute("id", &as_id(id));
+            self.close();
+        }
+        match &control.kind {
+            ControlKind::ToggleSwitch(_) => {}
+            ControlKind::IndicatorLights(lights) => {
+                for state in &lights.states {
+                    self.open_state(&state.name);
+                    for &(light, color) in &state.lights {
+                        self.open("light");
+                        self.attribute("id", &light.to_string());
+                        self.color("color", color);
+                        self.close();
+                    }
+                    self.close();
+                }
+            }
+            ControlKind::Custom(custom) => {
+                for state in &custom.states {
+                    self.open_state(&state.name);
+                    let mut next = state.next.iter().copied();
+                    for part in &state.parts {
+                        self.part_in_state(part, &mut next);
+                    }
+                    self.close();
+                }
+            }
+        }
+    }
+
+    fn open_state(&mut self, name: &str) {
+        self.open("state");
+        if !name.is_empty() {
+            self.attribute("descriptionName", &as_id(name));
+        }
+    }
+
+    fn attributes_of_control(&mut self, control: &Control) {
+        self.attribute("initState", &control.state.to_string());
+        match &control.kind {
+            ControlKind::ToggleSwitch(switch) => {
+                self.spans(["xspan", "yspan", "zspan"], switch.span);
+                self.number("angle", switch.angle);
+                self.color("color", switch.color);
+                let is_left = switch.pressed == Side::Left;
+                self.attribute("leftPressed", &is_left.to_string());
+                self.attribute("numStates", &switch.states.to_string());
+            }
+            ControlKind::IndicatorLights(lights) => {
+                self.number("lightRadius", lights.radius);
+                self.number("lightZspan", lights.zspan);
+                self.attribute("numLights", &lights.lights.to_string());
+                self.number("xspan", lights.xspan);
+            }
+            ControlKind::Custom(custom) => {
+                self.attribute("name", &as_attribute(&as_literal(&custom.name)));
+            }
+        }
+    }
+
+    fn attributes_of_bond_point(&mut self, point: &BondPoint) {
+        self.attribute("type", &as_attribute(&as_literal(&point.fit)));
+        let ids = match &point.end {
+            BondEnd::Guest(guest) => {
+                let tightness = guest.tightness.to_string();
+                self.attribute("initBondTightness", &tightness);
+                vec![("initBondHostId", &guest.host)]
+            }
+            BondEnd::Host(host) => vec![
+                ("downstream", &host.downstream),
+                ("downstreamOverride", &host.downstream_override),
+                ("downstreamLock", &host.downstream_lock),
+            ],
+        };
+        for (name, id) in ids {
+            if !id.is_empty() {
+                self.attribute(name, &as_id(id));
+            }
+        }
+    }
+
+    fn steps_of(&mut self, point: &BondPoint) {
+        let BondEnd::Host(host) = &point.end else {
+            return;
+        };
+        for step in &host.steps {
+            self.open("tightness");
+            self.pose(step.pose);
+            if let Some(state) = step.state {
+                self.attribute("downstreamState", &state.to_string());
+            }
+            if step.locks {
+                self.attribute("downstreamLock", "true");
+            }
+            self.close();
         }
     }
 
@@ -127,6 +254,8 @@ impl Writer {
                 self.number("thickness", thickness);
                 self.color("color", color);
             }
+            Shape::Control(ref control) => self.attributes_of_control(control),
+            Shape::BondPoint(ref point) => self.attributes_of_bond_point(point),
             Shape::Composite { .. } | Shape::Lid { .. } => {}
         }
     }
@@ -311,9 +440,20 @@ mod tests {
              <composite id='c' location='(0,1,0)'><sphere location='(0,0,0)' color='#010203'/>\
              <box location='(0,1,0)'/></composite></composite>\
              <chain start='(0,0,1)' end='(5,0,1)'/>\
-             <lidbox location='(0,0,1)' mass='3'><description name='d' value='e'/></lidbox>",
+             <lidbox location='(0,0,1)' mass='3'><description name='d' value='e'/></lidbox>\
+             <toggleSwitch id='s' location='(0,0,1)' mass='0' numStates='3' initState='2' leftPressed='false' \
+             angle='9'><description name='d' value='e'/><downstream id='l'/><downstream id='c'/></toggleSwitch>\
+             <composite location='(5,0,1)'><indicatorLights id='l' location='(0,0,1)' numLights='3' pointable='true'>\
+             <state/><state descriptionName='on'><light id='2' color='green'/><light id='0'/></state></indicatorLights>\
+             <hostBondPoint id='h' type='nut' downstream='s' downstreamOverride='l' downstreamLock='k'>\
+             <tightness/><tightness location='(0,0,-.5)' rotation='(0,0,90)' downstreamState='1' downstreamLock='true'/>\
+             </hostBondPoint><guestBondPoint location='(0,0,2)' type='nut' initBondHostId='h' initBondTightness='2'/>\
+             </composite>\
+             <customControl id='c' location='(0,0,1)' name='dial' initState='1'><state/><state descriptionName='two'>\
+             <block location='(0,0,0)' nextStateWhenTriggered='0'/><composite location='(1,0,0)' nextStateWhenTriggered='1'>\
+             <sphere location='(0,0,0)'/><box location='(0,0,1)' nextStateWhenTriggered='0'/></composite></state></customControl>",
         );
-        assert_eq!(scene.items.len(), 4);
+        assert_eq!(scene.items.len(), 7);
         assert_eq!(read_back(&scene), scene);
     }
 

@@ -49,6 +49,11 @@ fn begin_anew(mut facts: MessageReader<SimFact>, mut turns: ResMut<Turns>) {
             | SimFact::ObjectCreated { .. }
             | SimFact::ObjectDeleted { .. }
             | SimFact::SegmentBegun { .. }
+            | SimFact::Triggered { .. }
+            | SimFact::ControlChanged { .. }
+            | SimFact::PointedTo { .. }
+            | SimFact::Fastened { .. }
+            | SimFact::Loosened { .. }
             | SimFact::RecordingStarted { .. }
             | SimFact::RecordingFinished { .. }
             | SimFact::RecordingFailed { .. }

@@ -87,6 +87,11 @@ fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
             SimFact::ObjectCreated { .. }
             | SimFact::ObjectDeleted { .. }
             | SimFact::SegmentBegun { .. }
+            | SimFact::Triggered { .. }
+            | SimFact::ControlChanged { .. }
+            | SimFact::PointedTo { .. }
+            | SimFact::Fastened { .. }
+            | SimFact::Loosened { .. }
             | SimFact::Grasped { .. }
             | SimFact::Released { .. }
             | SimFact::Destroyed { .. }

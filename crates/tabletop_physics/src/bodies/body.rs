@@ -17,6 +17,9 @@ const SLEEP_THRESHOLDS: Sleeping = Sleeping {
     sleeping: false,
 };
 
+/// Radius, in units, of what has no solids.
+const POINT: f32 = 0.01;
+
 /// The components of an object's body.
 pub(crate) fn add_object(world: &mut World, object: Entity, spec: &ObjectSpec) {
     let settings = *world.resource::<PhysicsSettings>();
@@ -75,6 +78,7 @@ fn surface(settings: &PhysicsSettings) -> impl Bundle + use<> {
 /// The collider of a whole shape, in the shape's frame.
 pub fn collider(shape: &Shape) -> Collider {
     match shape.colliding().as_slice() {
+        [] => Collider::ball(POINT),
         [only] if only.pose == Pose::IDENTITY => solid_collider(only.solid),
         parts => compound(parts),
     }

@@ -54,6 +54,7 @@ fn constraint(joint: &Joint, load: JointLoad) -> TypedJoint {
         JointKind::Ball => JointAxesMask::LOCKED_SPHERICAL_AXES,
         JointKind::Slider { .. } => JointAxesMask::LOCKED_PRISMATIC_AXES,
         JointKind::Hinge { .. } => JointAxesMask::LOCKED_REVOLUTE_AXES,
+        JointKind::Fixed => JointAxesMask::LOCKED_FIXED_AXES,
     };
     let [first, second] = joint.frames;
     let mut constraint = GenericJointBuilder::new(locked)
@@ -64,7 +65,7 @@ fn constraint(joint: &Joint, load: JointLoad) -> TypedJoint {
         .build();
     constraint.set_contacts_enabled(joint.collides);
     match joint.kind {
-        JointKind::Ball => {}
+        JointKind::Ball | JointKind::Fixed => {}
         JointKind::Slider {
             min,
             max,

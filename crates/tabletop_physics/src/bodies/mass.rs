@@ -87,6 +87,7 @@ mod tests {
     #[test]
     fn two_half_blocks_weigh_and_turn_like_the_whole() {
         let half = |x: f32| Part {
+            pointable: false,
             id: String::new(),
             pose: Pose::from_degrees(Vec3::X * x, Vec3::new(0.0, 90.0, 0.0)),
             shape: block(Vec3::new(3.0, 2.0, 0.5)),
@@ -105,6 +106,7 @@ mod tests {
     fn the_reference_point_is_the_centre_of_mass_even_outside_the_parts() {
         let shape = Shape::Composite {
             parts: vec![Part {
+                pointable: false,
                 id: String::new(),
                 pose: Pose::at(Vec3::X * 2.0),
                 shape: Shape::Sphere {

@@ -5,9 +5,10 @@ use std::ops::RangeInclusive;
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{
-    ChainSpec, ClockCommand, Drive, HandCommand, HeadCamera, JointKind, JointSpec, JointedSpec,
-    LidBoxSpec, ObjectSpec, Pose, RecordingCommand, RobotCommand, SceneCommand, SceneItem,
-    SceneSpec, Shape, SimCommand, Table,
+    BondEnd, BondPoint, ChainSpec, ClockCommand, Control, ControlKind, Drive, HandCommand,
+    HeadCamera, JointKind, JointSpec, JointedSpec, LidBoxSpec, MechanismCommand, ObjectSpec, Part,
+    Pose, RecordingCommand, Rgb, RobotCommand, SceneCommand, SceneItem, SceneSpec, Shape,
+    SimCommand, Table,
 };
 
 /// Ticks from the first command of a log to its end: 30 days.
@@ -32,6 +33,8 @@ const DISPLACEMENTS: RangeInclusive<f32> = -1000.0..=1000.0;
 /// How far a joint turns, in radians: half a turn to each side, and what is rounded.
 const ANGLES: RangeInclusive<f32> = -3.15..=3.15;
 const PROPORTIONS: RangeInclusive<f32> = 0.0..=1.0;
+/// How far the blocks of a switch are turned, in degrees.
+const SWITCH_ANGLES: RangeInclusive<f32> = 0.0..=80.0;
 const MASSES: RangeInclusive<f32> = 0.0..=1e6;
 const LINKS: RangeInclusive<u32> = 1..=1000;
 const PLACES: RangeInclusive<f32> = -1e6..=1e6;
@@ -82,7 +85,7 @@ pub(crate) fn check_joint(joint: &JointSpec) -> Checked {
         finite_pose(frame).map_err(at("joints"))?;
     }
     match joint.kind {
-        JointKind::Ball => Ok(()),
+        JointKind::Ball | JointKind::Fixed => Ok(()),
         JointKind::Slider {
             min,
             max,
@@ -111,6 +114,7 @@ pub(crate) fn check_command(command: &SimCommand) -> Checked {
         }
         SimCommand::Scene(command) => check_scene_command(command),
         SimCommand::Hand(command) => check_hand_command(command),
+        SimCommand::Mechanism(command) => check_mechanism_command(command),
         SimCommand::Robot(command) => check_robot_command(command),
     }
 }
@@ -135,6 +139,15 @@ fn check_hand_command(command: &HandCommand) -> Checked {
             finite("degrees", Vec3::splat(*degrees))
         }
     }
+}
+
+fn check_mechanism_command(command: &MechanismCommand) -> Checked {
+    let id = match command {
+        MechanismCommand::Trigger { control, .. } => control,
+        MechanismCommand::PointTo { target, .. } => target,
+        MechanismCommand::Fasten { guest, .. } | MechanismCommand::Loosen { guest, .. } => guest,
+    };
+    check_count("letters", id.len())
 }
 
 fn check_robot_command(command: &RobotCommand) -> Checked {
@@ -263,10 +276,80 @@ fn check_shape(shape: &Shape, level: usize, count: &mut usize) -> Checked {
                     "composites are nested more than {MOST_LEVELS} deep"
                 ));
             }
-            parts.iter().try_for_each(|part| {
-                check_place(part.pose)?;
-                check_shape(&part.shape, level + 1, count)
+            check_parts_of(parts, level, count)
+        }
+        Shape::Control(control) => check_control(control, level, count),
+        Shape::BondPoint(point) => check_bond_point(point),
+    }
+}
+
+fn check_parts_of(parts: &[Part], level: usize, count: &mut usize) -> Checked {
+    parts.iter().try_for_each(|part| {
+        check_count("letters", part.id.len())?;
+        check_place(part.pose)?;
+        check_shape(&part.shape, level + 1, count)
+    })
+}
+
+fn check_control(control: &Control, level: usize, count: &mut usize) -> Checked {
+    if control.state >= control.states() {
+        return Err(format!(
+            "a control of {} states is in state {}",
+            control.states(),
+            control.state
+        ));
+    }
+    check_count("downstream controls", control.downstream.len())?;
+    for id in &control.downstream {
+        check_count("letters", id.len())?;
+    }
+    match &control.kind {
+        ControlKind::ToggleSwitch(switch) => {
+            spans("span", switch.span)?;
+            within("angle", switch.angle, &SWITCH_ANGLES)
+        }
+        ControlKind::IndicatorLights(lights) => {
+            within("radius", lights.radius, &SPANS)?;
+            within("zspan", lights.zspan, &SPANS)?;
+            within("xspan", lights.xspan, &SPANS)?;
+            check_count("lights", lights.lights as usize)?;
+            *count += lights.lights as usize;
+            check_parts(*count)?;
+            for state in &lights.states {
+                let is_known = |&(light, _): &(u32, Rgb)| light < lights.lights;
+                if !state.lights.iter().all(is_known) {
+                    return Err(format!("there are only {} lights", lights.lights));
+                }
+                check_count("lights", state.lights.len())?;
+            }
+            Ok(())
+        }
+        ControlKind::Custom(custom) => {
+            check_count("letters", custom.name.len())?;
+            custom.states.iter().try_for_each(|state| {
+                check_count("letters", state.name.len())?;
+                check_parts_of(&state.parts, level, count)
             })
+        }
+    }
+}
+
+fn check_bond_point(point: &BondPoint) -> Checked {
+    check_count("letters", point.fit.len())?;
+    match &point.end {
+        BondEnd::Guest(guest) => check_count("letters", guest.host.len()),
+        BondEnd::Host(host) => {
+            for id in [
+                &host.downstream,
+                &host.downstream_override,
+                &host.downstream_lock,
+            ] {
+                check_count("letters", id.len())?;
+            }
+            check_count("steps", host.steps.len())?;
+            host.steps
+                .iter()
+                .try_for_each(|step| check_place(step.pose))
         }
     }
 }
@@ -383,6 +466,7 @@ mod tests {
     fn nested(levels: usize) -> Shape {
         (0..levels).fold(block(), |shape, _| Shape::Composite {
             parts: vec![Part {
+                pointable: false,
                 id: String::new(),
                 pose: Pose::IDENTITY,
                 shape,

@@ -1,6 +1,6 @@
 //! The lines of a segment's text file (report section 4.1).
 
-use tabletop_core::{Decimal, Hand, ObjectSpec, Pose};
+use tabletop_core::{Bond, Decimal, Hand, ObjectSpec, Operator, Pose};
 
 use crate::files::properties::properties;
 
@@ -51,6 +51,54 @@ pub enum Event<'a> {
         /// The hand.
         hand: Hand,
     },
+    /// A control as it is when a recording starts or the control appears.
+    InitializeControl {
+        /// Its id.
+        control: &'a str,
+        /// What kind of control it is.
+        kind: &'a str,
+        /// Id of the object.
+        object: &'a str,
+        /// The name of its state.
+        state: &'a str,
+    },
+    /// A control has another state.
+    ChangeControlState {
+        /// Its id.
+        control: &'a str,
+        /// The name of its state.
+        state: &'a str,
+    },
+    /// Somebody has operated a control.
+    Trigger {
+        /// Who.
+        by: &'a Operator,
+        /// Id of the control.
+        control: &'a str,
+    },
+    /// A hand has pointed to something.
+    PointTo {
+        /// The hand.
+        hand: Hand,
+        /// Id of the part, or of the whole object.
+        part: &'a str,
+        /// Id of the object.
+        object: &'a str,
+    },
+    /// A bond was made, or is tighter.
+    Fasten {
+        /// Who.
+        by: &'a Operator,
+        /// The bond.
+        bond: &'a Bond,
+    },
+    /// A bond is looser, or no more.
+    Loosen {
+        /// Who.
+        by: &'a Operator,
+        /// The bond.
+        bond: &'a Bond,
+    },
 }
 
 impl Event<'_> {
@@ -76,6 +124,25 @@ impl Event<'_> {
             }
             Self::Grasp { hand, id } => fields.extend([hand.name().to_owned(), id.to_owned()]),
             Self::Release { hand } | Self::Destroy { hand } => fields.push(hand.name().to_owned()),
+            Self::InitializeControl {
+                control,
+                kind,
+                object,
+                state,
+            } => fields.extend([control, kind, object, state].map(str::to_owned)),
+            Self::ChangeControlState { control, state } => {
+                fields.extend([control, state].map(str::to_owned));
+            }
+            Self::Trigger { by, control } => fields.extend([by.to_string(), control.to_owned()]),
+            Self::PointTo { hand, part, object } => {
+                fields.extend([hand.name(), part, object].map(str::to_owned));
+            }
+            Self::Fasten { by, bond } | Self::Loosen { by, bond } => {
+                fields.push(by.to_string());
+                let ids = [&bond.host_point, &bond.host, &bond.guest_point, &bond.guest];
+                fields.extend(ids.map(String::clone));
+                fields.push(bond.tightness.to_string());
+            }
         }
         fields
     }
@@ -88,6 +155,12 @@ impl Event<'_> {
             Self::Grasp { .. } => "grasp",
             Self::Release { .. } => "release",
             Self::Destroy { .. } => "destroy",
+            Self::InitializeControl { .. } => "initializeControl",
+            Self::ChangeControlState { .. } => "changeControlState",
+            Self::Trigger { .. } => "trigger",
+            Self::PointTo { .. } => "pointTo",
+            Self::Fasten { .. } => "fasten",
+            Self::Loosen { .. } => "loosen",
         }
     }
 }
@@ -137,6 +210,45 @@ mod tests {
     }
 
     #[test]
+    fn what_becomes_of_controls_and_bonds_is_written_as_the_original_program_wrote_it() {
+        let by = &Operator::Hand(Hand::Right);
+        let bond = &Bond {
+            host_point: "nutHole".into(),
+            host: "nut".into(),
+            guest_point: "tip".into(),
+            guest: "screw".into(),
+            tightness: 2,
+        };
+        let (control, state) = ("s1", "0");
+        for (event, expected) in [
+            (
+                Event::InitializeControl {
+                    control,
+                    kind: "toggleSwitch",
+                    object: "panel",
+                    state,
+                },
+                "0,initializeControl,s1,toggleSwitch,panel,0",
+            ),
+            (
+                Event::ChangeControlState { control, state },
+                "0,changeControlState,s1,0",
+            ),
+            (Event::Trigger { by, control }, "0,trigger,RightHand,s1"),
+            (
+                Event::Fasten { by, bond },
+                "0,fasten,RightHand,nutHole,nut,tip,screw,2",
+            ),
+            (
+                Event::Loosen { by, bond },
+                "0,loosen,RightHand,nutHole,nut,tip,screw,2",
+            ),
+        ] {
+            assert_eq!(line(event, 0), expected);
+        }
+    }
+
+    #[test]
     fn what_hands_do_is_written_with_their_names() {
         let id = "a";
         for (event, expected) in [
@@ -151,6 +263,14 @@ mod tests {
             (Event::Release { hand: Hand::Right }, "3,release,RightHand"),
             (Event::Release { hand: Hand::Any }, "3,release,AnyHand"),
             (Event::Destroy { hand: Hand::Both }, "3,destroy,BothHands"),
+            (
+                Event::PointTo {
+                    hand: Hand::Left,
+                    part: "slot",
+                    object: "dock",
+                },
+                "3,pointTo,LeftHand,slot,dock",
+            ),
         ] {
             assert_eq!(line(event, 3), expected);
         }

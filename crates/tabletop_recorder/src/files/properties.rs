@@ -85,7 +85,7 @@ impl Known {
                 handle_thickness: Some(handle_thickness),
                 ..Self::default()
             },
-            Shape::Composite { .. } => Self::default(),
+            Shape::Composite { .. } | Shape::Control(_) | Shape::BondPoint(_) => Self::default(),
         };
         Self {
             mass: spec.mass,

@@ -122,6 +122,7 @@ pub(crate) fn is_logged(command: &SimCommand) -> bool {
         SimCommand::Clock(_)
         | SimCommand::Scene(_)
         | SimCommand::Hand(_)
+        | SimCommand::Mechanism(_)
         | SimCommand::Robot(_) => true,
     }
 }

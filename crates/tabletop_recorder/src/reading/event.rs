@@ -3,7 +3,7 @@
 use std::{path::Path, str::FromStr};
 
 use bevy::math::Vec3;
-use tabletop_core::Hand;
+use tabletop_core::{Bond, Hand, Operator, OperatorError};
 
 use crate::{error::RecorderError, reading::fault::damaged};
 
@@ -57,6 +57,54 @@ pub enum Occurrence {
         /// The hand.
         hand: Hand,
     },
+    /// A control as it was when it appeared.
+    InitializeControl {
+        /// Its id.
+        control: String,
+        /// What kind of control it is.
+        kind: String,
+        /// Id of the object.
+        object: String,
+        /// The name of its state.
+        state: String,
+    },
+    /// A control has another state.
+    ChangeControlState {
+        /// Its id.
+        control: String,
+        /// The name of its state.
+        state: String,
+    },
+    /// Somebody has operated a control.
+    Trigger {
+        /// Who.
+        by: Operator,
+        /// Id of the control.
+        control: String,
+    },
+    /// A hand has pointed to something.
+    PointTo {
+        /// The hand.
+        hand: Hand,
+        /// Id of the part, or of the whole object.
+        part: String,
+        /// Id of the object.
+        object: String,
+    },
+    /// A bond was made, or is tighter.
+    Fasten {
+        /// Who.
+        by: Operator,
+        /// The bond.
+        bond: Bond,
+    },
+    /// A bond is looser, or no more.
+    Loosen {
+        /// Who.
+        by: Operator,
+        /// The bond.
+        bond: Bond,
+    },
 }
 
 /// Reads the text of a file of events.
@@ -104,6 +152,33 @@ fn parse(record: &csv::StringRecord) -> Result<RecordedEvent, String> {
         },
         ["release", by] => Occurrence::Release { hand: hand(by)? },
         ["destroy", by] => Occurrence::Destroy { hand: hand(by)? },
+        ["initializeControl", control, kind, object, state] => Occurrence::InitializeControl {
+            control: control.into(),
+            kind: kind.into(),
+            object: object.into(),
+            state: state.into(),
+        },
+        ["changeControlState", control, state] => Occurrence::ChangeControlState {
+            control: control.into(),
+            state: state.into(),
+        },
+        ["trigger", by, control] => Occurrence::Trigger {
+            by: operator(by)?,
+            control: control.into(),
+        },
+        ["pointTo", by, part, object] => Occurrence::PointTo {
+            hand: hand(by)?,
+            part: part.into(),
+            object: object.into(),
+        },
+        ["fasten", by, ref bonded @ ..] if bonded.len() == 5 => Occurrence::Fasten {
+            by: operator(by)?,
+            bond: bond(bonded)?,
+        },
+        ["loosen", by, ref bonded @ ..] if bonded.len() == 5 => Occurrence::Loosen {
+            by: operator(by)?,
+            bond: bond(bonded)?,
+        },
         _ => {
             return Err(format!(
                 "expected an event of a recording, found `{}`",
@@ -122,6 +197,27 @@ fn vector(texts: [&str; 3]) -> Result<Vec3, String> {
 pub(super) fn number<T: FromStr>(expected: &str, text: &str) -> Result<T, String> {
     let parsed = text.parse();
     parsed.map_err(|_| format!("expected {expected}, found `{text}`"))
+}
+
+fn operator(name: &str) -> Result<Operator, String> {
+    name.parse()
+        .map_err(|error: OperatorError| error.to_string())
+}
+
+fn bond(fields: &[&str]) -> Result<Bond, String> {
+    let [host_point, host, guest_point, guest, tightness] = *fields else {
+        return Err(format!(
+            "expected the five fields of a bond, found {}",
+            fields.join(",")
+        ));
+    };
+    Ok(Bond {
+        host_point: host_point.into(),
+        host: host.into(),
+        guest_point: guest_point.into(),
+        guest: guest.into(),
+        tightness: number("a tightness", tightness)?,
+    })
 }
 
 fn hand(name: &str) -> Result<Hand, String> {

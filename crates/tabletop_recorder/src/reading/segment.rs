@@ -3,7 +3,8 @@
 use std::{collections::BTreeMap, path::PathBuf};
 
 use tabletop_core::{
-    Act, CommandKind as _, Hand, HandCommand, Manipulator, Rgb, SimTick, TimelineSegment, Verb,
+    Act, Hand, HandCommand, Manipulator, MechanismCommand, Operator, Rgb, SimCommand, SimTick,
+    TimelineSegment, Verb,
 };
 
 use crate::{
@@ -69,9 +70,27 @@ impl Hands {
             }
             Occurrence::Release { hand } => (hand, Verb::Release, self.0.remove(hand)),
             Occurrence::Destroy { hand } => (hand, Verb::Destroy, self.0.remove(hand)),
-            Occurrence::Create { .. } | Occurrence::Delete { .. } | Occurrence::Move { .. } => {
-                return None;
-            }
+            Occurrence::Trigger {
+                by: Operator::Hand(hand),
+                control,
+            } => (hand, Verb::Trigger, Some(control.clone())),
+            Occurrence::PointTo { hand, part, .. } => (hand, Verb::PointTo, Some(part.clone())),
+            Occurrence::Fasten {
+                by: Operator::Hand(hand),
+                bond,
+            } => (hand, Verb::Fasten, Some(bond.guest.clone())),
+            Occurrence::Loosen {
+                by: Operator::Hand(hand),
+                bond,
+            } => (hand, Verb::Loosen, Some(bond.guest.clone())),
+            Occurrence::Create { .. }
+            | Occurrence::Delete { .. }
+            | Occurrence::Move { .. }
+            | Occurrence::InitializeControl { .. }
+            | Occurrence::ChangeControlState { .. }
+            | Occurrence::Trigger { .. }
+            | Occurrence::Fasten { .. }
+            | Occurrence::Loosen { .. } => return None,
         };
         Some(Act {
             manipulator: Manipulator::Hand(*hand),
@@ -93,7 +112,13 @@ pub(super) fn colors(segments: &[RecordedSegment]) -> BTreeMap<String, Rgb> {
         | Occurrence::Move { .. }
         | Occurrence::Grasp { .. }
         | Occurrence::Release { .. }
-        | Occurrence::Destroy { .. } => None,
+        | Occurrence::Destroy { .. }
+        | Occurrence::InitializeControl { .. }
+        | Occurrence::ChangeControlState { .. }
+        | Occurrence::Trigger { .. }
+        | Occurrence::PointTo { .. }
+        | Occurrence::Fasten { .. }
+        | Occurrence::Loosen { .. } => None,
     });
     created.collect()
 }
@@ -110,12 +135,9 @@ pub(super) fn begin_of<'c>(
         let tick = SimTick(command.tick);
         after.is_none_or(|after| tick > after) && tick <= last
     };
-    let of = |is_cause: fn(&Act, &HandCommand) -> bool| {
+    let of = |is_cause: fn(&Act, &SimCommand) -> bool| {
         let mut all = commands.iter();
-        all.position(|command| {
-            is_here(command)
-                && HandCommand::of(&command.command).is_some_and(|command| is_cause(act, command))
-        })
+        all.position(|command| is_here(command) && is_cause(act, &command.command))
     };
     if let Some(at) = of(is_told) {
         (SimTick(commands[at].tick), &commands[at + 1..])
@@ -127,7 +149,29 @@ pub(super) fn begin_of<'c>(
 }
 
 /// True if a command is to do just this.
-fn is_told(act: &Act, command: &HandCommand) -> bool {
+fn is_told(act: &Act, command: &SimCommand) -> bool {
+    match command {
+        SimCommand::Hand(command) => is_told_hand(act, command),
+        SimCommand::Mechanism(command) => is_told_mechanism(act, command),
+        SimCommand::Recording(_)
+        | SimCommand::Clock(_)
+        | SimCommand::Scene(_)
+        | SimCommand::History(_)
+        | SimCommand::Robot(_) => false,
+    }
+}
+
+fn is_told_mechanism(act: &Act, command: &MechanismCommand) -> bool {
+    let (verb, hand) = match command {
+        MechanismCommand::Trigger { hand, .. } => (Verb::Trigger, hand),
+        MechanismCommand::PointTo { hand, .. } => (Verb::PointTo, hand),
+        MechanismCommand::Fasten { hand, .. } => (Verb::Fasten, hand),
+        MechanismCommand::Loosen { hand, .. } => (Verb::Loosen, hand),
+    };
+    act.verb == verb && act.manipulator == Manipulator::Hand(*hand)
+}
+
+fn is_told_hand(act: &Act, command: &HandCommand) -> bool {
     let is = |verb, hand: &Hand| act.verb == verb && act.manipulator == Manipulator::Hand(*hand);
     match command {
         HandCommand::Grasp { hand, object } => {
@@ -143,14 +187,6 @@ fn is_told(act: &Act, command: &HandCommand) -> bool {
 }
 
 /// True if a command makes a hand let go, because another one takes what it holds, or needs it.
-fn is_forced(act: &Act, command: &HandCommand) -> bool {
-    match command {
-        HandCommand::Grasp { .. } => act.verb == Verb::Release,
-        HandCommand::Select(_)
-        | HandCommand::MoveTo { .. }
-        | HandCommand::MoveBy { .. }
-        | HandCommand::Turn { .. }
-        | HandCommand::Release(_)
-        | HandCommand::Destroy(_) => false,
-    }
+fn is_forced(act: &Act, command: &SimCommand) -> bool {
+    act.verb == Verb::Release && matches!(command, SimCommand::Hand(HandCommand::Grasp { .. }))
 }

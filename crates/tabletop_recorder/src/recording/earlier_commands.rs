@@ -83,6 +83,7 @@ impl EarlierCommands {
                 | SimCommand::Clock(_)
                 | SimCommand::History(_)
                 | SimCommand::Hand(_)
+                | SimCommand::Mechanism(_)
                 | SimCommand::Robot(_) => false,
             };
             if sets_scene && hands_are_empty && !self.has_used_robot {
@@ -101,7 +102,8 @@ impl EarlierCommands {
             SimCommand::Recording(_)
             | SimCommand::Scene(_)
             | SimCommand::History(_)
-            | SimCommand::Hand(_) => {}
+            | SimCommand::Hand(_)
+            | SimCommand::Mechanism(_) => {}
         }
     }
 

@@ -23,7 +23,7 @@ use crate::{
     },
     recording::{
         earlier_commands::EarlierCommands,
-        objects::RecordedObjects,
+        objects::{RecordedObjects, initialized_controls},
         progress::{Progress, SegmentStart, UndoneSegment},
         stage::{Sight, Stage},
         timeline_mark::TimelineMark,
@@ -234,7 +234,9 @@ impl Episode {
                     if !self.objects.create(spec) {
                         continue;
                     }
-                    Event::Create(spec)
+                    lines.push(Event::Create(spec).fields(frame));
+                    lines.extend(initialized_controls(spec, frame));
+                    continue;
                 }
                 SimFact::ObjectDeleted { id, .. } => {
                     if !self.objects.delete(id) {
@@ -245,6 +247,19 @@ impl Episode {
                 SimFact::Grasped { hand, id, .. } => Event::Grasp { hand: *hand, id },
                 SimFact::Released { hand, .. } => Event::Release { hand: *hand },
                 SimFact::Destroyed { hand, .. } => Event::Destroy { hand: *hand },
+                SimFact::Triggered { by, control, .. } => Event::Trigger { by, control },
+                SimFact::ControlChanged { control, state, .. } => {
+                    Event::ChangeControlState { control, state }
+                }
+                SimFact::PointedTo {
+                    hand, part, object, ..
+                } => Event::PointTo {
+                    hand: *hand,
+                    part,
+                    object,
+                },
+                SimFact::Fastened { by, bond, .. } => Event::Fasten { by, bond },
+                SimFact::Loosened { by, bond, .. } => Event::Loosen { by, bond },
                 SimFact::TaskLoaded { .. }
                 | SimFact::RecordingStarted { .. }
                 | SimFact::RecordingFinished { .. }

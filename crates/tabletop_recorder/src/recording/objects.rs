@@ -37,10 +37,11 @@ impl RecordedObjects {
     pub(crate) fn open(&mut self, frame: u64) -> Vec<Vec<String>> {
         let objects = self.opening.take().unwrap_or_default();
         objects.iter().for_each(|spec| self.track(spec));
-        objects
+        let create = |spec| Event::Create(spec).fields(frame);
+        let controls = objects
             .iter()
-            .map(|spec| Event::Create(spec).fields(frame))
-            .collect()
+            .flat_map(|spec| initialized_controls(spec, frame));
+        objects.iter().map(create).chain(controls).collect()
     }
 
     /// Takes in an object that has appeared. Says whether it needs a line now.
@@ -116,4 +117,20 @@ impl RecordedObjects {
         };
         number.unwrap_or(u16::MAX)
     }
+}
+
+/// The lines of an object's controls.
+pub(crate) fn initialized_controls(spec: &ObjectSpec, frame: u64) -> Vec<Vec<String>> {
+    let controls = spec.controls().into_iter();
+    controls
+        .map(|control| {
+            let initialize = Event::InitializeControl {
+                control: control.id,
+                kind: control.what.type_name(),
+                object: &spec.id,
+                state: &control.what.state_name(),
+            };
+            initialize.fields(frame)
+        })
+        .collect()
 }

@@ -217,6 +217,7 @@ fn composites_in_composites_are_recorded_and_read() {
     let mut app = app(&place);
     let nested = (0..99).fold(block("it").shape, |shape, _| Shape::Composite {
         parts: vec![Part {
+            pointable: false,
             id: String::new(),
             pose: Pose::IDENTITY,
             shape,

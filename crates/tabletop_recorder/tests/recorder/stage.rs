@@ -288,6 +288,7 @@ fn act(world: &mut World, reader: &mut SystemState<MessageReader<IssuedCommand>>
             )
             | SimCommand::Recording(_)
             | SimCommand::Clock(_)
+            | SimCommand::Mechanism(_)
             | SimCommand::Robot(_) => {}
         }
     }

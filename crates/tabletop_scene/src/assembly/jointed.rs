@@ -2,14 +2,11 @@
 
 use tabletop_core::{JointSpec, JointedSpec, ObjectSpec};
 
-use crate::ids::IdAllocator;
+use crate::{assembly::with_unique_ids, ids::IdAllocator};
 
 /// The two objects, and the joint between them.
 pub(super) fn build(spec: &JointedSpec, ids: &mut IdAllocator) -> ([ObjectSpec; 2], JointSpec) {
-    let objects = spec.placed().map(|object| ObjectSpec {
-        id: ids.unique(&object.id),
-        ..object
-    });
+    let objects = spec.placed().map(|object| with_unique_ids(object, ids));
     let joint = JointSpec {
         objects: objects.each_ref().map(|object| object.id.clone()),
         frames: spec.frames(),

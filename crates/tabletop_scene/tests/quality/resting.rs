@@ -138,6 +138,7 @@ fn a_box_of_cylinders_comes_to_rest() {
 #[test]
 fn the_hammer_of_the_report_rests_as_in_the_original() {
     let part = |pose, shape| Part {
+        pointable: false,
         id: String::new(),
         pose,
         shape,

@@ -107,6 +107,20 @@ impl<'e, 'a, 'f> AttributeReader<'e, 'a, 'f> {
         Pose::from_degrees(location, rotation)
     }
 
+    /// A pose that is at the origin where nothing is said.
+    pub fn pose_or_origin(&mut self) -> Pose {
+        match self.has("location") {
+            true => self.pose(),
+            false => {
+                let rotation = self.read("rotation", DVec3::ZERO, |text| {
+                    value::angles(text, &ROTATIONS)
+                });
+                self.known.push("location");
+                Pose::from_degrees(Vec3::ZERO, rotation)
+            }
+        }
+    }
+
     /// Checks an attribute that has no effect here.
     pub fn ignore<T>(
         &mut self,

@@ -5,9 +5,8 @@ use tabletop_core::{JointMotion, JointedSpec, ObjectSpec};
 use crate::{
     document::tree::Element,
     elements::{
-        ElementReader,
+        ElementReader, OBJECTS,
         attributes::AttributeReader,
-        object::SHAPES,
         value::{self, ANGLES, DISPLACEMENTS, PROPORTIONS},
     },
 };
@@ -50,7 +49,7 @@ impl ElementReader<'_> {
         let mut objects = Vec::new();
         let mut is_faulty = false;
         for child in &element.children {
-            let object = match self.is_allowed(child, element.name, &SHAPES) {
+            let object = match self.is_allowed(child, element.name, &OBJECTS) {
                 true => self.object(child),
                 false => None,
             };

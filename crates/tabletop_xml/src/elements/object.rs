@@ -1,11 +1,13 @@
 //! The elements of objects: shapes, composites and their parts, descriptions.
 
 use bevy::math::Vec3;
-use tabletop_core::{ObjectSpec, Part, Shape};
+use tabletop_core::{ObjectSpec, Part, Shape, TightnessStep};
 
 use crate::{
     document::tree::Element,
     elements::attributes::AttributeReader,
+    elements::bond::{BOND_POINTS, bond_point},
+    elements::control::{CONTROLS, ControlContent, control},
     elements::hollow::check_hollow,
     elements::value::{self, SIDES},
     elements::{DESCRIPTION, ElementReader},
@@ -16,22 +18,36 @@ pub(crate) const SPANS: [&str; 3] = ["xspan", "yspan", "zspan"];
 
 /// Where a shape stands.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum ObjectRole {
+pub(super) enum ObjectRole {
     /// It is an object of its own.
     Whole,
     /// It is a part of a composite.
     Part,
+    /// It is a shape of a control's state, or a part of one.
+    InState,
 }
+
+/// What stands in the element of a shape.
+enum Content {
+    Nothing,
+    Parts(Vec<Part>),
+    Control(ControlContent),
+    Steps(Vec<TightnessStep>),
+}
+
+/// To which state triggering leads, for each of the simple parts of a shape.
+pub(super) type NextStates = Vec<Option<u32>>;
 
 impl ElementReader<'_> {
     /// Reads an object.
     pub fn object(&mut self, element: &Element) -> Option<ObjectSpec> {
         let descriptions = self.descriptions(element);
-        let parts = self.parts(element, ObjectRole::Whole);
+        let (content, _) = self.content(element, ObjectRole::Whole);
         let mut attributes = AttributeReader::of(element, self.faults);
         let (id, pose) = (attributes.id(), attributes.pose());
         let mass = attributes.mass("mass", 1.0);
-        let shape = shape(element, parts, &mut attributes);
+        attributes.ignore("pointable", false, value::boolean);
+        let shape = content.and_then(|content| shape(element, content, &mut attributes));
         attributes.finish(shape.map(|shape| ObjectSpec {
             id,
             pose,
@@ -41,36 +57,93 @@ impl ElementReader<'_> {
         }))
     }
 
-    fn part(&mut self, element: &Element) -> Option<Part> {
-        let parts = self.parts(element, ObjectRole::Part);
+    /// Reads a part, and to which states triggering it leads.
+    pub(super) fn part(
+        &mut self,
+        element: &Element,
+        role: ObjectRole,
+    ) -> Option<(Part, NextStates)> {
+        let (content, of_parts) = self.content(element, role);
         let mut attributes = AttributeReader::of(element, self.faults);
-        let (id, pose) = (attributes.id(), attributes.pose());
+        let id = attributes.id();
+        let pose = match BOND_POINTS.contains(&element.name) {
+            true => attributes.pose_or_origin(),
+            false => attributes.pose(),
+        };
         attributes.forbid(
             "mass",
             "a part has no mass of its own",
             "a mass of the outermost composite only",
         );
-        let shape = shape(element, parts, &mut attributes);
-        attributes.finish(shape.map(|shape| Part { id, pose, shape }))
+        let pointable = attributes.read("pointable", false, value::boolean);
+        let next = match role {
+            ObjectRole::InState => {
+                attributes.read("nextStateWhenTriggered", None, value::next_state)
+            }
+            ObjectRole::Whole | ObjectRole::Part => None,
+        };
+        let shape = content.and_then(|content| shape(element, content, &mut attributes));
+        let part = attributes.finish(shape.map(|shape| Part {
+            id,
+            pose,
+            shape,
+            pointable,
+        }))?;
+        let next = match part.shape {
+            Shape::Composite { .. } => of_parts.into_iter().map(|own| own.or(next)).collect(),
+            _ => vec![next],
+        };
+        Some((part, next))
+    }
+
+    /// What stands in the element of a shape; nothing if that is faulty as a whole. Of the parts of a composite, also to which states
+    /// triggering them leads.
+    fn content(&mut self, element: &Element, role: ObjectRole) -> (Option<Content>, NextStates) {
+        if CONTROLS.contains(&element.name) {
+            let content = self.control_content(element, role);
+            return (content.map(Content::Control), Vec::new());
+        }
+        if BOND_POINTS.contains(&element.name) {
+            let steps = self.tightness_steps(element);
+            return (steps.map(Content::Steps), Vec::new());
+        }
+        let (parts, next) = self.parts(element, role);
+        let content = match element.name {
+            "composite" => Content::Parts(parts),
+            _ => Content::Nothing,
+        };
+        (Some(content), next)
     }
 
     /// The parts of a composite; none for a simple shape, whose content is checked.
-    fn parts(&mut self, element: &Element, role: ObjectRole) -> Vec<Part> {
+    fn parts(&mut self, element: &Element, role: ObjectRole) -> (Vec<Part>, NextStates) {
         let is_composite = element.name == "composite";
         let mut allowed = Vec::new();
         if is_composite {
             allowed.extend(SHAPES);
+            if role != ObjectRole::InState {
+                allowed.extend(CONTROLS);
+                allowed.extend(BOND_POINTS);
+            }
         }
         if role == ObjectRole::Whole {
             allowed.push(DESCRIPTION);
         }
-        let mut parts = Vec::new();
+        let role_of_parts = match role {
+            ObjectRole::Whole | ObjectRole::Part => ObjectRole::Part,
+            ObjectRole::InState => ObjectRole::InState,
+        };
+        let (mut parts, mut states) = (Vec::new(), Vec::new());
         let mut is_empty = true;
         for child in &element.children {
             let is_description = child.name == DESCRIPTION;
             is_empty &= is_description;
-            if self.is_allowed(child, element.name, &allowed) && !is_description {
-                parts.extend(self.part(child));
+            if self.is_allowed(child, element.name, &allowed)
+                && !is_description
+                && let Some((part, next)) = self.part(child, role_of_parts)
+            {
+                parts.push(part);
+                states.extend(next);
             }
         }
         if is_composite && is_empty && !element.is_broken {
@@ -78,7 +151,7 @@ impl ElementReader<'_> {
             self.faults
                 .report(element.place(), "it has no parts", expected);
         }
-        parts
+        (parts, states)
     }
 
     /// Reads what describes an object.
@@ -99,10 +172,20 @@ impl ElementReader<'_> {
     }
 }
 
-/// The shape of an element that is one of [`SHAPES`]; absent for a composite of no parts.
-fn shape(element: &Element, parts: Vec<Part>, attributes: &mut AttributeReader) -> Option<Shape> {
-    attributes.ignore("pointable", false, value::boolean);
-    Some(match element.name {
+/// The shape of an element; absent for a composite of no parts.
+fn shape(element: &Element, content: Content, attributes: &mut AttributeReader) -> Option<Shape> {
+    match content {
+        Content::Nothing => Some(simple_shape(element, attributes)),
+        Content::Parts(parts) if parts.is_empty() => None,
+        Content::Parts(parts) => Some(Shape::Composite { parts }),
+        Content::Control(content) => Some(control(element, content, attributes)),
+        Content::Steps(steps) => Some(bond_point(element, steps, attributes)),
+    }
+}
+
+/// The shape of an element that is one of [`SHAPES`] but no composite.
+fn simple_shape(element: &Element, attributes: &mut AttributeReader) -> Shape {
+    match element.name {
         "block" => Shape::Block {
             span: attributes.spans(SPANS, Vec3::ONE),
             color: attributes.color("color"),
@@ -119,7 +202,7 @@ fn shape(element: &Element, parts: Vec<Part>, attributes: &mut AttributeReader) 
             radius: attributes.span("radius", 0.5),
             color: attributes.color("color"),
         },
-        "box" => {
+        _ => {
             let span = attributes.spans(SPANS, Vec3::ONE);
             let thickness = attributes.span("thickness", 0.05);
             check_hollow("thickness", span, thickness, attributes);
@@ -129,9 +212,7 @@ fn shape(element: &Element, parts: Vec<Part>, attributes: &mut AttributeReader) 
                 color: attributes.color("color"),
             }
         }
-        _ if parts.is_empty() => return None,
-        _ => Shape::Composite { parts },
-    })
+    }
 }
 
 #[cfg(test)]

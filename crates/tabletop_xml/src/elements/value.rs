@@ -27,6 +27,12 @@ pub(crate) const DISPLACEMENTS: RangeInclusive<f32> = -1000.0..=1000.0;
 pub(crate) const ANGLES: RangeInclusive<f32> = -180.0..=180.0;
 /// Shares of a whole.
 pub(crate) const PROPORTIONS: RangeInclusive<f32> = 0.0..=1.0;
+/// Numbers of lights.
+pub(crate) const LIGHTS: RangeInclusive<u32> = 0..=999;
+/// Numbers of states and of steps.
+pub(crate) const STATES: RangeInclusive<u32> = 0..=999;
+/// How far the blocks of a switch are turned, in degrees.
+pub(crate) const SWITCH_ANGLES: RangeInclusive<f32> = 0.0..=80.0;
 /// Numbers of sides.
 pub(crate) const SIDES: RangeInclusive<u32> = 3..=1_000_000;
 
@@ -99,6 +105,17 @@ pub(crate) fn count(text: &str, range: &RangeInclusive<u32>) -> Result<u32, Valu
         .and_then(|count| u32::try_from(count).ok())
         .filter(|count| range.contains(count))
         .ok_or_else(|| ValueError::new(text, "is out of range", expected()))
+}
+
+/// Reads the number of a state; none of -1.
+pub(crate) fn next_state(text: &str) -> Result<Option<u32>, ValueError> {
+    match trim(text) {
+        "-1" => Ok(None),
+        _ => count(text, &STATES).map(Some).map_err(|error| ValueError {
+            expected: "-1 or the number of a state".to_owned(),
+            ..error
+        }),
+    }
 }
 
 /// Reads a colour: a name or `#rrggbb`.

@@ -71,6 +71,7 @@ fn shapes() -> impl Strategy<Value = Shape> {
     ];
     simple.prop_recursive(4, 12, 3, |inner| {
         let part = ("[_a-zA-Z0-9]{0,3}", poses(), inner).prop_map(|(id, pose, shape)| Part {
+            pointable: false,
             id,
             pose,
             shape,

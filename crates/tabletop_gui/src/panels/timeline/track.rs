@@ -146,8 +146,8 @@ fn show_grips(ui: &mut Ui, model: &Model, axis: TimeAxis, top: f32) {
         let sentence = format!("{}: {}", model.time(grip.tick), grip.act);
         response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &sentence));
         let up = match grip.act.verb {
-            Verb::Grasp => MARK,
-            Verb::Release | Verb::Destroy => -MARK,
+            Verb::Grasp | Verb::Trigger | Verb::PointTo | Verb::Fasten => MARK,
+            Verb::Release | Verb::Destroy | Verb::Loosen => -MARK,
         };
         let ink = ui.visuals().strong_text_color();
         paint_mark(ui.painter(), center, up, ink);

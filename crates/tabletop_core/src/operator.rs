@@ -1,0 +1,82 @@
+//! Who operates a mechanism.
+
+use std::{fmt, str::FromStr};
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Hand, LimbName};
+
+/// Who operates a control or fastens something.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Operator {
+    /// A hand of the demonstrator.
+    Hand(Hand),
+    /// A limb of the robot.
+    Limb(LimbName),
+    /// An object, by its id.
+    Object(String),
+}
+
+/// What stands before the name of an operator in recordings that is no hand.
+const LIMB: &str = "robot:";
+const OBJECT: &str = "object:";
+
+impl fmt::Display for Operator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Hand(hand) => write!(f, "{hand}"),
+            Self::Limb(limb) => write!(f, "{LIMB}{limb}"),
+            Self::Object(id) => write!(f, "{OBJECT}{id}"),
+        }
+    }
+}
+
+/// Why a text is no operator.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OperatorError(String);
+
+impl fmt::Display for OperatorError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "expected a hand such as LeftHand, {LIMB} with a limb or {OBJECT} with an id, found `{}`",
+            self.0
+        )
+    }
+}
+
+impl std::error::Error for OperatorError {}
+
+impl FromStr for Operator {
+    type Err = OperatorError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        if let Some(hand) = Hand::ALL.into_iter().find(|hand| hand.name() == text) {
+            return Ok(Self::Hand(hand));
+        }
+        if let Some(limb) = text.strip_prefix(LIMB) {
+            return Ok(Self::Limb(LimbName::new(limb)));
+        }
+        match text.strip_prefix(OBJECT) {
+            Some(id) => Ok(Self::Object(id.to_owned())),
+            None => Err(OperatorError(text.to_owned())),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn operators_read_back() {
+        for operator in [
+            Operator::Hand(Hand::Left),
+            Operator::Limb(LimbName::new("left")),
+            Operator::Object("robot#1".into()),
+        ] {
+            assert_eq!(operator.to_string().parse(), Ok(operator));
+        }
+        assert!("left".parse::<Operator>().is_err());
+    }
+}

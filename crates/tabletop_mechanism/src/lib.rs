@@ -1,0 +1,80 @@
+//! What objects do when they are operated and fastened: switches, lights and other controls, and the networks between them; screws,
+//! nuts and valves.
+//!
+//! The state of a [`Control`](tabletop_core::Control) is a part of its object's [`ObjectSpec`](tabletop_core::ObjectSpec), so physics,
+//! pictures and saved files follow it. A control whose state changes hands its number on to those downstream. What is fastened to what
+//! stands in [`Bonds`](tabletop_core::Bonds), and a fixed joint holds it.
+//!
+//! ```
+//! use bevy::prelude::*;
+//! use tabletop_core::{Control, ControlKind, Side, ToggleSwitch, prelude::*};
+//! use tabletop_mechanism::MechanismPlugin;
+//! use tabletop_physics::PhysicsPlugin;
+//! use tabletop_scene::ScenePlugin;
+//!
+//! let mut app = App::new();
+//! app.add_plugins((MinimalPlugins, CorePlugin::default(), PhysicsPlugin::default()))
+//!     .add_plugins((ScenePlugin, MechanismPlugin))
+//!     .start();
+//! let switch = Control::new(ControlKind::ToggleSwitch(ToggleSwitch {
+//!     span: Vec3::new(0.6, 0.3, 0.1),
+//!     angle: 6.0,
+//!     color: Rgb::GRAY,
+//!     pressed: Side::Left,
+//!     states: 2,
+//! }));
+//! let switch = ObjectSpec::new("power", Pose::IDENTITY, 0.0, Shape::Control(switch.into()));
+//! let scene = SceneSpec { items: vec![SceneItem::Object(switch)], ..default() };
+//! app.world_mut().write_command(SceneCommand::Set(Box::new(scene)));
+//! app.world_mut().write_command(MechanismCommand::Trigger {
+//!     hand: Hand::Any,
+//!     control: "power".into(),
+//!     part: None,
+//! });
+//! app.step(1);
+//!
+//! let power = app.world().resource::<ObjectIndex>().get("power").unwrap();
+//! let spec = app.world().get::<ObjectSpec>(power).unwrap();
+//! assert_eq!(spec.control("power").unwrap().state, 1);
+//! ```
+
+#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+
+mod bonds;
+mod network;
+mod obey;
+mod settle;
+
+use bevy::prelude::*;
+use tabletop_core::{Bonds, CommandSystems, RestApp as _, RestingSystems, TickSystems};
+use tabletop_history::{RollbackApp, is_rolling_back};
+use tabletop_physics::BodySystems;
+
+/// Adds controls and bonds. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin); with
+/// [`HistoryPlugin`](tabletop_history::HistoryPlugin), what is done to them can be undone.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MechanismPlugin;
+
+impl Plugin for MechanismPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<settle::New>()
+            .rollback_resource::<Bonds>()
+            .rollback_component::<bonds::BondJoint>()
+            .add_systems(
+                FixedUpdate,
+                (
+                    settle::settle
+                        .run_if(settle::any)
+                        .after(BodySystems)
+                        .before(CommandSystems::History)
+                        .in_set(TickSystems),
+                    obey::obey.in_set(CommandSystems::Mechanisms),
+                )
+                    .in_set(RestingSystems),
+            )
+            .wake_while(settle::any)
+            .add_observer(settle::note_new.run_if(not(is_rolling_back)))
+            .add_observer(settle::note_despawned.run_if(not(is_rolling_back)))
+            .add_observer(settle::note_parked.run_if(not(is_rolling_back)));
+    }
+}

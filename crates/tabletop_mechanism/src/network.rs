@@ -1,0 +1,134 @@
+//! Controls that hand their states on.
+
+use std::collections::BTreeMap;
+
+use bevy::prelude::*;
+use tabletop_core::{Cause, Control, ControlKind, ObjectIndex, ObjectSpec, SimFact};
+use tabletop_physics::reshape;
+
+/// The controls on the table while they change.
+pub(crate) struct Network {
+    /// The objects with controls, as they become.
+    objects: BTreeMap<Entity, ObjectSpec>,
+    /// The object of each control.
+    owners: BTreeMap<String, Entity>,
+    /// The controls that were changed, in their order, with the names of their states before.
+    changed: Vec<(String, String)>,
+}
+
+impl Network {
+    pub fn of(world: &World) -> Self {
+        let mut network = Self {
+            objects: BTreeMap::new(),
+            owners: BTreeMap::new(),
+            changed: Vec::new(),
+        };
+        for object in world.resource::<ObjectIndex>().iter() {
+            let Some(spec) = world.get::<ObjectSpec>(object) else {
+                continue;
+            };
+            let controls = spec.controls();
+            for control in &controls {
+                let id = control.id.to_owned();
+                network.owners.entry(id).or_insert(object);
+            }
+            if !controls.is_empty() {
+                network.objects.insert(object, spec.clone());
+            }
+        }
+        network
+    }
+
+    /// The control of an id, or why there is none.
+    pub fn control(&self, id: &str) -> Result<&Control, String> {
+        self.owners
+            .get(id)
+            .and_then(|owner| self.objects.get(owner)?.control(id))
+            .ok_or_else(|| format!("there is no control `{id}`"))
+    }
+
+    /// Presses the raised side of a switch.
+    pub fn flip(&mut self, id: &str) {
+        self.change(id, |control| {
+            if let ControlKind::ToggleSwitch(switch) = &mut control.kind {
+                switch.pressed = switch.pressed.other();
+            }
+        });
+    }
+
+    /// Gives a control a state, and hands it on downstream. A state that a control does not have, or has already, changes nothing, so
+    /// that circles come to an end.
+    pub fn set_state(&mut self, id: &str, state: u32) {
+        let mut due = vec![id.to_owned()];
+        while let Some(id) = due.pop() {
+            let is_news = |control: &Control| control.state != state && state < control.states();
+            if !self.control(&id).is_ok_and(is_news) {
+                continue;
+            }
+            self.change(&id, |control| control.state = state);
+            due.extend(self.downstream(&id));
+        }
+    }
+
+    /// Lets a control show and report another state than its own, or again its own.
+    pub fn set_override(&mut self, id: &str, state: Option<u32>) {
+        self.change(id, |control| control.override_state = state);
+    }
+
+    /// Hands on the state that a control has.
+    pub fn hand_on(&mut self, id: &str) {
+        let Ok(state) = self.control(id).map(|control| control.state) else {
+            return;
+        };
+        for id in self.downstream(id) {
+            self.set_state(&id, state);
+        }
+    }
+
+    /// The controls downstream, the last one first.
+    fn downstream(&self, id: &str) -> Vec<String> {
+        let control = self.control(id);
+        control.map_or_else(
+            |_| Vec::new(),
+            |control| control.downstream.iter().rev().cloned().collect(),
+        )
+    }
+
+    fn change(&mut self, id: &str, change: impl FnOnce(&mut Control)) {
+        let Some(control) = self
+            .owners
+            .get(id)
+            .and_then(|owner| self.objects.get_mut(owner)?.control_mut(id))
+        else {
+            return;
+        };
+        if self.changed.iter().all(|(changed, _)| changed != id) {
+            self.changed.push((id.to_owned(), control.state_name()));
+        }
+        change(control);
+    }
+
+    /// Puts what has changed into the world, and tells it if that is wanted.
+    pub fn take_effect(self, world: &mut World, is_told: bool) {
+        let cause = world.resource::<Cause>().0;
+        for (id, before) in &self.changed {
+            let Ok(control) = self.control(id) else {
+                continue;
+            };
+            let state = control.state_name();
+            if is_told && state != *before {
+                world.write_message(SimFact::ControlChanged {
+                    cause,
+                    control: id.clone(),
+                    state,
+                });
+            }
+        }
+        for (object, spec) in self.objects {
+            let is_changed = world.get::<ObjectSpec>(object) != Some(&spec);
+            if is_changed {
+                reshape(world, object, spec);
+            }
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! Objects that become others: a control in another state.
+
+use bevy::prelude::*;
+use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*};
+use tabletop_core::{ObjectSpec, Primitive};
+
+use super::{body::collider, mass::mass_properties};
+use crate::geometry::nearby;
+
+/// How much larger than an object that changes is the room in which everything wakes.
+const WOKEN: f32 = 1.05;
+
+/// Makes an object on the table into another one of the same id, where it is: it looks and collides as this says from now on, and
+/// what is near it wakes.
+pub fn reshape(world: &mut World, object: Entity, spec: ObjectSpec) {
+    let is_other_body = world.get::<ObjectSpec>(object).is_none_or(|before| {
+        let solids = |spec: &ObjectSpec| {
+            let solid = |part: &Primitive| (part.pose, part.solid);
+            let solids = spec.shape.colliding();
+            solids.iter().map(solid).collect::<Vec<_>>()
+        };
+        solids(before) != solids(&spec)
+    });
+    if is_other_body {
+        let before = room_of(world, object);
+        set_collider(world, object, &spec);
+        for room in [before, room_of(world, object)].into_iter().flatten() {
+            wake_in(world, room);
+        }
+    }
+    world.entity_mut(object).insert(spec);
+}
+
+/// Changes the collider in the engine alone: undo brings it back there, and the component is only for what is new.
+fn set_collider(world: &mut World, object: Entity, spec: &ObjectSpec) {
+    let mut contexts =
+        world.query_filtered::<&mut RapierContextColliders, With<DefaultRapierContext>>();
+    let Ok(mut colliders) = contexts.single_mut(world) else {
+        return;
+    };
+    let Some(handle) = colliders.entity2collider().get(&object).copied() else {
+        return;
+    };
+    if let Some(engine_collider) = colliders.colliders.get_mut(handle) {
+        engine_collider.set_shape(collider(&spec.shape).raw);
+        if !spec.is_fixed() {
+            let properties = mass_properties(&spec.shape, spec.mass);
+            engine_collider.set_mass_properties(properties.into_rapier());
+        }
+    }
+}
+
+fn room_of(world: &mut World, object: Entity) -> Option<Aabb> {
+    let mut contexts =
+        world.query_filtered::<&RapierContextColliders, With<DefaultRapierContext>>();
+    let colliders = contexts.single(world).ok()?;
+    let handle = colliders.entity2collider().get(&object)?;
+    let bounds = colliders.colliders.get(*handle)?.compute_aabb();
+    let half = bounds.half_extents() * WOKEN;
+    Some(Aabb::new(bounds.center() - half, bounds.center() + half))
+}
+
+fn wake_in(world: &mut World, room: Aabb) {
+    let mut contexts = world
+        .query_filtered::<(&RapierContextColliders, &RapierRigidBodySet), With<DefaultRapierContext>>();
+    let Ok((colliders, bodies)) = contexts.single(world) else {
+        return;
+    };
+    let near: Vec<_> = nearby(colliders, bodies, room)
+        .map(|body| body.entity)
+        .collect();
+    for body in near {
+        if let Some(mut sleeping) = world.get_mut::<Sleeping>(body) {
+            sleeping.sleeping = false;
+        }
+    }
+}

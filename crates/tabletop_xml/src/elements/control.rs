@@ -1,0 +1,194 @@
+//! The elements of controls: switches, lights, and shapes with states.
+
+use bevy::math::Vec3;
+use tabletop_core::{
+    Control, ControlKind, CustomControl, CustomState, IndicatorLights, LightState, Rgb, Shape,
+    Side, ToggleSwitch,
+};
+
+use crate::{
+    document::tree::Element,
+    elements::{
+        DESCRIPTION, ElementReader,
+        attributes::AttributeReader,
+        object::{ObjectRole, SHAPES, SPANS},
+        value::{self, LIGHTS, STATES, SWITCH_ANGLES},
+    },
+};
+
+pub(crate) const CONTROLS: [&str; 3] = ["toggleSwitch", "indicatorLights", "customControl"];
+pub(crate) const DOWNSTREAM: &str = "downstream";
+pub(crate) const STATE: &str = "state";
+pub(crate) const LIGHT: &str = "light";
+
+/// What stands in the element of a control.
+pub(super) struct ControlContent {
+    downstream: Vec<String>,
+    states: States,
+}
+
+/// The states of a control, with what they show.
+enum States {
+    /// They are only numbers.
+    Numbers,
+    Lights(Vec<(LightState, Vec<u32>)>),
+    Shapes(Vec<CustomState>),
+}
+
+impl ElementReader<'_> {
+    /// Reads what stands in the element of a control; nothing if a state is faulty.
+    pub(super) fn control_content(
+        &mut self,
+        element: &Element,
+        role: ObjectRole,
+    ) -> Option<ControlContent> {
+        let mut allowed = vec![DOWNSTREAM];
+        if role == ObjectRole::Whole {
+            allowed.push(DESCRIPTION);
+        }
+        let mut content = ControlContent {
+            downstream: Vec::new(),
+            states: match element.name {
+                "indicatorLights" => States::Lights(Vec::new()),
+                "customControl" => States::Shapes(Vec::new()),
+                _ => States::Numbers,
+            },
+        };
+        if !matches!(content.states, States::Numbers) {
+            allowed.push(STATE);
+        }
+        let mut is_sound = true;
+        let mut states = 0;
+        for child in &element.children {
+            if !self.is_allowed(child, element.name, &allowed) || child.name == DESCRIPTION {
+                continue;
+            }
+            if child.name == DOWNSTREAM {
+                content.downstream.extend(self.downstream(child));
+                continue;
+            }
+            states += 1;
+            is_sound &= match &mut content.states {
+                States::Numbers => true,
+                States::Lights(states) => self.light_state(child).map(|s| states.push(s)).is_some(),
+                States::Shapes(states) => {
+                    self.custom_state(child).map(|s| states.push(s)).is_some()
+                }
+            };
+        }
+        let needs_states = !matches!(content.states, States::Numbers);
+        if needs_states && states == 0 && !element.is_broken {
+            self.faults
+                .report(element.place(), "it has no states", "at least one <state>");
+            return None;
+        }
+        is_sound.then_some(content)
+    }
+
+    fn downstream(&mut self, element: &Element) -> Option<String> {
+        self.forbid_children(element);
+        let mut attributes = AttributeReader::of(element, self.faults);
+        let id = attributes.require("id", String::new(), "id", value::name);
+        attributes.finish(Some(id))
+    }
+
+    /// A state of lights, with the numbers of the lights in the order of the file.
+    fn light_state(&mut self, element: &Element) -> Option<(LightState, Vec<u32>)> {
+        let mut lights = Vec::new();
+        let mut is_sound = true;
+        for child in &element.children {
+            if !self.is_allowed(child, element.name, &[LIGHT]) {
+                continue;
+            }
+            self.forbid_children(child);
+            let mut attributes = AttributeReader::of(child, self.faults);
+            let number = attributes.require("id", 0, "0", |text| value::count(text, &LIGHTS));
+            let color = attributes.read("color", Rgb::RED, value::color);
+            let light = attributes.finish(Some((number, color)));
+            is_sound &= light.is_some();
+            lights.extend(light);
+        }
+        let mut attributes = AttributeReader::of(element, self.faults);
+        let name = attributes.read("descriptionName", String::new(), value::id);
+        let numbers = lights.iter().map(|&(number, _)| number).collect();
+        let state = attributes.finish(Some(LightState { name, lights }))?;
+        is_sound.then_some((state, numbers))
+    }
+
+    fn custom_state(&mut self, element: &Element) -> Option<CustomState> {
+        let mut state = CustomState::default();
+        let mut is_sound = true;
+        for child in &element.children {
+            if !self.is_allowed(child, element.name, &SHAPES) {
+                continue;
+            }
+            let read = self.part(child, ObjectRole::InState);
+            is_sound &= read.is_some();
+            if let Some((part, next)) = read {
+                state.parts.push(part);
+                state.next.extend(next);
+            }
+        }
+        let mut attributes = AttributeReader::of(element, self.faults);
+        state.name = attributes.read("descriptionName", String::new(), value::id);
+        attributes.finish(Some(state)).filter(|_| is_sound)
+    }
+}
+
+/// The control of an element that is one of [`CONTROLS`].
+pub(super) fn control(
+    element: &Element,
+    content: ControlContent,
+    attributes: &mut AttributeReader,
+) -> Shape {
+    let mut state = attributes.read("initState", 0, |text| value::count(text, &STATES));
+    let kind = match content.states {
+        States::Numbers => {
+            let states = attributes.read("numStates", 2, |text| value::count(text, &(1..=1000)));
+            state = state.min(states - 1);
+            let pressed = match attributes.read("leftPressed", true, value::boolean) {
+                true => Side::Left,
+                false => Side::Right,
+            };
+            ControlKind::ToggleSwitch(ToggleSwitch {
+                span: attributes.spans(SPANS, Vec3::new(0.6, 0.3, 0.1)),
+                angle: attributes.number("angle", 6.0, &SWITCH_ANGLES),
+                color: attributes.read("color", Rgb::DARK_GRAY, value::color),
+                pressed,
+                states,
+            })
+        }
+        States::Lights(states) => {
+            let lights = attributes.read("numLights", 2, |text| value::count(text, &(1..=1000)));
+            let numbers = states.iter().flat_map(|(_, numbers)| numbers);
+            if let Some(unknown) = numbers.copied().find(|&number| number >= lights) {
+                let problem = format_args!("it has no light {unknown}");
+                attributes.fault("numLights", problem, format_args!("more than {unknown}"));
+            }
+            ControlKind::IndicatorLights(IndicatorLights {
+                radius: attributes.span("lightRadius", 0.03),
+                zspan: attributes.span("lightZspan", 0.005),
+                lights,
+                xspan: attributes.span("xspan", 0.15),
+                states: states.into_iter().map(|(state, _)| state).collect(),
+            })
+        }
+        States::Shapes(states) => ControlKind::Custom(CustomControl {
+            name: attributes.read("name", element.name.to_owned(), |text| {
+                Ok(value::trim(text).to_owned())
+            }),
+            states,
+        }),
+    };
+    let control = Control {
+        state,
+        downstream: content.downstream,
+        ..Control::new(kind)
+    };
+    let states = control.states();
+    if attributes.is_sound() && state >= states {
+        let problem = format_args!("there is no state {state}");
+        attributes.fault("initState", problem, format_args!("at most {}", states - 1));
+    }
+    Shape::Control(control.into())
+}
