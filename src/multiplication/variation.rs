@@ -246,5 +246,7 @@ fn replace(shape: &mut Shape, old: Rgb, new: Rgb) {
                 replace(shape, old, new);
             }
         }
+        // What the colours of a control say is its state.
+        Shape::Control(_) | Shape::BondPoint(_) => {}
     }
 }
