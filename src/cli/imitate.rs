@@ -117,9 +117,11 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
 pub(super) fn scene_of(recording: &Path) -> Result<SceneSpec, Failure> {
     let recording = RecordingReader::open(recording).map_err(Failure::input)?;
     let commands = recording.session().earlier.iter().rev();
-    let mut scenes = commands.filter_map(|command| match &command.command {
-        SimCommand::Scene(SceneCommand::Set(scene)) => Some((**scene).clone()),
-        _ => None,
+    let mut scenes = commands.filter_map(|command| {
+        let SimCommand::Scene(SceneCommand::Set(scene)) = &command.command else {
+            return None;
+        };
+        Some((**scene).clone())
     });
     scenes.next().ok_or_else(|| {
         Failure::input(

@@ -200,7 +200,9 @@ impl EngineOptions {
             .into_iter()
             .find_map(|(name, by)| match parse(name.as_deref()?) {
                 EngineChoice::Auto => None,
-                choice => Some((choice, by)),
+                choice @ (EngineChoice::Kind(_)
+                | EngineChoice::Program(_)
+                | EngineChoice::Driver(_)) => Some((choice, by)),
             })
     }
 }

@@ -235,11 +235,14 @@ impl Running {
         if let Some(fault) = config.fault() {
             return Err(EngineError::Script(ScriptError::plain(fault)));
         }
-        let folder = match config.engine.kind {
-            EngineKind::Python | EngineKind::Driver if !agent.is_dir() => {
-                config.agent.parent().unwrap_or(Path::new(""))
-            }
-            _ => &config.agent,
+        let is_file = match config.engine.kind {
+            EngineKind::Python | EngineKind::Driver => !agent.is_dir(),
+            EngineKind::Matlab | EngineKind::Octave => false,
+        };
+        let folder = if is_file {
+            config.agent.parent().unwrap_or(Path::new(""))
+        } else {
+            &config.agent
         };
         let mut path = match folder.to_string_lossy() {
             here if here.is_empty() => ".".to_owned(),

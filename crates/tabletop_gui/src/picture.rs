@@ -28,11 +28,11 @@ fn drop_repeated_modifiers(
 ) {
     for (context, mut input) in &mut inputs {
         let told = told.entry(context).or_default();
-        input.events.retain(|event| match event {
-            egui::Event::ModifiersChanged(modifiers) => {
-                std::mem::replace(told, *modifiers) != *modifiers
-            }
-            _ => true,
+        input.events.retain(|event| {
+            let egui::Event::ModifiersChanged(modifiers) = event else {
+                return true;
+            };
+            std::mem::replace(told, *modifiers) != *modifiers
         });
     }
 }

@@ -265,9 +265,10 @@ impl Lines {
                 reason,
             };
             let Some(mimic) = &joint.mimic else {
-                return match joint.joint_type {
-                    urdf_rs::JointType::Fixed => Err(fault(&joint.name, "that joint is fixed")),
-                    _ => Ok(found),
+                return if joint.joint_type == urdf_rs::JointType::Fixed {
+                    Err(fault(&joint.name, "that joint is fixed"))
+                } else {
+                    Ok(found)
                 };
             };
             let (multiplier, offset) =

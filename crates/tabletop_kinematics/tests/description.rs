@@ -244,7 +244,9 @@ fn contains(shape: &LinkShape, point: DVec3) -> bool {
             point.truncate().length() < radius && point.z.abs() < length / 2.0
         }
         Geometry::Box { size } => point.abs().cmplt(size / 2.0).all(),
-        _ => panic!("a body is a box or a cylinder"),
+        Geometry::Sphere { .. } | Geometry::Mesh { .. } => {
+            panic!("a body is a box or a cylinder")
+        }
     }
 }
 

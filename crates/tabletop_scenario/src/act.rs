@@ -335,9 +335,11 @@ mod tests {
         let mut stage = Stage::new("Glide(to: (6, 0, 0.5), seconds: 0.1)");
         stage.holders[0] = Some(Hand::Any);
         let way: Vec<_> = std::iter::from_fn(|| stage.tick())
-            .map(|command| match command {
-                SimCommand::Hand(HandCommand::MoveTo { location, .. }) => location.x,
-                other => panic!("{other:?}"),
+            .map(|command| {
+                let SimCommand::Hand(HandCommand::MoveTo { location, .. }) = command else {
+                    panic!("{command:?}");
+                };
+                location.x
             })
             .collect();
         assert_eq!(way.len(), 6);

@@ -31,10 +31,11 @@ fn waits(stage: &Stage) -> bool {
 }
 
 fn waited(stage: &Stage) -> Duration {
-    match stage.agent() {
-        Agent::Waiting { since } => *since,
-        other => panic!("{other:?}"),
-    }
+    let agent = stage.agent();
+    let Agent::Waiting { since } = agent else {
+        panic!("{agent:?}");
+    };
+    *since
 }
 
 #[test]

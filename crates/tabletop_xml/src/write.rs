@@ -391,9 +391,10 @@ impl Writer {
 }
 
 fn element_name(shape: &Shape) -> &'static str {
-    match shape {
-        Shape::Lid { .. } => "composite",
-        other => other.name(),
+    if let Shape::Lid { .. } = shape {
+        "composite"
+    } else {
+        shape.name()
     }
 }
 

@@ -67,12 +67,12 @@ impl EngineLocator {
             EngineChoice::Auto => match &self.variable {
                 Some(variable) if !matches!(variable.as_str(), "" | "auto") => {
                     let Ok(choice) = variable.parse::<EngineChoice>();
-                    match choice {
-                        EngineChoice::Auto => self.first(),
-                        named => self.find(&named).map_err(|error| {
-                            EngineError::NotFound(format!("{ENGINE_VARIABLE}: {error}"))
-                        }),
+                    if choice == EngineChoice::Auto {
+                        return self.first();
                     }
+                    self.find(&choice).map_err(|error| {
+                        EngineError::NotFound(format!("{ENGINE_VARIABLE}: {error}"))
+                    })
                 }
                 _ => self.first(),
             },

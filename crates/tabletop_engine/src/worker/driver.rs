@@ -69,6 +69,6 @@ pub(crate) fn files(kind: EngineKind) -> Vec<(String, String)> {
         .map(|(name, text)| ((*name).to_owned(), (*text).to_owned()));
     match kind {
         EngineKind::Octave => files.chain(stubs::files()).collect(),
-        _ => files.collect(),
+        EngineKind::Matlab | EngineKind::Python | EngineKind::Driver => files.collect(),
     }
 }

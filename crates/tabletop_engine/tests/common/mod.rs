@@ -88,13 +88,14 @@ pub struct Session {
 impl Session {
     pub fn start(config: EngineConfig) -> Result<Self, EngineError> {
         let engine = EngineHandle::start(config)?;
-        match next(&engine)? {
-            Reply::Started { description } => Ok(Self {
-                engine,
-                description,
-            }),
-            other => panic!("{other:?}"),
-        }
+        let reply = next(&engine)?;
+        let Reply::Started { description } = reply else {
+            panic!("{reply:?}");
+        };
+        Ok(Self {
+            engine,
+            description,
+        })
     }
 
     /// An Octave that has started.
@@ -113,10 +114,11 @@ impl Session {
 
     pub fn step(&self, sensor: &Sensor) -> Result<StepReply, EngineError> {
         self.engine.step(sensor.clone());
-        match next(&self.engine)? {
-            Reply::Step(reply) => Ok(*reply),
-            other => panic!("{other:?}"),
-        }
+        let reply = next(&self.engine)?;
+        let Reply::Step(reply) = reply else {
+            panic!("{reply:?}");
+        };
+        Ok(*reply)
     }
 
     /// What has been printed, waiting for a line that holds `text`.

@@ -150,14 +150,17 @@ impl Line {
     fn of(action: Action, keymap: &Keymap) -> Option<Self> {
         let hint = keymap.hint(action);
         let label = keymap.label(action);
-        let (label, hint) = match action {
-            Action::Move(_, Way::Minus) if label.ends_with('-') => return None,
-            Action::Move(joint, Way::Plus) if label.ends_with('+') => {
-                let back = keymap.hint(Action::Move(joint, Way::Minus));
-                let label = label.replace('+', "+ / −");
-                (label, format!("{} / {}", or_none(hint), or_none(back)))
+        let (label, hint) = if let Action::Move(joint, way) = action
+            && label.ends_with(way.sign())
+        {
+            if way == Way::Minus {
+                return None;
             }
-            _ => (label.to_owned(), or_none(hint)),
+            let back = keymap.hint(Action::Move(joint, Way::Minus));
+            let label = label.replace('+', "+ / −");
+            (label, format!("{} / {}", or_none(hint), or_none(back)))
+        } else {
+            (label.to_owned(), or_none(hint))
         };
         Some(Self {
             label,

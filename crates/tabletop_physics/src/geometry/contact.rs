@@ -78,7 +78,7 @@ fn search(
                 ));
             }
             GJKResult::NoIntersection(direction) if gap(direction) > most => return None,
-            _ => {}
+            GJKResult::Intersection | GJKResult::Proximity(_) | GJKResult::NoIntersection(_) => {}
         }
     }
     None

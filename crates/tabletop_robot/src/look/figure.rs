@@ -21,7 +21,9 @@ pub fn figure_of(visual: &LinkShape, urdf: Option<&Path>) -> Result<Figure, Look
     });
     let figure = match &visual.geometry {
         Geometry::Mesh { file, scale } => meshes::figure(file, scale.as_vec3(), color, urdf)?,
-        solid => solids::figure(solid, color),
+        solid @ (Geometry::Box { .. } | Geometry::Cylinder { .. } | Geometry::Sphere { .. }) => {
+            solids::figure(solid, color)
+        }
     };
     Ok(placed(figure, visual))
 }

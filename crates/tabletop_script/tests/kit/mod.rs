@@ -232,7 +232,10 @@ impl Stage {
     pub fn failure(&self) -> Option<&str> {
         self.events.iter().find_map(|event| match event {
             ScriptEvent::Failed { reason } => Some(reason.as_str()),
-            _ => None,
+            ScriptEvent::Started { .. }
+            | ScriptEvent::Printed { .. }
+            | ScriptEvent::Noted { .. }
+            | ScriptEvent::Stopped => None,
         })
     }
 

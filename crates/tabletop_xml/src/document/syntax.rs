@@ -97,7 +97,9 @@ pub(crate) fn explain_reference(error: &EscapeError) -> (String, &'static str) {
             "&amp;, &lt;, &gt;, &quot;, &apos; or &#number;",
         ),
         EscapeError::UnterminatedEntity(_) => ("there is a lone `&`".into(), "&amp;"),
-        other => (other.to_string(), "&#number; of a character of XML 1.0"),
+        other @ (EscapeError::InvalidCharRef(_) | EscapeError::TooManyNestedEntities) => {
+            (other.to_string(), "&#number; of a character of XML 1.0")
+        }
     }
 }
 

@@ -56,10 +56,11 @@ fn only_object(content: &str) -> ObjectSpec {
 
 /// The extents of the only object of a file, which is a block.
 fn span(content: &str) -> [f32; 3] {
-    match only_object(content).shape {
-        Shape::Block { span, .. } => span.to_array(),
-        other => panic!("{other:?}"),
-    }
+    let shape = only_object(content).shape;
+    let Shape::Block { span, .. } = shape else {
+        panic!("{shape:?}");
+    };
+    span.to_array()
 }
 
 /// The faults of a file with this content, without their expectations.
