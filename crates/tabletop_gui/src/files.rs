@@ -8,7 +8,7 @@ use tabletop_core::{Action, KeySystems, was_struck};
 /// A task file that the user can load.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TaskFile {
-    /// What it is listed as.
+    /// Its name in lists.
     pub name: String,
     /// Its place.
     pub path: PathBuf,

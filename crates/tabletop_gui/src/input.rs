@@ -1,4 +1,4 @@
-//! What the user does with keys and mouse.
+//! Input by keys and mouse.
 
 pub(crate) mod drag;
 pub(crate) mod focus;

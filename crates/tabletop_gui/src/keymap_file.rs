@@ -89,7 +89,7 @@ fn shipped(layout: &RobotLayout) -> (Keymap, Vec<String>) {
     (keymap, faults)
 }
 
-/// Where an action is named in a file, and its keys, each with its place.
+/// An action that a file names, and its keys, each with its place.
 struct KeymapEntry<'a> {
     action: Action,
     bindings: Vec<(&'a str, KeyBinding)>,
@@ -235,7 +235,7 @@ fn place(part: &str, text: &str) -> String {
     format!("{line}:{column}")
 }
 
-/// What a file says, in its order, as parts of its text.
+/// The content of a file, in its order, as parts of its text.
 struct RawEntries<'a>(Vec<(&'a RawValue, Vec<&'a RawValue>)>);
 
 impl<'de> Deserialize<'de> for RawEntries<'de> {

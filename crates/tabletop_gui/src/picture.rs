@@ -1,12 +1,12 @@
-//! How often the picture is drawn.
+//! The number of drawn pictures.
 
 use bevy::{ecs::entity::EntityHashMap, prelude::*};
 use bevy_egui::{EguiInput, EguiPreUpdateSet, egui};
 
-/// What the window has drawn. Whoever draws says so here; the Status window reads it.
+/// The pictures of the window. Whoever draws says so here; the Status window reads it.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PictureStatus {
-    /// How many times it has been drawn since the start.
+    /// The number of times that it has been drawn since the start.
     pub drawn: u64,
     /// True if nothing moves in it, so that texts which change all the time should not have it drawn all the time.
     pub is_still: bool,

@@ -1,4 +1,4 @@
-//! What the program remembers of a user between runs: RON files in the platform's configuration folder, one for each concern.
+//! Preferences of a user between runs: RON files in the platform's configuration folder, one for each concern.
 
 use std::{
     env, fs, io,
@@ -14,7 +14,7 @@ use thiserror::Error;
 /// The environment variable that names another folder.
 pub const FOLDER_VARIABLE: &str = "TABLETOP_CONFIG";
 
-/// Where preferences are kept.
+/// The folder of the preferences.
 #[derive(Resource, Clone, Debug, PartialEq, Eq)]
 pub struct Preferences {
     folder: Option<PathBuf>,
@@ -28,7 +28,7 @@ pub enum PreferencesError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's message.
         error: io::Error,
     },
     /// The file is not what the program writes.
@@ -36,7 +36,7 @@ pub enum PreferencesError {
     Syntax {
         /// The file.
         path: PathBuf,
-        /// Where and why.
+        /// The place and the reason.
         error: Box<ron::error::SpannedError>,
     },
     /// The value has no form in RON.
@@ -80,7 +80,7 @@ impl Preferences {
         Some(folder.join(concern).with_extension("ron"))
     }
 
-    /// What was kept of a concern, if anything was.
+    /// The preferences that were kept of a concern, if any were.
     ///
     /// # Errors
     ///

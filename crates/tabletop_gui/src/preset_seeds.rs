@@ -1,4 +1,4 @@
-//! What makes the presets of the user random.
+//! The seeds of the user's presets.
 
 use bevy::prelude::*;
 use tabletop_core::{Preset, Random, SceneCommand};

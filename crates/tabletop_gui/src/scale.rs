@@ -1,4 +1,4 @@
-//! How large panels and their texts are drawn: what fits the window, or what the user has chosen.
+//! The scale of panels and their texts: what fits the window, or what the user has chosen.
 
 use bevy::{prelude::*, window::PrimaryWindow};
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass};
@@ -9,7 +9,7 @@ use crate::{
     preferences::Preferences,
 };
 
-/// What preferences call it.
+/// Its name in the preferences.
 const CONCERN: &str = "scale";
 
 /// The scales that can be chosen; 1 is 13 points a line on a screen that is not scaled.
@@ -21,11 +21,11 @@ const DESIGN_SIZE: Vec2 = Vec2::new(1280.0, 960.0);
 /// The least size of window that the panels are not made smaller for.
 const SMALLEST_SIZE: Vec2 = Vec2::new(800.0, 600.0);
 
-/// What the user has chosen, if anything; else the scale is made to fit the window.
+/// The user's choice, if there is one; else the scale is made to fit the window.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct UiScale(Option<f32>);
 
-/// How the user changes the scale.
+/// A change of the scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ScaleStep {
     Smaller,
@@ -37,7 +37,7 @@ impl ScaleStep {
     #[cfg(test)]
     pub const ALL: [Self; 3] = [Self::Smaller, Self::Automatic, Self::Larger];
 
-    /// What the step is called where it cannot be seen.
+    /// The name of the step where it cannot be seen.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Smaller => "Smaller",

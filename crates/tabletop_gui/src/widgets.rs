@@ -1,4 +1,4 @@
-//! What the panels are made of.
+//! The widgets of the panels.
 
 pub(crate) mod button;
 pub(crate) mod clipboard;

@@ -1,4 +1,4 @@
-//! What can go wrong with a recording.
+//! Errors of recordings.
 
 use std::{
     io,
@@ -15,7 +15,7 @@ pub enum RecorderError {
     MoveAside {
         /// The folder.
         folder: PathBuf,
-        /// What it should have become.
+        /// The path that it should have had.
         aside: PathBuf,
         /// The reason.
         source: io::Error,

@@ -27,16 +27,16 @@ const WINDOW_SIZES: [Resolution; 9] = [
 /// Half as many pictures a second as the simulation has ticks.
 const HALF: NonZeroU32 = NonZeroU32::new(30).expect("it is not zero");
 
-/// What there is to choose from.
+/// The choices of the display.
 #[derive(Resource, Clone, Debug, PartialEq, Eq)]
 pub struct DisplayOffer {
     /// The size of the desktop in points, in which windows have room.
     pub desktop: Resolution,
-    /// How the screen is set now.
+    /// The present mode of the screen.
     pub screen: ScreenMode,
-    /// What the screen can show instead.
+    /// The other modes of the screen.
     pub modes: Vec<ScreenMode>,
-    /// How edges can be smoothed, in rising order. `Off` is always offered.
+    /// The kinds of anti-aliasing, in rising order. `Off` is always offered.
     pub antialiasing: Vec<Antialiasing>,
     /// True if the processor draws.
     pub is_software: bool,
@@ -49,7 +49,7 @@ fn in_order<T: Ord>(mut choices: Vec<T>) -> Vec<T> {
 }
 
 impl DisplayOffer {
-    /// What is chosen as long as the user has not chosen anything: the report's recommendations, or what is fluent where the
+    /// The settings of a user who has not chosen any: the report's recommendations, or what is fluent where the
     /// processor draws.
     pub fn default_settings(&self) -> DisplaySettings {
         let recommended = DisplaySettings::default();

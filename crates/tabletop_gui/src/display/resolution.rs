@@ -23,7 +23,7 @@ impl Resolution {
         self.width <= other.width && self.height <= other.height
     }
 
-    /// How different two sizes are, in pixels.
+    /// The difference of two sizes, in pixels.
     pub(super) const fn difference(self, other: Self) -> u32 {
         self.width
             .abs_diff(other.width)

@@ -13,7 +13,7 @@ pub const CONCERN: &str = "display";
 /// As many pictures a second as the simulation has ticks, as the report recommends.
 pub(super) const SIXTY: NonZeroU32 = NonZeroU32::new(60).expect("it is not zero");
 
-/// What the user chooses before the window opens.
+/// The settings that the user chooses before the window opens.
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct DisplaySettings {
@@ -27,7 +27,7 @@ pub struct DisplaySettings {
     pub refresh_rate: NonZeroU32,
     /// Bits of a pixel's colour, if the window fills the screen; else it has the desktop's.
     pub color_depth: u16,
-    /// How edges are smoothed.
+    /// The anti-aliasing.
     pub antialiasing: Antialiasing,
     /// True if the user is asked when the program starts.
     pub ask: bool,

@@ -7,7 +7,7 @@ use bevy::{math::primitives::InfinitePlane3d, prelude::*};
 pub(crate) struct Drag {
     /// The object.
     pub object: Entity,
-    /// Where it was last asked to be.
+    /// The location that it was last asked for.
     pub target: Vec3,
     /// A point of the plane.
     anchor: Vec3,
@@ -47,7 +47,7 @@ impl Drag {
         }
     }
 
-    /// Where the object is to be for this line of sight.
+    /// The location of the object for this line of sight.
     fn target_for(&self, ray: Ray3d, side: f32) -> Option<Vec3> {
         let target = meeting_point(ray, self.anchor, self.normal)? + self.offset;
         let along = self.normal.cross(Vec3::Z);
@@ -57,7 +57,7 @@ impl Drag {
     }
 }
 
-/// Where a line of sight meets a plane in front of the eye.
+/// The point in which a line of sight meets a plane in front of the eye.
 fn meeting_point(ray: Ray3d, anchor: Vec3, normal: Vec3) -> Option<Vec3> {
     let plane = InfinitePlane3d {
         normal: Dir3::new(normal).ok()?,

@@ -6,17 +6,17 @@ use tabletop_core::{
     RobotCommand, RobotLayout, SimSystems,
 };
 
-/// Where the joints are to go: 1 and -1 are the directions of manual control, 0 is to stay.
+/// The directions in which the joints are to go: 1 and -1 are the directions of manual control, 0 is to stay.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Directions(Vec<i8>);
 
 impl Directions {
-    /// What this says of every joint of a layout.
+    /// The directions that a function gives for every joint of a layout.
     pub fn of(layout: &RobotLayout, direction: impl FnMut(JointId) -> i8) -> Self {
         Self(layout.joint_ids().map(direction).collect())
     }
 
-    /// Where a joint is to go.
+    /// The direction of a joint.
     pub fn get(&self, joint: JointId) -> i8 {
         self.0.get(joint.index()).copied().unwrap_or(0)
     }
@@ -70,7 +70,7 @@ impl Controls {
         self.held.are_none() && self.struck.are_none()
     }
 
-    /// What has gone down counts until a tick has seen it, even if it is up again.
+    /// A key that has gone down counts until a tick has seen it, even if it is up again.
     fn direction(&self, joint: JointId) -> i8 {
         match self.struck.get(joint) {
             0 => self.held.get(joint),
@@ -79,7 +79,7 @@ impl Controls {
     }
 }
 
-/// What the user holds down to move joints.
+/// The keys and buttons that the user holds down to move joints.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Jog {
     pub keys: Controls,
@@ -95,7 +95,7 @@ impl Jog {
         }
     }
 
-    /// What the joints are told in a tick. The arms move as mirror images.
+    /// The orders to the joints in a tick. The arms move as mirror images.
     fn drives(&self, layout: &RobotLayout) -> Vec<(JointName, Drive)> {
         layout
             .joint_ids()

@@ -12,7 +12,7 @@ use crate::input::{
     pointer::{MouseSystems, Pointer},
 };
 
-/// What the pressed button is about.
+/// The purpose of the pressed button.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum Press {
     /// Nothing.
@@ -20,7 +20,7 @@ pub(crate) enum Press {
     Idle,
     /// A click that takes this object if the button comes up over it.
     Click(Entity),
-    /// What the selected hand holds is being moved.
+    /// The object in the selected hand is being moved.
     Drag(Drag),
 }
 

@@ -19,19 +19,19 @@ use crate::input::{
 /// So far, in pixels, the cursor may move while a button is down, and it is still a click.
 const SLACK: f32 = 4.0;
 
-/// How far a pixel goes round, in radians.
+/// The angle of a pixel's way round, in radians.
 const TURN: f32 = 0.006;
 
-/// What a notch of the wheel leaves of the distance.
+/// The share of the distance that a notch of the wheel leaves.
 const NOTCH: f32 = 0.9;
 
 /// No frame zooms by more notches than this.
 const MOST_NOTCHES: f32 = 10.0;
 
-/// Where nothing is seen, the cursor is on something at least so far away, in units.
+/// The least distance, in units, of the point under a cursor that is on nothing.
 const LEAST_DEPTH: f32 = 10.0;
 
-/// What a held button does to the camera.
+/// The camera's motion while a button is held.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum Gesture {
     /// Nothing.
@@ -41,9 +41,9 @@ pub(crate) enum Gesture {
     Press {
         button: MouseButton,
         cursor: Vec2,
-        /// What the cursor is on, if that is anything.
+        /// The surface under the cursor, if there is any.
         surface: Option<Vec3>,
-        /// What it is on, or would be.
+        /// The point under it.
         point: Vec3,
     },
     /// The camera goes round a point.
@@ -192,7 +192,7 @@ impl Gesture {
         }
     }
 
-    /// What a press has become when the cursor is here.
+    /// The gesture that a press has become when the cursor is here.
     fn begun(self, to: Vec2, is_shifted: bool) -> Self {
         match self {
             Self::Press {

@@ -1,10 +1,10 @@
-//! What lies under the mouse cursor: the nearest visible surface counts. The table and figures hide what is behind them,
+//! Picking: the nearest visible surface under the mouse cursor counts. The table and figures hide what is behind them,
 //! but are no objects.
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{Figure, ObjectIndex, ObjectSpec, Pose, Primitive, Table};
 
-/// What can be seen and what can hide it.
+/// Everything that can be seen or hide it.
 #[derive(SystemParam)]
 pub(crate) struct Pickable<'w, 's> {
     index: Res<'w, ObjectIndex>,
@@ -40,7 +40,7 @@ impl Pickable<'_, '_> {
             .map(|distance| ray.get_point(distance))
     }
 
-    /// How far along a line of sight is the first surface of what is no object.
+    /// The distance along a line of sight to the first surface that is of no object.
     fn others_along(&self, ray: Ray3d) -> Option<f32> {
         let tables = self.tables.iter();
         let tables =
@@ -54,7 +54,7 @@ impl Pickable<'_, '_> {
     }
 }
 
-/// How far along the line of sight a body of these solids is first met.
+/// The distance along the line of sight to a body of these solids.
 fn distance_along(ray: Ray3d, solids: &[Primitive], body: Pose) -> Option<f32> {
     solids
         .iter()

@@ -1,4 +1,4 @@
-//! How the plane in which objects are dragged is turned (report section 4.3, figure 8d).
+//! The turns of the plane in which objects are dragged (report section 4.3, figure 8d).
 
 use bevy::prelude::*;
 use tabletop_core::{Action, CameraMotion, DragPlane, Hand, Hands, Keys, Paused, UserCamera};

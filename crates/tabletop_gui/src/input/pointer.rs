@@ -1,4 +1,4 @@
-//! Where the mouse points.
+//! The mouse pointer.
 
 use bevy::{prelude::*, window::PrimaryWindow};
 use bevy_egui::{EguiContext, PrimaryEguiContext, egui, input::EguiWantsInput};
@@ -8,12 +8,12 @@ use tabletop_core::UserCamera;
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct MouseSystems;
 
-/// Where the mouse cursor is; nowhere while it is outside the window.
+/// The mouse cursor; it is nowhere while it is outside the window.
 #[derive(Resource, Clone, Copy, Debug, Default)]
 pub(crate) struct Pointer {
     /// The line of sight through it, from the user's camera.
     pub ray: Option<Ray3d>,
-    /// Where it is in the window, in its logical pixels from the upper left corner.
+    /// Its place in the window, in logical pixels from the upper left corner.
     pub cursor: Option<Vec2>,
     /// True if a press is for the panels.
     pub is_panels: bool,

@@ -56,7 +56,7 @@ fn hold_joint_keys(
     jog.keys.update(held, struck);
 }
 
-/// Where these actions move the joints; those of a joint that contradict each other move nothing.
+/// The directions in which these actions move the joints; those of a joint that contradict each other move nothing.
 fn directions(layout: &RobotLayout, is_on: impl Fn(Action) -> bool) -> Directions {
     Directions::of(layout, |joint| {
         let joint = layout.joint(joint);

@@ -19,10 +19,10 @@ use crate::panels::messages::{Notices, Tone};
 /// The pictures that are to be saved and those that are being saved.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Snapshots {
-    /// Where they go: the working directory if it is empty.
+    /// Their folder: the working directory if it is empty.
     folder: PathBuf,
     is_wanted: bool,
-    /// What comes of those that are being written, in words.
+    /// The outcome of those that are being written, in words.
     writing: Vec<Task<(Tone, String)>>,
 }
 

@@ -1,4 +1,4 @@
-//! How far each hand has turned what it holds, about each axis of the world: what the rotation sliders show.
+//! The turns of each hand's object about each axis of the world, which the rotation sliders show.
 
 use bevy::prelude::*;
 use tabletop_core::{Hand, HandCommand, SimFact};

@@ -111,7 +111,7 @@ impl Panels {
         desk.min + vec2(GAP + beside, GAP + below)
     }
 
-    /// What was read from a file, with what it lacks: it may be older than a panel.
+    /// Completes what was read from a file, which may be older than a panel.
     pub(crate) fn completed(mut self) -> Self {
         let mut seen = BTreeSet::new();
         self.stack.retain(|&panel| seen.insert(panel));

@@ -23,19 +23,19 @@ use crate::{
 /// Size of the buttons with pictures, in points.
 const ICON_SIZE: egui::Vec2 = egui::vec2(27.0, 23.0);
 
-/// What the bar shows.
+/// The content of the bar.
 struct Model<'a> {
     panels: &'a Panels,
-    /// How many faults the user has not seen yet.
+    /// The number of faults that the user has not seen yet.
     unseen_faults: usize,
-    /// How large everything is drawn.
+    /// The scale at which everything is drawn.
     scale: f32,
     keymap: &'a Keymap,
     /// True if the display has settings.
     has_display: bool,
 }
 
-/// What the user asks of the bar.
+/// A wish of the user to the bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Request {
     ShowAll,

@@ -20,7 +20,7 @@ use crate::{
 const WIDTH: f32 = 420.0;
 const HEIGHT: f32 = 300.0;
 
-/// What a file is looked for.
+/// The purpose for which a file is looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// Opening a task file or a recording.
@@ -35,18 +35,18 @@ pub struct Browser {
     search: Option<Search>,
 }
 
-/// What the user looks for, and where.
+/// The user's search.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Search {
     purpose: Purpose,
     folder: FolderContent,
-    /// What is selected or typed.
+    /// The name that is selected or typed.
     name: String,
     /// The file that would be replaced.
     replaces: Option<PathBuf>,
 }
 
-/// What can be chosen in a folder.
+/// The entries of a folder that can be chosen.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct FolderContent {
     path: PathBuf,
@@ -69,7 +69,7 @@ enum EntryKind {
     Task,
 }
 
-/// What the user wants.
+/// A wish of the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Request {
     Enter(PathBuf),

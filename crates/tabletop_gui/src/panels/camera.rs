@@ -29,10 +29,10 @@ const CLIMB: f32 = 9.0;
 /// Radius of the dot where a drag began, in points.
 const DOT: f32 = 4.0;
 
-/// What the user asks of the camera.
+/// A wish of the user to the camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Request {
-    /// What is held down asks for.
+    /// The motion that the held buttons ask for.
     steering: Steering,
     /// The button that was pressed.
     view: Option<CameraView>,
@@ -128,7 +128,7 @@ fn steering(ui: &mut Ui, keymap: &Keymap) -> Steering {
     }
 }
 
-/// What a pad says while the mouse rests on it, with the keys that do the same.
+/// The tooltip of a pad, with the keys that do the same.
 fn with_keys(text: &str, actions: [Action; 4], keymap: &Keymap) -> String {
     let keys = actions.map(|action| keymap.hint(action));
     format!("{text} ({})", keys.join(", "))
@@ -167,7 +167,7 @@ fn pad(ui: &mut Ui, name: &str, tooltip: &str) -> Vec2 {
     })
 }
 
-/// Where the mouse was pressed on something, and where it is now while its button is down.
+/// The points at which the mouse was pressed and is now, while its button is down.
 fn ends_of_drag(ui: &Ui, response: &Response) -> Option<[egui::Pos2; 2]> {
     if !response.is_pointer_button_down_on() {
         return None;

@@ -29,7 +29,7 @@ const SLIDERS: [(&str, Color32); 3] = [
     ("Z", Color32::from_rgb(90, 130, 255)),
 ];
 
-/// What an empty hand has (report figure 8b).
+/// The content of an empty hand (report figure 8b).
 const EMPTY: &str = "<empty>";
 
 /// Why the plane cannot be turned.
@@ -54,21 +54,21 @@ fn open_at_first_grasp(
     }
 }
 
-/// What the panel shows.
+/// The content of the panel.
 #[derive(Clone, Copy, Debug)]
 struct Model<'a> {
     /// The selected hand.
     hand: Hand,
     /// Id of what it holds.
     held: Option<&'a str>,
-    /// How far it has turned that about each axis, in degrees.
+    /// The turns about each axis, in degrees.
     turns: [i32; 3],
     is_recording: bool,
     history: History,
     keymap: &'a Keymap,
 }
 
-/// What the user does with the panel.
+/// The user's input to the panel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct ToolsInput {
     /// The buttons that are held down.
@@ -76,7 +76,7 @@ struct ToolsInput {
     request: Option<Request>,
 }
 
-/// What the user asks of the panel once.
+/// A wish of the user to the panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Request {
     Select(Hand),
@@ -93,7 +93,7 @@ enum Request {
     Redo,
 }
 
-/// Where the model comes from.
+/// The resources from which the model is made.
 #[derive(SystemParam)]
 struct Sources<'w, 's> {
     hands: Res<'w, Hands>,

@@ -34,14 +34,14 @@ const NO_OTHER_DEPTH: &str = "The screen has no other at this resolution and ref
 const DEPTH_OF_DESKTOP: &str = "A window has the colours of the desktop";
 const NO_ANTIALIASING: &str = "The graphics driver offers none";
 
-/// What there is to choose from, and who draws.
+/// The choices, and the renderer.
 #[derive(Clone, Copy, Debug)]
 struct Model<'a> {
     offer: &'a DisplayOffer,
     renderer: &'a Renderer,
 }
 
-/// What the user has decided. Over the main window, to cancel means to leave it as it is.
+/// The user's decision. Over the main window, to cancel means to leave it as it is.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DisplayRequest {
     /// To start with these settings.
@@ -87,7 +87,7 @@ pub(crate) fn plugin(app: &mut App) {
 #[derive(Resource, Default)]
 pub(crate) struct DisplayOverlay {
     is_open: bool,
-    /// What the user has chosen, but not yet decided upon.
+    /// The choice that is not decided upon yet.
     draft: Option<DisplaySettings>,
 }
 

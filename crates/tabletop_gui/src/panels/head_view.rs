@@ -1,4 +1,4 @@
-//! What the robot sees, at the lower right corner of the window (report section 5, figure 9b): the head camera's own picture.
+//! The robot's view at the lower right corner of the window (report section 5, figure 9b): the head camera's own picture.
 
 use bevy::prelude::*;
 use bevy_egui::{

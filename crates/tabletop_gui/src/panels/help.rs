@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 use tabletop_core::{Action, ActionGroup, KeySystems, Keymap, Way, was_struck};
 
-/// How many columns there are.
+/// The number of columns.
 const COLUMNS: usize = 3;
 
 /// The column of a group, from left to right.
@@ -19,7 +19,7 @@ const fn column_of(group: ActionGroup) -> usize {
     }
 }
 
-/// What the mouse does beside the panels.
+/// The actions of the mouse beside the panels.
 const MOUSE: [(&str, &str, &str); 6] = [
     (
         "click",
@@ -82,7 +82,7 @@ impl Help {
     }
 }
 
-/// What the sheet says: groups with their lines, column by column.
+/// The content of the sheet: groups with their lines, column by column.
 #[derive(Clone, Debug, PartialEq)]
 struct KeySheet {
     columns: Vec<Vec<Group>>,
@@ -94,7 +94,7 @@ struct Group {
     lines: Vec<Line>,
 }
 
-/// What keys do, and which ones.
+/// An action and its keys.
 #[derive(Clone, Debug, PartialEq)]
 struct Line {
     label: String,
@@ -102,7 +102,7 @@ struct Line {
     tooltip: String,
 }
 
-/// What the user asks for.
+/// A wish of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Request {
     Close,

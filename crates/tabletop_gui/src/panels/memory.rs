@@ -1,4 +1,4 @@
-//! Where the panels were when the program ran before.
+//! The arrangement of the panels, kept from run to run.
 
 use bevy::prelude::*;
 
@@ -10,7 +10,7 @@ use crate::{
     preferences::Preferences,
 };
 
-/// What preferences call them.
+/// Their name in the preferences.
 const CONCERN: &str = "windows";
 
 pub(crate) fn plugin(app: &mut App) {

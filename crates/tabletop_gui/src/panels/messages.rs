@@ -26,7 +26,7 @@ use rows::Rows;
 /// Height of the list in points, until the user changes it.
 const LIST_HEIGHT: f32 = 180.0;
 
-/// What the list shows of the notices.
+/// The notices that the list shows.
 #[derive(Resource, Clone, Debug)]
 pub(crate) struct MessageList {
     /// Which tones, in their order.
@@ -58,7 +58,7 @@ impl MessageList {
     }
 }
 
-/// What the user asks of the window.
+/// A wish of the user to the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Request {
     Copy,
@@ -138,7 +138,7 @@ fn show_panel(
     }
 }
 
-/// What the list shows, a notice below the other.
+/// The text of the list, a notice below the other.
 fn text(notices: &Notices, list: &MessageList) -> String {
     let shown = notices.all().filter(|notice| list.shows(notice));
     shown

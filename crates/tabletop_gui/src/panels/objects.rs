@@ -21,7 +21,7 @@ use crate::{
 /// Width of the buttons at the right of the lists, in points.
 const BUTTON_WIDTH: f32 = 84.0;
 
-/// What the second list offers.
+/// The entries of the second list.
 const ENTRIES: [(&str, Entry); 6] = [
     ("Make a big block", Entry::Make(Preset::BigBlock)),
     ("Make a stack of 3 blocks", Entry::Make(Preset::Stack(3))),
@@ -31,14 +31,14 @@ const ENTRIES: [(&str, Entry); 6] = [
     ("Clear the table", Entry::Clear),
 ];
 
-/// What an entry of the second list does.
+/// The action of an entry of the second list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Entry {
     Make(Preset),
     Clear,
 }
 
-/// What the panel shows.
+/// The content of the panel.
 struct Model<'a> {
     tasks: &'a [TaskFile],
     recent: &'a [PathBuf],
@@ -46,14 +46,14 @@ struct Model<'a> {
     keymap: &'a Keymap,
 }
 
-/// What is selected in the lists.
+/// The selection in the lists.
 #[derive(Default)]
 struct Selection {
     task: Option<PathBuf>,
     entry: usize,
 }
 
-/// What the user wants.
+/// A wish of the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Request {
     Load(PathBuf),

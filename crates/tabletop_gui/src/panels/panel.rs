@@ -20,7 +20,7 @@ pub enum Panel {
     Objects,
     /// The recording that is made or open, along its time.
     Timeline,
-    /// What the user has been told.
+    /// Notices to the user.
     Messages,
 }
 
@@ -62,7 +62,7 @@ impl Panel {
         }
     }
 
-    /// What its button says while the mouse rests on it.
+    /// The tooltip of its button.
     pub const fn tooltip(self) -> &'static str {
         match self {
             Self::Status => "Speeds, the script's state and the recording",

@@ -32,7 +32,7 @@ pub(crate) fn plugin(app: &mut App) {
     app.add_systems(EguiPrimaryContextPass, show_panel);
 }
 
-/// Where the model comes from.
+/// The resources from which the model is made.
 #[derive(SystemParam)]
 struct Sources<'w, 's> {
     robot: Res<'w, Robot>,
@@ -117,7 +117,7 @@ fn show(ui: &mut Ui, model: &Model, selection: &mut JointSelection) -> RobotInpu
     input
 }
 
-/// What there is to see, and who controls the robot.
+/// The switches: what there is to see, and who controls the robot.
 fn switches(ui: &mut Ui, model: &Model, requests: &mut Vec<Request>) {
     let is_shown = model.robot.is_shown;
     ui.horizontal(|ui| {

@@ -20,7 +20,7 @@ use crate::{
 /// The time over which speeds are averaged.
 const SPAN: Duration = Duration::from_secs(2);
 
-/// How often the simulated time is told while nothing else changes in the picture.
+/// The simulated time is told so often while nothing else changes in the picture.
 const STILL_SPAN: Duration = Duration::from_secs(1);
 
 /// Height of a row, and width of the names of the values, in points.
@@ -30,10 +30,10 @@ const NAME_WIDTH: f32 = 84.0;
 /// Ticks between two frames of a recording (report section 4.1: four images a second).
 const TICKS_PER_FRAME: u64 = TICKS_PER_SECOND as u64 / 4;
 
-/// What draws the window. Whoever opens the window sets it.
+/// The renderer of the window. Whoever opens the window sets it.
 #[derive(Resource, Clone, Debug, PartialEq, Eq)]
 pub struct Renderer {
-    /// What it calls itself.
+    /// The name that it gives itself.
     pub name: String,
     /// True if it draws on the processor instead of a graphics card.
     pub is_software: bool,
@@ -65,7 +65,7 @@ struct Means {
     fps: f32,
     /// Simulated seconds a second.
     pace: f32,
-    /// How long a call of the script took.
+    /// The time that a call of the script took.
     call: Option<Duration>,
 }
 
@@ -121,7 +121,7 @@ fn measure(
     };
 }
 
-/// Where the present recording goes, and when it began.
+/// The folder and the beginning of the present recording.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
 struct Take {
     folder: PathBuf,
@@ -139,7 +139,7 @@ fn follow_recording(mut facts: MessageReader<SimFact>, tick: Res<SimTick>, mut t
     }
 }
 
-/// What the window shows.
+/// The content of the window.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Model {
     mean: Means,
@@ -152,7 +152,7 @@ struct Model {
     renderer: Option<Renderer>,
 }
 
-/// What there is of recordings.
+/// The state of recordings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 enum Film {
     #[default]
@@ -167,7 +167,7 @@ enum Film {
     Replayed,
 }
 
-/// Where the model comes from.
+/// The resources from which the model is made.
 #[derive(SystemParam)]
 struct Sources<'w> {
     speed: Res<'w, Speed>,
@@ -251,7 +251,7 @@ fn simulated(model: &Model) -> String {
     }
 }
 
-/// What the script does, in words.
+/// The state of the script, in words.
 fn matlab(agent: &Agent, call: Option<Duration>) -> String {
     match (agent, call) {
         (Agent::Off, _) => "offline".into(),
@@ -279,7 +279,7 @@ fn recording(film: &Film) -> String {
     }
 }
 
-/// How far the recording can be undone, and the memory that takes.
+/// The number of segments that can be undone, and the memory that they take.
 fn undo(history: &History) -> String {
     const MEGABYTE: usize = 1024 * 1024;
     let [used, most] = [history.bytes, history.most_bytes].map(|bytes| bytes.div_ceil(MEGABYTE));

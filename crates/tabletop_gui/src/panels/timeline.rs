@@ -22,7 +22,7 @@ use self::{
 };
 use crate::panels::{Panel, Panels};
 
-/// What to do where there is no recording.
+/// Advice where there is no recording.
 const ABSENT: &str = "There is no recording. Start one in Demonstration Tools, or open one: drop its folder onto the window.";
 
 pub(crate) fn plugin(app: &mut App) {
@@ -32,7 +32,7 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(EguiPrimaryContextPass, show_panel);
 }
 
-/// What the panel remembers.
+/// The state of the panel.
 #[derive(Resource, Default)]
 pub(crate) struct View {
     /// The moment that the user looks at, though the world is not there.
@@ -153,7 +153,7 @@ fn open_with_recording(
     }
 }
 
-/// What the model is made from.
+/// The resources from which the model is made.
 #[derive(SystemParam)]
 struct Source<'w> {
     timeline: Res<'w, Timeline>,

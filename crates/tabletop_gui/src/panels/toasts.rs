@@ -17,17 +17,17 @@ use crate::{
     widgets::style::{GAP, MARGIN},
 };
 
-/// How many there are at most. The newest ones count.
+/// The most that are shown. The newest ones count.
 const MOST: usize = 4;
 
 /// Width of their texts, and thickness of the line in their colour, in points.
 const WIDTH: f32 = 300.0;
 const EDGE: f32 = 3.0;
 
-/// How many lines of a notice are shown.
+/// The lines of a notice that are shown.
 const LINES: usize = 3;
 
-/// How long a notice is shown, in seconds.
+/// The time for which a notice is shown, in seconds.
 const fn seconds(tone: Tone) -> f64 {
     match tone {
         Tone::News => 4.0,

@@ -153,13 +153,13 @@ impl Panel {
     }
 }
 
-/// What the user has done with a title bar.
+/// The user's action on a title bar.
 enum Handled {
     Moved(Pos2),
     Hidden,
 }
 
-/// Where panels may be: all above the bar.
+/// The room of the panels: all above the bar.
 pub(crate) fn desk(context: &Context) -> Rect {
     let mut desk = context.viewport_rect();
     desk.set_bottom(bar::top(context));

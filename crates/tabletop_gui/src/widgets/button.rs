@@ -16,7 +16,7 @@ pub(crate) fn switch(ui: &mut Ui, is_on: bool, text: &str, tooltip: &str) -> Res
         .on_hover_text(tooltip)
 }
 
-/// What the user does with a button that acts while it is held down.
+/// The state of a button that acts while it is held down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Hold {
     pub is_held: bool,

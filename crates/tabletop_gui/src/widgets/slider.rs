@@ -107,7 +107,7 @@ fn paint(ui: &Ui, track: &SliderTrack, response: &Response, color: Color32, degr
     painter.circle(knob, KNOB_RADIUS - 1.0, color, outline);
 }
 
-/// Where the angles lie on the screen.
+/// The track of the angles on the screen.
 #[derive(Clone, Copy, Debug)]
 struct SliderTrack {
     left: f32,
@@ -115,7 +115,7 @@ struct SliderTrack {
     y: f32,
 }
 
-/// What a press on a slider has hit.
+/// The part of a slider that a press has hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum SliderPress {
     /// The knob, so far to the right of its middle.

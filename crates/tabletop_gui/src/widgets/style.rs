@@ -1,4 +1,4 @@
-//! How everything in the window looks: colours, spaces, corners.
+//! The style of everything in the window: colours, spaces, corners.
 
 use bevy::prelude::*;
 use bevy_egui::{
@@ -6,7 +6,7 @@ use bevy_egui::{
     egui::{self, Color32, Stroke, Vec2, vec2},
 };
 
-/// What is on, what the user works at.
+/// The colour of what is on or worked at.
 pub(crate) const ACCENT: Color32 = Color32::from_rgb(64, 196, 180);
 
 /// Behind what is selected.
@@ -24,7 +24,7 @@ const BUTTON: Color32 = Color32::from_rgb(50, 55, 63);
 const HOVERED: Color32 = Color32::from_rgb(66, 73, 83);
 const PRESSED: Color32 = Color32::from_rgb(34, 112, 104);
 
-/// Where something is typed or slid.
+/// The ground on which something is typed or slid.
 const GROOVE: Color32 = Color32::from_rgb(74, 81, 92);
 const FIELD: Color32 = Color32::from_rgb(14, 15, 18);
 
@@ -47,7 +47,7 @@ pub(crate) const MARGIN: i8 = 8;
 pub(crate) const CORNER: u8 = 5;
 const SMALL_CORNER: u8 = 3;
 
-/// How long a panel takes to appear, in seconds.
+/// The time in which a panel appears, in seconds.
 const FADE: f32 = 0.1;
 
 pub(crate) fn plugin(app: &mut App) {

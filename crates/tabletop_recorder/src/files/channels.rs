@@ -1,6 +1,6 @@
-//! What is written beside the pictures.
+//! The files beside the pictures.
 
-/// What is written of a frame beside its picture, of the same pixels, as PNG files of 16 bits.
+/// The files of a frame beside its picture, of the same pixels, as PNG files of 16 bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Channels {
     /// `<frame>.depth.png`: how far away it is, in tenths of a millimetre along the axis of view; 0 where nothing is.

@@ -1,10 +1,10 @@
-//! Where recordings go, and what is written of them.
+//! The destination of recordings: their folder and files.
 
 use std::path::PathBuf;
 
 use crate::files::{channels::Channels, durability::Durability, storage::Storage};
 
-/// Where recordings go, and what is written of them.
+/// The destination of recordings: their folder and files.
 #[derive(Clone, Debug)]
 pub(crate) struct Destination {
     pub(crate) folder: PathBuf,

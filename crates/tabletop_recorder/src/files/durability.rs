@@ -1,6 +1,6 @@
-//! How much of a recording outlives a loss of power.
+//! The durability of recordings over a loss of power.
 
-/// How much of a recording outlives a loss of power. A crash or a kill of the program costs at most a tick in any case.
+/// The durability of recordings over a loss of power. A crash or a kill of the program costs at most a tick in any case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Durability {
     /// What the operating system has written by then: for recordings that are thrown away.

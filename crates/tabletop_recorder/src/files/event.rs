@@ -31,7 +31,7 @@ pub enum Event<'a> {
     Move {
         /// Its id.
         id: &'a str,
-        /// Where it is now.
+        /// Its present pose.
         pose: Pose,
     },
     /// A hand has taken an object.

@@ -1,4 +1,4 @@
-//! Where the files of a recording are.
+//! The files of a recording.
 
 use std::{
     fs::{self, File},
@@ -179,22 +179,22 @@ impl Folder {
         self.pictures(segment).join(format!("{frame}.{name}.png"))
     }
 
-    /// What is about to be done to its files.
+    /// The file that says what is about to be done to its files.
     pub(crate) fn intent(&self) -> PathBuf {
         self.path.join(".intent.json")
     }
 
-    /// What was undone and can be redone.
+    /// The folder of what was undone and can be redone.
     pub(crate) fn undone(&self) -> Self {
         Self::at(&self.path.join(".undone"), &self.storage)
     }
 
-    /// What was undone and cannot be redone any more, on its way out.
+    /// The folder of what was undone and cannot be redone any more, on its way out.
     pub(crate) fn dropped(&self) -> Self {
         Self::at(&self.path.join(".dropped"), &self.storage)
     }
 
-    /// What was undone with a segment.
+    /// The folder of what was undone with a segment.
     pub(crate) fn undone_segment(&self, segment: u32) -> Self {
         Self::at(&self.undone().pictures(segment), &self.storage)
     }

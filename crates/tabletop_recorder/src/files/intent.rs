@@ -1,4 +1,4 @@
-//! What is about to be done to several files at once, so that all of it happens or nothing.
+//! Changes of several files at once, of which all happen or none.
 //!
 //! The intent is written before the files are touched, and gone when all of it is done. Who finds one in a recording that nobody
 //! is making does what it says: every step can be taken twice.
@@ -15,7 +15,7 @@ use crate::{
 /// The longest that is read: it holds a few lines of commands.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// How long the files of a recording were.
+/// The lengths of a recording's files.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Lengths {
     pub(crate) segment: u32,
@@ -25,7 +25,7 @@ pub(crate) struct Lengths {
     pub(crate) joints: u64,
 }
 
-/// What is about to be done to the files of a recording.
+/// A change that is about to be made to the files of a recording.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Intent {
     /// A segment is put away; the ends of the logs that belong to it are in its folder already.
@@ -44,7 +44,7 @@ pub(crate) enum Intent {
     /// The recording ends with a last frame. It is taken back unless the session log has come to an end.
     Finish {
         before: Lengths,
-        /// How long the session log then is.
+        /// The length of the session log then.
         session: u64,
         /// From which frame on pictures are its own.
         first_frame: u64,

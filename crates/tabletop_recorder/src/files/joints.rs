@@ -1,4 +1,4 @@
-//! Where every joint of the robot was at the end of every tick, how fast, and how hard its motor pulled.
+//! The position, speed and torque of every joint of the robot at the end of every tick.
 
 use tabletop_core::{JointState, RobotLayout, SimTick};
 

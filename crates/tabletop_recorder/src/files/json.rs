@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::error::Error;
 
-/// How deep values may be nested: a composite in a composite takes four levels, and task files have a hundred of those.
+/// The depth to which values may be nested: a composite in a composite takes four levels, and task files have a hundred of those.
 const MOST_LEVELS: usize = 512;
 
 /// Reads a value.
@@ -29,7 +29,7 @@ pub(crate) fn to_json_line(value: &impl Serialize) -> Result<Vec<u8>, Error> {
     Ok(line)
 }
 
-/// How deep brackets are nested, at most.
+/// The greatest depth of nested brackets.
 fn depth(json: &[u8]) -> usize {
     let (mut depth, mut most) = (0_usize, 0);
     let (mut is_text, mut is_escaped) = (false, false);

@@ -1,4 +1,4 @@
-//! How large what is read may be.
+//! Limits of what is read.
 
 /// Bytes of a session log.
 pub(crate) const MOST_SESSION_BYTES: u64 = 256 << 20;

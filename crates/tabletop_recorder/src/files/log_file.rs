@@ -81,7 +81,7 @@ impl LogFile {
         Ok(())
     }
 
-    /// What comes after the first `len` bytes.
+    /// The bytes after the first `len`.
     pub(crate) fn read_from(&mut self, len: u64) -> Result<Vec<u8>, RecorderError> {
         let rest = self.file.read_from(len, u64::MAX);
         rest.map_err(RecorderError::read(&self.path))
@@ -103,7 +103,7 @@ fn csv_lines(records: &[Vec<String>]) -> io::Result<Vec<u8>> {
     lines.into_inner().map_err(csv::IntoInnerError::into_error)
 }
 
-/// What is in a file of a recording up to its last line end: a kill in the middle of a write may leave half a line.
+/// The content of a recording's file up to its last line end: a kill in the middle of a write may leave half a line.
 pub fn whole_lines(bytes: &[u8]) -> &[u8] {
     let end = bytes.iter().rposition(|&byte| byte == b'\n');
     end.and_then(|end| bytes.get(..=end)).unwrap_or_default()

@@ -39,7 +39,7 @@ pub struct SessionHeader {
     pub begin_tick: Option<u64>,
     /// The first recorded tick.
     pub start_tick: u64,
-    /// How many commands of the log were carried out before the recording started.
+    /// The number of commands of the log that were carried out before the recording started.
     pub earlier_commands: usize,
     /// The head camera, if there is one.
     pub camera: Option<HeadCamera>,
@@ -47,7 +47,7 @@ pub struct SessionHeader {
     pub settings: Map<String, Value>,
 }
 
-/// What else the header of the next recording is to say: whatever a replay must know.
+/// Further content of the next recording's header: whatever a replay must know.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
 pub struct SessionSettings(pub Map<String, Value>);
 
@@ -65,9 +65,9 @@ pub struct SessionScene {
 /// An object as it was before the first recorded tick.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SessionObject {
-    /// Where it was.
+    /// Its pose.
     pub pose: Pose,
-    /// What it is, and where it was first put.
+    /// Its description, with the pose at which it was first put.
     pub spec: ObjectSpec,
 }
 
@@ -105,7 +105,7 @@ impl SessionCommand {
         }
     }
 
-    /// What the program itself does in a tick.
+    /// A command of the program itself in a tick.
     pub(crate) fn of_app(tick: SimTick, command: impl Into<SimCommand>) -> Self {
         Self {
             tick: tick.0,
@@ -185,7 +185,7 @@ impl SessionScene {
     }
 }
 
-/// How far a simulation has come with the commands of a session log.
+/// The progress of a simulation through the commands of a session log.
 struct Course {
     /// The tick of the first command.
     begin: u64,

@@ -1,4 +1,4 @@
-//! Where every object was at the end of every tick, and how fast.
+//! The pose and the speed of every object at the end of every tick.
 
 use tabletop_core::{Pose, SimTick, Twist};
 

@@ -10,7 +10,7 @@ use std::{
     },
 };
 
-/// Where recordings are kept: the file system.
+/// The place of recordings: the file system.
 ///
 /// Tests make one of its calls fail. The calls of a recording are counted from 0; the same commands make the same calls.
 ///
@@ -27,7 +27,7 @@ pub struct Storage {
     failpoint: Option<(Fault, u64)>,
 }
 
-/// How calls to a [`Storage`] fail.
+/// The failure of calls to a [`Storage`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Fault {
     /// One call finds the disk full. Of what it was to write, half is written.
@@ -85,7 +85,7 @@ impl Storage {
         }
     }
 
-    /// How many calls there were.
+    /// The number of calls.
     pub fn calls(&self) -> u64 {
         self.calls.load(Ordering::Relaxed)
     }
@@ -147,7 +147,7 @@ impl Storage {
         }
     }
 
-    /// What is in a file, which is refused if it has more bytes than this.
+    /// The content of a file, which is refused if it has more bytes than this.
     pub(crate) fn read(&self, path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
         read_at_most(&self.open_to_read(path)?.file, most_bytes)
     }
@@ -213,7 +213,7 @@ impl Storage {
         fs::remove_dir(path)
     }
 
-    /// What is in a folder, in the order of the names.
+    /// The entries of a folder, in the order of the names.
     pub(crate) fn entries(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {
         self.may()?;
         let entries = fs::read_dir(folder)?;
@@ -278,7 +278,7 @@ impl StoredFile {
         Ok(self.file.metadata()?.len())
     }
 
-    /// What comes after the first `start` bytes, which is refused if it has more bytes than this. The file is then at its end.
+    /// The bytes after the first `start`, which is refused if it has more bytes than this. The file is then at its end.
     pub(crate) fn read_from(&mut self, start: u64, most_bytes: u64) -> io::Result<Vec<u8>> {
         self.storage.may()?;
         self.file.seek(SeekFrom::Start(start))?;

@@ -12,11 +12,11 @@ use crate::{error::RecorderError, reading::fault::damaged};
 pub struct RecordedEvent {
     /// The first frame that shows it.
     pub frame: u64,
-    /// What happened.
+    /// The event.
     pub what: Occurrence,
 }
 
-/// What a line of a segment's text file tells.
+/// The event in a line of a segment's text file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Occurrence {
     /// An object is there for the first time.
@@ -35,7 +35,7 @@ pub enum Occurrence {
     Move {
         /// Its id.
         id: String,
-        /// Where it is now, in units.
+        /// Its present location, in units.
         location: Vec3,
         /// Its angles in degrees about the fixed X, then Y, then Z axis.
         degrees: Vec3,

@@ -1,4 +1,4 @@
-//! How far a recording goes that has no end, because the program was killed or its disk was full.
+//! The last tick of a recording that has no end, because the program was killed or its disk was full.
 
 use std::{io, path::Path};
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::RecorderError;
 
-/// What is wrong with a line of a recording's file.
+/// The error for a line of a recording's file.
 pub(super) fn damaged(path: &Path, line: u64, problem: impl ToString) -> RecorderError {
     RecorderError::Line {
         path: PathBuf::from(path),

@@ -240,7 +240,7 @@ impl RecordingReader {
         rows::joints(&self.folder.joints())
     }
 
-    /// How every joint of the robot was at the end of a tick, in the order of its [layout](tabletop_core::RobotLayout).
+    /// The state of every joint of the robot at the end of a tick, in the order of its [layout](tabletop_core::RobotLayout).
     ///
     /// # Errors
     /// As for [`joints`](Self::joints).
@@ -256,7 +256,7 @@ impl RecordingReader {
         Ok(joints)
     }
 
-    /// What happens in it, along its time.
+    /// The timeline: what happens in it, along its time.
     ///
     /// # Errors
     /// As for [`segments`](Self::segments).

@@ -11,20 +11,20 @@ use crate::{
     reading::{event::number, fault::damaged},
 };
 
-/// Where an object was at the end of a tick, and how fast.
+/// The pose and the speed of an object at the end of a tick.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateRow {
     /// The tick.
     pub tick: SimTick,
     /// Id of the object.
     pub id: String,
-    /// Where it was, in units, and how it was turned.
+    /// Its location, in units, and rotation.
     pub pose: Pose,
-    /// How fast it was, in units/s and rad/s.
+    /// Its speed, in units/s and rad/s.
     pub twist: Twist,
 }
 
-/// How a joint of the robot was at the end of a tick.
+/// The state of a joint of the robot at the end of a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointRow {
     /// The tick.

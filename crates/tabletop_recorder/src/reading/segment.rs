@@ -1,4 +1,4 @@
-//! What a segment of a recording holds, and what it begins with.
+//! A segment of a recording, and the act with which it begins.
 
 use std::{collections::BTreeMap, path::PathBuf};
 
@@ -19,7 +19,7 @@ pub struct RecordedSegment {
     pub number: u32,
     /// Its first tick.
     pub start: SimTick,
-    /// What a hand did with which it begins; nothing in the first one.
+    /// The hand's act with which it begins; the first one has none.
     pub act: Option<Act>,
     /// Its events in their order.
     pub events: Vec<RecordedEvent>,
@@ -49,7 +49,7 @@ impl RecordedSegment {
     }
 }
 
-/// What the hands hold, as far as events tell.
+/// The objects in the hands, as far as events tell.
 #[derive(Debug, Default)]
 pub(super) struct Hands(BTreeMap<Hand, String>);
 

@@ -1,4 +1,4 @@
-//! What was told before a recording: its replay begins with that.
+//! Commands before a recording: its replay begins with them.
 
 use bevy::prelude::warn;
 use tabletop_core::{ClockCommand, IssuedCommand, SceneCommand, SimCommand, SimTick};
@@ -16,7 +16,7 @@ pub(crate) struct EarlierCommands {
     begin: Option<SimTick>,
     /// Their lines in a session log.
     lines: Vec<u8>,
-    /// How many there are.
+    /// Their number.
     count: usize,
     is_paused: bool,
     /// The robot and what it shows outlive a scene.
@@ -53,7 +53,7 @@ impl EarlierCommands {
         self.count
     }
 
-    /// What was told since a tick before which the world was empty.
+    /// The commands since a tick before which the world was empty.
     pub(crate) fn since(begin: SimTick, commands: &[SessionCommand]) -> Self {
         let mut earlier = Self {
             begin: Some(begin),

@@ -37,7 +37,7 @@ pub(crate) struct Episode {
     files: RecordingFiles,
     clock: FrameClock,
     objects: RecordedObjects,
-    /// What there was to be seen at the last frame.
+    /// The sight at the last frame.
     sight: Sight,
     /// The robot's joints at the end of the tick before.
     last_joints: Option<Vec<JointState>>,
@@ -54,7 +54,7 @@ pub(crate) struct Episode {
     unlogged: Vec<IssuedCommand>,
     undoable: Vec<SegmentStart>,
     redoable: Vec<UndoneSegment>,
-    /// How many pictures were written, also of what was undone.
+    /// The number of pictures that were written, also of what was undone.
     pictures: usize,
 }
 

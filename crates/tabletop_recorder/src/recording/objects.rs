@@ -16,7 +16,7 @@ use crate::{
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RecordedObjects {
     tracked: Vec<Tracked>,
-    /// How many `create` lines were written.
+    /// The number of `create` lines that were written.
     created: usize,
     /// The objects of the first tick, until their `create` lines are written.
     opening: Option<Vec<ObjectSpec>>,

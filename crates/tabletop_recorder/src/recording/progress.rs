@@ -1,4 +1,4 @@
-//! How far a recording has come, for undo and redo.
+//! The progress of a recording, for undo and redo.
 
 use tabletop_core::{JointState, SimTick};
 
@@ -11,12 +11,12 @@ use crate::{
     },
 };
 
-/// How far a recording had come.
+/// The progress of a recording at a moment.
 #[derive(Clone, Debug)]
 pub(crate) struct Progress {
     pub(crate) files: Lengths,
     pub(crate) objects: RecordedObjects,
-    /// What there was to be seen at the last frame.
+    /// The sight at the last frame.
     pub(crate) sight: Sight,
     pub(crate) last_joints: Option<Vec<JointState>>,
     pub(crate) is_paused: bool,
@@ -27,7 +27,7 @@ pub(crate) struct Progress {
 pub(crate) struct SegmentStart {
     pub(crate) before: Progress,
     pub(crate) timeline: TimelineMark,
-    /// What the session log says instead of the command that began it, if the recording goes on from here: a grasp that takes an
+    /// The commands in the session log in place of the one that began it, if the recording goes on from here: a grasp that takes an
     /// object out of another hand is a release and a grasp, in segments of their own.
     pub(crate) released: Vec<SessionCommand>,
     pub(crate) tick: SimTick,

@@ -28,11 +28,11 @@ use crate::{
 pub struct RecorderPlugin {
     /// The folder. What is there when a recording starts is moved aside.
     pub folder: PathBuf,
-    /// What the [settings](SessionSettings) are to begin with.
+    /// The initial [settings](SessionSettings).
     pub header: Map<String, Value>,
-    /// What is written beside the pictures.
+    /// The files beside the pictures.
     pub channels: Channels,
-    /// What outlives a loss of power.
+    /// The durability over a loss of power.
     pub durability: Durability,
     /// The file system, which tests let fail.
     pub storage: Storage,

@@ -93,7 +93,7 @@ impl Stage<'_, '_> {
         &self.robot.joints
     }
 
-    /// What there is to be seen of these objects and the robot, wherever they are.
+    /// The sight of these objects and the robot, wherever they are.
     pub(crate) fn sight(&self, objects: &[Tracked]) -> Sight {
         let shape = |id: &str| Some(self.spec(self.index.get(id)?)?.shape.clone());
         let seen = objects
@@ -106,7 +106,7 @@ impl Stage<'_, '_> {
     }
 }
 
-/// What an image shows.
+/// The subject of a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Shown<'w> {
     Table,
@@ -114,7 +114,7 @@ pub(crate) enum Shown<'w> {
     Other,
 }
 
-/// What there is to be seen, wherever it is.
+/// The sight of a frame: everything that can be seen, wherever it is.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Sight {
     /// The number of each object's `create` line, and how it looks.

@@ -2,7 +2,7 @@
 
 use tabletop_core::{Timeline, TimelineGrip, TimelinePicture, TimelineSegment};
 
-/// How far a timeline had come.
+/// The progress of a timeline.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TimelineMark {
     segments: usize,
@@ -10,7 +10,7 @@ pub(crate) struct TimelineMark {
     grips: usize,
 }
 
-/// What was on a timeline after a mark.
+/// The part of a timeline after a mark.
 #[derive(Clone, Debug)]
 pub(crate) struct TimelineTail {
     segments: Vec<TimelineSegment>,

@@ -11,15 +11,15 @@ const REPORTED_DISTANCE_SQUARED: f32 = 0.001;
 /// Angle, in degrees about any of the three axes, beyond which a turn is reported.
 const REPORTED_DEGREES: f32 = 0.5;
 
-/// What a recording remembers of an object on the table.
+/// A recording's memory of an object on the table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tracked {
     pub(crate) id: String,
     /// Which `create` line of the recording is its, from 1.
     pub(crate) number: usize,
-    /// Where it was at the end of the tick before, and how fast.
+    /// Its state at the end of the tick before.
     last: Option<State>,
-    /// Where its last `move` line says it is.
+    /// The pose in its last `move` line.
     reported: Option<Pose>,
 }
 

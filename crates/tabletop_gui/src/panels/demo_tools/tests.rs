@@ -24,7 +24,7 @@ fn the_first_grasp_opens_the_panel_and_later_ones_leave_it_closed() {
     }
 }
 
-/// What the panel is shown with, and everything that was asked of it.
+/// The content of the panel in a test, and everything that was asked of it.
 #[derive(Clone, Debug, Default)]
 struct Stage {
     hand: Hand,

@@ -1,4 +1,4 @@
-//! What the user has been told.
+//! Notices to the user.
 
 use std::collections::VecDeque;
 
@@ -10,7 +10,7 @@ use crate::widgets::style::{FAULT, NEWS, WARNING};
 /// Older notices are forgotten, so that a script that is refused a million times does not fill the memory.
 const MAX_NOTICES: usize = 1000;
 
-/// How the colours tell notices apart.
+/// The tone of a notice, which its colour shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tone {
     /// Something has happened.
@@ -24,7 +24,7 @@ pub enum Tone {
 impl Tone {
     pub(crate) const ALL: [Self; 3] = [Self::News, Self::Warning, Self::Fault];
 
-    /// What notices of this tone are called.
+    /// The plural of notices of this tone.
     pub(crate) const fn plural(self) -> &'static str {
         match self {
             Self::News => "News",
@@ -33,7 +33,7 @@ impl Tone {
         }
     }
 
-    /// What leaving them out or not is called.
+    /// The name of the filter that leaves them out or not.
     pub(crate) const fn filter(self) -> &'static str {
         match self {
             Self::News => "List what has happened",
@@ -54,7 +54,7 @@ impl Tone {
 /// One thing that the user has been told.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Notice {
-    /// How many notices came before it, counting those that are forgotten.
+    /// The number of notices before it, counting those that are forgotten.
     pub number: u64,
     pub tone: Tone,
     pub text: String,
@@ -161,7 +161,7 @@ impl Notices {
         self.revision
     }
 
-    /// How many notices have this tone.
+    /// The number of notices of this tone.
     pub(crate) fn count(&self, tone: Tone) -> usize {
         self.all().filter(|notice| notice.tone == tone).count()
     }

@@ -1,4 +1,4 @@
-//! What the robot has done, in words.
+//! Deeds of the robot, in words.
 
 use bevy::prelude::*;
 use tabletop_core::SimFact;

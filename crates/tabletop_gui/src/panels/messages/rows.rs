@@ -20,7 +20,7 @@ pub(super) struct Rows {
     rows: Vec<Row>,
 }
 
-/// What decides the rows.
+/// The inputs that decide the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Made {
     revision: u64,

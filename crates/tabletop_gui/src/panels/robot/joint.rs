@@ -21,7 +21,7 @@ const LIST_HEIGHT: f32 = 400.0;
 /// The joint that the user has selected.
 pub(super) struct JointSelection {
     pub joint: JointId,
-    /// Where the user has sent it, while it is under way.
+    /// The position to which the user has sent it, while it is under way.
     pub goal: Option<f64>,
 }
 
@@ -73,7 +73,7 @@ pub(super) fn joint(
     });
 }
 
-/// What a button does, and the keys that do it.
+/// The action of a button, and its keys.
 fn tooltip(model: &Model, joint: JointId, way: Way) -> String {
     let joint = model.layout.joint(joint).name;
     model.keymap.tooltip(Action::Move(joint, way))

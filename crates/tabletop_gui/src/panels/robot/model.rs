@@ -1,10 +1,10 @@
-//! What the Robot window shows, and what the user does with it.
+//! The content of the Robot window, and the user's input.
 
 use tabletop_core::{Face, JointId, Keymap, Robot, RobotLayout};
 
 use crate::input::jog::Directions;
 
-/// What the window shows.
+/// The content of the window.
 #[derive(Clone, Copy)]
 pub(super) struct Model<'a> {
     pub robot: &'a Robot,
@@ -24,14 +24,14 @@ impl Model<'_> {
     }
 }
 
-/// What the user does with the window.
+/// The user's input to the window.
 #[derive(Default)]
 pub(super) struct RobotInput {
     pub pressed: PressedButtons,
     pub requests: Vec<Request>,
 }
 
-/// Where the buttons move the joints.
+/// The directions in which the buttons move the joints.
 #[derive(Default)]
 pub(super) struct PressedButtons {
     /// Those that are held down.
@@ -40,7 +40,7 @@ pub(super) struct PressedButtons {
     pub struck: Directions,
 }
 
-/// What the user asks of the window once.
+/// A wish of the user to the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Request {
     ShowRobot(bool),

@@ -2,12 +2,12 @@
 
 use tabletop_core::JointLayout;
 
-/// What a joint's position is measured in.
+/// The unit of a joint's position.
 pub(super) const fn unit(joint: &JointLayout) -> &'static str {
     if joint.is_gripper() { "" } else { " rad" }
 }
 
-/// Where a joint stands: an angle in rad and degrees, an opening in units.
+/// The position of a joint: an angle in rad and degrees, an opening in units.
 pub(super) fn reading(joint: &JointLayout, position: f64) -> String {
     let value = number(position, 3);
     if joint.is_gripper() {

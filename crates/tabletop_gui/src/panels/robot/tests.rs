@@ -37,7 +37,7 @@ fn angles_are_read_in_rad_and_degrees_openings_in_units() {
     assert_eq!(number(-0.001, 3), "-0.001");
 }
 
-/// What the window is shown with, and everything that was asked of it.
+/// The content of the window in a test, and everything that was asked of it.
 #[derive(Default)]
 struct Stage {
     robot: Robot,

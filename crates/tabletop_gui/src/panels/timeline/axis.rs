@@ -1,4 +1,4 @@
-//! Where ticks are on the screen.
+//! The time axis: the places of ticks on the screen.
 
 use bevy_egui::egui::Rangef;
 use tabletop_core::{SimTick, TICKS_PER_SECOND, Timeline};

@@ -18,7 +18,7 @@ const SMALL: Vec2 = vec2(80.0, 60.0);
 const LARGE: Vec2 = vec2(320.0, 240.0);
 const GAP: f32 = 4.0;
 
-/// What stands for a picture that is not there.
+/// The colour in place of a picture that is not there.
 const MISSING: Color32 = Color32::from_gray(30);
 
 /// Shows small pictures, each below its time, and returns the moments that the user points out.

@@ -1,4 +1,4 @@
-//! What the Timeline shows, and what the user asks of it.
+//! The content of the Timeline, and the user's wishes.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use tabletop_core::{
 
 use super::axis::seconds;
 
-/// What the panel shows.
+/// The content of the panel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Model<'a> {
     pub timeline: &'a Timeline,
@@ -21,7 +21,7 @@ pub(crate) struct Model<'a> {
     pub keymap: &'a Keymap,
 }
 
-/// What the user asks for.
+/// A wish of the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Request {
     Play,
@@ -46,7 +46,7 @@ impl Model<'_> {
         self.timeline.stage == TimelineStage::Open
     }
 
-    /// Where the playhead is.
+    /// The tick of the playhead.
     pub fn playhead(&self) -> SimTick {
         let Timeline { start, end, .. } = *self.timeline;
         self.shown.clamp(start, end.max(start))
@@ -57,7 +57,7 @@ impl Model<'_> {
         seconds(tick.0.saturating_sub(self.timeline.start.0))
     }
 
-    /// Where it has come to, or where it is going.
+    /// The moment that it has come to, or is going to.
     pub fn progress(&self) -> String {
         match self.playback.goal {
             Some(goal) => format!("going to {} …", self.time(goal)),

@@ -1,4 +1,4 @@
-//! What the user asks of the timeline, carried out.
+//! The user's wishes to the timeline, carried out.
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
@@ -29,11 +29,11 @@ pub(super) fn plugin(app: &mut App) {
         );
 }
 
-/// How many segments are still to be undone.
+/// The number of segments that are still to be undone.
 #[derive(Resource, Debug, Default)]
 pub(super) struct PendingUndos(usize);
 
-/// Where requests go.
+/// The resources that requests change.
 #[derive(SystemParam)]
 pub(super) struct Orders<'w> {
     commands: CommandWriter<'w>,

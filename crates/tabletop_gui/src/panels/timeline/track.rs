@@ -124,7 +124,7 @@ fn paint_segment(
     painter.galley(top_left, text.clone(), ink);
 }
 
-/// What can be said of a segment, the longest text first.
+/// The texts of a segment, the longest one first.
 fn texts(act: Option<&Act>) -> [String; 3] {
     let Some(act) = act else {
         return ["Beginning", "Begin", ""].map(str::to_owned);
