@@ -41,6 +41,8 @@ fn tasks_are_demonstrated() {
         "drawer",
         "gates",
         "panel",
+        "dock",
+        "lock",
         "stack_three",
         "swap",
         "wall",

@@ -45,6 +45,14 @@ pub struct HostPoint {
     pub steps: Vec<TightnessStep>,
 }
 
+impl HostPoint {
+    /// The step of a tightness; none of 0.
+    pub fn step(&self, tightness: u32) -> Option<&TightnessStep> {
+        let number = tightness.checked_sub(1)?;
+        self.steps.get(number as usize)
+    }
+}
+
 /// A step of a host point's tightness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TightnessStep {

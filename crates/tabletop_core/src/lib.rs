@@ -26,6 +26,7 @@ mod color;
 mod command;
 mod control;
 mod fact;
+mod fastening;
 mod figure;
 mod hand;
 mod holder;
@@ -77,6 +78,7 @@ pub use control::{
     ToggleSwitch,
 };
 pub use fact::SimFact;
+pub use fastening::Turn;
 pub use figure::{CarriesHeadCamera, Figure, Triangles};
 pub use hand::{Hand, Hands};
 pub use holder::{Held, Holder};
@@ -87,6 +89,7 @@ pub use keymap::{
     Modifiers, Situation, Way, was_struck,
 };
 pub use light::{LIGHT, Light};
+pub use mechanism::{Placed, Surface};
 pub use navigation::{CameraMotion, CameraView, Steering};
 pub use number::Decimal;
 pub use object::{ObjectIndex, ObjectSpec};

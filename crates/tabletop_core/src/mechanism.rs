@@ -1,5 +1,7 @@
 //! The parts of objects that do something or can be spoken of: controls, bond points, and what can be pointed to.
 
+use bevy::prelude::*;
+
 use crate::{BondEnd, BondPoint, Control, GuestPoint, HostPoint, ObjectSpec, Part, Pose, Shape};
 
 /// A part of an object with an id of its own, or the whole object.
@@ -13,7 +15,66 @@ pub struct Placed<'a, T> {
     pub what: &'a T,
 }
 
+/// What is touched where an object is touched.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface<'a> {
+    /// The simple shape, in the frame of the object.
+    pub part: Part,
+    /// Id of the control that it belongs to, and which of the control's simple parts it is.
+    pub control: Option<(&'a str, u32)>,
+    /// Id of the innermost part around it to which one can point, or of the object.
+    pub pointable: &'a str,
+}
+
 impl ObjectSpec {
+    /// Everything of the object that can be touched.
+    pub fn surfaces(&self) -> Vec<Surface<'_>> {
+        fn collect<'a>(
+            (id, pose, shape): (&'a str, Pose, &'a Shape),
+            pointable: &'a str,
+            surfaces: &mut Vec<Surface<'a>>,
+        ) {
+            if let Shape::Composite { parts } = shape {
+                for part in parts {
+                    let pointable = if part.pointable { &part.id } else { pointable };
+                    let part = (&*part.id, pose * part.pose, &part.shape);
+                    collect(part, pointable, surfaces);
+                }
+                return;
+            }
+            let is_control = matches!(shape, Shape::Control(_));
+            for (number, part) in (0..).zip(shape.simple_touched()) {
+                let part = Part {
+                    pose: pose * part.pose,
+                    ..part
+                };
+                surfaces.push(Surface {
+                    part,
+                    control: is_control.then_some((id, number)),
+                    pointable,
+                });
+            }
+        }
+        let mut surfaces = Vec::new();
+        collect((&self.id, Pose::IDENTITY, &self.shape), &self.id, &mut surfaces);
+        surfaces
+    }
+
+    /// What a ray, in the frame of the table, first touches of the object at a pose, and how far away.
+    pub fn touched_along(&self, ray: Ray3d, pose: Pose) -> Option<(Surface<'_>, f32)> {
+        let distance = |surface: &Surface| {
+            let solids = surface.part.shape.colliding();
+            let at = pose * surface.part.pose;
+            let distances = solids.iter().filter_map(|solid| solid.distance_along(ray, at));
+            distances.min_by(f32::total_cmp)
+        };
+        let touched = self.surfaces().into_iter();
+        touched
+            .filter_map(|surface| Some((distance(&surface)?, surface)))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(distance, surface)| (surface, distance))
+    }
+
     /// The object's controls: itself, or parts of it.
     pub fn controls(&self) -> Vec<Placed<'_, Control>> {
         let mut controls = Vec::new();
@@ -132,4 +193,44 @@ fn control_among<'a>(parts: &'a mut [Part], id: &str) -> Option<&'a mut Control>
         | Shape::Lid { .. }
         | Shape::BondPoint(_) => None,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ControlKind, Rgb, Side, ToggleSwitch};
+
+    #[test]
+    fn a_ray_touches_the_side_of_a_switch_and_what_can_be_pointed_to() {
+        let switch = Control::new(ControlKind::ToggleSwitch(ToggleSwitch {
+            span: Vec3::new(1.0, 0.5, 0.1),
+            angle: 10.0,
+            color: Rgb::GRAY,
+            pressed: Side::Left,
+            states: 2,
+        }));
+        let color = Rgb::GRAY;
+        let block = Shape::Block {
+            span: Vec3::new(4.0, 4.0, 1.0),
+            color,
+        };
+        let parts = vec![
+            Part {
+                pointable: true,
+                ..Part::new("board", Pose::at(Vec3::NEG_Z * 0.5), block)
+            },
+            Part::new("power", Pose::IDENTITY, Shape::Control(switch.into())),
+        ];
+        let spec = ObjectSpec::new("panel", Pose::IDENTITY, 0.0, Shape::Composite { parts });
+        let pose = Pose::from_degrees(Vec3::new(5.0, 0.0, 1.0), Vec3::Z * 180.0);
+        let touched = |x: f32| {
+            let ray = Ray3d::new(pose * Vec3::new(x, 0.0, 9.0), Dir3::NEG_Z);
+            let (surface, _) = spec.touched_along(ray, pose)?;
+            Some((surface.control, surface.pointable))
+        };
+        assert_eq!(touched(-0.2), Some((Some(("power", 0)), "panel")));
+        assert_eq!(touched(0.2), Some((Some(("power", 1)), "panel")));
+        assert_eq!(touched(1.0), Some((None, "board")));
+        assert_eq!(touched(9.0), None);
+    }
 }

@@ -156,6 +156,11 @@ impl Shape {
         self.simple_parts_with(Control::seen)
     }
 
+    /// The simple shapes that can be touched, of which some may not be seen.
+    pub(crate) fn simple_touched(&self) -> Vec<Part> {
+        self.simple_parts_with(Control::touched)
+    }
+
     fn simple_parts_with(&self, of_control: fn(&Control) -> Vec<Part>) -> Vec<Part> {
         fn collect(
             id: &str,
@@ -214,7 +219,7 @@ impl Shape {
 
     /// The solids that other bodies touch.
     pub fn colliding(&self) -> Vec<Primitive> {
-        primitives(self.simple_parts_with(Control::touched), |_| 0.0)
+        primitives(self.simple_touched(), |_| 0.0)
     }
 }
 

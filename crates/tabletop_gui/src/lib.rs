@@ -118,6 +118,8 @@ fn add_parts(app: &mut App) {
         files::plugin,
         panels::objects::plugin,
         panels::browser::plugin,
+        input::mechanism_keys::plugin,
+        panels::context_menu::plugin,
     ));
 }
 

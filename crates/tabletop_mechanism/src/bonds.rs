@@ -1,38 +1,18 @@
 //! Fastening and loosening.
 
-use std::collections::BTreeSet;
-
 use bevy::prelude::*;
 use tabletop_core::{
     Bond, Bonds, CommandId, Held, HostPoint, Joint, JointKind, ObjectIndex, ObjectSpec, Operator,
-    Pose, Rollback, SimFact,
+    Pose, Rollback, SimFact, Turn,
 };
 use tabletop_physics::{hold, put, remove_joint, take_in};
 
 use crate::network::Network;
 
-/// A host farther away than this, in units, is not fastened to.
-const REACH: f32 = 2.0;
-
 /// Marks the joint of a bond, by the id of its guest point.
 #[derive(Component, Clone, Debug, PartialEq, Eq)]
 #[require(Rollback)]
 pub(crate) struct BondJoint(String);
-
-/// Which way a guest is turned.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Turn {
-    Tighter,
-    Looser,
-}
-
-/// A step of a bond that can be taken.
-#[derive(Clone, Debug)]
-pub(crate) struct Step {
-    /// The bond as it is afterwards.
-    bond: Bond,
-    turn: Turn,
-}
 
 /// A point of an object on the table.
 struct Point<'w> {
@@ -42,8 +22,6 @@ struct Point<'w> {
     pose: Pose,
     /// Where it is in the object.
     place: Pose,
-    fit: &'w str,
-    spec: &'w ObjectSpec,
 }
 
 fn objects(world: &World) -> impl Iterator<Item = (Entity, &ObjectSpec, Pose)> {
@@ -63,8 +41,6 @@ fn guests(world: &World) -> Vec<Point<'_>> {
             object,
             pose: pose * point.pose,
             place: point.pose,
-            fit: &point.what.fit,
-            spec,
         }));
     }
     points
@@ -79,8 +55,6 @@ fn hosts(world: &World) -> Vec<(Point<'_>, &HostPoint)> {
                 object,
                 pose: pose * point.pose,
                 place: point.pose,
-                fit: &point.what.fit,
-                spec,
             };
             (point, host)
         }));
@@ -88,123 +62,31 @@ fn hosts(world: &World) -> Vec<(Point<'_>, &HostPoint)> {
     points
 }
 
-/// The step that a guest point, or the object that it is a part of, can take now, or why none.
-pub(crate) fn step(world: &World, guest: &str, turn: Turn) -> Result<Step, String> {
-    let bonds = &world.resource::<Bonds>().0;
-    let hosts = hosts(world);
-    let mut guests = guests(world);
-    guests.retain(|point| point.id == guest || point.spec.id == guest);
-    if guests.is_empty() {
-        return Err(format!(
-            "`{guest}` has no point at which it could be fastened"
-        ));
-    }
-    let is_of_guest = |bond: &&Bond| guests.iter().any(|point| point.id == bond.guest_point);
-    let bonded = bonds.iter().find(is_of_guest);
-    match (bonded, turn) {
-        (Some(bond), turn) => {
-            let steps = hosts
-                .iter()
-                .find(|(point, _)| point.id == bond.host_point)
-                .map_or(0, |(_, host)| host.steps.len() as u32);
-            if is_locked(&hosts, bonds, &bond.host_point) {
-                let host = &bond.host_point;
-                return Err(format!("`{guest}` cannot be turned: `{host}` is locked"));
-            }
-            let tightness = match turn {
-                Turn::Tighter if bond.tightness >= steps => {
-                    return Err(format!("`{guest}` is as tight as can be"));
-                }
-                Turn::Tighter => bond.tightness + 1,
-                Turn::Looser => bond.tightness - 1,
-            };
-            let bond = Bond {
-                tightness,
-                ..bond.clone()
-            };
-            Ok(Step { bond, turn })
-        }
-        (None, Turn::Looser) => Err(format!("`{guest}` is not fastened")),
-        (None, Turn::Tighter) => {
-            let (guest_point, host_point) = nearest(&guests, &hosts, bonds).ok_or_else(|| {
-                format!("`{guest}` has nothing near that it could be fastened to")
-            })?;
-            if is_locked(&hosts, bonds, host_point.id) {
-                let host = host_point.id;
-                return Err(format!("`{guest}` cannot be fastened: `{host}` is locked"));
-            }
-            let bond = Bond {
-                host_point: host_point.id.to_owned(),
-                host: host_point.spec.id.clone(),
-                guest_point: guest_point.id.to_owned(),
-                guest: guest_point.spec.id.clone(),
-                tightness: 1,
-            };
-            Ok(Step { bond, turn })
-        }
-    }
+/// The bond that comes of turning a guest point, or the object that it is a part of, or why it cannot be turned.
+pub(crate) fn turned(world: &World, guest: &str, turn: Turn) -> Result<Bond, String> {
+    let objects: Vec<_> = objects(world).map(|(_, spec, pose)| (spec, pose)).collect();
+    world.resource::<Bonds>().turned(&objects, guest, turn)
 }
 
-/// The guest point and the free host point for it that are nearest to each other.
-fn nearest<'p, 'w>(
-    guests: &'p [Point<'w>],
-    hosts: &'p [(Point<'w>, &HostPoint)],
-    bonds: &[Bond],
-) -> Option<(&'p Point<'w>, &'p Point<'w>)> {
-    let mut nearest = None;
-    let mut least = REACH;
-    for guest in guests {
-        let connected = connected(&guest.spec.id, bonds);
-        for (host, what) in hosts {
-            let is_free = bonds.iter().all(|bond| bond.host_point != host.id);
-            let fits = host.fit == guest.fit && !what.steps.is_empty();
-            let distance = guest.pose.location.distance(host.pose.location);
-            if is_free && fits && distance < least && !connected.contains(&*host.spec.id) {
-                least = distance;
-                nearest = Some((guest, host));
-            }
-        }
-    }
-    nearest
+/// The bond that a guest point has at first, or why it cannot have it.
+pub(crate) fn first(
+    world: &World,
+    guest_point: &str,
+    host_point: &str,
+    tightness: u32,
+) -> Result<Bond, String> {
+    let objects: Vec<_> = objects(world).map(|(_, spec, pose)| (spec, pose)).collect();
+    let bonds = world.resource::<Bonds>();
+    bonds.first(&objects, guest_point, host_point, tightness)
 }
 
-/// Whether a host point can be neither fastened to nor loosened from, because a bond elsewhere locks it.
-fn is_locked(hosts: &[(Point, &HostPoint)], bonds: &[Bond], host_point: &str) -> bool {
-    hosts.iter().any(|(point, host)| {
-        host.downstream_lock == host_point
-            && bonds.iter().any(|bond| {
-                bond.host_point == point.id
-                    && (bond.tightness.checked_sub(1))
-                        .and_then(|step| host.steps.get(step as usize))
-                        .is_some_and(|step| step.locks)
-            })
-    })
-}
-
-/// The objects that bonds connect with one, with itself.
-fn connected<'a>(object: &'a str, bonds: &'a [Bond]) -> BTreeSet<&'a str> {
-    let mut connected = BTreeSet::from([object]);
-    let mut due = vec![object];
-    while let Some(object) = due.pop() {
-        for bond in bonds {
-            for (one, other) in [(&bond.host, &bond.guest), (&bond.guest, &bond.host)] {
-                if one == object && connected.insert(other) {
-                    due.push(other);
-                }
-            }
-        }
-    }
-    connected
-}
-
-/// Takes a step: the guest goes to its place, with all that is fastened to it, and stays there.
-pub(crate) fn take(
+/// Turns a guest: it goes to its place, with all that is fastened to it, and stays there.
+pub(crate) fn take_turn(
     world: &mut World,
     cause: Option<CommandId>,
     by: Operator,
-    step: Step,
+    (bond, turn): (Bond, Turn),
 ) -> Result<(), String> {
-    let Step { bond, turn } = step;
     bring_about(world, &bond)?;
     let mut network = Network::of(world);
     have_effect(world, &mut network, &bond);
@@ -233,8 +115,7 @@ pub(crate) fn bring_about(world: &mut World, bond: &Bond) -> Result<(), String> 
         .iter()
         .find(|(point, _)| point.id == bond.host_point)
         .map(|(point, host)| {
-            let step = bond.tightness.checked_sub(1);
-            let step = step.and_then(|step| host.steps.get(step as usize));
+            let step = host.step(bond.tightness);
             let step = step.map_or(Pose::IDENTITY, |step| step.pose);
             (point.object, point.place * step, point.pose * step)
         })
@@ -244,7 +125,8 @@ pub(crate) fn bring_about(world: &mut World, bond: &Bond) -> Result<(), String> 
     bonds.retain(|other| other.guest_point != bond.guest_point);
     let here = world.get::<Transform>(guest).map(Pose::from);
     let motion = host_pose * guest_place.inverse() * here.unwrap_or_default().inverse();
-    let moved = connected(&bond.guest, &bonds).into_iter();
+    let mut bonds = Bonds(bonds);
+    let moved = bonds.connected(&bond.guest).into_iter();
     let index = world.resource::<ObjectIndex>();
     let moved: Vec<_> = moved.filter_map(|id| index.get(id)).collect();
     for object in moved {
@@ -255,7 +137,7 @@ pub(crate) fn bring_about(world: &mut World, bond: &Bond) -> Result<(), String> 
 
     remove_joint_of(world, &bond.guest_point);
     if bond.tightness > 0 {
-        bonds.push(bond.clone());
+        bonds.0.push(bond.clone());
         let joint = Joint {
             objects: [host, guest],
             frames: [host_place, guest_place],
@@ -264,7 +146,7 @@ pub(crate) fn bring_about(world: &mut World, bond: &Bond) -> Result<(), String> 
         };
         world.spawn((joint, BondJoint(bond.guest_point.clone()), ChildOf(guest)));
     }
-    world.resource_mut::<Bonds>().0 = bonds;
+    world.insert_resource(bonds);
     take_in(world).map_err(|error| error.to_string())?;
     for object in [host, guest] {
         if let Some(held) = world.get::<Held>(object).copied() {
@@ -291,8 +173,7 @@ pub(crate) fn have_effect(world: &World, network: &mut Network, bond: &Bond) {
     let host = hosts.iter().find(|(point, _)| point.id == bond.host_point);
     if let Some((_, host)) = host {
         network.set_state(&host.downstream, bond.tightness);
-        let step = bond.tightness.checked_sub(1);
-        let step = step.and_then(|step| host.steps.get(step as usize));
+        let step = host.step(bond.tightness);
         network.set_override(&host.downstream_override, step.and_then(|step| step.state));
     }
 }
@@ -316,45 +197,4 @@ pub(crate) fn forget(world: &mut World, object: &str) {
         have_effect(world, &mut network, &loose);
     }
     network.take_effect(world, true);
-}
-
-/// The bond that a guest point has at first, or why it cannot.
-pub(crate) fn first(
-    world: &World,
-    guest: &ObjectSpec,
-    guest_point: &str,
-    tightness: u32,
-    host_point: &str,
-) -> Result<Bond, String> {
-    let bonds = &world.resource::<Bonds>().0;
-    let hosts = hosts(world);
-    let (host, what) = hosts
-        .iter()
-        .find(|(point, _)| point.id == host_point)
-        .ok_or_else(|| format!("there is no host point `{host_point}`"))?;
-    let fit = guests(world)
-        .iter()
-        .find(|point| point.id == guest_point)
-        .map(|point| point.fit.to_owned());
-    if fit.as_deref() != Some(host.fit) {
-        return Err(format!("`{host_point}` is of type `{}`", host.fit));
-    }
-    if bonds.iter().any(|bond| bond.host_point == host_point) {
-        return Err(format!("`{host_point}` has a guest already"));
-    }
-    if connected(&guest.id, bonds).contains(&*host.spec.id) {
-        let host = &host.spec.id;
-        return Err(format!("it is connected with `{host}` already"));
-    }
-    if tightness > what.steps.len() as u32 {
-        let steps = what.steps.len();
-        return Err(format!("`{host_point}` has only {steps} steps"));
-    }
-    Ok(Bond {
-        host_point: host_point.to_owned(),
-        host: host.spec.id.clone(),
-        guest_point: guest_point.to_owned(),
-        guest: guest.id.clone(),
-        tightness,
-    })
 }

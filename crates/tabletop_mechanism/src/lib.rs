@@ -43,6 +43,7 @@
 mod bonds;
 mod network;
 mod obey;
+mod press;
 mod settle;
 
 use bevy::prelude::*;
@@ -58,6 +59,8 @@ pub struct MechanismPlugin;
 impl Plugin for MechanismPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<settle::New>()
+            .init_resource::<press::Pressed>()
+            .rollback_resource::<press::Pressed>()
             .rollback_resource::<Bonds>()
             .rollback_component::<bonds::BondJoint>()
             .add_systems(
@@ -68,7 +71,9 @@ impl Plugin for MechanismPlugin {
                         .after(BodySystems)
                         .before(CommandSystems::History)
                         .in_set(TickSystems),
-                    obey::obey.in_set(CommandSystems::Mechanisms),
+                    (obey::obey, press::press.run_if(press::is_possible))
+                        .chain()
+                        .in_set(CommandSystems::Mechanisms),
                 )
                     .in_set(RestingSystems),
             )

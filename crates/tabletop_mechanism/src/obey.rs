@@ -3,14 +3,11 @@
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
     CommandId, ControlKind, Hand, IssuedCommand, MechanismCommand, ObjectIndex, ObjectSpec,
-    Operator, Paused, SimFact, carry_out,
+    Operator, Paused, SimFact, Turn, carry_out,
 };
 use tabletop_history::begin_segment;
 
-use crate::{
-    bonds::{self, Turn},
-    network::Network,
-};
+use crate::{bonds, network::Network};
 
 /// Carries out the commands, one after the other.
 pub(crate) fn obey(
@@ -34,17 +31,25 @@ pub(crate) fn obey(
             }
             MechanismCommand::PointTo { hand, target } => point_to(world, cause, hand, &target),
             MechanismCommand::Fasten { hand, guest } => {
-                let step = bonds::step(world, &guest, Turn::Tighter)?;
-                begin_segment(world, cause);
-                bonds::take(world, Some(cause), Operator::Hand(hand), step)
+                turn(world, cause, hand, &guest, Turn::Tighter)
             }
             MechanismCommand::Loosen { hand, guest } => {
-                let step = bonds::step(world, &guest, Turn::Looser)?;
-                begin_segment(world, cause);
-                bonds::take(world, Some(cause), Operator::Hand(hand), step)
+                turn(world, cause, hand, &guest, Turn::Looser)
             }
         }
     })
+}
+
+fn turn(
+    world: &mut World,
+    cause: CommandId,
+    hand: Hand,
+    guest: &str,
+    turn: Turn,
+) -> Result<(), String> {
+    let bond = bonds::turned(world, guest, turn)?;
+    begin_segment(world, cause);
+    bonds::take_turn(world, Some(cause), Operator::Hand(hand), (bond, turn))
 }
 
 /// The state to which triggering leads, or why nowhere.

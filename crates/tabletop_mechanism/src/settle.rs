@@ -73,7 +73,7 @@ pub(crate) fn settle(world: &mut World) {
     for spec in &specs {
         for (point, guest) in spec.guest_points() {
             if guest.tightness > 0
-                && let Err(reason) = make(world, spec, point.id, guest.tightness, &guest.host)
+                && let Err(reason) = make(world, point.id, &guest.host, guest.tightness)
             {
                 let reason = format!("`{}` cannot be fastened at first: {reason}", spec.id);
                 world.write_message(SimFact::Refused {
@@ -88,12 +88,11 @@ pub(crate) fn settle(world: &mut World) {
 /// Makes the bond that a guest point has at first.
 fn make(
     world: &mut World,
-    guest: &ObjectSpec,
     guest_point: &str,
-    tightness: u32,
     host_point: &str,
+    tightness: u32,
 ) -> Result<(), String> {
-    let bond = bonds::first(world, guest, guest_point, tightness, host_point)?;
+    let bond = bonds::first(world, guest_point, host_point, tightness)?;
     bonds::bring_about(world, &bond)?;
     let mut network = Network::of(world);
     bonds::have_effect(world, &mut network, &bond);

@@ -3,7 +3,9 @@
 mod contact;
 mod convex;
 mod nearby;
+mod touch;
 
 pub use contact::contact;
 pub use convex::{Convex, Nearest, convex_parts, nearest, to_rapier};
 pub use nearby::{Nearby, nearby};
+pub use touch::is_touching;

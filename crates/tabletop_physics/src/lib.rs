@@ -40,7 +40,9 @@ mod twist;
 
 pub use bodies::{BodySystems, collider, mass_properties, reshape, take_in};
 pub use effort::{Care, Engine, impulse_share};
-pub use geometry::{Convex, Nearby, Nearest, contact, convex_parts, nearby, nearest, to_rapier};
+pub use geometry::{
+    Convex, Nearby, Nearest, contact, convex_parts, is_touching, nearby, nearest, to_rapier,
+};
 pub use holding::{Carry, JustReleased, hold, let_go, pull_velocity, put};
 pub use settings::PhysicsSettings;
 pub use snapshot::{PhysicsSnapshot, remove_joint, remove_object, renew_if_empty};

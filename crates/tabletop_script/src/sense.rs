@@ -7,7 +7,9 @@ use tabletop_core::{
     JointId, JointState, ObjectIndex, ObjectSpec, Pose, Recording, Replaying, Robot, RobotLayout,
     RobotMode, SensorImage, SimTick, TICK_SECONDS, Table,
 };
-use tabletop_engine::{Aux, JointMatrix, RgbImage, SensedContact, SensedObject, Sensor};
+use tabletop_engine::{
+    Aux, JointMatrix, RgbImage, SensedContact, SensedControl, SensedObject, Sensor,
+};
 
 use crate::ScriptSettings;
 
@@ -15,6 +17,7 @@ use crate::ScriptSettings;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SensorFields {
     objects: bool,
+    controls: bool,
     trackers: bool,
 }
 
@@ -24,6 +27,7 @@ impl SensorFields {
         let objects = &["objects", "contacts", "held"];
         Self {
             objects: settings.objects.holds_for(agent, objects),
+            controls: settings.objects.holds_for(agent, &["controls"]),
             trackers: settings.trackers.holds_for(agent, &["trackerLoc"]),
         }
     }
@@ -92,6 +96,7 @@ impl Senses<'_, '_> {
             objects: fields.objects.then(|| self.objects()),
             contacts: fields.objects.then(|| self.contacts()),
             held: fields.objects.then(|| self.held()),
+            controls: fields.controls.then(|| self.controls()),
             joint_torques: dynamic.then(|| self.of_limbs(|joint| self.state(joint).torque)),
         }
     }
@@ -144,6 +149,22 @@ impl Senses<'_, '_> {
                     mass: f64::from(spec.mass),
                     description: words.collect::<Vec<_>>().join(", "),
                 }
+            })
+            .collect()
+    }
+
+    fn controls(&self) -> Vec<SensedControl> {
+        let objects = self.index.iter().filter_map(|id| self.objects.get(id).ok());
+        objects
+            .flat_map(|(spec, _)| {
+                let controls = spec.controls().into_iter();
+                controls.map(|control| SensedControl {
+                    id: control.id.to_owned(),
+                    kind: control.what.type_name().to_owned(),
+                    object: spec.id.clone(),
+                    state: f64::from(control.what.shown_state()),
+                    state_name: control.what.state_name(),
+                })
             })
             .collect()
     }

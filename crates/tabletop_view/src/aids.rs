@@ -2,7 +2,7 @@
 //! it can be turned, what lies below it, and where the plane in which it is dragged meets table and objects.
 
 use bevy::prelude::*;
-use tabletop_core::{DragPlane, Pose, Primitive, UserCamera};
+use tabletop_core::{DragPlane, Hands, ObjectSpec, Pose, Primitive, UserCamera};
 
 use crate::{
     held::HeldVisual,
@@ -16,6 +16,9 @@ const AXIS_LENGTH: f32 = 10.0;
 
 /// Length of their arrowheads in units.
 const ARROW_TIP: f32 = 0.3;
+
+/// Edge of the cube at a bond point, in units.
+const BOND_POINT: f32 = 0.1;
 
 /// Length of the arms of the cross at the foot of the shadow line, in units.
 const FOOT: f32 = 0.3;
@@ -38,7 +41,13 @@ pub(crate) fn plugin(app: &mut App) {
         .insert_gizmo_config(ThickLines, lines(3.0, THICK_IN_FRONT))
         .add_systems(
             Update,
-            (draw_outline, draw_axes, draw_shadow, draw_sections),
+            (
+                draw_outline,
+                draw_axes,
+                draw_shadow,
+                draw_sections,
+                draw_bond_points,
+            ),
         );
 }
 
@@ -65,6 +74,25 @@ fn draw_outline(
         for line in silhouette::outline(eye, held.pose, held.solids) {
             gizmos.linestrip(line, Color::BLACK);
         }
+    }
+}
+
+/// Yellow cubes at the points at which what is held can be fastened, and at those at which others can be fastened to it.
+fn draw_bond_points(
+    mut gizmos: Gizmos<ThinLines>,
+    held: HeldVisual,
+    hands: Res<Hands>,
+    objects: Query<&ObjectSpec>,
+) {
+    let object = hands.held_by(hands.selected);
+    let spec = object.and_then(|object| objects.get(object).ok());
+    let (Some(held), Some(spec)) = (held.get(), spec) else {
+        return;
+    };
+    for point in spec.bond_points() {
+        let place = Transform::from(held.pose * point.pose);
+        let cube = place.with_scale(Vec3::splat(BOND_POINT));
+        gizmos.cube(cube, Color::srgb(1.0, 1.0, 0.0));
     }
 }
 

@@ -57,6 +57,14 @@ pub enum Action {
     Undo,
     /// Bring back the segment that was undone last.
     Redo,
+    /// Trigger the control that the cursor is on.
+    Trigger,
+    /// Point to what the cursor is on.
+    PointTo,
+    /// Fasten what is held, or what the cursor is on, by a step.
+    Fasten,
+    /// Loosen it by a step.
+    Loosen,
     /// Make a big block (report section 6.1).
     MakeBlock,
     /// Make a stack of five blocks (report section 6.1).

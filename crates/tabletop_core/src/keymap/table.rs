@@ -142,6 +142,10 @@ fn plain_rows() -> Vec<ActionRow> {
         row(Action::PlanePerpendicular, Demonstration, "Plane at right angles", "Shows the drag plane at right angles", vec![plain(ControlLeft)]).continuous().while_holding(),
         row(Action::Undo, Demonstration, "Undo", "Discards the present segment of the recording", vec![ctrl(KeyZ)]),
         row(Action::Redo, Demonstration, "Redo", "Brings back the segment that was undone last", vec![ctrl_shift(KeyZ), ctrl(KeyY)]),
+        row(Action::Trigger, Demonstration, "Trigger", "Presses the switch that the cursor is on, or another control", vec![plain(KeyE)]),
+        row(Action::PointTo, Demonstration, "Point to", "Points to what the cursor is on", vec![plain(KeyX)]),
+        row(Action::Fasten, Demonstration, "Fasten", "Fastens what is held, or what the cursor is on, by a step", vec![plain(KeyF)]),
+        row(Action::Loosen, Demonstration, "Loosen", "Loosens what is held, or what the cursor is on, by a step", vec![shift(KeyF)]),
 
         row(Action::MakeBlock, Objects, "Big block", "Makes a big block somewhere on the table", vec![plain(KeyB)]),
         row(Action::MakeStack, Objects, "Stack of five", "Makes a stack of five blocks somewhere on the table", vec![plain(KeyN)]),

@@ -31,6 +31,8 @@ pub struct Sensor {
     pub contacts: Option<Vec<SensedContact>>,
     /// The limbs by their names, which are fields of the struct, with the ids of the objects that their grippers hold.
     pub held: Option<Vec<(String, Vec<String>)>>,
+    /// The controls of the world: switches, lights, and others.
+    pub controls: Option<Vec<SensedControl>>,
     /// Torques of the limbs' joints, in N m.
     pub joint_torques: Option<JointMatrix>,
 }
@@ -93,6 +95,21 @@ pub struct SensedObject {
     pub description: String,
 }
 
+/// A control as a script may know it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SensedControl {
+    /// Its name.
+    pub id: String,
+    /// The kind of control.
+    pub kind: String,
+    /// The object that it is, or is a part of.
+    pub object: String,
+    /// The number of the state that it shows.
+    pub state: f64,
+    /// The name of that state.
+    pub state_name: String,
+}
+
 /// Two things that touch.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensedContact {
@@ -138,6 +155,17 @@ impl Sensor {
         }
         for (limb, ids) in self.held.iter().flatten() {
             put(&format!("held.{limb}"), Array::texts(ids.clone()));
+        }
+        if let Some(controls) = &self.controls {
+            let texts = |of: fn(&SensedControl) -> &String| {
+                Array::texts(controls.iter().map(|control| of(control).clone()).collect())
+            };
+            put("controls.id", texts(|control| &control.id));
+            put("controls.type", texts(|control| &control.kind));
+            put("controls.object", texts(|control| &control.object));
+            let states = controls.iter().map(|control| control.state);
+            put("controls.state", Array::row(states.collect()));
+            put("controls.stateName", texts(|control| &control.state_name));
         }
         if let Some(objects) = &self.objects {
             let texts = |of: fn(&SensedObject) -> &String| {
@@ -209,6 +237,7 @@ mod tests {
         let full = Sensor {
             objects: Some(vec![SensedObject::default()]),
             contacts: Some(Vec::new()),
+            controls: Some(vec![SensedControl::default()]),
             held: Some(vec![
                 ("left".into(), vec!["a".into()]),
                 ("right".into(), Vec::new()),

@@ -70,7 +70,7 @@ pub(crate) fn plugin(app: &mut App) {
         );
 }
 
-fn come_up(buttons: Res<ButtonInput<MouseButton>>, mut gesture: ResMut<Gesture>) {
+pub(crate) fn come_up(buttons: Res<ButtonInput<MouseButton>>, mut gesture: ResMut<Gesture>) {
     if gesture
         .button()
         .is_some_and(|button| !buttons.pressed(button))

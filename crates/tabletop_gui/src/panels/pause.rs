@@ -5,7 +5,7 @@ use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
 use tabletop_core::{Action, Keymap, Paused};
 
-use crate::panels::{Panel, Panels};
+use crate::panels::{Panel, Panels, context_menu::ContextMenu};
 
 /// Size of the text in points.
 const TEXT_SIZE: f32 = 36.0;
@@ -17,7 +17,9 @@ const DIMMING: egui::Color32 = egui::Color32::from_black_alpha(232);
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(
         EguiPrimaryContextPass,
-        show_overlay.run_if(not(Paused::is_running)),
+        show_overlay
+            .run_if(not(Paused::is_running))
+            .run_if(ContextMenu::is_closed),
     );
 }
 

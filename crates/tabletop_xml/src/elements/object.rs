@@ -91,7 +91,14 @@ impl ElementReader<'_> {
         }))?;
         let next = match part.shape {
             Shape::Composite { .. } => of_parts.into_iter().map(|own| own.or(next)).collect(),
-            _ => vec![next],
+            Shape::Block { .. }
+            | Shape::Cylinder { .. }
+            | Shape::Sphere { .. }
+            | Shape::Box { .. }
+            | Shape::Link { .. }
+            | Shape::Lid { .. }
+            | Shape::Control(_)
+            | Shape::BondPoint(_) => vec![next],
         };
         Some((part, next))
     }

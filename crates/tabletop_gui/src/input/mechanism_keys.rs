@@ -1,0 +1,73 @@
+//! Keys that trigger, point, fasten and loosen, where the cursor is or what is held.
+
+use bevy::prelude::*;
+use tabletop_core::{Actor, CommandWriter, KeySystems, Keys, Paused};
+
+use crate::{
+    Notices, Tone,
+    input::{
+        operable::{Deed, Operable},
+        pointer::Pointer,
+    },
+};
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Pointer>()
+        .init_resource::<Notices>()
+        .add_systems(
+            RunFixedMainLoop,
+            act.in_set(KeySystems).run_if(Paused::is_running),
+        );
+}
+
+fn act(
+    keys: Keys,
+    pointer: Res<Pointer>,
+    operable: Operable,
+    mut commands: CommandWriter,
+    mut notices: ResMut<Notices>,
+) {
+    let struck = Deed::ALL
+        .into_iter()
+        .filter(|deed| keys.was_struck(deed.action()));
+    for deed in struck {
+        let ray = pointer.ray.filter(|_| !pointer.is_panels);
+        match operable.command(deed, ray) {
+            Ok(command) => {
+                commands.write(Actor::Key, command);
+            }
+            Err(reason) => notices.add(Tone::Fault, &reason),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_world::TestWorld;
+    use tabletop_core::{Hand, MechanismCommand};
+
+    #[test]
+    fn a_key_points_to_what_the_cursor_is_on() {
+        let mut test = TestWorld::new(plugin);
+        test.block("red", Vec3::Z);
+        test.point_at(Vec3::Z);
+        test.keys().press(KeyCode::KeyX);
+        let point_to = MechanismCommand::PointTo {
+            hand: Hand::Any,
+            target: "red".into(),
+        };
+        assert_eq!(test.hold_still(), [point_to.into()]);
+    }
+
+    #[test]
+    fn what_cannot_be_done_is_said() {
+        let mut test = TestWorld::new(plugin);
+        test.hold("red", Vec3::Z);
+        test.point_at(Vec3::Z);
+        test.keys().press(KeyCode::KeyF);
+        assert_eq!(test.hold_still(), []);
+        let notices = test.app.world().resource::<Notices>();
+        assert!(notices.iter().any(|notice| notice.contains("no point")));
+    }
+}

@@ -1,0 +1,137 @@
+//! What can be done to what the cursor is on, besides taking it: trigger, point to, fasten, loosen.
+
+use bevy::{ecs::system::SystemParam, prelude::*};
+use tabletop_core::{
+    Action, Bonds, Hand, Hands, MechanismCommand, ObjectIndex, ObjectSpec, Pose, Surface, Turn,
+};
+
+use crate::input::pick::Pickable;
+
+/// Something that can be done to an object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Deed {
+    Trigger,
+    PointTo,
+    Fasten,
+    Loosen,
+}
+
+impl Deed {
+    /// In the order of the context menu.
+    pub const ALL: [Self; 4] = [Self::Trigger, Self::PointTo, Self::Fasten, Self::Loosen];
+
+    /// The action of its key.
+    pub const fn action(self) -> Action {
+        match self {
+            Self::Trigger => Action::Trigger,
+            Self::PointTo => Action::PointTo,
+            Self::Fasten => Action::Fasten,
+            Self::Loosen => Action::Loosen,
+        }
+    }
+}
+
+/// A deed with the command for it, or why it cannot be done.
+pub(crate) type Choice = (Deed, Result<MechanismCommand, String>);
+
+/// What the selected hand can do.
+#[derive(SystemParam)]
+pub(crate) struct Operable<'w, 's> {
+    pickable: Pickable<'w, 's>,
+    hands: Res<'w, Hands>,
+    bonds: Res<'w, Bonds>,
+    index: Res<'w, ObjectIndex>,
+    objects: Query<'w, 's, (&'static ObjectSpec, &'static Transform)>,
+}
+
+impl Operable<'_, '_> {
+    /// What can be done to the object along a line of sight, and its id; nothing to what is no object, nor beside what the selected
+    /// hand holds.
+    pub fn choices_along(&self, ray: Ray3d) -> Option<(&str, [Choice; 4])> {
+        let object = self.pickable.object_along(ray)?;
+        let (spec, place) = self.objects.get(object).ok()?;
+        let pose = Pose::from(place);
+        let (surface, distance) = spec.touched_along(ray, pose)?;
+        let hand = self.hands.selected;
+        let is_idle = match self.hands.held_by(hand) {
+            None => true,
+            Some(held) if held == object => false,
+            Some(_) => return None,
+        };
+        let guest = nearest_guest(spec, pose, ray.get_point(distance));
+        let choice = |deed| {
+            let command = match deed {
+                Deed::Trigger | Deed::PointTo if !is_idle => {
+                    Err(format!("{hand} holds something"))
+                }
+                Deed::Trigger => trigger(hand, spec, &surface),
+                Deed::PointTo => Ok(MechanismCommand::PointTo {
+                    hand,
+                    target: surface.pointable.to_owned(),
+                }),
+                Deed::Fasten => self.turned(hand, &guest, Turn::Tighter),
+                Deed::Loosen => self.turned(hand, &guest, Turn::Looser),
+            };
+            (deed, command)
+        };
+        Some((&spec.id, Deed::ALL.map(choice)))
+    }
+
+    /// The command for a deed to what the selected hand holds or, if it holds nothing, to what is along a line of sight.
+    pub fn command(&self, deed: Deed, ray: Option<Ray3d>) -> Result<MechanismCommand, String> {
+        let hand = self.hands.selected;
+        let held = self.hands.held_by(hand);
+        match (deed, held.and_then(|held| self.objects.get(held).ok())) {
+            (Deed::Fasten, Some((spec, _))) => self.turned(hand, &spec.id, Turn::Tighter),
+            (Deed::Loosen, Some((spec, _))) => self.turned(hand, &spec.id, Turn::Looser),
+            (Deed::Trigger | Deed::PointTo, Some(_)) => Err(format!("{hand} holds something")),
+            (deed, None) => {
+                let choices = ray.and_then(|ray| self.choices_along(ray));
+                let choices = choices.map(|(_, choices)| choices.into_iter());
+                choices
+                    .into_iter()
+                    .flatten()
+                    .find(|(other, _)| *other == deed)
+                    .map_or_else(|| Err("the cursor is on no object".into()), |(_, command)| command)
+            }
+        }
+    }
+
+    fn turned(&self, hand: Hand, guest: &str, turn: Turn) -> Result<MechanismCommand, String> {
+        let objects = self.objects.iter_many(self.index.iter());
+        let objects: Vec<_> = objects.map(|(spec, place)| (spec, place.into())).collect();
+        self.bonds.turned(&objects, guest, turn)?;
+        let guest = guest.to_owned();
+        Ok(match turn {
+            Turn::Tighter => MechanismCommand::Fasten { hand, guest },
+            Turn::Looser => MechanismCommand::Loosen { hand, guest },
+        })
+    }
+}
+
+fn trigger(hand: Hand, spec: &ObjectSpec, surface: &Surface) -> Result<MechanismCommand, String> {
+    let (id, part) = surface
+        .control
+        .ok_or_else(|| format!("`{}` is no control there", spec.id))?;
+    let next = spec
+        .control(id)
+        .and_then(|control| control.next_state(Some(part)));
+    match next {
+        Some(_) => Ok(MechanismCommand::Trigger {
+            hand,
+            control: id.to_owned(),
+            part: Some(part),
+        }),
+        None => Err(format!("`{id}` leads nowhere from there")),
+    }
+}
+
+/// The guest point of an object that is nearest to a point; the object itself if it has none.
+fn nearest_guest(spec: &ObjectSpec, pose: Pose, point: Vec3) -> String {
+    let distance = |place: Pose| (pose * place.location).distance(point);
+    let guests = spec.guest_points().into_iter();
+    guests
+        .map(|(guest, _)| (distance(guest.pose), guest.id))
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .map_or_else(|| spec.id.clone(), |(_, id)| id.to_owned())
+}
