@@ -246,7 +246,9 @@ mod tests {
         loop {
             match bonds.turned(&objects, guest, turn) {
                 Ok(bond) => {
-                    bonds.0.retain(|other| other.guest_point != bond.guest_point);
+                    bonds
+                        .0
+                        .retain(|other| other.guest_point != bond.guest_point);
                     if bond.tightness > 0 {
                         bonds.0.push(bond);
                     }
@@ -296,14 +298,21 @@ mod tests {
         let mut bonds = Bonds::default();
         assert_eq!(turns(&mut bonds, &objects, "screw", Turn::Tighter).0, 1);
         let (steps, reason) = turns(&mut bonds, &objects, "other", Turn::Tighter);
-        assert_eq!((steps, &*reason), (0, "`other` cannot be fastened: `hole2` is locked"));
+        assert_eq!(
+            (steps, &*reason),
+            (0, "`other` cannot be fastened: `hole2` is locked")
+        );
     }
 
     #[test]
     fn what_is_connected_already_is_not_fastened_again() {
         let objects = [
             object("a", Vec3::ZERO, &[("tip", guest()), ("hole", host(1, ""))]),
-            object("b", Vec3::ZERO, &[("tip2", guest()), ("hole2", host(1, ""))]),
+            object(
+                "b",
+                Vec3::ZERO,
+                &[("tip2", guest()), ("hole2", host(1, ""))],
+            ),
         ];
         let mut bonds = Bonds::default();
         assert_eq!(turns(&mut bonds, &objects, "tip", Turn::Tighter).0, 1);

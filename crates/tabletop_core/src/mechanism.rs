@@ -56,7 +56,11 @@ impl ObjectSpec {
             }
         }
         let mut surfaces = Vec::new();
-        collect((&self.id, Pose::IDENTITY, &self.shape), &self.id, &mut surfaces);
+        collect(
+            (&self.id, Pose::IDENTITY, &self.shape),
+            &self.id,
+            &mut surfaces,
+        );
         surfaces
     }
 
@@ -65,7 +69,9 @@ impl ObjectSpec {
         let distance = |surface: &Surface| {
             let solids = surface.part.shape.colliding();
             let at = pose * surface.part.pose;
-            let distances = solids.iter().filter_map(|solid| solid.distance_along(ray, at));
+            let distances = solids
+                .iter()
+                .filter_map(|solid| solid.distance_along(ray, at));
             distances.min_by(f32::total_cmp)
         };
         let touched = self.surfaces().into_iter();

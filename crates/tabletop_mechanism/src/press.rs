@@ -44,7 +44,10 @@ pub(crate) fn press(world: &mut World) {
     for Press { by, control, next } in new {
         // Another press of this tick may have changed it.
         let network = Network::of(world);
-        if network.control(&control).is_ok_and(|control| control.state != next) {
+        if network
+            .control(&control)
+            .is_ok_and(|control| control.state != next)
+        {
             trigger(world, None, by, &control, next);
         }
     }

@@ -103,7 +103,10 @@ fn a_state_goes_downstream_and_round_a_circle_once() {
     ]);
     for expected in [[1, 1, 1], [2, 2, 1], [0, 0, 0]] {
         trigger(&mut app, "power");
-        assert_eq!(["power", "three", "two"].map(|id| state(&app, id)), expected);
+        assert_eq!(
+            ["power", "three", "two"].map(|id| state(&app, id)),
+            expected
+        );
     }
     // A light is not triggered.
     let facts = trigger(&mut app, "two");
@@ -234,7 +237,11 @@ fn nut(at: Vec3, mass: f32) -> ObjectSpec {
     };
     let parts = vec![
         Part::new("", Pose::IDENTITY, block),
-        Part::new("hole", Pose::at(Vec3::Z * 0.5), Shape::BondPoint(hole.into())),
+        Part::new(
+            "hole",
+            Pose::at(Vec3::Z * 0.5),
+            Shape::BondPoint(hole.into()),
+        ),
     ];
     ObjectSpec::new("nut", Pose::at(at), mass, Shape::Composite { parts })
 }
@@ -261,7 +268,10 @@ fn a_screw_goes_in_three_steps_cannot_go_a_fourth_and_comes_out() {
         app.step(30);
         assert_eq!(state(&app, "light"), step);
         let screw = pose(&app, "screw");
-        assert!(screw.location.distance(Vec3::Z * height) < 0.01, "{screw:?}");
+        assert!(
+            screw.location.distance(Vec3::Z * height) < 0.01,
+            "{screw:?}"
+        );
     }
     let facts = fasten(&mut app, "screw");
     assert!(matches!(facts[..], [SimFact::Refused { .. }]), "{facts:?}");

@@ -61,9 +61,7 @@ impl Operable<'_, '_> {
         let guest = nearest_guest(spec, pose, ray.get_point(distance));
         let choice = |deed| {
             let command = match deed {
-                Deed::Trigger | Deed::PointTo if !is_idle => {
-                    Err(format!("{hand} holds something"))
-                }
+                Deed::Trigger | Deed::PointTo if !is_idle => Err(format!("{hand} holds something")),
                 Deed::Trigger => trigger(hand, spec, &surface),
                 Deed::PointTo => Ok(MechanismCommand::PointTo {
                     hand,
@@ -92,7 +90,10 @@ impl Operable<'_, '_> {
                     .into_iter()
                     .flatten()
                     .find(|(other, _)| *other == deed)
-                    .map_or_else(|| Err("the cursor is on no object".into()), |(_, command)| command)
+                    .map_or_else(
+                        || Err("the cursor is on no object".into()),
+                        |(_, command)| command,
+                    )
             }
         }
     }

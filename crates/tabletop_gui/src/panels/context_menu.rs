@@ -81,7 +81,13 @@ fn open(
     mut commands: CommandWriter,
 ) {
     let is_click = buttons.just_released(MouseButton::Right)
-        && matches!(*gesture, Gesture::Press { button: MouseButton::Right, .. });
+        && matches!(
+            *gesture,
+            Gesture::Press {
+                button: MouseButton::Right,
+                ..
+            }
+        );
     let (true, false, Some(at), Some(ray)) =
         (is_click, pointer.is_panels, pointer.cursor, pointer.ray)
     else {
