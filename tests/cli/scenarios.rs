@@ -43,6 +43,7 @@ fn tasks_are_demonstrated() {
         "panel",
         "dock",
         "lock",
+        "dispenser",
         "stack_three",
         "swap",
         "wall",

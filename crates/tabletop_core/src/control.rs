@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{Part, Pose, Rgb, Shape};
+use crate::{ObjectSpec, Part, Pose, Rgb, Shape};
 
 /// A shape with states, numbered from 0: an object of its own or a part of a composite. Its id is that of the object or part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -95,6 +95,28 @@ pub struct CustomState {
     pub parts: Vec<Part>,
     /// The state to which triggering leads, for each of the [simple parts](Shape::simple_parts) of these shapes.
     pub next: Vec<Option<u32>>,
+    /// What coming into this state does to other objects, in this order.
+    #[serde(default)]
+    pub changes: Vec<Change>,
+}
+
+/// Something that a control does to other objects.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Change {
+    /// It removes an object.
+    Remove {
+        /// Its id.
+        object: String,
+    },
+    /// It gives an object another colour.
+    Recolor {
+        /// Its id.
+        object: String,
+        /// The colour.
+        color: Rgb,
+    },
+    /// It makes an object, at a pose on the table.
+    Spawn(Box<ObjectSpec>),
 }
 
 impl Control {
@@ -182,6 +204,17 @@ impl Control {
         }
     }
 
+    /// What it does to other objects as it comes into its state.
+    pub fn changes(&self) -> &[Change] {
+        match &self.kind {
+            ControlKind::Custom(custom) => custom
+                .states
+                .get(self.state as usize)
+                .map_or(&[], |state| &state.changes),
+            ControlKind::ToggleSwitch(_) | ControlKind::IndicatorLights(_) => &[],
+        }
+    }
+
     /// The state to which triggering one of its simple parts leads, or the first one that leads anywhere.
     pub fn next_state(&self, part: Option<u32>) -> Option<u32> {
         match &self.kind {
@@ -264,7 +297,6 @@ impl IndicatorLights {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ObjectSpec;
 
     fn switch(pressed: Side, angle: f32) -> Control {
         Control::new(ControlKind::ToggleSwitch(ToggleSwitch {
@@ -342,6 +374,7 @@ mod tests {
             name: String::new(),
             parts: vec![ball(radius), ball(radius / 2.0)],
             next: vec![None, next],
+            changes: Vec::new(),
         };
         let control = Control::new(ControlKind::Custom(CustomControl {
             name: "dial".into(),

@@ -74,7 +74,7 @@ pub use command::{
     WriteCommand, carry_out,
 };
 pub use control::{
-    Control, ControlKind, CustomControl, CustomState, IndicatorLights, LightState, Side,
+    Change, Control, ControlKind, CustomControl, CustomState, IndicatorLights, LightState, Side,
     ToggleSwitch,
 };
 pub use fact::SimFact;

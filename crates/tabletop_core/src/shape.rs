@@ -212,6 +212,27 @@ impl Shape {
         simple
     }
 
+    /// Gives everything but controls this colour.
+    pub fn paint(&mut self, new: Rgb) {
+        match self {
+            Self::Block { color, .. }
+            | Self::Cylinder { color, .. }
+            | Self::Sphere { color, .. }
+            | Self::Box { color, .. }
+            | Self::Link { color, .. } => *color = new,
+            Self::Lid {
+                color,
+                handle_color,
+                ..
+            } => {
+                *color = new;
+                *handle_color = new;
+            }
+            Self::Composite { parts } => parts.iter_mut().for_each(|part| part.shape.paint(new)),
+            Self::Control(_) | Self::BondPoint(_) => {}
+        }
+    }
+
     /// The solids to be drawn.
     pub fn drawn(&self) -> Vec<Primitive> {
         primitives(self.simple_parts(), |padding| padding)

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use bevy::prelude::*;
-use tabletop_core::{Cause, Control, ControlKind, ObjectIndex, ObjectSpec, SimFact};
-use tabletop_physics::reshape;
+use tabletop_core::{Cause, Change, Control, ControlKind, ObjectIndex, ObjectSpec, SimFact};
+use tabletop_physics::{remove_object, reshape};
 
 /// The controls on the table while they change.
 pub(crate) struct Network {
@@ -14,6 +14,8 @@ pub(crate) struct Network {
     owners: BTreeMap<String, Entity>,
     /// The controls that were changed, in their order, with the names of their states before.
     changed: Vec<(String, String)>,
+    /// What the controls do to other objects, in this order.
+    changes: Vec<Change>,
 }
 
 impl Network {
@@ -22,6 +24,7 @@ impl Network {
             objects: BTreeMap::new(),
             owners: BTreeMap::new(),
             changed: Vec::new(),
+            changes: Vec::new(),
         };
         for object in world.resource::<ObjectIndex>().iter() {
             let Some(spec) = world.get::<ObjectSpec>(object) else {
@@ -66,6 +69,9 @@ impl Network {
                 continue;
             }
             self.change(&id, |control| control.state = state);
+            let changes = self.control(&id).map_or(&[][..], Control::changes);
+            let changes = changes.to_vec();
+            self.changes.extend(changes);
             due.extend(self.downstream(&id));
         }
     }
@@ -128,6 +134,40 @@ impl Network {
             let is_changed = world.get::<ObjectSpec>(object) != Some(&spec);
             if is_changed {
                 reshape(world, object, spec);
+            }
+        }
+        if is_told {
+            for change in self.changes {
+                make(world, change);
+            }
+        }
+    }
+}
+
+/// Makes a change to another object; what is not there is not changed.
+fn make(world: &mut World, change: Change) {
+    let named = |world: &World, id: &str| world.resource::<ObjectIndex>().get(id);
+    match change {
+        Change::Remove { object } => {
+            if let Some(object) = named(world, &object) {
+                remove_object(world, object);
+            }
+        }
+        Change::Recolor { object, color } => {
+            let object = named(world, &object);
+            let spec = object.and_then(|object| world.get::<ObjectSpec>(object));
+            if let (Some(object), Some(mut spec)) = (object, spec.cloned()) {
+                spec.shape.paint(color);
+                reshape(world, object, spec);
+            }
+        }
+        Change::Spawn(mut spec) => {
+            let wanted = if spec.id.is_empty() { "obj" } else { &spec.id };
+            let tries = (0..).map(|number| format!("{wanted}#{number}"));
+            let mut ids = std::iter::once(wanted.to_owned()).chain(tries);
+            if let Some(id) = ids.find(|id| named(world, id).is_none()) {
+                spec.id = id;
+                world.spawn((Transform::from(spec.pose), *spec));
             }
         }
     }

@@ -3,7 +3,7 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    BondEnd, BondPoint, Bonds, Control, ControlKind, CustomControl, CustomState, GuestPoint, Hand,
+    BondEnd, BondPoint, Bonds, Change, Control, ControlKind, CustomControl, CustomState, GuestPoint, Hand,
     HostPoint, IndicatorLights, LightState, Part, Side, TightnessStep, ToggleSwitch, prelude::*,
 };
 use tabletop_demonstrator::DemonstratorPlugin;
@@ -144,6 +144,7 @@ fn a_custom_control_collides_as_its_state_shows_and_wakes_what_lies_on_it() {
             },
         )],
         next: vec![Some(next)],
+        changes: Vec::new(),
     };
     let lift = Control::new(ControlKind::Custom(CustomControl {
         name: "lift".into(),
@@ -195,6 +196,49 @@ fn what_a_hand_holds_presses_the_raised_side_of_a_switch_once() {
     assert_eq!(go(0.35, 3.0), 1);
     assert_eq!(go(-0.35, 3.0), 1);
     assert_eq!(go(-0.35, 0.4), 2);
+}
+
+#[test]
+fn a_state_spawns_recolors_and_removes() {
+    let ball = || Shape::Sphere {
+        radius: 0.5,
+        color: Rgb::GRAY,
+    };
+    let state = |changes: &[Change]| CustomState {
+        parts: vec![Part::new("", Pose::IDENTITY, ball())],
+        next: vec![Some(1)],
+        changes: changes.to_vec(),
+        ..default()
+    };
+    let spawned = ObjectSpec::new("ball", Pose::at(Vec3::new(0.0, 3.0, 0.5)), 1.0, ball());
+    let object = || "ball".to_owned();
+    let color = Rgb::RED;
+    let states = vec![
+        state(&[]),
+        state(&[
+            Change::Spawn(spawned.into()),
+            Change::Recolor {
+                object: object(),
+                color,
+            },
+            Change::Remove {
+                object: "old".into(),
+            },
+        ]),
+    ];
+    let name = "dispenser".into();
+    let dispenser = Control::new(ControlKind::Custom(CustomControl { name, states }));
+    let mut app = app(vec![
+        control("dispenser", Vec3::Z, dispenser),
+        ObjectSpec::new("old", Pose::at(Vec3::new(3.0, 0.0, 0.5)), 1.0, ball()),
+    ]);
+    trigger(&mut app, "dispenser");
+    app.step(60);
+    let index = app.world().resource::<ObjectIndex>();
+    assert_eq!(index.get("old"), None);
+    let ball = app.world().get::<ObjectSpec>(index.get("ball").unwrap());
+    assert_eq!(ball.unwrap().shape.drawn()[0].color, Rgb::RED);
+    assert!((pose(&app, "ball").location.z - 0.5).abs() < 0.01);
 }
 
 fn screw(id: &str, at: Vec3) -> ObjectSpec {

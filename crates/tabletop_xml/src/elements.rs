@@ -55,7 +55,10 @@ const ITEMS: [&str; 12] = [
 const OF_THE_LATER_PROGRAM: [&str; 3] = ["frustum", "ring", "custom"];
 
 /// Elements that stand in others.
-const INNER: [&str; 6] = [
+const INNER: [&str; 9] = [
+    "remove",
+    "recolor",
+    "spawn",
     "guestBondPoint",
     "hostBondPoint",
     "tightness",

@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use bevy::math::{DVec3, Vec3};
 use quick_xml::escape::escape;
 use tabletop_core::{
-    BondEnd, BondPoint, ChainSpec, Control, ControlKind, JointMotion, JointedSpec, LidBoxSpec,
+    BondEnd, BondPoint, ChainSpec, Change, Control, ControlKind, JointMotion, JointedSpec, LidBoxSpec,
     NAMED_COLORS, ObjectSpec, Part, Pose, Rgb, SceneItem, SceneSpec, Shape, Side,
 };
 
@@ -152,10 +152,30 @@ impl Writer {
                     for part in &state.parts {
                         self.part_in_state(part, &mut next);
                     }
+                    state.changes.iter().for_each(|change| self.change(change));
                     self.close();
                 }
             }
         }
+    }
+
+    fn change(&mut self, change: &Change) {
+        match change {
+            Change::Remove { object } => {
+                self.open("remove");
+                self.attribute("id", &as_id(object));
+            }
+            Change::Recolor { object, color } => {
+                self.open("recolor");
+                self.attribute("id", &as_id(object));
+                self.color("color", *color);
+            }
+            Change::Spawn(object) => {
+                self.open("spawn");
+                self.object(object);
+            }
+        }
+        self.close();
     }
 
     fn open_state(&mut self, name: &str) {
@@ -451,6 +471,7 @@ mod tests {
              </hostBondPoint><guestBondPoint location='(0,0,2)' type='nut' initBondHostId='h' initBondTightness='2'/>\
              </composite>\
              <customControl id='c' location='(0,0,1)' name='dial' initState='1'><state/><state descriptionName='two'>\
+             <recolor id='b' color='pink'/><remove id='b'/><spawn><sphere id='n' location='(0,0,3)'/></spawn>\
              <block location='(0,0,0)' nextStateWhenTriggered='0'/><composite location='(1,0,0)' nextStateWhenTriggered='1'>\
              <sphere location='(0,0,0)'/><box location='(0,0,1)' nextStateWhenTriggered='0'/></composite></state></customControl>",
         );

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{
-    BondEnd, BondPoint, ChainSpec, ClockCommand, Control, ControlKind, Drive, HandCommand,
+    BondEnd, BondPoint, ChainSpec, Change, ClockCommand, Control, ControlKind, Drive, HandCommand,
     HeadCamera, JointKind, JointSpec, JointedSpec, LidBoxSpec, MechanismCommand, ObjectSpec, Part,
     Pose, RecordingCommand, Rgb, RobotCommand, SceneCommand, SceneItem, SceneSpec, Shape,
     SimCommand, Table,
@@ -328,6 +328,14 @@ fn check_control(control: &Control, level: usize, count: &mut usize) -> Checked 
             check_count("letters", custom.name.len())?;
             custom.states.iter().try_for_each(|state| {
                 check_count("letters", state.name.len())?;
+                state.changes.iter().try_for_each(|change| match change {
+                    Change::Remove { object } | Change::Recolor { object, .. } => {
+                        check_count("letters", object.len())
+                    }
+                    Change::Spawn(object) => {
+                        check_place(object.pose).and_then(|()| check_object(object, count))
+                    }
+                })?;
                 check_parts_of(&state.parts, level, count)
             })
         }

@@ -2,8 +2,8 @@
 
 use bevy::math::Vec3;
 use tabletop_core::{
-    Control, ControlKind, CustomControl, CustomState, IndicatorLights, LightState, Rgb, Shape,
-    Side, ToggleSwitch,
+    Change, Control, ControlKind, CustomControl, CustomState, IndicatorLights, LightState,
+    ObjectSpec, Rgb, Shape, Side, ToggleSwitch,
 };
 
 use crate::{
@@ -20,6 +20,10 @@ pub(crate) const CONTROLS: [&str; 3] = ["toggleSwitch", "indicatorLights", "cust
 pub(crate) const DOWNSTREAM: &str = "downstream";
 pub(crate) const STATE: &str = "state";
 pub(crate) const LIGHT: &str = "light";
+const RECOLOR: &str = "recolor";
+const SPAWN: &str = "spawn";
+/// What a state does to other objects.
+const CHANGES: [&str; 3] = ["remove", RECOLOR, SPAWN];
 
 /// What stands in the element of a control.
 pub(super) struct ControlContent {
@@ -116,10 +120,17 @@ impl ElementReader<'_> {
     }
 
     fn custom_state(&mut self, element: &Element) -> Option<CustomState> {
+        let allowed = [&SHAPES[..], &CHANGES].concat();
         let mut state = CustomState::default();
         let mut is_sound = true;
         for child in &element.children {
-            if !self.is_allowed(child, element.name, &SHAPES) {
+            if !self.is_allowed(child, element.name, &allowed) {
+                continue;
+            }
+            if CHANGES.contains(&child.name) {
+                let change = self.change(child);
+                is_sound &= change.is_some();
+                state.changes.extend(change);
                 continue;
             }
             let read = self.part(child, ObjectRole::InState);
@@ -132,6 +143,47 @@ impl ElementReader<'_> {
         let mut attributes = AttributeReader::of(element, self.faults);
         state.name = attributes.read("descriptionName", String::new(), value::id);
         attributes.finish(Some(state)).filter(|_| is_sound)
+    }
+}
+
+impl ElementReader<'_> {
+    /// Reads what a state does to another object.
+    fn change(&mut self, element: &Element) -> Option<Change> {
+        let spawned = match element.name {
+            SPAWN => self.spawned(element)?.into(),
+            _ => {
+                self.forbid_children(element);
+                None
+            }
+        };
+        let mut attributes = AttributeReader::of(element, self.faults);
+        let change = match (element.name, spawned) {
+            (_, Some(spawned)) => Change::Spawn(Box::new(spawned)),
+            (RECOLOR, None) => Change::Recolor {
+                object: attributes.require("id", String::new(), "id", value::name),
+                color: attributes.require("color", Rgb::GRAY, "color", value::color),
+            },
+            (_, None) => Change::Remove {
+                object: attributes.require("id", String::new(), "id", value::name),
+            },
+        };
+        attributes.finish(Some(change))
+    }
+
+    /// The one object in an element.
+    fn spawned(&mut self, element: &Element) -> Option<ObjectSpec> {
+        let mut objects = Vec::new();
+        for child in &element.children {
+            if self.is_allowed(child, element.name, &SHAPES) {
+                objects.push(self.object(child)?);
+            }
+        }
+        if objects.len() != 1 && !element.is_broken {
+            let problem = format_args!("it has {} objects", objects.len());
+            self.faults.report(element.place(), problem, "one object");
+            return None;
+        }
+        objects.pop()
     }
 }
 
