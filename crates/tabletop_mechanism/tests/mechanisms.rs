@@ -3,8 +3,9 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    BondEnd, BondPoint, Bonds, Change, Control, ControlKind, CustomControl, CustomState, GuestPoint, Hand,
-    HostPoint, IndicatorLights, LightState, Part, Side, TightnessStep, ToggleSwitch, prelude::*,
+    BondEnd, BondPoint, Bonds, Change, Control, ControlKind, CustomControl, CustomState,
+    GuestPoint, Hand, HostPoint, IndicatorLights, LightState, Part, Side, TightnessStep,
+    ToggleSwitch, prelude::*,
 };
 use tabletop_demonstrator::DemonstratorPlugin;
 use tabletop_mechanism::MechanismPlugin;
