@@ -5,6 +5,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+/// The Python driver, which knows all words, and lies beside scripts that import it.
+const DRIVER: &str = "tabletop.py";
 /// Larger files are data.
 const LARGEST_SCRIPT: u64 = 1 << 20;
 /// Folders in folders are looked into this far down.
@@ -21,7 +23,9 @@ pub(crate) fn mention(agent: &Path, words: &[&str]) -> bool {
         true => scripts_in(agent, "m"),
         false => scripts_in(beside.unwrap_or(Path::new(".")), "py"),
     };
-    scripts.iter().any(|script| contains(script, words))
+    let is_own = |script: &&PathBuf| script.file_name().is_none_or(|name| name != DRIVER);
+    let mut own = scripts.iter().filter(is_own);
+    own.any(|script| contains(script, words))
 }
 
 /// The scripts in a folder and in those below it that are not hidden.
@@ -53,8 +57,26 @@ fn contains(script: &Path, words: &[&str]) -> bool {
         return false;
     }
     let text = fs::read(script).unwrap_or_default();
-    let mut found = text.split(|byte| !byte.is_ascii_alphanumeric() && *byte != b'_');
+    let comment = match script.extension().is_some_and(|ending| ending == "py") {
+        true => b'#',
+        false => b'%',
+    };
+    let lines = text.split(|byte| *byte == b'\n');
+    let mut found = lines
+        .map(|line| code(line, comment))
+        .flat_map(|code| code.split(|byte| !byte.is_ascii_alphanumeric() && *byte != b'_'));
     found.any(|word| words.iter().any(|wanted| wanted.as_bytes() == word))
+}
+
+/// A line without its comment, as far as it is clear that it is one: what follows an open quote may be text.
+fn code(line: &[u8], comment: u8) -> &[u8] {
+    let is_outside = |before: &[u8]| {
+        let quotes = |quote: u8| before.iter().filter(|byte| **byte == quote).count();
+        quotes(b'\'') % 2 == 0 && quotes(b'"') % 2 == 0
+    };
+    let mut signs = (0..line.len()).filter(|&at| line[at] == comment);
+    let end = signs.find(|&at| is_outside(&line[..at]));
+    &line[..end.unwrap_or(line.len())]
 }
 
 #[cfg(test)]
@@ -73,12 +95,25 @@ mod tests {
         write("lib/helper.py", "sensor.contacts");
         write("lib/private/a/b/deep.m", "sensor.held");
         write("robot.py", "print(sensor.held)");
+        write("tabletop.py", "demoCue");
+        write(
+            "lib/notes.py",
+            "x = 1  # jointTorques\nprint('#', rgbVision)",
+        );
+        write("notes.m", "y = 2; % endEffPos\nfprintf('%d', headAngle);");
         assert!(mention(&folder, &["trackerLoc"]));
         assert!(mention(&folder, &["objects", "contacts"]));
         assert!(!mention(&folder, &["held", "contacts"]));
         assert!(mention(&folder.join("robot.py"), &["held"]));
         assert!(mention(&folder.join("robot.py"), &["contacts"]));
         assert!(!mention(&folder.join("robot.py"), &["trackerLoc"]));
+        assert!(!mention(
+            &folder.join("robot.py"),
+            &["demoCue", "jointTorques"]
+        ));
+        assert!(mention(&folder.join("robot.py"), &["rgbVision"]));
+        assert!(!mention(&folder, &["endEffPos"]));
+        assert!(mention(&folder, &["headAngle"]));
         assert!(!mention(Path::new("no such folder"), &["held"]));
         fs::remove_dir_all(folder).unwrap();
     }
