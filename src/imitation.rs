@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Drive, Joint, JointSpec, ObjectIndex, ObjectSpec, Pose, Random, Robot, RobotCommand,
+    Drive, Joint, JointKind, JointSpec, ObjectIndex, ObjectSpec, Pose, Random, Robot, RobotCommand,
     RobotLayout, SceneItem, SceneSpec, StepApp as _, Table, WriteCommand as _,
 };
 use tabletop_kinematics::{ModelError, baxter};
@@ -154,19 +154,36 @@ pub fn scattered(
                 table: scene.table,
                 items: vec![item.clone()],
             };
-            let parts = assemble(&alone, &mut ids).objects;
-            let solids = parts.iter().flat_map(|part| {
+            let assembly = assemble(&alone, &mut ids);
+            let parts = assembly.objects;
+            // What slides is somewhere else when it is open.
+            let opened = assembly.joints.iter().filter_map(|joint| {
+                let JointKind::Slider { max, .. } = joint.kind else {
+                    return None;
+                };
+                let part = |id: &str| parts.iter().find(|part| part.id == id);
+                let [holder, slid] = joint.objects.each_ref().map(|id| part(id));
+                let way = holder?.pose.rotation * joint.frames[0].rotation * Vec3::NEG_X;
+                let slid = slid?;
+                Some((
+                    slid,
+                    Pose::new(slid.pose.location + way * max, slid.pose.rotation),
+                ))
+            });
+            let opened: Vec<_> = opened.collect();
+            let places = parts.iter().map(|part| (part, part.pose));
+            let places: Vec<_> = places.chain(opened).collect();
+            let solids = places.iter().flat_map(|(part, pose)| {
                 let colliding = part.shape.colliding();
-                let pose = part.pose;
                 colliding
                     .into_iter()
-                    .map(move |solid| Convex::of(&solid, pose))
+                    .map(move |solid| Convex::of(&solid, *pose))
             });
             let piece = Piece {
                 solids: solids.collect(),
                 ids: parts.iter().map(|part| part.id.clone()).collect(),
                 centre: parts.first().map_or(Vec3::ZERO, |part| part.pose.location),
-                reached: parts.iter().map(|part| part.pose.location).collect(),
+                reached: places.iter().map(|(_, pose)| pose.location).collect(),
             };
             objects.extend(parts);
             piece

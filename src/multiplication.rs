@@ -9,7 +9,7 @@ mod variation;
 mod way;
 
 pub use beginning::scene_at_beginning;
-pub use variation::Variation;
+pub use variation::{Variation, with_colors_exchanged};
 
 use std::{fmt, fs, io, path::Path};
 

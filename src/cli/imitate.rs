@@ -11,9 +11,11 @@ use bevy::prelude::*;
 use clap::Args;
 use tabletop::{
     TabletopSimPlugins, headless_app_with,
-    imitation::{AppStage, baxter_body, scattered},
+    imitation::{AppStage, scattered},
+    multiplication::with_colors_exchanged,
     planner::{Doing, Imitation, RobotBody, imitate},
     recorder::{RecorderPlugin, RecordingReader, UnrecordedPlugin},
+    robot::{Description, RobotPlugin},
     scene::{IdAllocator, assemble},
     task::{Requirements, Task},
 };
@@ -25,6 +27,7 @@ use tabletop_core::{
 use super::{
     Failure, Output,
     explain::read,
+    robot_options::RobotChoice,
     run::read_faultless_task,
     terminal::{say, show_warnings},
 };
@@ -43,6 +46,11 @@ pub(super) struct ImitateArgs {
     /// Do it so often, with random places by the seeds from `--seed` (or 0) on, and print what became of it
     #[arg(long, value_name = "N")]
     trials: Option<u64>,
+    /// Exchange the colours of objects, as the seed decides
+    #[arg(long)]
+    exchange_colors: bool,
+    #[command(flatten)]
+    robot: RobotChoice,
     /// Record what the robot does; of several trials, each to a folder of its own below
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
@@ -64,7 +72,13 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
         Some(setup) => read_faultless_task(setup).map_err(Failure::input)?,
         None => scene_of(&args.recording)?,
     };
-    let body = baxter_body(&scene.table).map_err(Failure::run)?;
+    let robot = args.robot.plugin()?;
+    let description = match robot.description.clone() {
+        Some(description) => description,
+        None => Description::baxter().map_err(Failure::run)?,
+    };
+    let body = RobotBody::new(&description.layout, description.model, &scene.table);
+    let body = body.map_err(Failure::run)?;
     let seeds: Vec<_> = match (args.trials, args.seed) {
         (None, seed) => vec![seed],
         (Some(trials), seed) => {
@@ -84,6 +98,8 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
             requirements: &requirements,
             scene: &scene,
             body: &body,
+            robot: &robot,
+            exchanges_colors: args.exchange_colors,
             seed,
             folder,
         };
@@ -135,6 +151,8 @@ struct Attempt<'a> {
     requirements: &'a Requirements,
     scene: &'a SceneSpec,
     body: &'a RobotBody,
+    robot: &'a RobotPlugin,
+    exchanges_colors: bool,
     seed: Option<u64>,
     folder: Option<PathBuf>,
 }
@@ -154,12 +172,16 @@ impl Attempt<'_> {
                 real: 0.0,
             });
         };
+        let scene = match self.exchanges_colors {
+            true => with_colors_exchanged(scene, self.seed.unwrap_or(0)),
+            false => scene,
+        };
         let objects = assemble(&scene, &mut IdAllocator::default()).objects;
         let binding = self
             .task
             .bind(self.requirements, &objects)
             .map_err(Failure::run)?;
-        let plugins = TabletopSimPlugins.build();
+        let plugins = TabletopSimPlugins.build().set(self.robot.clone());
         let plugins = match &self.folder {
             Some(folder) => plugins.set(RecorderPlugin {
                 folder: folder.clone(),

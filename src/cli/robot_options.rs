@@ -18,20 +18,27 @@ use tabletop::{
 
 use super::Failure;
 
+/// Which robot it is, and how it moves.
 #[derive(Args, Clone)]
-pub(super) struct RobotOptions {
+pub(super) struct RobotChoice {
     /// Another robot than the Baxter that comes with the program: a robot.ron (docs/robot.md), or a URDF with the same joints
     #[arg(long, value_name = "FILE")]
     robot: Option<PathBuf>,
     /// Move the arms by motors with limited torque instead of exactly as told
     #[arg(long)]
     dynamic: bool,
+}
+
+#[derive(Args, Clone)]
+pub(super) struct RobotOptions {
+    #[command(flatten)]
+    choice: RobotChoice,
     /// Put the robot to the table from the start
     #[arg(long)]
     pub show_robot: bool,
 }
 
-impl RobotOptions {
+impl RobotChoice {
     /// The plugin of this robot.
     pub fn plugin(&self) -> Result<RobotPlugin, Failure> {
         let description = match &self.robot {
@@ -45,6 +52,13 @@ impl RobotOptions {
                 false => RobotMode::Kinematic,
             },
         })
+    }
+}
+
+impl RobotOptions {
+    /// The plugin of this robot.
+    pub fn plugin(&self) -> Result<RobotPlugin, Failure> {
+        self.choice.plugin()
     }
 
     /// Puts the robot to the table, if it is to be there from the start.

@@ -205,6 +205,30 @@ impl Multiplication {
     }
 }
 
+/// A scene of which the objects have each other's colours, as this seed decides.
+pub fn with_colors_exchanged(mut scene: SceneSpec, seed: u64) -> SceneSpec {
+    let mut random = Random::new(seed);
+    let mut shapes: Vec<_> = scene
+        .items
+        .iter_mut()
+        .filter_map(|item| match item {
+            SceneItem::Object(spec) => Some(&mut spec.shape),
+            SceneItem::LidBox(_) | SceneItem::Chain(_) | SceneItem::Jointed(_) => None,
+        })
+        .collect();
+    let mut colors: Vec<_> = shapes
+        .iter()
+        .filter_map(|shape| Some(shape.drawn().first()?.color))
+        .collect();
+    for shape in &mut shapes {
+        if !colors.is_empty() {
+            let drawn = random.bits() % colors.len() as u64;
+            paint(shape, colors.swap_remove(drawn as usize));
+        }
+    }
+    scene
+}
+
 /// A colour with a name, or one near it.
 fn any_color(random: &mut Random) -> Rgb {
     let (_, named) = NAMED_COLORS[(random.bits() % NAMED_COLORS.len() as u64) as usize];

@@ -13,6 +13,8 @@ use crate::{
 const ROOM: f32 = 0.9;
 /// How far from the table's edges, in units.
 const EDGE: f32 = 0.3;
+/// How many places are found.
+const MOST: usize = 10;
 /// Distance between the places that are looked at, in units.
 const GRID: f32 = 0.5;
 
@@ -70,7 +72,7 @@ pub(crate) fn free_spots(
         })
     };
     let free = spots.into_iter().filter(is_free).filter(is_reached);
-    free.take(4)
+    free.take(MOST)
         .map(|spot| Pose::new(spot, object.pose.rotation))
         .collect()
 }

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::Pose;
+use tabletop_core::{Pose, Table};
 use tabletop_task::{
-    Arrangement, Binding, Place, Reference, Relation, Step, Symmetry, twist_about,
+    Arrangement, Binding, Convex, Place, Reference, Relation, Step, Symmetry, twist_about,
 };
 
 use crate::{
@@ -33,6 +33,8 @@ pub struct Before {
 const NEAR: (f32, f32) = (0.15, 0.3);
 /// How far it may be turned from how it is to be, in rad.
 const TURNED: f32 = 0.14;
+/// How much farther from the side on which it was shown a place may be than the best one, in rad.
+const SIDES: f32 = 0.6;
 /// How far what is upright may lean, in rad.
 const UPRIGHT: f32 = 0.1;
 
@@ -72,12 +74,25 @@ pub(crate) fn candidates(
     if found.is_empty() {
         return Err(Failure::Tipped(id.to_owned()));
     }
-    if is_on(step) {
-        // Turned with its reference, a place may be beside what the object has to stand on.
+    let least = found
+        .iter()
+        .map(|one| one.cost)
+        .fold(f32::INFINITY, f32::min);
+    found.retain(|one| one.cost < least + SIDES);
+    let is_exact = step
+        .goal
+        .as_ref()
+        .is_some_and(|goal| goal.place == Place::Exact);
+    if is_exact || is_on(step) {
+        // Turned with its reference, a place may be beside what the object has to stand on, or above what it has to stand beside.
         let mut fitting = Vec::new();
         for candidate in &found {
             let arrangement = sight.arrangement_with(id, candidate.pose);
-            if stands(step, binding, &arrangement, id)? {
+            let is_on_table = object
+                .solids_at(candidate.pose)
+                .iter()
+                .all(|solid| is_over(&sight.table, solid));
+            if is_on_table && stands(step, binding, &arrangement, id)? {
                 fitting.push(*candidate);
             }
         }
@@ -86,6 +101,13 @@ pub(crate) fn candidates(
         }
     }
     Ok(found)
+}
+
+/// Whether no part of a solid is beside the table.
+fn is_over(table: &Table, solid: &Convex) -> bool {
+    let reach = |way: Vec3| solid.farthest(way).dot(way);
+    reach(Vec3::X).max(reach(Vec3::NEG_X)) < table.xspan / 2.0
+        && reach(Vec3::Y).max(reach(Vec3::NEG_Y)) < table.yspan / 2.0
 }
 
 /// Whether an object stands on, in and around what a step puts it on, in and around.

@@ -289,7 +289,7 @@ impl Imitator<'_> {
             .into_iter()
             .flat_map(|pose| {
                 // Turned as it may be taken then.
-                [0.0_f32, 0.8, -0.8].map(|turn| Candidate {
+                [0.0_f32, 0.8, -0.8, 1.6].map(|turn| Candidate {
                     pose: Pose::new(
                         pose.location,
                         bevy::math::Quat::from_rotation_z(turn) * pose.rotation,
