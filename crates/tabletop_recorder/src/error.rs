@@ -72,6 +72,12 @@ pub enum RecorderError {
         /// The reason.
         source: Box<RecorderError>,
     },
+    /// Another program is undoing or redoing something in the recording.
+    #[error("{folder}: another program is changing this recording; read it when that is over")]
+    BeingChanged {
+        /// The folder of the recording.
+        folder: PathBuf,
+    },
     /// A picture cannot be encoded.
     #[error(
         "cannot encode the picture {path}: {source}; check the size of the head camera's pictures"

@@ -96,7 +96,7 @@ impl Folder {
 
     fn is_in_use(&self) -> bool {
         let session = self.storage.open_to_read(&self.session());
-        session.is_ok_and(|session| !session.try_lock())
+        session.is_ok_and(|session| !session.lock_unless(|| false))
     }
 
     /// The name of this folder while it is being filled.

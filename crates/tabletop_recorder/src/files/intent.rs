@@ -139,9 +139,16 @@ pub(crate) fn fulfil_what_was_left(folder: &Folder) -> Result<(), RecorderError>
     let session = folder.session();
     let lock = folder.storage().open_to_read(&session);
     let lock = lock.map_err(|error| interrupted(RecorderError::read(&session)(error)))?;
-    // Who makes the recording, or reads it at the same time, does it.
-    if !lock.try_lock() || !is_taken(&path) {
+    // Who makes the recording, or reads it at the same time, does it. A process that is being started has the locks of the program
+    // that starts it for a moment, and does nothing.
+    let is_ours = lock.lock_unless(|| !is_taken(&path));
+    if !is_taken(&path) {
         return Ok(());
+    }
+    if !is_ours {
+        return Err(RecorderError::BeingChanged {
+            folder: folder.path().to_owned(),
+        });
     }
     let intent = folder.storage().read(&path, MOST_BYTES).and_then(|bytes| {
         let intent: Intent = from_json(&bytes)?;

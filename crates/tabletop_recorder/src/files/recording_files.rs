@@ -223,7 +223,8 @@ impl RecordingFiles {
 
     /// Closes the files of a recording that could not go on, and does what then was about to be done.
     pub(crate) fn abandon(self) {
-        let Self { folder, .. } = self;
+        let folder = self.folder.clone();
+        drop(self);
         // It is done when the recording is read, then.
         let _ = fulfil_what_was_left(&folder);
     }

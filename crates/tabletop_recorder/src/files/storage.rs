@@ -8,7 +8,13 @@ use std::{
         Arc,
         atomic::{AtomicU64, Ordering},
     },
+    thread::sleep,
+    time::Duration,
 };
+
+/// How often a lock is tried to get.
+const LOCK_ATTEMPTS: u32 = 100;
+const BETWEEN_LOCK_ATTEMPTS: Duration = Duration::from_millis(5);
 
 /// The place of recordings: the file system.
 ///
@@ -291,6 +297,21 @@ impl StoredFile {
             true => self.file.sync_all(),
             false => Ok(()),
         }
+    }
+
+    /// Waits, but not for long, until nobody else has it in use, or there is no need any more to have it. Says whether it is now in use
+    /// by this program.
+    pub(crate) fn lock_unless(&self, is_needless: impl Fn() -> bool) -> bool {
+        for _ in 0..LOCK_ATTEMPTS {
+            if self.try_lock() {
+                return true;
+            }
+            if is_needless() {
+                return false;
+            }
+            sleep(BETWEEN_LOCK_ATTEMPTS);
+        }
+        false
     }
 
     /// Lets others know that it is in use, as long as this is there. Says whether nobody else does so.

@@ -1,7 +1,13 @@
 //! Whatever call to the file system fails, and if the program is killed at any of them, what is left of a recording runs again to the
 //! same files.
 
-use std::{collections::BTreeSet, fs, path::Path};
+use std::{
+    collections::BTreeSet,
+    fs::{self, File},
+    path::Path,
+    thread,
+    time::Duration,
+};
 
 use bevy::prelude::{App, default};
 use tabletop_core::{
@@ -210,4 +216,41 @@ fn a_second_recording_survives_every_fault_and_the_first_is_kept() {
         (1, HistoryCommand::Undo.into()),
         (16, RecordingCommand::Finish.into()),
     ]);
+}
+
+/// A process that is being started has the files of the program that starts it, with their locks, until it is another program.
+#[cfg(unix)]
+#[test]
+fn an_undo_that_was_interrupted_is_finished_though_the_log_is_locked_for_a_moment() {
+    let script = [
+        (0, scene(&["a"])),
+        (0, RecordingCommand::Start.into()),
+        (2, grasp(RIGHT, "a")),
+        (2, HistoryCommand::Undo.into()),
+    ];
+    let mut interrupted = 0;
+    for call in 0.. {
+        let place = Place::in_memory();
+        let storage = Storage::with_fault(Fault::Killed, call);
+        run(&mut recorder(&place, storage.clone(), EVERY_TICK), &script);
+        if storage.calls() <= call {
+            break;
+        }
+        let intent = place.demo().join(".intent.json");
+        if !intent.exists() {
+            continue;
+        }
+        interrupted += 1;
+        let held = File::open(place.demo().join("session.jsonl")).unwrap();
+        held.lock().unwrap();
+        thread::scope(|scope| {
+            scope.spawn(move || {
+                thread::sleep(Duration::from_millis(30));
+                drop(held);
+            });
+            RecordingReader::open(place.demo()).unwrap();
+        });
+        assert!(!intent.exists(), "killed at call {call}");
+    }
+    assert!(interrupted > 3, "interrupted only {interrupted} times");
 }
