@@ -4,14 +4,14 @@
 //! the file of the same path is taken from here. Its own name, `shipped:tablesetup/default.xml`, means it in any case.
 
 use std::{
-    fs, io,
+    io,
     path::{Path, PathBuf},
     sync::LazyLock,
 };
 
 use bevy::prelude::*;
 use include_dir::{Dir, include_dir};
-use tabletop_core::{ShippedFile, ShippedFiles};
+use tabletop_core::{ShippedFile, ShippedFiles, read_regular_text};
 use tabletop_scenario::{Scenario, ScenarioError};
 use tabletop_xml::{ParsedTask, ReadError, TaskReader};
 
@@ -103,6 +103,9 @@ pub fn read_scenario(path: &Path) -> Result<Scenario, ScenarioError> {
     }
 }
 
+/// The largest text that is read from the disk.
+const MOST_BYTES: u64 = 16 << 20;
+
 /// Reads any text, from the folder or the program.
 ///
 /// # Errors
@@ -111,7 +114,7 @@ pub fn read_scenario(path: &Path) -> Result<Scenario, ScenarioError> {
 pub fn read_text(path: &Path) -> io::Result<String> {
     match shipped_files().find(path) {
         Some(file) => Ok(file.text.to_owned()),
-        None => fs::read_to_string(path),
+        None => read_regular_text(path, MOST_BYTES),
     }
 }
 
@@ -125,6 +128,8 @@ pub fn true_path(path: &Path) -> PathBuf {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]

@@ -1,7 +1,7 @@
 //! Which robot stands at the table, and which script drives it.
 
 use std::{
-    path::{Path, PathBuf},
+    path::{Component, Path, PathBuf},
     time::Duration,
 };
 
@@ -79,6 +79,10 @@ pub(super) fn describe(path: &Path) -> Result<Description, Failure> {
     let source = match path.extension().is_some_and(|extension| extension == "ron") {
         true => {
             let file = LayoutFile::read(&text).map_err(|error| at(path, &error))?;
+            if !is_beside(Path::new(&file.urdf)) {
+                let problem = format!("its URDF {} is not in its folder or below", file.urdf);
+                return Err(at(path, &problem));
+            }
             let urdf = path.with_file_name(&file.urdf);
             Source {
                 urdf: read(&urdf)?,
@@ -93,6 +97,12 @@ pub(super) fn describe(path: &Path) -> Result<Description, Failure> {
         },
     };
     Description::read(source).map_err(|error| at(path, &error))
+}
+
+/// Whether a path stays in the folder that it begins in.
+fn is_beside(path: &Path) -> bool {
+    let mut components = path.components();
+    components.all(|component| matches!(component, Component::Normal(_) | Component::CurDir))
 }
 
 /// The language of scripts that a user's own driver runs.

@@ -19,8 +19,9 @@ use tabletop::{
     final_state, headless_app_with,
     recorder::{RecorderPlugin, UnrecordedPlugin},
     script::{ScriptPlugin, shut_down},
-    shipped::{read_scenario, read_task, true_path},
+    shipped::{read_scenario, read_task, task_reader, true_path},
     task_files::save_task,
+    xml::{AllowedFolders, ParsedTask, ReadError},
 };
 use tabletop_scenario::{Outcome, Program, ScenarioRun};
 
@@ -44,6 +45,9 @@ pub(super) struct RunArgs {
     /// The task file to begin with [default: tablesetup/default.xml, or the one that the scenario names]
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
+    /// Let the scenario and task files name files in this folder and below, too; without it, those around them. Can be given again
+    #[arg(long, value_name = "DIR")]
+    allow_path: Vec<PathBuf>,
     /// How many seconds to simulate [default: 10]; a scenario fails if it takes longer [default: 600]
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
@@ -91,7 +95,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
         None => {
             let setup = args.setup.as_deref();
             let setup = setup.unwrap_or(Path::new(DEFAULT_SETUP));
-            let (mut app, result) = put_on_table(setup, plugins(args)?)?;
+            let (mut app, result) = put_on_table(setup, &args.allow_path, plugins(args)?)?;
             app.add_systems(
                 FixedLast,
                 report_what_stops_the_robot.in_set(RestingSystems),
@@ -114,19 +118,25 @@ pub(super) fn simulate(
     seconds: f64,
     final_state: &Output,
 ) -> Result<ExitCode, Failure> {
-    let (mut app, result) = put_on_table(setup, TabletopSimPlugins.build())?;
+    let (mut app, result) = put_on_table(setup, &[], TabletopSimPlugins.build())?;
     pass(&mut app, ticks(seconds));
     write_final_state(&app, final_state)?;
     Ok(result)
 }
 
 /// The simulator that loads a task file in its first tick, and the exit code for the file's faults.
-fn put_on_table(setup: &Path, plugins: PluginGroupBuilder) -> Result<(App, ExitCode), Failure> {
-    let faults = read_task(setup).map_err(Failure::input)?.faults;
+fn put_on_table(
+    setup: &Path,
+    allowed: &[PathBuf],
+    plugins: PluginGroupBuilder,
+) -> Result<(App, ExitCode), Failure> {
+    let reader = task_reader().allowing(allowed);
+    let faults = reader.read(setup).map_err(Failure::input)?.faults;
     for fault in &faults {
         say(fault);
     }
     let mut app = headless_app_with(plugins);
+    app.insert_resource(AllowedFolders(allowed.to_vec()));
     app.world_mut()
         .write_command(SceneCommand::Load(setup.to_owned()));
     let result = match faults.is_empty() {
@@ -139,6 +149,7 @@ fn put_on_table(setup: &Path, plugins: PluginGroupBuilder) -> Result<(App, ExitC
 /// Performs a scenario until it is done or has failed.
 fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     let mut scenario = read_scenario(scenario).map_err(Failure::input)?;
+    scenario.allowed.clone_from(&args.allow_path);
     if let Some(setup) = &args.setup {
         scenario.begin_with(&true_path(setup));
     }
@@ -146,8 +157,8 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     let layout = robot.description.map(|robot| robot.layout);
     let checked = scenario.check_for(&layout.unwrap_or_default());
     checked.map_err(Failure::input)?;
-    let mut program =
-        Program::new(&scenario, read_faultless_task, args.seed).map_err(Failure::input)?;
+    let mut program = Program::new(&scenario, |file| args.read_faultless(file), args.seed)
+        .map_err(Failure::input)?;
     if let Some(seconds) = args.seconds {
         program.limit = ticks(seconds);
     }
@@ -288,6 +299,11 @@ fn recording(plugins: PluginGroupBuilder, args: &RunArgs) -> PluginGroupBuilder 
 }
 
 impl RunArgs {
+    /// The scene of a task file, which may include files in the folders that are allowed, or everything that is wrong with it.
+    fn read_faultless(&self, file: &Path) -> Result<SceneSpec, String> {
+        faultless(task_reader().allowing(&self.allow_path).read(file))
+    }
+
     /// Whether what is asked for at the end of a run can be written then.
     fn check_ends(&self) -> Result<(), Failure> {
         if let Some(path) = self.save.as_deref().filter(|path| path.exists()) {
@@ -351,7 +367,11 @@ fn counted(count: usize, of_what: &str) -> String {
 
 /// The scene of a task file, or everything that is wrong with it.
 pub(super) fn read_faultless_task(file: &Path) -> Result<SceneSpec, String> {
-    let task = read_task(file).map_err(|error| error.to_string())?;
+    faultless(read_task(file))
+}
+
+fn faultless(task: Result<ParsedTask, ReadError>) -> Result<SceneSpec, String> {
+    let task = task.map_err(|error| error.to_string())?;
     let faults: Vec<_> = task.faults.iter().map(ToString::to_string).collect();
     match faults.is_empty() {
         true => Ok(task.scene),

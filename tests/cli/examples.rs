@@ -12,7 +12,7 @@ use tabletop::{
     prelude::*,
     scenario::{Outcome, Program, Scenario, ScenarioRun},
     script::{EngineChoice, ScriptPlugin, ScriptSettings},
-    xml::read_task,
+    shipped::read_task,
 };
 
 use crate::{scripts::copy_of_matlab, support::shipped};

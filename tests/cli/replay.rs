@@ -191,7 +191,7 @@ fn what_hands_did_before_the_start_is_done_again() {
             ("LIDBOX", "lidbox.xml"),
             ("CHAIN", "chain.xml"),
         ] {
-            steps = steps.replace(word, shipped("tablesetup", file).to_str().unwrap());
+            steps = steps.replace(word, &format!("shipped:tablesetup/{file}"));
         }
         let scenario = scenario(&format!("replay_{name}.ron"), &steps);
         let folder = record(&scenario, &format!("replay_{name}"));

@@ -59,8 +59,8 @@ pub fn shipped(folder: &str, name: &str) -> PathBuf {
 
 /// A scenario of these steps, which begin in the second line, on the default table.
 pub fn scenario(name: &str, steps: &str) -> PathBuf {
-    let setup = shipped("tablesetup", "default.xml");
     let path = place(name);
+    let setup = "shipped:tablesetup/default.xml";
     fs::write(&path, format!("(setup: {setup:?}, steps: [\n{steps}\n])")).unwrap();
     path
 }

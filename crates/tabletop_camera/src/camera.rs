@@ -84,8 +84,7 @@ impl PinholeView {
         let (width, height) = (camera.width as f32, camera.height as f32);
         let fov = camera.vertical_fov;
         let fov = f64::from(fov.clamp(FIELDS_OF_VIEW.start, FIELDS_OF_VIEW.end));
-        // Rounded from a number of twice the length, whose last bits are not the same on every system.
-        let spread = (2.0 * (fov / 2.0).tan()) as f32;
+        let spread = (2.0 * libm::tan(fov / 2.0)) as f32;
         let across = if camera.square_fov { width } else { height };
         let pixel = Vec2::new(spread / across, spread / height);
         let center = Vec2::new(width - 1.0, height - 1.0) / 2.0;

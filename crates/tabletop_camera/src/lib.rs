@@ -42,6 +42,8 @@
 //! assert_eq!(image.shown_at(99, 74), Some(table));
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod camera;
 mod color;
 mod head_camera;

@@ -52,7 +52,7 @@ impl JointedSpec {
         let displacement = match self.motion {
             JointMotion::Slide => -moved.location.x,
             JointMotion::Turn => {
-                let angle = 2.0 * moved.rotation.x.atan2(moved.rotation.w).to_degrees();
+                let angle = 2.0 * libm::atan2f(moved.rotation.x, moved.rotation.w).to_degrees();
                 // The rotation and its negative turn to the same.
                 angle - 360.0 * (angle / 360.0).round()
             }

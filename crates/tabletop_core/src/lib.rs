@@ -18,6 +18,8 @@
 //! assert_eq!(app.world().resource::<SimTick>().0, 60);
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod agent;
 mod bond;
 mod bounds;
@@ -34,6 +36,7 @@ mod joint;
 mod jointed;
 mod keymap;
 mod light;
+pub mod limits;
 mod mechanism;
 mod mount;
 mod navigation;
@@ -50,6 +53,7 @@ mod random;
 mod ray;
 mod recording;
 mod reflection;
+mod regular_file;
 mod rest;
 mod robot;
 mod robot_event;
@@ -60,6 +64,7 @@ mod shape;
 mod shipped;
 mod tick;
 mod timeline;
+mod turn;
 mod twist;
 mod user;
 
@@ -102,6 +107,7 @@ pub use pose::{Pose, UNITS_PER_METER, degrees_from_quat, quat_from_degrees};
 pub use preset::Preset;
 pub use random::Random;
 pub use recording::{History, OpenRecording, Recording, Replaying};
+pub use regular_file::{read_regular_file, read_regular_text};
 pub use rest::{RestApp, RestingSystems, Upkeep};
 pub use robot::{
     Arm, BaseLayout, CameraCarrier, CameraLayout, Drive, Face, FingerLook, GripperKind,
@@ -118,6 +124,7 @@ pub use tick::{SimTick, TICK_SECONDS, TICKS_PER_SECOND};
 pub use timeline::{
     Act, Manipulator, Timeline, TimelineGrip, TimelinePicture, TimelineSegment, TimelineStage, Verb,
 };
+pub use turn::{turn_about, turn_about_x, turn_about_y, turn_about_z};
 pub use twist::Twist;
 pub use user::{DragPlane, KeySystems, UserCamera};
 

@@ -2,9 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use bevy::math::DQuat;
-
-use crate::{CameraCarrier, HeadCamera, Pose, Table};
+use crate::{CameraCarrier, HeadCamera, Pose, Table, turn_about_x, turn_about_z};
 
 impl HeadCamera {
     /// Where it stands before this table. It looks along its own -Z with its Y up.
@@ -20,9 +18,8 @@ impl HeadCamera {
 /// At a table of `yspan` 12 it is (0, -7.1168, 11.5921), looking along (0, 0.5584, -0.8296), as in the original program.
 fn head_pose(carrier: &CameraCarrier, pan: f32, table: &Table) -> Pose {
     let CameraCarrier { base, camera } = carrier;
-    // Rounded from numbers of twice the length: the last bits of sine and cosine are not the same on every system.
-    let turned = DQuat::from_rotation_z(f64::from(pan)).as_quat();
-    let tilted = DQuat::from_rotation_x(FRAC_PI_2 - camera.tilt).as_quat();
+    let turned = turn_about_z(f64::from(pan)).as_quat();
+    let tilted = turn_about_x(FRAC_PI_2 - camera.tilt).as_quat();
     Pose::new(base.pose(table).location + camera.neck, turned) * Pose::new(camera.at, tilted)
 }
 

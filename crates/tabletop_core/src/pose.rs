@@ -3,10 +3,12 @@
 use std::ops::Mul;
 
 use bevy::{
-    math::{DMat3, DQuat, DVec3},
+    math::{DMat3, DVec3},
     prelude::*,
 };
 use serde::{Deserialize, Serialize};
+
+use crate::{turn_about_x, turn_about_y, turn_about_z};
 
 /// Units of length in a metre.
 pub const UNITS_PER_METER: f64 = 10.0;
@@ -103,8 +105,7 @@ impl From<&Transform> for Pose {
 /// The rotation of a task file: `degrees.x` about the fixed X axis, then `degrees.y` about Y, then `degrees.z` about Z.
 pub fn quat_from_degrees(degrees: impl Into<DVec3>) -> Quat {
     let [x, y, z] = degrees.into().to_array().map(f64::to_radians);
-    let rotation =
-        DQuat::from_rotation_z(z) * DQuat::from_rotation_y(y) * DQuat::from_rotation_x(x);
+    let rotation = turn_about_z(z) * turn_about_y(y) * turn_about_x(x);
     rotation.as_quat().normalize()
 }
 
@@ -115,15 +116,22 @@ pub fn degrees_from_quat(rotation: Quat) -> Vec3 {
     // The third row and first column of Rz·Ry·Rx.
     let sin_y = (-m.x_axis.z).clamp(-1.0, 1.0) + 0.0;
     let (x, z) = if sin_y.abs() < 1.0 - 1e-9 {
-        (m.y_axis.z.atan2(m.z_axis.z), m.x_axis.y.atan2(m.x_axis.x))
+        (
+            libm::atan2(m.y_axis.z, m.z_axis.z),
+            libm::atan2(m.x_axis.y, m.x_axis.x),
+        )
     } else {
-        (0.0, (-m.y_axis.x).atan2(m.y_axis.y))
+        (0.0, libm::atan2(-m.y_axis.x, m.y_axis.y))
     };
     let half_open = |radians: f64| {
         let degrees = radians.to_degrees() as f32;
         if degrees <= -180.0 { 180.0 } else { degrees }
     };
-    Vec3::new(half_open(x), sin_y.asin().to_degrees() as f32, half_open(z))
+    Vec3::new(
+        half_open(x),
+        libm::asin(sin_y).to_degrees() as f32,
+        half_open(z),
+    )
 }
 
 #[cfg(test)]

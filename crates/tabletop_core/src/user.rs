@@ -29,7 +29,7 @@ impl DragPlane {
     /// The plane that is seen from the front by somebody who looks in this direction.
     pub fn facing(direction_of_view: Vec3) -> Self {
         Self {
-            heading: (-direction_of_view.x).atan2(direction_of_view.y),
+            heading: libm::atan2f(-direction_of_view.x, direction_of_view.y),
             is_perpendicular: false,
         }
     }

@@ -3,7 +3,7 @@
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
     Cause, CommandId, Hand, HandCommand, Hands, Held, Holder, IssuedCommand, ObjectIndex,
-    ObjectSpec, Paused, Pose, SimFact, carry_out,
+    ObjectSpec, Paused, Pose, SimFact, carry_out, turn_about,
 };
 use tabletop_history::begin_segment;
 use tabletop_physics::{Carry, hold, let_go, remove_object};
@@ -150,7 +150,7 @@ fn turn(world: &mut World, hand: Hand, axis: Vec3, degrees: f32) -> Result<(), S
             "{hand} cannot turn anything by {degrees}° about {axis}"
         ));
     };
-    let turn = Quat::from_axis_angle(direction, degrees.to_radians());
+    let turn = turn_about(direction, degrees.to_radians());
     target.0.rotation = (turn * target.0.rotation).normalize();
     Ok(())
 }

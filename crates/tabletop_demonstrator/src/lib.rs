@@ -38,6 +38,8 @@
 //! assert_eq!(app.world().get::<Transform>(block).unwrap().translation, location);
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod carry;
 mod grasp;
 mod obstacles;

@@ -27,6 +27,8 @@
 //! assert_eq!(app.world().get(switch), Some(&Switch(false)));
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod removal;
 mod rollback;
 mod segments;

@@ -1,8 +1,10 @@
 //! An arm: the turning joints between two links.
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DVec3};
 
-use crate::{JointType, JointValues, LinkId, ModelError, ModelJointId, RobotModel};
+use crate::{
+    JointType, JointValues, LinkId, ModelError, ModelJointId, RobotModel, turn::turn_about,
+};
 
 /// Most joints of an arm.
 pub const MOST_ARM_JOINTS: usize = 16;
@@ -197,7 +199,7 @@ impl ArmChain {
 impl Segment {
     fn turned(&self, before: DAffine3, angle: f64) -> DAffine3 {
         let mut frame = before * self.origin;
-        frame.matrix3 *= DMat3::from_axis_angle(self.axis, angle);
+        frame.matrix3 *= turn_about(self.axis, angle);
         frame
     }
 }

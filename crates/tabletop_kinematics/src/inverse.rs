@@ -238,7 +238,7 @@ fn rotation_vector(rotation: DMat3) -> DVec3 {
     };
     let (sine, cosine) = (rotation.xyz().length(), rotation.w);
     match sine > 1e-12 {
-        true => rotation.xyz() * (2.0 * sine.atan2(cosine) / sine),
+        true => rotation.xyz() * (2.0 * libm::atan2(sine, cosine) / sine),
         false => 2.0 * rotation.xyz(),
     }
 }

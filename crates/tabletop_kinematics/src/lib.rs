@@ -25,6 +25,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 /// The types that most users of the crate need.
 pub mod prelude {
     #[doc(hidden)]
@@ -43,6 +45,8 @@ mod inverse;
 mod link;
 mod model;
 mod outline;
+mod plain;
+mod turn;
 mod urdf;
 mod values;
 

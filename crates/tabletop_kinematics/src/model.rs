@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use crate::{JointValues, Link, LinkId, ModelError, ModelJointId};
+use crate::{JointValues, Link, LinkId, ModelError, ModelJointId, turn::turn_about};
 
 /// The degrees of freedom of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,7 +57,7 @@ impl ModelJoint {
         match self.kind {
             JointType::Fixed => self.origin,
             JointType::Revolute | JointType::Continuous => {
-                self.origin * DAffine3::from_axis_angle(self.axis, position)
+                self.origin * DAffine3::from_mat3(turn_about(self.axis, position))
             }
             JointType::Prismatic => self.origin * DAffine3::from_translation(self.axis * position),
         }

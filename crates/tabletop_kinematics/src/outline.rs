@@ -6,7 +6,7 @@
 use crate::ModelError;
 
 /// Elements may be this deep inside each other. URDF itself needs six.
-const DEEPEST: usize = 64;
+pub(crate) const DEEPEST: usize = 64;
 
 /// An element that stands directly inside the root element.
 #[derive(Clone, Copy, Debug, PartialEq)]

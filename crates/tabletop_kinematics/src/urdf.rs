@@ -2,13 +2,24 @@
 
 use std::collections::HashMap;
 
-use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use crate::{
     Geometry, Inertial, JointType, Link, LinkId, LinkShape, Mimic, ModelError, ModelJoint,
     ModelJointId, RobotModel,
     outline::{Child, Outline, outline},
+    plain,
+    turn::from_roll_pitch_yaw,
 };
+
+/// The largest length, in m.
+const LONGEST: f64 = 1000.0;
+
+/// The largest mass, in kg.
+const HEAVIEST: f64 = 1e6;
+
+/// The largest moment of inertia, in kg m²; beyond, products of three are not finite.
+const MOST_INERTIA: f64 = 1e12;
 
 impl RobotModel {
     /// Reads a robot from the text of a URDF file.
@@ -32,13 +43,24 @@ impl RobotModel {
     /// The text is no URDF, or its links and joints are no tree, or one of its numbers cannot be.
     pub fn from_urdf(text: &str) -> Result<Self, ModelError> {
         let outline = outline(text)?;
-        let robot = urdf_rs::read_from_string(text).map_err(|error| locate(&error, &outline))?;
+        let robot = read(text).map_err(|error| locate(error, text, &outline))?;
         Lines::new(&outline.children).model(robot)
     }
 }
 
+/// Why a text cannot be read.
+enum Unread {
+    Xml(plain::Fault),
+    Urdf(urdf_rs::UrdfError),
+}
+
+fn read(text: &str) -> Result<urdf_rs::Robot, Unread> {
+    let plain = plain::plain(text).map_err(Unread::Xml)?;
+    urdf_rs::read_from_string(&plain).map_err(Unread::Urdf)
+}
+
 /// Finds what the reader could not read: an element that does not end, or one of the links and joints, each read alone.
-fn locate(error: &urdf_rs::UrdfError, outline: &Outline) -> ModelError {
+fn locate(error: Unread, text: &str, outline: &Outline) -> ModelError {
     if let Some((tag, line, fault)) = &outline.unbalanced {
         return ModelError::Syntax {
             line: *line,
@@ -52,19 +74,30 @@ fn locate(error: &urdf_rs::UrdfError, outline: &Outline) -> ModelError {
         .filter(|child| matches!(child.tag, "link" | "joint" | "material"))
         .find_map(|child| {
             let text = format!("<robot name=\"\">{}</robot>", child.text);
-            Some((child, urdf_rs::read_from_string(&text).err()?))
+            Some((child, read(&text).err()?))
         });
-    let (line, element, error) = match &alone {
+    let (line, element, error) = match alone {
         Some((child, error)) => (child.line, child.named(), error),
-        None => (1, "robot".to_owned(), error),
+        None => (line_of(&error, text), "robot".to_owned(), error),
     };
-    let message = error.to_string();
+    let message = match error {
+        Unread::Xml(fault) => fault.what,
+        // With a prefix of the reader's own.
+        Unread::Urdf(error) => error.to_string().trim_start_matches("custom: ").to_owned(),
+    };
     ModelError::Syntax {
         line,
         element,
-        // A prefix of the reader's own.
-        message: message.trim_start_matches("custom: ").to_owned(),
+        message,
     }
+}
+
+fn line_of(error: &Unread, text: &str) -> usize {
+    let before = match error {
+        Unread::Xml(fault) => text.get(..fault.offset).unwrap_or_default(),
+        Unread::Urdf(_) => "",
+    };
+    1 + before.matches('\n').count()
 }
 
 /// Lines of links and joints, in the order in which the text has them.
@@ -407,17 +440,18 @@ impl Numbers {
         }
     }
 
-    /// A finite number from 0 up.
+    /// A length from 0 up, in m.
     fn length(&self, number: f64) -> Result<f64, ModelError> {
-        match number >= 0.0 && number.is_finite() {
-            true => Ok(number),
-            false => Err(self.fault("a length is negative or not finite")),
+        match number {
+            0.0..=LONGEST => Ok(number.abs()),
+            LONGEST.. => Err(self.fault("a length is over 1000 m")),
+            _ => Err(self.fault("a length is negative or not finite")),
         }
     }
 
     fn rotation(&self, rpy: [f64; 3]) -> Result<DQuat, ModelError> {
         let DVec3 { x, y, z } = self.vector(rpy, "an rpy is not finite")?;
-        Ok(DQuat::from_euler(EulerRot::ZYX, z, y, x))
+        Ok(from_roll_pitch_yaw(x, y, z))
     }
 
     fn pose(&self, pose: &urdf_rs::Pose) -> Result<DAffine3, ModelError> {
@@ -432,12 +466,18 @@ impl Numbers {
         if !(mass >= 0.0 && mass.is_finite()) {
             return Err(self.fault("its mass is negative or not finite"));
         }
+        if mass > HEAVIEST {
+            return Err(self.fault("its mass is over 1,000,000 kg"));
+        }
         let i = &inertial.inertia;
         let fault = "its inertia is negative or not finite";
         let moments = self.vector([i.ixx, i.iyy, i.izz], fault)?;
-        self.vector([i.ixy, i.ixz, i.iyz], fault)?;
+        let products = self.vector([i.ixy, i.ixz, i.iyz], fault)?;
         if moments.min_element() < 0.0 {
             return Err(self.fault(fault));
+        }
+        if !is_of_a_body(moments, products) {
+            return Err(self.fault("no body has its inertia: it has a negative principal moment"));
         }
         let own = DMat3::from_cols_array_2d(&[
             [i.ixx, i.ixy, i.ixz],
@@ -493,4 +533,33 @@ impl Numbers {
             color: color.map(|color| *color.rgba),
         })
     }
+}
+
+/// Whether no principal moment is negative, but for what rounding does.
+fn is_of_a_body(moments: DVec3, products: DVec3) -> bool {
+    let scale = moments.max_element();
+    if scale > MOST_INERTIA {
+        return false;
+    }
+    if scale == 0.0 {
+        return products == DVec3::ZERO;
+    }
+    let (
+        DVec3 {
+            x: xx,
+            y: yy,
+            z: zz,
+        },
+        DVec3 {
+            x: xy,
+            y: xz,
+            z: yz,
+        },
+    ) = (moments / scale, products / scale);
+    let minors = [xx * yy - xy * xy, xx * zz - xz * xz, yy * zz - yz * yz];
+    let determinant = xx * minors[2] - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+    minors
+        .iter()
+        .chain([&determinant])
+        .all(|&minor| minor >= -1e-9)
 }

@@ -1,7 +1,7 @@
 //! Texts that are no robots: refused where the fault is, and never with a panic.
 
 use proptest::prelude::*;
-use tabletop_kinematics::{ArmChain, ModelError, RobotModel, baxter};
+use tabletop_kinematics::{ArmChain, Geometry, ModelError, RobotModel, baxter};
 
 /// A robot of two links and a joint, with something put into or instead of its parts. The joint stands in line 4.
 fn robot(joint: &str) -> String {
@@ -136,6 +136,22 @@ fn every_fault_is_told_with_its_place() {
             "line 2: link a: its inertia is negative or not finite",
         ),
         (
+            inertial("1", "1e13"),
+            "line 2: link a: no body has its inertia: it has a negative principal moment",
+        ),
+        (
+            inertial("1", "1\" ixy=\"2").replacen(" ixy=\"0\"", "", 1),
+            "line 2: link a: no body has its inertia: it has a negative principal moment",
+        ),
+        (
+            inertial("1e7", "1"),
+            "line 2: link a: its mass is over 1,000,000 kg",
+        ),
+        (
+            body("<cylinder radius=\"18446744073709551616\" length=\"1\"/>"),
+            "line 2: link a: a length is over 1000 m",
+        ),
+        (
             body("<sphere radius=\"-1\"/>"),
             "line 2: link a: a length is negative or not finite",
         ),
@@ -210,6 +226,41 @@ fn texts_that_are_no_xml_are_refused() {
     assert!(
         matches!(error, ModelError::TooDeep { line: 1, .. }),
         "{error}"
+    );
+}
+
+#[test]
+fn what_xml_knows_and_urdf_does_not_is_refused_or_left_out() {
+    let entity = "<!DOCTYPE robot [<!ENTITY a \"<link name='a'/>\">]>\n<robot name='r'>&a;</robot>";
+    let deep = format!(
+        "<!DOCTYPE robot [<!ENTITY a \"<\">]><robot>{}",
+        "<a>".repeat(20_000)
+    );
+    for text in [entity, &deep] {
+        let error = RobotModel::from_urdf(text).unwrap_err().to_string();
+        assert!(
+            error.contains("DOCTYPE") || error.contains("deep"),
+            "{error}"
+        );
+    }
+    for robot in [
+        "<robot xmlns='' name='r'><link xmlns='a' name='a'/></robot>",
+        "<robot xmlns:a='' name='r'><a:b xmlns:a='c'/><link xmlns:c='a' c:d='e' name='a'/></robot>",
+        "<a:robot xmlns:a='b' name='r'><link name='a'/></a:robot>",
+    ] {
+        // Whether it is a robot or not: there is no panic.
+        let _read = RobotModel::from_urdf(robot);
+    }
+}
+
+#[test]
+fn a_cylinder_without_thickness_has_a_radius_of_zero() {
+    let text = body("<cylinder radius=\"-0.0\" length=\"1\"/>");
+    let robot = RobotModel::from_urdf(&text).unwrap();
+    let link = robot.links().first();
+    let shape = link.and_then(|link| link.collisions.first()).unwrap();
+    assert!(
+        matches!(shape.geometry, Geometry::Cylinder { radius, .. } if radius.is_sign_positive())
     );
 }
 

@@ -28,6 +28,8 @@
 //! assert!((height + 98.1 / 2.0).abs() < 1.0, "it fell to {height}");
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod bodies;
 mod effort;
 mod geometry;

@@ -23,6 +23,8 @@
 //! assert_eq!(robot.joint(RobotJoint::RightE1).position, 1.5);
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod articulation;
 mod clearance;
 mod command;

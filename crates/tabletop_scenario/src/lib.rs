@@ -21,12 +21,15 @@
 //! # Ok::<_, tabletop_scenario::ScenarioError>(())
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod act;
 mod check;
 mod error;
 mod fault;
 mod place;
 mod program;
+mod reach;
 mod rest;
 mod robot;
 mod run;

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use serde::Deserialize;
-use tabletop_core::{Bounds, Pose, Random, SceneItem, SceneSpec};
+use tabletop_core::{Bounds, Pose, Random, SceneItem, SceneSpec, turn_about};
 
 /// Least distance, in units, of an object that is placed to any other.
 const CLEARANCE: f32 = 0.05;
@@ -90,7 +90,7 @@ fn index_of(scene: &SceneSpec, id: &str) -> Result<usize, String> {
 /// The item at a random pose.
 fn moved(item: &SceneItem, place: &Place, random: &mut Random) -> SceneItem {
     let (x, y) = (random.between(place.x), random.between(place.y));
-    let turn = Quat::from_rotation_z(random.between(place.turn).to_radians());
+    let turn = turn_about(Vec3::Z, random.between(place.turn).to_radians());
     let mut item = item.clone();
     let pose = match &mut item {
         SceneItem::Object(object) => &mut object.pose,

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use tabletop_core::{Random, SceneSpec, TICKS_PER_SECOND, seen_from};
 
-use crate::{LocatedStep, Scenario, ScenarioError, SourceLocation, Step, place::place_all};
+use crate::{
+    LocatedStep, Scenario, ScenarioError, SourceLocation, Step, place::place_all, reach::Reach,
+};
 
 /// Longest time that a scenario takes if nothing else is said, in seconds.
 const DEFAULT_LIMIT_SECONDS: u64 = 600;
@@ -47,11 +49,15 @@ impl Program {
         seed: u64,
     ) -> Result<Self, ScenarioError> {
         let folder = scenario.path.parent().unwrap_or(Path::new(""));
+        let reach = Reach::of(folder, &scenario.allowed);
         let mut random = Random::new(seed);
         let steps = scenario.setup.iter().chain(&scenario.steps);
         let steps = steps.map(|LocatedStep { at, text, step }| {
             let action = if let Step::Load { file, place } = step {
-                load(&seen_from(folder, file))
+                let file = seen_from(folder, file);
+                reach
+                    .check(&file)
+                    .and_then(|()| load(&file))
                     .and_then(|mut scene| {
                         place_all(&mut scene, place, &mut random)?;
                         Ok(ProgramAction::SetScene(Box::new(scene)))

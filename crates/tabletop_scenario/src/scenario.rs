@@ -1,15 +1,18 @@
 //! Scenario files.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 use ron::{Options, error::SpannedError, extensions::Extensions, value::RawValue};
 use serde::Deserialize;
-use tabletop_core::{RobotLayout, is_shipped};
+use tabletop_core::{RobotLayout, is_shipped, read_regular_text};
 
-use crate::{ScenarioError, SourceLocation, Step};
+use crate::{ScenarioError, SourceLocation, Step, source::Places};
+
+/// The largest file that is read.
+const MOST_BYTES: u64 = 16 << 20;
+
+/// Most steps of a scenario.
+const MOST_STEPS: usize = 100_000;
 
 /// The content of a scenario file.
 ///
@@ -32,6 +35,8 @@ pub struct Scenario {
     pub setup: Option<LocatedStep>,
     /// The steps after that.
     pub steps: Vec<LocatedStep>,
+    /// Folders in which, and below, task files are that it may name, besides those around it.
+    pub allowed: Vec<PathBuf>,
 }
 
 /// A step and where it stands.
@@ -62,7 +67,7 @@ impl Scenario {
     /// If it cannot be read, or its [text](Self::parse) is wrong.
     pub fn read(path: impl Into<PathBuf>) -> Result<Self, ScenarioError> {
         let path = path.into();
-        match fs::read_to_string(&path) {
+        match read_regular_text(&path, MOST_BYTES) {
             Ok(text) => Self::parse(path, &text),
             Err(error) => Err(ScenarioError::Unreadable {
                 path,
@@ -79,19 +84,28 @@ impl Scenario {
     pub fn parse(path: impl Into<PathBuf>, text: &str) -> Result<Self, ScenarioError> {
         let path = path.into();
         let file: ScenarioFile = from_ron(text, &SourceLocation::start_of(&path))?;
+        if file.steps.len() > MOST_STEPS {
+            return Err(ScenarioError::Syntax {
+                at: SourceLocation::start_of(&path),
+                what: format!("there are more than {MOST_STEPS} steps"),
+            });
+        }
+        let mut places = Places::of(&path, text);
         let setup = file.setup.map(|raw| {
-            let (at, text) = located(&path, text, raw);
+            let (at, text) = located(&mut places, text, raw);
             let task: PathBuf = from_ron(text, &at)?;
             Ok(LocatedStep::setup(at, task))
         });
+        let setup = setup.transpose()?;
         let steps = file.steps.into_iter().map(|raw| {
-            let (at, text) = located(&path, text, raw);
+            let (at, text) = located(&mut places, text, raw);
             LocatedStep::parse(at, text)
         });
         Ok(Self {
-            setup: setup.transpose()?,
+            setup,
             steps: steps.collect::<Result<_, _>>()?,
             path,
+            allowed: Vec::new(),
         })
     }
 
@@ -122,6 +136,7 @@ impl Scenario {
             true => task.to_owned(),
             false => std::path::absolute(task).unwrap_or(task.to_owned()),
         };
+        self.allowed.extend(task.parent().map(Path::to_owned));
         self.setup = Some(LocatedStep::setup(at, task));
     }
 }
@@ -153,10 +168,10 @@ impl LocatedStep {
 }
 
 /// The place of a part of the text, and the part without blanks and comments around it.
-fn located<'a>(path: &Path, text: &str, part: &'a RawValue) -> (SourceLocation, &'a str) {
+fn located<'a>(places: &mut Places, text: &str, part: &'a RawValue) -> (SourceLocation, &'a str) {
     let part = part.trim().get_ron();
     let offset = part.as_ptr() as usize - text.as_ptr() as usize;
-    (SourceLocation::of_offset(path, text, offset), part)
+    (places.find(offset), part)
 }
 
 fn from_ron<'a, T: Deserialize<'a>>(
@@ -251,6 +266,16 @@ mod tests {
             assert!(error.starts_with(&format!("s.ron:{at}")), "{error}");
             assert!(error.contains(words), "{error}");
         }
+    }
+
+    #[test]
+    fn many_steps_in_a_line_are_found_at_once() {
+        let text = format!("(steps: [{}])", "Wait(1),".repeat(MOST_STEPS));
+        let scenario = Scenario::parse("s.ron", &text).unwrap();
+        let last = &scenario.steps[MOST_STEPS - 1];
+        assert_eq!(last.at.column, 10 + 8 * (MOST_STEPS - 1));
+        let text = text.replace("])", "Wait(1)])");
+        assert!(error(&text).contains("more than 100000 steps"));
     }
 
     #[test]

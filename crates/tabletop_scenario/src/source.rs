@@ -27,16 +27,6 @@ impl SourceLocation {
         }
     }
 
-    pub(crate) fn of_offset(path: &Path, text: &str, offset: usize) -> Self {
-        let before = text.get(..offset).unwrap_or(text);
-        let start_of_line = before.rfind('\n').map_or(0, |newline| newline + 1);
-        Self {
-            path: path.to_owned(),
-            line: 1 + before.matches('\n').count(),
-            column: 1 + before[start_of_line..].chars().count(),
-        }
-    }
-
     /// The place that a position in the text that begins here means.
     pub(crate) fn followed_by(&self, position: Position) -> Self {
         let column = match position.line {
@@ -57,6 +47,40 @@ impl fmt::Display for SourceLocation {
     }
 }
 
+/// Finds places in a text, fast if each comes after the one before.
+#[derive(Debug)]
+pub(crate) struct Places<'a> {
+    text: &'a str,
+    offset: usize,
+    /// Where that is.
+    at: SourceLocation,
+}
+
+impl<'a> Places<'a> {
+    pub(crate) fn of(path: &Path, text: &'a str) -> Self {
+        Self {
+            text,
+            offset: 0,
+            at: SourceLocation::start_of(path),
+        }
+    }
+
+    pub(crate) fn find(&mut self, offset: usize) -> SourceLocation {
+        if offset < self.offset {
+            *self = Self::of(&self.at.path, self.text);
+        }
+        let between = self.text.get(self.offset..offset).unwrap_or_default();
+        for character in between.chars() {
+            (self.at.line, self.at.column) = match character {
+                '\n' => (self.at.line + 1, 1),
+                _ => (self.at.line, self.at.column + 1),
+            };
+        }
+        self.offset = offset;
+        self.at.clone()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -65,8 +89,10 @@ mod tests {
     fn lines_and_columns_count_from_one_in_characters() {
         let path = Path::new("a.ron");
         let text = "ä\nöüx";
-        let x = SourceLocation::of_offset(path, text, text.find('x').unwrap_or(0));
+        let mut places = Places::of(path, text);
+        let x = places.find(text.find('x').unwrap_or(0));
         assert_eq!(x.to_string(), "a.ron:2:3");
+        assert_eq!(places.find(0).to_string(), "a.ron:1:1");
         let same_line = x.followed_by(Position { line: 1, col: 4 });
         assert_eq!((same_line.line, same_line.column), (2, 6));
         let next_line = x.followed_by(Position { line: 2, col: 4 });

@@ -28,6 +28,8 @@
 //! assert!((height - 0.5).abs() < 0.01, "it lies at {height}");
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod assembly;
 mod compound;
 mod ids;

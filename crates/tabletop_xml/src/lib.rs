@@ -22,6 +22,8 @@
 //! assert_eq!(chain.links(), 12);
 //! ```
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
+
 mod document;
 mod elements;
 mod expansion;
@@ -40,7 +42,7 @@ mod test_support;
 pub use fault::{Fault, MAX_FAULTS, Position};
 pub use files::MAX_FILE_BYTES;
 pub use parse::{ExpandedTask, ParsedTask, expand, is_task, parse};
-pub use plugin::XmlPlugin;
+pub use plugin::{AllowedFolders, XmlPlugin};
 pub use reader::{ReadError, TaskReader, read_task};
 pub use write::write;
 

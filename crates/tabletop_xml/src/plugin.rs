@@ -1,5 +1,7 @@
 //! Task files in the simulation.
 
+use std::path::PathBuf;
+
 use bevy::prelude::*;
 use tabletop_core::{
     IssuedCommand, RestingSystems, SceneCommand, SceneSpec, ShippedFile, ShippedFiles, SimCommand,
@@ -14,12 +16,18 @@ use crate::{ParsedTask, ReadError, TaskReader};
 #[derive(Clone, Copy, Debug, Default)]
 pub struct XmlPlugin;
 
+/// Folders in which, and below, task files may include files, besides their own.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct AllowedFolders(pub Vec<PathBuf>);
+
 impl Plugin for XmlPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<ShippedFiles>().add_systems(
-            FixedUpdate,
-            load_tasks.in_set(SimSystems::Load).in_set(RestingSystems),
-        );
+        app.init_resource::<ShippedFiles>()
+            .init_resource::<AllowedFolders>()
+            .add_systems(
+                FixedUpdate,
+                load_tasks.in_set(SimSystems::Load).in_set(RestingSystems),
+            );
     }
 }
 
@@ -27,11 +35,14 @@ fn load_tasks(
     mut commands: MessageMutator<IssuedCommand>,
     mut facts: MessageWriter<SimFact>,
     shipped: Res<ShippedFiles>,
+    allowed: Res<AllowedFolders>,
 ) {
     for IssuedCommand { id, command, .. } in commands.read() {
         if let SimCommand::Scene(SceneCommand::Load(path)) = command {
             let path = std::mem::take(path);
-            let task = TaskReader::with_shipped(&shipped).read(&path);
+            let task = TaskReader::with_shipped(&shipped)
+                .allowing(&allowed.0)
+                .read(&path);
             let path = shipped.find(&path).map_or(path, ShippedFile::name);
             let (scene, faults) = scene_and_faults(task);
             *command = SimCommand::Scene(SceneCommand::Set(Box::new(scene)));
@@ -63,7 +74,7 @@ fn scene_and_faults(task: Result<ParsedTask, ReadError>) -> (SceneSpec, Vec<Stri
 
 #[cfg(test)]
 mod tests {
-    use std::{fs, path::PathBuf};
+    use std::fs;
 
     use tabletop_core::{
         ClockCommand, CommandId, CorePlugin, Paused, StepApp as _, WriteCommand as _,

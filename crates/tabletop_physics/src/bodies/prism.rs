@@ -35,10 +35,10 @@ impl Prism {
     pub fn shape(radius: f32, yspan: f32) -> Option<SharedShape> {
         let half_yspan = yspan / 2.0;
         let half_angle = PI / SIDES as f32;
-        let corner_radius = radius / half_angle.cos();
+        let corner_radius = radius / libm::cosf(half_angle);
         let corners = [-half_yspan, half_yspan].into_iter().flat_map(|y| {
             (0..SIDES).map(move |side| {
-                let (sin, cos) = ((2 * side + 1) as f32 * half_angle).sin_cos();
+                let (sin, cos) = libm::sincosf((2 * side + 1) as f32 * half_angle);
                 Vector::new(cos * corner_radius, y, sin * corner_radius)
             })
         });
@@ -56,7 +56,7 @@ impl Prism {
 
     /// Four corners around the end in a direction, one of them next to a point.
     fn end(&self, direction: Vector, near: Vector) -> PolygonalFeature {
-        let turn = near.z.atan2(near.x) / (2.0 * PI) * SIDES as f32 - 0.5;
+        let turn = libm::atan2f(near.z, near.x) / (2.0 * PI) * SIDES as f32 - 0.5;
         let nearest = turn.round().rem_euclid(SIDES as f32) as u32;
         let first = if direction.y < 0.0 { 0 } else { SIDES };
         let corners =
@@ -82,7 +82,7 @@ impl PolygonalFeatureMap for Prism {
         hint: Vector,
         feature: &mut PolygonalFeature,
     ) {
-        if direction.y.abs() > direction.x.hypot(direction.z) {
+        if direction.y.abs() > libm::hypotf(direction.x, direction.z) {
             *feature = self.end(direction, hint);
         } else {
             self.hull

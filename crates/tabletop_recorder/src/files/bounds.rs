@@ -9,6 +9,7 @@ use tabletop_core::{
     HeadCamera, JointKind, JointSpec, JointedSpec, LidBoxSpec, MechanismCommand, ObjectSpec, Part,
     Pose, RecordingCommand, Rgb, RobotCommand, SceneCommand, SceneItem, SceneSpec, Shape,
     SimCommand, Table,
+    limits::{DISPLACEMENTS, MASSES, MOST_LINKS, PADDINGS, PROPORTIONS, SPANS, SWITCH_ANGLES},
 };
 
 /// Ticks from the first command of a log to its end: 30 days.
@@ -26,17 +27,9 @@ const MOST_LEVELS: usize = 100;
 /// Values in a command: markers, drives, letters of an id.
 const MOST_VALUES: usize = 1 << 20;
 
-const SPANS: RangeInclusive<f32> = 0.001..=1000.0;
-const PADDINGS: RangeInclusive<f32> = 0.0..=1000.0;
-/// How far a joint slides in units, or is told to turn in degrees.
-const DISPLACEMENTS: RangeInclusive<f32> = -1000.0..=1000.0;
 /// How far a joint turns, in radians: half a turn to each side, and what is rounded.
 const ANGLES: RangeInclusive<f32> = -3.15..=3.15;
-const PROPORTIONS: RangeInclusive<f32> = 0.0..=1.0;
-/// How far the blocks of a switch are turned, in degrees.
-const SWITCH_ANGLES: RangeInclusive<f32> = 0.0..=80.0;
-const MASSES: RangeInclusive<f32> = 0.0..=1e6;
-const LINKS: RangeInclusive<u32> = 1..=1000;
+const LINKS: RangeInclusive<u32> = 1..=MOST_LINKS;
 const PLACES: RangeInclusive<f32> = -1e6..=1e6;
 
 type Checked = Result<(), String>;

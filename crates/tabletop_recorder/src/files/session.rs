@@ -135,6 +135,15 @@ impl Session {
     pub fn read(path: impl Into<PathBuf>) -> Result<Self, RecorderError> {
         let path = path.into();
         let text = read_whole_lines(&path, MOST_SESSION_BYTES)?;
+        Self::parse(path, &text)
+    }
+
+    /// Reads the text of a session log, which faults call by this name.
+    ///
+    /// # Errors
+    /// A line is not what it should be, or no simulation can have come to a command's tick.
+    pub fn parse(path: impl Into<PathBuf>, text: &str) -> Result<Self, RecorderError> {
+        let path = path.into();
         let mut lines = (1..).zip(text.lines());
         let mut line = |number| lines.next().unwrap_or((number, ""));
         let fault = |line: usize| {

@@ -35,7 +35,7 @@ impl Detail {
             Self::Coarse => (6, 12),
         };
         let missed = f64::from(self.tolerance() / radius).min(1.0);
-        let needed = PI / (1.0 - missed).acos();
+        let needed = PI / libm::acos(1.0 - missed);
         (needed.clamp(1.0, 1e3).ceil() as usize)
             .next_multiple_of(2)
             .clamp(least, most)

@@ -36,7 +36,7 @@ impl Lathe {
                 let count = if radius > 0.0 { segments } else { 1 };
                 (0..count)
                     .map(|i| {
-                        let (sin, cos) = (TAU * i as f64 / count as f64).sin_cos();
+                        let (sin, cos) = libm::sincos(TAU * i as f64 / count as f64);
                         let (u, v) = (radius * cos as f32, radius * sin as f32);
                         self.origin + self.axis.point(u, v, height)
                     })

@@ -45,9 +45,9 @@ impl Section {
         let [u_half, v_half] = [self.u, self.v].map(|[least, most]| (most - least) / 2.0);
         (0..segments)
             .map(|i| {
-                let (sin, cos) = (TAU * i as f64 / segments as f64).sin_cos();
+                let (sin, cos) = libm::sincos(TAU * i as f64 / segments as f64);
                 let on_unit =
-                    |part: f64| (part.abs().powf(2.0 / self.exponent) * part.signum()) as f32;
+                    |part: f64| (libm::pow(part.abs(), 2.0 / self.exponent) * part.signum()) as f32;
                 // Sine and cosine of right angles are not quite 0, which roots would make large.
                 let [u, v] = [cos, sin].map(|part| {
                     if part.abs() < 1e-9 {

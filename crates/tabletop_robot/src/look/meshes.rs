@@ -1,19 +1,27 @@
 //! The meshes that descriptions of robots name.
 
 use std::{
-    fs, io,
+    io,
     path::{Path, PathBuf},
     sync::Arc,
 };
 
 use bevy::math::Vec3;
-use mesh_loader::Loader;
-use tabletop_core::{Figure, Rgb, Triangles};
+use tabletop_core::{Figure, Rgb, read_regular_file, read_regular_text};
 
-use super::{error::LookError, hull::Hull, shape_file::ShapeFile, shipped::PARTS};
+use super::{
+    error::LookError,
+    hull::Hull,
+    mesh_file::{Corners, read_obj, read_stl},
+    shape_file::read_shape,
+    shipped::PARTS,
+};
 
 /// How the shapes that are part of the program are named.
 const OUR_PACKAGE: &str = "package://tabletop/";
+
+/// The largest file that is read.
+const MOST_BYTES: u64 = 64 << 20;
 
 /// Meshes of more triangles than this have fewer where the head camera sees them.
 const COARSE_TRIANGLES: usize = 400;
@@ -45,23 +53,28 @@ pub(super) fn figure(
         source,
     };
     if file.ends_with(".shape.json") {
-        return shape(file, &fs::read_to_string(&path).map_err(failed)?);
+        return shape(file, &read_regular_text(&path, MOST_BYTES).map_err(failed)?);
     }
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
-    if !["stl", "obj", "dae"]
-        .iter()
-        .any(|known| extension == *known)
-    {
-        let kinds = "what can be read are STL, OBJ and DAE files";
-        return Err(failed(io::Error::other(kinds)));
-    }
-    let parts = load(&path, scale, color).map_err(failed)?;
-    if parts.is_empty() {
+    let read = match extension.to_str() {
+        Some("stl") => read_stl,
+        Some("obj") => read_obj,
+        _ => {
+            let kinds =
+                "what can be read are STL and OBJ files; Blender, for one, writes them of others";
+            return Err(failed(io::Error::other(kinds)));
+        }
+    };
+    let triangles = read_regular_file(&path, MOST_BYTES)
+        .and_then(|bytes| read(&bytes).map_err(io::Error::other))
+        .map_err(failed)?;
+    let hull = welded(&triangles, scale);
+    if hull.triangles.is_empty() {
         return Err(LookError::Empty { path });
     }
-    let fine = Arc::new(shaded(&parts));
+    let fine = Arc::new(hull.shaded(color));
     let coarse = if fine.indices.len() > COARSE_TRIANGLES {
-        shaded(&simplified(&parts)).into()
+        simplified(&hull).shaded(color).into()
     } else {
         Arc::clone(&fine)
     };
@@ -69,58 +82,30 @@ pub(super) fn figure(
 }
 
 fn shape(file: &str, text: &str) -> Result<Figure, LookError> {
-    let shape = ShapeFile::read(text).map_err(|source| LookError::Shape {
+    read_shape(text).map_err(|source| LookError::Shape {
         file: file.to_owned(),
         source,
-    })?;
-    Ok(shape.figure())
+    })
 }
 
-/// The surfaces of a mesh file, in m.
-fn load(path: &Path, scale: Vec3, color: Rgb) -> io::Result<Vec<(Hull, Rgb)>> {
-    let scene = Loader::default().load(path)?;
+/// The surface of these triangles, in m.
+fn welded(triangles: &[Corners], scale: Vec3) -> Hull {
     let is_mirrored = scale.x * scale.y * scale.z < 0.0;
-    let parts = scene.meshes.iter().zip(0..).filter_map(|(mesh, i)| {
-        let corners = mesh.faces.iter().filter_map(|face| {
-            let mut corners = [Vec3::ZERO; 3];
-            for (corner, i) in corners.iter_mut().zip(face) {
-                let point = Vec3::from(*mesh.vertices.get(*i as usize)?) * scale;
-                *corner = point
-                    .abs()
-                    .cmple(Vec3::splat(FARTHEST))
-                    .all()
-                    .then_some(point)?;
-            }
-            if is_mirrored {
-                corners.swap(1, 2);
-            }
-            Some(corners)
-        });
-        let hull = Hull::welded(corners);
-        let material: Option<&mesh_loader::Material> = scene.materials.get::<usize>(i);
-        let own = material.and_then(|material| material.color.diffuse);
-        let color = own.map_or(color, |[red, green, blue, _]| Rgb::new(red, green, blue));
-        (!hull.triangles.is_empty()).then_some((hull, color))
+    let can_be_drawn = |point: &Vec3| point.abs().cmple(Vec3::splat(FARTHEST)).all();
+    let scaled = triangles.iter().map(|corners| {
+        let [a, b, c] = corners.map(|point| point * scale);
+        match is_mirrored {
+            true => [a, c, b],
+            false => [a, b, c],
+        }
     });
-    Ok(parts.collect())
+    Hull::welded(scaled.filter(|corners| corners.iter().all(can_be_drawn)))
 }
 
-fn simplified(parts: &[(Hull, Rgb)]) -> Vec<(Hull, Rgb)> {
-    let extent = |(hull, _): &(Hull, Rgb)| {
-        let [least, most] = hull.bounds();
-        (most - least).max_element()
-    };
-    let longest = parts.iter().map(extent).fold(f32::MIN_POSITIVE, f32::max);
-    let coarse = |(hull, color): &(Hull, Rgb)| (hull.simplified(longest / COARSE_CELLS), *color);
-    parts.iter().map(coarse).collect()
-}
-
-fn shaded(parts: &[(Hull, Rgb)]) -> Triangles {
-    let mut surface = Triangles::default();
-    for (hull, color) in parts {
-        surface.append(&hull.shaded(*color));
-    }
-    surface
+fn simplified(hull: &Hull) -> Hull {
+    let [least, most] = hull.bounds();
+    let longest = (most - least).max_element().max(f32::MIN_POSITIVE);
+    hull.simplified(longest / COARSE_CELLS)
 }
 
 /// The file that a description names: `package://NAME/rest` is looked for as `NAME/rest` and, where the folder is called
@@ -160,6 +145,8 @@ fn find(file: &str, urdf: Option<&Path>) -> Result<PathBuf, LookError> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     /// A folder of its own for each test, with files in it.
@@ -192,27 +179,10 @@ mod tests {
     const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
         endloop\nendfacet\nendsolid a\n";
     const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-    const DAE: &str = r##"<?xml version="1.0"?>
-<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
-  <asset><unit meter="0.5"/></asset>
-  <library_geometries><geometry id="g"><mesh>
-    <source id="p"><float_array id="a" count="9">0 0 0 2 0 0 0 2 0</float_array>
-      <technique_common><accessor source="#a" count="3" stride="3">
-        <param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/>
-      </accessor></technique_common></source>
-    <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
-    <triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
-  </mesh></geometry></library_geometries>
-  <library_visual_scenes><visual_scene id="s">
-    <node id="n"><instance_geometry url="#g"/></node>
-  </visual_scene></library_visual_scenes>
-  <scene><instance_visual_scene url="#s"/></scene>
-</COLLADA>"##;
-
     #[test]
     fn meshes_are_read_scaled_and_keep_their_outside_outside() {
-        let folder = MeshFolder::with("kinds", &[("a.stl", STL), ("a.obj", OBJ), ("a.dae", DAE)]);
-        for file in ["a.stl", "a.obj", "a.dae"] {
+        let folder = MeshFolder::with("kinds", &[("a.stl", STL), ("a.obj", OBJ)]);
+        for file in ["a.stl", "a.obj"] {
             let figure = folder.look(file, "robot.urdf").unwrap();
             let surface = &*figure.fine;
             assert_eq!(surface.indices.len(), 1, "{file}");
@@ -261,7 +231,7 @@ mod tests {
             ("empty.stl", "solid a\nendsolid a\n"),
             ("far.obj", "v 0 0 0\nv 1e30 0 0\nv 0 1 nan\nf 1 2 3\n"),
             ("wrong.obj", "v 0 0 0\nf 1 2 9\n"),
-            ("broken.dae", "<COLLADA><library_geometries>"),
+            ("other.dae", "<COLLADA><library_geometries>"),
             ("text.txt", "what?"),
             ("a.shape.json", "{}"),
         ];

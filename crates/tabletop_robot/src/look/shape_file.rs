@@ -94,6 +94,14 @@ impl ShapeFile {
     }
 }
 
+/// What the text of such a file looks like, in units.
+///
+/// # Errors
+/// Where and what the mistake is.
+pub fn read_shape(text: &str) -> Result<Figure, serde_json::Error> {
+    Ok(ShapeFile::read(text)?.figure())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -37,7 +37,7 @@ fn hull(solid: &Geometry, detail: Detail) -> Hull {
             let radius = *radius as f32;
             let rings = detail.segments(radius) / 2;
             let at = |ring: usize| {
-                let (sin, cos) = (PI * ring as f64 / rings as f64).sin_cos();
+                let (sin, cos) = libm::sincos(PI * ring as f64 / rings as f64);
                 [radius * sin as f32, -radius * cos as f32]
             };
             let mut profile: Vec<_> = (0..=rings).map(at).collect();

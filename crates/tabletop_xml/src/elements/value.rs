@@ -3,36 +3,28 @@
 use std::{fmt, ops::RangeInclusive, str::FromStr};
 
 use bevy::math::{DVec3, Vec3};
-use tabletop_core::{NAMED_COLORS, Rgb};
+use tabletop_core::{NAMED_COLORS, Rgb, limits::MOST_LINKS};
 
 use crate::{document::syntax::is_blank, fault::Excerpt};
 
-/// Extents, radii and thicknesses, in units.
-pub(crate) const SPANS: RangeInclusive<f32> = 0.001..=1000.0;
+pub(crate) use tabletop_core::limits::{
+    DISPLACEMENTS, MASSES, PADDINGS, PROPORTIONS, SPANS, SWITCH_ANGLES,
+};
+
 /// Components of locations, in units.
 pub(crate) const LOCATIONS: RangeInclusive<f32> = -10_000.0..=10_000.0;
 /// Components of rotations, in degrees.
 pub(crate) const ROTATIONS: RangeInclusive<f64> = -1e6..=1e6;
-/// Masses, in kg.
-pub(crate) const MASSES: RangeInclusive<f32> = 0.0..=1e6;
-/// Paddings of links, in units.
-pub(crate) const PADDINGS: RangeInclusive<f32> = 0.0..=1000.0;
 /// Numbers of links.
-pub(crate) const LINK_COUNTS: RangeInclusive<u32> = 0..=1000;
+pub(crate) const LINK_COUNTS: RangeInclusive<u32> = 0..=MOST_LINKS;
 /// How long an id can be.
 const MAX_ID: usize = 200;
-/// How far joints slide, in units.
-pub(crate) const DISPLACEMENTS: RangeInclusive<f32> = -1000.0..=1000.0;
 /// How far joints turn, in degrees.
 pub(crate) const ANGLES: RangeInclusive<f32> = -180.0..=180.0;
-/// Shares of a whole.
-pub(crate) const PROPORTIONS: RangeInclusive<f32> = 0.0..=1.0;
 /// Numbers of lights.
 pub(crate) const LIGHTS: RangeInclusive<u32> = 0..=999;
 /// Numbers of states and of steps.
 pub(crate) const STATES: RangeInclusive<u32> = 0..=999;
-/// How far the blocks of a switch are turned, in degrees.
-pub(crate) const SWITCH_ANGLES: RangeInclusive<f32> = 0.0..=80.0;
 /// Numbers of sides.
 pub(crate) const SIDES: RangeInclusive<u32> = 3..=1_000_000;
 

@@ -1,7 +1,7 @@
 //! Rotations as the angles that read back as them.
 
 use bevy::math::{DMat3, DQuat, DVec3, Quat};
-use tabletop_core::quat_from_degrees;
+use tabletop_core::{quat_from_degrees, turn_about_x, turn_about_y};
 
 /// How many of the numbers next to a component of a rotation are tried.
 const NEIGHBOURS: i32 = 2;
@@ -24,17 +24,16 @@ pub(crate) fn angles_of(rotation: Quat) -> DVec3 {
 /// The angles in degrees about X, then Y, then Z, that give this rotation and not its negative, which turns to the same.
 fn euler_angles(rotation: DQuat) -> DVec3 {
     let m = DMat3::from_quat(rotation);
-    let cos_y = m.x_axis.x.hypot(m.x_axis.y);
+    let cos_y = libm::hypot(m.x_axis.x, m.x_axis.y);
     let x = match cos_y > 1e-9 {
-        true => m.y_axis.z.atan2(m.z_axis.z).to_degrees(),
+        true => libm::atan2(m.y_axis.z, m.z_axis.z).to_degrees(),
         false => 0.0,
     };
-    let y = (-m.x_axis.z).atan2(cos_y).to_degrees();
+    let y = libm::atan2(-m.x_axis.z, cos_y).to_degrees();
     // What is left, so that it makes up for what rounding has done to the others where they nearly coincide.
-    let about_z = rotation
-        * (DQuat::from_rotation_y(y.to_radians()) * DQuat::from_rotation_x(x.to_radians()))
-            .inverse();
-    let z = (2.0 * about_z.z.atan2(about_z.w)).to_degrees();
+    let about_z =
+        rotation * (turn_about_y(y.to_radians()) * turn_about_x(x.to_radians())).inverse();
+    let z = (2.0 * libm::atan2(about_z.z, about_z.w)).to_degrees();
     DVec3::new(x, y, z)
 }
 

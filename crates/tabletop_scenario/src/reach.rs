@@ -1,0 +1,91 @@
+//! Which task files a scenario may name: those around it, and where the user allows more.
+
+use std::path::{Path, PathBuf};
+
+use tabletop_core::is_shipped;
+
+/// In the working folder, scenarios are in a folder of this name, beside that of the task files.
+const SCENARIOS: &str = "scenarios";
+
+/// The folders in which, and below, a scenario may name task files.
+pub(crate) struct Reach {
+    folders: Vec<PathBuf>,
+}
+
+impl Reach {
+    /// That of a scenario in this folder. In a folder `scenarios`, it reaches what is beside that, too.
+    pub fn of(folder: &Path, allowed: &[PathBuf]) -> Self {
+        let folder = match folder == Path::new("") {
+            true => Path::new("."),
+            false => folder,
+        };
+        let own = folder.canonicalize().ok().map(|folder| {
+            let is_in_working_folder = folder.ends_with(SCENARIOS);
+            let around = folder.parent().filter(|_| is_in_working_folder);
+            around.map(Path::to_owned).unwrap_or(folder)
+        });
+        let allowed = allowed
+            .iter()
+            .filter_map(|folder| folder.canonicalize().ok());
+        Self {
+            folders: own.into_iter().chain(allowed).collect(),
+        }
+    }
+
+    /// Whether it may name this file. A file that is not there is left to whoever reads it.
+    ///
+    /// # Errors
+    /// It leads out; says what the user can do.
+    pub fn check(&self, file: &Path) -> Result<(), String> {
+        let Ok(found) = file.canonicalize() else {
+            return Ok(());
+        };
+        let is_inside =
+            is_shipped(file) || self.folders.iter().any(|folder| found.starts_with(folder));
+        match is_inside {
+            true => Ok(()),
+            false => Err(format!(
+                "{} leads out of the folder of the scenario; `--allow-path DIR` lets it name files in DIR",
+                file.display()
+            )),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    #[test]
+    fn a_scenario_names_what_is_around_it() {
+        let root = std::env::temp_dir().join(format!("tabletop_reach_{}", std::process::id()));
+        for file in ["scenarios/a.xml", "tablesetup/b.xml", "else/c.xml"] {
+            let file = root.join(file);
+            fs::create_dir_all(file.parent().unwrap()).unwrap();
+            fs::write(file, "").unwrap();
+        }
+        let [scenarios, elsewhere] = ["scenarios", "else"].map(|name| root.join(name));
+        let b = scenarios.join("../tablesetup/b.xml");
+        assert_eq!(Reach::of(&scenarios, &[]).check(&b), Ok(()));
+        assert_eq!(
+            Reach::of(&elsewhere, &[]).check(&elsewhere.join("c.xml")),
+            Ok(())
+        );
+        let b = elsewhere.join("../tablesetup/b.xml");
+        assert!(Reach::of(&elsewhere, &[]).check(&b).is_err());
+        let allowed = [root.join("tablesetup")];
+        assert_eq!(Reach::of(&elsewhere, &allowed).check(&b), Ok(()));
+        assert!(
+            Reach::of(&elsewhere, &allowed)
+                .check(Path::new("/etc"))
+                .is_err()
+        );
+        assert_eq!(
+            Reach::of(&elsewhere, &[]).check(&root.join("nothing")),
+            Ok(())
+        );
+        fs::remove_dir_all(root).unwrap();
+    }
+}
