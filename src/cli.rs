@@ -20,6 +20,7 @@ mod robot;
 mod robot_options;
 mod run;
 mod script;
+mod soak;
 mod temporary_folder;
 mod terminal;
 mod window;
@@ -70,6 +71,8 @@ enum Command {
     ///
     /// Files that are there already and differ are never overwritten: then nothing is written, and they are named.
     Init(init::InitArgs),
+    /// Do at random, for hours, what a user could do, and look after every tick whether all is as it must be
+    Soak(soak::SoakArgs),
     /// Print what your shell needs to complete commands and options
     ///
     /// For bash: tabletop completions bash > ~/.local/share/bash-completion/completions/tabletop
@@ -114,6 +117,7 @@ pub fn main() -> ExitCode {
         #[cfg(feature = "window")]
         Some(Command::Keys(args)) => keys::list(&args),
         Some(Command::Init(args)) => init::init(&args),
+        Some(Command::Soak(args)) => soak::soak(&args),
         Some(Command::Completions(args)) => completions::completions(&args, &mut Cli::command()),
         None => window::open(cli.window),
     };

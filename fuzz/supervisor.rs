@@ -1,0 +1,164 @@
+//! A process that has another one try inputs, so that nothing that an input does to it ends the search.
+
+use std::{
+    env, fs,
+    fs::{File, OpenOptions},
+    path::PathBuf,
+    process::{Child, Command, ExitCode, Stdio},
+    thread::sleep,
+    time::{Duration, Instant},
+};
+
+use crate::{WORK, input::Inputs, number, target::Target};
+
+/// No input takes longer.
+const LONGEST: Duration = Duration::from_secs(5);
+
+/// No process takes more memory, in bytes.
+const MOST_MEMORY: u64 = 1 << 30;
+
+/// A process is ended after so many inputs, so that memory that inputs leave behind is seen as that of one.
+const INPUTS_PER_PROCESS: u64 = 1 << 40;
+
+pub struct Supervisor {
+    target: &'static Target,
+    seed: u64,
+    inputs: Inputs,
+    /// Where the process writes which input it has come to.
+    progress: PathBuf,
+    /// Where inputs that harm are kept.
+    found: PathBuf,
+}
+
+impl Supervisor {
+    pub fn new(target: &'static Target, seed: u64) -> Result<Self, String> {
+        let name = format!("tabletop_fuzz_{}_{}", target.name, std::process::id());
+        let found = PathBuf::from("fuzz/found");
+        fs::create_dir_all(&found).map_err(|error| format!("fuzz/found: {error}"))?;
+        Ok(Self {
+            target,
+            seed,
+            inputs: Inputs::of(target, seed),
+            progress: env::temp_dir().join(name),
+            found,
+        })
+    }
+
+    /// Tries inputs until the time is over, and says how many there were. Returns how many of them harmed.
+    pub fn run(&self, limit: Duration) -> Result<usize, String> {
+        let end = Instant::now() + limit;
+        let (mut first, mut found) = (0, 0);
+        loop {
+            let mut child = self.start(first)?;
+            let harm = self.watch(&mut child, first, end);
+            let now = self.tried(first);
+            let Some(harm) = harm else {
+                println!(
+                    "{}: seed {}: {now} inputs, {found} found",
+                    self.target.name, self.seed
+                );
+                let _gone = fs::remove_file(&self.progress);
+                return Ok(found);
+            };
+            found += 1;
+            self.keep(now, &harm)?;
+            first = now + 1;
+        }
+    }
+
+    fn start(&self, first: u64) -> Result<Child, String> {
+        fs::write(&self.progress, first.to_le_bytes()).map_err(|error| error.to_string())?;
+        let program = env::current_exe().map_err(|error| error.to_string())?;
+        let errors = File::create(self.progress.with_extension("err"));
+        Command::new(program)
+            .args([WORK, self.target.name])
+            .args([self.seed, first, INPUTS_PER_PROCESS].map(|number| number.to_string()))
+            .arg(&self.progress)
+            .stderr(errors.map_err(|error| error.to_string())?)
+            .stdout(Stdio::null())
+            .spawn()
+            .map_err(|error| error.to_string())
+    }
+
+    /// Waits until an input has harmed, and says how; or until the time is over.
+    fn watch(&self, child: &mut Child, first: u64, end: Instant) -> Option<String> {
+        let mut at = (first, Instant::now());
+        let harm = loop {
+            sleep(Duration::from_millis(200));
+            match child.try_wait() {
+                Ok(Some(status)) => break Some(format!("the process ended: {status}")),
+                Ok(None) => {}
+                Err(error) => break Some(error.to_string()),
+            }
+            let now = self.tried(first);
+            if now != at.0 {
+                at = (now, Instant::now());
+            }
+            if at.1.elapsed() > LONGEST {
+                break Some(format!("it takes more than {} s", LONGEST.as_secs()));
+            }
+            if memory(child.id()) > MOST_MEMORY {
+                break Some(format!("it takes more than {MOST_MEMORY} bytes"));
+            }
+            if Instant::now() > end {
+                break None;
+            }
+        };
+        let _ended = child.kill().and_then(|()| child.wait());
+        harm
+    }
+
+    /// The number of the input that is being tried.
+    fn tried(&self, first: u64) -> u64 {
+        let bytes = fs::read(&self.progress).ok();
+        bytes
+            .and_then(|bytes| bytes.try_into().ok())
+            .map_or(first, u64::from_le_bytes)
+    }
+
+    fn keep(&self, input: u64, harm: &str) -> Result<(), String> {
+        let name = format!("{}-{}-{input}", self.target.name, self.seed);
+        let path = self.found.join(&name);
+        fs::write(&path, self.inputs.input(input)).map_err(|error| error.to_string())?;
+        let said = fs::read_to_string(self.progress.with_extension("err")).unwrap_or_default();
+        let said: Vec<_> = said.lines().take(3).collect();
+        println!("{}: {harm}: {}", path.display(), said.join(" | "));
+        Ok(())
+    }
+}
+
+/// Tries inputs, and writes before each which one it is.
+pub fn work(target: &str, numbers: [&str; 3], progress: &str) -> Result<ExitCode, String> {
+    let target = Target::named(target)?;
+    let [seed, first, count] = numbers;
+    let (seed, first, count): (u64, u64, u64) = (number(seed)?, number(first)?, number(count)?);
+    let inputs = Inputs::of(target, seed);
+    let progress = OpenOptions::new().write(true).open(progress);
+    let progress = progress.map_err(|error| error.to_string())?;
+    let mut attempt = (target.start)();
+    for input in first..first.saturating_add(count) {
+        write_at_start(&progress, input).map_err(|error| error.to_string())?;
+        attempt(&inputs.input(input));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+#[cfg(unix)]
+fn write_at_start(file: &File, number: u64) -> std::io::Result<()> {
+    use std::os::unix::fs::FileExt as _;
+    file.write_all_at(&number.to_le_bytes(), 0)
+}
+
+#[cfg(not(unix))]
+fn write_at_start(mut file: &File, number: u64) -> std::io::Result<()> {
+    use std::io::{Seek as _, Write as _};
+    file.rewind()?;
+    file.write_all(&number.to_le_bytes())
+}
+
+/// The memory of a process, in bytes, where that can be known.
+fn memory(process: u32) -> u64 {
+    let text = fs::read_to_string(format!("/proc/{process}/statm")).unwrap_or_default();
+    let pages = text.split(' ').nth(1).and_then(|pages| pages.parse().ok());
+    pages.unwrap_or(0_u64) * 4096
+}

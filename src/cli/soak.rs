@@ -1,0 +1,103 @@
+//! `tabletop soak`: hours of whatever a user could do, and whether all stays as it must be.
+
+use std::{fs, path::Path, process::ExitCode, time::Instant};
+
+use clap::Args;
+use tabletop::{core::TICKS_PER_SECOND, soak::Round};
+
+use super::{
+    Failure,
+    temporary_folder::TemporaryFolder,
+    terminal::{say, show_warnings},
+};
+
+/// By so many bytes more than in the first half of the rounds may be used in the last quarter.
+const MOST_GROWTH: u64 = 64 << 20;
+
+#[derive(Args)]
+pub(super) struct SoakArgs {
+    /// What decides what is done
+    #[arg(long, value_name = "N", default_value = "0")]
+    seed: u64,
+    /// How many hours to simulate, replays not counted
+    #[arg(long, value_name = "H", default_value = "1", value_parser = hours)]
+    hours: f64,
+}
+
+fn hours(text: &str) -> Result<f64, String> {
+    const MOST: f64 = 10_000.0;
+    text.parse()
+        .ok()
+        .filter(|hours| (0.0..=MOST).contains(hours))
+        .ok_or_else(|| format!("expected a number of hours from 0 to {MOST}"))
+}
+
+pub(super) fn soak(args: &SoakArgs) -> Result<ExitCode, Failure> {
+    show_warnings();
+    let temporary = TemporaryFolder::new("tabletop-soak").map_err(Failure::run)?;
+    let round_hours = Round::TICKS as f64 / f64::from(TICKS_PER_SECOND) / 3600.0;
+    let rounds = (args.hours / round_hours).ceil().max(1.0) as u64;
+    let mut said = Instant::now();
+    let mut memory = Vec::new();
+    for number in 0..rounds {
+        let round = Round {
+            seed: args.seed.wrapping_add(number),
+            folder: temporary.path().join("round"),
+        };
+        fs::create_dir(&round.folder).map_err(Failure::run)?;
+        round.run().map_err(|fault| {
+            let seed = round.seed;
+            Failure::run(format!(
+                "{fault}; to see it: tabletop soak --seed {seed} --hours 0"
+            ))
+        })?;
+        fs::remove_dir_all(&round.folder).map_err(Failure::run)?;
+        memory.push(memory_now());
+        if said.elapsed().as_secs() >= 60 || number + 1 == rounds {
+            said = Instant::now();
+            say(format_args!(
+                "tabletop: {:.2} of {:.2} h simulated, {} recordings replayed, {} MB",
+                (number + 1) as f64 * round_hours,
+                rounds as f64 * round_hours,
+                number + 1,
+                memory_now() >> 20,
+            ));
+        }
+    }
+    match growth(&memory) {
+        growth if growth > MOST_GROWTH => Err(Failure::run(format!(
+            "memory has grown by {} MB; to see it, repeat the command",
+            growth >> 20
+        ))),
+        _ => Ok(ExitCode::SUCCESS),
+    }
+}
+
+/// By how much the largest of the last quarter is above the largest of the first half, in which all of it is filled once.
+fn growth(memory: &[u64]) -> u64 {
+    let (half, quarter) = (memory.len() / 2, memory.len() / 4);
+    let largest = |part: &[u64]| part.iter().copied().max().unwrap_or_default();
+    let first = largest(memory.get(..half).unwrap_or_default());
+    let last = largest(memory.get(memory.len() - quarter..).unwrap_or_default());
+    last.saturating_sub(first)
+}
+
+/// The memory of this process in bytes, where that can be known.
+fn memory_now() -> u64 {
+    let text = fs::read_to_string(Path::new("/proc/self/statm")).unwrap_or_default();
+    let pages = text.split(' ').nth(1).and_then(|pages| pages.parse().ok());
+    pages.unwrap_or(0_u64) * 4096
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn growth_is_what_the_end_has_more_than_the_beginning() {
+        assert_eq!(growth(&[1, 9, 5, 5, 5, 5, 9, 8]), 0);
+        assert_eq!(growth(&[1, 2, 3, 4, 5, 6, 7, 8]), 4);
+        assert_eq!(growth(&[]), 0);
+        assert_eq!(growth(&[5]), 0);
+    }
+}
