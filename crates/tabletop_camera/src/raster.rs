@@ -6,6 +6,7 @@ mod bounds;
 mod coverage;
 mod edge_table;
 mod face;
+mod kept;
 mod quadric;
 mod resolve;
 mod samples;
@@ -22,6 +23,7 @@ use self::{
     backdrop::Backdrop,
     band::{Band, Frame},
     face::ROWS,
+    kept::{KeptBand, KeptBands},
     resolve::Pixels,
     transparent::TransparentSpheres,
     visible::VisibleSurfaces,
@@ -35,7 +37,8 @@ use crate::{
 const ROWS_IN_TASK: usize = 2 * ROWS;
 
 /// Draws pictures, one after the other. It keeps its memory, so that it allocates next to nothing once it has drawn a picture of
-/// the same size and a scene of the same length, and what it found out about the table and figures as long as they stay.
+/// the same size and a scene of the same length, and what it found out about the table and figures as long as they stay. Rows in which
+/// nothing has changed since the last picture are not drawn again.
 ///
 /// In an app, Bevy's compute threads help.
 #[derive(Clone, Debug, Default)]
@@ -43,6 +46,7 @@ pub struct Rasterizer {
     visible: VisibleSurfaces,
     spheres: TransparentSpheres,
     backdrop: Backdrop,
+    kept: KeptBands,
     bands: Vec<Band>,
 }
 
@@ -68,27 +72,36 @@ impl Rasterizer {
             is_smooth: camera.antialiasing,
         };
         let width = camera.width as usize;
+        (self.kept).compare(scene, &self.visible, &view, camera.antialiasing);
+        if self.kept.is_whole() {
+            self.kept.copy_to(picture);
+            return;
+        }
         let pixels = Pixels::of(picture);
-        let draw = |band: &mut Band, first_row, pixels: Pixels| {
+        let draw = |band: &mut Band, first_row, pixels: Pixels, kept: &mut [KeptBand]| {
             let rows = (first_row..).step_by(ROWS);
-            for (first_row, pixels) in rows.zip(pixels.parts(ROWS * width)) {
-                band.draw(frame, first_row, pixels);
+            let parts = rows.zip(pixels.parts(ROWS * width));
+            for ((first_row, pixels), kept) in parts.zip(kept) {
+                kept.draw_into(pixels, |pixels| band.draw(frame, first_row, pixels));
             }
         };
+        let mut kept: Vec<_> = self.kept.bands().collect();
         match ComputeTaskPool::try_get() {
             Some(threads) => {
                 let first_rows = (0..camera.height).step_by(ROWS_IN_TASK);
                 self.bands.resize_with(first_rows.len(), Band::default);
                 let bands = self.bands.iter_mut().zip(first_rows);
+                let parts = pixels.parts(ROWS_IN_TASK * width);
+                let parts = parts.zip(kept.chunks_mut(ROWS_IN_TASK / ROWS));
                 threads.scope(|tasks| {
-                    for ((band, first_row), part) in bands.zip(pixels.parts(ROWS_IN_TASK * width)) {
-                        tasks.spawn(async move { draw(band, first_row, part) });
+                    for ((band, first_row), (part, kept)) in bands.zip(parts) {
+                        tasks.spawn(async move { draw(band, first_row, part, kept) });
                     }
                 });
             }
             None => {
                 self.bands.resize_with(1, Band::default);
-                draw(&mut self.bands[0], 0, pixels);
+                draw(&mut self.bands[0], 0, pixels, &mut kept);
             }
         }
     }

@@ -44,16 +44,25 @@ pub struct DrawnSolid {
     pub object: u32,
 }
 
+/// What tells a pose from all others.
+fn bits_of(pose: Pose) -> [u32; 7] {
+    let ([x, y, z], [a, b, c, d]) = (pose.location.to_array(), pose.rotation.to_array());
+    [x, y, z, a, b, c, d].map(f32::to_bits)
+}
+
 impl DrawnFigure {
     /// What tells its pose from all others.
     pub(crate) fn pose_bits(&self) -> [u32; 7] {
-        let ([x, y, z], [a, b, c, d]) =
-            (self.pose.location.to_array(), self.pose.rotation.to_array());
-        [x, y, z, a, b, c, d].map(f32::to_bits)
+        bits_of(self.pose)
     }
 }
 
 impl DrawnSolid {
+    /// What tells its pose from all others.
+    pub(crate) fn pose_bits(&self) -> [u32; 7] {
+        bits_of(self.pose)
+    }
+
     /// A solid of a body that stands at `pose`.
     pub fn of(body: Pose, primitive: &Primitive, object: u32) -> Self {
         Self {

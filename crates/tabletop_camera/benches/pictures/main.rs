@@ -1,8 +1,8 @@
 //! How many pictures a second one core draws.
 //!
 //! `cargo bench -p tabletop -p tabletop_camera --bench pictures` prints it for the two blocks of `default.xml` with ten more,
-//! for these with two arms of 2304 triangles over them, each still and with everything but the table in another place in every
-//! picture, and for a table of balls and cylinders, plain and with smooth edges.
+//! for these with two arms of 2304 triangles over them, each still, with one block and with everything but the table in another
+//! place in every picture, and for balls and cylinders that move, plain and with smooth edges.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 
 mod scenes;
@@ -30,12 +30,15 @@ fn main() {
     };
     let still = |scene: Scene| vec![scene];
     let moving = |scene: Scene| vec![moved(&scene), scene];
+    let one_moving = |scene: Scene| vec![with_one_moved(&scene), scene];
     for (name, scenes) in [
         ("default and 10 blocks", still(without_arms(blocks()))),
+        ("one of them moving", one_moving(without_arms(blocks()))),
         ("all of them moving", moving(without_arms(blocks()))),
         ("the same with two arms", still(with_arms.clone())),
+        ("one block moving", one_moving(with_arms.clone())),
         ("all of it moving", moving(with_arms)),
-        ("20 balls and cylinders", still(without_arms(rounds()))),
+        ("20 balls and cylinders", moving(without_arms(rounds()))),
     ] {
         for (width, height) in [(200, 150), (640, 480), (1024, 600)] {
             let [plain, smooth] = [false, true].map(|antialiasing| {
@@ -69,6 +72,15 @@ fn pictures_a_second(scenes: &[Scene], camera: &Camera) -> String {
         .collect();
     rates.sort_by(f64::total_cmp);
     format!("{:6.0} ({:.0})", rates[TURNS / 2], rates[TURNS - 1])
+}
+
+/// The scene with its last solid a little farther right.
+fn with_one_moved(scene: &Scene) -> Scene {
+    let mut moved = scene.clone();
+    if let Some(solid) = moved.solids.last_mut() {
+        solid.pose.location.x += 0.01;
+    }
+    moved
 }
 
 /// The scene with everything but the table, which comes first, a little farther right.

@@ -44,6 +44,22 @@ impl<'a> Pixels<'a> {
         }
     }
 
+    /// The same pixels, for a while.
+    pub fn reborrow(&mut self) -> Pixels<'_> {
+        Pixels {
+            rgb: self.rgb,
+            depth: self.depth,
+            objects: self.objects,
+        }
+    }
+
+    /// Takes over what as many other pixels show.
+    pub fn copy_from(&mut self, other: &Pixels) {
+        self.rgb.copy_from_slice(other.rgb);
+        self.depth.copy_from_slice(other.depth);
+        self.objects.copy_from_slice(other.objects);
+    }
+
     /// Parts of so many pixels, the last one with what is left.
     pub fn parts(self, pixels: usize) -> impl Iterator<Item = Self> {
         let rgb = self.rgb.chunks_mut(3 * pixels);

@@ -30,6 +30,8 @@ pub(crate) struct VisibleSurfaces {
     /// The face that is most likely the same in the next picture: the upper one of the first solid.
     pub backdrop: Option<u32>,
     pub quadrics: Vec<Quadric>,
+    /// The rows in which each solid of the scene may be seen.
+    solid_rows: Vec<Range<u32>>,
     /// The figures in the order of the scene. As long as they and the view stay the same, so do their triangles and surfaces, which
     /// are therefore the first ones.
     figures: Vec<ProjectedFigure>,
@@ -75,10 +77,13 @@ impl VisibleSurfaces {
         self.faces.clear();
         self.faces.push(RasterFace::NOTHING);
         self.quadrics.clear();
+        self.solid_rows.clear();
         self.backdrop = None;
         for (i, drawn) in scene.solids.iter().enumerate() {
             let corners = corners_of_solid(drawn, view);
-            if let Some(window) = view.window_of(&corners) {
+            let window = view.window_of(&corners);
+            self.solid_rows.push(rows_in(window.as_ref()));
+            if let Some(window) = window {
                 match drawn.solid {
                     Solid::Cuboid(_) => self.add_cuboid(drawn, view, window, &corners),
                     Solid::Cylinder { radius, yspan } => {
@@ -145,6 +150,18 @@ impl VisibleSurfaces {
         self.figures
             .iter()
             .filter_map(|figure| figure.window.as_ref())
+    }
+
+    /// The rows in which each solid of the scene may be seen.
+    pub fn solid_rows(&self) -> impl Iterator<Item = Range<u32>> {
+        self.solid_rows.iter().cloned()
+    }
+
+    /// The rows in which each figure of the scene may be seen.
+    pub fn figure_rows(&self) -> impl Iterator<Item = Range<u32>> {
+        self.figures
+            .iter()
+            .map(|figure| rows_in(figure.window.as_ref()))
     }
 
     fn add_cuboid(
@@ -264,6 +281,11 @@ impl ProjectedFigure {
             && self.pose == drawn.pose_bits()
             && self.object == drawn.object
     }
+}
+
+/// The rows of a window; none, if there is no window.
+fn rows_in(window: Option<&Window>) -> Range<u32> {
+    window.map_or(0..0, |window| window.rows.clone())
 }
 
 /// The rows in which a triangle with these corners may be seen; `None` if no sample lies in it.

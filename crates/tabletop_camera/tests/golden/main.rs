@@ -42,6 +42,35 @@ fn a_figure_is_drawn_where_it_is_now() {
     }
 }
 
+#[test]
+fn what_is_kept_of_a_picture_is_what_would_be_drawn() {
+    for seed in 0..60 {
+        let (mut scene, camera) = random_scene(seed, seed % 2 == 0);
+        let (mut rasterizer, mut picture) = (Rasterizer::default(), Picture::default());
+        for number in 0..24_usize {
+            // Twice as it was, then with something in another place, colour or number, or without it.
+            let (solids, figures) = (scene.solids.len(), scene.figures.len());
+            match number % 6 {
+                2 => scene.solids[number % solids].pose.location.z += 0.2,
+                3 => scene.solids[number % solids].color.red = 0.5,
+                4 if figures > 0 => scene.figures[number % figures].pose.location.x -= 0.3,
+                5 if number == 11 => scene.markers.clear(),
+                5 if number == 17 && solids > 1 => scene.solids.truncate(solids - 1),
+                5 => scene.solids[number % solids].object += 1,
+                _ => {}
+            }
+            rasterizer.draw(&scene, &camera, &mut picture);
+            let mut anew = Picture::default();
+            Rasterizer::default().draw(&scene, &camera, &mut anew);
+            assert_eq!(
+                hash_of(&picture),
+                hash_of(&anew),
+                "scene {seed}, picture {number}"
+            );
+        }
+    }
+}
+
 fn hash_of_pictures(antialiasing: bool) -> u64 {
     let (mut rasterizer, mut picture) = (Rasterizer::default(), Picture::default());
     (0..SCENES).fold(0xcbf2_9ce4_8422_2325, |hash, seed| {
