@@ -63,7 +63,7 @@ fn costs(size: usize) -> [Duration; 5] {
 
     let mut app = simulator(PhysicsSettings::default());
     app.world_mut().write_command(scene(size));
-    app.step(60);
+    app.step(120);
     let rest = median(|| {
         app.step(1);
     });
@@ -135,53 +135,89 @@ fn milliseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e3
 }
 
-/// The costs, both axes logarithmic.
-fn plot(rows: &[(usize, [Duration; 5])]) -> String {
-    const DECADE: f64 = 110.0;
-    const LEFT: f64 = 70.0;
-    const BOTTOM: f64 = 600.0;
-    /// The decimal logarithms of the least number of objects and the least cost in ms that are shown.
-    const LEAST: (f64, f64) = (1.0, -2.0);
-    let x = |size: f64| LEFT + (size.log10() - LEAST.0) * DECADE;
-    let y = |cost: f64| BOTTOM - (cost.log10() - LEAST.1) * DECADE;
+/// Where a point of the plot is, in pixels; both axes are logarithmic.
+fn place(objects: f64, milliseconds: f64) -> (f64, f64) {
+    let x = LEFT + (objects / OBJECTS[0].0).log10() * DECADES.0;
+    let least = COSTS[0].0;
+    let y = BOTTOM - (milliseconds.max(least) / least).log10() * DECADES.1;
+    (x, y)
+}
 
+/// What the axes are marked with.
+const OBJECTS: [(f64, &str); 4] = [
+    (10.0, "10"),
+    (100.0, "100"),
+    (1_000.0, "1,000"),
+    (10_000.0, "10,000"),
+];
+const COSTS: [(f64, &str); 8] = [
+    (1e-3, "1 µs"),
+    (1e-2, "10 µs"),
+    (1e-1, "100 µs"),
+    (1.0, "1 ms"),
+    (1e1, "10 ms"),
+    (1e2, "100 ms"),
+    (1e3, "1 s"),
+    (1e4, "10 s"),
+];
+
+/// Pixels of a decade of objects and of costs.
+const DECADES: (f64, f64) = (150.0, 65.0);
+const LEFT: f64 = 80.0;
+const BOTTOM: f64 = 530.0;
+
+/// Pixels from one name to the next.
+const LINE: f64 = 18.0;
+
+fn plot(rows: &[(usize, [Duration; 5])]) -> String {
     let mut svg = String::from(
-        r#"<svg xmlns="http://www.w3.org/2000/svg" width="620" height="660" font-family="sans-serif" font-size="13">
+        r##"<svg xmlns="http://www.w3.org/2000/svg" width="720" height="590" font-family="sans-serif" font-size="14" fill="#333333">
 <rect width="100%" height="100%" fill="white"/>
-"#,
+<text x="80" y="30" font-size="17">What a scene of towers costs, against the number of its objects</text>
+<text x="305" y="575" text-anchor="middle">objects (logarithmic)</text>
+<text transform="translate(18 302) rotate(-90)" text-anchor="middle">time (logarithmic)</text>
+"##,
     );
-    for decade in 1..=4 {
-        let at = x(10f64.powi(decade));
-        let number = 10u64.pow(decade as u32);
+    let (right, top) = place(OBJECTS[3].0, COSTS[7].0);
+    for (objects, label) in OBJECTS {
+        let (x, _) = place(objects, 1.0);
         let _ = writeln!(
             svg,
-            r##"<path d="M{at} 40V{BOTTOM}" stroke="#dddddd"/><text x="{at}" y="620" text-anchor="middle">{number}</text>"##
+            r##"<path d="M{x} {top}V{BOTTOM}" stroke="#dddddd"/><text x="{x}" y="551" text-anchor="middle">{label}</text>"##
         );
     }
-    for decade in -2..=3 {
-        let cost = 10f64.powi(decade);
-        let at = y(cost);
+    for (cost, label) in COSTS {
+        let (_, y) = place(1.0, cost);
         let _ = writeln!(
             svg,
-            r##"<path d="M{LEFT} {at}H420" stroke="#dddddd"/><text x="62" y="{at}" text-anchor="end">{cost}</text>"##
+            r##"<path d="M{LEFT} {y}H{right}" stroke="#dddddd"/><text x="74" y="{:.1}" text-anchor="end">{label}</text>"##,
+            y + 5.0
         );
     }
-    let _ = writeln!(
-        svg,
-        r#"<text x="235" y="645" text-anchor="middle">objects</text><text x="62" y="25" text-anchor="end">ms</text>"#
-    );
-    for (series, (name, color)) in SERIES.iter().enumerate() {
-        let points = rows.iter().map(|(size, costs)| {
-            let cost = milliseconds(costs[series]).max(0.01);
-            format!("{:.1},{:.1}", x(*size as f64), y(cost))
-        });
-        let points: Vec<_> = points.collect();
-        let label = 60 + 22 * series;
+    for (series, label) in labels(rows).into_iter().enumerate() {
+        let (name, color) = SERIES[series];
+        let points = rows
+            .iter()
+            .map(|(size, costs)| place(*size as f64, milliseconds(costs[series])));
+        let points: Vec<_> = points.map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
         let _ = writeln!(
             svg,
-            r#"<polyline points="{}" fill="none" stroke="{color}" stroke-width="2"/><text x="440" y="{label}" fill="{color}">{name}</text>"#,
-            points.join(" ")
+            r#"<polyline points="{}" fill="none" stroke="{color}" stroke-width="2"/><text x="{:.1}" y="{label:.1}" fill="{color}">{name}</text>"#,
+            points.join(" "),
+            right + 10.0
         );
     }
     svg + "</svg>\n"
+}
+
+/// How high the name of each series is: beside its last point, and not over another name.
+fn labels(rows: &[(usize, [Duration; 5])]) -> [f64; 5] {
+    let last = rows.last().unwrap().1;
+    let mut heights = last.map(|cost| place(1.0, milliseconds(cost)).1 + 5.0);
+    let mut order: Vec<_> = (0..heights.len()).collect();
+    order.sort_by(|&a, &b| heights[a].total_cmp(&heights[b]));
+    for pair in order.windows(2) {
+        heights[pair[1]] = heights[pair[1]].max(heights[pair[0]] + LINE);
+    }
+    heights
 }

@@ -122,7 +122,7 @@ impl Near {
             free: Vec::new(),
             sleeping: Vec::new(),
         };
-        for other in nearby(rapier.colliders, rapier.rigidbody_set, way) {
+        for other in nearby(rapier.colliders, rapier.rigidbody_set, way, |_| true) {
             if other.collider.parent() == carried.parent() {
                 continue;
             }

@@ -18,6 +18,49 @@ impl Index<LinkId> for Frames {
     }
 }
 
+/// The frames of a robot that moves: only those that a motion moves are computed again, and are the same to the bit.
+#[derive(Clone, Debug)]
+pub struct MovingFrames {
+    configuration: JointValues,
+    frames: Frames,
+    moved: Vec<bool>,
+}
+
+impl MovingFrames {
+    /// The frames in a configuration; all count as moved.
+    pub fn new(model: &RobotModel, configuration: JointValues) -> Self {
+        Self {
+            frames: model.frames(&configuration),
+            moved: vec![true; model.links.len()],
+            configuration,
+        }
+    }
+
+    /// Goes to another configuration of the same model.
+    pub fn move_to(&mut self, model: &RobotModel, configuration: &JointValues) {
+        self.moved.fill(false);
+        for (i, joint) in model.joints.iter().enumerate() {
+            let [before, now] = [&self.configuration, configuration]
+                .map(|configuration| model.position(ModelJointId(i), configuration));
+            if self.moved[joint.parent.index()] || before.to_bits() != now.to_bits() {
+                self.frames.0[i + 1] = self.frames[joint.parent] * joint.motion(now);
+                self.moved[i + 1] = true;
+            }
+        }
+        self.configuration.clone_from(configuration);
+    }
+
+    /// Where the links are.
+    pub const fn frames(&self) -> &Frames {
+        &self.frames
+    }
+
+    /// Whether the last motion has moved a link.
+    pub fn has_moved(&self, link: LinkId) -> bool {
+        self.moved[link.index()]
+    }
+}
+
 impl RobotModel {
     /// The poses of the links.
     ///
@@ -68,5 +111,27 @@ impl RobotModel {
     pub(crate) fn axis_in_root(&self, frames: &Frames, joint: ModelJointId) -> DVec3 {
         let joint = self.joint(joint);
         frames[joint.child].transform_vector3(joint.axis)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::baxter;
+
+    #[test]
+    fn moving_frames_are_those_of_their_configuration() {
+        let model = baxter().unwrap();
+        let mut configuration = model.zero();
+        let mut moving = MovingFrames::new(&model, configuration.clone());
+        let joints = ["left_s0", "right_w2", "head_pan", "left_e1", "left_e1"];
+        for (number, name) in joints.into_iter().enumerate() {
+            configuration[model.find_joint(name).unwrap()] += 0.3 - 0.1 * number as f64;
+            moving.move_to(&model, &configuration);
+            assert_eq!(moving.frames().0, model.frames(&configuration).0, "{name}");
+        }
+        let [moved, stays] = ["left_hand", "right_hand"]
+            .map(|link| moving.has_moved(model.find_link(link).unwrap()));
+        assert!(moved && !stays);
     }
 }

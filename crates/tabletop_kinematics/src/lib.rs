@@ -54,7 +54,7 @@ pub use arm::{ArmChain, DTwist, MOST_ARM_JOINTS};
 pub use baxter::{baxter, baxter_smile};
 pub use dynamics::{InertiaMatrix, Load};
 pub use error::ModelError;
-pub use forward::Frames;
+pub use forward::{Frames, MovingFrames};
 pub use id::{LinkId, ModelJointId};
 pub use inverse::{Miss, Target, Unreachable};
 pub use link::{Geometry, Inertial, Link, LinkShape};

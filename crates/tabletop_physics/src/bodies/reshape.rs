@@ -66,7 +66,7 @@ fn wake_in(world: &mut World, room: Aabb) {
     let Ok((colliders, bodies)) = contexts.single(world) else {
         return;
     };
-    let near: Vec<_> = nearby(colliders, bodies, room)
+    let near: Vec<_> = nearby(colliders, bodies, room, |_| true)
         .map(|body| body.entity)
         .collect();
     for body in near {

@@ -33,19 +33,23 @@ impl Nearby<'_> {
     }
 }
 
-/// The bodies that reach into a box, in Rapier's order. Disabled ones are nowhere.
+/// The bodies that reach into a box, in Rapier's order, of those that can be met at all. Disabled ones are nowhere.
 pub fn nearby<'a>(
     colliders: &'a RapierContextColliders,
     bodies: &'a RapierRigidBodySet,
     near: Aabb,
+    can_be_met: impl Fn(Entity) -> bool,
 ) -> impl Iterator<Item = Nearby<'a>> {
     let colliders = colliders.colliders.iter();
     colliders.filter_map(move |(_, collider)| {
-        let bounds = collider.compute_aabb();
-        let parent = collider.parent().filter(|_| bounds.intersects(&near))?;
+        let parent = collider.parent()?;
         let body = bodies.bodies.get(parent).filter(|body| body.is_enabled())?;
-        Some(Nearby {
-            entity: bodies.rigid_body_entity(parent)?,
+        let entity = bodies
+            .rigid_body_entity(parent)
+            .filter(|it| can_be_met(*it))?;
+        let bounds = collider.compute_aabb();
+        bounds.intersects(&near).then_some(Nearby {
+            entity,
             body,
             collider,
             bounds,

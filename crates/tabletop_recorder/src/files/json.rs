@@ -11,7 +11,7 @@ const MOST_LEVELS: usize = 512;
 /// # Errors
 /// It is no such value, or is nested deeper than recordings are.
 pub(crate) fn from_json<'j, T: Deserialize<'j>>(json: &'j [u8]) -> Result<T, Error> {
-    if depth(json) > MOST_LEVELS {
+    if Outline::of(json).depth > MOST_LEVELS {
         let reason = format!("it is nested more than {MOST_LEVELS} levels deep");
         return Err(serde::de::Error::custom(reason));
     }
@@ -29,25 +29,41 @@ pub(crate) fn to_json_line(value: &impl Serialize) -> Result<Vec<u8>, Error> {
     Ok(line)
 }
 
-/// The greatest depth of nested brackets.
-fn depth(json: &[u8]) -> usize {
-    let (mut depth, mut most) = (0_usize, 0);
-    let (mut is_text, mut is_escaped) = (false, false);
-    for &byte in json {
-        match byte {
-            _ if is_escaped => is_escaped = false,
-            b'\\' if is_text => is_escaped = true,
-            b'"' => is_text = !is_text,
-            _ if is_text => {}
-            b'[' | b'{' => {
-                depth += 1;
-                most = most.max(depth);
+/// Whether a value that was written reads back: it has no number that is none, which is written as `null`, and is not too deep.
+pub(crate) fn reads_back(json: &[u8]) -> bool {
+    let Outline { depth, has_null } = Outline::of(json);
+    !has_null && depth <= MOST_LEVELS
+}
+
+/// What is seen of JSON without reading it.
+#[derive(Debug, Default, PartialEq)]
+struct Outline {
+    /// How deep brackets are nested, at most.
+    depth: usize,
+    has_null: bool,
+}
+
+impl Outline {
+    fn of(json: &[u8]) -> Self {
+        let (mut outline, mut depth) = (Self::default(), 0_usize);
+        let (mut is_text, mut is_escaped) = (false, false);
+        for &byte in json {
+            match byte {
+                _ if is_escaped => is_escaped = false,
+                b'\\' if is_text => is_escaped = true,
+                b'"' => is_text = !is_text,
+                _ if is_text => {}
+                b'[' | b'{' => {
+                    depth += 1;
+                    outline.depth = outline.depth.max(depth);
+                }
+                b']' | b'}' => depth = depth.saturating_sub(1),
+                b'n' => outline.has_null = true,
+                _ => {}
             }
-            b']' | b'}' => depth = depth.saturating_sub(1),
-            _ => {}
         }
+        outline
     }
-    most
 }
 
 #[cfg(test)]
@@ -68,7 +84,16 @@ mod tests {
             );
         }
         let text = r#"["[[[\"[[", {"a": [1]}]"#;
-        assert_eq!(depth(text.as_bytes()), 3);
+        let outline = Outline::of(text.as_bytes());
+        assert_eq!((outline.depth, outline.has_null), (3, false));
         assert!(from_json::<Value>(b"[] []").is_err());
+    }
+
+    #[test]
+    fn what_is_no_number_does_not_read_back() {
+        for (value, reads) in [(1.5, true), (f64::NAN, false), (f64::INFINITY, false)] {
+            let line = to_json_line(&("null, none", value)).unwrap();
+            assert_eq!(reads_back(&line), reads, "{value}");
+        }
     }
 }

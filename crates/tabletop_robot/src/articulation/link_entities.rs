@@ -8,7 +8,7 @@ use bevy_rapier3d::{
 use tabletop_core::{CarriesHeadCamera, Pose, Robot, Rollback, Table};
 use tabletop_physics::to_rapier;
 
-use crate::articulation::tree::{Articulation, Body, Positions, Posture, TreePosition};
+use crate::articulation::tree::{Articulation, Body, Positions, TreePosition};
 
 /// A body of the robot: a link, or a finger of a gripper.
 #[derive(Component, Clone, Debug, Reflect)]
@@ -29,10 +29,10 @@ pub(crate) const FRICTION: f32 = 1.0;
 /// Makes the bodies, disabled.
 pub(crate) fn spawn(world: &mut World) -> Result {
     let articulation = world.resource::<Articulation>().clone();
-    let posture = articulation.posture(&positions(world.resource::<Robot>()));
-    let poses = poses(&articulation, &posture, base(world));
+    let base = base(world);
+    let posture = articulation.posture(&positions(world.resource::<Robot>()), base);
     let mut parts = Vec::new();
-    for (body, pose) in articulation.bodies.iter().zip(poses) {
+    for (body, &pose) in articulation.bodies.iter().zip(posture.bodies()) {
         let place = Transform::from(pose);
         let mut part = world.spawn((
             RobotBody {
@@ -98,13 +98,13 @@ pub(crate) fn base(world: &mut World) -> Pose {
 
 /// Puts the bodies where a posture has them, without pushing anything on the way.
 pub(crate) fn teleport(world: &mut World) -> Result {
+    let base = base(world);
     let posture = world
         .resource::<Articulation>()
-        .posture(&positions(world.resource::<Robot>()));
-    let base = base(world);
-    let poses = poses(world.resource::<Articulation>(), &posture, base);
+        .posture(&positions(world.resource::<Robot>()), base);
+    let poses = posture.bodies();
     let parts = world.resource::<LinkEntities>().clone();
-    for (&part, &pose) in parts.0.iter().zip(&poses) {
+    for (&part, &pose) in parts.0.iter().zip(poses) {
         if let Some(mut transform) = world.get_mut::<Transform>(part) {
             transform.set_if_neq(pose.into());
         }
@@ -113,7 +113,7 @@ pub(crate) fn teleport(world: &mut World) -> Result {
         world.query_filtered::<&mut RapierRigidBodySet, With<DefaultRapierContext>>();
     let mut bodies = contexts.single_mut(world)?;
     for (part, pose) in parts.0.iter().zip(poses) {
-        put(&mut bodies, *part, pose);
+        put(&mut bodies, *part, *pose);
     }
     Ok(())
 }
@@ -126,13 +126,4 @@ pub(crate) fn put(bodies: &mut RapierRigidBodySet, part: Entity, pose: Pose) {
         body.set_position(pose, true);
         body.set_next_kinematic_position(pose);
     }
-}
-
-/// Where the bodies are in a posture, by their numbers.
-pub(crate) fn poses(articulation: &Articulation, posture: &Posture, base: Pose) -> Vec<Pose> {
-    articulation
-        .bodies
-        .iter()
-        .map(|body| articulation.pose(body, posture, base))
-        .collect()
 }

@@ -84,9 +84,9 @@ fn known_posture(articulation: &Articulation, angles: &[f64]) -> Vec<Vec<Solid>>
             JointRole::Neck | JointRole::Gripper(_) => joint.home,
         })
         .collect();
-    let posture = articulation.posture(&positions);
+    let posture = articulation.posture(&positions, Pose::IDENTITY);
     let solids = |(number, body): (usize, &Body)| {
-        let pose = articulation.pose(body, &posture, Pose::IDENTITY);
+        let pose = posture.bodies()[number];
         Solid::moving(&body.parts, Owner::Body(number), pose, pose).collect()
     };
     articulation.bodies.iter().enumerate().map(solids).collect()

@@ -16,7 +16,7 @@ use tabletop_core::{
 };
 use tabletop_kinematics::{
     ArmChain, Frames, Geometry, JointValues, LinkId, LinkShape, Load, ModelError, ModelJointId,
-    RobotModel,
+    MovingFrames, RobotModel,
 };
 use tabletop_physics::Convex;
 
@@ -45,6 +45,8 @@ pub(crate) struct Body {
     pub place: TreePosition,
     /// Its solids, in its own frame.
     pub parts: Vec<Convex>,
+    /// The radius of a ball about its origin that holds them, in units.
+    pub radius: f32,
 }
 
 /// What carries a body.
@@ -90,18 +92,36 @@ struct Limb {
     trackers: Vec<LinkId>,
 }
 
-/// Where everything is at a moment, in the torso's frame.
+/// Where everything is at a moment.
 #[derive(Clone, Debug)]
 pub(crate) struct Posture {
     values: JointValues,
-    frames: Frames,
-    openings: Vec<f64>,
+    links: MovingFrames,
+    openings: SmallVec<[f64; 2]>,
+    base: Pose,
+    bodies: Vec<Pose>,
+    end_effectors: Vec<Pose>,
 }
 
 impl Posture {
-    /// Where the links are, in m.
+    /// Where the links are in the torso's frame, in m.
     pub const fn frames(&self) -> &Frames {
-        &self.frames
+        self.links.frames()
+    }
+
+    /// Where the torso's frame stands, in units.
+    pub const fn base(&self) -> Pose {
+        self.base
+    }
+
+    /// Where the bodies are, by their numbers, in units.
+    pub fn bodies(&self) -> &[Pose] {
+        &self.bodies
+    }
+
+    /// Where the end effectors are, in units.
+    pub fn end_effectors(&self) -> &[Pose] {
+        &self.end_effectors
     }
 }
 
@@ -145,6 +165,7 @@ impl Articulation {
                     }
                 }
             }
+            body.radius = radius(&body.parts);
         }
         lacking
     }
@@ -171,15 +192,19 @@ impl Articulation {
         let fingers = self.layout.limb_ids().flat_map(|id| {
             let limb = self.layout.limb(id);
             let arm = limb.name;
-            [("left", -1), ("right", 1)].map(|(name, side)| Body {
-                id: format!("{arm}-gripper-{name}-finger"),
-                name: format!("{name} finger of the {arm} gripper"),
-                carrier: Carrier::Gripper(id, side),
-                place: TreePosition::Limb(id, limb.joints.len() + 1),
-                parts: vec![Convex {
+            [("left", -1), ("right", 1)].map(|(name, side)| {
+                let parts = vec![Convex {
                     pose: Pose::IDENTITY,
                     shape: cuboid(limb.gripper.finger),
-                }],
+                }];
+                Body {
+                    id: format!("{arm}-gripper-{name}-finger"),
+                    name: format!("{name} finger of the {arm} gripper"),
+                    carrier: Carrier::Gripper(id, side),
+                    place: TreePosition::Limb(id, limb.joints.len() + 1),
+                    radius: radius(&parts),
+                    parts,
+                }
             })
         });
         links.chain(fingers).collect()
@@ -193,12 +218,14 @@ impl Articulation {
             return None;
         }
         let id = self.model.find_link(&link.name).ok()?;
+        let parts: Vec<_> = link.collisions.iter().filter_map(convex).collect();
         Some(Body {
             id: link.name.clone(),
             name: link.name.replace('_', " "),
             carrier: Carrier::Link(id),
             place: self.place(id),
-            parts: link.collisions.iter().filter_map(convex).collect(),
+            radius: radius(&parts),
+            parts,
         })
     }
 
@@ -224,55 +251,90 @@ impl Articulation {
             .unwrap_or(TreePosition::Trunk)
     }
 
-    /// Where everything is when the joints are at these positions, by [`JointId`].
-    pub fn posture(&self, positions: &[f64]) -> Posture {
+    /// Where everything is when the joints are at these positions, by [`JointId`], and the torso's frame stands at `base`, in units.
+    pub fn posture(&self, positions: &[f64], base: Pose) -> Posture {
+        let mut values = self.model.zero();
+        self.set_values(&mut values, positions);
         let mut posture = Posture {
-            values: self.model.zero(),
-            frames: Frames::default(),
-            openings: Vec::new(),
+            links: MovingFrames::new(&self.model, values.clone()),
+            values,
+            openings: self.openings(positions),
+            base,
+            bodies: vec![Pose::IDENTITY; self.bodies.len()],
+            end_effectors: vec![Pose::IDENTITY; self.limbs.len()],
         };
-        self.update(&mut posture, positions);
+        self.place_moved(&mut posture, |_| true);
         posture
     }
 
     /// Brings a posture to other positions of the joints.
     pub fn update(&self, posture: &mut Posture, positions: &[f64]) {
+        self.set_values(&mut posture.values, positions);
+        posture.links.move_to(&self.model, &posture.values);
+        let openings = self.openings(positions);
+        let before = std::mem::replace(&mut posture.openings, openings.clone());
+        self.place_moved(posture, |limb| {
+            before[limb.index()].to_bits() != openings[limb.index()].to_bits()
+        });
+    }
+
+    fn set_values(&self, values: &mut JointValues, positions: &[f64]) {
         for (joint, position) in self.joints.iter().zip(positions) {
             if let Some(joint) = *joint {
-                posture.values[joint] = *position;
+                values[joint] = *position;
             }
         }
+    }
+
+    fn openings(&self, positions: &[f64]) -> SmallVec<[f64; 2]> {
         let limbs = self.layout.limbs.iter();
-        posture.openings.clear();
-        posture
-            .openings
-            .extend(limbs.map(|limb| positions[limb.gripper.joint.index()]));
-        self.model.frames_into(&posture.values, &mut posture.frames);
+        limbs
+            .map(|limb| positions[limb.gripper.joint.index()])
+            .collect()
     }
 
-    /// Where a body is, in the frame in which the torso stands at `base`, in units.
-    pub fn pose(&self, body: &Body, posture: &Posture, base: Pose) -> Pose {
-        match body.carrier {
-            Carrier::Link(link) => base * in_units(posture.frames[link]),
-            Carrier::Gripper(limb, side) => {
-                let gripper = &self.layout.limb(limb).gripper;
-                let [_, widest] = self.layout.joint(gripper.joint).limits;
-                let opening = posture.openings[limb.index()] as f32;
-                let out = opening / 2.0 + play(opening, widest) + gripper.finger.x / 2.0;
-                let inwards = if side < 0 { 0.0 } else { PI };
-                self.end_effector(limb, posture, base)
-                    * Pose::new(
-                        Vec3::X * f32::from(side) * out,
-                        Quat::from_rotation_z(inwards),
-                    )
+    /// Places the bodies whose links have moved, and the fingers whose openings have changed.
+    fn place_moved(&self, posture: &mut Posture, opens: impl Fn(LimbId) -> bool) {
+        let Posture {
+            links,
+            openings,
+            base,
+            bodies,
+            end_effectors,
+            ..
+        } = posture;
+        for (limb, end_effector) in self.limbs.iter().zip(end_effectors.iter_mut()) {
+            let (link, offset) = limb.end_effector;
+            if links.has_moved(link) {
+                *end_effector = *base * in_units(links.frames()[link] * offset);
+            }
+        }
+        for (body, pose) in self.bodies.iter().zip(bodies) {
+            match body.carrier {
+                Carrier::Link(link) if links.has_moved(link) => {
+                    *pose = *base * in_units(links.frames()[link]);
+                }
+                Carrier::Gripper(limb, side)
+                    if opens(limb) || links.has_moved(self.limbs[limb.index()].end_effector.0) =>
+                {
+                    let finger = self.finger(limb, side, openings[limb.index()] as f32);
+                    *pose = end_effectors[limb.index()] * finger;
+                }
+                Carrier::Link(_) | Carrier::Gripper(..) => {}
             }
         }
     }
 
-    /// Where an end effector is.
-    pub fn end_effector(&self, limb: LimbId, posture: &Posture, base: Pose) -> Pose {
-        let (link, offset) = self.limbs[limb.index()].end_effector;
-        base * in_units(posture.frames[link] * offset)
+    /// Where a finger is in its end effector's frame.
+    fn finger(&self, limb: LimbId, side: i8, opening: f32) -> Pose {
+        let gripper = &self.layout.limb(limb).gripper;
+        let [_, widest] = self.layout.joint(gripper.joint).limits;
+        let out = opening / 2.0 + play(opening, widest) + gripper.finger.x / 2.0;
+        let inwards = if side < 0 { 0.0 } else { PI };
+        Pose::new(
+            Vec3::X * f32::from(side) * out,
+            Quat::from_rotation_z(inwards),
+        )
     }
 
     /// What the joints of a limb turn about: a point and a unit vector, in m in the torso's frame.
@@ -281,7 +343,7 @@ impl Articulation {
         joints
             .map(|&joint| {
                 let joint = self.model.joint(joint);
-                let frame = posture.frames[joint.child];
+                let frame = posture.frames()[joint.child];
                 (frame.translation, frame.transform_vector3(joint.axis))
             })
             .collect()
@@ -298,11 +360,11 @@ impl Articulation {
     }
 
     /// Where the origins of the tracked joints of a limb are.
-    pub fn joint_origins(&self, limb: LimbId, posture: &Posture, base: Pose) -> Vec<Vec3> {
+    pub fn joint_origins(&self, limb: LimbId, posture: &Posture) -> impl Iterator<Item = Vec3> {
         let trackers = self.limbs[limb.index()].trackers.iter();
-        trackers
-            .map(|&link| base * in_units(posture.frames[link]).location)
-            .collect()
+        trackers.map(|&link| {
+            posture.base * (posture.frames()[link].translation * UNITS_PER_METER).as_vec3()
+        })
     }
 }
 
@@ -366,6 +428,15 @@ pub(crate) fn in_meters(pose: Pose) -> DAffine3 {
         pose.rotation.as_dquat().normalize(),
         pose.location.as_dvec3() / UNITS_PER_METER,
     )
+}
+
+/// The radius of a ball about the origin that holds these solids.
+fn radius(parts: &[Convex]) -> f32 {
+    let farthest = parts.iter().map(|part| {
+        let ball = part.shape.compute_local_bounding_sphere();
+        (part.pose * ball.center()).length() + ball.radius()
+    });
+    farthest.fold(0.0, f32::max)
 }
 
 fn cuboid(span: Vec3) -> SharedShape {

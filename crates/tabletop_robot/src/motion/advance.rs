@@ -1,12 +1,15 @@
 //! A tick of the robot.
 
 use bevy::{ecs::system::SystemParam, prelude::*};
-use bevy_rapier3d::prelude::*;
+use bevy_rapier3d::{prelude::*, rapier::prelude::RigidBodyHandle};
 use tabletop_core::{LimbId, LimbName, Robot, RobotMode, SimFact};
 use tabletop_physics::PhysicsSettings;
 
 use crate::{
-    articulation::link_entities::{positions, put},
+    articulation::{
+        link_entities::{LinkEntities, positions, put},
+        tree::Posture,
+    },
     command::joint_targets::JointTargets,
     dynamics::{contact_loads::contact_loads, motors::Motors},
     gripper::{
@@ -38,16 +41,18 @@ pub(crate) fn advance(
     mut moved: MovedBodies,
     mut facts: MessageWriter<SimFact>,
     mut commands: Commands,
+    mut posture: Local<Option<Posture>>,
 ) -> Result {
     let layout = &known.articulation.layout;
     let is_dynamic = robot.mode == RobotMode::Dynamic;
     let is_told = targets.are_given();
     if !is_dynamic && !is_told {
         stand_still(&mut robot);
-        return Ok(());
+        return let_sleep(&known.parts, &mut moved.rapier);
     }
     let mut rapier = moved.rapier.single_mut()?;
-    let mut motion = known.motion(&robot, &grips, &rapier);
+    let here = known.posture(&robot, posture.take());
+    let mut motion = known.motion(&robot, &grips, &rapier, here);
     let pulls = is_dynamic.then(|| {
         motors.look(layout, &robot);
         motors.pull(&mut motion, &targets, settings.gravity, |motion, limb| {
@@ -98,14 +103,17 @@ pub(crate) fn advance(
             robot.limbs[limb.index()].blocked_by = blocked_by;
         }
     }
-    known.publish(&mut robot, &targets, motion.base);
+    known
+        .articulation
+        .update(&mut motion.scratch, &motion.positions);
+    known.publish(&mut robot, &targets, &motion.scratch);
 
     for object in known.near_arms(&mut motion) {
         if let Ok(mut sleeping) = moved.sleeping.get_mut(object) {
             sleeping.sleeping = false;
         }
     }
-    for (entity, pose) in known.places(&motion, &robot, &grips) {
+    for (entity, pose) in known.places(&mut motion, &robot, &grips) {
         let Ok(mut transform) = moved.transforms.get_mut(entity) else {
             continue;
         };
@@ -114,6 +122,7 @@ pub(crate) fn advance(
         }
         transform.set_if_neq(pose.into());
     }
+    *posture = Some(motion.scratch);
     for action in actions {
         action.carry_out(&mut commands, &mut facts);
     }
@@ -127,6 +136,34 @@ fn stand_still(robot: &mut ResMut<Robot>) {
             joint.velocity = 0.0;
         }
     }
+}
+
+/// Lets the robot's bodies sleep when they stand still and nothing else is awake. The engine would not: it finds velocities in what
+/// is rounded.
+fn let_sleep(parts: &LinkEntities, rapier: &mut WriteRapierContext) -> Result {
+    let mut rapier = rapier.single_mut()?;
+    let set = &rapier.rigidbody_set;
+    let stands = |handle: &RigidBodyHandle| {
+        let body = set.bodies.get(*handle);
+        body.is_some_and(|body| body.is_kinematic() && body.position() == body.next_position())
+    };
+    let awake: Vec<_> = rapier.simulation.islands.active_bodies().collect();
+    if awake.is_empty() || !awake.iter().all(stands) {
+        return Ok(());
+    }
+    let is_of_robot = |handle: &RigidBodyHandle| {
+        let entity = set.rigid_body_entity(*handle);
+        entity.is_some_and(|entity| parts.0.contains(&entity))
+    };
+    if !awake.iter().all(is_of_robot) {
+        return Ok(());
+    }
+    for handle in awake {
+        if let Some(body) = rapier.rigidbody_set.bodies.get_mut(handle) {
+            body.sleep();
+        }
+    }
+    Ok(())
 }
 
 /// What a gripper does besides moving its fingers.

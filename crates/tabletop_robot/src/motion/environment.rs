@@ -59,11 +59,9 @@ impl Environment {
             return environment;
         }
         let near = near.loosened(MARGIN);
-        for thing in nearby(&rapier.colliders, &rapier.rigidbody_set, near) {
+        let is_met = |object| !is_robot.contains(object) && !held.contains(&object);
+        for thing in nearby(&rapier.colliders, &rapier.rigidbody_set, near, is_met) {
             let object = thing.entity;
-            if is_robot.contains(object) || held.contains(&object) {
-                continue;
-            }
             let parts = thing.parts();
             if thing.body.is_dynamic() {
                 environment.free.push(FreeObject {

@@ -22,8 +22,8 @@ pub(crate) fn stand_at_table(world: &mut World) -> Result {
 
 /// Writes where the arms are.
 pub(crate) fn publish(known: RobotView, targets: Res<JointTargets>, mut robot: ResMut<Robot>) {
-    let base = known.base();
-    known.publish(&mut robot, &targets, base);
+    let posture = known.posture(&robot, None);
+    known.publish(&mut robot, &targets, &posture);
 }
 
 /// Puts the arms home that have come into the table or something else while the robot was hidden and met nothing.
@@ -35,7 +35,8 @@ pub(crate) fn leave_obstacles(
     mut facts: MessageWriter<SimFact>,
 ) -> Result {
     let rapier = rapier.single_mut()?;
-    let mut motion = known.motion(&robot, &grips, &rapier);
+    let posture = known.posture(&robot, None);
+    let mut motion = known.motion(&robot, &grips, &rapier, posture);
     for limb in known.articulation.layout.limb_ids() {
         let Some(obstacle) = motion.is_inside(limb) else {
             continue;

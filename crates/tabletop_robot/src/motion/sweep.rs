@@ -47,9 +47,12 @@ pub(crate) struct Carried {
 pub(crate) struct Poses {
     positions: Positions,
     /// Its bodies.
-    bodies: Vec<Pose>,
+    pub bodies: Vec<Pose>,
     end_effectors: Vec<Pose>,
 }
+
+/// What boxes around bodies are wider than they must be, in units, for what is rounded.
+const ROUNDING: f32 = 1e-3;
 
 /// Answers that are remembered.
 const MOST_ASKED: usize = 4;
@@ -144,8 +147,11 @@ impl TickMotion<'_> {
             );
             there[joint.index()] = setpoint.max(opening - f64::from(closing.room)).max(least);
         }
+        if there == self.positions {
+            return closing;
+        }
         let (part, _) = self.push(limb, &there);
-        if there != self.positions && part >= LEAST_PUSH {
+        if part >= LEAST_PUSH {
             self.sweep(limb, lerp(&self.positions, &there, part));
         }
         closing
@@ -203,8 +209,13 @@ impl TickMotion<'_> {
         if self.environment.free.is_empty() {
             return (1.0, None);
         }
-        let here = self.positions.clone();
-        let solids = self.solids(limb, &here, there);
+        let [here, there] = [&self.positions.clone(), there].map(|at| self.poses(at));
+        let solids = self.solids_of(limb, &here, &there, |number| {
+            let way = [&here, &there].map(|poses| self.around(number, poses));
+            let way = way[0].merged(&way[1]);
+            let mut free = self.environment.free.iter();
+            free.any(|thing| are_near(&way, &thing.bounds))
+        });
         let (mut part, mut most_pushed) = (1.0, None);
         for (i, thing) in self.environment.free.iter().enumerate() {
             let approaches = solids
@@ -252,24 +263,16 @@ impl TickMotion<'_> {
     }
 
     /// Where the robot is. The last few answers are remembered: most are asked for several times.
-    fn poses(&mut self, positions: &Positions) -> Rc<Poses> {
+    pub fn poses(&mut self, positions: &Positions) -> Rc<Poses> {
         let is_asked = |poses: &&Rc<Poses>| poses.positions == *positions;
         if let Some(poses) = self.asked.iter().find(is_asked) {
             return Rc::clone(poses);
         }
         self.articulation.update(&mut self.scratch, positions);
-        let bodies = self.articulation.bodies.iter();
         let poses = Rc::new(Poses {
             positions: positions.clone(),
-            bodies: bodies
-                .map(|body| self.articulation.pose(body, &self.scratch, self.base))
-                .collect(),
-            end_effectors: (self.articulation.layout.limb_ids())
-                .map(|limb| {
-                    self.articulation
-                        .end_effector(limb, &self.scratch, self.base)
-                })
-                .collect(),
+            bodies: self.scratch.bodies().to_vec(),
+            end_effectors: self.scratch.end_effectors().to_vec(),
         });
         if self.asked.len() == MOST_ASKED {
             self.asked.remove(0);
@@ -286,17 +289,28 @@ impl TickMotion<'_> {
         to: &Positions,
     ) -> Vec<(usize, Solid)> {
         let [from, to] = [from, to].map(|positions| self.poses(positions));
+        self.solids_of(limb, &from, &to, |_| true)
+    }
+
+    /// The solids of those bodies of an arm that are needed, and of what it holds.
+    fn solids_of(
+        &self,
+        limb: LimbId,
+        from: &Poses,
+        to: &Poses,
+        is_needed: impl Fn(usize) -> bool,
+    ) -> Vec<(usize, Solid)> {
         let mut solids = Vec::new();
-        for number in self.bodies_of(limb) {
+        for number in self.bodies_of(limb).filter(|number| is_needed(*number)) {
             let parts = &self.articulation.bodies[number].parts;
-            let [from, to] = [&from, &to].map(|poses| poses.bodies[number]);
+            let [from, to] = [from, to].map(|poses| poses.bodies[number]);
             let moving = Solid::moving(parts, Owner::Body(number), from, to);
             solids.extend(moving.map(|solid| (number, solid)));
         }
         let finger = self.finger(limb);
         for carried in &self.carried[limb.index()] {
             let [from, to] =
-                [&from, &to].map(|poses| poses.end_effectors[limb.index()] * carried.pose);
+                [from, to].map(|poses| poses.end_effectors[limb.index()] * carried.pose);
             let moving = Solid::moving(&carried.parts, Owner::Thing(carried.object), from, to);
             solids.extend(moving.map(|solid| (finger, solid)));
         }
@@ -332,18 +346,45 @@ impl TickMotion<'_> {
         if !self.is_shown {
             return None;
         }
-        let solids = self.solids(limb, from, to);
+        let here = self.poses(&self.positions.clone());
+        let [from, to] = [from, to].map(|positions| self.poses(positions));
+        let solids = self.solids_of(limb, &from, &to, |number| {
+            self.may_collide(limb, number, &here, &to)
+        });
         let outside = solids.iter().find_map(|(_, solid)| {
             let mut immovable = self.environment.immovable.iter();
             immovable
                 .find(|obstacle| solid.collides_with(obstacle))
                 .map(|obstacle| obstacle.owner)
         });
-        outside.or_else(|| self.own_body(limb, &solids))
+        outside.or_else(|| self.own_body(limb, &solids, &here))
+    }
+
+    /// A box around a body, whichever way it is turned.
+    fn around(&self, number: usize, poses: &Poses) -> Aabb {
+        let at = poses.bodies[number].location;
+        let radius = self.articulation.bodies[number].radius + ROUNDING;
+        Aabb::new(at - radius, at + radius)
+    }
+
+    /// Whether a body of an arm that goes there may come near to anything that it, or what the arm holds, cannot pass.
+    fn may_collide(&self, limb: LimbId, number: usize, here: &Poses, there: &Poses) -> bool {
+        if !self.carried[limb.index()].is_empty() {
+            return true;
+        }
+        let around = self.around(number, there);
+        let mut immovable = self.environment.immovable.iter();
+        let mut bodies = self.articulation.bodies.iter().enumerate();
+        immovable.any(|obstacle| are_near(obstacle.bounds(), &around))
+            || bodies.any(|(other, body)| {
+                let poses = if is_of(body, limb) { there } else { here };
+                self.self_collisions.can_meet(number, other)
+                    && are_near(&self.around(other, poses), &around)
+            })
     }
 
     /// The body of the robot that solids of an arm would run into.
-    fn own_body(&mut self, limb: LimbId, solids: &[(usize, Solid)]) -> Option<Owner> {
+    fn own_body(&self, limb: LimbId, solids: &[(usize, Solid)], here: &Poses) -> Option<Owner> {
         for (i, (a, solid)) in solids.iter().enumerate() {
             let met = solids[..i].iter().find(|(b, other)| {
                 self.self_collisions.can_meet(*a, *b) && solid.collides_with(other)
@@ -352,13 +393,15 @@ impl TickMotion<'_> {
                 return Some(other.owner);
             }
         }
-        let here = self.poses(&self.positions.clone());
         for (number, body) in self.articulation.bodies.iter().enumerate() {
-            if is_of(body, limb)
-                || !solids
-                    .iter()
-                    .any(|(a, _)| self.self_collisions.can_meet(*a, number))
-            {
+            if is_of(body, limb) {
+                continue;
+            }
+            let around = self.around(number, here);
+            let may_meet = |(a, solid): &(usize, Solid)| {
+                self.self_collisions.can_meet(*a, number) && are_near(solid.bounds(), &around)
+            };
+            if !solids.iter().any(may_meet) {
                 continue;
             }
             let pose = here.bodies[number];
@@ -374,11 +417,14 @@ impl TickMotion<'_> {
         None
     }
 
-    /// The boxes around the solids of an arm where it is now.
-    pub fn bounds(&mut self, limb: LimbId) -> Vec<Aabb> {
-        let here = self.positions.clone();
-        let solids = self.solids(limb, &here, &here);
-        solids.iter().map(|(_, solid)| *solid.bounds()).collect()
+    /// Whether a solid of an arm is near this box where it is now.
+    pub fn is_near(&mut self, limb: LimbId, bounds: &Aabb) -> bool {
+        let here = self.poses(&self.positions.clone());
+        let may_be_near = |number| are_near(&self.around(number, &here), bounds);
+        let solids = self.solids_of(limb, &here, &here, may_be_near);
+        solids
+            .iter()
+            .any(|(_, solid)| are_near(solid.bounds(), bounds))
     }
 }
 

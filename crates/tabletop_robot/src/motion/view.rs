@@ -3,17 +3,17 @@
 use std::collections::BTreeSet;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
-use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*};
+use bevy_rapier3d::prelude::*;
 use tabletop_core::{Held, LimbId, ObjectSpec, Obstacle, Pose, Robot, Table};
 use tabletop_physics::convex_parts;
 
 use crate::{
     articulation::{
-        link_entities::{LinkEntities, RobotBody, poses, positions},
+        link_entities::{LinkEntities, RobotBody, positions},
         self_collision::SelfCollisionMatrix,
-        tree::Articulation,
+        tree::{Articulation, Posture},
     },
-    clearance::{Owner, are_near},
+    clearance::Owner,
     command::joint_targets::JointTargets,
     gripper::grips::Grips,
     motion::{
@@ -40,16 +40,11 @@ impl RobotView<'_, '_> {
         robot: &Robot,
         grips: &Grips,
         rapier: &RapierContextMut,
+        posture: Posture,
     ) -> TickMotion<'a> {
-        let base = self.base();
         let positions = positions(robot);
-        let posture = self.articulation.posture(&positions);
         let held: BTreeSet<_> = grips.all().collect();
-        let near = reach(
-            poses(&self.articulation, &posture, base)
-                .into_iter()
-                .map(|pose| pose.location),
-        );
+        let near = reach(posture.bodies().iter().map(|pose| pose.location));
         let environment = Environment::new(rapier, &near, &self.bodies, &held, robot.is_shown);
         let limbs = self.articulation.layout.limb_ids();
         let carried = limbs.clone().map(|limb| {
@@ -71,7 +66,7 @@ impl RobotView<'_, '_> {
         TickMotion {
             articulation: &self.articulation,
             self_collisions: &self.self_collisions,
-            base,
+            base: posture.base(),
             environment,
             carried: carried.collect(),
             positions,
@@ -82,6 +77,19 @@ impl RobotView<'_, '_> {
             is_shown: robot.is_shown,
             asked: Vec::new(),
             scratch: posture,
+        }
+    }
+
+    /// Where the robot is, computed from where it was known to be, if it was.
+    pub fn posture(&self, robot: &Robot, known: Option<Posture>) -> Posture {
+        let (base, positions) = (self.base(), positions(robot));
+        let known = known.filter(|known| known.base() == base && !self.articulation.is_changed());
+        match known {
+            Some(mut posture) => {
+                self.articulation.update(&mut posture, &positions);
+                posture
+            }
+            None => self.articulation.posture(&positions, base),
         }
     }
 
@@ -104,10 +112,19 @@ impl RobotView<'_, '_> {
     }
 
     /// Where the bodies are after a motion, and what the grippers hold rigidly.
-    pub fn places(&self, motion: &TickMotion, robot: &Robot, grips: &Grips) -> Vec<(Entity, Pose)> {
-        let posture = self.articulation.posture(&motion.positions);
-        let poses = poses(&self.articulation, &posture, motion.base);
-        let bodies = self.parts.0.iter().copied().zip(poses);
+    pub fn places(
+        &self,
+        motion: &mut TickMotion,
+        robot: &Robot,
+        grips: &Grips,
+    ) -> Vec<(Entity, Pose)> {
+        let poses = motion.poses(&motion.positions.clone());
+        let bodies = self
+            .parts
+            .0
+            .iter()
+            .copied()
+            .zip(poses.bodies.iter().copied());
         let held = self.articulation.layout.limb_ids().flat_map(|limb| {
             let end_effector = robot.limb(limb).end_effector;
             let rigid = grips.of(limb).iter().filter(|grip| !grip.is_jointed);
@@ -131,35 +148,28 @@ impl RobotView<'_, '_> {
     }
 
     /// Writes what is known of the arms.
-    pub fn publish(&self, robot: &mut Robot, targets: &JointTargets, base: Pose) {
-        let posture = self.articulation.posture(&positions(robot));
+    pub fn publish(&self, robot: &mut Robot, targets: &JointTargets, posture: &Posture) {
         for limb in self.articulation.layout.limb_ids() {
             let state = &mut robot.limbs[limb.index()];
-            state.end_effector = self.articulation.end_effector(limb, &posture, base);
-            state.joint_origins = self.articulation.joint_origins(limb, &posture, base);
+            state.end_effector = posture.end_effectors()[limb.index()];
+            state.joint_origins.clear();
+            state
+                .joint_origins
+                .extend(self.articulation.joint_origins(limb, posture));
             state.is_moving = targets.is_under_way(&self.articulation.layout, limb);
         }
     }
 
     /// The sleeping objects that the arms may touch in this tick: Rapier lets things move into sleeping ones for a tick.
     pub fn near_arms(&self, motion: &mut TickMotion) -> Vec<Entity> {
-        let mut bounds: Vec<Aabb> = Vec::new();
-        if motion
-            .environment
-            .free
-            .iter()
-            .any(|thing| thing.is_sleeping)
-        {
-            for limb in self.articulation.layout.limb_ids() {
-                bounds.extend(motion.bounds(limb));
-            }
-        }
         let things = motion.environment.free.iter();
-        things
-            .filter(|thing| thing.is_sleeping)
-            .filter(|thing| bounds.iter().any(|bounds| are_near(bounds, &thing.bounds)))
-            .map(|thing| thing.object)
-            .collect()
+        let sleeping = things.filter(|thing| thing.is_sleeping);
+        let sleeping: Vec<_> = sleeping.map(|thing| (thing.object, thing.bounds)).collect();
+        let limbs = self.articulation.layout.limb_ids();
+        let near = sleeping
+            .into_iter()
+            .filter(|(_, bounds)| limbs.clone().any(|limb| motion.is_near(limb, bounds)));
+        near.map(|(object, _)| object).collect()
     }
 }
 
