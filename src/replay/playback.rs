@@ -8,8 +8,9 @@ use std::{
 use bevy::{app::FixedMain, ecs::system::SystemState, prelude::*};
 use tabletop_core::{
     Act, Actor, ClockCommand, HeadCamera, IssuedCommand, Manipulator, Markers, OpenRecording,
-    Paused, Playback, PlaybackOrder, Recording, Replaying, SceneCommand, SimCommand, SimFact,
-    SimTick, TICKS_PER_SECOND, Timeline, TimelineGrip, WriteCommand as _,
+    Paused, Playback, PlaybackOrder, Recording, Replaying, RestApp as _, RestingSystems,
+    SceneCommand, SimCommand, SimFact, SimTick, TICKS_PER_SECOND, Timeline, TimelineGrip,
+    WriteCommand as _,
 };
 use tabletop_history::{KeepRemoved, WorldSnapshot, drop_removed};
 use tabletop_recorder::set_earlier_commands;
@@ -42,8 +43,11 @@ impl Plugin for PlaybackPlugin {
             .add_systems(PostStartup, remember_beginning)
             .add_systems(
                 FixedLast,
-                (note_keyframe, note_grips).run_if(resource_exists::<Opened>),
+                (note_keyframe, note_grips)
+                    .in_set(RestingSystems)
+                    .run_if(resource_exists::<Opened>),
             )
+            .wake_while(resource_exists::<Opened>)
             .add_systems(
                 RunFixedMainLoop,
                 (note_task, open, make_way, obey, go_on)

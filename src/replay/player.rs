@@ -5,8 +5,8 @@ use std::sync::Arc;
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop_core::{
     Actor, Agent, ClockCommand, CommandSystems, CommandWriter, HandCommand, IssuedCommand, Paused,
-    RecordingCommand, Replaying, RobotCommand, ScriptEvent, SimCommand, SimFact, SimSystems,
-    SimTick, TickSystems,
+    RecordingCommand, Replaying, RestApp as _, RestingSystems, RobotCommand, ScriptEvent,
+    SimCommand, SimFact, SimSystems, SimTick, TickSystems,
 };
 use tabletop_recorder::{Session, SessionCommand};
 
@@ -96,6 +96,17 @@ impl Player {
         self.start
     }
 
+    /// How many ticks come before the next one in which it acts; `None` if it is over.
+    fn waits_for(&self, tick: SimTick) -> Option<u64> {
+        if self.pauses_late {
+            return Some(0);
+        }
+        let begins = (tick < self.start).then_some(self.start.0);
+        let next = self.commands.get(self.given).map(|next| next.tick);
+        let due = begins.into_iter().chain(next).min()?;
+        Some(due.saturating_sub(tick.0))
+    }
+
     /// The commands that are due. What was given in one tick at several moments of a pause is given at several moments. A pause that
     /// undo has brought into a tick whose commands were carried out before begins after them.
     fn due(&mut self, tick: SimTick) -> Vec<SessionCommand> {
@@ -157,8 +168,10 @@ pub(crate) fn plugin(app: &mut App) {
                 .before(SimSystems::Actuate),
         )
             .run_if(resource_exists::<Player>)
-            .in_set(TickSystems),
-    );
+            .in_set(TickSystems)
+            .in_set(RestingSystems),
+    )
+    .wake_after(|player: Option<Res<Player>>, tick: Res<SimTick>| player?.waits_for(*tick));
 }
 
 /// Begins a pause after the tick's commands were carried out.

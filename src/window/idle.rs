@@ -4,33 +4,59 @@ use std::time::Duration;
 
 use bevy::{
     prelude::*,
+    window::WindowEvent,
     winit::{UpdateMode, WinitSettings},
 };
-use tabletop_core::Paused;
+use tabletop_core::{Idle, Paused};
 
 use super::{opening::Opening, redraw::Redraw};
 
 /// How often a window in which nothing happens looks after what comes neither from mouse nor keys, such as a file that has changed.
 const IDLE: Duration = Duration::from_millis(250);
 
-/// For how long a paused window goes on as before after the last news.
+/// For how long a window in which nothing happens goes on as before after the last news.
 const LINGER: Duration = Duration::from_millis(500);
 
 pub(super) fn plugin(app: &mut App) {
     app.insert_resource(WinitSettings::continuous())
-        .add_systems(Last, rest_while_waiting);
+        .init_resource::<LastAct>()
+        .add_systems(Last, (note_acts, rest_while_waiting).chain());
 }
 
-/// A window that waits for the user costs next to nothing; keys and mouse still act at once.
+/// When the user has done something last, or something has moved.
+#[derive(Resource, Default)]
+struct LastAct(Duration);
+
+fn note_acts(
+    mut events: MessageReader<WindowEvent>,
+    redraw: Res<Redraw>,
+    idle: Res<Idle>,
+    time: Res<Time<Real>>,
+    mut last: ResMut<LastAct>,
+) {
+    let is_of_user = |event: &&WindowEvent| !matches!(event, WindowEvent::RequestRedraw(_));
+    let has_acted = events.read().filter(is_of_user).count() > 0;
+    last.0 = match has_acted || *idle == Idle(0) {
+        true => time.elapsed(),
+        false => last.0.max(redraw.moved_at()),
+    };
+}
+
+/// A window that waits for the user costs next to nothing; keys and mouse still act at once. While everything rests, panels may tell
+/// the time, which is no news.
 fn rest_while_waiting(
     paused: Res<Paused>,
     opening: Res<Opening>,
     redraw: Res<Redraw>,
+    last_act: Res<LastAct>,
     time: Res<Time<Real>>,
     mut settings: ResMut<WinitSettings>,
 ) {
+    let now = time.elapsed();
     let is_waiting = paused.0 || *opening != Opening::Done;
-    let mode = match is_waiting && redraw.idle_for(time.elapsed()) > LINGER {
+    let waits = is_waiting && redraw.idle_for(now) > LINGER;
+    let rests = now.saturating_sub(last_act.0) > LINGER;
+    let mode = match waits || rests {
         true => UpdateMode::reactive_low_power(IDLE),
         false => UpdateMode::Continuous,
     };
@@ -44,28 +70,45 @@ fn rest_while_waiting(
 
 #[cfg(test)]
 mod tests {
+    use bevy::window::WindowFocused;
+
     use super::*;
 
     const MS: Duration = Duration::from_millis(1);
 
     #[test]
-    fn a_pause_rests_when_nothing_has_been_new_for_a_while() {
+    fn a_window_rests_when_nothing_has_been_new_for_a_while() {
         let mut app = App::new();
         app.add_plugins(MinimalPlugins)
+            .add_message::<WindowEvent>()
+            .init_resource::<Idle>()
             .init_resource::<Paused>()
             .init_resource::<Redraw>()
             .insert_resource(Opening::Done)
             .insert_resource(bevy::time::TimeUpdateStrategy::ManualDuration(100 * MS))
             .add_plugins(plugin);
-        let mut modes = |paused| {
-            app.insert_resource(Paused(paused));
+        let mut mode = |paused, idle, is_touched| {
+            app.insert_resource(Paused(paused))
+                .insert_resource(Idle(idle));
             for _ in 0..10 {
+                if is_touched {
+                    let event = WindowFocused {
+                        window: Entity::PLACEHOLDER,
+                        focused: true,
+                    };
+                    app.world_mut().write_message(WindowEvent::from(event));
+                }
                 app.update();
             }
             app.world().resource::<WinitSettings>().focused_mode
         };
-        assert_eq!(modes(false), UpdateMode::Continuous);
-        assert_eq!(modes(true), UpdateMode::reactive_low_power(IDLE));
-        assert_eq!(modes(false), UpdateMode::Continuous);
+        let resting = UpdateMode::reactive_low_power(IDLE);
+        assert_eq!(mode(false, 0, false), UpdateMode::Continuous);
+        assert_eq!(mode(true, 0, false), resting);
+        assert_eq!(mode(false, 0, false), UpdateMode::Continuous);
+        assert_eq!(mode(false, 1000, false), resting);
+        assert_eq!(mode(false, 1000, true), UpdateMode::Continuous);
+        assert_eq!(mode(false, 1000, false), resting);
+        assert_eq!(mode(false, 0, false), UpdateMode::Continuous);
     }
 }

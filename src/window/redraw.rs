@@ -60,6 +60,11 @@ impl Redraw {
         now.saturating_sub(self.news_at)
     }
 
+    /// When something in the picture has moved last.
+    pub const fn moved_at(&self) -> Duration {
+        self.moved_at
+    }
+
     /// Decides about a frame: what there is to see, what has happened that cannot be seen in that, and when (since the start).
     fn decide(&mut self, sight: Appearance, events: [Option<RedrawCause>; 2], now: Duration) {
         self.frames = self.frames.saturating_add(1);

@@ -15,6 +15,7 @@ use tabletop::{
     recorder::{Durability, RecorderPlugin},
     replay::Replay,
     robot::RobotPlugin,
+    scenario::ScenarioPlugin,
 };
 
 /// A folder in memory, where there is one: for hundreds of recordings.
@@ -83,7 +84,7 @@ impl Demonstration {
             folder: folder.clone(),
             ..default()
         };
-        let mut app = headless_app_with(plugins.set(recorder));
+        let mut app = headless_app_with((plugins.set(recorder), ScenarioPlugin));
         app.insert_resource(HeadCamera {
             width: 40,
             height: 30,

@@ -117,15 +117,18 @@ impl StepApp for App {
 
     fn step(&mut self, ticks: u64) -> &mut Self {
         let world = self.world_mut();
-        for tick in 0..ticks {
-            if rest::has_come(world) {
-                let left = ticks - tick;
-                rest::pass_over(world, left);
-                (0..left.min(2)).for_each(|_| end_tick(world));
-                break;
+        let mut left = ticks;
+        while left > 0 {
+            let resting = rest::ticks_of_rest(world).min(left);
+            if resting > 0 && rest::holds_for_all_systems(world) {
+                rest::pass_over(world, resting);
+                (0..resting.min(2)).for_each(|_| end_tick(world));
+                left -= resting;
+            } else {
+                world.run_schedule(FixedMain);
+                end_tick(world);
+                left -= 1;
             }
-            world.run_schedule(FixedMain);
-            end_tick(world);
         }
         self
     }

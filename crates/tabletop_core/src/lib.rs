@@ -32,6 +32,7 @@ mod fastening;
 mod figure;
 mod hand;
 mod holder;
+mod idle;
 mod joint;
 mod jointed;
 mod keymap;
@@ -87,6 +88,7 @@ pub use fastening::Turn;
 pub use figure::{CarriesHeadCamera, Figure, Triangles};
 pub use hand::{Hand, Hands};
 pub use holder::{Held, Holder};
+pub use idle::Idle;
 pub use joint::{Joint, JointKind, JointSpec};
 pub use jointed::{JointMotion, JointedSpec};
 pub use keymap::{

@@ -4,7 +4,10 @@ use std::time::{Duration, Instant};
 
 use bevy::prelude::*;
 
-use crate::{Actor, ClockCommand, CommandWriter, OrderSystems, Paused, SimTick, TICK_SECONDS};
+use crate::{
+    Actor, ClockCommand, CommandWriter, OrderSystems, Paused, RestApp as _, RestingSystems,
+    SimTick, TICK_SECONDS, idle,
+};
 
 /// How long the ticks of a frame may take together, so that pictures keep coming whatever the pace.
 const LONGEST_TICKS: Duration = Duration::from_millis(50);
@@ -94,7 +97,11 @@ impl Plugin for PacePlugin {
         app.init_resource::<Pace>()
             .init_resource::<TickCost>()
             .add_message::<SingleStep>()
-            .add_systems(FixedUpdate, make_steps.in_set(OrderSystems::User))
+            .add_systems(
+                FixedUpdate,
+                make_steps.in_set(OrderSystems::User).in_set(RestingSystems),
+            )
+            .wake_while(|steps: Res<Messages<SingleStep>>| !steps.is_empty())
             .add_systems(
                 RunFixedMainLoop,
                 (
@@ -103,7 +110,8 @@ impl Plugin for PacePlugin {
                         .chain()
                         .in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
                 ),
-            );
+            )
+            .add_plugins(idle::plugin);
     }
 }
 

@@ -7,14 +7,14 @@ use bevy::{
         schedule::{
             BoxedCondition, InternedScheduleLabel, ScheduleError, SystemCondition, SystemKey,
         },
+        system::ReadOnlySystem,
     },
     platform::collections::HashMap,
     prelude::*,
 };
 
 use crate::{
-    Agent, Hands, IssuedCommand, Paused, PictureDemand, Recording, ScriptCommand, SimBlocked,
-    SimFact, SimTick,
+    Agent, Hands, IssuedCommand, Paused, PictureDemand, ScriptCommand, SimBlocked, SimFact, SimTick,
 };
 
 /// Systems that change nothing in a tick that begins at rest: when no [wake source](RestApp::wake_while) is awake. While all systems of
@@ -24,13 +24,19 @@ use crate::{
 pub struct RestingSystems;
 
 /// Ticks at rest that are made before the first one is passed over: engines tidy up after the last thing has stopped.
-const SETTLING_TICKS: u32 = 16;
+const SETTLING_TICKS: u64 = 16;
 
 /// Says when something can change.
 pub trait RestApp {
     /// Makes every tick before which this condition holds: something can change in it. Time alone must not make it hold, as
     /// nobody asks while time is passed over.
     fn wake_while<M>(&mut self, is_awake: impl SystemCondition<M>) -> &mut Self;
+
+    /// Makes a tick although the world rests: the one before which this number is 0, and which so many ticks come before. `None` if time
+    /// can go by without end.
+    fn wake_after<M, S>(&mut self, ticks: S) -> &mut Self
+    where
+        S: IntoSystem<(), Option<u64>, M, System: ReadOnlySystem>;
 
     /// Does this for ticks that are passed over, of which it is told the number.
     fn at_rest(&mut self, upkeep: Upkeep) -> &mut Self;
@@ -49,6 +55,17 @@ impl RestApp for App {
         self
     }
 
+    fn wake_after<M, S>(&mut self, ticks: S) -> &mut Self
+    where
+        S: IntoSystem<(), Option<u64>, M, System: ReadOnlySystem>,
+    {
+        let mut alarm: Alarm = Box::new(IntoSystem::into_system(ticks));
+        let world = self.world_mut();
+        alarm.initialize(world);
+        world.get_resource_or_init::<Rest>().alarms.push(alarm);
+        self
+    }
+
     fn at_rest(&mut self, upkeep: Upkeep) -> &mut Self {
         let mut rest = self.world_mut().get_resource_or_init::<Rest>();
         rest.upkeep.push(upkeep);
@@ -56,16 +73,22 @@ impl RestApp for App {
     }
 }
 
+/// For how many ticks the world may rest.
+type Alarm = Box<dyn ReadOnlySystem<In = (), Out = Option<u64>>>;
+
 /// Whether the world is at rest, and since when.
 #[derive(Resource, Default)]
 pub(crate) struct Rest {
     wake_sources: Vec<BoxedCondition>,
+    alarms: Vec<Alarm>,
     upkeep: Vec<Upkeep>,
-    /// How many ticks have begun at rest, one after the other.
-    quiet_ticks: u32,
-    /// Which schedules hold none but [`RestingSystems`], with the sizes that they had then.
-    resting: HashMap<InternedScheduleLabel, (Sizes, bool)>,
+    /// The first of the ticks, one after the other, before which nothing was awake.
+    quiet_since: Option<u64>,
+    resting: Known,
 }
+
+/// Which schedules hold none but [`RestingSystems`], with the sizes that they had then.
+type Known = HashMap<InternedScheduleLabel, (Sizes, bool)>;
 
 /// How many systems a schedule has, and how many of them are [`RestingSystems`].
 type Sizes = (usize, usize);
@@ -87,30 +110,32 @@ fn is_told_something(
 fn is_used(
     paused: Res<Paused>,
     blocked: Res<SimBlocked>,
-    recording: Res<Recording>,
     agent: Res<Agent>,
     hands: Res<Hands>,
     demand: Option<Res<PictureDemand>>,
 ) -> bool {
     let is_asked = demand.is_some_and(|demand| demand.is_asked());
-    paused.0 || blocked.0 || recording.0 || agent.is_on() || hands.hold_something() || is_asked
+    paused.0 || blocked.0 || agent.is_on() || hands.hold_something() || is_asked
 }
 
-/// Whether nothing can change in the tick that begins, nor in any after it, unless the world is changed from outside.
-pub(crate) fn has_come(world: &mut World) -> bool {
+/// For how many ticks, from the one that begins on, nothing can change unless the world is changed from outside. No system of another's
+/// is asked.
+pub(crate) fn ticks_of_rest(world: &mut World) -> u64 {
     let Some(mut rest) = world.get_resource_mut::<Rest>() else {
-        return false;
+        return 0;
     };
     let mut rest = std::mem::take(&mut *rest);
-    // What cannot be asked is awake.
-    let is_awake = |source: &mut BoxedCondition| source.run_readonly((), world).unwrap_or(true);
-    rest.quiet_ticks = match rest.wake_sources.iter_mut().any(is_awake) {
-        true => 0,
-        false => rest.quiet_ticks.saturating_add(1),
-    };
-    let has_come = rest.quiet_ticks > SETTLING_TICKS && rest.holds_for_all_systems(world);
+    let ticks = rest.ticks(world);
     *world.resource_mut::<Rest>() = rest;
-    has_come
+    ticks
+}
+
+/// Whether each tick at rest may be passed over: there are none but [`RestingSystems`].
+pub(crate) fn holds_for_all_systems(world: &mut World) -> bool {
+    let mut known = std::mem::take(&mut world.resource_mut::<Rest>().resting);
+    let holds = hold_for_all_systems(&mut known, world);
+    world.resource_mut::<Rest>().resting = known;
+    holds
 }
 
 /// Lets the time of so many ticks go by.
@@ -125,33 +150,50 @@ pub(crate) fn pass_over(world: &mut World, ticks: u64) {
 }
 
 impl Rest {
-    fn holds_for_all_systems(&mut self, world: &World) -> bool {
-        let (Some(order), Some(schedules)) = (
-            world.get_resource::<FixedMainScheduleOrder>(),
-            world.get_resource::<Schedules>(),
-        ) else {
-            return false;
-        };
-        order.labels.iter().all(|&label| {
-            let schedule = schedules.get(label);
-            schedule.is_none_or(|schedule| self.holds_for(label, schedule))
-        })
+    fn ticks(&mut self, world: &World) -> u64 {
+        // What cannot be asked is awake.
+        let is_awake = |source: &mut BoxedCondition| source.run_readonly((), world).unwrap_or(true);
+        let tick = world.resource::<SimTick>().0;
+        if self.wake_sources.iter_mut().any(is_awake) {
+            self.quiet_since = None;
+            return 0;
+        }
+        let since = *self.quiet_since.get_or_insert(tick);
+        if tick.saturating_sub(since) < SETTLING_TICKS {
+            return 0;
+        }
+        let until = |alarm: &mut Alarm| alarm.run_readonly((), world).unwrap_or(Some(0));
+        let alarms = self.alarms.iter_mut().filter_map(until);
+        alarms.min().unwrap_or(u64::MAX)
     }
+}
 
-    fn holds_for(&mut self, label: InternedScheduleLabel, schedule: &Schedule) -> bool {
-        let resting = match schedule.graph().systems_in_set(RestingSystems.intern()) {
-            Ok(resting) => resting.len(),
-            Err(ScheduleError::SetNotFound) => 0,
-            Err(_) => return false, // Systems were added, and have not run yet.
-        };
-        let sizes = (schedule.systems_len(), resting);
-        match self.resting.get(&label) {
-            Some(&(known, rests)) if known == sizes => rests,
-            Some(_) | None => {
-                let rests = holds_resting_systems_only(schedule);
-                self.resting.insert(label, (sizes, rests));
-                rests
-            }
+fn hold_for_all_systems(known: &mut Known, world: &World) -> bool {
+    let (Some(order), Some(schedules)) = (
+        world.get_resource::<FixedMainScheduleOrder>(),
+        world.get_resource::<Schedules>(),
+    ) else {
+        return false;
+    };
+    order.labels.iter().all(|&label| {
+        let schedule = schedules.get(label);
+        schedule.is_none_or(|schedule| holds_for(known, label, schedule))
+    })
+}
+
+fn holds_for(known: &mut Known, label: InternedScheduleLabel, schedule: &Schedule) -> bool {
+    let resting = match schedule.graph().systems_in_set(RestingSystems.intern()) {
+        Ok(resting) => resting.len(),
+        Err(ScheduleError::SetNotFound) => 0,
+        Err(_) => return false, // Systems were added, and have not run yet.
+    };
+    let sizes = (schedule.systems_len(), resting);
+    match known.get(&label) {
+        Some(&(known, rests)) if known == sizes => rests,
+        Some(_) | None => {
+            let rests = holds_resting_systems_only(schedule);
+            known.insert(label, (sizes, rests));
+            rests
         }
     }
 }
@@ -180,7 +222,7 @@ mod tests {
     use crate::{CorePlugin, SceneCommand, StepApp as _, WriteCommand as _};
 
     #[derive(Resource, Default)]
-    struct Ticks(u32);
+    struct Ticks(u64);
 
     fn count(mut ticks: ResMut<Ticks>) {
         ticks.0 += 1;
@@ -195,7 +237,7 @@ mod tests {
         app
     }
 
-    fn ticks_made(app: &mut App, ticks: u64) -> u32 {
+    fn ticks_made(app: &mut App, ticks: u64) -> u64 {
         let before = app.world().resource::<Ticks>().0;
         app.step(ticks);
         app.world().resource::<Ticks>().0 - before
@@ -227,6 +269,17 @@ mod tests {
         for (ticks, made) in [(50, SETTLING_TICKS), (1, 1), (9, 9), (40, SETTLING_TICKS)] {
             assert_eq!(ticks_made(&mut app, ticks), made);
         }
+    }
+
+    #[test]
+    fn a_tick_that_is_due_is_made_and_those_before_and_after_it_are_not() {
+        let mut app = app();
+        app.wake_after(|tick: Res<SimTick>| 50u64.checked_sub(tick.0))
+            .start();
+        assert_eq!(ticks_made(&mut app, 1000), SETTLING_TICKS + 1);
+        assert_eq!(app.world().resource::<SimTick>().0, 1000);
+        app.wake_after(|tick: Res<SimTick>| Some((tick.0 / 10 + 1) * 10 - tick.0 - 1));
+        assert_eq!(ticks_made(&mut app, 105), 10);
     }
 
     #[test]

@@ -110,10 +110,10 @@ impl Plugin for RobotPlugin {
     }
 }
 
-/// Whether the robot can move or touch anything.
+/// Whether the robot moves, or pulls at anything.
 fn can_move(robot: Res<Robot>, targets: Res<JointTargets>, grips: Res<Grips>) -> bool {
     let is_dynamic = robot.mode == RobotMode::Dynamic;
-    robot.is_shown || is_dynamic || targets.are_given() || grips.all().next().is_some()
+    is_dynamic || robot.is_changed() || targets.are_given() || grips.all().next().is_some()
 }
 
 /// Lets the head camera turn with the neck.

@@ -171,6 +171,48 @@ impl StepState {
         }
     }
 
+    /// Lets so many ticks of a step go by in which nothing changes.
+    pub(crate) fn pass_over(&mut self, ticks: u64) {
+        self.stillness.pass_over(ticks);
+        if self.robot_still > 0 {
+            self.robot_still += ticks;
+        }
+        self.ticks += ticks;
+    }
+
+    /// How many ticks are left of a step that does nothing but wait.
+    pub(crate) fn left_of_wait(&self, step: &Step) -> u64 {
+        match step {
+            Step::With(_, step) => self.left_of_wait(step),
+            Step::Wait(seconds) => ticks(*seconds).saturating_sub(self.ticks),
+            Step::Load { .. }
+            | Step::Clear
+            | Step::Make(_)
+            | Step::Select(_)
+            | Step::Grasp(_)
+            | Step::MoveTo(_)
+            | Step::MoveBy(_)
+            | Step::Turn { .. }
+            | Step::Glide { .. }
+            | Step::Release
+            | Step::Destroy
+            | Step::Trigger(_)
+            | Step::TriggerPart(..)
+            | Step::PointTo(_)
+            | Step::Fasten(_)
+            | Step::Loosen(_)
+            | Step::Start
+            | Step::Finish
+            | Step::Undo
+            | Step::Redo
+            | Step::Pause(_)
+            | Step::Robot(_)
+            | Step::WaitUntilRest(_)
+            | Step::WaitUntilThere(_)
+            | Step::Expect(_) => 0,
+        }
+    }
+
     fn wait_while(
         &self,
         moving: Option<&str>,

@@ -79,8 +79,16 @@ impl Plugin for ScenarioPlugin {
                 .in_set(RestingSystems)
                 .run_if(resource_exists::<ScenarioRun>),
         )
-        .wake_while(resource_exists::<ScenarioRun>);
+        .wake_after(|run: Option<Res<ScenarioRun>>| run.and_then(|run| run.waits_for()))
+        .at_rest(pass_over);
     }
+}
+
+fn pass_over(world: &mut World, ticks: u64) -> Result {
+    if let Some(mut run) = world.get_resource_mut::<ScenarioRun>() {
+        run.pass_over(ticks);
+    }
+    Ok(())
 }
 
 fn take_due_steps(

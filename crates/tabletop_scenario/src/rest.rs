@@ -39,7 +39,7 @@ impl Stillness {
             .map(|object| {
                 let stay = match before.get(&object.entity) {
                     Some(stay) if is_near(stay.at, object.pose) => Stay {
-                        ticks: stay.ticks + 1,
+                        ticks: stay.ticks.saturating_add(1),
                         ..*stay
                     },
                     _ => Stay {
@@ -50,6 +50,14 @@ impl Stillness {
                 (object.entity, stay)
             })
             .collect();
+    }
+
+    /// Lets so many ticks go by in which nothing moves.
+    pub fn pass_over(&mut self, ticks: u64) {
+        let ticks = u32::try_from(ticks).unwrap_or(u32::MAX);
+        for stay in self.0.values_mut() {
+            stay.ticks = stay.ticks.saturating_add(ticks);
+        }
     }
 
     pub fn is_at_rest(&self, object: &SeenObject) -> bool {

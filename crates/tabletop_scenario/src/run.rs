@@ -117,6 +117,32 @@ impl ScenarioRun {
         }
     }
 
+    /// For how many ticks it waits, whatever comes of them; `None` if it has ended.
+    pub(crate) fn waits_for(&self) -> Option<u64> {
+        if self.outcome != Outcome::Running {
+            return None;
+        }
+        let step = self.program.steps.get(self.next);
+        let waits = step.map_or(0, |step| match &step.action {
+            ProgramAction::Do(step) => self.state.left_of_wait(step),
+            ProgramAction::SetScene(_) => 0,
+        });
+        let left = self.program.limit.saturating_sub(self.ticks);
+        Some(match self.commanded {
+            Some(_) => 0,
+            None => waits.min(left),
+        })
+    }
+
+    /// Lets so many ticks go by of those that it [waits for](Self::waits_for), in which nothing changes.
+    pub(crate) fn pass_over(&mut self, ticks: u64) {
+        if self.outcome != Outcome::Running {
+            return;
+        }
+        self.state.pass_over(ticks);
+        self.ticks += ticks;
+    }
+
     fn go_on(&mut self) {
         self.next += 1;
         self.state.begin_next();

@@ -2,7 +2,7 @@
 //! bodies, which the view never touches.
 
 use bevy::{ecs::entity::EntityHashMap, platform::collections::HashMap, prelude::*, time::Fixed};
-use tabletop_core::{Figure, ObjectSpec, Primitive, Rgb, Solid, Table};
+use tabletop_core::{Figure, ObjectSpec, Primitive, RestingSystems, Rgb, Solid, Table};
 
 use crate::{mesh, motion::BodyMotion, surface::Surface};
 
@@ -44,7 +44,7 @@ struct Looks {
 pub(crate) fn plugin(app: &mut App) {
     app.init_resource::<Visuals>()
         .init_resource::<Looks>()
-        .add_systems(FixedPostUpdate, note_moves)
+        .add_systems(FixedPostUpdate, note_moves.in_set(RestingSystems))
         .add_systems(
             RunFixedMainLoop,
             (drop_pictures, make_pictures, follow_bodies)

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use tabletop_core::{
     Actor, CommandWriter, Drive, JointId, JointName, MANUAL_SPEED, OrderSystems, Paused,
-    RobotCommand, RobotLayout, SimSystems,
+    RestApp as _, RestingSystems, RobotCommand, RobotLayout, SimSystems,
 };
 
 /// The directions in which the joints are to go: 1 and -1 are the directions of manual control, 0 is to stay.
@@ -110,15 +110,18 @@ impl Jog {
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Jog>().add_systems(
-        FixedUpdate,
-        (
-            give_orders
-                .in_set(OrderSystems::User)
-                .run_if(not(Paused::will_be)),
-            forget_struck.in_set(SimSystems::Load),
-        ),
-    );
+    app.init_resource::<Jog>()
+        .add_systems(
+            FixedUpdate,
+            (
+                give_orders
+                    .in_set(OrderSystems::User)
+                    .run_if(not(Paused::will_be)),
+                forget_struck.in_set(SimSystems::Load),
+            )
+                .in_set(RestingSystems),
+        )
+        .wake_while(|jog: Res<Jog>| !jog.keys.are_idle() || !jog.buttons.are_idle());
 }
 
 fn give_orders(jog: Res<Jog>, layout: Res<RobotLayout>, mut commands: CommandWriter) {

@@ -12,7 +12,10 @@ use bevy::{
     tasks::{IoTaskPool, Task, TaskPool, futures::check_ready},
 };
 use jiff::Timestamp;
-use tabletop_core::{OrderSystems, Picture, PictureDemand, SensorImage, SimSystems, SimTick};
+use tabletop_core::{
+    OrderSystems, Picture, PictureDemand, RestApp as _, RestingSystems, SensorImage, SimSystems,
+    SimTick,
+};
 
 use crate::panels::messages::{Notices, Tone};
 
@@ -48,9 +51,15 @@ pub(crate) fn plugin(app: &mut App) {
                 ask_for_picture.in_set(OrderSystems::User),
                 begin_writing.in_set(SimSystems::Record),
             )
-                .run_if(|snapshots: Res<Snapshots>| snapshots.are_wanted()),
+                .in_set(RestingSystems)
+                .run_if(any_is_wanted),
         )
+        .wake_while(any_is_wanted)
         .add_systems(Update, tell);
+}
+
+fn any_is_wanted(snapshots: Res<Snapshots>) -> bool {
+    snapshots.are_wanted()
 }
 
 fn ask_for_picture(demand: Res<PictureDemand>) {

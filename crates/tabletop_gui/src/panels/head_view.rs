@@ -5,7 +5,9 @@ use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{self, Color32, ColorImage, Rect, TextureHandle, TextureOptions, Vec2},
 };
-use tabletop_core::{HeadCamera, OrderSystems, Picture, PictureDemand, SensorImage};
+use tabletop_core::{
+    HeadCamera, OrderSystems, Picture, PictureDemand, RestingSystems, SensorImage,
+};
 
 use crate::panels::bar;
 
@@ -44,6 +46,7 @@ pub(crate) fn plugin(app: &mut App) {
             FixedUpdate,
             ask_for_picture
                 .in_set(OrderSystems::User)
+                .in_set(RestingSystems)
                 .run_if(HeadView::is_on.and_then(is_last_tick_of_frame)),
         )
         .add_systems(EguiPrimaryContextPass, show_inset);

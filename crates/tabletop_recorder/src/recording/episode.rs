@@ -129,6 +129,11 @@ impl Episode {
         self.clock.is_frame(tick)
     }
 
+    /// How many ticks come before a frame, from this one on.
+    pub(crate) fn ticks_to_frame(&self, tick: SimTick) -> u64 {
+        self.clock.tick(self.clock.frame(tick)).0 - tick.0
+    }
+
     /// Logs the commands of a tick, in the order in which they are carried out, before they are. If they turn the clock, those after
     /// that belong to another tick, and are logged when it is reached.
     pub(crate) fn log_commands(

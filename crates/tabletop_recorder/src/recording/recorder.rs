@@ -137,9 +137,23 @@ pub(crate) fn take_commands(
     }
 }
 
-/// True if a tick leaves anything in a recording.
-pub(crate) fn is_recording(recorder: Res<Recorder>) -> bool {
-    recorder.episode.is_some()
+/// How many ticks come before the next frame, if something is recorded: of a world at rest, the others leave nothing in a recording.
+pub(crate) fn ticks_to_frame(recorder: Res<Recorder>, tick: Res<SimTick>) -> Option<u64> {
+    let episode = recorder.episode.as_ref()?;
+    Some(match recorder.finish {
+        Some(_) => 0,
+        None => episode.ticks_to_frame(*tick),
+    })
+}
+
+/// Lets so many ticks go by that leave nothing in a recording.
+pub(crate) fn pass_over(world: &mut World, ticks: u64) -> Result {
+    let is_recording = (world.get_resource::<Recorder>()).is_some_and(|it| it.episode.is_some());
+    if is_recording {
+        let next = world.resource::<SimTick>().0 + ticks;
+        world.resource_mut::<Timeline>().end = SimTick(next - 1);
+    }
+    Ok(())
 }
 
 /// Asks for a picture of a tick that is a frame.

@@ -13,7 +13,9 @@ use crate::{
         channels::Channels, destination::Destination, durability::Durability,
         session::SessionSettings, storage::Storage,
     },
-    recording::recorder::{Recorder, ask_for_picture, is_recording, record, take_commands},
+    recording::recorder::{
+        Recorder, ask_for_picture, pass_over, record, take_commands, ticks_to_frame,
+    },
 };
 
 /// Records the simulation into a folder from [`Start`] to [`Finish`], both ticks included.
@@ -73,6 +75,7 @@ impl Plugin for RecorderPlugin {
             )
                 .in_set(RestingSystems),
         )
-        .wake_while(is_recording);
+        .wake_after(ticks_to_frame)
+        .at_rest(pass_over);
     }
 }

@@ -3,7 +3,8 @@
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
     Action, Actor, ClockCommand, CommandWriter, HistoryCommand, KeySystems, OpenRecording,
-    OrderSystems, Pace, PlaybackOrder, Recording, SingleStep, was_struck,
+    OrderSystems, Pace, PlaybackOrder, Recording, RestApp as _, RestingSystems, SingleStep,
+    was_struck,
 };
 
 use super::model::Request;
@@ -15,9 +16,11 @@ pub(super) fn plugin(app: &mut App) {
         .add_systems(
             FixedUpdate,
             undo_one
-                .run_if(|undos: Res<PendingUndos>| undos.0 > 0)
-                .in_set(OrderSystems::User),
+                .run_if(PendingUndos::are_left)
+                .in_set(OrderSystems::User)
+                .in_set(RestingSystems),
         )
+        .wake_while(PendingUndos::are_left)
         .add_systems(
             RunFixedMainLoop,
             (
@@ -32,6 +35,12 @@ pub(super) fn plugin(app: &mut App) {
 /// The number of segments that are still to be undone.
 #[derive(Resource, Debug, Default)]
 pub(super) struct PendingUndos(usize);
+
+impl PendingUndos {
+    fn are_left(undos: Res<Self>) -> bool {
+        undos.0 > 0
+    }
+}
 
 /// The resources that requests change.
 #[derive(SystemParam)]

@@ -1,0 +1,88 @@
+//! A window in which nothing happens but what the user does.
+
+use bevy::prelude::*;
+
+use crate::{RestingSystems, rest};
+
+/// For how many ticks nothing can happen in the world unless the user does something: 0 while something moves.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Idle(pub u64);
+
+pub(crate) fn plugin(app: &mut App) {
+    app.init_resource::<Idle>()
+        .add_systems(FixedFirst, catch_up.in_set(RestingSystems))
+        .add_systems(Last, look_for_rest);
+}
+
+fn look_for_rest(world: &mut World) {
+    let may_pass_over = rest::holds_for_all_systems(world);
+    let ticks = rest::ticks_of_rest(world);
+    let idle = Idle(if may_pass_over { ticks } else { 0 });
+    world.resource_mut::<Idle>().set_if_neq(idle);
+}
+
+/// Passes over the ticks of a frame in which nothing could happen, but for the last one: frames may be far apart then, and what
+/// the user does now is done in one tick as in any other frame.
+fn catch_up(world: &mut World) {
+    let Idle(most) = std::mem::take(&mut *world.resource_mut::<Idle>());
+    let time = world.resource::<Time<Fixed>>();
+    let waiting = time.overstep().as_nanos() / time.timestep().as_nanos();
+    let ticks = most.min(u64::try_from(waiting).unwrap_or(u64::MAX));
+    if ticks == 0 {
+        return;
+    }
+    rest::pass_over(world, ticks);
+    let mut time = world.resource_mut::<Time<Fixed>>();
+    let passed = time.timestep() * u32::try_from(ticks).unwrap_or(u32::MAX);
+    time.discard_overstep(passed);
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use bevy::time::TimeUpdateStrategy;
+
+    use super::*;
+    use crate::{CorePlugin, PacePlugin, SceneCommand, SimTick, WriteCommand as _};
+
+    #[derive(Resource, Default)]
+    struct Made(Vec<u64>);
+
+    /// An app whose frames are a tenth of a second apart.
+    fn app() -> App {
+        let mut app = App::new();
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), PacePlugin))
+            .init_resource::<Made>()
+            .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(
+                100,
+            )))
+            .add_systems(
+                FixedUpdate,
+                (|mut made: ResMut<Made>, tick: Res<SimTick>| made.0.push(tick.0))
+                    .in_set(RestingSystems),
+            );
+        app
+    }
+
+    fn made(app: &mut App, frames: usize) -> Vec<u64> {
+        (0..frames).for_each(|_| app.update());
+        std::mem::take(&mut app.world_mut().resource_mut::<Made>().0)
+    }
+
+    #[test]
+    fn a_frame_of_an_idle_world_makes_its_last_tick() {
+        let mut app = app();
+        app.finish();
+        app.cleanup();
+        let settling = made(&mut app, 11);
+        assert_eq!(settling[..12], (0..12).collect::<Vec<_>>());
+        let last = made(&mut app, 10);
+        assert_eq!(last.len(), 10);
+        assert_eq!(last[9] - last[0], 54, "of six ticks a frame");
+        app.world_mut().write_command(SceneCommand::Clear);
+        made(&mut app, 1);
+        assert_eq!(*app.world().resource::<Idle>(), Idle(0));
+        assert_eq!(made(&mut app, 1).len(), 6);
+    }
+}
