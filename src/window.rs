@@ -9,6 +9,7 @@ mod opening;
 mod redraw;
 mod replay;
 mod screenshot;
+mod task;
 
 pub use display::DisplayOptions;
 pub use no_window::NoWindow;
@@ -137,6 +138,7 @@ fn build(options: WindowOptions) -> App {
         opening::plugin,
         redraw::plugin,
         replay::plugin,
+        task::plugin,
     ))
     .insert_resource(preferences)
     .insert_resource(PresetSeeds::new(options.seed))

@@ -63,6 +63,7 @@ mod scene;
 mod sensor;
 mod shape;
 mod shipped;
+mod shown_task;
 mod tick;
 mod timeline;
 mod turn;
@@ -122,6 +123,9 @@ pub use scene::{ChainSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
 pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage};
 pub use shape::{Part, Primitive, Shape, Solid};
 pub use shipped::{ShippedFile, ShippedFiles, is_shipped, seen_from};
+pub use shown_task::{
+    Ghost, Ghosts, Imitating, Required, ShownProperty, ShownRole, ShownStep, ShownTask, TaskOrder,
+};
 pub use tick::{SimTick, TICK_SECONDS, TICKS_PER_SECOND};
 pub use timeline::{
     Act, Manipulator, Timeline, TimelineGrip, TimelinePicture, TimelineSegment, TimelineStage, Verb,
@@ -165,14 +169,17 @@ impl Plugin for CorePlugin {
             .add_message::<OpenRecording>()
             .add_message::<CameraMotion>()
             .add_message::<PlaybackOrder>()
+            .add_message::<TaskOrder>()
             .init_resource::<Agent>()
             .init_resource::<Bonds>()
             .init_resource::<Cause>()
             .init_resource::<command::NextCommandId>()
             .init_resource::<SimBlocked>()
             .init_resource::<DragPlane>()
+            .init_resource::<Ghosts>()
             .init_resource::<Hands>()
             .init_resource::<History>()
+            .init_resource::<Imitating>()
             .init_resource::<KeyLetters>()
             .init_resource::<KeyboardFocus>()
             .init_resource::<Keymap>()
@@ -182,6 +189,7 @@ impl Plugin for CorePlugin {
             .init_resource::<Replaying>()
             .init_resource::<Robot>()
             .init_resource::<RobotLayout>()
+            .init_resource::<ShownTask>()
             .init_resource::<Steering>()
             .init_resource::<ObjectIndex>()
             .init_resource::<Timeline>()

@@ -120,6 +120,7 @@ fn add_parts(app: &mut App) {
         panels::browser::plugin,
         input::mechanism_keys::plugin,
         panels::context_menu::plugin,
+        panels::caption::plugin,
     ));
 }
 

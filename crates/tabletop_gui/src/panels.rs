@@ -4,6 +4,7 @@ pub(crate) mod arrangement;
 pub(crate) mod bar;
 pub(crate) mod browser;
 pub(crate) mod camera;
+pub(crate) mod caption;
 pub(crate) mod context_menu;
 pub(crate) mod demo_tools;
 pub(crate) mod display;

@@ -21,6 +21,7 @@
 
 mod aids;
 mod camera;
+mod ghosts;
 mod held;
 mod markers;
 mod mesh;
@@ -55,6 +56,7 @@ impl Plugin for ViewPlugin {
             surface::plugin,
             visual::plugin,
             markers::plugin,
+            ghosts::plugin,
             camera::plugin,
             sheet::plugin,
             aids::plugin,

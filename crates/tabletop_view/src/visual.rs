@@ -34,7 +34,7 @@ impl Visuals {
 
 /// Meshes and materials that pictures share.
 #[derive(Resource)]
-struct Looks {
+pub(crate) struct Looks {
     cuboid: Handle<Mesh>,
     cylinder: Handle<Mesh>,
     ball: Handle<Mesh>,
@@ -164,7 +164,7 @@ impl Looks {
         )
     }
 
-    fn mesh(&self, solid: Solid) -> Handle<Mesh> {
+    pub(crate) fn mesh(&self, solid: Solid) -> Handle<Mesh> {
         match solid {
             Solid::Cuboid(_) => self.cuboid.clone(),
             Solid::Cylinder { .. } => self.cylinder.clone(),

@@ -85,6 +85,8 @@ pub enum Action {
     ShowNextFace,
     /// Start, stop the script that drives the robot (report section 5.2).
     RunScript,
+    /// Let the robot do what was shown, or stop.
+    Imitate,
     /// Move a joint of the robot while held down (report section 5.1).
     Move(JointName, Way),
     /// Show, hide what the keys do.

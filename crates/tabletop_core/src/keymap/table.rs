@@ -158,6 +158,7 @@ fn plain_rows() -> Vec<ActionRow> {
         row(Action::SaveHeadView, Robot, "Save the head view", "Saves what the robot sees as a picture", vec![plain(Digit2)]),
         row(Action::ShowNextFace, Robot, "Next face", "Shows the robot's next face", vec![plain(Backslash)]),
         row(Action::RunScript, Robot, "Script on, off", "Starts the script that drives the robot, or stops it", vec![plain(KeyM)]),
+        row(Action::Imitate, Robot, "Do what was shown", "Lets the robot do what the recording shows, or stops it", vec![ctrl(Enter)]),
 
         row(Action::ShowHelp, Window, "Help", "Shows or hides what the keys do", vec![plain(F1), shift(Slash)]),
         row(Action::FillScreen, Window, "Full screen", "Fills the screen with the window, or no longer", vec![plain(F11)]),

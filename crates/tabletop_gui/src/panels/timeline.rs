@@ -2,9 +2,11 @@
 
 mod axis;
 mod film;
+mod lesson;
 mod model;
 mod orders;
 mod pictures;
+mod sentences;
 mod track;
 mod transport;
 
@@ -13,7 +15,9 @@ use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{self, Ui},
 };
-use tabletop_core::{History, Keymap, Paused, Playback, SimTick, Timeline, TimelineStage};
+use tabletop_core::{
+    History, Imitating, Keymap, Paused, Playback, ShownTask, SimTick, Timeline, TimelineStage,
+};
 
 use self::{
     axis::TimeAxis,
@@ -49,6 +53,7 @@ pub(crate) fn show(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> 
     if model.timeline.stage == TimelineStage::Absent {
         view.looked_at = None;
         ui.label(ABSENT);
+        requests.extend(lesson::show(ui, model));
         return requests;
     }
     let (rect, _) = ui.allocate_exact_size(
@@ -57,6 +62,7 @@ pub(crate) fn show(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> 
     );
     let axis = TimeAxis::new(model.timeline, rect.x_range());
     let mut moments = track::show(ui, model, axis, rect);
+    moments.extend(sentences::show(ui, model, axis));
     moments.extend(film::show(ui, model, axis, &mut view.pictures));
     let mut dragged_to = None;
     for moment in moments {
@@ -74,6 +80,7 @@ pub(crate) fn show(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> 
         view.looked_at = None;
     }
     requests.extend(show_segment(ui, model, view));
+    requests.extend(lesson::show(ui, model));
     requests
 }
 
@@ -162,6 +169,8 @@ struct Source<'w> {
     paused: Res<'w, Paused>,
     history: Res<'w, History>,
     keymap: Res<'w, Keymap>,
+    task: Res<'w, ShownTask>,
+    imitating: Res<'w, Imitating>,
 }
 
 fn show_panel(
@@ -182,6 +191,8 @@ fn show_panel(
         pace: orders.pace(),
         history: *source.history,
         keymap: &source.keymap,
+        task: &source.task,
+        imitating: &source.imitating,
     };
     let mut requests = Vec::new();
     Panel::Timeline.show(context, &mut panels, |ui| {

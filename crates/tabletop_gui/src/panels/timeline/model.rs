@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use tabletop_core::{
-    History, Keymap, Pace, Playback, SimTick, Timeline, TimelineSegment, TimelineStage,
+    History, Imitating, Keymap, Pace, Playback, ShownStep, ShownTask, SimTick, TaskOrder, Timeline,
+    TimelineSegment, TimelineStage,
 };
 
 use super::axis::seconds;
@@ -19,6 +20,9 @@ pub(crate) struct Model<'a> {
     pub pace: Pace,
     pub history: History,
     pub keymap: &'a Keymap,
+    /// What the recording shows.
+    pub task: &'a ShownTask,
+    pub imitating: &'a Imitating,
 }
 
 /// A wish of the user.
@@ -39,11 +43,24 @@ pub(crate) enum Request {
     Redo,
     Open(PathBuf),
     Close,
+    Task(TaskOrder),
 }
 
 impl Model<'_> {
     pub fn is_open(&self) -> bool {
         self.timeline.stage == TimelineStage::Open
+    }
+
+    /// The steps that this recording shows; those of another one are not along its time.
+    pub fn shown_steps(&self) -> &[ShownStep] {
+        let is_there = match self.timeline.stage {
+            TimelineStage::Finished | TimelineStage::Open => true,
+            TimelineStage::Absent | TimelineStage::Running => false,
+        };
+        match is_there && self.task.folder == self.timeline.folder {
+            true => &self.task.steps,
+            false => &[],
+        }
     }
 
     /// The tick of the playhead.

@@ -2,9 +2,9 @@
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
-    Action, Actor, ClockCommand, CommandWriter, HistoryCommand, KeySystems, OpenRecording,
-    OrderSystems, Pace, PlaybackOrder, Recording, RestApp as _, RestingSystems, SingleStep,
-    was_struck,
+    Action, Actor, ClockCommand, CommandWriter, HistoryCommand, Imitating, KeySystems,
+    OpenRecording, OrderSystems, Pace, PlaybackOrder, Recording, RestApp as _, RestingSystems,
+    SingleStep, TaskOrder, was_struck,
 };
 
 use super::model::Request;
@@ -27,6 +27,7 @@ pub(super) fn plugin(app: &mut App) {
                 step.run_if(was_struck(Action::Step)),
                 go_slower.run_if(was_struck(Action::Slower)),
                 go_faster.run_if(was_struck(Action::Faster)),
+                imitate_or_stop.run_if(was_struck(Action::Imitate)),
             )
                 .in_set(KeySystems),
         );
@@ -49,6 +50,7 @@ pub(super) struct Orders<'w> {
     steps: MessageWriter<'w, SingleStep>,
     playback: MessageWriter<'w, PlaybackOrder>,
     open: MessageWriter<'w, OpenRecording>,
+    task: MessageWriter<'w, TaskOrder>,
     pace: ResMut<'w, Pace>,
     undos: ResMut<'w, PendingUndos>,
 }
@@ -91,6 +93,9 @@ impl Orders<'_> {
             Request::Close => {
                 self.playback.write(PlaybackOrder::Close);
             }
+            Request::Task(order) => {
+                self.task.write(order);
+            }
         }
     }
 }
@@ -119,6 +124,13 @@ fn go_slower(mut pace: ResMut<Pace>) {
 
 fn go_faster(mut pace: ResMut<Pace>) {
     *pace = pace.faster();
+}
+
+fn imitate_or_stop(imitating: Res<Imitating>, mut orders: MessageWriter<TaskOrder>) {
+    orders.write(match imitating.is_on() {
+        true => TaskOrder::Stop,
+        false => TaskOrder::Imitate,
+    });
 }
 
 #[cfg(test)]
@@ -213,6 +225,8 @@ mod tests {
             [OpenRecording("demo".into())]
         );
         assert_eq!(sent::<SingleStep>(&mut app, Request::Step), [SingleStep]);
+        let task = Request::Task(TaskOrder::PutBack);
+        assert_eq!(sent::<TaskOrder>(&mut app, task), [TaskOrder::PutBack]);
         ask(&mut app, Request::SetPace(Pace::Double));
         assert_eq!(*app.world().resource::<Pace>(), Pace::Double);
     }
@@ -254,5 +268,25 @@ mod tests {
         strike(&mut app, Action::Step);
         let steps = app.world().resource::<Messages<SingleStep>>();
         assert_eq!(steps.iter_current_update_messages().count(), 1);
+    }
+
+    #[test]
+    fn a_key_lets_the_robot_do_it_and_stops_it() {
+        let mut app = app();
+        for (imitating, order) in [
+            (Imitating::Idle, TaskOrder::Imitate),
+            (Imitating::Preparing, TaskOrder::Stop),
+        ] {
+            app.insert_resource(imitating);
+            let mut keys = app.world_mut().resource_mut::<ButtonInput<KeyCode>>();
+            keys.press(KeyCode::ControlLeft);
+            keys.press(KeyCode::Enter);
+            app.update();
+            app.world_mut()
+                .resource_mut::<ButtonInput<KeyCode>>()
+                .reset_all();
+            let mut orders = app.world_mut().resource_mut::<Messages<TaskOrder>>();
+            assert_eq!(orders.drain().collect::<Vec<_>>(), [order]);
+        }
     }
 }

@@ -1,0 +1,176 @@
+//! The sentence of the step that the robot does, over the picture of the table.
+
+use bevy::prelude::*;
+use bevy_egui::{
+    EguiContexts, EguiPrimaryContextPass,
+    egui::{Align2, Area, Context, Frame, Id, Order, RichText, vec2},
+};
+use tabletop_core::{Action, Imitating, Keymap, ShownTask, TaskOrder};
+
+use crate::widgets::{button::button, style::ACCENT};
+
+/// Size of the sentence, and how far it is from the upper edge, in points.
+const SIZE: f32 = 18.0;
+const TOP: f32 = 12.0;
+
+/// What is shown.
+struct Model<'a> {
+    imitating: &'a Imitating,
+    task: &'a ShownTask,
+    keymap: &'a Keymap,
+}
+
+pub(crate) fn plugin(app: &mut App) {
+    app.add_systems(EguiPrimaryContextPass, show_caption);
+}
+
+fn show_caption(
+    mut contexts: EguiContexts,
+    imitating: Res<Imitating>,
+    task: Res<ShownTask>,
+    keymap: Res<Keymap>,
+    mut orders: MessageWriter<TaskOrder>,
+) {
+    let Ok(context) = contexts.ctx_mut() else {
+        return;
+    };
+    let model = Model {
+        imitating: &imitating,
+        task: &task,
+        keymap: &keymap,
+    };
+    orders.write_batch(show(context, &model));
+}
+
+/// Shows the sentence while the robot is busy, and returns what the user orders.
+fn show(context: &Context, model: &Model) -> Option<TaskOrder> {
+    let (sentence, remark) = texts(model.imitating, model.task)?;
+    let stop = format!(
+        "The robot stops where it is ({})",
+        model.keymap.hint(Action::Imitate)
+    );
+    Area::new(Id::new("caption"))
+        .order(Order::Middle)
+        .anchor(Align2::CENTER_TOP, vec2(0.0, TOP))
+        .interactable(true)
+        .fade_in(false)
+        .show(context, |ui| {
+            Frame::window(ui.style())
+                .show(ui, |ui| {
+                    let row = ui.horizontal(|ui| {
+                        ui.label(RichText::new(sentence).size(SIZE).strong());
+                        if !remark.is_empty() {
+                            ui.label(RichText::new(remark).color(ACCENT));
+                        }
+                        button(ui, true, "Stop the robot", &stop).clicked()
+                    });
+                    row.inner.then_some(TaskOrder::Stop)
+                })
+                .inner
+        })
+        .inner
+}
+
+/// What is said of the present step, and how it gets on. Nothing if the robot is not busy.
+fn texts(imitating: &Imitating, task: &ShownTask) -> Option<(String, &'static str)> {
+    match imitating {
+        Imitating::Idle => None,
+        Imitating::Preparing => Some(("The robot gets ready.".into(), "")),
+        Imitating::Step {
+            number,
+            tries,
+            is_planning,
+        } => {
+            let sentence = task.steps.get(number - 1).map(|step| &*step.sentence);
+            let all = task.steps.len();
+            let sentence = format!("{number} of {all}: {}", sentence.unwrap_or_default());
+            let remark = match (is_planning, tries) {
+                (true, _) => "finding a way …",
+                (false, 0) => "",
+                (false, _) => "once more",
+            };
+            Some((sentence, remark))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::{Harness, kittest::Queryable as _};
+    use tabletop_core::{ShownStep, SimTick};
+
+    use super::*;
+
+    struct Stage {
+        imitating: Imitating,
+        task: ShownTask,
+        keymap: Keymap,
+        orders: Vec<TaskOrder>,
+    }
+
+    fn harness(imitating: Imitating) -> Harness<'static, Stage> {
+        let step = |sentence: &str| ShownStep {
+            sentence: sentence.into(),
+            grasp: SimTick(1),
+            release: SimTick(2),
+            color: None,
+        };
+        let stage = Stage {
+            imitating,
+            task: ShownTask {
+                steps: vec![step("Open the box."), step("Close the box.")],
+                ..default()
+            },
+            keymap: Keymap::default(),
+            orders: Vec::new(),
+        };
+        let frame = |ui: &mut bevy_egui::egui::Ui, stage: &mut Stage| {
+            let model = Model {
+                imitating: &stage.imitating,
+                task: &stage.task,
+                keymap: &stage.keymap,
+            };
+            stage.orders.extend(show(ui.ctx(), &model));
+        };
+        let mut harness = Harness::new_ui_state(frame, stage);
+        harness.run();
+        harness
+    }
+
+    #[test]
+    fn the_present_step_is_said_and_how_it_gets_on() {
+        let step = |tries, is_planning| Imitating::Step {
+            number: 2,
+            tries,
+            is_planning,
+        };
+        for (imitating, remark) in [
+            (step(0, true), Some("finding a way …")),
+            (step(0, false), None),
+            (step(1, false), Some("once more")),
+        ] {
+            let harness = harness(imitating);
+            assert!(harness.query_by_label("2 of 2: Close the box.").is_some());
+            for text in ["finding a way …", "once more"] {
+                let is_there = harness.query_by_label(text).is_some();
+                assert_eq!(is_there, remark == Some(text), "{text}");
+            }
+        }
+        assert!(
+            harness(Imitating::Preparing)
+                .query_by_label("The robot gets ready.")
+                .is_some()
+        );
+    }
+
+    #[test]
+    fn the_robot_is_stopped_and_nothing_is_said_of_an_idle_one() {
+        let mut harness = harness(Imitating::Preparing);
+        harness.get_by_label("Stop the robot").click();
+        harness.run();
+        assert_eq!(harness.state().orders, [TaskOrder::Stop]);
+        harness.state_mut().imitating = Imitating::Idle;
+        harness.run();
+        assert!(harness.query_by_label("Stop the robot").is_none());
+    }
+}

@@ -1,0 +1,253 @@
+//! The robot, doing what was shown while the window lets time pass.
+
+use std::time::Duration;
+
+use bevy::prelude::*;
+use tabletop_core::{
+    Actor, Agent, Ghost, Ghosts, Imitating, ObjectIndex, ObjectSpec, OrderSystems, Paused,
+    Replaying, Robot, RobotCommand, RobotLayout, SimBlocked, Table, WriteCommand as _,
+};
+use tabletop_gui::{Notices, Tone};
+use tabletop_planner::{Execution, Imitation, RobotBody, Turn, goal_poses};
+use tabletop_robot::Description;
+use tabletop_task::Task;
+
+use super::understood::{Lesson, Understood};
+use crate::imitation::{command, sight};
+
+/// For how long a tick waits for what is to be done in it.
+const LONGEST_WAIT: Duration = Duration::from_millis(4);
+/// Ticks until the robot is at the table, and what was put on it at rest.
+const PREPARATION: u32 = 30;
+
+/// The robot that does what was shown.
+#[derive(Resource, Default)]
+pub(super) struct Imitator(State);
+
+#[derive(Default)]
+enum State {
+    #[default]
+    Idle,
+    Preparing {
+        lesson: Box<Lesson>,
+        ticks: u32,
+    },
+    Acting {
+        execution: Box<Execution>,
+        task: Box<Task>,
+        /// Where objects are going to be put, and by which step.
+        ghosts: Vec<(usize, Ghost)>,
+        /// Whether it waits for what the tick has brought.
+        is_expecting: bool,
+        is_planning: bool,
+    },
+}
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<Imitator>()
+        .add_systems(
+            FixedUpdate,
+            act.run_if(SimBlocked::is_clear)
+                .run_if(|imitator: Res<Imitator>| !matches!(imitator.0, State::Idle))
+                .in_set(OrderSystems::User),
+        )
+        .add_systems(Update, publish.run_if(resource_changed::<Imitator>));
+}
+
+impl Imitator {
+    /// Gets ready to do what was shown.
+    pub fn prepare(&mut self, understood: &Understood) -> Result<(), String> {
+        let lesson = understood.lesson();
+        let lesson = lesson.ok_or("nothing was shown yet: record a demonstration first")?;
+        self.0 = State::Preparing {
+            lesson: Box::new(lesson.clone()),
+            ticks: 0,
+        };
+        Ok(())
+    }
+
+    pub fn stop(&mut self) {
+        self.0 = State::Idle;
+    }
+
+    /// How it gets on.
+    fn progress(&self) -> Imitating {
+        match &self.0 {
+            State::Idle => Imitating::Idle,
+            State::Preparing { .. } => Imitating::Preparing,
+            State::Acting {
+                execution,
+                is_planning,
+                ..
+            } => match execution.doing() {
+                None => Imitating::Preparing,
+                Some(doing) => Imitating::Step {
+                    number: doing.step,
+                    tries: doing.tries,
+                    is_planning: *is_planning,
+                },
+            },
+        }
+    }
+
+    /// Where the steps that are not done yet are going to put their objects.
+    fn ghosts(&self) -> Vec<Ghost> {
+        let State::Acting {
+            execution, ghosts, ..
+        } = &self.0
+        else {
+            return Vec::new();
+        };
+        let present = execution.doing().map_or(1, |doing| doing.step);
+        let left = ghosts.iter().filter(|(step, _)| *step >= present);
+        left.map(|(step, ghost)| Ghost {
+            is_next: *step == present,
+            ..ghost.clone()
+        })
+        .collect()
+    }
+}
+
+/// Tells panels and view how the robot gets on.
+fn publish(imitator: Res<Imitator>, mut imitating: ResMut<Imitating>, mut ghosts: ResMut<Ghosts>) {
+    imitating.set_if_neq(imitator.progress());
+    ghosts.set_if_neq(Ghosts(imitator.ghosts()));
+}
+
+/// Once a tick: what the robot is to do in it.
+fn act(world: &mut World) {
+    if world.resource::<Paused>().0 {
+        return;
+    }
+    let mut imitator = std::mem::take(&mut *world.resource_mut::<Imitator>());
+    let outcome = match () {
+        () if world.resource::<Replaying>().0 => Some(Err("a recording was opened".into())),
+        () if world.resource::<Agent>().is_on() => Some(Err("a script was started".into())),
+        () if !is_there(world) && !matches!(imitator.0, State::Preparing { .. }) => {
+            Some(Err("the robot was taken away".into()))
+        }
+        () => imitator.go_on(world),
+    };
+    match outcome {
+        None => *world.resource_mut::<Imitator>() = imitator,
+        Some(Ok(told)) => world.resource_mut::<Notices>().append(Tone::News, &told),
+        Some(Err(reason)) => {
+            let told = format!("the robot has stopped: {reason}");
+            world.resource_mut::<Notices>().append(Tone::Warning, &told);
+        }
+    }
+}
+
+fn is_there(world: &World) -> bool {
+    world.resource::<Robot>().is_shown
+}
+
+impl Imitator {
+    /// Goes on by a tick. What it returns is the end.
+    fn go_on(&mut self, world: &mut World) -> Option<Result<String, String>> {
+        match &mut self.0 {
+            State::Idle => None,
+            State::Preparing { lesson, ticks } => {
+                if *ticks == 0 && !is_there(world) {
+                    world.write_command_of(Actor::Panel, RobotCommand::Show(true));
+                }
+                *ticks += 1;
+                if *ticks < PREPARATION {
+                    return None;
+                }
+                match begin(world, lesson) {
+                    Ok(acting) => {
+                        self.0 = acting;
+                        None
+                    }
+                    Err(reason) => Some(Err(reason)),
+                }
+            }
+            State::Acting {
+                execution,
+                task,
+                is_expecting,
+                is_planning,
+                ..
+            } => {
+                if *is_expecting {
+                    execution.see(sight(world));
+                    *is_expecting = false;
+                }
+                let turn = execution.turn(LONGEST_WAIT);
+                *is_planning = turn == Turn::Planning;
+                match turn {
+                    Turn::Planning => None,
+                    Turn::Orders(orders) => {
+                        *is_expecting = true;
+                        let command = command(world.resource::<RobotLayout>(), &orders);
+                        if let Some(command) = command {
+                            world.write_command_of(Actor::Panel, command);
+                        }
+                        None
+                    }
+                    Turn::Over(imitation) => Some(told(task, &imitation)),
+                }
+            }
+        }
+    }
+}
+
+/// What has come of it, in a sentence.
+fn told(task: &Task, imitation: &Imitation) -> Result<String, String> {
+    match &imitation.failure {
+        None => Ok("the robot has done what was shown".into()),
+        Some((step, failure)) => {
+            let sentence = task.step(*step).map_or("", |step| step.sentence.as_str());
+            Err(format!("step {step} ({sentence}): {failure}"))
+        }
+    }
+}
+
+/// Begins with what is on the table now.
+fn begin(world: &mut World, lesson: &Lesson) -> Result<State, String> {
+    let index = world.resource::<ObjectIndex>();
+    let objects: Vec<_> = index
+        .iter()
+        .filter_map(|object| world.get::<ObjectSpec>(object).cloned())
+        .collect();
+    let binding = lesson.task.bind(&lesson.requirements, &objects);
+    let binding = binding.map_err(|unbound| unbound.to_string())?;
+    let table = world.query::<&Table>().iter(world).next().copied();
+    let description = world
+        .get_resource::<Description>()
+        .ok_or("there is no robot")?;
+    let body = RobotBody::new(
+        &description.layout,
+        description.model.clone(),
+        &table.unwrap_or_default(),
+    );
+    let body = body.map_err(|error| error.to_string())?;
+    let mut task = lesson.task.clone();
+    task.phrase(&lesson.requirements);
+    let sight = sight(world);
+    let shape = |id: &str| Some(objects.iter().find(|object| object.id == id)?.shape.clone());
+    let ghosts = goal_poses(&task, &binding, &sight);
+    let ghosts = ghosts.into_iter().filter_map(|(step, id, pose)| {
+        let ghost = Ghost {
+            shape: shape(&id)?,
+            id,
+            pose,
+            is_next: false,
+        };
+        Some((step, ghost))
+    });
+    let ghosts = ghosts.collect();
+    let execution = Execution::begin(body, task.clone(), binding, sight, SEED);
+    let execution = execution.map_err(|error| error.to_string())?;
+    Ok(State::Acting {
+        execution: Box::new(execution),
+        task: Box::new(task),
+        ghosts,
+        is_expecting: false,
+        is_planning: true,
+    })
+}
+
+/// Decides what is tried by chance.
+const SEED: u64 = 0;

@@ -1,0 +1,255 @@
+//! What the recording shows.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::mpsc::{Receiver, TryRecvError, channel},
+    thread,
+};
+
+use bevy::{platform::cell::SyncCell, prelude::*};
+use tabletop_core::{
+    NAMED_COLORS, Required, SceneSpec, ShownProperty, ShownRole, ShownStep, ShownTask, Timeline,
+    TimelineStage,
+};
+use tabletop_recorder::RecordingReader;
+use tabletop_task::{Demonstration, Requirements, Role, Task, has_value, properties};
+
+use crate::multiplication::scene_at_beginning;
+
+/// The task of the recording that was made or opened last, as far as one was shown.
+#[derive(Resource, Default)]
+pub(super) struct Understood {
+    lesson: Option<Lesson>,
+    /// The recording that is being read, and what comes of it.
+    reading: Option<(PathBuf, SyncCell<Receiver<Result<Lesson, String>>>)>,
+    /// The recording that was read last, and what it was then.
+    last: (PathBuf, TimelineStage),
+    has_changed: bool,
+    fault: Option<String>,
+}
+
+/// What a recording teaches.
+#[derive(Clone, Debug)]
+pub(super) struct Lesson {
+    pub folder: PathBuf,
+    pub task: Task,
+    pub requirements: Requirements,
+    pub scene: Option<SceneSpec>,
+}
+
+impl Lesson {
+    fn read(folder: &Path) -> Result<Self, String> {
+        let said = |error: &dyn std::fmt::Display| error.to_string();
+        let recording = RecordingReader::open(folder).map_err(|error| said(&error))?;
+        let shown = Demonstration::of(&recording).map_err(|error| said(&error))?;
+        let requirements = Requirements::read(folder).map_err(|error| said(&error))?;
+        Ok(Self {
+            folder: folder.to_owned(),
+            task: Task::of(&shown),
+            requirements,
+            scene: scene_at_beginning(recording.session()),
+        })
+    }
+
+    /// The task, with what is required in its sentences.
+    fn phrased(&self) -> Task {
+        let mut task = self.task.clone();
+        task.phrase(&self.requirements);
+        task
+    }
+
+    fn role(&self, id: &str) -> Result<&Role, String> {
+        let role = self.task.role(id);
+        role.ok_or_else(|| format!("the task is not about {id}"))
+    }
+}
+
+/// Begins to read a recording when it is finished or opened. It is done beside the frames: a long one takes its time.
+pub(super) fn read_recording(timeline: Res<Timeline>, mut understood: ResMut<Understood>) {
+    let is_there = match timeline.stage {
+        TimelineStage::Finished | TimelineStage::Open => true,
+        TimelineStage::Absent | TimelineStage::Running => false,
+    };
+    let now = (timeline.folder.clone(), timeline.stage);
+    if understood.last == now {
+        return;
+    }
+    // A recording that was just made is the same when it is opened.
+    let is_known = understood.last.0 == now.0 && now.1 == TimelineStage::Open;
+    understood.last = now;
+    if !is_there || (is_known && understood.lesson.is_some()) {
+        return;
+    }
+    let folder = timeline.folder.clone();
+    let (sender, receiver) = channel();
+    let path = folder.clone();
+    let read = move || drop(sender.send(Lesson::read(&path)));
+    match thread::Builder::new().name("task".into()).spawn(read) {
+        Ok(_) => understood.reading = Some((folder, SyncCell::new(receiver))),
+        Err(error) => understood.fault = Some(error.to_string()),
+    }
+}
+
+/// Takes over what was read. A recording in which no hand does anything takes nothing from what was shown before.
+pub(super) fn take_what_was_read(mut understood: ResMut<Understood>) {
+    let Some((folder, receiver)) = &mut understood.bypass_change_detection().reading else {
+        return;
+    };
+    let read = match receiver.get().try_recv() {
+        Ok(read) => read,
+        Err(TryRecvError::Empty) => return,
+        Err(TryRecvError::Disconnected) => {
+            Err(format!("{}: it could not be read", folder.display()))
+        }
+    };
+    understood.reading = None;
+    match read {
+        Ok(lesson) if lesson.task.steps.is_empty() && understood.lesson.is_some() => {}
+        Ok(lesson) => {
+            understood.lesson = Some(lesson);
+            understood.fault = None;
+        }
+        Err(reason) => {
+            understood.lesson = None;
+            understood.fault = Some(reason);
+        }
+    }
+    understood.has_changed = true;
+}
+
+impl Understood {
+    /// What the recording teaches, if it shows a task.
+    pub fn lesson(&self) -> Option<&Lesson> {
+        let lesson = self.lesson.as_ref();
+        lesson.filter(|lesson| !lesson.task.steps.is_empty())
+    }
+
+    /// What was on the table in the beginning.
+    pub fn scene(&self) -> Option<&SceneSpec> {
+        self.lesson.as_ref()?.scene.as_ref()
+    }
+
+    /// Requires a property of the object of a role, or no longer, and keeps that with the recording.
+    pub fn require(&mut self, role: &str, property: &str, is_required: bool) -> Result<(), String> {
+        self.change(|lesson| {
+            let role = lesson.role(role)?.clone();
+            if !is_required {
+                lesson.requirements.remove(&role, Some(property));
+                return Ok(());
+            }
+            let requirement = format!("{property}={}", value(&role, property));
+            let added = lesson.requirements.add(&lesson.task, &role, &requirement);
+            added.map_err(|error| error.to_string())
+        })
+    }
+
+    /// Lets any object take a role, or again what is most like it.
+    pub fn free(&mut self, role: &str, is_free: bool) -> Result<(), String> {
+        self.change(|lesson| {
+            let role = lesson.role(role)?.clone();
+            lesson.requirements.remove(&role, None);
+            match is_free {
+                true => {
+                    let added = lesson.requirements.add(&lesson.task, &role, "any");
+                    added.map_err(|error| error.to_string())
+                }
+                false => Ok(()),
+            }
+        })
+    }
+
+    fn change(
+        &mut self,
+        change: impl FnOnce(&mut Lesson) -> Result<(), String>,
+    ) -> Result<(), String> {
+        let lesson = self.lesson.as_mut();
+        let lesson = lesson.ok_or("no recording shows a task yet")?;
+        change(lesson)?;
+        self.has_changed = true;
+        let written = lesson.requirements.write(&lesson.folder);
+        written.map_err(|error| error.to_string())
+    }
+
+    /// It in words, if they are new.
+    pub fn shown_if_changed(&mut self) -> Option<ShownTask> {
+        std::mem::take(&mut self.has_changed).then(|| self.shown())
+    }
+
+    fn shown(&self) -> ShownTask {
+        let Some(lesson) = &self.lesson else {
+            return ShownTask {
+                fault: self.fault.clone(),
+                ..default()
+            };
+        };
+        let task = lesson.phrased();
+        let color = |id: &str| {
+            let shape = &task.role(id)?.shown.shape;
+            shape.drawn().first().map(|solid| solid.color)
+        };
+        ShownTask {
+            folder: lesson.folder.clone(),
+            steps: task
+                .steps
+                .iter()
+                .map(|step| ShownStep {
+                    sentence: step.sentence.clone(),
+                    grasp: step.grasp,
+                    release: step.release,
+                    color: color(&step.object),
+                })
+                .collect(),
+            roles: task
+                .roles
+                .iter()
+                .map(|role| shown_role(role, &lesson.requirements))
+                .collect(),
+            fault: self.fault.clone(),
+        }
+    }
+}
+
+fn shown_role(role: &Role, requirements: &Requirements) -> ShownRole {
+    let required = requirements.roles.get(&role.id);
+    let value_of = |name: &str| required.and_then(|required| required.get(name));
+    let mut known: Vec<_> = properties(&role.shown)
+        .into_iter()
+        .map(|(name, _)| ShownProperty {
+            is_required: value_of(&name).is_some(),
+            value: value_of(&name).map_or_else(|| value(role, &name), String::clone),
+            name,
+        })
+        .collect();
+    // What is required in the file and is no property of the object, such as to be that of another step.
+    let others = required.into_iter().flatten();
+    let others = others.filter(|(name, _)| !known.iter().any(|property| property.name == **name));
+    let others: Vec<_> = others
+        .map(|(name, value)| ShownProperty {
+            name: name.clone(),
+            value: value.clone(),
+            is_required: true,
+        })
+        .collect();
+    known.extend(others);
+    ShownRole {
+        id: role.id.clone(),
+        noun: role.noun.clone(),
+        required: match required {
+            None => Required::AsShown,
+            Some(required) if required.is_empty() => Required::Nothing,
+            Some(_) => Required::Some,
+        },
+        properties: known,
+    }
+}
+
+/// What the object of a role has: a colour by its name.
+fn value(role: &Role, name: &str) -> String {
+    let value = tabletop_task::property(&role.shown, name).unwrap_or_default();
+    if name == "color" {
+        let mut names = NAMED_COLORS.iter();
+        let fitting = names.find(|(known, _)| has_value(name, &value, known));
+        return fitting.map_or(value, |(known, _)| (*known).to_owned());
+    }
+    value
+}
