@@ -66,6 +66,7 @@ pub mod replay;
 pub mod scene_dump;
 mod settings;
 pub mod shipped;
+pub mod shown_task;
 pub mod soak;
 pub mod task_files;
 #[cfg(test)]

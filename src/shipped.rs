@@ -16,7 +16,7 @@ use tabletop_scenario::{Scenario, ScenarioError};
 use tabletop_xml::{ParsedTask, ReadError, TaskReader};
 
 /// The folders of a working folder.
-pub const WORKING_FOLDERS: [&str; 4] = ["tablesetup", "matlab", "scenarios", "python"];
+pub const WORKING_FOLDERS: [&str; 5] = ["tablesetup", "matlab", "scenarios", "python", "learners"];
 
 /// What is in them.
 static CONTENTS: [Dir; WORKING_FOLDERS.len()] = [
@@ -24,6 +24,7 @@ static CONTENTS: [Dir; WORKING_FOLDERS.len()] = [
     include_dir!("$CARGO_MANIFEST_DIR/matlab"),
     include_dir!("$CARGO_MANIFEST_DIR/scenarios"),
     include_dir!("$CARGO_MANIFEST_DIR/python"),
+    include_dir!("$CARGO_MANIFEST_DIR/learners"),
 ];
 
 /// The endings of their files; what else a script may have left there is not shipped.

@@ -18,8 +18,10 @@ use tabletop::{
     },
     final_state, headless_app_with,
     recorder::{RecorderPlugin, UnrecordedPlugin},
+    scene::{IdAllocator, assemble},
     script::{ScriptPlugin, shut_down},
     shipped::{read_scenario, read_task, task_reader, true_path},
+    shown_task::shown_task,
     task_files::save_task,
     xml::{AllowedFolders, ParsedTask, ReadError},
 };
@@ -28,6 +30,7 @@ use tabletop_scenario::{Outcome, Program, ScenarioRun};
 use super::{
     Failure, Output, WRONG_INPUT,
     duration::{pass, seconds, ticks},
+    explain::read,
     robot_options::{EngineOptions, RobotOptions, script},
     script::{Script, headless_settings},
     terminal::{say, show_warnings},
@@ -77,6 +80,9 @@ pub(super) struct RunArgs {
     /// The run ends with the script if there is no scenario, or one that waits for nothing
     #[arg(long, value_name = "LANGUAGE[:PATH][#PAIR]", value_parser = script)]
     script: Option<String>,
+    /// The recording whose task the script is told, as `sensor.task`
+    #[arg(long, value_name = "DIR", requires = "script")]
+    task: Option<PathBuf>,
     #[command(flatten)]
     engine: EngineOptions,
     #[command(flatten)]
@@ -101,6 +107,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
                 report_what_stops_the_robot.in_set(RestingSystems),
             );
             args.robot.show(&mut app);
+            args.tell_task(&mut app, Some(setup))?;
             let start = Instant::now();
             let script = Script::start(&mut app, args.script.is_some());
             let script = script.run(&mut app, ticks(seconds.unwrap_or(10.0)));
@@ -170,6 +177,7 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
         report_what_stops_the_robot.in_set(RestingSystems),
     );
     args.robot.show(&mut app);
+    args.tell_task(&mut app, None)?;
     let start = Instant::now();
     let mut script = Script::start(&mut app, args.script.is_some());
     let mut facts = MessageCursor::<SimFact>::default();
@@ -302,6 +310,29 @@ impl RunArgs {
     /// The scene of a task file, which may include files in the folders that are allowed, or everything that is wrong with it.
     fn read_faultless(&self, file: &Path) -> Result<SceneSpec, String> {
         faultless(task_reader().allowing(&self.allow_path).read(file))
+    }
+
+    /// Lets scripts know the task of a recording, about the objects of a task file if there is one.
+    fn tell_task(&self, app: &mut App, setup: Option<&Path>) -> Result<(), Failure> {
+        let Some(recording) = &self.task else {
+            return Ok(());
+        };
+        let (task, requirements) = read(recording)?;
+        let binding = match setup {
+            Some(setup) => {
+                let scene = task_reader()
+                    .allowing(&self.allow_path)
+                    .read(setup)
+                    .map_err(Failure::input)?
+                    .scene;
+                let objects = assemble(&scene, &mut IdAllocator::default()).objects;
+                Some(task.bind(&requirements, &objects).map_err(Failure::run)?)
+            }
+            None => None,
+        };
+        let shown = shown_task(recording, &task, &requirements, binding.as_ref());
+        app.insert_resource(shown);
+        Ok(())
     }
 
     /// Whether what is asked for at the end of a run can be written then.

@@ -14,7 +14,7 @@ use tabletop::{
     prelude::*,
 };
 
-use crate::support::{command, place, scenario, shipped, stderr, tabletop};
+use crate::support::{command, place, scenario, shipped, stderr, stdout, tabletop};
 
 fn succeeded(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
@@ -647,4 +647,23 @@ fn a_scenario_that_ends_before_its_script_says_so() {
     assert!(!printed.contains("call 30"), "{printed}");
     let cut = "the script was still running when the scenario ended";
     assert_eq!(printed.matches(cut).count(), 1, "{printed}");
+}
+
+#[test]
+fn a_script_knows_the_task_of_a_recording() {
+    let demo = place("task_of_a_recording");
+    let demo = demo.to_str().unwrap();
+    let scenario = "shipped:scenarios/stack_three.ron";
+    let output = tabletop(&["run", scenario, "--record", demo, "--quiet"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let script = "python:learners/follow_task.py";
+    let output = tabletop(&["run", scenario, "--script", script, "--task", demo]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let told = stderr(&output) + &stdout(&output);
+    for sentence in [
+        "1. Put the green block on the blue block. Done.",
+        "2. Put the red block on the green block. Done.",
+    ] {
+        assert!(told.contains(sentence), "{told}");
+    }
 }

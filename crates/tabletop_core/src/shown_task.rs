@@ -20,7 +20,7 @@ pub struct ShownTask {
 }
 
 /// A step of a [`ShownTask`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShownStep {
     /// What it does, as a sentence.
     pub sentence: String,
@@ -30,6 +30,14 @@ pub struct ShownStep {
     pub release: SimTick,
     /// The colour of the object.
     pub color: Option<Rgb>,
+    /// Id of the object that is moved.
+    pub object: String,
+    /// What is so afterwards: `on`, `inside`, `beside`, `on-table`, …
+    pub relation: String,
+    /// Id of the object to which that is a relation; `table` if it is to none.
+    pub reference: String,
+    /// Where the object is to be, in the frame of the reference: nowhere if it is removed or only picked up.
+    pub goal: Option<Pose>,
 }
 
 /// An object that a [`ShownTask`] is about.

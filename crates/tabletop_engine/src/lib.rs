@@ -84,5 +84,5 @@ pub use variables::{
     invalid_field::{InvalidField, MatrixElement},
     matrix::JointMatrix,
     motor::MotorCommand,
-    sensor::{RgbImage, SensedContact, SensedControl, SensedObject, Sensor},
+    sensor::{RgbImage, SensedContact, SensedControl, SensedObject, SensedStep, Sensor},
 };

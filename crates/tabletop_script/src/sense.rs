@@ -5,13 +5,13 @@ use std::path::Path;
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
     JointId, JointState, ObjectIndex, ObjectSpec, Pose, Recording, Replaying, Robot, RobotLayout,
-    RobotMode, SensorImage, SimTick, TICK_SECONDS, Table,
+    RobotMode, SensorImage, ShownTask, SimTick, TICK_SECONDS, Table,
 };
 use tabletop_engine::{
-    Aux, JointMatrix, RgbImage, SensedContact, SensedControl, SensedObject, Sensor,
+    Aux, JointMatrix, RgbImage, SensedContact, SensedControl, SensedObject, SensedStep, Sensor,
 };
 
-use crate::ScriptSettings;
+use crate::{ScriptSettings, mentions::mention};
 
 /// The fields of `sensor` that a script gets beside those that all scripts get.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,7 @@ pub(crate) struct SensorFields {
     objects: bool,
     controls: bool,
     trackers: bool,
+    task: bool,
 }
 
 impl SensorFields {
@@ -29,6 +30,7 @@ impl SensorFields {
             objects: settings.objects.holds_for(agent, objects),
             controls: settings.objects.holds_for(agent, &["controls"]),
             trackers: settings.trackers.holds_for(agent, &["trackerLoc"]),
+            task: mention(agent, &["task"]),
         }
     }
 }
@@ -44,6 +46,7 @@ pub(crate) struct Senses<'w, 's> {
     tables: Query<'w, 's, (), With<Table>>,
     recording: Res<'w, Recording>,
     replaying: Res<'w, Replaying>,
+    task: Res<'w, ShownTask>,
 }
 
 impl Senses<'_, '_> {
@@ -97,6 +100,7 @@ impl Senses<'_, '_> {
             contacts: fields.objects.then(|| self.contacts()),
             held: fields.objects.then(|| self.held()),
             controls: fields.controls.then(|| self.controls()),
+            task: (fields.task && !self.task.steps.is_empty()).then(|| self.task()),
             joint_torques: dynamic.then(|| self.of_limbs(|joint| self.state(joint).torque)),
         }
     }
@@ -167,6 +171,22 @@ impl Senses<'_, '_> {
                 })
             })
             .collect()
+    }
+
+    fn task(&self) -> Vec<SensedStep> {
+        let steps = self.task.steps.iter().map(|step| SensedStep {
+            sentence: step.sentence.clone(),
+            object: step.object.clone(),
+            relation: step.relation.clone(),
+            reference: step.reference.clone(),
+            goal: step.goal.map_or([[f64::NAN; 3]; 2], |goal| {
+                [
+                    point(goal.location),
+                    goal.degrees().to_array().map(|d| f64::from(d).to_radians()),
+                ]
+            }),
+        });
+        steps.collect()
     }
 
     fn contacts(&self) -> Vec<SensedContact> {

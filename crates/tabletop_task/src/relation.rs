@@ -133,6 +133,24 @@ impl Side {
 }
 
 impl Relation {
+    /// Its name, as in JSON.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::OnTable => "on-table",
+            Self::On { .. } => "on",
+            Self::Inside { .. } => "inside",
+            Self::Around { .. } => "around",
+            Self::Beside { .. } => "beside",
+            Self::AlignedWith { .. } => "aligned-with",
+            Self::InPlaceOf { .. } => "in-place-of",
+            Self::Aside => "aside",
+            Self::Slid { .. } => "slid",
+            Self::Turned { .. } => "turned",
+            Self::Destroyed => "destroyed",
+            Self::Held => "held",
+        }
+    }
+
     /// The object to which it is a relation.
     pub fn object(&self) -> Option<&str> {
         match self {

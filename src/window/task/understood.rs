@@ -7,14 +7,14 @@ use std::{
 };
 
 use bevy::{platform::cell::SyncCell, prelude::*};
-use tabletop_core::{
-    NAMED_COLORS, Required, SceneSpec, ShownProperty, ShownRole, ShownStep, ShownTask, Timeline,
-    TimelineStage,
-};
+use tabletop_core::{SceneSpec, ShownTask, Timeline, TimelineStage};
 use tabletop_recorder::RecordingReader;
-use tabletop_task::{Demonstration, Requirements, Role, Task, has_value, properties};
+use tabletop_task::{Demonstration, Requirements, Role, Task};
 
-use crate::multiplication::scene_at_beginning;
+use crate::{
+    multiplication::scene_at_beginning,
+    shown_task::{shown_task, value},
+};
 
 /// The task of the recording that was made or opened last, as far as one was shown.
 #[derive(Resource, Default)]
@@ -49,13 +49,6 @@ impl Lesson {
             requirements,
             scene: scene_at_beginning(recording.session()),
         })
-    }
-
-    /// The task, with what is required in its sentences.
-    fn phrased(&self) -> Task {
-        let mut task = self.task.clone();
-        task.phrase(&self.requirements);
-        task
     }
 
     fn role(&self, id: &str) -> Result<&Role, String> {
@@ -176,80 +169,18 @@ impl Understood {
     }
 
     fn shown(&self) -> ShownTask {
-        let Some(lesson) = &self.lesson else {
-            return ShownTask {
-                fault: self.fault.clone(),
-                ..default()
-            };
-        };
-        let task = lesson.phrased();
-        let color = |id: &str| {
-            let shape = &task.role(id)?.shown.shape;
-            shape.drawn().first().map(|solid| solid.color)
-        };
+        let shown = self.lesson.as_ref().map(|lesson| {
+            let Lesson {
+                folder,
+                task,
+                requirements,
+                ..
+            } = lesson;
+            shown_task(folder, task, requirements, None)
+        });
         ShownTask {
-            folder: lesson.folder.clone(),
-            steps: task
-                .steps
-                .iter()
-                .map(|step| ShownStep {
-                    sentence: step.sentence.clone(),
-                    grasp: step.grasp,
-                    release: step.release,
-                    color: color(&step.object),
-                })
-                .collect(),
-            roles: task
-                .roles
-                .iter()
-                .map(|role| shown_role(role, &lesson.requirements))
-                .collect(),
             fault: self.fault.clone(),
+            ..shown.unwrap_or_default()
         }
     }
-}
-
-fn shown_role(role: &Role, requirements: &Requirements) -> ShownRole {
-    let required = requirements.roles.get(&role.id);
-    let value_of = |name: &str| required.and_then(|required| required.get(name));
-    let mut known: Vec<_> = properties(&role.shown)
-        .into_iter()
-        .map(|(name, _)| ShownProperty {
-            is_required: value_of(&name).is_some(),
-            value: value_of(&name).map_or_else(|| value(role, &name), String::clone),
-            name,
-        })
-        .collect();
-    // What is required in the file and is no property of the object, such as to be that of another step.
-    let others = required.into_iter().flatten();
-    let others = others.filter(|(name, _)| !known.iter().any(|property| property.name == **name));
-    let others: Vec<_> = others
-        .map(|(name, value)| ShownProperty {
-            name: name.clone(),
-            value: value.clone(),
-            is_required: true,
-        })
-        .collect();
-    known.extend(others);
-    ShownRole {
-        id: role.id.clone(),
-        noun: role.noun.clone(),
-        required: match required {
-            None => Required::AsShown,
-            Some(required) if required.is_empty() => Required::Nothing,
-            Some(_) => Required::Some,
-        },
-        properties: known,
-    }
-}
-
-/// What the object of a role has: a colour by its name.
-fn value(role: &Role, name: &str) -> String {
-    let value = tabletop_task::property(&role.shown, name).unwrap_or_default();
-    if name == "color" {
-        let mut names = NAMED_COLORS.iter();
-        let fitting = names.find(|(known, _)| has_value(name, &value, known));
-        return fitting.map_or(value, |(known, _)| (*known).to_owned());
-    }
-    value
 }

@@ -35,6 +35,8 @@ pub struct Sensor {
     pub controls: Option<Vec<SensedControl>>,
     /// Torques of the limbs' joints, in N m.
     pub joint_torques: Option<JointMatrix>,
+    /// The steps of the task that was shown, if there is one.
+    pub task: Option<Vec<SensedStep>>,
 }
 
 /// A picture: rows from the top, pixels from the left, red, green and blue of each.
@@ -110,6 +112,22 @@ pub struct SensedControl {
     pub state_name: String,
 }
 
+/// A step of a task.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SensedStep {
+    /// What it does.
+    pub sentence: String,
+    /// The object that it moves.
+    pub object: String,
+    /// What is so afterwards.
+    pub relation: String,
+    /// To what that is a relation.
+    pub reference: String,
+    /// Where the object is to be in the frame of the reference: a place in units, and a rotation about the fixed axes X, then Y, then Z, in
+    /// rad. Not a number if it is to be nowhere.
+    pub goal: [[f64; 3]; 2],
+}
+
 /// Two things that touch.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensedContact {
@@ -183,6 +201,20 @@ impl Sensor {
             );
             put("objects.description", texts(|object| &object.description));
         }
+        if let Some(steps) = &self.task {
+            let texts = |of: fn(&SensedStep) -> &String| {
+                Array::texts(steps.iter().map(|step| of(step).clone()).collect())
+            };
+            let goals = |part: usize| {
+                Array::matrix(&steps.iter().map(|step| step.goal[part]).collect::<Vec<_>>())
+            };
+            put("task.sentence", texts(|step| &step.sentence));
+            put("task.object", texts(|step| &step.object));
+            put("task.relation", texts(|step| &step.relation));
+            put("task.reference", texts(|step| &step.reference));
+            put("task.goalPosition", goals(0));
+            put("task.goalRotation", goals(1));
+        }
         if let Some(contacts) = &self.contacts {
             let ids = |side: usize| {
                 Array::texts(
@@ -242,9 +274,12 @@ mod tests {
                 ("left".into(), vec!["a".into()]),
                 ("right".into(), Vec::new()),
             ]),
+            task: Some(vec![SensedStep::default(); 2]),
             ..Sensor::at_rest([2, 7])
         };
         assert!(full.arrays().encode().is_ok());
-        assert!(names(&full).contains(&"sensor.objects.position".to_owned()));
+        for name in ["sensor.objects.position", "sensor.task.goalRotation"] {
+            assert!(names(&full).contains(&name.to_owned()), "{name}");
+        }
     }
 }

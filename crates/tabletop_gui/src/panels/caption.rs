@@ -113,7 +113,7 @@ mod tests {
             sentence: sentence.into(),
             grasp: SimTick(1),
             release: SimTick(2),
-            color: None,
+            ..default()
         };
         let stage = Stage {
             imitating,

@@ -343,12 +343,13 @@ fn task() -> ShownTask {
                 grasp: SimTick(280),
                 release: SimTick(460),
                 color: Some(Rgb::RED),
+                ..default()
             },
             ShownStep {
                 sentence: "Put the green block aside.".into(),
                 grasp: SimTick(500),
                 release: SimTick(501),
-                color: None,
+                ..default()
             },
         ],
         roles: vec![
