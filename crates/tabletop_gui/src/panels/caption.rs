@@ -7,11 +7,14 @@ use bevy_egui::{
 };
 use tabletop_core::{Action, Imitating, Keymap, ShownTask, TaskOrder};
 
-use crate::widgets::{button::button, style::ACCENT};
+use crate::{
+    panels::bar,
+    widgets::{button::button, style::ACCENT},
+};
 
-/// Size of the sentence, and how far it is from the upper edge, in points.
+/// Size of the sentence, and how far it is above the bar, in points.
 const SIZE: f32 = 18.0;
-const TOP: f32 = 12.0;
+const ABOVE: f32 = 12.0;
 
 /// What is shown.
 struct Model<'a> {
@@ -49,9 +52,10 @@ fn show(context: &Context, model: &Model) -> Option<TaskOrder> {
         "The robot stops where it is ({})",
         model.keymap.hint(Action::Imitate)
     );
+    let below = context.viewport_rect().bottom() - bar::top(context);
     Area::new(Id::new("caption"))
         .order(Order::Middle)
-        .anchor(Align2::CENTER_TOP, vec2(0.0, TOP))
+        .anchor(Align2::CENTER_BOTTOM, vec2(0.0, -below - ABOVE))
         .interactable(true)
         .fade_in(false)
         .show(context, |ui| {
