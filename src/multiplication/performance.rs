@@ -242,14 +242,11 @@ impl Performance<'_> {
                     *waited += 1;
                     continue;
                 }
-                match act.step.relations.first() {
-                    Some(Relation::Held) => {}
-                    Some(Relation::Destroyed) => {
-                        world.write_command(HandCommand::Destroy(*hand));
-                    }
-                    _ => {
-                        world.write_command(HandCommand::Release(*hand));
-                    }
+                let first = act.step.relations.first();
+                if first == Some(&Relation::Destroyed) {
+                    world.write_command(HandCommand::Destroy(*hand));
+                } else if first != Some(&Relation::Held) {
+                    world.write_command(HandCommand::Release(*hand));
                 }
                 act.progress = Progress::Done(now);
                 continue;
@@ -334,10 +331,13 @@ impl Performance<'_> {
                 continue;
             }
             self.before.step = Some(act.from);
-            let is_so = match step.relations.first() {
-                Some(Relation::Destroyed) => Ok(!sight.objects.contains_key(id)),
-                Some(Relation::Turned { .. }) => is_met(step, self.binding, &sight, &self.before),
-                _ => Ok(true),
+            let first = step.relations.first();
+            let is_so = if first == Some(&Relation::Destroyed) {
+                Ok(!sight.objects.contains_key(id))
+            } else if matches!(first, Some(Relation::Turned { .. })) {
+                is_met(step, self.binding, &sight, &self.before)
+            } else {
+                Ok(true)
             };
             match is_so {
                 Ok(true) => {}
