@@ -5,7 +5,8 @@ use std::time::Duration;
 use bevy::prelude::*;
 use tabletop_core::{
     Actor, Agent, Ghost, Ghosts, Imitating, ObjectIndex, ObjectSpec, OrderSystems, Paused,
-    Replaying, Robot, RobotCommand, RobotLayout, SimBlocked, Table, WriteCommand as _,
+    Replaying, RestApp as _, RestingSystems, Robot, RobotCommand, RobotLayout, SimBlocked, Table,
+    WriteCommand as _,
 };
 use tabletop_gui::{Notices, Tone};
 use tabletop_planner::{Execution, Imitation, RobotBody, Turn, goal_poses};
@@ -48,10 +49,16 @@ pub(super) fn plugin(app: &mut App) {
         .add_systems(
             FixedUpdate,
             act.run_if(SimBlocked::is_clear)
-                .run_if(|imitator: Res<Imitator>| !matches!(imitator.0, State::Idle))
-                .in_set(OrderSystems::User),
+                .run_if(is_busy)
+                .in_set(OrderSystems::User)
+                .in_set(RestingSystems),
         )
+        .wake_while(is_busy)
         .add_systems(Update, publish.run_if(resource_changed::<Imitator>));
+}
+
+fn is_busy(imitator: Res<Imitator>) -> bool {
+    !matches!(imitator.0, State::Idle)
 }
 
 impl Imitator {
