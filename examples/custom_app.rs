@@ -4,7 +4,12 @@
 //! Only the plugins that simulate are added. The app draws the objects in its own way, and writes the same commands that
 //! the program's own window writes: Space loads the next task file, G lifts the first object.
 
-use bevy::{prelude::*, window::WindowPlugin};
+use bevy::{
+    asset::RenderAssetUsages,
+    mesh::{Indices, PrimitiveTopology},
+    prelude::*,
+    window::WindowPlugin,
+};
 use tabletop::{core::Solid, prelude::*};
 
 const TASKS: [&str; 3] = [
@@ -101,6 +106,16 @@ fn draw_new_objects(
                 Solid::Cuboid(span) => Mesh::from(Cuboid::from_size(span)),
                 Solid::Cylinder { radius, yspan } => Mesh::from(Cylinder::new(radius, yspan)),
                 Solid::Ball(radius) => Mesh::from(Sphere::new(radius)),
+                Solid::Polyhedron(polyhedron) => {
+                    let surface = polyhedron.surface(Rgb::WHITE);
+                    Mesh::new(
+                        PrimitiveTopology::TriangleList,
+                        RenderAssetUsages::default(),
+                    )
+                    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, surface.positions)
+                    .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, surface.normals)
+                    .with_inserted_indices(Indices::U32(surface.indices.concat()))
+                }
             };
             let color = Color::srgb(part.color.red, part.color.green, part.color.blue);
             commands.spawn((

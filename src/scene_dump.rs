@@ -38,6 +38,12 @@ struct ObjectDump<'a> {
     #[serde(flatten)]
     pose: PoseDump,
     mass: f32,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    friction: Option<f32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    restitution: Option<f32>,
+    #[serde(rename = "linearVelocity", skip_serializing_if = "Option::is_none")]
+    velocity: Option<[f32; 3]>,
     descriptions: Vec<DescriptionDump<'a>>,
     parts: Vec<PartDump>,
 }
@@ -74,9 +80,33 @@ enum ShapeDump {
     Cylinder {
         radius: f32,
         yspan: f32,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        sides: Option<u32>,
     },
     Sphere {
         radius: f32,
+    },
+    Frustum {
+        #[serde(rename = "radiusTop")]
+        radius_top: f32,
+        #[serde(rename = "radiusBottom")]
+        radius_bottom: f32,
+        zspan: f32,
+        sides: u32,
+    },
+    Ring {
+        #[serde(rename = "radiusOuter")]
+        radius_outer: f32,
+        #[serde(rename = "radiusInner")]
+        radius_inner: f32,
+        zspan: f32,
+        sides: u32,
+    },
+    Custom {
+        file: String,
+        scale: f32,
+        triangles: usize,
+        solids: usize,
     },
     Box {
         #[serde(flatten)]
@@ -117,6 +147,9 @@ impl<'a> From<&'a Assembly> for SceneDump<'a> {
                         JointKind::Ball => ("ball", None),
                         JointKind::Fixed => ("fixed", None),
                         JointKind::Slider { min, max, .. } => ("slider", Some([min, max])),
+                        JointKind::Shears { min, max } => {
+                            ("shears", Some([min.to_degrees(), max.to_degrees()]))
+                        }
                         JointKind::Hinge { min, max, .. } => {
                             ("hinge", Some([min.to_degrees(), max.to_degrees()]))
                         }
@@ -144,6 +177,10 @@ impl<'a> From<&'a ObjectSpec> for ObjectDump<'a> {
                 .into_iter()
                 .map(|(name, value)| DescriptionDump { name, value })
                 .collect(),
+            friction: spec.dynamics.friction,
+            restitution: spec.dynamics.restitution,
+            velocity: (spec.dynamics.velocity != Vec3::ZERO)
+                .then(|| spec.dynamics.velocity.to_array()),
             parts: spec
                 .shape
                 .simple_parts()
@@ -170,8 +207,73 @@ fn dump_part(part: Part) -> Option<PartDump> {
             radius,
             yspan,
             color,
-        } => (ShapeDump::Cylinder { radius, yspan }, color),
+        } => {
+            let sides = None;
+            (
+                ShapeDump::Cylinder {
+                    radius,
+                    yspan,
+                    sides,
+                },
+                color,
+            )
+        }
+        Shape::Prism {
+            radius,
+            yspan,
+            sides,
+            color,
+        } => {
+            let sides = Some(sides);
+            (
+                ShapeDump::Cylinder {
+                    radius,
+                    yspan,
+                    sides,
+                },
+                color,
+            )
+        }
         Shape::Sphere { radius, color } => (ShapeDump::Sphere { radius }, color),
+        Shape::Frustum {
+            radius_top,
+            radius_bottom,
+            zspan,
+            sides,
+            color,
+        } => (
+            ShapeDump::Frustum {
+                radius_top,
+                radius_bottom,
+                zspan,
+                sides,
+            },
+            color,
+        ),
+        Shape::Ring {
+            radius_outer,
+            radius_inner,
+            zspan,
+            sides,
+            color,
+        } => (
+            ShapeDump::Ring {
+                radius_outer,
+                radius_inner,
+                zspan,
+                sides,
+            },
+            color,
+        ),
+        Shape::Mesh { mesh, color } => (
+            ShapeDump::Custom {
+                file: mesh.file().to_owned(),
+                scale: mesh.scale(),
+                triangles: mesh.surface().triangles().len(),
+                solids: mesh.solids().len(),
+            },
+            color,
+        ),
         Shape::Box {
             span,
             thickness,

@@ -28,7 +28,7 @@ static CONTENTS: [Dir; WORKING_FOLDERS.len()] = [
 ];
 
 /// The endings of their files; what else a script may have left there is not shipped.
-const ENDINGS: [&str; 5] = ["xml", "xsd", "m", "ron", "py"];
+const ENDINGS: [&str; 6] = ["xml", "xsd", "stl", "m", "ron", "py"];
 
 macro_rules! asset {
     ($path:literal) => {

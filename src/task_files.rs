@@ -158,6 +158,7 @@ mod tests {
     fn a_saved_scene_is_the_same_when_it_is_loaded() {
         let folder = TestFolder::new("task-files-saved");
         let path = folder.join("saved.xml");
+        std::fs::copy("tablesetup/cup.stl", folder.join("cup.stl")).unwrap();
         for file in task_files(Path::new(TASK_FOLDER)) {
             let mut app = headless_app();
             app.world_mut()

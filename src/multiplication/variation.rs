@@ -256,6 +256,10 @@ fn replace(shape: &mut Shape, old: Rgb, new: Rgb) {
         | Shape::Cylinder { color, .. }
         | Shape::Sphere { color, .. }
         | Shape::Box { color, .. }
+        | Shape::Prism { color, .. }
+        | Shape::Frustum { color, .. }
+        | Shape::Ring { color, .. }
+        | Shape::Mesh { color, .. }
         | Shape::Link { color, .. } => put(color),
         Shape::Lid {
             color,

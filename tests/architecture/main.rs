@@ -11,7 +11,8 @@ use serde_json::Value;
 /// What each of our crates may depend on of ours, and whether it may name Rapier and enable what draws or opens windows.
 const RULES: [Rule; 19] = [
     Rule::new("tabletop_core", &[]),
-    Rule::new("tabletop_xml", &["tabletop_core"]),
+    Rule::new("tabletop_mesh", &["tabletop_core"]),
+    Rule::new("tabletop_xml", &["tabletop_core", "tabletop_mesh"]),
     Rule::new("tabletop_history", &["tabletop_core"]),
     Rule::new("tabletop_physics", &["tabletop_core", "tabletop_history"]).with_rapier(),
     Rule::new(

@@ -182,6 +182,7 @@ fn hand_command(random: &mut Random) -> HandCommand {
         },
         9 => HandCommand::Release(hand),
         10 => HandCommand::Destroy(hand),
+        11 => HandCommand::Cut(hand),
         _ => HandCommand::Select(hand),
     }
 }
@@ -249,6 +250,7 @@ fn kind(command: &SimCommand) -> &'static str {
         SimCommand::Mechanism(MechanismCommand::PointTo { .. }) => "PointTo",
         SimCommand::Mechanism(MechanismCommand::Fasten { .. }) => "Fasten",
         SimCommand::Mechanism(MechanismCommand::Loosen { .. }) => "Loosen",
+        SimCommand::Hand(HandCommand::Cut(_)) => "Cut",
         SimCommand::Robot(RobotCommand::Show(_)) => "Show",
         SimCommand::Robot(RobotCommand::Drive(_)) => "Drive",
         SimCommand::Robot(RobotCommand::ReachTo { .. }) => "ReachTo",

@@ -7,6 +7,7 @@ mod coverage;
 mod edge_table;
 mod face;
 mod kept;
+mod polyhedra;
 mod quadric;
 mod resolve;
 mod samples;
@@ -24,6 +25,7 @@ use self::{
     band::{Band, Frame},
     face::ROWS,
     kept::{KeptBand, KeptBands},
+    polyhedra::Polyhedra,
     resolve::Pixels,
     transparent::TransparentSpheres,
     visible::VisibleSurfaces,
@@ -43,6 +45,7 @@ const ROWS_IN_TASK: usize = 2 * ROWS;
 /// In an app, Bevy's compute threads help.
 #[derive(Clone, Debug, Default)]
 pub struct Rasterizer {
+    polyhedra: Polyhedra,
     visible: VisibleSurfaces,
     spheres: TransparentSpheres,
     backdrop: Backdrop,
@@ -52,10 +55,11 @@ pub struct Rasterizer {
 
 impl Rasterizer {
     /// Draws what the camera sees. Of surfaces that are equally near, one of the first kind is seen (cuboids are before
-    /// cylinders and balls, and these before figures), and of those the first in the scene.
+    /// cylinders and balls, these before figures, and polyhedra are last), and of those the first in the scene.
     pub fn draw(&mut self, scene: &Scene, camera: &Camera, picture: &mut Picture) {
         let view = PinholeView::of(camera);
-        self.visible.project(scene, &view);
+        self.polyhedra.find(&scene.solids);
+        self.visible.project(scene, self.polyhedra.figures(), &view);
         self.spheres.project(&scene.markers, &view);
         picture.resize(camera.width, camera.height);
         if picture.depth.is_empty() {

@@ -54,6 +54,7 @@ fn block(id: &str, location: Vec3, shape: Shape) -> ObjectSpec {
         pose: Pose::at(location),
         mass: 1.0,
         shape,
+        dynamics: Default::default(),
         descriptions: Vec::new(),
     }
 }

@@ -62,6 +62,7 @@ impl Bounds {
                 let across = (Vec3::ONE - axis * axis).max(Vec3::ZERO).map(f32::sqrt);
                 Self::around(at.location, axis.abs() * yspan / 2.0 + across * radius)
             }
+            Solid::Polyhedron(polyhedron) => Self::of_polyhedron(polyhedron, at),
         }
     }
 

@@ -68,7 +68,13 @@ impl Triangles {
 }
 
 /// Where a ray enters a triangle through its front (Möller and Trumbore).
-fn enter_triangle(origin: Vec3, direction: Vec3, a: Vec3, b: Vec3, c: Vec3) -> Option<f32> {
+pub(crate) fn enter_triangle(
+    origin: Vec3,
+    direction: Vec3,
+    a: Vec3,
+    b: Vec3,
+    c: Vec3,
+) -> Option<f32> {
     let (ab, ac) = (b - a, c - a);
     let across = direction.cross(ac);
     let det = ab.dot(across);

@@ -35,6 +35,14 @@ pub enum JointKind {
     },
     /// The frames coincide, and nothing moves.
     Fixed,
+    /// The second frame turns about X of the first, and springs back to the greatest angle. A link of a chain that both objects
+    /// touch is cut.
+    Shears {
+        /// Angle when they are shut, in radians.
+        min: f32,
+        /// Angle when they are open, in radians.
+        max: f32,
+    },
 }
 
 /// A connection between two objects.

@@ -32,6 +32,8 @@ pub enum JointMotion {
     Slide,
     /// It turns about X of the joint.
     Turn,
+    /// It turns about X of the joint, springs open, and cuts links of chains.
+    Shear,
 }
 
 impl JointedSpec {
@@ -39,7 +41,7 @@ impl JointedSpec {
     pub fn moved(&self, displacement: f32) -> Pose {
         match self.motion {
             JointMotion::Slide => Pose::at(Vec3::NEG_X * displacement),
-            JointMotion::Turn => {
+            JointMotion::Turn | JointMotion::Shear => {
                 Pose::new(Vec3::ZERO, Quat::from_rotation_x(displacement.to_radians()))
             }
         }
@@ -51,7 +53,7 @@ impl JointedSpec {
         let moved = first.inverse() * second;
         let displacement = match self.motion {
             JointMotion::Slide => -moved.location.x,
-            JointMotion::Turn => {
+            JointMotion::Turn | JointMotion::Shear => {
                 let angle = 2.0 * libm::atan2f(moved.rotation.x, moved.rotation.w).to_degrees();
                 // The rotation and its negative turn to the same.
                 angle - 360.0 * (angle / 360.0).round()
@@ -90,6 +92,10 @@ impl JointedSpec {
                 max: max.to_radians(),
                 damping,
             },
+            JointMotion::Shear => JointKind::Shears {
+                min: min.to_radians(),
+                max: max.to_radians(),
+            },
         }
     }
 }
@@ -127,7 +133,7 @@ mod tests {
 
     #[test]
     fn displacements_are_found_again() {
-        for motion in [JointMotion::Slide, JointMotion::Turn] {
+        for motion in [JointMotion::Slide, JointMotion::Turn, JointMotion::Shear] {
             for init in [-160.0, -2.5, 0.0, 0.1, 90.0] {
                 let jointed = jointed(motion, init);
                 let found = jointed.displacement(jointed.placed().map(|object| object.pose));

@@ -114,6 +114,10 @@ impl ObjectSpec {
             | Shape::Cylinder { .. }
             | Shape::Sphere { .. }
             | Shape::Box { .. }
+            | Shape::Prism { .. }
+            | Shape::Frustum { .. }
+            | Shape::Ring { .. }
+            | Shape::Mesh { .. }
             | Shape::Link { .. }
             | Shape::Lid { .. }
             | Shape::BondPoint(_) => None,
@@ -195,6 +199,10 @@ fn control_among<'a>(parts: &'a mut [Part], id: &str) -> Option<&'a mut Control>
         | Shape::Cylinder { .. }
         | Shape::Sphere { .. }
         | Shape::Box { .. }
+        | Shape::Prism { .. }
+        | Shape::Frustum { .. }
+        | Shape::Ring { .. }
+        | Shape::Mesh { .. }
         | Shape::Link { .. }
         | Shape::Lid { .. }
         | Shape::BondPoint(_) => None,

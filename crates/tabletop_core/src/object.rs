@@ -24,8 +24,30 @@ pub struct ObjectSpec {
     pub mass: f32,
     /// Its geometry and colours.
     pub shape: Shape,
+    /// How it slides, bounces and begins to move.
+    #[serde(default, skip_serializing_if = "Dynamics::is_default")]
+    pub dynamics: Dynamics,
     /// Symbolic properties for recordings, as name and value, in the order of the file.
     pub descriptions: Vec<(String, String)>,
+}
+
+/// How an object slides, bounces and begins to move, where that is not as for all objects.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, Reflect)]
+#[serde(default)]
+pub struct Dynamics {
+    /// Coulomb friction of its surface. Two surfaces in contact have the product of theirs.
+    pub friction: Option<f32>,
+    /// The share of the speed of an impact with which it bounces back, 0 to 1. Two surfaces in contact have the mean of theirs.
+    pub restitution: Option<f32>,
+    /// Its velocity when it appears, in units/s.
+    pub velocity: Vec3,
+}
+
+impl Dynamics {
+    /// Whether it is as for all objects, and at rest.
+    pub fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 impl ObjectSpec {
@@ -36,6 +58,7 @@ impl ObjectSpec {
             pose,
             mass,
             shape,
+            dynamics: Dynamics::default(),
             descriptions: Vec::new(),
         }
     }
@@ -48,7 +71,11 @@ impl ObjectSpec {
     /// The properties that a recording lists: `shape` first, then the others in the order of the file.
     /// A description named `shape` replaces the shape's own name.
     pub fn all_descriptions(&self) -> Vec<(&str, &str)> {
-        let mut all = vec![("shape", self.shape.name())];
+        let shape = match &self.shape {
+            Shape::Mesh { mesh, .. } => mesh.name(),
+            shape => shape.name(),
+        };
+        let mut all = vec![("shape", shape)];
         for (name, value) in &self.descriptions {
             match name.as_str() {
                 "shape" => all[0].1 = value,
@@ -124,6 +151,7 @@ mod tests {
                 radius: 1.0,
                 color: Rgb::GRAY,
             },
+            dynamics: Dynamics::default(),
             descriptions: vec![("use".into(), "toy".into())],
         };
         assert_eq!(

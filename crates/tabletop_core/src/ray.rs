@@ -12,30 +12,31 @@ impl Primitive {
         let solid_from_world = world_from_solid.inverse();
         let origin = solid_from_world * ray.origin;
         let direction = solid_from_world.rotation * *ray.direction;
-        let (enter, leave) = self.solid.passage(origin, direction)?;
-        (enter <= leave && enter >= 0.0).then_some(enter)
+        self.solid.entry(origin, direction)
     }
 }
 
 impl Solid {
-    /// Where a straight line enters the solid and where it leaves it, as factors of its direction.
-    /// It misses the solid if there is none, or if it leaves before it enters.
-    fn passage(self, origin: Vec3, direction: Vec3) -> Option<(f32, f32)> {
-        match self {
+    /// Where a ray enters the solid, as a factor of its direction.
+    fn entry(self, origin: Vec3, direction: Vec3) -> Option<f32> {
+        // Where the straight line enters, and where it leaves: it misses the solid if it leaves before it enters.
+        let (enter, leave) = match self {
             Self::Cuboid(span) => {
                 let half = span / 2.0;
                 let x = between(origin.x, direction.x, half.x)?;
                 let y = between(origin.y, direction.y, half.y)?;
                 let z = between(origin.z, direction.z, half.z)?;
-                Some(both(both(x, y), z))
+                both(both(x, y), z)
             }
             Self::Cylinder { radius, yspan } => {
                 let side = within(origin.with_y(0.0), direction.with_y(0.0), radius)?;
                 let caps = between(origin.y, direction.y, yspan / 2.0)?;
-                Some(both(side, caps))
+                both(side, caps)
             }
-            Self::Ball(radius) => within(origin, direction, radius),
-        }
+            Self::Ball(radius) => within(origin, direction, radius)?,
+            Self::Polyhedron(polyhedron) => return polyhedron.entry(origin, direction),
+        };
+        (enter <= leave && enter >= 0.0).then_some(enter)
     }
 }
 

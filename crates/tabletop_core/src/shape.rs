@@ -3,7 +3,9 @@
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{BondEnd, BondPoint, Control, ControlKind, Pose, Rgb};
+use crate::{
+    BondEnd, BondPoint, Control, ControlKind, MOST_SIDES, MeshSpec, Polyhedron, Pose, Rgb, turn_about,
+};
 
 /// The shape of an object or of a part of one (report section 6.2). Sizes are full extents in units of 10 cm;
 /// the shape's origin is its centre, for a composite its reference point.
@@ -39,6 +41,50 @@ pub enum Shape {
         span: Vec3,
         /// Thickness of floor and walls.
         thickness: f32,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// A cylinder along Y with flat sides; its first corner is towards X.
+    Prism {
+        /// Radius of the corners.
+        radius: f32,
+        /// Length.
+        yspan: f32,
+        /// How many flat sides, 3 or more.
+        sides: u32,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// A prism, or a part of a pyramid, along Z; its first corner is towards X.
+    Frustum {
+        /// Radius of the corners of its end towards +Z.
+        radius_top: f32,
+        /// Radius of the corners of its end towards -Z.
+        radius_bottom: f32,
+        /// Length.
+        zspan: f32,
+        /// How many flat sides, 3 or more.
+        sides: u32,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// A ring about Z.
+    Ring {
+        /// Radius of its outer corners; the first one is towards X.
+        radius_outer: f32,
+        /// Radius of its hole.
+        radius_inner: f32,
+        /// Height.
+        zspan: f32,
+        /// How many flat sides, 3 or more.
+        sides: u32,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// What a file describes by triangles.
+    Mesh {
+        /// Its surface, and the solids that fill it.
+        mesh: MeshSpec,
         /// Its colour.
         color: Rgb,
     },
@@ -101,7 +147,7 @@ impl Part {
     }
 }
 
-/// A convex solid: what every shape is made of in the end.
+/// A solid: what every shape is made of in the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Solid {
     /// A cuboid of these full extents.
@@ -115,9 +161,11 @@ pub enum Solid {
     },
     /// A ball of this radius.
     Ball(f32),
+    /// A polyhedron, which is convex but for the surfaces of rings and meshes that [are drawn](Shape::drawn).
+    Polyhedron(Polyhedron),
 }
 
-/// One convex solid of a shape.
+/// One solid of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Primitive {
     /// Pose of its centre in the frame of the shape.
@@ -133,9 +181,12 @@ impl Shape {
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Block { .. } | Self::Link { .. } => "block",
-            Self::Cylinder { .. } => "cylinder",
+            Self::Cylinder { .. } | Self::Prism { .. } => "cylinder",
             Self::Sphere { .. } => "sphere",
             Self::Box { .. } => "box",
+            Self::Frustum { .. } => "frustum",
+            Self::Ring { .. } => "ring",
+            Self::Mesh { .. } => "custom",
             Self::Composite { .. } => "composite",
             Self::Lid { .. } => "lid",
             Self::Control(control) => match control.kind {
@@ -151,7 +202,7 @@ impl Shape {
     }
 
     /// The simple shapes that are to be seen of it, in the order of the task file, each with its pose in the frame of this shape:
-    /// blocks, cylinders, spheres, boxes and links.
+    /// all but composites and lids.
     pub fn simple_parts(&self) -> Vec<Part> {
         self.simple_parts_with(Control::seen)
     }
@@ -204,6 +255,10 @@ impl Shape {
                 | Shape::Cylinder { .. }
                 | Shape::Sphere { .. }
                 | Shape::Box { .. }
+                | Shape::Prism { .. }
+                | Shape::Frustum { .. }
+                | Shape::Ring { .. }
+                | Shape::Mesh { .. }
                 | Shape::Link { .. } => add(pose, shape.clone()),
             }
         }
@@ -219,6 +274,10 @@ impl Shape {
             | Self::Cylinder { color, .. }
             | Self::Sphere { color, .. }
             | Self::Box { color, .. }
+            | Self::Prism { color, .. }
+            | Self::Frustum { color, .. }
+            | Self::Ring { color, .. }
+            | Self::Mesh { color, .. }
             | Self::Link { color, .. } => *color = new,
             Self::Lid {
                 color,
@@ -233,51 +292,116 @@ impl Shape {
         }
     }
 
-    /// The solids to be drawn.
+    /// The solids to be drawn. Rings and meshes are polyhedra that are not convex.
     pub fn drawn(&self) -> Vec<Primitive> {
-        primitives(self.simple_parts(), |padding| padding)
+        primitives(self.simple_parts(), Purpose::Drawing)
     }
 
-    /// The solids that other bodies touch.
+    /// Convex solids that fill what is drawn; a mesh nearly.
+    pub fn filled(&self) -> Vec<Primitive> {
+        primitives(self.simple_parts(), Purpose::Filling)
+    }
+
+    /// The convex solids that other bodies touch.
     pub fn colliding(&self) -> Vec<Primitive> {
-        primitives(self.simple_touched(), |_| 0.0)
+        primitives(self.simple_touched(), Purpose::Colliding)
     }
 }
 
-fn primitives(simple_parts: Vec<Part>, padding_of_link: impl Fn(f32) -> f32) -> Vec<Primitive> {
+/// What solids of a shape are for.
+#[derive(Clone, Copy)]
+enum Purpose {
+    Drawing,
+    Filling,
+    Colliding,
+}
+
+fn primitives(simple_parts: Vec<Part>, purpose: Purpose) -> Vec<Primitive> {
     let mut primitives = Vec::new();
     for part in simple_parts {
-        let mut add = |center: Vec3, solid, color| {
+        let mut add = |pose: Pose, solid, color| {
             primitives.push(Primitive {
-                pose: part.pose * Pose::at(center),
+                pose: part.pose * pose,
                 solid,
                 color,
             });
         };
+        let center = Pose::IDENTITY;
         match part.shape {
-            Shape::Block { span, color } => add(Vec3::ZERO, Solid::Cuboid(span), color),
+            Shape::Block { span, color } => add(center, Solid::Cuboid(span), color),
             Shape::Cylinder {
                 radius,
                 yspan,
                 color,
-            } => add(Vec3::ZERO, Solid::Cylinder { radius, yspan }, color),
-            Shape::Sphere { radius, color } => add(Vec3::ZERO, Solid::Ball(radius), color),
+            } => add(center, Solid::Cylinder { radius, yspan }, color),
+            Shape::Sphere { radius, color } => add(center, Solid::Ball(radius), color),
             Shape::Box {
                 span,
                 thickness,
                 color,
             } => {
                 for (center, span) in box_plates(span, thickness) {
-                    add(center, Solid::Cuboid(span), color);
+                    add(Pose::at(center), Solid::Cuboid(span), color);
                 }
             }
+            Shape::Prism {
+                radius,
+                yspan,
+                sides,
+                color,
+            } => {
+                let prism = Polyhedron::prism(radius, yspan, sides);
+                add(center, Solid::Polyhedron(prism), color);
+            }
+            Shape::Frustum {
+                radius_top,
+                radius_bottom,
+                zspan,
+                sides,
+                color,
+            } => {
+                let frustum = Polyhedron::frustum(radius_top, radius_bottom, zspan, sides);
+                add(center, Solid::Polyhedron(frustum), color);
+            }
+            Shape::Ring {
+                radius_outer,
+                radius_inner,
+                zspan,
+                sides,
+                color,
+            } => match purpose {
+                Purpose::Drawing => {
+                    let ring = Polyhedron::ring(radius_outer, radius_inner, zspan, sides);
+                    add(center, Solid::Polyhedron(ring), color);
+                }
+                Purpose::Filling | Purpose::Colliding => {
+                    let sides = sides.clamp(3, MOST_SIDES);
+                    let wedge = Polyhedron::wedge(radius_outer, radius_inner, zspan, sides);
+                    for side in 0..sides {
+                        let angle = std::f32::consts::TAU * side as f32 / sides as f32;
+                        let pose = Pose::new(Vec3::ZERO, turn_about(Vec3::Z, angle));
+                        add(pose, Solid::Polyhedron(wedge), color);
+                    }
+                }
+            },
+            Shape::Mesh { ref mesh, color } => match purpose {
+                Purpose::Drawing => add(center, Solid::Polyhedron(mesh.surface()), color),
+                Purpose::Filling | Purpose::Colliding => {
+                    for &solid in mesh.solids() {
+                        add(center, Solid::Polyhedron(solid), color);
+                    }
+                }
+            },
             Shape::Link {
                 span,
                 padding,
                 color,
             } => {
-                let ends = Vec3::Y * 2.0 * padding_of_link(padding);
-                add(Vec3::ZERO, Solid::Cuboid(span + ends), color);
+                let ends = match purpose {
+                    Purpose::Drawing | Purpose::Filling => Vec3::Y * 2.0 * padding,
+                    Purpose::Colliding => Vec3::ZERO,
+                };
+                add(center, Solid::Cuboid(span + ends), color);
             }
             Shape::Composite { .. }
             | Shape::Lid { .. }
@@ -295,6 +419,7 @@ impl Solid {
             Self::Cuboid(span) => span.element_product(),
             Self::Cylinder { radius, yspan } => PI * radius * radius * yspan,
             Self::Ball(radius) => 4.0 / 3.0 * PI * radius * radius * radius,
+            Self::Polyhedron(polyhedron) => polyhedron.volume(),
         }
     }
 }
@@ -367,6 +492,29 @@ mod tests {
         };
         assert_eq!(part.id, "inner");
         assert!((part.pose.location - Vec3::new(0.0, 1.0, 1.0)).length() < 1e-6);
+    }
+
+    #[test]
+    fn a_ring_is_drawn_as_one_and_collides_as_convex_wedges() {
+        let ring = Shape::Ring {
+            radius_outer: 1.0,
+            radius_inner: 0.5,
+            zspan: 0.4,
+            sides: 16,
+            color: Rgb::GRAY,
+        };
+        assert_eq!(ring.drawn().len(), 1);
+        assert_eq!(ring.filled(), ring.colliding());
+        let wedges = ring.colliding();
+        assert_eq!(wedges.len(), 16);
+        let volume: f32 = wedges.iter().map(|wedge| wedge.solid.volume()).sum();
+        assert!((volume / ring.drawn()[0].solid.volume() - 1.0).abs() < 1e-4);
+        let axis = Ray3d::new(Vec3::Z * 5.0, Dir3::NEG_Z);
+        assert!(
+            ring.drawn()
+                .iter()
+                .all(|solid| solid.distance_along(axis, Pose::IDENTITY).is_none())
+        );
     }
 
     #[test]

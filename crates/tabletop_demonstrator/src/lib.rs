@@ -22,6 +22,7 @@
 //!     pose: Pose::at(Vec3::new(0.0, 0.0, 0.5)),
 //!     mass: 1.0,
 //!     shape: Shape::Block { span: Vec3::ONE, color: Rgb::GRAY },
+//!     dynamics: Default::default(),
 //!     descriptions: vec![],
 //! };
 //! let scene = SceneSpec { items: vec![SceneItem::Object(block)], ..default() };
@@ -44,6 +45,7 @@ mod carry;
 mod grasp;
 mod obstacles;
 mod rules;
+mod shears;
 
 pub use grasp::CarryTarget;
 

@@ -6,7 +6,7 @@
 mod body;
 mod joint;
 mod mass;
-mod prism;
+mod polytope;
 mod reshape;
 
 pub use body::collider;

@@ -20,6 +20,7 @@
 //!         pose: Pose::IDENTITY,
 //!         mass: 1.0,
 //!         shape: Shape::Sphere { radius: 1.0, color: Rgb::GRAY },
+//!         dynamics: Default::default(),
 //!         descriptions: vec![],
 //!     })
 //!     .id();

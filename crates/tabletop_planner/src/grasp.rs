@@ -112,6 +112,25 @@ fn yaws(solids: &[Convex]) -> Vec<f32> {
             let level: Vec<_> = axes.into_iter().filter(|axis| level(*axis)).collect();
             level.into_iter().map(angle).collect()
         }
+        Solid::Polyhedron(polyhedron) => match polyhedron.axis() {
+            Some(axis) => match first.pose.rotation * axis {
+                axis if level(axis) => vec![angle(axis) + FRAC_PI_2],
+                _ => around(8),
+            },
+            None => {
+                let normals = polyhedron
+                    .faces()
+                    .filter_map(|[a, b, c]| (b - a).cross(c - a).try_normalize());
+                let mut yaws: Vec<_> = normals
+                    .map(|normal| first.pose.rotation * normal)
+                    .filter(|normal| level(*normal))
+                    .map(|normal| angle(normal).rem_euclid(PI))
+                    .collect();
+                yaws.sort_by(f32::total_cmp);
+                yaws.dedup_by(|a, b| (*a - *b).abs() < 1e-2);
+                yaws
+            }
+        },
     }
 }
 

@@ -133,6 +133,7 @@ impl StepState {
                 hand,
                 guest: guest.clone(),
             }),
+            Step::Cut => SimCommand::Hand(HandCommand::Cut(hand)),
             Step::Start => SimCommand::Recording(RecordingCommand::Start),
             Step::Finish => SimCommand::Recording(RecordingCommand::Finish),
             Step::Undo => SimCommand::History(HistoryCommand::Undo),
@@ -260,7 +261,7 @@ mod tests {
     use crate::{Outcome, test_stage::Stage};
 
     /// The steps that give each kind of command.
-    const STEPS: [&str; 23] = [
+    const STEPS: [&str; 24] = [
         "Start",
         "Finish",
         "Pause(true)",
@@ -280,6 +281,7 @@ mod tests {
         "PointTo(\"low\")",
         "Fasten(\"low\")",
         "Loosen(\"low\")",
+        "Cut",
         "Robot(Show)",
         "Robot(Close(Left))",
         "Robot(ReachTo(arm: Left, at: (0, 0, 1)))",
@@ -310,10 +312,11 @@ mod tests {
             SimCommand::Mechanism(MechanismCommand::PointTo { .. }) => 16,
             SimCommand::Mechanism(MechanismCommand::Fasten { .. }) => 17,
             SimCommand::Mechanism(MechanismCommand::Loosen { .. }) => 18,
-            SimCommand::Robot(RobotCommand::Show(_)) => 19,
-            SimCommand::Robot(RobotCommand::Drive(_)) => 20,
-            SimCommand::Robot(RobotCommand::ReachTo { .. }) => 21,
-            SimCommand::Robot(RobotCommand::ShowFace(_)) => 22,
+            SimCommand::Robot(RobotCommand::Show(_)) => 20,
+            SimCommand::Robot(RobotCommand::Drive(_)) => 21,
+            SimCommand::Robot(RobotCommand::ReachTo { .. }) => 22,
+            SimCommand::Robot(RobotCommand::ShowFace(_)) => 23,
+            SimCommand::Hand(HandCommand::Cut(_)) => 19,
             SimCommand::Robot(RobotCommand::ShowMarkers(_)) => return None,
         };
         Some(STEPS[place])

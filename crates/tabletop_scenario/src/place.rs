@@ -121,6 +121,7 @@ mod tests {
                     span: Vec3::ONE,
                     color: Rgb::GRAY,
                 },
+                dynamics: Default::default(),
                 descriptions: Vec::new(),
             })
         };

@@ -68,6 +68,8 @@ pub enum Step {
     Fasten(String),
     /// Loosen the guest point or object of this id by a step.
     Loosen(String),
+    /// Close the scissors that are held by one of their blades.
+    Cut,
     /// Wait so many seconds.
     Wait(f32),
     /// Wait until everything is at rest, at most so many seconds.
@@ -137,6 +139,7 @@ impl Step {
             | Self::PointTo(_)
             | Self::Fasten(_)
             | Self::Loosen(_)
+            | Self::Cut
             | Self::Start
             | Self::Finish
             | Self::Undo
@@ -186,6 +189,7 @@ impl Step {
             | Self::PointTo(_)
             | Self::Fasten(_)
             | Self::Loosen(_)
+            | Self::Cut
             | Self::Start
             | Self::Finish
             | Self::Undo
@@ -209,6 +213,7 @@ impl Step {
             | Self::PointTo(_)
             | Self::Fasten(_)
             | Self::Loosen(_)
+            | Self::Cut
             | Self::WaitUntilThere(_) => true,
             Self::Load { .. }
             | Self::Clear

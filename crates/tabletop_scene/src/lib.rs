@@ -17,6 +17,7 @@
 //!     pose: Pose::at(Vec3::new(0.0, 0.0, 5.0)),
 //!     mass: 1.0,
 //!     shape: Shape::Block { span: Vec3::ONE, color: Rgb::GRAY },
+//!     dynamics: Default::default(),
 //!     descriptions: vec![],
 //! };
 //! let scene = SceneSpec { items: vec![SceneItem::Object(block)], ..default() };
@@ -32,6 +33,7 @@
 
 mod assembly;
 mod compound;
+mod cutting;
 mod ids;
 mod lifecycle;
 mod present;
@@ -68,7 +70,9 @@ impl Plugin for ScenePlugin {
                 FixedUpdate,
                 (
                     lifecycle::carry_out_commands.in_set(CommandSystems::Scene),
-                    lifecycle::remove_fallen.in_set(SimSystems::Sense),
+                    (cutting::cut_links, lifecycle::remove_fallen)
+                        .chain()
+                        .in_set(SimSystems::Sense),
                 )
                     .in_set(RestingSystems),
             )

@@ -208,6 +208,7 @@ mod tests {
                 radius: 0.5,
                 color: Rgb::GRAY,
             },
+            dynamics: Default::default(),
             descriptions: Vec::new(),
         }
     }

@@ -88,11 +88,12 @@ impl Inventory<'_> {
     fn add_object(&mut self, object: Entity) {
         if let (Some(spec), Some(pose)) = (self.spec(object), self.pose(object)) {
             let (shape, unsaid) = sayable(&spec.shape);
-            let spec = ObjectSpec {
+            let mut spec = ObjectSpec {
                 pose,
                 shape,
                 ..spec.clone()
             };
+            spec.dynamics.velocity = Vec3::ZERO;
             self.add(SceneItem::Object(spec), &[object]);
             self.present.unsaid.extend(unsaid.map(str::to_owned));
         }
@@ -133,6 +134,7 @@ impl Inventory<'_> {
             .iter()
             .filter_map(|&object| self.spec(object).map(|spec| spec.id.clone()))
             .collect();
+        self.note_meshes(objects);
         let base = |id: &str| id.split('#').next().unwrap_or_default().to_owned();
         let loads = [with_ids(&item, base), with_ids(&item, with_marks_of_ids)].map(|item| {
             let mut allocator = self.ids.clone();
@@ -202,6 +204,25 @@ impl Inventory<'_> {
         }
     }
 
+    fn note_meshes(&mut self, objects: &[Entity]) {
+        let shapes = objects
+            .iter()
+            .filter_map(|&object| Some(self.spec(object)?.shape.simple_parts()));
+        let files: Vec<_> = shapes
+            .flatten()
+            .filter_map(|part| match part.shape {
+                Shape::Mesh { mesh, .. } => Some(mesh.file().to_owned()),
+                _ => None,
+            })
+            .collect();
+        let unsaid = |file| {
+            format!(
+                "a task file only names meshes: `{file}` must be there, seen from the saved file's folder"
+            )
+        };
+        self.present.unsaid.extend(files.into_iter().map(unsaid));
+    }
+
     fn note_renamed(&mut self) {
         if !self.renamed.is_empty() {
             let renamed = self.renamed.join(", ");
@@ -229,6 +250,10 @@ fn sayable(shape: &Shape) -> (Shape, Option<&'static str>) {
         | Shape::Cylinder { .. }
         | Shape::Sphere { .. }
         | Shape::Box { .. }
+        | Shape::Prism { .. }
+        | Shape::Frustum { .. }
+        | Shape::Ring { .. }
+        | Shape::Mesh { .. }
         | Shape::Composite { .. }
         | Shape::Control(_)
         | Shape::BondPoint(_) => (shape.clone(), None),
@@ -401,7 +426,7 @@ mod tests {
 
     #[test]
     fn jointed_objects_are_saved_where_they_are() {
-        for motion in [JointMotion::Slide, JointMotion::Turn] {
+        for motion in [JointMotion::Slide, JointMotion::Turn, JointMotion::Shear] {
             let color = Rgb::GRAY;
             let ball = |id: &str, pose, mass| {
                 ObjectSpec::new(id, pose, mass, Shape::Sphere { radius: 0.5, color })

@@ -69,6 +69,7 @@ aux.exit = 1;
             span: Vec3::ONE,
             color: Rgb::GRAY,
         },
+        dynamics: Default::default(),
         descriptions: vec![("kind".into(), "toy".into())],
     };
     stage.app.world_mut().spawn((Transform::from(pose), spec));
@@ -122,6 +123,7 @@ end
             span: Vec3::new(1.0, 1.0, 0.2),
             color: Rgb::GRAY,
         },
+        dynamics: Default::default(),
         descriptions: Vec::new(),
     };
     stage.app.world_mut().spawn((Transform::from(pose), spec));

@@ -1,7 +1,7 @@
 //! How far convex solids are from each other (Gilbert, Johnson and Keerthi's algorithm).
 
 use bevy::math::{Vec2, Vec3, Vec3Swizzles as _};
-use tabletop_core::{Pose, Primitive, Solid};
+use tabletop_core::{Bounds, Pose, Primitive, Solid};
 
 /// A convex solid at its place, in the table's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +31,7 @@ impl Convex {
                 Vec3::new(across.x, yspan / 2.0 * d.y.signum(), across.y)
             }
             Solid::Ball(radius) => d.normalize_or_zero() * radius,
+            Solid::Polyhedron(polyhedron) => polyhedron.farthest(d),
         };
         self.pose * point
     }
@@ -41,6 +42,7 @@ impl Convex {
             Solid::Cuboid(span) => span.length() / 2.0,
             Solid::Cylinder { radius, yspan } => radius.hypot(yspan / 2.0),
             Solid::Ball(radius) => radius,
+            Solid::Polyhedron(polyhedron) => polyhedron.radius(),
         }
     }
 
@@ -59,6 +61,14 @@ impl Convex {
                 yspan: less(yspan),
             },
             Solid::Ball(radius) => Solid::Ball(less(2.0 * radius) / 2.0),
+            Solid::Polyhedron(polyhedron) => {
+                let Bounds { low, high } = polyhedron.bounds();
+                let (middle, span) = (low.midpoint(high), high - low);
+                let factors = span.map(less) / span.max(Vec3::splat(f32::MIN_POSITIVE));
+                // About its middle, not about the origin of its frame.
+                self.pose.location += self.pose.rotation * (middle - middle * factors);
+                Solid::Polyhedron(polyhedron.scaled(factors.max(Vec3::splat(0.1))))
+            }
         };
         self
     }
@@ -137,6 +147,9 @@ impl Convex {
             Solid::Ball(radius) => {
                 let (b, c) = (origin.dot(ray), origin.length_squared() - radius * radius);
                 return c <= 0.0 || (b < 0.0 && b * b >= c * ray.length_squared());
+            }
+            Solid::Polyhedron(polyhedron) => {
+                return polyhedron.contains(origin) || polyhedron.entry(origin, ray).is_some();
             }
         };
         let first = ranges.iter().map(|range| range.0).fold(0.0, f32::max);

@@ -213,11 +213,33 @@ fn spec_of(id: &str, properties: &[(String, String)]) -> ObjectSpec {
     let radius = number("radius").unwrap_or(0.5);
     // The original calls a ball a cylinder, and a cylinder's length `zspan`.
     let yspan = number("yspan").or(number("zspan"));
+    let sides = known.get("sides").and_then(|sides| sides.parse().ok());
+    let sides = sides.unwrap_or(32);
     let shape = match (known.get("shape").copied().unwrap_or_default(), yspan) {
         ("block", _) => Shape::Block { span, color },
         ("box", _) => Shape::Box {
             span,
             thickness,
+            color,
+        },
+        ("cylinder", Some(yspan)) if known.contains_key("sides") => Shape::Prism {
+            radius,
+            yspan,
+            sides,
+            color,
+        },
+        ("frustum", _) => Shape::Frustum {
+            radius_top: length("radiusTop"),
+            radius_bottom: length("radiusBottom"),
+            zspan: span.z,
+            sides,
+            color,
+        },
+        ("ring", _) => Shape::Ring {
+            radius_outer: length("radiusOuter"),
+            radius_inner: number("radiusInner").unwrap_or(0.5),
+            zspan: span.z,
+            sides,
             color,
         },
         ("cylinder", Some(yspan)) => Shape::Cylinder {
@@ -241,17 +263,28 @@ fn spec_of(id: &str, properties: &[(String, String)]) -> ObjectSpec {
     };
     let mass = number("mass").unwrap_or(1.0);
     let mut spec = ObjectSpec::new(id, Pose::IDENTITY, mass, shape);
+    spec.dynamics.friction = number("friction");
+    spec.dynamics.restitution = number("restitution");
     let geometry = [
         "xspan",
         "yspan",
         "zspan",
         "radius",
+        "radiusTop",
+        "radiusBottom",
+        "radiusOuter",
+        "radiusInner",
+        "sides",
+        "file",
+        "scale",
         "color",
         "thickness",
         "handleXspan",
         "handleYspan",
         "handleZspan",
         "handleThickness",
+        "friction",
+        "restitution",
         "mass",
     ];
     spec.descriptions = properties

@@ -58,7 +58,30 @@ fn lengths(shape: &Shape) -> Vec<(&'static str, f32)> {
         | Shape::Lid { span, .. } => spans(*span),
         Shape::Cylinder { radius, yspan, .. } => vec![("radius", *radius), ("yspan", *yspan)],
         Shape::Sphere { radius, .. } => vec![("radius", *radius)],
-        Shape::Composite { .. } | Shape::Control(_) | Shape::BondPoint(_) => spans(around(shape)),
+        Shape::Prism { radius, yspan, .. } => vec![("radius", *radius), ("yspan", *yspan)],
+        Shape::Frustum {
+            radius_top,
+            radius_bottom,
+            zspan,
+            ..
+        } => vec![
+            ("radiusTop", *radius_top),
+            ("radiusBottom", *radius_bottom),
+            ("zspan", *zspan),
+        ],
+        Shape::Ring {
+            radius_outer,
+            radius_inner,
+            zspan,
+            ..
+        } => vec![
+            ("radiusOuter", *radius_outer),
+            ("radiusInner", *radius_inner),
+            ("zspan", *zspan),
+        ],
+        Shape::Composite { .. } | Shape::Mesh { .. } | Shape::Control(_) | Shape::BondPoint(_) => {
+            spans(around(shape))
+        }
     }
 }
 

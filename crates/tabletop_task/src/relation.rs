@@ -240,9 +240,11 @@ pub(crate) fn established(
 pub(crate) fn slider<'s>(joints: &'s [JointSpec], id: &str) -> Option<(&'s JointSpec, f32)> {
     joints.iter().find_map(|joint| match joint.kind {
         JointKind::Slider { max, .. } if joint.objects[1] == id => Some((joint, max)),
-        JointKind::Slider { .. } | JointKind::Hinge { .. } | JointKind::Ball | JointKind::Fixed => {
-            None
-        }
+        JointKind::Slider { .. }
+        | JointKind::Hinge { .. }
+        | JointKind::Shears { .. }
+        | JointKind::Ball
+        | JointKind::Fixed => None,
     })
 }
 

@@ -2,7 +2,7 @@
 
 use bevy::math::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
-use tabletop_core::{Pose, Primitive, Shape, Solid};
+use tabletop_core::{Polyhedron, Pose, Primitive, Shape, Solid};
 
 /// The turns after which a shape looks the same, as to its solids and their colours: about its centre, in its own frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -181,6 +181,7 @@ fn common_axis(solids: &[Primitive], centre: Vec3) -> Option<CommonAxis> {
         let own = match solid.solid {
             Solid::Cylinder { .. } => Some(solid.pose.rotation * Vec3::Y),
             Solid::Ball(_) => (solid.pose.location - centre).try_normalize(),
+            Solid::Polyhedron(polyhedron) => Some(solid.pose.rotation * polyhedron.axis()?),
             Solid::Cuboid(_) => return None,
         };
         axis = axis.or(own);
@@ -192,6 +193,9 @@ fn common_axis(solids: &[Primitive], centre: Vec3) -> Option<CommonAxis> {
         let across = (solid.pose.location - centre).cross(axis).length();
         let is_along = match solid.solid {
             Solid::Cylinder { .. } => (solid.pose.rotation * Vec3::Y).cross(axis).length() < 1e-3,
+            Solid::Polyhedron(polyhedron) => polyhedron
+                .axis()
+                .is_some_and(|own| (solid.pose.rotation * own).cross(axis).length() < 1e-3),
             Solid::Ball(_) | Solid::Cuboid(_) => true,
         };
         across < SAME_LENGTH && is_along
@@ -291,9 +295,42 @@ fn is_like(solid: &Primitive, at: Pose, other: &Primitive) -> bool {
             },
         ) => same(a, b) && same(c, d) && (relative * Vec3::Y).cross(Vec3::Y).length() < 1e-3,
         (Solid::Ball(a), Solid::Ball(b)) => same(a, b),
-        (Solid::Cuboid(_) | Solid::Cylinder { .. } | Solid::Ball(_), _) => false,
+        (Solid::Polyhedron(a), Solid::Polyhedron(b)) => {
+            is_there && is_same_polyhedron(a, b, relative)
+        }
+        (Solid::Cuboid(_) | Solid::Cylinder { .. } | Solid::Ball(_) | Solid::Polyhedron(_), _) => {
+            false
+        }
     };
     is_there && is_same_solid && solid.color == other.color
+}
+
+/// Whether every corner of a turned polyhedron is where the other one has a corner, or may have one if they are round.
+fn is_same_polyhedron(turned: Polyhedron, other: Polyhedron, turn: Quat) -> bool {
+    /// To compare more corners with each other takes too long: so fine a mesh looks like itself alone.
+    const MOST: usize = 300;
+    let count = turned.corners().len();
+    if count != other.corners().len() || count > MOST {
+        return turned == other && angle_between(turn, Quat::IDENTITY) < 1e-3;
+    }
+    let has_like = |corner: Vec3, place: &dyn Fn(Vec3) -> Vec3| {
+        let is_like = |like: &Vec3| place(*like).distance(place(corner)) < SAME_LENGTH;
+        other.corners().iter().any(is_like)
+    };
+    let corners = turned.corners().iter().map(|corner| turn * *corner);
+    match (turned.axis(), other.axis()) {
+        (Some(own), Some(axis)) => {
+            let around_axis = |corner: Vec3| {
+                let height = corner.dot(axis);
+                Vec3::new(corner.cross(axis).length(), height, 0.0)
+            };
+            (turn * own).cross(axis).length() < 1e-3
+                && corners
+                    .into_iter()
+                    .all(|corner| has_like(corner, &around_axis))
+        }
+        (None, _) | (_, None) => corners.into_iter().all(|corner| has_like(corner, &|at| at)),
+    }
 }
 
 #[cfg(test)]
@@ -361,7 +398,25 @@ mod tests {
             thickness: 0.1,
             color: Rgb::RED,
         };
+        let frustum = |radius_top, sides| Shape::Frustum {
+            radius_top,
+            radius_bottom: 1.0,
+            zspan: 2.0,
+            sides,
+            color: Rgb::RED,
+        };
+        let smooth_ring = Shape::Ring {
+            radius_outer: 1.0,
+            radius_inner: 0.5,
+            zspan: 0.4,
+            sides: 32,
+            color: Rgb::RED,
+        };
         vec![
+            (frustum(0.5, 6), Some(6)),
+            (frustum(1.0, 6), Some(12)),
+            (frustum(0.5, 32), None),
+            (smooth_ring, None),
             (block(1.0, 1.0, 1.0), Some(24)),
             (block(1.0, 1.0, 2.0), Some(8)),
             (block(1.0, 2.0, 3.0), Some(4)),

@@ -8,7 +8,7 @@ use crate::{
     held::HeldVisual,
     section::Plane,
     silhouette,
-    visual::{Drawn, Visual},
+    visual::{Filled, Visual},
 };
 
 /// Length of the axes in units.
@@ -117,7 +117,7 @@ fn draw_axes(mut gizmos: Gizmos<ThinLines>, held: HeldVisual) {
 fn draw_shadow(
     mut gizmos: Gizmos<ThinLines>,
     held: HeldVisual,
-    others: Query<(Entity, &Transform, &Drawn), With<Visual>>,
+    others: Query<(Entity, &Transform, &Filled), With<Visual>>,
 ) {
     let Some(held) = held.get() else {
         return;
@@ -126,7 +126,7 @@ fn draw_shadow(
     let below = others
         .iter()
         .filter(|(visual, ..)| *visual != held.visual)
-        .flat_map(|(_, place, drawn)| drawn.0.iter().map(move |solid| (solid, place.into())));
+        .flat_map(|(_, place, filled)| filled.0.iter().map(move |solid| (solid, place.into())));
     if let Some(foot) = foot_of_shadow(center, below) {
         let end_of_axis = center - Vec3::Z * AXIS_LENGTH / 2.0;
         if foot.z < end_of_axis.z {
@@ -154,7 +154,7 @@ fn draw_sections(
     mut gizmos: Gizmos<ThinLines>,
     held: HeldVisual,
     plane: Res<DragPlane>,
-    others: Query<(Entity, &Transform, &Drawn), With<Visual>>,
+    others: Query<(Entity, &Transform, &Filled), With<Visual>>,
 ) {
     let Some(held) = held.get() else {
         return;
@@ -163,11 +163,11 @@ fn draw_sections(
         point: held.pose.location,
         normal: plane.normal(),
     };
-    for (visual, place, drawn) in &others {
+    for (visual, place, filled) in &others {
         if visual == held.visual {
             continue;
         }
-        for primitive in &drawn.0 {
+        for primitive in &filled.0 {
             let cut = plane.cut(primitive.solid, Pose::from(place) * primitive.pose);
             let back_to_start = cut.first().copied();
             gizmos.linestrip(cut.into_iter().chain(back_to_start), Color::BLACK);

@@ -3,14 +3,14 @@
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{Hands, Pose, Primitive};
 
-use crate::visual::{Drawn, Visuals};
+use crate::visual::{Filled, Visuals};
 
 /// The picture of the object that the selected hand holds.
 #[derive(SystemParam)]
 pub(crate) struct HeldVisual<'w, 's> {
     hands: Res<'w, Hands>,
     visuals: Res<'w, Visuals>,
-    drawn: Query<'w, 's, (&'static Transform, &'static Drawn)>,
+    filled: Query<'w, 's, (&'static Transform, &'static Filled)>,
 }
 
 /// A held object as it is drawn.
@@ -29,11 +29,11 @@ impl HeldVisual<'_, '_> {
     pub fn get(&self) -> Option<DrawnHeld<'_>> {
         let object = self.hands.held_by(self.hands.selected)?;
         let visual = self.visuals.of(object)?;
-        let (transform, drawn) = self.drawn.get(visual).ok()?;
+        let (transform, filled) = self.filled.get(visual).ok()?;
         Some(DrawnHeld {
             visual,
             pose: transform.into(),
-            solids: &drawn.0,
+            solids: &filled.0,
         })
     }
 }

@@ -1,5 +1,5 @@
-//! The meshes of solids and figures. There is one for each kind of solid, which its transform stretches to size, so that
-//! objects of all sizes are drawn together.
+//! The meshes of solids and figures. There is one for each polyhedron, and one for each other kind of solid, which its transform stretches
+//! to size, so that objects of all sizes are drawn together.
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -35,6 +35,7 @@ pub(crate) fn scale_of(solid: Solid) -> Vec3 {
         Solid::Cuboid(span) => span,
         Solid::Cylinder { radius, yspan } => Vec3::new(radius, yspan, radius),
         Solid::Ball(radius) => Vec3::splat(radius),
+        Solid::Polyhedron(_) => Vec3::ONE,
     }
 }
 

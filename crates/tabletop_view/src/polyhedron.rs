@@ -19,6 +19,7 @@ pub(crate) fn corners(solid: Solid) -> Vec<Vec3> {
         Solid::Cylinder { radius, yspan } => rim(radius)
             .flat_map(|point| [-0.5, 0.5].map(|end| point.with_y(yspan * end)))
             .collect(),
+        Solid::Polyhedron(polyhedron) => polyhedron.corners().to_vec(),
         Solid::Ball(_) => Vec::new(),
     }
 }
@@ -39,6 +40,7 @@ pub(crate) fn edges(solid: Solid) -> Vec<[usize; 2]> {
                 [[this, this + 1], [this, next], [this + 1, next + 1]]
             })
             .collect(),
+        Solid::Polyhedron(polyhedron) => polyhedron.edges(),
         Solid::Ball(_) => Vec::new(),
     }
 }

@@ -12,7 +12,7 @@ use bevy::{
 };
 use tabletop_core::{DragPlane, Table};
 
-use crate::{held::HeldVisual, visual::Drawn};
+use crate::{held::HeldVisual, visual::Filled};
 
 /// Chosen to look on the white table as the original's sheet does, which is blended in display values, and not to
 /// outshine the black around the table: the graphics card blends linear values.
@@ -101,7 +101,7 @@ fn show_sheet(
             &mut Visibility,
             &MeshMaterial3d<Translucent>,
         ),
-        (With<Sheet>, Without<Drawn>),
+        (With<Sheet>, Without<Filled>),
     >,
 ) {
     let (mut transform, mut visibility, material) = sheet.into_inner();
@@ -234,6 +234,7 @@ mod tests {
                 radius: 1.0,
                 color: Rgb::GRAY,
             },
+            dynamics: Default::default(),
             descriptions: Vec::new(),
         };
         let place = Transform::from_translation(location);

@@ -14,9 +14,9 @@ pub struct Visual {
     pub of: Entity,
 }
 
-/// The solids of a picture, in the frame of its body.
+/// Convex solids that fill what is drawn, in the frame of its body.
 #[derive(Component, Clone, Debug)]
-pub(crate) struct Drawn(pub Vec<Primitive>);
+pub(crate) struct Filled(pub Vec<Primitive>);
 
 /// Everything that has a picture: the table, the objects and the figures.
 type Drawable = Or<(With<ObjectSpec>, With<Table>, With<Figure>)>;
@@ -38,6 +38,8 @@ pub(crate) struct Looks {
     cuboid: Handle<Mesh>,
     cylinder: Handle<Mesh>,
     ball: Handle<Mesh>,
+    /// By the polyhedra's numbers; only as long as they are shown.
+    polyhedra: HashMap<usize, AssetId<Mesh>>,
     surfaces: HashMap<[u32; 3], Handle<Surface>>,
 }
 
@@ -112,7 +114,9 @@ fn make_pictures(
             continue;
         }
         let mut drawn = object.map_or_else(Vec::new, |object| object.shape.drawn());
+        let mut filled = object.map_or_else(Vec::new, |object| object.shape.filled());
         drawn.extend(table.map(Table::slab));
+        filled.extend(table.map(Table::slab));
         let visual = commands
             .spawn((
                 Visual { of: body },
@@ -121,7 +125,7 @@ fn make_pictures(
             ))
             .with_children(|parts| {
                 for primitive in &drawn {
-                    parts.spawn(looks.of(primitive, &mut surfaces));
+                    parts.spawn(looks.of(primitive, &mut meshes, &mut surfaces));
                 }
                 if let Some(figure) = figure {
                     parts.spawn((
@@ -130,7 +134,7 @@ fn make_pictures(
                     ));
                 }
             })
-            .insert(Drawn(drawn))
+            .insert(Filled(filled))
             .id();
         visuals.0.insert(body, visual);
     }
@@ -150,25 +154,40 @@ impl FromWorld for Looks {
             cuboid: meshes.add(mesh::unit_cuboid()),
             cylinder: meshes.add(mesh::unit_cylinder()),
             ball: meshes.add(mesh::unit_ball()),
+            polyhedra: HashMap::default(),
             surfaces: HashMap::default(),
         }
     }
 }
 
 impl Looks {
-    fn of(&mut self, primitive: &Primitive, surfaces: &mut Assets<Surface>) -> impl Bundle + use<> {
+    fn of(
+        &mut self,
+        primitive: &Primitive,
+        meshes: &mut Assets<Mesh>,
+        surfaces: &mut Assets<Surface>,
+    ) -> impl Bundle + use<> {
         (
-            Mesh3d(self.mesh(primitive.solid)),
+            Mesh3d(self.mesh(primitive.solid, meshes)),
             MeshMaterial3d(self.surface(primitive.color, surfaces)),
             Transform::from(primitive.pose).with_scale(mesh::scale_of(primitive.solid)),
         )
     }
 
-    pub(crate) fn mesh(&self, solid: Solid) -> Handle<Mesh> {
+    pub(crate) fn mesh(&mut self, solid: Solid, meshes: &mut Assets<Mesh>) -> Handle<Mesh> {
         match solid {
             Solid::Cuboid(_) => self.cuboid.clone(),
             Solid::Cylinder { .. } => self.cylinder.clone(),
             Solid::Ball(_) => self.ball.clone(),
+            Solid::Polyhedron(polyhedron) => {
+                let known = self.polyhedra.get(&polyhedron.number());
+                let shown = known.and_then(|&known| meshes.get_strong_handle(known));
+                shown.unwrap_or_else(|| {
+                    let mesh = meshes.add(mesh::of_triangles(&polyhedron.surface(Rgb::WHITE)));
+                    self.polyhedra.insert(polyhedron.number(), mesh.id());
+                    mesh
+                })
+            }
         }
     }
 
@@ -209,6 +228,7 @@ mod tests {
                 radius,
                 color: Rgb::GRAY,
             },
+            dynamics: Default::default(),
             descriptions: Vec::new(),
         }
     }
@@ -316,6 +336,33 @@ mod tests {
         assert_ne!(mesh_of_picture(&mut app).unwrap().0, first.0);
         app.world_mut().entity_mut(link).remove::<Figure>();
         assert_eq!(mesh_of_picture(&mut app), None);
+    }
+
+    #[test]
+    fn equal_polyhedra_share_a_mesh_as_long_as_they_are_shown() {
+        let mut app = app();
+        let ring = |id: &str| {
+            let shape = Shape::Ring {
+                radius_outer: 1.0,
+                radius_inner: 0.5,
+                zspan: 0.4,
+                sides: 32,
+                color: Rgb::RED,
+            };
+            ObjectSpec::new(id, Pose::IDENTITY, 1.0, shape)
+        };
+        let objects = ["a", "b"].map(|id| app.world_mut().spawn(ring(id)).id());
+        app.update();
+        let meshes = |app: &App| app.world().resource::<Assets<Mesh>>().len();
+        assert_eq!(meshes(&app), 4);
+        assert_eq!(drawn(&mut app)[0].2, [Vec3::ONE]);
+        for object in objects {
+            app.world_mut().entity_mut(object).despawn();
+        }
+        app.update();
+        app.world_mut().spawn(ring("c"));
+        app.update();
+        assert_eq!(drawn(&mut app).len(), 1);
     }
 
     #[test]

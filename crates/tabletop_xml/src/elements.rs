@@ -1,6 +1,7 @@
 //! Elements of the task file language as what they stand for (report section 6.2): the table, and what may stand where.
 
 pub(crate) mod attributes;
+mod blades;
 mod bond;
 mod chain;
 mod control;
@@ -8,6 +9,7 @@ mod cost;
 mod hollow;
 mod jointed;
 mod lidbox;
+pub(crate) mod mesh_files;
 mod object;
 mod overlap;
 pub(crate) mod value;
@@ -20,6 +22,7 @@ use crate::{
     elements::{
         attributes::AttributeReader,
         cost::{Cost, Excess},
+        mesh_files::MeshFiles,
     },
     fault::{Excerpt, Faults},
     suggestion::nearest,
@@ -27,21 +30,27 @@ use crate::{
 
 pub(crate) const DESCRIPTION: &str = "description";
 /// Elements of objects.
-pub(crate) const OBJECTS: [&str; 8] = [
+pub(crate) const OBJECTS: [&str; 11] = [
     "block",
     "cylinder",
+    "frustum",
+    "ring",
     "sphere",
     "box",
+    "custom",
     "composite",
     "toggleSwitch",
     "indicatorLights",
     "customControl",
 ];
-const ITEMS: [&str; 12] = [
+const ITEMS: [&str; 16] = [
     "block",
     "cylinder",
+    "frustum",
+    "ring",
     "sphere",
     "box",
+    "custom",
     "composite",
     "toggleSwitch",
     "indicatorLights",
@@ -50,10 +59,8 @@ const ITEMS: [&str; 12] = [
     "lidbox",
     "sliderJoint",
     "hingeJoint",
+    "scissors",
 ];
-/// Elements that only the later program has.
-const OF_THE_LATER_PROGRAM: [&str; 3] = ["frustum", "ring", "custom"];
-
 /// Elements that stand in others.
 const INNER: [&str; 9] = [
     "remove",
@@ -71,8 +78,8 @@ const INNER: [&str; 9] = [
 const TEMPLATES: [&str; 3] = ["include", "def", "instance"];
 
 /// Reads what the root element stands for.
-pub(crate) fn scene(root: &Element, faults: &mut Faults) -> SceneSpec {
-    let mut reader = ElementReader { faults };
+pub(crate) fn scene(root: &Element, meshes: &mut MeshFiles, faults: &mut Faults) -> SceneSpec {
+    let mut reader = ElementReader { meshes, faults };
     SceneSpec {
         table: reader.table(root),
         items: reader.items(root),
@@ -80,11 +87,12 @@ pub(crate) fn scene(root: &Element, faults: &mut Faults) -> SceneSpec {
 }
 
 /// Reads elements, and notes what is wrong with them.
-pub(crate) struct ElementReader<'f> {
+pub(crate) struct ElementReader<'f, 'm> {
+    pub meshes: &'f mut MeshFiles<'m>,
     pub faults: &'f mut Faults,
 }
 
-impl ElementReader<'_> {
+impl ElementReader<'_, '_> {
     fn table(&mut self, root: &Element) -> Table {
         let default = Table::default();
         let mut attributes = AttributeReader::of(root, self.faults);
@@ -112,6 +120,7 @@ impl ElementReader<'_> {
                 "hingeJoint" => self
                     .jointed(child, JointMotion::Turn)
                     .map(SceneItem::Jointed),
+                "scissors" => self.scissors(child).map(SceneItem::Jointed),
                 _ => self.object(child).map(SceneItem::Object),
             };
             let Some(item) = item else {
@@ -149,9 +158,7 @@ impl ElementReader<'_> {
         if self.faults.is_full() {
             return false;
         }
-        let problem = if OF_THE_LATER_PROGRAM.contains(&name) {
-            "it is of the later program and not supported".to_owned()
-        } else if [&ITEMS[..], &INNER, &[ROOT, DESCRIPTION]]
+        let problem = if [&ITEMS[..], &INNER, &[ROOT, DESCRIPTION]]
             .concat()
             .contains(&name)
         {
@@ -210,15 +217,14 @@ mod tests {
 
     #[test]
     fn elements_have_their_place() {
-        let whole = "block, cylinder, sphere, box, composite, toggleSwitch, indicatorLights, customControl, chain, lidbox, sliderJoint, hingeJoint";
+        let whole = "block, cylinder, frustum, ring, sphere, box, custom, composite, toggleSwitch, indicatorLights, customControl, chain, lidbox, sliderJoint, hingeJoint, scissors";
         for (content, fault) in [
             ("<cube/>", format!("cube: it is not known, expected one of {whole}")),
             ("<Sphere/>", "Sphere: it is not known, expected <sphere>".into()),
-            ("<ring location='(0,0,1)'/>", format!("ring: it is of the later program and not supported, expected one of {whole}")),
             ("<description name='a' value='b'/>", format!("description: it cannot stand in <tabletop>, expected one of {whole}")),
             ("<block location='(0,0,1)'><sphere/></block>", "sphere: it cannot stand in <block>, expected one of description".into()),
             ("<chain start='(0,0,1)' end='(0,0,2)'><sphere/></chain>", "sphere: it cannot stand in <chain>, expected no element in <chain>".into()),
-            ("<composite location='(0,0,1)'><chain/></composite>", "chain: it cannot stand in <composite>, expected one of block, cylinder, sphere, box, composite, toggleSwitch, indicatorLights, customControl, guestBondPoint, hostBondPoint, description".into()),
+            ("<composite location='(0,0,1)'><chain/></composite>", "chain: it cannot stand in <composite>, expected one of block, cylinder, frustum, ring, sphere, box, custom, composite, toggleSwitch, indicatorLights, customControl, guestBondPoint, hostBondPoint, description".into()),
             ("<composite location='(0,0,1)'><block location='(0,0,0)'><description name='a' value='b'/></block></composite>", "description: it cannot stand in <block>, expected no element in <block>".into()),
             ("<u:block location='(0,0,1)'/>", format!("block: its prefix is not declared, expected the namespace {NAMESPACE}")),
             ("<block xmlns='' location='(0,0,1)'/>", format!("block: it has no namespace, expected the namespace {NAMESPACE}")),

@@ -6,7 +6,7 @@ use tabletop_core::SceneSpec;
 
 use crate::{
     document::{ROOT, build, decode::decode, tree::Element},
-    elements,
+    elements::{self, mesh_files::MeshFiles},
     expansion::{self, Inclusion},
     fault::{Fault, Faults, Place},
     files::{Arena, FileTree, MAX_FILE_BYTES, TaskPath},
@@ -21,7 +21,7 @@ pub struct ParsedTask {
     pub scene: SceneSpec,
     /// The faults, in the order of the files.
     pub faults: Vec<Fault>,
-    /// The files that were read: the task file, then what it includes. A change of any of them can change the scene.
+    /// The files that were read: the task file, then what it includes, then the meshes that it names. A change of any of them can change the scene.
     pub files: Vec<PathBuf>,
 }
 
@@ -78,14 +78,21 @@ pub fn expand(file: &Path, text: &[u8]) -> ExpandedTask {
 }
 
 /// A task with everything put in.
-pub(crate) struct Task<'a> {
+pub(crate) struct Task<'a, 't> {
+    tree: &'t FileTree<'t>,
+    path: &'t TaskPath,
     root: Option<Element<'a>>,
     sources: Sources<'a>,
     faults: Faults,
 }
 
-impl<'a> Task<'a> {
-    pub fn read(tree: &FileTree, path: &TaskPath, bytes: Vec<u8>, arena: &'a Arena) -> Self {
+impl<'a, 't> Task<'a, 't> {
+    pub fn read(
+        tree: &'t FileTree<'t>,
+        path: &'t TaskPath,
+        bytes: Vec<u8>,
+        arena: &'a Arena,
+    ) -> Self {
         let mut sources = Sources::default();
         let mut faults = Faults::default();
         if bytes.len() > MAX_FILE_BYTES {
@@ -93,6 +100,8 @@ impl<'a> Task<'a> {
             let expected = format_args!("at most {MAX_FILE_BYTES} bytes");
             faults.report(Place::outside(source, 0), "the file is too large", expected);
             return Self {
+                tree,
+                path,
                 root: None,
                 sources,
                 faults,
@@ -103,6 +112,8 @@ impl<'a> Task<'a> {
             .task(arena.keep(bytes))
             .map(|root| expansion::expand(root, &mut sources, &mut faults));
         Self {
+            tree,
+            path,
             root,
             sources,
             faults,
@@ -110,20 +121,24 @@ impl<'a> Task<'a> {
     }
 
     pub fn parsed(mut self) -> ParsedTask {
+        let mut files = self.sources.files();
+        let mut meshes = MeshFiles::new(self.tree, self.path, &files);
         let scene = match &self.root {
-            Some(root) => elements::scene(root, &mut self.faults),
+            Some(root) => elements::scene(root, &mut meshes, &mut self.faults),
             None => SceneSpec::default(),
         };
+        files.extend(meshes.files());
         ParsedTask {
             scene,
             faults: self.faults.locate(&self.sources),
-            files: self.sources.files(),
+            files,
         }
     }
 
     pub fn expanded(mut self) -> ExpandedTask {
         if let Some(root) = &self.root {
-            elements::scene(root, &mut self.faults);
+            let mut meshes = MeshFiles::new(self.tree, self.path, &self.sources.files());
+            elements::scene(root, &mut meshes, &mut self.faults);
         }
         ExpandedTask {
             text: write_expanded(self.root.as_ref(), &self.sources),

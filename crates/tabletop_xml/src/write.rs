@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use bevy::math::{DVec3, Vec3};
 use quick_xml::escape::escape;
 use tabletop_core::{
-    BondEnd, BondPoint, ChainSpec, Change, Control, ControlKind, JointMotion, JointedSpec,
+    BondEnd, BondPoint, ChainSpec, Change, Control, ControlKind, Dynamics, JointMotion, JointedSpec,
     LidBoxSpec, NAMED_COLORS, ObjectSpec, Part, Pose, Rgb, SceneItem, SceneSpec, Shape, Side,
 };
 
@@ -71,10 +71,27 @@ impl Writer {
         self.id(&object.id);
         self.pose(object.pose);
         self.number("mass", object.mass);
+        self.dynamics(object.dynamics);
         self.attributes_of(&object.shape);
         self.descriptions(&object.descriptions);
         self.parts_of(&object.shape);
         self.close();
+    }
+
+    fn dynamics(&mut self, dynamics: Dynamics) {
+        let Dynamics {
+            friction,
+            restitution,
+            velocity,
+        } = dynamics;
+        for (name, value) in [("friction", friction), ("restitution", restitution)] {
+            if let Some(value) = value {
+                self.number(name, value);
+            }
+        }
+        if velocity != Vec3::ZERO {
+            self.vector("linearVelocity", velocity);
+        }
     }
 
     fn part(&mut self, part: &Part) {
@@ -121,6 +138,10 @@ impl Writer {
             | Shape::Cylinder { .. }
             | Shape::Sphere { .. }
             | Shape::Box { .. }
+            | Shape::Prism { .. }
+            | Shape::Frustum { .. }
+            | Shape::Ring { .. }
+            | Shape::Mesh { .. }
             | Shape::Link { .. } => {}
         }
     }
@@ -261,6 +282,48 @@ impl Writer {
                 self.number("yspan", yspan);
                 self.color("color", color);
             }
+            Shape::Prism {
+                radius,
+                yspan,
+                sides,
+                color,
+            } => {
+                self.number("radius", radius);
+                self.number("yspan", yspan);
+                self.attribute("sides", &sides.to_string());
+                self.color("color", color);
+            }
+            Shape::Frustum {
+                radius_top,
+                radius_bottom,
+                zspan,
+                sides,
+                color,
+            } => {
+                self.number("radiusTop", radius_top);
+                self.number("radiusBottom", radius_bottom);
+                self.number("zspan", zspan);
+                self.attribute("sides", &sides.to_string());
+                self.color("color", color);
+            }
+            Shape::Ring {
+                radius_outer,
+                radius_inner,
+                zspan,
+                sides,
+                color,
+            } => {
+                self.number("radiusOuter", radius_outer);
+                self.number("radiusInner", radius_inner);
+                self.number("zspan", zspan);
+                self.attribute("sides", &sides.to_string());
+                self.color("color", color);
+            }
+            Shape::Mesh { ref mesh, color } => {
+                self.attribute("file", &as_attribute(&as_literal(mesh.file())));
+                self.number("scale", mesh.scale());
+                self.color("color", color);
+            }
             Shape::Sphere { radius, color } => {
                 self.number("radius", radius);
                 self.color("color", color);
@@ -316,14 +379,20 @@ impl Writer {
         self.open(match jointed.motion {
             JointMotion::Slide => "sliderJoint",
             JointMotion::Turn => "hingeJoint",
+            JointMotion::Shear => "scissors",
         });
         self.pose(jointed.pose);
         let [min, max] = jointed.limits;
         self.number("min", min);
         self.number("max", max);
         self.number("init", jointed.init);
-        self.attribute("collision", &jointed.collides.to_string());
-        self.number("damping", jointed.damping);
+        match jointed.motion {
+            JointMotion::Slide | JointMotion::Turn => {
+                self.attribute("collision", &jointed.collides.to_string());
+                self.number("damping", jointed.damping);
+            }
+            JointMotion::Shear => {}
+        }
         for object in &jointed.objects {
             self.object(object);
         }
@@ -487,6 +556,7 @@ mod tests {
                 pose: Pose::IDENTITY,
                 mass: 1.0,
                 shape,
+                dynamics: Dynamics::default(),
                 descriptions: vec![("a b".into(), "\0".into())],
             })
         };

@@ -57,6 +57,7 @@ fn the_program_starts_with_two_cubes() {
                 span: Vec3::splat(2.0),
                 color: color.parse().unwrap(),
             },
+            dynamics: Default::default(),
             descriptions: vec![],
         })
     };
@@ -196,6 +197,10 @@ fn reach(solid: &Primitive, direction: Vec3) -> f32 {
             radius * local.with_y(0.0).length() + yspan / 2.0 * local.y.abs()
         }
         Solid::Ball(radius) => radius * local.length(),
+        Solid::Polyhedron(polyhedron) => {
+            let ends = [local, -local].map(|way| polyhedron.farthest(way).dot(way));
+            ends[0].max(ends[1])
+        }
     };
     reach + solid.pose.location.dot(direction)
 }

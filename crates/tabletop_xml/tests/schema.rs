@@ -127,6 +127,12 @@ fn schema_and_parser_accept_the_same() {
          softness=\".5\" restitution=\"0\"><block id=\"a\" location=\"(0,0,0)\"/><box location=\"(0,0,1)\" mass=\"2\"/></sliderJoint>\
          <hingeJoint location=\"(0,0,1)\" min=\"-180\" max=\"180\" init=\"5\"><sphere location=\"(0,0,0)\"/><sphere location=\"(0,0,1)\"/></hingeJoint>",
         "<def name=\"nothing\"/><block location=\"($1+2*3$,0,1)\"/>",
+        "<frustum id=\"f\" location=\"(0,0,1)\" rotation=\"(9,0,0)\" radiusTop=\".1\" radiusBottom=\"2\" zspan=\"3\" sides=\"6\" color=\"red\" \
+         mass=\"2\" friction=\"0\" restitution=\"1\" linearVelocity=\"(1,-2,0)\" pointable=\"true\"/>\
+         <ring location=\"(0,0,1)\" radiusOuter=\"2\" radiusInner=\"1.9\" zspan=\".1\" sides=\"8\"><description name=\"a\" value=\"b\"/></ring>\
+         <composite location=\"(0,0,1)\" friction=\".2\"><ring location=\"(0,0,1)\"/><frustum location=\"(0,0,1)\"/></composite>",
+        "<scissors id=\"s\" location=\"(0,0,1)\" min=\"-5\" max=\"60\" init=\"9\" length=\"2\" mass=\"1\" color=\"red\"/>\
+         <scissors location=\"(0,0,1)\"><block location=\"(0,0,0)\"/><ring location=\"(0,0,1)\"/></scissors>",
     ]
     .map(file)
     .to_vec();
@@ -176,7 +182,13 @@ fn schema_and_parser_reject_the_same() {
         "<chain start=\"(0,0,1)\" end=\"(5,0,1)\" linkCount=\"-1\"/>",
         "<chain start=\"(0,0,1)\" end=\"(5,0,1)\" linkPadding=\"-1\"/>",
         "<lidbox location=\"(0,0,1)\" handleXspan=\"0\"/>",
-        "<ring location=\"(0,0,1)\"/>",
+        "<ring location=\"(0,0,1)\" sides=\"2\"/>",
+        "<frustum location=\"(0,0,1)\" radiusTop=\"0\"/>",
+        "<custom location=\"(0,0,1)\"/>",
+        "<block location=\"(0,0,1)\" friction=\"-1\"/>",
+        "<block location=\"(0,0,1)\" restitution=\"1.5\"/>",
+        "<composite location=\"(0,0,1)\"><ring location=\"(0,0,1)\" friction=\"1\"/></composite>",
+        "<toggleSwitch location=\"(0,0,1)\"/>",
         "<sliderJoint><block location=\"(0,0,0)\"/><block location=\"(0,0,1)\"/></sliderJoint>",
         "<sliderJoint location=\"(0,0,0)\"/>",
         "<sliderJoint location=\"(0,0,0)\" damping=\"2\"><block location=\"(0,0,0)\"/><block location=\"(0,0,1)\"/></sliderJoint>",

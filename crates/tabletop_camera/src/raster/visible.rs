@@ -71,9 +71,9 @@ struct VisibleCorner {
 }
 
 impl VisibleSurfaces {
-    /// Looks at this scene, and forgets what was before.
-    pub fn project(&mut self, scene: &Scene, view: &PinholeView) {
-        self.project_figures(&scene.figures, view);
+    /// Looks at this scene, whose polyhedra are these figures, and forgets what was before.
+    pub fn project(&mut self, scene: &Scene, polyhedra: &[DrawnFigure], view: &PinholeView) {
+        self.project_figures(scene.figures.iter().chain(polyhedra), view);
         self.faces.clear();
         self.faces.push(RasterFace::NOTHING);
         self.quadrics.clear();
@@ -90,6 +90,7 @@ impl VisibleSurfaces {
                         self.add_cylinder(drawn, view, window, radius, yspan);
                     }
                     Solid::Ball(radius) => self.add_ball(drawn, view, window, radius),
+                    Solid::Polyhedron(_) => {}
                 }
             }
             if i == 0 && self.faces.len() > 1 {
@@ -99,17 +100,21 @@ impl VisibleSurfaces {
     }
 
     /// Looks at figures, but not at the first ones that are as they were in the picture before.
-    fn project_figures(&mut self, figures: &[DrawnFigure], view: &PinholeView) {
+    fn project_figures<'f>(
+        &mut self,
+        figures: impl Iterator<Item = &'f DrawnFigure> + Clone,
+        view: &PinholeView,
+    ) {
         let same_view = self.view.replace(view.bits()) == Some(view.bits());
-        let pairs = self.figures.iter().zip(figures);
+        let pairs = self.figures.iter().zip(figures.clone());
         let unchanged = pairs.take_while(|(before, now)| same_view && before.is_of(now));
         let unchanged = unchanged.count();
-        if same_view && unchanged == self.figures.len() && unchanged == figures.len() {
+        if same_view && unchanged == self.figures.len() && unchanged == figures.clone().count() {
             self.forget_figures_from(unchanged);
             return;
         }
         self.forget_figures_from(unchanged);
-        for drawn in &figures[unchanged..] {
+        for drawn in figures.skip(unchanged) {
             let corners = corners_of_box(drawn.pose, drawn.facets.bounds, view);
             let window = view.window_of(&corners);
             if let Some(window) = &window {

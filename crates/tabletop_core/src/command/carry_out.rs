@@ -64,6 +64,7 @@ mod tests {
                 | HandCommand::MoveTo { .. }
                 | HandCommand::MoveBy { .. }
                 | HandCommand::Turn { .. }
+                | HandCommand::Cut(_)
                 | HandCommand::Destroy(_) => Ok(()),
             }
         })

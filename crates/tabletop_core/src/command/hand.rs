@@ -43,6 +43,8 @@ pub enum HandCommand {
     },
     /// Let go of what a hand holds.
     Release(Hand),
+    /// Close the scissors that a hand holds by one of their blades.
+    Cut(Hand),
     /// Remove what a hand holds from the world.
     Destroy(Hand),
 }

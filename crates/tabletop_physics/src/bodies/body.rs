@@ -2,9 +2,11 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{ObjectSpec, Pose, Primitive, Shape, Solid, Table, Twist};
+use tabletop_core::{
+    Bounds, Dynamics, ObjectSpec, Polyhedron, Pose, Primitive, Shape, Solid, Table, Twist,
+};
 
-use super::{mass::mass_properties, prism::Prism};
+use super::{mass::mass_properties, polytope::Polytope};
 use crate::{
     effort::{FEWEST_SUBSTEPS, SOFT_CCD_PREDICTION, SUBSTEPS_OF_FREE},
     settings::PhysicsSettings,
@@ -26,9 +28,12 @@ pub(crate) fn add_object(world: &mut World, object: Entity, spec: &ObjectSpec) {
     let mut body = world.entity_mut(object);
     body.insert_if_new((
         collider(&spec.shape),
-        surface(&settings),
-        Velocity::default(),
-        Twist::default(),
+        surface(&settings, spec.dynamics),
+        Velocity::linear(spec.dynamics.velocity),
+        Twist {
+            linear: spec.dynamics.velocity,
+            ..Twist::default()
+        },
     ));
     if spec.is_fixed() {
         body.insert_if_new(RigidBody::Fixed);
@@ -56,20 +61,20 @@ pub(crate) fn add_object(world: &mut World, object: Entity, spec: &ObjectSpec) {
 
 /// The components of the table's body.
 pub(crate) fn add_table(world: &mut World, table: Entity, size: Table) {
-    let surface = surface(world.resource::<PhysicsSettings>());
+    let surface = surface(world.resource::<PhysicsSettings>(), Dynamics::default());
     world
         .entity_mut(table)
         .insert_if_new((RigidBody::Fixed, compound(&[size.slab()]), surface));
 }
 
-fn surface(settings: &PhysicsSettings) -> impl Bundle + use<> {
+fn surface(settings: &PhysicsSettings, dynamics: Dynamics) -> impl Bundle + use<> {
     (
         Friction {
-            coefficient: settings.friction,
+            coefficient: dynamics.friction.unwrap_or(settings.friction),
             combine_rule: CoefficientCombineRule::Multiply,
         },
         Restitution {
-            coefficient: settings.restitution,
+            coefficient: dynamics.restitution.unwrap_or(settings.restitution),
             combine_rule: CoefficientCombineRule::Average,
         },
     )
@@ -95,11 +100,15 @@ fn compound(parts: &[Primitive]) -> Collider {
 fn solid_collider(solid: Solid) -> Collider {
     match solid {
         Solid::Cuboid(span) => Collider::cuboid(span.x / 2.0, span.y / 2.0, span.z / 2.0),
-        Solid::Cylinder { radius, yspan } => match Prism::shape(radius, yspan) {
+        Solid::Cylinder { radius, yspan } => match Polytope::of_cylinder(radius, yspan) {
             Some(prism) => prism.into(),
             None => Collider::cylinder(yspan / 2.0, radius),
         },
         Solid::Ball(radius) => Collider::ball(radius),
+        Solid::Polyhedron(polyhedron) => match Polytope::of_polyhedron(polyhedron) {
+            Some(polytope) => polytope.into(),
+            None => cuboid_around(polyhedron),
+        },
     }
 }
 
@@ -114,4 +123,11 @@ const fn angular_damping(shape: &Shape, settings: &PhysicsSettings) -> f32 {
         Shape::Link { .. } => settings.link_damping,
         _ => settings.angular_damping,
     }
+}
+
+/// A cuboid about the origin that holds what is too thin for a polytope.
+fn cuboid_around(polyhedron: Polyhedron) -> Collider {
+    let Bounds { low, high } = polyhedron.bounds();
+    let half = low.abs().max(high.abs()).max(Vec3::splat(1e-4));
+    Collider::cuboid(half.x, half.y, half.z)
 }

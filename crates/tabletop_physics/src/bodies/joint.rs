@@ -10,6 +10,9 @@ use crate::settings::PhysicsSettings;
 /// How fast dry friction takes up speed, in 1/s: within a tick.
 const FRICTION_RATE: f32 = 60.0;
 
+/// How fast the spring of shears opens them, in rad/s.
+const SPRING_RATE: f32 = 5.0;
+
 /// The component of a joint's constraint.
 pub(crate) fn add_joint(world: &mut World, entity: Entity, joint: &Joint) {
     let [first, second] = joint.objects;
@@ -53,7 +56,7 @@ fn constraint(joint: &Joint, load: JointLoad) -> TypedJoint {
     let locked = match joint.kind {
         JointKind::Ball => JointAxesMask::LOCKED_SPHERICAL_AXES,
         JointKind::Slider { .. } => JointAxesMask::LOCKED_PRISMATIC_AXES,
-        JointKind::Hinge { .. } => JointAxesMask::LOCKED_REVOLUTE_AXES,
+        JointKind::Hinge { .. } | JointKind::Shears { .. } => JointAxesMask::LOCKED_REVOLUTE_AXES,
         JointKind::Fixed => JointAxesMask::LOCKED_FIXED_AXES,
     };
     let [first, second] = joint.frames;
@@ -89,6 +92,13 @@ fn constraint(joint: &Joint, load: JointLoad) -> TypedJoint {
                     .set_motor_model(JointAxis::AngX, MotorModel::ForceBased)
                     .set_motor_velocity(JointAxis::AngX, 0.0, rate(damping) * load.inertia);
             }
+        }
+        JointKind::Shears { min, max } => {
+            let stiffness = SPRING_RATE * SPRING_RATE * load.inertia;
+            constraint
+                .set_limits(JointAxis::AngX, [min, max])
+                .set_motor_model(JointAxis::AngX, MotorModel::ForceBased)
+                .set_motor_position(JointAxis::AngX, max, stiffness, SPRING_RATE * load.inertia);
         }
     }
     TypedJoint::GenericJoint(constraint)

@@ -1,8 +1,11 @@
 //! Mass and inertia of objects.
 
-use bevy::{math::DMat3, prelude::*};
+use bevy::{
+    math::{DMat3, DVec3},
+    prelude::*,
+};
 use bevy_rapier3d::{prelude::MassProperties, rapier};
-use tabletop_core::{Shape, Solid};
+use tabletop_core::{Primitive, Shape, Solid};
 
 /// Mass properties of a shape that weighs `mass` kg: the centre of mass is its origin whatever its parts are
 /// (report section 6.2, `<composite>`), and the inertia about it is that of its parts, all of one density.
@@ -16,12 +19,7 @@ pub fn mass_properties(shape: &Shape, mass: f32) -> MassProperties {
         .iter()
         .map(|primitive| {
             let share = f64::from(mass) * f64::from(primitive.solid.volume()) / volume;
-            let orientation = DMat3::from_quat(primitive.pose.rotation.as_dquat());
-            let offset = primitive.pose.location.as_dvec3();
-            let own = DMat3::from_diagonal(inertia_per_kg(primitive.solid).as_dvec3());
-            let shift = DMat3::from_diagonal(bevy::math::DVec3::splat(offset.length_squared()))
-                - outer_product(offset);
-            share * (orientation * own * orientation.transpose() + shift)
+            share * inertia_per_kg(primitive)
         })
         .sum();
     MassProperties::from_rapier(rapier::dynamics::MassProperties::with_inertia_matrix(
@@ -31,27 +29,59 @@ pub fn mass_properties(shape: &Shape, mass: f32) -> MassProperties {
     ))
 }
 
-fn outer_product(v: bevy::math::DVec3) -> DMat3 {
+fn outer_product(v: DVec3) -> DMat3 {
     DMat3::from_cols(v * v.x, v * v.y, v * v.z)
 }
 
-/// Principal moments of inertia about a solid's centre, in its own axes, for a mass of 1 kg.
-fn inertia_per_kg(solid: Solid) -> Vec3 {
-    match solid {
+/// The inertia of a solid about the origin of its shape, in the shape's axes, for a mass of 1 kg.
+fn inertia_per_kg(primitive: &Primitive) -> DMat3 {
+    let orientation = DMat3::from_quat(primitive.pose.rotation.as_dquat());
+    let offset = primitive.pose.location.as_dvec3();
+    let about_center = |moments: Vec3| {
+        let own = DMat3::from_diagonal(moments.as_dvec3());
+        let shift =
+            DMat3::from_diagonal(DVec3::splat(offset.length_squared())) - outer_product(offset);
+        orientation * own * orientation.transpose() + shift
+    };
+    match primitive.solid {
         Solid::Cuboid(span) => {
             let square = span * span;
-            Vec3::new(
+            let moments = Vec3::new(
                 square.y + square.z,
                 square.x + square.z,
                 square.x + square.y,
-            ) / 12.0
+            );
+            about_center(moments / 12.0)
         }
         Solid::Cylinder { radius, yspan } => {
             let across = radius * radius / 4.0 + yspan * yspan / 12.0;
-            Vec3::new(across, radius * radius / 2.0, across)
+            about_center(Vec3::new(across, radius * radius / 2.0, across))
         }
-        Solid::Ball(radius) => Vec3::splat(0.4 * radius * radius),
+        Solid::Ball(radius) => about_center(Vec3::splat(0.4 * radius * radius)),
+        Solid::Polyhedron(polyhedron) => {
+            let faces = polyhedron
+                .faces()
+                .map(|face| face.map(|corner| orientation * corner.as_dvec3() + offset));
+            inertia_of_faces(faces)
+        }
     }
+}
+
+/// The inertia about the origin of what these triangles enclose, for a mass of 1 kg.
+fn inertia_of_faces(faces: impl Iterator<Item = [DVec3; 3]>) -> DMat3 {
+    let (mut volume, mut moment) = (0.0, DMat3::ZERO);
+    for [a, b, c] in faces {
+        // The tetrahedron from the origin to the triangle; its products of coordinates on the average.
+        let part = a.dot(b.cross(c)) / 6.0;
+        let sum = a + b + c;
+        let corners = [a, b, c, sum].map(outer_product);
+        let [a, b, c, sum] = corners;
+        volume += part;
+        moment += (a + b + c + sum) * (part / 20.0);
+    }
+    let moment = moment * (1.0 / volume);
+    let trace = moment.x_axis.x + moment.y_axis.y + moment.z_axis.z;
+    DMat3::from_diagonal(DVec3::splat(trace)) - moment
 }
 
 #[cfg(test)]
@@ -82,6 +112,31 @@ mod tests {
             (moments - Vec3::new(5.0, 10.0, 13.0)).length() < 1e-4,
             "{moments}"
         );
+    }
+
+    #[test]
+    fn polyhedra_have_the_inertia_of_what_they_are() {
+        let square = Shape::Frustum {
+            radius_top: std::f32::consts::SQRT_2,
+            radius_bottom: std::f32::consts::SQRT_2,
+            zspan: 3.0,
+            sides: 4,
+            color: COLOR,
+        };
+        let [square, same] = [square, block(Vec3::new(2.0, 2.0, 3.0))]
+            .map(|shape| sorted(mass_properties(&shape, 3.0).principal_inertia));
+        assert!((square - same).length() < 1e-3, "{square} {same}");
+        let ring = Shape::Ring {
+            radius_outer: 2.0,
+            radius_inner: 1.0,
+            zspan: 0.5,
+            sides: 64,
+            color: COLOR,
+        };
+        let ring = sorted(mass_properties(&ring, 1.0).principal_inertia);
+        let across = 5.0 / 4.0 + 0.25 / 12.0;
+        let expected = Vec3::new(across, across, 2.5);
+        assert!((ring - expected).length() < 0.02, "{ring} {expected}");
     }
 
     #[test]

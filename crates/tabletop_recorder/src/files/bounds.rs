@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{
-    BondEnd, BondPoint, ChainSpec, Change, ClockCommand, Control, ControlKind, Drive, HandCommand,
+    BondEnd, BondPoint, ChainSpec, Change, ClockCommand, Control, ControlKind, Drive, Dynamics, HandCommand,
     HeadCamera, JointKind, JointSpec, JointedSpec, LidBoxSpec, MechanismCommand, ObjectSpec, Part,
     Pose, RecordingCommand, Rgb, RobotCommand, SceneCommand, SceneItem, SceneSpec, Shape,
     SimCommand, Table,
@@ -29,6 +29,9 @@ const MOST_VALUES: usize = 1 << 20;
 
 /// How far a joint turns, in radians: half a turn to each side, and what is rounded.
 const ANGLES: RangeInclusive<f32> = -3.15..=3.15;
+const FRICTIONS: RangeInclusive<f32> = 0.0..=1000.0;
+const VELOCITIES: RangeInclusive<f32> = -1000.0..=1000.0;
+const SIDES: RangeInclusive<u32> = 3..=u32::MAX;
 const LINKS: RangeInclusive<u32> = 1..=MOST_LINKS;
 const PLACES: RangeInclusive<f32> = -1e6..=1e6;
 
@@ -90,6 +93,10 @@ pub(crate) fn check_joint(joint: &JointSpec) -> Checked {
             within("friction", friction, &MASSES)?;
             within("damping", damping, &PROPORTIONS)
         }
+        JointKind::Shears { min, max } => {
+            within("min", min, &ANGLES)?;
+            within("max", max, &ANGLES)
+        }
         JointKind::Hinge { min, max, damping } => {
             within("min", min, &ANGLES)?;
             within("max", max, &ANGLES)?;
@@ -123,7 +130,10 @@ fn check_scene_command(command: &SceneCommand) -> Checked {
 
 fn check_hand_command(command: &HandCommand) -> Checked {
     match command {
-        HandCommand::Select(_) | HandCommand::Release(_) | HandCommand::Destroy(_) => Ok(()),
+        HandCommand::Select(_)
+        | HandCommand::Release(_)
+        | HandCommand::Cut(_)
+        | HandCommand::Destroy(_) => Ok(()),
         HandCommand::Grasp { object, .. } => check_count("letters", object.len()),
         HandCommand::MoveTo { location, .. } => finite("location", *location),
         HandCommand::MoveBy { offset, .. } => finite("offset", *offset),
@@ -227,7 +237,22 @@ fn check_object(object: &ObjectSpec, parts: &mut usize) -> Checked {
     check_count("letters", object.id.len())?;
     finite_pose(object.pose)?;
     within("mass", object.mass, &MASSES)?;
+    check_dynamics(object.dynamics)?;
     check_shape(&object.shape, 1, parts)
+}
+
+fn check_dynamics(dynamics: Dynamics) -> Checked {
+    let Dynamics {
+        friction,
+        restitution,
+        velocity,
+    } = dynamics;
+    within("friction", friction.unwrap_or(0.0), &FRICTIONS)?;
+    within("restitution", restitution.unwrap_or(0.0), &PROPORTIONS)?;
+    let [x, y, z] = velocity.to_array();
+    [x, y, z]
+        .into_iter()
+        .try_for_each(|part| within("velocity", part, &VELOCITIES))
 }
 
 fn check_shape(shape: &Shape, level: usize, count: &mut usize) -> Checked {
@@ -240,6 +265,50 @@ fn check_shape(shape: &Shape, level: usize, count: &mut usize) -> Checked {
             within("yspan", *yspan, &SPANS)
         }
         Shape::Sphere { radius, .. } => within("radius", *radius, &SPANS),
+        Shape::Prism {
+            radius,
+            yspan,
+            sides,
+            ..
+        } => {
+            within("radius", *radius, &SPANS)?;
+            within("yspan", *yspan, &SPANS)?;
+            check_sides(*sides)
+        }
+        Shape::Frustum {
+            radius_top,
+            radius_bottom,
+            zspan,
+            sides,
+            ..
+        } => {
+            within("radius_top", *radius_top, &SPANS)?;
+            within("radius_bottom", *radius_bottom, &SPANS)?;
+            within("zspan", *zspan, &SPANS)?;
+            check_sides(*sides)
+        }
+        Shape::Ring {
+            radius_outer,
+            radius_inner,
+            zspan,
+            sides,
+            ..
+        } => {
+            within("radius_outer", *radius_outer, &SPANS)?;
+            within("radius_inner", *radius_inner, &SPANS)?;
+            within("zspan", *zspan, &SPANS)?;
+            if radius_inner >= radius_outer {
+                return Err(format!(
+                    "radius_inner: {radius_inner} is not less than radius_outer, {radius_outer}"
+                ));
+            }
+            check_sides(*sides)
+        }
+        // It was checked when it was read.
+        Shape::Mesh { mesh, .. } => {
+            *count += mesh.solids().len();
+            check_parts(*count)
+        }
         Shape::Box {
             span, thickness, ..
         } => {
@@ -380,6 +449,16 @@ fn check_lid_box(lid_box: &LidBoxSpec) -> Checked {
     within("handle_thickness", lid_box.handle_thickness, &SPANS)?;
     within("box_mass", lid_box.box_mass, &MASSES)?;
     within("lid_mass", lid_box.lid_mass, &MASSES)
+}
+
+fn check_sides(sides: u32) -> Checked {
+    match SIDES.contains(&sides) {
+        true => Ok(()),
+        false => Err(format!(
+            "{sides} sides, expected at least {}",
+            SIDES.start()
+        )),
+    }
 }
 
 fn check_parts(count: usize) -> Checked {

@@ -186,6 +186,7 @@ mod tests {
                 span: Vec3::splat(2.0),
                 color: Rgb::new(0.0, 1.0, 0.0),
             },
+            dynamics: Default::default(),
             descriptions: Vec::new(),
         };
         assert_eq!(

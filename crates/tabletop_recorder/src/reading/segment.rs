@@ -182,6 +182,7 @@ fn is_told_hand(act: &Act, command: &HandCommand) -> bool {
         HandCommand::Select(_)
         | HandCommand::MoveTo { .. }
         | HandCommand::MoveBy { .. }
+        | HandCommand::Cut(_)
         | HandCommand::Turn { .. } => false,
     }
 }

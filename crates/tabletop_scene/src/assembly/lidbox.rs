@@ -18,6 +18,7 @@ pub(super) fn build(spec: &LidBoxSpec, ids: &mut IdAllocator) -> ([ObjectSpec; 2
         pose: spec.pose,
         mass: spec.box_mass,
         shape: spec.container(),
+        dynamics: Default::default(),
         descriptions: spec.descriptions.clone(),
     };
     let lid = ObjectSpec {
@@ -25,6 +26,7 @@ pub(super) fn build(spec: &LidBoxSpec, ids: &mut IdAllocator) -> ([ObjectSpec; 2
         pose: spec.pose * top * lid_bottom.inverse(),
         mass: spec.lid_mass,
         shape: spec.lid(),
+        dynamics: Default::default(),
         descriptions: Vec::new(),
     };
     let joint = JointSpec {
@@ -69,6 +71,7 @@ mod tests {
                 handle_span: Vec3::splat(0.5),
                 handle_thickness: 0.1,
                 handle_color: Rgb::GRAY,
+                dynamics: Default::default(),
                 descriptions: Vec::new(),
             };
             let scene = SceneSpec {

@@ -8,3 +8,4 @@ mod falling;
 mod joints;
 mod lids;
 mod resting;
+mod surfaces;

@@ -3,11 +3,14 @@
 use std::{fmt, ops::RangeInclusive};
 
 use bevy::math::{DVec3, Vec3};
-use tabletop_core::{Pose, Rgb};
+use tabletop_core::{Dynamics, Pose, Rgb};
 
 use crate::{
     document::tree::{Attribute, Element},
-    elements::value::{self, LOCATIONS, MASSES, ROTATIONS, SPANS, ValueError},
+    elements::value::{
+        self, FRICTIONS, LOCATIONS, MASSES, PROPORTIONS, ROTATIONS, SIDES, SPANS, VELOCITIES,
+        ValueError,
+    },
     fault::Faults,
     suggestion::nearest,
 };
@@ -87,6 +90,23 @@ impl<'e, 'a, 'f> AttributeReader<'e, 'a, 'f> {
 
     pub fn mass(&mut self, name: &'static str, default: f32) -> f32 {
         self.number(name, default, &MASSES)
+    }
+
+    /// How an object slides, bounces and begins to move.
+    pub fn dynamics(&mut self) -> Dynamics {
+        let some = |range| move |text: &str| value::number(text, range).map(Some);
+        Dynamics {
+            friction: self.read("friction", None, some(&FRICTIONS)),
+            restitution: self.read("restitution", None, some(&PROPORTIONS)),
+            velocity: self.read("linearVelocity", Vec3::ZERO, |text| {
+                value::vector(text, &VELOCITIES)
+            }),
+        }
+    }
+
+    /// How many sides something has around it.
+    pub fn sides(&mut self, default: u32) -> u32 {
+        self.read("sides", default, |text| value::count(text, &SIDES))
     }
 
     pub fn color(&mut self, name: &'static str) -> Rgb {

@@ -15,7 +15,7 @@ use crate::{
 pub(crate) const BOND_POINTS: [&str; 2] = ["guestBondPoint", "hostBondPoint"];
 pub(crate) const TIGHTNESS: &str = "tightness";
 
-impl ElementReader<'_> {
+impl ElementReader<'_, '_> {
     /// Reads the steps in a host point; nothing if one of them is faulty. A guest point has none.
     pub(super) fn tightness_steps(&mut self, element: &Element) -> Option<Vec<TightnessStep>> {
         let allowed: &[&str] = match element.name {

@@ -10,7 +10,7 @@ use crate::{
     elements::value::{self, LINK_COUNTS, PADDINGS},
 };
 
-impl ElementReader<'_> {
+impl ElementReader<'_, '_> {
     /// Reads a chain.
     pub fn chain(&mut self, element: &Element) -> Option<ChainSpec> {
         self.forbid_children(element);

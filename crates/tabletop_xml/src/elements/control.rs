@@ -39,7 +39,7 @@ enum States {
     Shapes(Vec<CustomState>),
 }
 
-impl ElementReader<'_> {
+impl ElementReader<'_, '_> {
     /// Reads what stands in the element of a control; nothing if a state is faulty.
     pub(super) fn control_content(
         &mut self,

@@ -7,11 +7,12 @@ use crate::{
     elements::{
         ElementReader, OBJECTS,
         attributes::AttributeReader,
+        blades::blades,
         value::{self, ANGLES, DISPLACEMENTS, PROPORTIONS},
     },
 };
 
-impl ElementReader<'_> {
+impl ElementReader<'_, '_> {
     /// Reads two objects that slide or turn against each other.
     pub fn jointed(&mut self, element: &Element, motion: JointMotion) -> Option<JointedSpec> {
         let objects = self.jointed_objects(element);
@@ -20,7 +21,7 @@ impl ElementReader<'_> {
         let pose = attributes.pose();
         let (range, greatest) = match motion {
             JointMotion::Slide => (DISPLACEMENTS, 1.0),
-            JointMotion::Turn => (ANGLES, 90.0),
+            JointMotion::Turn | JointMotion::Shear => (ANGLES, 90.0),
         };
         let min = attributes.number("min", 0.0, &range);
         let max = attributes.number("max", greatest, &range);
@@ -41,6 +42,38 @@ impl ElementReader<'_> {
             init: init.max(min).min(max),
             collides,
             damping: damping * softness,
+        }))
+    }
+
+    /// Reads a pair of scissors: two blades on a hinge, or two objects that are to be some.
+    pub fn scissors(&mut self, element: &Element) -> Option<JointedSpec> {
+        let objects = match element.children.is_empty() {
+            true => None,
+            false => Some(self.jointed_objects(element)?),
+        };
+        let mut attributes = AttributeReader::of(element, self.faults);
+        let id = attributes.id();
+        let pose = attributes.pose();
+        let min = attributes.number("min", 0.0, &ANGLES);
+        let max = attributes.number("max", 40.0, &ANGLES);
+        let init = attributes.number("init", max, &ANGLES);
+        let own = objects.unwrap_or_else(|| {
+            let length = attributes.span("length", 1.5);
+            let mass = attributes.mass("mass", 0.2);
+            blades(&id, length, mass, attributes.color("color"))
+        });
+        if attributes.is_sound() && min > max {
+            let problem = format_args!("{min} is more than the maximum");
+            attributes.fault("min", problem, format_args!("at most {max}"));
+        }
+        attributes.finish(Some(JointedSpec {
+            pose,
+            objects: own,
+            motion: JointMotion::Shear,
+            limits: [min, max],
+            init: init.max(min).min(max),
+            collides: false,
+            damping: 0.0,
         }))
     }
 
@@ -112,6 +145,27 @@ mod tests {
             "<hingeJoint location='(0,0,2)' min='-30' max='30' init='-45'>{OBJECTS}</hingeJoint>"
         ));
         assert_eq!(hinge.init, -30.0);
+    }
+
+    #[test]
+    fn scissors_have_blades_of_their_own_or_two_objects() {
+        let shears = only_joint("<scissors id='S' location='(0,0,2)' length='2' mass='.5'/>");
+        assert_eq!(shears.motion, JointMotion::Shear);
+        assert_eq!((shears.limits, shears.init), ([0.0, 40.0], 40.0));
+        let blades = shears
+            .objects
+            .each_ref()
+            .map(|blade| (blade.id.as_str(), blade.mass));
+        assert_eq!(blades, [("S_lower", 0.25), ("S_upper", 0.25)]);
+        let own = only_joint(&format!(
+            "<scissors location='(0,0,2)' max='60' init='5'>{OBJECTS}</scissors>"
+        ));
+        assert_eq!((own.limits, own.init), ([0.0, 60.0], 5.0));
+        assert_eq!(own.objects.map(|object| object.id), ["a", "b"]);
+        assert_eq!(
+            lines_of("<scissors location='(0,0,2)'><sphere location='(0,0,1)'/></scissors>"),
+            ["scissors: it has 1 objects, expected two objects"]
+        );
     }
 
     #[test]

@@ -12,7 +12,7 @@ use crate::{
     elements::{DESCRIPTION, ElementReader},
 };
 
-impl ElementReader<'_> {
+impl ElementReader<'_, '_> {
     /// Reads a box with a lid.
     pub fn lidbox(&mut self, element: &Element) -> Option<LidBoxSpec> {
         for child in &element.children {

@@ -9,11 +9,23 @@ use crate::{
     elements::bond::{BOND_POINTS, bond_point},
     elements::control::{CONTROLS, ControlContent, control},
     elements::hollow::check_hollow,
-    elements::value::{self, SIDES},
+    elements::mesh_files::MeshFiles,
+    elements::value::{self, ValueError},
     elements::{DESCRIPTION, ElementReader},
 };
 
-pub(crate) const SHAPES: [&str; 5] = ["block", "cylinder", "sphere", "box", "composite"];
+pub(crate) const SHAPES: [&str; 8] = [
+    "block",
+    "cylinder",
+    "frustum",
+    "ring",
+    "sphere",
+    "box",
+    "custom",
+    "composite",
+];
+/// A cylinder of so many sides is round; so it is without any.
+const ROUND: u32 = 32;
 pub(crate) const SPANS: [&str; 3] = ["xspan", "yspan", "zspan"];
 
 /// Where a shape stands.
@@ -38,7 +50,7 @@ enum Content {
 /// To which state triggering leads, for each of the simple parts of a shape.
 pub(super) type NextStates = Vec<Option<u32>>;
 
-impl ElementReader<'_> {
+impl ElementReader<'_, '_> {
     /// Reads an object.
     pub fn object(&mut self, element: &Element) -> Option<ObjectSpec> {
         let descriptions = self.descriptions(element);
@@ -47,12 +59,15 @@ impl ElementReader<'_> {
         let (id, pose) = (attributes.id(), attributes.pose());
         let mass = attributes.mass("mass", 1.0);
         attributes.ignore("pointable", false, value::boolean);
-        let shape = content.and_then(|content| shape(element, content, &mut attributes));
+        let dynamics = attributes.dynamics();
+        let shape =
+            content.and_then(|content| shape(element, content, self.meshes, &mut attributes));
         attributes.finish(shape.map(|shape| ObjectSpec {
             id,
             pose,
             mass,
             shape,
+            dynamics,
             descriptions,
         }))
     }
@@ -75,6 +90,11 @@ impl ElementReader<'_> {
             "a part has no mass of its own",
             "a mass of the outermost composite only",
         );
+        for name in ["friction", "restitution", "linearVelocity"] {
+            let problem = format!("a part has no {name} of its own");
+            let expected = format!("{name} of the outermost composite only");
+            attributes.forbid(name, &problem, &expected);
+        }
         let pointable = attributes.read("pointable", false, value::boolean);
         let next = match role {
             ObjectRole::InState => {
@@ -82,7 +102,8 @@ impl ElementReader<'_> {
             }
             ObjectRole::Whole | ObjectRole::Part => None,
         };
-        let shape = content.and_then(|content| shape(element, content, &mut attributes));
+        let shape =
+            content.and_then(|content| shape(element, content, self.meshes, &mut attributes));
         let part = attributes.finish(shape.map(|shape| Part {
             id,
             pose,
@@ -95,6 +116,10 @@ impl ElementReader<'_> {
             | Shape::Cylinder { .. }
             | Shape::Sphere { .. }
             | Shape::Box { .. }
+            | Shape::Prism { .. }
+            | Shape::Frustum { .. }
+            | Shape::Ring { .. }
+            | Shape::Mesh { .. }
             | Shape::Link { .. }
             | Shape::Lid { .. }
             | Shape::Control(_)
@@ -179,10 +204,15 @@ impl ElementReader<'_> {
     }
 }
 
-/// The shape of an element; absent for a composite of no parts.
-fn shape(element: &Element, content: Content, attributes: &mut AttributeReader) -> Option<Shape> {
+/// The shape of an element; absent for a composite of no parts, and for a mesh that cannot be read.
+fn shape(
+    element: &Element,
+    content: Content,
+    meshes: &mut MeshFiles,
+    attributes: &mut AttributeReader,
+) -> Option<Shape> {
     match content {
-        Content::Nothing => Some(simple_shape(element, attributes)),
+        Content::Nothing => simple_shape(element, meshes, attributes),
         Content::Parts(parts) if parts.is_empty() => None,
         Content::Parts(parts) => Some(Shape::Composite { parts }),
         Content::Control(content) => Some(control(element, content, attributes)),
@@ -191,18 +221,72 @@ fn shape(element: &Element, content: Content, attributes: &mut AttributeReader) 
 }
 
 /// The shape of an element that is one of [`SHAPES`] but no composite.
-fn simple_shape(element: &Element, attributes: &mut AttributeReader) -> Shape {
-    match element.name {
+fn simple_shape(
+    element: &Element,
+    meshes: &mut MeshFiles,
+    attributes: &mut AttributeReader,
+) -> Option<Shape> {
+    Some(match element.name {
         "block" => Shape::Block {
             span: attributes.spans(SPANS, Vec3::ONE),
             color: attributes.color("color"),
         },
         "cylinder" => {
-            attributes.ignore("sides", 32, |text| value::count(text, &SIDES));
-            Shape::Cylinder {
-                radius: attributes.span("radius", 0.5),
-                yspan: attributes.span("yspan", 1.0),
+            let sides = attributes.sides(ROUND);
+            let radius = attributes.span("radius", 0.5);
+            let yspan = attributes.span("yspan", 1.0);
+            let color = attributes.color("color");
+            match sides < ROUND {
+                true => Shape::Prism {
+                    radius,
+                    yspan,
+                    sides,
+                    color,
+                },
+                false => Shape::Cylinder {
+                    radius,
+                    yspan,
+                    color,
+                },
+            }
+        }
+        "frustum" => Shape::Frustum {
+            radius_top: attributes.span("radiusTop", 0.5),
+            radius_bottom: attributes.span("radiusBottom", 0.5),
+            zspan: attributes.span("zspan", 1.0),
+            sides: attributes.sides(3),
+            color: attributes.color("color"),
+        },
+        "ring" => {
+            let radius_outer = attributes.span("radiusOuter", 1.0);
+            let radius_inner = attributes.span("radiusInner", 0.5);
+            if attributes.is_sound() && radius_inner >= radius_outer {
+                let problem = format_args!("a hole of {radius_inner} leaves no ring");
+                let expected = format_args!("less than {radius_outer}");
+                attributes.fault("radiusInner", problem, expected);
+            }
+            Shape::Ring {
+                radius_outer,
+                radius_inner,
+                zspan: attributes.span("zspan", 1.0),
+                sides: attributes.sides(32),
                 color: attributes.color("color"),
+            }
+        }
+        "custom" => {
+            let file =
+                attributes.require("file", String::new(), "path", |text| Ok(text.to_owned()));
+            let scale = attributes.span("scale", 1.0);
+            let color = attributes.color("color");
+            if !attributes.is_sound() {
+                return None;
+            }
+            match meshes.mesh(element.origin.source, &file, scale) {
+                Ok(mesh) => Shape::Mesh { mesh, color },
+                Err(ValueError { problem, expected }) => {
+                    attributes.fault("file", problem, expected);
+                    return None;
+                }
             }
         }
         "sphere" => Shape::Sphere {
@@ -219,12 +303,12 @@ fn simple_shape(element: &Element, attributes: &mut AttributeReader) -> Shape {
                 color: attributes.color("color"),
             }
         }
-    }
+    })
 }
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Pose, Rgb, SceneItem};
+    use tabletop_core::{Dynamics, Pose, Rgb, SceneItem};
 
     use super::*;
     use crate::test_support::{items_of, lines_of, scene_of};
@@ -275,6 +359,7 @@ mod tests {
                 pose: Pose::at(Vec3::new(1.0, 2.0, 3.0)),
                 mass: 1.0,
                 shape,
+                dynamics: Dynamics::default(),
                 descriptions: vec![],
             };
             assert_eq!(
@@ -306,7 +391,7 @@ mod tests {
         let descriptions = [("use", "a & b"), ("shape", "")].map(|(n, v)| (n.into(), v.into()));
         assert_eq!(object.descriptions, descriptions);
         let shape =
-            only_object("<cylinder location='(0,0,2)' yspan='7' radius='2' sides='6'/>").shape;
+            only_object("<cylinder location='(0,0,2)' yspan='7' radius='2' sides='32'/>").shape;
         assert_eq!(
             shape,
             Shape::Cylinder {
@@ -324,6 +409,131 @@ mod tests {
                 color: Rgb::GRAY
             }
         );
+    }
+
+    #[test]
+    fn objects_have_physical_attributes_and_parts_have_none() {
+        let object = only_object(
+            "<sphere location='(0,0,1)' friction='.25' restitution='1' linearVelocity='(1,-2,0)'/>",
+        );
+        let expected = Dynamics {
+            friction: Some(0.25),
+            restitution: Some(1.0),
+            velocity: Vec3::new(1.0, -2.0, 0.0),
+        };
+        assert_eq!(object.dynamics, expected);
+        let plain =
+            only_object("<composite location='(0,0,1)'><block location='(0,0,0)'/></composite>");
+        assert!(plain.dynamics.is_default());
+        for (name, value) in [
+            ("friction", "-1"),
+            ("restitution", "1.1"),
+            ("linearVelocity", "(1,2)"),
+        ] {
+            let attributes = format!("{name}='{value}'");
+            let faults = lines_of(&format!("<block location='(0,0,1)' {attributes}/>"));
+            assert_eq!(faults.len(), 1);
+            assert!(
+                faults[0].starts_with(&format!("block, {name}: `{value}` is ")),
+                "{faults:?}"
+            );
+            let part = format!(
+                "<composite location='(0,0,1)'><block location='(0,0,0)' {attributes}/></composite>"
+            );
+            assert!(lines_of(&part)[0].contains(&format!("a part has no {name} of its own")));
+        }
+    }
+
+    #[test]
+    fn shapes_of_the_later_program_have_its_defaults() {
+        for (element, shape) in [
+            (
+                "frustum",
+                Shape::Frustum {
+                    radius_top: 0.5,
+                    radius_bottom: 0.5,
+                    zspan: 1.0,
+                    sides: 3,
+                    color: Rgb::GRAY,
+                },
+            ),
+            (
+                "ring",
+                Shape::Ring {
+                    radius_outer: 1.0,
+                    radius_inner: 0.5,
+                    zspan: 1.0,
+                    sides: 32,
+                    color: Rgb::GRAY,
+                },
+            ),
+            (
+                "frustum radiusTop='.1' radiusBottom='2' zspan='3' sides='6' color='red'",
+                Shape::Frustum {
+                    radius_top: 0.1,
+                    radius_bottom: 2.0,
+                    zspan: 3.0,
+                    sides: 6,
+                    color: Rgb::RED,
+                },
+            ),
+            (
+                "ring radiusOuter='3' radiusInner='2' zspan='.5' sides='8' color='red'",
+                Shape::Ring {
+                    radius_outer: 3.0,
+                    radius_inner: 2.0,
+                    zspan: 0.5,
+                    sides: 8,
+                    color: Rgb::RED,
+                },
+            ),
+            (
+                "cylinder sides='6'",
+                Shape::Prism {
+                    radius: 0.5,
+                    yspan: 1.0,
+                    sides: 6,
+                    color: Rgb::GRAY,
+                },
+            ),
+            (
+                "cylinder sides='32'",
+                Shape::Cylinder {
+                    radius: 0.5,
+                    yspan: 1.0,
+                    color: Rgb::GRAY,
+                },
+            ),
+        ] {
+            let content = format!("<{element} location='(0,0,1)'/>");
+            assert_eq!(only_object(&content).shape, shape);
+            let part = format!("<composite location='(0,0,1)'>{content}</composite>");
+            assert_eq!(only_object(&part).shape.simple_parts()[0].shape, shape);
+        }
+    }
+
+    #[test]
+    fn shapes_of_the_later_program_are_checked() {
+        for (content, fault) in [
+            (
+                "<ring location='(0,0,1)' radiusOuter='.5'/>",
+                "ring, radiusInner: a hole of 0.5 leaves no ring, expected less than 0.5",
+            ),
+            (
+                "<frustum location='(0,0,1)' sides='2'/>",
+                "frustum, sides: `2` is out of range, expected a whole number from 3 to 1000000",
+            ),
+            (
+                "<custom location='(0,0,1)'/>",
+                "custom, file: it is missing, expected file=\"path\"",
+            ),
+            (
+                "<custom location='(0,0,1)' file='cup.stl'/>",
+                "custom, file: `cup.stl` cannot be read by a text without a folder, expected a task file on the disk",
+            ),
+        ] {
+            assert_eq!(lines_of(content), [fault], "{content}");
+        }
     }
 
     #[test]
@@ -372,7 +582,7 @@ mod tests {
             assert_eq!(
                 lines_of(content),
                 [
-                    "composite: it has no parts, expected at least one of block, cylinder, sphere, box, composite"
+                    "composite: it has no parts, expected at least one of block, cylinder, frustum, ring, sphere, box, custom, composite"
                 ]
             );
             assert!(scene_of("", content).items.is_empty());

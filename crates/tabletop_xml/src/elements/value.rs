@@ -26,6 +26,8 @@ pub(crate) const LIGHTS: RangeInclusive<u32> = 0..=999;
 /// Numbers of states and of steps.
 pub(crate) const STATES: RangeInclusive<u32> = 0..=999;
 /// Numbers of sides.
+pub(crate) const FRICTIONS: RangeInclusive<f32> = 0.0..=1000.0;
+pub(crate) const VELOCITIES: RangeInclusive<f32> = -1000.0..=1000.0;
 pub(crate) const SIDES: RangeInclusive<u32> = 3..=1_000_000;
 
 /// Why a text is not a value.

@@ -214,6 +214,7 @@ fn a_difference_of_rotations_is_found() {
                 radius: 1.0,
                 color: Rgb::GRAY,
             },
+            dynamics: Default::default(),
             descriptions: vec![],
         })],
         ..Default::default()

@@ -3,8 +3,8 @@
 use bevy::math::Vec3;
 use proptest::prelude::*;
 use tabletop_core::{
-    ChainSpec, JointMotion, JointedSpec, LidBoxSpec, NAMED_COLORS, ObjectSpec, Part, Pose, Rgb,
-    SceneItem, SceneSpec, Shape, Table,
+    ChainSpec, Dynamics, JointMotion, JointedSpec, LidBoxSpec, NAMED_COLORS, ObjectSpec, Part,
+    Pose, Rgb, SceneItem, SceneSpec, Shape, Table,
 };
 
 fn vectors(most: f32) -> impl Strategy<Value = Vec3> {
@@ -63,6 +63,37 @@ fn shapes() -> impl Strategy<Value = Shape> {
             color
         }),
         (length(), colors()).prop_map(|(radius, color)| Shape::Sphere { radius, color }),
+        (length(), length(), 3..32_u32, colors()).prop_map(|(radius, yspan, sides, color)| {
+            Shape::Prism {
+                radius,
+                yspan,
+                sides,
+                color,
+            }
+        }),
+        (length(), length(), length(), 3..1000_u32, colors()).prop_map(
+            |(radius_top, radius_bottom, zspan, sides, color)| Shape::Frustum {
+                radius_top,
+                radius_bottom,
+                zspan,
+                sides,
+                color,
+            }
+        ),
+        (
+            0.2..1000.0_f32,
+            0.01..0.99_f32,
+            length(),
+            3..1000_u32,
+            colors()
+        )
+            .prop_map(|(radius_outer, share, zspan, sides, color)| Shape::Ring {
+                radius_outer,
+                radius_inner: radius_outer * share,
+                zspan,
+                sides,
+                color,
+            }),
         (containers(), colors()).prop_map(|((span, thickness), color)| Shape::Box {
             span,
             thickness,
@@ -86,15 +117,30 @@ fn objects() -> impl Strategy<Value = ObjectSpec> {
         poses(),
         masses(),
         shapes(),
+        dynamics(),
         descriptions(),
     )
-        .prop_map(|(id, pose, mass, shape, descriptions)| ObjectSpec {
-            id,
-            pose,
-            mass,
-            shape,
-            descriptions,
-        })
+        .prop_map(
+            |(id, pose, mass, shape, dynamics, descriptions)| ObjectSpec {
+                id,
+                pose,
+                mass,
+                shape,
+                dynamics,
+                descriptions,
+            },
+        )
+}
+
+fn dynamics() -> impl Strategy<Value = Dynamics> {
+    let some = |most: f32| prop::option::of(0.0..most);
+    (some(1000.0), some(1.0), vectors(1000.0)).prop_map(|(friction, restitution, velocity)| {
+        Dynamics {
+            friction,
+            restitution,
+            velocity,
+        }
+    })
 }
 
 fn chains() -> impl Strategy<Value = ChainSpec> {

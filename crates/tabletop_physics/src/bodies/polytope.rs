@@ -1,4 +1,4 @@
-//! Prisms that stand in for cylinders.
+//! Solids with flat faces: polyhedra, and the prisms that stand in for cylinders.
 
 use std::f32::consts::PI;
 
@@ -14,25 +14,37 @@ use bevy_rapier3d::{
     },
     rapier::prelude::Vector,
 };
+use tabletop_core::Polyhedron;
 
 const SIDES: u32 = 32;
 
 /// A quarter of the sides.
 const QUARTER: u32 = SIDES / 4;
 
-/// A prism with its facets on a cylinder's surface, so that a lying cylinder's centre is at its radius. Rapier's own cylinder never comes
-/// to rest on its side: inexact contact normals drive it on at some 0.2 units/s.
+/// A convex solid with flat faces.
 ///
-/// It touches with its ends at four corners around them. A convex polyhedron of Rapier touches with the first four that a face has, and
-/// would stand on one side of the end and stagger.
+/// A face of many corners touches with four of them around it. A convex polyhedron of Rapier touches with the first four that a face has,
+/// and would stand on one side of the face and stagger.
 #[derive(Clone)]
-pub(crate) struct Prism {
+pub(crate) struct Polytope {
     hull: ConvexPolyhedron,
+    touch: Touch,
 }
 
-impl Prism {
-    /// The shape that stands in for a cylinder, if there are numbers small and great enough for it.
-    pub fn shape(radius: f32, yspan: f32) -> Option<SharedShape> {
+/// With which faces a polytope touches.
+#[derive(Clone, Copy)]
+enum Touch {
+    /// Those of a prism of [`SIDES`] along Y.
+    Prism,
+    /// Any.
+    Face,
+}
+
+impl Polytope {
+    /// A prism with its facets on a cylinder's surface, so that a lying cylinder's centre is at its radius; none if there are no numbers
+    /// small and great enough for it. Rapier's own cylinder never comes to rest on its side: inexact contact normals drive it on at some
+    /// 0.2 units/s.
+    pub fn of_cylinder(radius: f32, yspan: f32) -> Option<SharedShape> {
         let half_yspan = yspan / 2.0;
         let half_angle = PI / SIDES as f32;
         let corner_radius = radius / libm::cosf(half_angle);
@@ -51,10 +63,57 @@ impl Prism {
             .flat_map(|side| [[0, side, side + 1], [SIDES, SIDES + side + 1, SIDES + side]]);
         let triangles: Vec<_> = sides.chain(ends).collect();
         let hull = ConvexPolyhedron::from_convex_mesh(corners.collect(), &triangles)?;
-        Some(SharedShape::new(Self { hull }))
+        let touch = Touch::Prism;
+        Some(SharedShape::new(Self { hull, touch }))
     }
 
-    /// Four corners around the end in a direction, one of them next to a point.
+    /// A convex polyhedron; none if it is too flat or too thin for numbers.
+    pub fn of_polyhedron(polyhedron: Polyhedron) -> Option<SharedShape> {
+        let corners = polyhedron.corners().to_vec();
+        let hull = ConvexPolyhedron::from_convex_mesh(corners, polyhedron.triangles())
+            .or_else(|| ConvexPolyhedron::from_convex_hull(polyhedron.corners()))?;
+        let touch = Touch::Face;
+        Some(SharedShape::new(Self { hull, touch }))
+    }
+
+    /// Of the face in a direction, four corners around it, one of them next to a point; all if it has no more.
+    fn face(&self, direction: Vector, near: Vector) -> PolygonalFeature {
+        let mut feature = PolygonalFeature::default();
+        let facing = |face: usize| self.hull.faces()[face].normal.dot(direction);
+        let mut best = 0;
+        for face in 1..self.hull.faces().len() {
+            if facing(face) > facing(best) {
+                best = face;
+            }
+        }
+        let face = &self.hull.faces()[best];
+        let first = face.first_vertex_or_edge as usize;
+        let corners = first..first + face.num_vertices_or_edges as usize;
+        let vertices = &self.hull.vertices_adj_to_face()[corners.clone()];
+        let edges = &self.hull.edges_adj_to_face()[corners];
+        let count = vertices.len();
+        let point = |corner: usize| self.hull.points()[vertices[corner] as usize];
+        let by_distance =
+            |&a: &usize, &b: &usize| point(a).distance(near).total_cmp(&point(b).distance(near));
+        let nearest = match count > 4 {
+            true => (0..count).min_by(by_distance).unwrap_or(0),
+            false => 0,
+        };
+        feature.num_vertices = count.min(4);
+        for i in 0..feature.num_vertices {
+            let corner = match count > 4 {
+                true => (nearest + (i * count + 2) / 4) % count,
+                false => i,
+            };
+            feature.vertices[i] = point(corner);
+            feature.vids[i] = PackedFeatureId::vertex(vertices[corner]);
+            feature.eids[i] = PackedFeatureId::edge(edges[corner]);
+        }
+        feature.fid = PackedFeatureId::face(best as u32);
+        feature
+    }
+
+    /// Four corners around the end of a prism in a direction, one of them next to a point.
     fn end(&self, direction: Vector, near: Vector) -> PolygonalFeature {
         let turn = libm::atan2f(near.z, near.x) / (2.0 * PI) * SIDES as f32 - 0.5;
         let nearest = turn.round().rem_euclid(SIDES as f32) as u32;
@@ -71,7 +130,7 @@ impl Prism {
     }
 }
 
-impl PolygonalFeatureMap for Prism {
+impl PolygonalFeatureMap for Polytope {
     fn local_support_feature(&self, direction: Vector, feature: &mut PolygonalFeature) {
         self.local_support_feature_toward(direction, Vector::ZERO, feature);
     }
@@ -82,11 +141,14 @@ impl PolygonalFeatureMap for Prism {
         hint: Vector,
         feature: &mut PolygonalFeature,
     ) {
-        if direction.y.abs() > libm::hypotf(direction.x, direction.z) {
-            *feature = self.end(direction, hint);
-        } else {
-            self.hull
-                .local_support_feature(direction.with_y(0.0), feature);
+        match self.touch {
+            Touch::Face => *feature = self.face(direction, hint),
+            Touch::Prism if direction.y.abs() > libm::hypotf(direction.x, direction.z) => {
+                *feature = self.end(direction, hint);
+            }
+            Touch::Prism => self
+                .hull
+                .local_support_feature(direction.with_y(0.0), feature),
         }
     }
 
@@ -95,13 +157,13 @@ impl PolygonalFeatureMap for Prism {
     }
 }
 
-impl SupportMap for Prism {
+impl SupportMap for Polytope {
     fn local_support_point(&self, direction: Vector) -> Vector {
         self.hull.local_support_point(direction)
     }
 }
 
-impl Shape for Prism {
+impl Shape for Polytope {
     fn compute_local_aabb(&self) -> Aabb {
         self.hull.compute_local_aabb()
     }
@@ -116,7 +178,8 @@ impl Shape for Prism {
 
     fn scale_dyn(&self, scale: Vector, _subdivisions: u32) -> Option<Box<dyn Shape>> {
         let hull = self.hull.clone().scaled(scale)?;
-        Some(Box::new(Self { hull }))
+        let touch = self.touch;
+        Some(Box::new(Self { hull, touch }))
     }
 
     fn mass_properties(&self, density: f32) -> MassProperties {
@@ -156,7 +219,7 @@ impl Shape for Prism {
     }
 }
 
-impl RayCast for Prism {
+impl RayCast for Polytope {
     fn cast_local_ray_and_get_normal(
         &self,
         ray: &Ray,
@@ -167,7 +230,7 @@ impl RayCast for Prism {
     }
 }
 
-impl PointQuery for Prism {
+impl PointQuery for Polytope {
     fn project_local_point(&self, point: Vector, is_solid: bool) -> PointProjection {
         self.hull.project_local_point(point, is_solid)
     }
@@ -184,7 +247,7 @@ mod tests {
     #[test]
     fn a_prism_stands_in_for_every_size_of_cylinder() {
         for (radius, yspan) in [(0.5, 1.0), (0.001, 1000.0), (1000.0, 0.001), (0.35, 5.0)] {
-            let prism = Prism::shape(radius, yspan);
+            let prism = Polytope::of_cylinder(radius, yspan);
             let prism = prism.unwrap_or_else(|| panic!("no prism for {radius} x {yspan}"));
             let bounds = prism.compute_local_aabb();
             assert!((bounds.maxs.z / radius - 1.0).abs() < 1e-3, "{bounds:?}");
@@ -197,7 +260,7 @@ mod tests {
 
     #[test]
     fn an_end_touches_at_four_corners_all_around_it() {
-        let prism = Prism::shape(0.5, 1.0);
+        let prism = Polytope::of_cylinder(0.5, 1.0);
         let prism = prism.unwrap_or_else(|| panic!("no prism"));
         let (map, _) = prism
             .as_polygonal_feature_map()
@@ -221,7 +284,7 @@ mod tests {
 
     #[test]
     fn a_lying_prism_touches_with_a_facet() {
-        let prism = Prism::shape(0.5, 2.0);
+        let prism = Polytope::of_cylinder(0.5, 2.0);
         let prism = prism.unwrap_or_else(|| panic!("no prism"));
         let (map, _) = prism
             .as_polygonal_feature_map()
@@ -235,5 +298,30 @@ mod tests {
                 .iter()
                 .all(|corner| (corner.z + 0.5).abs() < 1e-6)
         );
+    }
+
+    #[test]
+    fn a_face_of_many_corners_touches_all_around_it() {
+        for sides in [3, 4, 5, 6, 12, 32] {
+            let frustum = Polyhedron::frustum(0.7, 1.0, 2.0, sides);
+            let shape = Polytope::of_polyhedron(frustum);
+            let shape = shape.unwrap_or_else(|| panic!("no polytope of {sides} sides"));
+            let (map, _) = shape
+                .as_polygonal_feature_map()
+                .unwrap_or_else(|| panic!("no features"));
+            let near = Vector::new(-0.3, 0.2, -1.0);
+            let mut end = PolygonalFeature::default();
+            map.local_support_feature_toward(Vector::NEG_Z, near, &mut end);
+            assert_eq!(end.num_vertices, sides.min(4) as usize);
+            let corners = &end.vertices[..end.num_vertices];
+            assert!(corners.iter().all(|corner| (corner.z + 1.0).abs() < 1e-6));
+            // The middle is well inside of them.
+            let next = corners.iter().cycle().skip(1);
+            for (a, b) in corners.iter().zip(next) {
+                let along = (*b - *a).normalize();
+                let inside = Vector::Z.cross(along).dot(-*a).abs();
+                assert!(inside > 0.3, "{sides}: {inside}");
+            }
+        }
     }
 }

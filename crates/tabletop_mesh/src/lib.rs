@@ -1,0 +1,42 @@
+//! Meshes: STL files to surfaces and the convex solids that fill them.
+//!
+//! [`read_stl`] reads a file, [`convex_solids`] takes its surface apart, once for each content, and [`mesh`] does both.
+//!
+//! ```
+//! let tetrahedron = b"solid tetrahedron
+//!   facet normal 0 0 -1 outer loop vertex 0 0 0 vertex 0 1 0 vertex 1 0 0 endloop endfacet
+//!   facet normal 0 -1 0 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 0 1 endloop endfacet
+//!   facet normal -1 0 0 outer loop vertex 0 0 0 vertex 0 0 1 vertex 0 1 0 endloop endfacet
+//!   facet normal 1 1 1 outer loop vertex 1 0 0 vertex 0 1 0 vertex 0 0 1 endloop endfacet
+//! endsolid";
+//! let mesh = tabletop_mesh::mesh("tetrahedron.stl", tetrahedron, 2.0)?;
+//! assert_eq!(mesh.surface().triangles().len(), 4);
+//! assert_eq!(mesh.solids().len(), 1);
+//! # Ok::<(), tabletop_mesh::StlError>(())
+//! ```
+
+mod convex;
+mod stl;
+
+pub use convex::convex_solids;
+pub use stl::{MAX_STL_BYTES, StlError, read_stl};
+
+use bevy::math::Vec3;
+use tabletop_core::MeshSpec;
+
+/// What an STL file describes, with its lengths multiplied by a scale above 0. `file` is the name by which a task file names it.
+///
+/// # Errors
+/// The bytes are no STL file, or what it describes is too large, or no solid.
+pub fn mesh(file: &str, bytes: &[u8], scale: f32) -> Result<MeshSpec, StlError> {
+    let surface = read_stl(bytes)?;
+    let by = Vec3::splat(scale);
+    let solids = convex_solids(surface);
+    let solids = solids.iter().map(|solid| solid.scaled(by)).collect();
+    Ok(MeshSpec::new(
+        file.to_owned(),
+        scale,
+        surface.scaled(by),
+        solids,
+    )?)
+}
