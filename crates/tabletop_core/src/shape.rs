@@ -4,7 +4,8 @@ use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    BondEnd, BondPoint, Control, ControlKind, MOST_SIDES, MeshSpec, Polyhedron, Pose, Rgb, turn_about,
+    BondEnd, BondPoint, Control, ControlKind, MOST_SIDES, MeshSpec, Polyhedron, Pose, Rgb,
+    turn_about,
 };
 
 /// The shape of an object or of a part of one (report section 6.2). Sizes are full extents in units of 10 cm;

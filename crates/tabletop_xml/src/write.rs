@@ -8,8 +8,9 @@ use std::fmt::Write as _;
 use bevy::math::{DVec3, Vec3};
 use quick_xml::escape::escape;
 use tabletop_core::{
-    BondEnd, BondPoint, ChainSpec, Change, Control, ControlKind, Dynamics, JointMotion, JointedSpec,
-    LidBoxSpec, NAMED_COLORS, ObjectSpec, Part, Pose, Rgb, SceneItem, SceneSpec, Shape, Side,
+    BondEnd, BondPoint, ChainSpec, Change, Control, ControlKind, Dynamics, JointMotion,
+    JointedSpec, LidBoxSpec, NAMED_COLORS, ObjectSpec, Part, Pose, Rgb, SceneItem, SceneSpec,
+    Shape, Side,
 };
 
 use crate::{

@@ -5,10 +5,10 @@ use std::ops::RangeInclusive;
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{
-    BondEnd, BondPoint, ChainSpec, Change, ClockCommand, Control, ControlKind, Drive, Dynamics, HandCommand,
-    HeadCamera, JointKind, JointSpec, JointedSpec, LidBoxSpec, MechanismCommand, ObjectSpec, Part,
-    Pose, RecordingCommand, Rgb, RobotCommand, SceneCommand, SceneItem, SceneSpec, Shape,
-    SimCommand, Table,
+    BondEnd, BondPoint, ChainSpec, Change, ClockCommand, Control, ControlKind, Drive, Dynamics,
+    HandCommand, HeadCamera, JointKind, JointSpec, JointedSpec, LidBoxSpec, MechanismCommand,
+    ObjectSpec, Part, Pose, RecordingCommand, Rgb, RobotCommand, SceneCommand, SceneItem,
+    SceneSpec, Shape, SimCommand, Table,
     limits::{DISPLACEMENTS, MASSES, MOST_LINKS, PADDINGS, PROPORTIONS, SPANS, SWITCH_ANGLES},
 };
 

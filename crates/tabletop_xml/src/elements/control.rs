@@ -146,7 +146,7 @@ impl ElementReader<'_, '_> {
     }
 }
 
-impl ElementReader<'_> {
+impl ElementReader<'_, '_> {
     /// Reads what a state does to another object.
     fn change(&mut self, element: &Element) -> Option<Change> {
         let spawned = match element.name {
