@@ -372,6 +372,17 @@ impl Polyhedron {
             .all(|[a, b, c]| (b - a).cross(c - a).dot(point - a) <= 0.0)
     }
 
+    /// How far outside of it a point is, if it is convex.
+    pub fn distance_to(self, point: Vec3) -> f32 {
+        if self.contains(point) {
+            return 0.0;
+        }
+        let distances = self
+            .faces()
+            .map(|face| nearest_of_triangle(face, point).distance(point));
+        distances.fold(f32::INFINITY, f32::min)
+    }
+
     /// Its surface in a colour, with normals: those of its faces, and of the round surface where it is meant to be one.
     pub fn surface(self, color: Rgb) -> Triangles {
         let Facets {
@@ -413,6 +424,33 @@ impl Polyhedron {
         }
         surface
     }
+}
+
+/// The point of a triangle that is nearest to another point.
+fn nearest_of_triangle([a, b, c]: [Vec3; 3], point: Vec3) -> Vec3 {
+    let (ab, ac) = (b - a, c - a);
+    let normal = ab.cross(ac);
+    let area = normal.length_squared();
+    if area > 0.0 {
+        let from_a = point - a;
+        let v = from_a.cross(ac).dot(normal) / area;
+        let w = ab.cross(from_a).dot(normal) / area;
+        if v >= 0.0 && w >= 0.0 && v + w <= 1.0 {
+            return a + ab * v + ac * w;
+        }
+    }
+    let on_edges = [(a, b), (b, c), (c, a)].map(|(start, end)| {
+        let along = end - start;
+        let length = along.length_squared().max(f32::MIN_POSITIVE);
+        start + along * ((point - start).dot(along) / length).clamp(0.0, 1.0)
+    });
+    let [first, others @ ..] = on_edges;
+    others.into_iter().fold(first, |nearest, other| {
+        match other.distance_squared(point) < nearest.distance_squared(point) {
+            true => other,
+            false => nearest,
+        }
+    })
 }
 
 /// Cosines of the angles below which faces are parts of the same surface: a flat one, and a round one of [`ROUND_SIDES`].
@@ -611,5 +649,8 @@ mod tests {
         assert!(prism.contains(Vec3::new(0.9, 0.9, 0.0)));
         assert!(!prism.contains(Vec3::new(0.9, 1.1, 0.0)));
         assert!(!prism.contains(Vec3::new(0.0, 0.0, 0.9)));
+        assert_eq!(prism.distance_to(Vec3::new(0.9, 0.9, 0.0)), 0.0);
+        assert!((prism.distance_to(Vec3::new(4.0, 5.0, 0.0)) - 5.0).abs() < 1e-5);
+        assert!((prism.distance_to(Vec3::new(0.0, 3.0, 0.2)) - 2.0).abs() < 1e-5);
     }
 }

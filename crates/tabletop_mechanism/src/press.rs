@@ -159,6 +159,7 @@ fn distance(solid: Solid, point: Vec3) -> f32 {
             aside.hypot(along)
         }
         Solid::Ball(radius) => (point.length() - radius).max(0.0),
+        Solid::Polyhedron(polyhedron) => polyhedron.distance_to(point),
     }
 }
 
