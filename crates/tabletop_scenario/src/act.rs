@@ -197,6 +197,7 @@ impl StepState {
             | Step::Glide { .. }
             | Step::Release
             | Step::Destroy
+            | Step::Cut
             | Step::Trigger(_)
             | Step::TriggerPart(..)
             | Step::PointTo(_)
