@@ -47,7 +47,8 @@ fn show_ghosts(
     mut commands: Commands,
     ghosts: Res<Ghosts>,
     shown: Query<Entity, With<GhostSolid>>,
-    looks: Res<Looks>,
+    mut looks: ResMut<Looks>,
+    mut meshes: ResMut<Assets<Mesh>>,
     mut surfaces: ResMut<Assets<Surface>>,
 ) {
     for solid in &shown {
@@ -58,7 +59,7 @@ fn show_ghosts(
             let surface = Surface::translucent(primitive.color, Ghost::OPACITY);
             commands.spawn((
                 GhostSolid,
-                Mesh3d(looks.mesh(primitive.solid)),
+                Mesh3d(looks.mesh(primitive.solid, &mut meshes)),
                 MeshMaterial3d(surfaces.add(surface)),
                 Transform::from(ghost.pose * primitive.pose)
                     .with_scale(mesh::scale_of(primitive.solid)),
