@@ -341,7 +341,6 @@ fn a_lid_is_pulled_open_by_its_handle() {
         handle_span: Vec3::new(0.8, 0.6, 0.6),
         handle_thickness: 0.1,
         handle_color: Rgb::GRAY,
-        dynamics: Default::default(),
         descriptions: Vec::new(),
     };
     let scene = SceneSpec {

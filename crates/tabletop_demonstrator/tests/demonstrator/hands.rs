@@ -307,7 +307,6 @@ fn a_held_lid_follows_its_slider() {
         handle_span: Vec3::new(1.0, 2.0, 0.6),
         handle_thickness: 0.2,
         handle_color: Rgb::GRAY,
-        dynamics: Default::default(),
         descriptions: Vec::new(),
     };
     let mut desk = Desk::new(vec![SceneItem::LidBox(lidbox)]);

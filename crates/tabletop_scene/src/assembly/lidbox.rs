@@ -71,7 +71,6 @@ mod tests {
                 handle_span: Vec3::splat(0.5),
                 handle_thickness: 0.1,
                 handle_color: Rgb::GRAY,
-                dynamics: Default::default(),
                 descriptions: Vec::new(),
             };
             let scene = SceneSpec {

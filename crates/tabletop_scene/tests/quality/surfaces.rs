@@ -1,7 +1,7 @@
 //! What slides, bounces and begins to move as its file says, and shapes with holes and many faces.
 
 use bevy::prelude::*;
-use tabletop_core::{Dynamics, Rgb, SceneItem, Shape};
+use tabletop_core::{Dynamics, Rgb, SceneItem, Shape, StepApp as _};
 
 use crate::world::*;
 

@@ -170,7 +170,6 @@ pub fn report_lidbox(location: Vec3, degrees: Vec3) -> SceneItem {
         handle_span: Vec3::new(1.0, 2.0, 0.6),
         handle_thickness: 0.2,
         handle_color: WHITE,
-        dynamics: Default::default(),
         descriptions: Vec::new(),
     })
 }
