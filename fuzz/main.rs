@@ -3,6 +3,12 @@
 //!
 //! An input follows from its target, a seed and its number alone, so nothing but these need be kept.
 
+#![expect(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "it says what it finds"
+)]
+
 mod input;
 mod mutation;
 mod scenes;

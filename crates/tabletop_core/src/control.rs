@@ -254,7 +254,7 @@ impl ToggleSwitch {
     /// Its left and its right block.
     fn blocks(&self) -> [Part; 2] {
         let angle = self.angle.to_radians();
-        let width = self.span.x / (1.0 + angle.cos());
+        let width = self.span.x / (1.0 + libm::cosf(angle));
         let shape = Shape::Block {
             span: Vec3::new(width, self.span.y, self.span.z),
             color: self.color,
