@@ -14,6 +14,9 @@ use tabletop_physics::{Convex, contact, to_rapier};
 /// Distance, in units, that is kept from what is in the way.
 pub(crate) const MARGIN: f32 = 0.01;
 
+/// How deep what is held may go into what it is put on, in units.
+const GIVE: f32 = 0.03;
+
 /// Changes of distance, in units, that are no approach.
 const APPROACH: f32 = 1e-5;
 
@@ -74,16 +77,27 @@ impl Solid {
         }
     }
 
-    /// Whether the two solids would enter each other, or come nearer to each other than they may.
-    pub fn collides_with(&self, other: &Self) -> bool {
+    /// How deep it may go into what it is put on, in units: what a gripper holds gives way between its fingers.
+    pub const fn give(&self) -> f32 {
+        match self.owner {
+            Owner::Thing(_) => GIVE,
+            Owner::Body(_) => 0.0,
+        }
+    }
+
+    /// Whether the two solids would come nearer to each other than they may: the margin, or so deep into each other as the first one gives.
+    pub fn collides_with(&self, other: &Self, give: f32) -> bool {
         if !are_near(&self.bounds, &other.bounds) {
             return false;
         }
         let Some(ahead) = self.distance(self.to, other, other.to, MARGIN) else {
             return false;
         };
-        self.distance(self.from, other, other.from, MARGIN)
-            .is_none_or(|here| ahead < here - APPROACH)
+        let is_too_near = give == 0.0 || ahead < -give;
+        is_too_near
+            && self
+                .distance(self.from, other, other.from, MARGIN)
+                .is_none_or(|here| ahead < here - APPROACH)
     }
 
     /// How this solid comes nearer to something free on its way in a tick; `None` if it does not.
@@ -198,7 +212,7 @@ mod tests {
             shape: rapier::SharedShape::cylinder(1.0, 0.6),
         };
         let [from, to] = [from, to].map(|z| Pose::from_degrees(Vec3::Z * z, Vec3::X * 90.0));
-        Solid::moving(&[cylinder], Owner::Body(1), from, to).any(|it| it.collides_with(&table))
+        Solid::moving(&[cylinder], Owner::Body(1), from, to).any(|it| it.collides_with(&table, 0.0))
     }
 
     #[test]

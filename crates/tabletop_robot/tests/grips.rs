@@ -98,16 +98,71 @@ fn the_angle_of_figure_11_decides() {
         let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, turned);
         assert_eq!(grip_facts(close(&mut stage)), made(), "{degrees}°");
     }
-    for degrees in [15.0, 30.0] {
+}
+
+#[test]
+fn closing_fingers_turn_a_block_until_it_is_flush() {
+    for (mode, degrees) in [RobotMode::Kinematic, RobotMode::Dynamic]
+        .into_iter()
+        .flat_map(|mode| [12.0, -15.0, 20.0, 30.0].map(|degrees| (mode, degrees)))
+    {
         let turned = Vec3::Z * degrees;
         let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, turned);
+        stage.app.world_mut().resource_mut::<Robot>().mode = mode;
         let facts = grip_facts(close(&mut stage));
-        assert!(
-            matches!(facts[..], [SimFact::GripRefused { angle, .. }] if angle > STEEPEST_GRIP),
-            "{degrees}°: {facts:?}"
-        );
-        assert!(stage.robot().limb(ARM).holds.is_empty());
+        assert_eq!(facts, made(), "{degrees}°, {mode:?}");
+        let opening = stage.robot().joint(RobotJoint::gripper(ARM)).position;
+        assert!(opening < 1.05, "{degrees}°, {mode:?}: {opening}");
+        let left = stage.place("thing").rotation.to_euler(EulerRot::ZYX).0;
+        // Friction may hold back the last few degrees.
+        assert!(left.abs() < 0.12, "{degrees}°, {mode:?}: {left}");
     }
+}
+
+#[test]
+fn what_cannot_turn_is_refused_by_the_angle_of_figure_11() {
+    let turned = Vec3::Z * 20.0;
+    let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, turned);
+    // Wedged between two walls.
+    let frame = Pose::from_degrees(Vec3::new(3.0, -2.0, 0.5), turned);
+    for (id, side) in [("one", 1.0), ("other", -1.0)] {
+        let wall = block(Vec3::new(1.0, 0.4, 1.0));
+        let place = frame * Pose::at(Vec3::Y * side * 0.705);
+        stage.put(id, wall, 0.0, place);
+    }
+    stage.app.step(5);
+    let facts = grip_facts(close(&mut stage));
+    assert!(
+        matches!(facts[..], [SimFact::GripRefused { angle, .. }] if angle > STEEPEST_GRIP),
+        "{facts:?}"
+    );
+    assert!(stage.robot().limb(ARM).holds.is_empty());
+}
+
+#[test]
+fn what_is_held_is_put_down_though_the_arm_goes_a_little_too_deep() {
+    let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, Vec3::ZERO);
+    assert_eq!(grip_facts(close(&mut stage)), made());
+    let hand = stage.robot().limb(ARM).end_effector.location;
+    stage.reach(ARM, hand + Vec3::Z, 0.0);
+    stage.reach(ARM, hand + Vec3::NEG_Z * 0.02, 0.0);
+    let reached = stage.robot().limb(ARM).end_effector.location;
+    assert!(
+        (reached.z - (hand.z - 0.02)).abs() < 1e-3,
+        "{reached} {hand}"
+    );
+    assert_eq!(stage.robot().limb(ARM).blocked_by, None);
+    stage.tell(RobotCommand::drive([(
+        RobotJoint::gripper(ARM),
+        Drive::Toward(2.0),
+    )]));
+    stage.app.step(120);
+    let place = stage.place("thing").location;
+    assert!((place.z - 0.5).abs() < 0.01, "{place}");
+    assert!(
+        (place - Vec3::new(3.0, -2.0, 0.5)).length() < 0.05,
+        "{place}"
+    );
 }
 
 #[test]

@@ -180,7 +180,7 @@ fn the_arms_do_not_enter_each_other() {
 }
 
 #[test]
-fn a_held_object_is_never_inside_the_table() {
+fn a_held_object_goes_no_deeper_into_the_table_than_it_gives() {
     let mut stage = Stage::new();
     stage.reach(Arm::Right, Vec3::new(3.0, -2.0, 1.7), 0.0);
     stage.put(
@@ -202,7 +202,7 @@ fn a_held_object_is_never_inside_the_table() {
         .into_iter()
         .flat_map(|x| [-0.5f32, 0.5].map(|y| (place * Vec3::new(x, y, -1.0)).z))
         .fold(f32::INFINITY, f32::min);
-    assert!((0.0..0.2).contains(&lowest), "{lowest}");
+    assert!((-0.03..0.2).contains(&lowest), "{lowest}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use tabletop_core::{
 };
 use tabletop_physics::{Carry, hold, let_go, pull_velocity};
 
-use crate::gripper::closing::Touched;
+use crate::gripper::{alignment::Alignment, closing::Touched};
 
 /// What the grippers hold, and how.
 #[derive(Resource, Clone, Debug)]
@@ -17,6 +17,8 @@ pub(crate) struct Grips {
     held: Vec<Vec<Grip>>,
     /// Objects that a closing gripper could not hold, until it opens.
     pub refused: Vec<Vec<Entity>>,
+    /// What each closing gripper turns between its fingers, until it opens.
+    pub alignments: Vec<Option<Alignment>>,
 }
 
 /// An object in a gripper.
@@ -39,6 +41,7 @@ impl Grips {
             names: layout.limbs.iter().map(|limb| limb.name).collect(),
             held: vec![Vec::new(); layout.limbs.len()],
             refused: vec![Vec::new(); layout.limbs.len()],
+            alignments: vec![None; layout.limbs.len()],
         }
     }
 
@@ -50,6 +53,12 @@ impl Grips {
     /// What a gripper holds, in the order in which it took it.
     pub fn of(&self, limb: LimbId) -> &[Grip] {
         &self.held[limb.index()]
+    }
+
+    /// Whether a gripper presses on what its fingers touch.
+    pub fn is_pressing(&self, limb: LimbId) -> bool {
+        let refused = &self.refused[limb.index()];
+        self.alignments[limb.index()].is_some_and(|turned| !refused.contains(&turned.object))
     }
 
     /// What a limb is called.

@@ -13,7 +13,8 @@ use crate::{
     command::joint_targets::JointTargets,
     dynamics::{contact_loads::contact_loads, motors::Motors},
     gripper::{
-        closing::{Closing, STEEPEST_GRIP, Touched},
+        alignment::{Judgement, judge},
+        closing::{Closing, Touched},
         grips::{self, Grips},
     },
     motion::view::RobotView,
@@ -72,7 +73,7 @@ pub(crate) fn advance(
         motion.move_arm(limb, &setpoints);
         let gripper = layout.limb(limb).gripper.joint;
         let opens = targets.open(layout, gripper, motion.positions[gripper.index()]);
-        let closing = motion.move_fingers(limb, &targets);
+        let closing = motion.move_fingers(limb, &targets, grips.is_pressing(limb));
         actions.extend(decide(&known, limb, opens, closing, &mut grips));
     }
 
@@ -203,6 +204,7 @@ fn decide(
 ) -> Vec<GripChange> {
     if opens {
         grips.refused[limb.index()].clear();
+        grips.alignments[limb.index()] = None;
         let holds = !grips.of(limb).is_empty();
         return holds
             .then_some(GripChange::Release(limb))
@@ -215,14 +217,18 @@ fn decide(
         if !grips::can_take(object, &known.objects) {
             continue;
         }
-        if angle < STEEPEST_GRIP {
-            actions.push(GripChange::Take(limb, touched));
-        } else if let Some(id) = known.id(object)
-            && !grips.refused[limb.index()].contains(&object)
-        {
-            grips.refused[limb.index()].push(object);
-            let arm = grips.name_of(limb);
-            actions.push(GripChange::Refuse { arm, id, angle });
+        match judge(&mut grips.alignments[limb.index()], object, angle) {
+            Judgement::Hold => actions.push(GripChange::Take(limb, touched)),
+            Judgement::Press => {}
+            Judgement::Refuse => {
+                if let Some(id) = known.id(object)
+                    && !grips.refused[limb.index()].contains(&object)
+                {
+                    grips.refused[limb.index()].push(object);
+                    let arm = grips.name_of(limb);
+                    actions.push(GripChange::Refuse { arm, id, angle });
+                }
+            }
         }
     }
     actions

@@ -12,7 +12,10 @@ use crate::{
     articulation::tree::{Articulation, Body, Carrier, Positions, Posture, TreePosition},
     clearance::{Owner, Solid, are_near, part_left},
     command::joint_targets::{JointTargets, Setpoint},
-    gripper::closing::{Closing, Graspable, close},
+    gripper::{
+        alignment::PRESS,
+        closing::{Closing, Graspable, close},
+    },
     motion::environment::Environment,
 };
 
@@ -127,8 +130,13 @@ impl TickMotion<'_> {
         self.blocked_by[limb.index()] = self.sweep(limb, lerp(&self.positions, &there, part));
     }
 
-    /// Opens or closes a gripper. Returns what it has found between its fingers while closing.
-    pub fn move_fingers(&mut self, limb: LimbId, targets: &JointTargets) -> Closing {
+    /// Opens or closes a gripper, which may be pressing on what its fingers touch. Returns what it has found between them while closing.
+    pub fn move_fingers(
+        &mut self,
+        limb: LimbId,
+        targets: &JointTargets,
+        is_pressing: bool,
+    ) -> Closing {
         let layout = &self.articulation.layout;
         let joint = layout.limb(limb).gripper.joint;
         let [least, _] = layout.joint(joint).limits;
@@ -145,7 +153,9 @@ impl TickMotion<'_> {
                 layout.limb(limb).gripper.finger,
                 &self.between(limb),
             );
-            there[joint.index()] = setpoint.max(opening - f64::from(closing.room)).max(least);
+            let press = if is_pressing { PRESS } else { 0.0 };
+            let room = f64::from(closing.room) + press;
+            there[joint.index()] = setpoint.max(opening - room).max(least);
         }
         if there == self.positions {
             return closing;
@@ -354,7 +364,7 @@ impl TickMotion<'_> {
         let outside = solids.iter().find_map(|(_, solid)| {
             let mut immovable = self.environment.immovable.iter();
             immovable
-                .find(|obstacle| solid.collides_with(obstacle))
+                .find(|obstacle| solid.collides_with(obstacle, solid.give()))
                 .map(|obstacle| obstacle.owner)
         });
         outside.or_else(|| self.own_body(limb, &solids, &here))
@@ -387,7 +397,7 @@ impl TickMotion<'_> {
     fn own_body(&self, limb: LimbId, solids: &[(usize, Solid)], here: &Poses) -> Option<Owner> {
         for (i, (a, solid)) in solids.iter().enumerate() {
             let met = solids[..i].iter().find(|(b, other)| {
-                self.self_collisions.can_meet(*a, *b) && solid.collides_with(other)
+                self.self_collisions.can_meet(*a, *b) && solid.collides_with(other, 0.0)
             });
             if let Some((_, other)) = met {
                 return Some(other.owner);
@@ -407,7 +417,7 @@ impl TickMotion<'_> {
             let pose = here.bodies[number];
             for other in Solid::moving(&body.parts, Owner::Body(number), pose, pose) {
                 let is_met = solids.iter().any(|(a, solid)| {
-                    self.self_collisions.can_meet(*a, number) && solid.collides_with(&other)
+                    self.self_collisions.can_meet(*a, number) && solid.collides_with(&other, 0.0)
                 });
                 if is_met {
                     return Some(other.owner);
