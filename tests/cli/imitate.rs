@@ -38,6 +38,36 @@ fn a_letter_is_built() {
 }
 
 #[test]
+fn a_wall_is_built() {
+    is_done(&recorded("wall"), &["--seed", "1"]);
+}
+
+#[test]
+fn a_chest_is_opened_filled_and_closed() {
+    is_done(&recorded("chest"), &[]);
+}
+
+#[test]
+fn the_red_block_is_put_on_the_blue_one_whichever_they_are() {
+    let demo = recorded("red_on_blue");
+    for requirement in [
+        ["--step", "1", "color=red"].as_slice(),
+        &["--step", "1", "--other", "color=blue"],
+    ] {
+        let output = tabletop(&[&["require", &demo], requirement].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+    for seed in ["1", "2"] {
+        is_done(&demo, &["--exchange-colors", "--seed", seed]);
+    }
+}
+
+#[test]
+fn motors_build_a_stack() {
+    is_done(&recorded("stack_three"), &["--dynamic"]);
+}
+
+#[test]
 fn rings_go_from_peg_to_peg() {
     is_done(&recorded("hanoi"), &[]);
 }
