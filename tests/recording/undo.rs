@@ -5,7 +5,7 @@ use std::fs;
 use tabletop::{prelude::*, replay::first_difference};
 
 use crate::{
-    demonstration::{Demonstration, assert_replays},
+    demonstration::Demonstration,
     random::{Random, scene, script},
 };
 
@@ -275,30 +275,4 @@ fn what_was_undone_and_redone_is_there_again() {
 
     let difference = first_difference(&straight.folder, &there_and_back.folder).unwrap();
     assert_eq!(difference, None);
-}
-
-#[test]
-fn what_a_hand_did_in_the_tick_of_a_scene_can_be_undone() {
-    let mut demonstration = Demonstration::new("in_the_tick_of_a_scene");
-    let hand = Hand::Left;
-    let load = |name: &str| SimCommand::from(SceneCommand::Load(name.into()));
-    let grasp = HandCommand::Grasp {
-        hand,
-        object: "RedBlock".into(),
-    };
-    demonstration.act(&[
-        (vec![load("tablesetup/default.xml")], 20),
-        (vec![RecordingCommand::Start.into()], 2),
-        (vec![grasp.into()], 10),
-        (
-            vec![
-                load("tablesetup/chain.xml"),
-                HandCommand::Destroy(hand).into(),
-            ],
-            10,
-        ),
-        (vec![HistoryCommand::Undo.into()], 30),
-        (vec![RecordingCommand::Finish.into()], 1),
-    ]);
-    assert_replays(&demonstration.folder);
 }
