@@ -7,4 +7,5 @@ mod full_disk;
 mod kill;
 mod reading;
 mod stage;
+mod starting;
 mod undo;
