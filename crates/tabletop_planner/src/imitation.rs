@@ -391,10 +391,9 @@ impl Imitator<'_> {
         let sight = stage.sight().clone();
         let clearance = Clearance::new(self.body, &sight, limb, &[]);
         if let Some(up) = crate::path::lift(&clearance, &clearance.here(), 1.0) {
-            match follow(stage, self.body, limb, &up, 2.5, "") {
-                Err(Failure::Stopped) => return Err(Failure::Stopped),
-                // It stays where it is.
-                Ok(()) | Err(_) => {}
+            // After other failures it stays where it is.
+            if let Err(Failure::Stopped) = follow(stage, self.body, limb, &up, 2.5, "") {
+                return Err(Failure::Stopped);
             }
         }
         Ok(())

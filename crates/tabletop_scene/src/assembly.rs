@@ -5,9 +5,9 @@ mod jointed;
 mod lidbox;
 
 use serde::Serialize;
-use tabletop_core::{JointSpec, ObjectSpec, Part, SceneItem, SceneSpec, Shape, Table};
+use tabletop_core::{JointSpec, ObjectSpec, SceneItem, SceneSpec, Table};
 
-use crate::ids::IdAllocator;
+use crate::ids::{IdAllocator, with_unique_ids};
 
 /// Everything that a scene puts on the table: single objects with unique ids, and the joints between them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -27,27 +27,6 @@ pub fn assemble(scene: &SceneSpec, ids: &mut IdAllocator) -> Assembly {
         assembly.add(item, ids);
     }
     assembly
-}
-
-/// The object with an id of its own, and so its controls, its bond points and what can be pointed to of it.
-pub(crate) fn with_unique_ids(mut object: ObjectSpec, ids: &mut IdAllocator) -> ObjectSpec {
-    object.id = ids.unique(&object.id);
-    if let Shape::Composite { parts } = &mut object.shape {
-        give_ids(parts, ids);
-    }
-    object
-}
-
-fn give_ids(parts: &mut [Part], ids: &mut IdAllocator) {
-    for part in parts {
-        let is_spoken_of = matches!(part.shape, Shape::Control(_) | Shape::BondPoint(_));
-        if is_spoken_of || part.pointable {
-            part.id = ids.unique(&part.id);
-        }
-        if let Shape::Composite { parts } = &mut part.shape {
-            give_ids(parts, ids);
-        }
-    }
 }
 
 impl Assembly {

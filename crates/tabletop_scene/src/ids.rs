@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use bevy::prelude::Resource;
+use tabletop_core::{ObjectSpec, Part, Shape};
 
 /// Hands out ids that are unique, in the way of the original program: the id that was asked for (`obj` if none) if it is
 /// free, else that id with `#` and a count that goes up with every try.
@@ -46,5 +47,26 @@ impl IdAllocator {
         }
         self.taken.insert(id.clone());
         id
+    }
+}
+
+/// The object with an id of its own, and so its controls, its bond points and what can be pointed to of it.
+pub(crate) fn with_unique_ids(mut object: ObjectSpec, ids: &mut IdAllocator) -> ObjectSpec {
+    object.id = ids.unique(&object.id);
+    if let Shape::Composite { parts } = &mut object.shape {
+        give_ids(parts, ids);
+    }
+    object
+}
+
+fn give_ids(parts: &mut [Part], ids: &mut IdAllocator) {
+    for part in parts {
+        let is_spoken_of = matches!(part.shape, Shape::Control(_) | Shape::BondPoint(_));
+        if is_spoken_of || part.pointable {
+            part.id = ids.unique(&part.id);
+        }
+        if let Shape::Composite { parts } = &mut part.shape {
+            give_ids(parts, ids);
+        }
     }
 }

@@ -108,23 +108,19 @@ impl Writer {
             self.attribute("pointable", "true");
         }
         self.attributes_of(&part.shape);
-        match &part.shape {
-            Shape::Composite { parts } => {
-                for part in parts {
-                    self.part_in_state(part, next);
-                }
+        if let Shape::Composite { parts } = &part.shape {
+            for part in parts {
+                self.part_in_state(part, next);
             }
-            shape => {
-                if let Some(next) = next.next().flatten() {
-                    self.attribute("nextStateWhenTriggered", &next.to_string());
-                }
-                self.parts_of(shape);
+        } else {
+            if let Some(next) = next.next().flatten() {
+                self.attribute("nextStateWhenTriggered", &next.to_string());
             }
+            self.parts_of(&part.shape);
         }
         self.close();
     }
 
-    #[expect(clippy::wildcard_enum_match_arm, reason = "few shapes have parts")]
     fn parts_of(&mut self, shape: &Shape) {
         match shape {
             Shape::Composite { parts } => parts.iter().for_each(|part| self.part(part)),

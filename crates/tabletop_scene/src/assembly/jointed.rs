@@ -2,7 +2,7 @@
 
 use tabletop_core::{JointSpec, JointedSpec, ObjectSpec};
 
-use crate::{assembly::with_unique_ids, ids::IdAllocator};
+use crate::ids::{IdAllocator, with_unique_ids};
 
 /// The two objects, and the joint between them.
 pub(super) fn build(spec: &JointedSpec, ids: &mut IdAllocator) -> ([ObjectSpec; 2], JointSpec) {
