@@ -2,11 +2,6 @@
 //! says how it is used and what was tried.
 //!
 //! An input follows from its target, a seed and its number alone, so nothing but these need be kept.
-#![expect(
-    clippy::print_stdout,
-    clippy::print_stderr,
-    reason = "it talks to whoever looks for faults"
-)]
 
 #![expect(
     clippy::print_stdout,

@@ -7,6 +7,7 @@ mod display;
 mod duration;
 mod explain;
 mod failure;
+mod faultless;
 mod imitate;
 mod init;
 #[cfg(feature = "window")]

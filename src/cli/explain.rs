@@ -13,7 +13,7 @@ use tabletop::{
 };
 use tabletop_core::TICKS_PER_SECOND;
 
-use super::{Failure, Output, run::read_faultless_task, terminal::show_warnings};
+use super::{Failure, Output, faultless::read_faultless_task, terminal::show_warnings};
 
 #[derive(Args)]
 pub(super) struct ExplainArgs {

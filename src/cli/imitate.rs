@@ -27,8 +27,8 @@ use tabletop_core::{
 use super::{
     Failure, Output,
     explain::read,
+    faultless::read_faultless_task,
     robot_options::RobotChoice,
-    run::read_faultless_task,
     terminal::{say, show_warnings},
 };
 

@@ -20,10 +20,10 @@ use tabletop::{
     recorder::{RecorderPlugin, UnrecordedPlugin},
     scene::{IdAllocator, assemble},
     script::{ScriptPlugin, shut_down},
-    shipped::{read_scenario, read_task, task_reader, true_path},
+    shipped::{read_scenario, task_reader, true_path},
     shown_task::shown_task,
     task_files::save_task,
-    xml::{AllowedFolders, ParsedTask, ReadError},
+    xml::AllowedFolders,
 };
 use tabletop_scenario::{Outcome, Program, ScenarioRun};
 
@@ -31,6 +31,7 @@ use super::{
     Failure, Output, WRONG_INPUT,
     duration::{pass, seconds, ticks},
     explain::read,
+    faultless::faultless,
     robot_options::{EngineOptions, RobotOptions, script},
     script::{Script, headless_settings},
     terminal::{say, show_warnings},
@@ -393,20 +394,6 @@ fn counted(count: usize, of_what: &str) -> String {
     match count {
         1 => format!("1 {of_what}"),
         count => format!("{count} {of_what}s"),
-    }
-}
-
-/// The scene of a task file, or everything that is wrong with it.
-pub(super) fn read_faultless_task(file: &Path) -> Result<SceneSpec, String> {
-    faultless(read_task(file))
-}
-
-fn faultless(task: Result<ParsedTask, ReadError>) -> Result<SceneSpec, String> {
-    let task = task.map_err(|error| error.to_string())?;
-    let faults: Vec<_> = task.faults.iter().map(ToString::to_string).collect();
-    match faults.is_empty() {
-        true => Ok(task.scene),
-        false => Err(faults.join("\n")),
     }
 }
 
