@@ -30,6 +30,7 @@ use crate::{
     imitation::{AppStage, baxter_body},
 };
 use performance::perform;
+use variation::Varying;
 
 /// Who shows it again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -144,7 +145,7 @@ impl Multiplication {
         let mut made = Made::default();
         for attempt in 0..TRIES {
             let mut random = Random::new(self.seed_of(number, attempt));
-            let Some(scene) = self.varied(&mut random) else {
+            let Some(scene) = self.varying().varied(&mut random) else {
                 made.dropped.push(Dropped::NoRoom);
                 continue;
             };
@@ -165,6 +166,16 @@ impl Multiplication {
             }
         }
         Ok(made)
+    }
+
+    fn varying(&self) -> Varying<'_> {
+        Varying {
+            task: &self.task,
+            requirements: &self.requirements,
+            scene: &self.scene,
+            body: self.body.as_ref(),
+            variation: self.variation,
+        }
     }
 
     fn seed_of(&self, number: u64, attempt: u64) -> u64 {

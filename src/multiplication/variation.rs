@@ -7,10 +7,10 @@ use tabletop_core::{
     HeadCamera, NAMED_COLORS, ObjectSpec, Part, Pose, Random, Rgb, SceneItem, SceneSpec, Shape,
     Table,
 };
+use tabletop_planner::RobotBody;
 use tabletop_scene::{IdAllocator, assemble};
 use tabletop_task::{Convex, Place, Reference, Requirements, Task};
 
-use super::Multiplication;
 use crate::imitation::scattered;
 
 /// What differs besides the places of things.
@@ -58,7 +58,17 @@ impl Variation {
     }
 }
 
-impl Multiplication {
+/// A demonstration, to be varied.
+pub(super) struct Varying<'a> {
+    pub task: &'a Task,
+    pub requirements: &'a Requirements,
+    pub scene: &'a SceneSpec,
+    /// The robot that has to reach everything, if there is one.
+    pub body: Option<&'a RobotBody>,
+    pub variation: Variation,
+}
+
+impl Varying<'_> {
     /// The scene, varied. None if there is no room for it.
     pub(super) fn varied(&self, random: &mut Random) -> Option<SceneSpec> {
         let mut scene = self.scene.clone();
@@ -77,7 +87,7 @@ impl Multiplication {
         }
         let kept = self.kept();
         (0..DRAWS).find_map(|_| {
-            let scene = scattered(&scene, &kept, self.body.as_ref(), random.bits())?;
+            let scene = scattered(&scene, &kept, self.body, random.bits())?;
             self.is_on_table(&scene).then_some(scene)
         })
     }
@@ -102,7 +112,7 @@ impl Multiplication {
     /// Whether all goals of the task are on the table, if things are where this scene puts them.
     fn is_on_table(&self, scene: &SceneSpec) -> bool {
         let objects = assemble(scene, &mut IdAllocator::default()).objects;
-        let Ok(binding) = self.task.bind(&self.requirements, &objects) else {
+        let Ok(binding) = self.task.bind(self.requirements, &objects) else {
             return false;
         };
         let half = Vec3::new(scene.table.xspan, scene.table.yspan, 0.0) / 2.0;
@@ -200,7 +210,7 @@ impl Multiplication {
                     lacks.is_none_or(|lacks| !lacks.is_empty())
                 })
             };
-            is_other(&self.requirements, &self.task).then_some(spec)
+            is_other(self.requirements, self.task).then_some(spec)
         })
     }
 }
