@@ -51,8 +51,8 @@ pub(super) fn explain(args: &ExplainArgs) -> Result<ExitCode, Failure> {
         }
         return print(&format!("{json:#}\n"));
     }
-    let mut lines: Vec<_> = task.steps.iter().map(numbered).collect();
-    if task.steps.is_empty() {
+    let mut lines = told(&task);
+    if lines.is_empty() {
         lines.push("Nothing is moved for good.".into());
     }
     lines.extend(task.detours.iter().map(|detour| {
@@ -77,6 +77,16 @@ pub(super) fn explain(args: &ExplainArgs) -> Result<ExitCode, Failure> {
         );
     }
     print(&(lines.join("\n") + "\n"))
+}
+
+/// The steps with their numbers, and what was operated between them.
+fn told(task: &Task) -> Vec<String> {
+    let steps = task.steps.iter().map(|step| (step.grasp, numbered(step)));
+    let operations = task.operations.iter();
+    let operations = operations.map(|done| (done.tick, format!("- {}", done.sentence())));
+    let mut told: Vec<_> = steps.chain(operations).collect();
+    told.sort_by_key(|(tick, _)| *tick);
+    told.into_iter().map(|(_, line)| line).collect()
 }
 
 /// The task of a recording, with what is required in its sentences.

@@ -192,6 +192,7 @@ mod tests {
             joints: Vec::new(),
             steps: Vec::new(),
             detours: Vec::new(),
+            operations: Vec::new(),
         }
     }
 

@@ -6,7 +6,11 @@ use bevy::math::Vec3;
 use tabletop_core::{Hand, JointSpec, ObjectSpec, Pose, Rgb, Shape, SimTick, Table};
 use tabletop_recorder::{Occurrence, RecordedSegment, RecorderError, RecordingReader};
 
-use crate::{arrangement::Arrangement, track::Track};
+use crate::{
+    arrangement::Arrangement,
+    operation::{Operation, OperationDeed},
+    track::Track,
+};
 
 /// A recording, as far as a task is to be seen in it.
 #[derive(Clone, Debug, Default)]
@@ -19,6 +23,8 @@ pub struct Demonstration {
     pub joints: Vec<JointSpec>,
     /// What the hands did, in its order.
     pub acts: Vec<HandAct>,
+    /// What was operated, pointed to, fastened and loosened, in its order.
+    pub operations: Vec<Operation>,
     /// The first tick.
     pub start: SimTick,
     /// The last tick.
@@ -148,12 +154,22 @@ impl Demonstration {
             let mut begun = segment.act.is_some();
             for event in &segment.events {
                 let shown = SimTick(self.start.0 + event.frame * ticks_per_frame);
-                let mut act = |hand, deed| {
-                    let tick = match std::mem::take(&mut begun) {
-                        true => segment.start,
-                        false => shown,
-                    };
-                    self.acts.push(HandAct { tick, hand, deed });
+                let does = !matches!(
+                    event.what,
+                    Occurrence::Create { .. }
+                        | Occurrence::Delete { .. }
+                        | Occurrence::Move { .. }
+                        | Occurrence::InitializeControl { .. }
+                        | Occurrence::ChangeControlState { .. }
+                );
+                let tick = match does && std::mem::take(&mut begun) {
+                    true => segment.start,
+                    false => shown,
+                };
+                let mut act = |hand, deed| self.acts.push(HandAct { tick, hand, deed });
+                let mut operate = |deed| {
+                    let states = Vec::new();
+                    self.operations.push(Operation { tick, deed, states });
                 };
                 match &event.what {
                     Occurrence::Create { id, properties } => match self.named_mut(id) {
@@ -183,12 +199,26 @@ impl Demonstration {
                     Occurrence::Grasp { hand, id } => act(*hand, Deed::Grasp(id.clone())),
                     Occurrence::Release { hand } => act(*hand, Deed::Release),
                     Occurrence::Destroy { hand } => act(*hand, Deed::Destroy),
-                    Occurrence::InitializeControl { .. }
-                    | Occurrence::ChangeControlState { .. }
-                    | Occurrence::Trigger { .. }
-                    | Occurrence::PointTo { .. }
-                    | Occurrence::Fasten { .. }
-                    | Occurrence::Loosen { .. } => {}
+                    Occurrence::ChangeControlState { control, state } => {
+                        if let Some(operation) = self.operations.last_mut() {
+                            operation.states.push((control.clone(), state.clone()));
+                        }
+                    }
+                    Occurrence::Trigger { control, .. } => {
+                        let control = control.clone();
+                        operate(OperationDeed::Trigger { control });
+                    }
+                    Occurrence::PointTo { part, .. } => {
+                        let part = part.clone();
+                        operate(OperationDeed::PointTo { part });
+                    }
+                    Occurrence::Fasten { bond, .. } => {
+                        operate(OperationDeed::Fasten(bond.clone()));
+                    }
+                    Occurrence::Loosen { bond, .. } => {
+                        operate(OperationDeed::Loosen(bond.clone()));
+                    }
+                    Occurrence::InitializeControl { .. } => {}
                 }
             }
         }

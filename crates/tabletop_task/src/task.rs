@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use tabletop_core::{JointSpec, Table};
 
-use crate::{detour::Detour, role::Role, step::Step};
+use crate::{detour::Detour, operation::Operation, role::Role, step::Step};
 
 /// What a demonstration shows to be done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,6 +18,9 @@ pub struct Task {
     pub steps: Vec<Step>,
     /// What was done besides, and does not matter.
     pub detours: Vec<Detour>,
+    /// What was operated, pointed to, fastened and loosened, in the order in which it was shown.
+    #[serde(default)]
+    pub operations: Vec<Operation>,
 }
 
 impl Task {

@@ -59,6 +59,7 @@ impl Task {
             joints: shown.joints.clone(),
             steps,
             detours,
+            operations: shown.operations.clone(),
         };
         task.phrase(&Requirements::default());
         task

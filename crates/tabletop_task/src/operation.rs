@@ -1,0 +1,100 @@
+//! What was operated, pointed to, fastened and loosened.
+
+use serde::{Deserialize, Serialize};
+use tabletop_core::{Bond, SimTick};
+
+/// Something that a demonstration shows besides what is moved.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Operation {
+    /// The tick in which it was done.
+    pub tick: SimTick,
+    /// What was done.
+    pub deed: OperationDeed,
+    /// The controls that came into other states by it, and the names of the states.
+    pub states: Vec<(String, String)>,
+}
+
+/// What was done to a control, an object or a bond.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum OperationDeed {
+    /// A control was triggered.
+    Trigger {
+        /// Its id.
+        control: String,
+    },
+    /// An object or a part of one was pointed to.
+    PointTo {
+        /// Its id.
+        part: String,
+    },
+    /// A bond was made, or is tighter.
+    Fasten(Bond),
+    /// A bond is looser, or no more.
+    Loosen(Bond),
+}
+
+impl Operation {
+    /// It, in one sentence.
+    pub fn sentence(&self) -> String {
+        let what = match &self.deed {
+            OperationDeed::Trigger { control } => format!("Trigger {control}"),
+            OperationDeed::PointTo { part } => format!("Point to {part}"),
+            OperationDeed::Fasten(bond) => {
+                format!("Fasten {} to {}, step {}", bond.guest, bond.host, bond.tightness)
+            }
+            OperationDeed::Loosen(bond) if bond.tightness == 0 => {
+                format!("Loosen {} from {} until it is free", bond.guest, bond.host)
+            }
+            OperationDeed::Loosen(bond) => {
+                format!("Loosen {} from {}, step {}", bond.guest, bond.host, bond.tightness)
+            }
+        };
+        let is_itself = |control: &str| {
+            matches!(&self.deed, OperationDeed::Trigger { control: own } if own == control)
+        };
+        let states = self.states.iter().filter(|(control, _)| !is_itself(control));
+        let states: Vec<_> = states
+            .map(|(control, state)| format!("{control} shows {state}"))
+            .collect();
+        match states.is_empty() {
+            true => format!("{what}."),
+            false => format!("{what}: {}.", states.join(", ")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn operations_have_sentences() {
+        let bond = |tightness| Bond {
+            host_point: "hole".into(),
+            host: "panel".into(),
+            guest_point: "tip".into(),
+            guest: "screw".into(),
+            tightness,
+        };
+        let power = || "power".to_owned();
+        for (deed, sentence) in [
+            (
+                OperationDeed::Trigger { control: power() },
+                "Trigger power: lights shows off.",
+            ),
+            (
+                OperationDeed::Fasten(bond(2)),
+                "Fasten screw to panel, step 2: power shows 1, lights shows off.",
+            ),
+            (
+                OperationDeed::Loosen(bond(0)),
+                "Loosen screw from panel until it is free: power shows 1, lights shows off.",
+            ),
+        ] {
+            let states = vec![(power(), "1".into()), ("lights".into(), "off".into())];
+            let tick = SimTick(0);
+            let operation = Operation { tick, deed, states };
+            assert_eq!(operation.sentence(), sentence);
+        }
+    }
+}
