@@ -40,19 +40,26 @@ impl Operation {
             OperationDeed::Trigger { control } => format!("Trigger {control}"),
             OperationDeed::PointTo { part } => format!("Point to {part}"),
             OperationDeed::Fasten(bond) => {
-                format!("Fasten {} to {}, step {}", bond.guest, bond.host, bond.tightness)
+                format!(
+                    "Fasten {} to {}, step {}",
+                    bond.guest, bond.host, bond.tightness
+                )
             }
             OperationDeed::Loosen(bond) if bond.tightness == 0 => {
                 format!("Loosen {} from {} until it is free", bond.guest, bond.host)
             }
             OperationDeed::Loosen(bond) => {
-                format!("Loosen {} from {}, step {}", bond.guest, bond.host, bond.tightness)
+                format!(
+                    "Loosen {} from {}, step {}",
+                    bond.guest, bond.host, bond.tightness
+                )
             }
         };
-        let is_itself = |control: &str| {
-            matches!(&self.deed, OperationDeed::Trigger { control: own } if own == control)
-        };
-        let states = self.states.iter().filter(|(control, _)| !is_itself(control));
+        let is_itself = |control: &str| matches!(&self.deed, OperationDeed::Trigger { control: own } if own == control);
+        let states = self
+            .states
+            .iter()
+            .filter(|(control, _)| !is_itself(control));
         let states: Vec<_> = states
             .map(|(control, state)| format!("{control} shows {state}"))
             .collect();
