@@ -47,9 +47,8 @@ mod press;
 mod settle;
 
 use bevy::prelude::*;
-use tabletop_core::{Bonds, CommandSystems, RestApp as _, RestingSystems, TickSystems};
+use tabletop_core::{Bonds, CommandSystems, RestApp as _, RestingSystems};
 use tabletop_history::{RollbackApp, is_rolling_back};
-use tabletop_physics::BodySystems;
 
 /// Adds controls and bonds. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin); with
 /// [`HistoryPlugin`](tabletop_history::HistoryPlugin), what is done to them can be undone.
@@ -66,15 +65,12 @@ impl Plugin for MechanismPlugin {
             .add_systems(
                 FixedUpdate,
                 (
-                    settle::settle
-                        .run_if(settle::any)
-                        .after(BodySystems)
-                        .before(CommandSystems::History)
-                        .in_set(TickSystems),
-                    (obey::obey, press::press.run_if(press::is_possible))
-                        .chain()
-                        .in_set(CommandSystems::Mechanisms),
+                    settle::settle.run_if(settle::any),
+                    obey::obey,
+                    press::press.run_if(press::is_possible),
                 )
+                    .chain()
+                    .in_set(CommandSystems::Mechanisms)
                     .in_set(RestingSystems),
             )
             .wake_while(settle::any)

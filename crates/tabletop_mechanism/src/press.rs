@@ -156,7 +156,7 @@ fn distance(solid: Solid, point: Vec3) -> f32 {
         Solid::Cylinder { radius, yspan } => {
             let aside = (point.with_y(0.0).length() - radius).max(0.0);
             let along = (point.y.abs() - yspan / 2.0).max(0.0);
-            aside.hypot(along)
+            Vec2::new(aside, along).length()
         }
         Solid::Ball(radius) => (point.length() - radius).max(0.0),
         Solid::Polyhedron(polyhedron) => polyhedron.distance_to(point),

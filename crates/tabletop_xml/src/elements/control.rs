@@ -244,3 +244,97 @@ pub(super) fn control(
     }
     Shape::Control(control.into())
 }
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::SceneItem;
+
+    use super::*;
+    use crate::test_support::{items_of, lines_of};
+
+    fn only_control(content: &str) -> Control {
+        match items_of(content).as_slice() {
+            [
+                SceneItem::Object(ObjectSpec {
+                    shape: Shape::Control(control),
+                    ..
+                }),
+            ] => (**control).clone(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn controls_have_the_defaults_of_the_later_program() {
+        let switch = only_control("<toggleSwitch location='(0,0,1)'/>");
+        let expected = ToggleSwitch {
+            span: Vec3::new(0.6, 0.3, 0.1),
+            angle: 6.0,
+            color: Rgb::DARK_GRAY,
+            pressed: Side::Left,
+            states: 2,
+        };
+        assert_eq!(switch, Control::new(ControlKind::ToggleSwitch(expected)));
+        let lights =
+            "<indicatorLights location='(0,0,1)'><state><light id='1'/></state></indicatorLights>";
+        let expected = IndicatorLights {
+            radius: 0.03,
+            zspan: 0.005,
+            lights: 2,
+            xspan: 0.15,
+            states: vec![LightState {
+                name: String::new(),
+                lights: vec![(1, Rgb::RED)],
+            }],
+        };
+        assert_eq!(
+            only_control(lights),
+            Control::new(ControlKind::IndicatorLights(expected))
+        );
+        let custom = only_control("<customControl location='(0,0,1)'><state/></customControl>");
+        assert_eq!(custom.type_name(), "customControl");
+    }
+
+    #[test]
+    fn a_state_that_a_switch_does_not_have_is_its_last() {
+        let switch = only_control("<toggleSwitch location='(0,0,1)' numStates='3' initState='9'/>");
+        assert_eq!(switch.state, 2);
+    }
+
+    #[test]
+    fn what_an_enclosing_composite_says_counts_where_a_shape_says_nothing() {
+        let control = only_control(
+            "<customControl location='(0,0,1)'><state>\
+             <composite location='(0,0,0)' nextStateWhenTriggered='1'><sphere location='(0,0,0)'/>\
+             <box location='(0,0,0)' nextStateWhenTriggered='2'/>\
+             <block location='(0,0,0)' nextStateWhenTriggered='-1'/></composite>\
+             <block location='(0,0,0)'/></state></customControl>",
+        );
+        let next = [0, 1, 2, 3].map(|part| control.next_state(Some(part)));
+        assert_eq!(next, [Some(1), Some(2), Some(1), None]);
+    }
+
+    #[test]
+    fn faults_have_their_places() {
+        for (content, fault) in [
+            (
+                "<indicatorLights location='(0,0,1)'/>",
+                "indicatorLights: it has no states, expected at least one <state>",
+            ),
+            (
+                "<indicatorLights location='(0,0,1)'><state><light id='2'/></state></indicatorLights>",
+                "indicatorLights, numLights: it has no light 2, expected more than 2",
+            ),
+            (
+                "<customControl location='(0,0,1)' initState='1'><state/></customControl>",
+                "customControl, initState: there is no state 1, expected at most 0",
+            ),
+            (
+                "<toggleSwitch location='(0,0,1)'><downstream/></toggleSwitch>",
+                "downstream, id: it is missing, expected id=\"id\"",
+            ),
+        ] {
+            assert_eq!(lines_of(content), [fault], "{content}");
+        }
+    }
+}
