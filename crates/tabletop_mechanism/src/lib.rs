@@ -38,7 +38,7 @@
 //! assert_eq!(spec.control("power").unwrap().state, 1);
 //! ```
 
-#![cfg_attr(not(test), warn(clippy::wildcard_enum_match_arm))]
+#![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod bonds;
 mod network;
