@@ -8,10 +8,10 @@ use tabletop_physics::{remove_object, reshape};
 
 /// The controls on the table while they change.
 pub(crate) struct Network {
-    /// The objects with controls, as they become.
-    objects: BTreeMap<Entity, ObjectSpec>,
-    /// The object of each control.
-    owners: BTreeMap<String, Entity>,
+    /// The objects with controls, as they become, in the order of their creation.
+    objects: Vec<(Entity, ObjectSpec)>,
+    /// The place of each control's object among them.
+    owners: BTreeMap<String, usize>,
     /// The controls that were changed, in their order, with the names of their states before.
     changed: Vec<(String, String)>,
     /// What the controls do to other objects, in this order.
@@ -21,7 +21,7 @@ pub(crate) struct Network {
 impl Network {
     pub fn of(world: &World) -> Self {
         let mut network = Self {
-            objects: BTreeMap::new(),
+            objects: Vec::new(),
             owners: BTreeMap::new(),
             changed: Vec::new(),
             changes: Vec::new(),
@@ -33,10 +33,11 @@ impl Network {
             let controls = spec.controls();
             for control in &controls {
                 let id = control.id.to_owned();
-                network.owners.entry(id).or_insert(object);
+                let place = network.objects.len();
+                network.owners.entry(id).or_insert(place);
             }
             if !controls.is_empty() {
-                network.objects.insert(object, spec.clone());
+                network.objects.push((object, spec.clone()));
             }
         }
         network
@@ -46,7 +47,7 @@ impl Network {
     pub fn control(&self, id: &str) -> Result<&Control, String> {
         self.owners
             .get(id)
-            .and_then(|owner| self.objects.get(owner)?.control(id))
+            .and_then(|owner| self.objects.get(*owner)?.1.control(id))
             .ok_or_else(|| format!("there is no control `{id}`"))
     }
 
@@ -104,7 +105,7 @@ impl Network {
         let Some(control) = self
             .owners
             .get(id)
-            .and_then(|owner| self.objects.get_mut(owner)?.control_mut(id))
+            .and_then(|owner| self.objects.get_mut(*owner)?.1.control_mut(id))
         else {
             return;
         };

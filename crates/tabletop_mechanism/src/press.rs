@@ -106,7 +106,7 @@ fn presses_of_hands(world: &mut World) -> Vec<Press> {
                 continue;
             }
             if let Some((other, pose)) = spec_and_pose(world, object) {
-                let by = Operator::Hand(hand);
+                let by = Operator::Object(spec.id.clone());
                 add(&mut presses, &by, &other, |shape, at| {
                     is_touching(world, held, shape, pose * at, TOUCH)
                 });

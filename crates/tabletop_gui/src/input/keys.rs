@@ -3,8 +3,10 @@
 use bevy::prelude::*;
 use tabletop_core::{Action, Actor, ClockCommand, CommandWriter, KeySystems, Paused, was_struck};
 
+use crate::panels::context_menu::ContextMenu;
+
 pub(crate) fn plugin(app: &mut App) {
-    app.add_systems(
+    app.init_resource::<ContextMenu>().add_systems(
         RunFixedMainLoop,
         (
             toggle_pause.run_if(was_struck(Action::Pause)),
@@ -18,8 +20,15 @@ fn toggle_pause(paused: Res<Paused>, mut commands: CommandWriter) {
     commands.write(Actor::Key, ClockCommand::SetPaused(!paused.0));
 }
 
-fn quit(mut exit: MessageWriter<AppExit>) {
-    exit.write(AppExit::Success);
+/// Closes the menu that is open, or ends the program.
+fn quit(
+    mut exit: MessageWriter<AppExit>,
+    mut menu: ResMut<ContextMenu>,
+    mut commands: CommandWriter,
+) {
+    if !menu.close(&mut commands) {
+        exit.write(AppExit::Success);
+    }
 }
 
 #[cfg(test)]

@@ -39,6 +39,15 @@ impl ContextMenu {
     pub fn is_closed(menu: Res<Self>) -> bool {
         menu.0.is_none()
     }
+
+    /// Closes the menu, and lets the simulation run on. Returns true if one was open.
+    pub fn close(&mut self, commands: &mut CommandWriter) -> bool {
+        let was_open = self.0.take().is_some();
+        if was_open {
+            commands.write(Actor::Mouse, ClockCommand::SetPaused(false));
+        }
+        was_open
+    }
 }
 
 pub(crate) fn plugin(app: &mut App) {
@@ -126,11 +135,10 @@ fn show_menu(
     };
     let request = show(context, open, &keymap);
     if let Some(request) = request {
-        commands.write(Actor::Mouse, ClockCommand::SetPaused(false));
+        menu.close(&mut commands);
         if let Request::Do(command) = request {
             commands.write(Actor::Mouse, command);
         }
-        menu.0 = None;
     }
 }
 
@@ -147,7 +155,7 @@ fn show(context: &egui::Context, open: &OpenMenu, keymap: &Keymap) -> Option<Req
     let is_elsewhere = |input: &egui::InputState| {
         let at = input.pointer.interact_pos();
         let is_outside = at.is_some_and(|at| !shown.response.rect.contains(at));
-        input.pointer.any_pressed() && is_outside || input.key_pressed(egui::Key::Escape)
+        input.pointer.any_pressed() && is_outside
     };
     let closed = context.input(is_elsewhere);
     shown.inner.or(closed.then_some(Request::Close))
