@@ -12,7 +12,9 @@ mod touches;
 use bevy::prelude::*;
 use bevy_rapier3d::{
     prelude::*,
-    rapier::prelude::{ColliderSet, ContactPair, IntegrationParameters, RigidBodySet},
+    rapier::prelude::{
+        ColliderSet, ContactPair, IntegrationParameters, PhysicsPipeline, RigidBodySet,
+    },
 };
 
 pub use engine::Engine;
@@ -94,6 +96,11 @@ pub(crate) fn spend_effort(
     }
     for (mut simulation, colliders, mut bodies, joints) in &mut contexts {
         let simulation = &mut *simulation;
+        if !joints.impulse_joints.is_empty() {
+            // It keeps from step to step how joints are grouped, and what it keeps is not what it would find anew: a world that was put
+            // back, with a new pipeline, would go on differently.
+            simulation.pipeline = PhysicsPipeline::new();
+        }
         care.spend(Engine {
             parameters: &mut simulation.integration_parameters,
             islands: &simulation.islands,
