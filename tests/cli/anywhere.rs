@@ -117,7 +117,7 @@ fn a_working_folder_is_written_and_used() {
     let written = run_in(&folder, &["init", "work"]);
     succeeded(&written);
     let said = stdout(&written);
-    assert_eq!(said.lines().count(), 4, "{said}");
+    assert_eq!(said.lines().count(), 5, "{said}");
     for file in [
         "tablesetup/default.xml",
         "tablesetup/tabletop.xsd",

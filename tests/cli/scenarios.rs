@@ -50,6 +50,13 @@ fn tasks_are_demonstrated() {
         "letter_u",
         "hanoi",
         "hand_over",
+        "hanoi_rings",
+        "rings",
+        "cup",
+        "cut_wire",
+        "chest",
+        "letter_m",
+        "red_on_blue",
     ] {
         passes(&format!("{name}.ron"));
     }
@@ -147,14 +154,25 @@ fn every_shipped_scenario_has_its_test() {
     let tested = [
         "break_chain.ron",
         "build_letters.ron",
+        "chest.ron",
+        "cup.ron",
+        "cut_wire.ron",
+        "dispenser.ron",
+        "dock.ron",
         "drawer.ron",
         "gates.ron",
         "hand_over.ron",
         "hanoi.ron",
+        "hanoi_rings.ron",
+        "letter_m.ron",
         "letter_u.ron",
         "lidbox.ron",
+        "lock.ron",
         "panda_stack.ron",
+        "panel.ron",
         "presets.ron",
+        "red_on_blue.ron",
+        "rings.ron",
         "robot_place.ron",
         "robot_stack.ron",
         "stack_three.ron",
@@ -227,7 +245,7 @@ fn a_bad_file_is_exit_code_2_and_says_where() {
 
 #[test]
 fn the_seed_decides_where_objects_are() {
-    let task = shipped("tablesetup", "default.xml");
+    let task = "shipped:tablesetup/default.xml";
     let steps = format!(
         "  Load(file: {task:?}, place: [\n\
            (object: \"RedBlock\", x: (-8, 8), y: (-4, 4), turn: (0, 360)),\n\

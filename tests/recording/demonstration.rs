@@ -15,7 +15,6 @@ use tabletop::{
     recorder::{Durability, RecorderPlugin},
     replay::Replay,
     robot::RobotPlugin,
-    scenario::ScenarioPlugin,
 };
 
 /// A folder in memory, where there is one: for hundreds of recordings.
@@ -84,7 +83,7 @@ impl Demonstration {
             folder: folder.clone(),
             ..default()
         };
-        let mut app = headless_app_with((plugins.set(recorder), ScenarioPlugin));
+        let mut app = headless_app_with(plugins.set(recorder));
         app.insert_resource(HeadCamera {
             width: 40,
             height: 30,

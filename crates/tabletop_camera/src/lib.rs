@@ -79,6 +79,7 @@ impl Plugin for CameraPlugin {
             .init_resource::<SensorImage>()
             .init_resource::<head_camera::HeadCameraRenderer>()
             .derived_component::<head_camera::DrawnFacets>()
+            .derived_component::<head_camera::ObjectSolids>()
             .add_observer(head_camera::prepare_object)
             .add_observer(head_camera::prepare_figure)
             .add_observer(head_camera::remove_figure)

@@ -71,9 +71,10 @@ impl ObjectSpec {
     /// The properties that a recording lists: `shape` first, then the others in the order of the file.
     /// A description named `shape` replaces the shape's own name.
     pub fn all_descriptions(&self) -> Vec<(&str, &str)> {
-        let shape = match &self.shape {
-            Shape::Mesh { mesh, .. } => mesh.name(),
-            shape => shape.name(),
+        let shape = if let Shape::Mesh { mesh, .. } = &self.shape {
+            mesh.name()
+        } else {
+            self.shape.name()
         };
         let mut all = vec![("shape", shape)];
         for (name, value) in &self.descriptions {

@@ -49,6 +49,7 @@ mod settle;
 use bevy::prelude::*;
 use tabletop_core::{Bonds, CommandSystems, RestApp as _, RestingSystems};
 use tabletop_history::{RollbackApp, is_rolling_back};
+use tabletop_physics::take_in;
 
 /// Adds controls and bonds. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin); with
 /// [`HistoryPlugin`](tabletop_history::HistoryPlugin), what is done to them can be undone.
@@ -68,6 +69,7 @@ impl Plugin for MechanismPlugin {
                     settle::settle.run_if(settle::any),
                     obey::obey,
                     press::press.run_if(press::is_possible),
+                    take_in,
                 )
                     .chain()
                     .in_set(CommandSystems::Mechanisms)

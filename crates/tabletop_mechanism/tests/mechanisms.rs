@@ -82,7 +82,7 @@ fn do_it(app: &mut App, command: MechanismCommand) -> Vec<SimFact> {
     app.world_mut().write_command(command);
     app.step(1);
     let facts = app.world().resource::<Messages<SimFact>>();
-    facts.iter_current_update_messages().cloned().collect()
+    facts.get_cursor().read(facts).cloned().collect()
 }
 
 fn trigger(app: &mut App, id: &str) -> Vec<SimFact> {

@@ -42,6 +42,7 @@ fn scripts_get_what_they_mention() {
         trackers: FieldPolicy::Always,
         ..folder.settings()
     };
+    let all = all.replace("contacts", "contacts controls");
     assert_eq!(fields(always), format!("{all} trackerLoc"));
 }
 

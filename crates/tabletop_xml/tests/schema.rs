@@ -188,7 +188,7 @@ fn schema_and_parser_reject_the_same() {
         "<block location=\"(0,0,1)\" friction=\"-1\"/>",
         "<block location=\"(0,0,1)\" restitution=\"1.5\"/>",
         "<composite location=\"(0,0,1)\"><ring location=\"(0,0,1)\" friction=\"1\"/></composite>",
-        "<toggleSwitch location=\"(0,0,1)\"/>",
+        "<toggleButton location=\"(0,0,1)\"/>",
         "<sliderJoint><block location=\"(0,0,0)\"/><block location=\"(0,0,1)\"/></sliderJoint>",
         "<sliderJoint location=\"(0,0,0)\"/>",
         "<sliderJoint location=\"(0,0,0)\" damping=\"2\"><block location=\"(0,0,0)\"/><block location=\"(0,0,1)\"/></sliderJoint>",

@@ -101,14 +101,6 @@ impl Drop for Place {
     }
 }
 
-/// Whether the facts of what an undo brings back and takes away come before, after, or not at all.
-#[derive(Resource, Clone, Copy, Debug, PartialEq)]
-pub enum TurnTells {
-    Before,
-    After,
-    Nothing,
-}
-
 /// The facts of the tests' last steps.
 #[derive(Resource, Default)]
 pub struct Heard(pub Vec<SimFact>);
@@ -141,7 +133,6 @@ pub fn app_into(folder: PathBuf) -> App {
 pub fn app_with(recorder: RecorderPlugin) -> App {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, CorePlugin::default(), recorder))
-        .insert_resource(TurnTells::After)
         .init_resource::<Heard>()
         .init_resource::<Moments>()
         .init_resource::<PictureDemand>()
@@ -361,14 +352,14 @@ fn moment(world: &World) -> Moment {
     }
 }
 
+/// Turns the world to a moment. What comes back and goes is no fact: nobody is told while the world rolls back.
 fn turn(world: &mut World, to: &Moment, fact: SimFact) {
-    let mut told = Vec::new();
     let now = objects(world);
     for spec in now.iter().filter(|spec| !to.objects.contains(spec)) {
-        told.push(delete(world, None, &spec.id));
+        delete(world, None, &spec.id);
     }
     for spec in to.objects.iter().filter(|spec| !now.contains(spec)) {
-        told.push(create(world, None, spec.clone()));
+        create(world, None, spec.clone());
     }
     for (hand, held) in Hand::ALL.into_iter().zip(&to.hands) {
         let index = world.resource::<ObjectIndex>();
@@ -376,15 +367,5 @@ fn turn(world: &mut World, to: &Moment, fact: SimFact) {
         world.resource_mut::<Hands>().set_held(hand, held);
     }
     *world.resource_mut::<SimTick>() = to.tick;
-
-    let tells = *world.resource::<TurnTells>();
-    let after = [fact].into_iter();
-    let facts: Vec<_> = match tells {
-        TurnTells::Before => told.into_iter().chain(after).collect(),
-        TurnTells::After => after.chain(told).collect(),
-        TurnTells::Nothing => after.collect(),
-    };
-    for fact in facts {
-        world.write_message(fact);
-    }
+    world.write_message(fact);
 }
