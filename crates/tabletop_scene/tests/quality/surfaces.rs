@@ -10,7 +10,7 @@ fn with(item: SceneItem, dynamics: Dynamics) -> SceneItem {
         SceneItem::Object(object) => {
             SceneItem::Object(tabletop_core::ObjectSpec { dynamics, ..object })
         }
-        other => other,
+        SceneItem::Chain(_) | SceneItem::LidBox(_) | SceneItem::Jointed(_) => item,
     }
 }
 
