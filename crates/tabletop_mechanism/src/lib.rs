@@ -3,7 +3,7 @@
 //!
 //! The state of a [`Control`](tabletop_core::Control) is a part of its object's [`ObjectSpec`](tabletop_core::ObjectSpec), so physics,
 //! pictures and saved files follow it. A control whose state changes hands its number on to those downstream. What is fastened to what
-//! stands in [`Bonds`](tabletop_core::Bonds), and a fixed joint holds it.
+//! stands in [`Bonds`], and a fixed joint holds it.
 //!
 //! ```
 //! use bevy::prelude::*;

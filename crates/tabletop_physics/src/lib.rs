@@ -1,6 +1,6 @@
 //! Physics of the tabletop simulator: the one place that adds and configures Rapier.
 //!
-//! Every entity with an [`ObjectSpec`](tabletop_core::ObjectSpec) or a [`Table`](tabletop_core::Table) gets a rigid body,
+//! Every entity with an [`ObjectSpec`] or a [`Table`](tabletop_core::Table) gets a rigid body,
 //! every [`Joint`](tabletop_core::Joint) a constraint, in the tick in which it appears. One step is made a tick, in
 //! [`SimSystems::Physics`]; the poses are in the entities' `Transform` afterwards, the velocities in
 //! their [`Twist`].
