@@ -106,22 +106,7 @@ impl ObjectSpec {
 
     /// The control of an id, to be changed.
     pub fn control_mut(&mut self, id: &str) -> Option<&mut Control> {
-        match &mut self.shape {
-            Shape::Control(control) if self.id == id => Some(control),
-            Shape::Composite { parts } => control_among(parts, id),
-            Shape::Control(_)
-            | Shape::Block { .. }
-            | Shape::Cylinder { .. }
-            | Shape::Sphere { .. }
-            | Shape::Box { .. }
-            | Shape::Prism { .. }
-            | Shape::Frustum { .. }
-            | Shape::Ring { .. }
-            | Shape::Mesh { .. }
-            | Shape::Link { .. }
-            | Shape::Lid { .. }
-            | Shape::BondPoint(_) => None,
-        }
+        control_of(&mut self.shape, &self.id, id)
     }
 
     /// The points at which it is fastened to others.
@@ -191,10 +176,13 @@ impl ObjectSpec {
     }
 }
 
-fn control_among<'a>(parts: &'a mut [Part], id: &str) -> Option<&'a mut Control> {
-    parts.iter_mut().find_map(|part| match &mut part.shape {
-        Shape::Control(control) => (part.id == id).then_some(&mut **control),
-        Shape::Composite { parts } => control_among(parts, id),
+/// The control of an id in a shape that has an id of its own.
+fn control_of<'a>(shape: &'a mut Shape, own: &str, id: &str) -> Option<&'a mut Control> {
+    match shape {
+        Shape::Control(control) => (own == id).then_some(&mut **control),
+        Shape::Composite { parts } => parts
+            .iter_mut()
+            .find_map(|part| control_of(&mut part.shape, &part.id, id)),
         Shape::Block { .. }
         | Shape::Cylinder { .. }
         | Shape::Sphere { .. }
@@ -206,7 +194,7 @@ fn control_among<'a>(parts: &'a mut [Part], id: &str) -> Option<&'a mut Control>
         | Shape::Link { .. }
         | Shape::Lid { .. }
         | Shape::BondPoint(_) => None,
-    })
+    }
 }
 
 #[cfg(test)]
