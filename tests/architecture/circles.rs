@@ -12,20 +12,7 @@ use std::{
 use crate::source::{Source, Use};
 
 /// Circles that are still to be opened: files that need each other. This list may only become shorter.
-const KNOWN: [(&str, &[&str]); 2] = [
-    (
-        "tabletop_core",
-        &[
-            "bounds",
-            "control",
-            "jointed",
-            "mesh",
-            "object",
-            "polyhedron",
-            "scene",
-            "shape",
-        ],
-    ),
+const KNOWN: [(&str, &[&str]); 1] = [
     (
         "tabletop_xml",
         &["elements::bond", "elements::control", "elements::object"],

@@ -1,123 +1,13 @@
 //! Controls: switches, lights, and shapes with states of their own.
 
+pub(crate) mod lights;
+pub(crate) mod switch;
+
 use bevy::prelude::*;
-use serde::{Deserialize, Serialize};
 
-use crate::{ObjectSpec, Part, Pose, Rgb, Shape};
-
-/// A shape with states, numbered from 0: an object of its own or a part of a composite. Its id is that of the object or part.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Control {
-    /// What it is.
-    pub kind: ControlKind,
-    /// Its state.
-    pub state: u32,
-    /// The state that is shown and reported instead, if there is one.
-    pub override_state: Option<u32>,
-    /// Ids of the controls that take over its state whenever it changes.
-    pub downstream: Vec<String>,
-}
-
-/// The kinds of controls.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum ControlKind {
-    /// Two blocks that meet at an angle: pressing the raised one presses the other one up and changes the state.
-    ToggleSwitch(ToggleSwitch),
-    /// A row of lights, of which a state shows some.
-    IndicatorLights(IndicatorLights),
-    /// Shapes of its own for every state.
-    Custom(CustomControl),
-}
-
-/// A toggle switch. Its origin is the bottom edge at which its two blocks meet, along Y.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ToggleSwitch {
-    /// Extents of both blocks together, in units.
-    pub span: Vec3,
-    /// The angle between the blocks, in degrees.
-    pub angle: f32,
-    /// Its colour.
-    pub color: Rgb,
-    /// The side that is down.
-    pub pressed: Side,
-    /// How many states it has; each press leads to the next, and from the last one to the first.
-    pub states: u32,
-}
-
-/// A side of a toggle switch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Side {
-    /// Towards -X.
-    Left,
-    /// Towards +X.
-    Right,
-}
-
-/// A row of lights along X.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct IndicatorLights {
-    /// Radius of a light, in units.
-    pub radius: f32,
-    /// Height of a light, in units.
-    pub zspan: f32,
-    /// How many lights there are.
-    pub lights: u32,
-    /// Length of the row, in units.
-    pub xspan: f32,
-    /// What each state shows.
-    pub states: Vec<LightState>,
-}
-
-/// The lights that are on in a state.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct LightState {
-    /// Its name in recordings; empty for its number.
-    pub name: String,
-    /// The numbers and colours of the lights that are on.
-    pub lights: Vec<(u32, Rgb)>,
-}
-
-/// A control of its own shapes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CustomControl {
-    /// What kind of control it is, for recordings.
-    pub name: String,
-    /// Its states.
-    pub states: Vec<CustomState>,
-}
-
-/// A state of a custom control.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct CustomState {
-    /// Its name in recordings; empty for its number.
-    pub name: String,
-    /// The shapes that there are in this state.
-    pub parts: Vec<Part>,
-    /// The state to which triggering leads, for each of the [simple parts](Shape::simple_parts) of these shapes.
-    pub next: Vec<Option<u32>>,
-    /// What coming into this state does to other objects, in this order.
-    #[serde(default)]
-    pub changes: Vec<Change>,
-}
-
-/// Something that a control does to other objects.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Change {
-    /// It removes an object.
-    Remove {
-        /// Its id.
-        object: String,
-    },
-    /// It gives an object another colour.
-    Recolor {
-        /// Its id.
-        object: String,
-        /// The colour.
-        color: Rgb,
-    },
-    /// It makes an object, at a pose on the table.
-    Spawn(Box<ObjectSpec>),
-}
+use crate::{
+    Change, Control, ControlKind, IndicatorLights, Part, Pose, Rgb, Shape, Side, ToggleSwitch,
+};
 
 impl Control {
     /// A control of this kind in its first state.
@@ -234,17 +124,6 @@ impl Control {
     }
 }
 
-impl Side {
-    /// The side across from it.
-    #[must_use]
-    pub const fn other(self) -> Self {
-        match self {
-            Self::Left => Self::Right,
-            Self::Right => Self::Left,
-        }
-    }
-}
-
 impl ToggleSwitch {
     /// The side that can be pressed.
     pub const fn raised(&self) -> Side {
@@ -297,6 +176,7 @@ impl IndicatorLights {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{CustomControl, CustomState, LightState, ObjectSpec};
 
     fn switch(pressed: Side, angle: f32) -> Control {
         Control::new(ControlKind::ToggleSwitch(ToggleSwitch {

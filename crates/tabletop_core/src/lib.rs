@@ -44,6 +44,7 @@ mod mount;
 mod navigation;
 mod number;
 mod object;
+mod object_index;
 mod operator;
 mod pace;
 mod paused;
@@ -66,6 +67,7 @@ mod sensor;
 mod shape;
 mod shipped;
 mod shown_task;
+mod solid;
 mod tick;
 mod timeline;
 mod turn;
@@ -83,8 +85,8 @@ pub use command::{
     WriteCommand, carry_out,
 };
 pub use control::{
-    Change, Control, ControlKind, CustomControl, CustomState, IndicatorLights, LightState, Side,
-    ToggleSwitch,
+    lights::{IndicatorLights, LightState},
+    switch::{Side, ToggleSwitch},
 };
 pub use fact::SimFact;
 pub use fastening::Turn;
@@ -103,7 +105,10 @@ pub use mechanism::{Placed, Surface};
 pub use mesh::{MeshError, MeshSpec};
 pub use navigation::{CameraMotion, CameraView, Steering};
 pub use number::Decimal;
-pub use object::{Dynamics, ObjectIndex, ObjectSpec};
+pub use object::{
+    Change, Control, ControlKind, CustomControl, CustomState, Dynamics, ObjectSpec, Part, Shape,
+};
+pub use object_index::ObjectIndex;
 pub use operator::{Operator, OperatorError};
 pub use pace::{Pace, PacePlugin, SingleStep};
 pub use paused::Paused;
@@ -125,11 +130,11 @@ pub use robot::{
 pub use rollback::Rollback;
 pub use scene::{ChainSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
 pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage};
-pub use shape::{Part, Primitive, Shape, Solid};
 pub use shipped::{ShippedFile, ShippedFiles, is_shipped, seen_from};
 pub use shown_task::{
     Ghost, Ghosts, Imitating, Required, ShownProperty, ShownRole, ShownStep, ShownTask, TaskOrder,
 };
+pub use solid::{Primitive, Solid};
 pub use tick::{SimTick, TICK_SECONDS, TICKS_PER_SECOND};
 pub use timeline::{
     Act, Manipulator, Timeline, TimelineGrip, TimelinePicture, TimelineSegment, TimelineStage, Verb,

@@ -1,11 +1,9 @@
-//! Objects on the table: what each one is, and how to find it.
-
-use std::collections::BTreeMap;
+//! What an object is: its shape, and the shapes with states that are objects or parts themselves.
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{Pose, Rollback, Shape};
+use crate::{BondPoint, IndicatorLights, MeshSpec, Pose, Rgb, Rollback, ToggleSwitch};
 
 /// What an object is: everything that physics, pictures and recordings need to know of it.
 ///
@@ -41,6 +39,200 @@ pub struct Dynamics {
     pub restitution: Option<f32>,
     /// Its velocity when it appears, in units/s.
     pub velocity: Vec3,
+}
+
+/// The shape of an object or of a part of one (report section 6.2). Sizes are full extents in units of 10 cm;
+/// the shape's origin is its centre, for a composite its reference point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
+#[reflect(opaque)]
+pub enum Shape {
+    /// A solid cuboid.
+    Block {
+        /// Extents along X, Y, Z.
+        span: Vec3,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// A solid circular cylinder along Y.
+    Cylinder {
+        /// Radius.
+        radius: f32,
+        /// Length.
+        yspan: f32,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// A solid ball.
+    Sphere {
+        /// Radius.
+        radius: f32,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// A cuboid container, open towards +Z.
+    Box {
+        /// Outer extents along X, Y, Z.
+        span: Vec3,
+        /// Thickness of floor and walls.
+        thickness: f32,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// A cylinder along Y with flat sides; its first corner is towards X.
+    Prism {
+        /// Radius of the corners.
+        radius: f32,
+        /// Length.
+        yspan: f32,
+        /// How many flat sides, 3 or more.
+        sides: u32,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// A prism, or a part of a pyramid, along Z; its first corner is towards X.
+    Frustum {
+        /// Radius of the corners of its end towards +Z.
+        radius_top: f32,
+        /// Radius of the corners of its end towards -Z.
+        radius_bottom: f32,
+        /// Length.
+        zspan: f32,
+        /// How many flat sides, 3 or more.
+        sides: u32,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// A ring about Z.
+    Ring {
+        /// Radius of its outer corners; the first one is towards X.
+        radius_outer: f32,
+        /// Radius of its hole.
+        radius_inner: f32,
+        /// Height.
+        zspan: f32,
+        /// How many flat sides, 3 or more.
+        sides: u32,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// What a file describes by triangles.
+    Mesh {
+        /// Its surface, and the solids that fill it.
+        mesh: MeshSpec,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// Several shapes as one rigid body.
+    Composite {
+        /// The shapes, which may overlap.
+        parts: Vec<Part>,
+    },
+    /// A link of a chain: a block that is drawn longer than it collides, to cover the gaps at its joints.
+    Link {
+        /// Extents of the colliding block; Y is along the chain.
+        span: Vec3,
+        /// Length added to the drawn block at both ends along Y.
+        padding: f32,
+        /// Its colour.
+        color: Rgb,
+    },
+    /// The lid of a lid box: a plate with a box as its handle on top.
+    Lid {
+        /// Extents of the plate, whose centre is the lid's origin.
+        span: Vec3,
+        /// Colour of the plate.
+        color: Rgb,
+        /// Outer extents of the handle.
+        handle_span: Vec3,
+        /// Thickness of the handle's walls.
+        handle_thickness: f32,
+        /// Colour of the handle.
+        handle_color: Rgb,
+    },
+    /// A switch, lights, or shapes with states.
+    Control(Box<Control>),
+    /// A point at which a composite is fastened to another one. It has no extents.
+    BondPoint(Box<BondPoint>),
+}
+
+/// A shape as a part of a composite.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Part {
+    /// The part's id as the task file has it; empty if it has none. Need not be unique.
+    pub id: String,
+    /// Its pose in the frame of the composite that it is a direct part of.
+    pub pose: Pose,
+    /// Its shape.
+    pub shape: Shape,
+    /// Whether the demonstrator can point to it. Its id is then unique on the table.
+    #[serde(default)]
+    pub pointable: bool,
+}
+
+/// A shape with states, numbered from 0: an object of its own or a part of a composite. Its id is that of the object or part.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Control {
+    /// What it is.
+    pub kind: ControlKind,
+    /// Its state.
+    pub state: u32,
+    /// The state that is shown and reported instead, if there is one.
+    pub override_state: Option<u32>,
+    /// Ids of the controls that take over its state whenever it changes.
+    pub downstream: Vec<String>,
+}
+
+/// The kinds of controls.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum ControlKind {
+    /// Two blocks that meet at an angle: pressing the raised one presses the other one up and changes the state.
+    ToggleSwitch(ToggleSwitch),
+    /// A row of lights, of which a state shows some.
+    IndicatorLights(IndicatorLights),
+    /// Shapes of its own for every state.
+    Custom(CustomControl),
+}
+
+/// A control of its own shapes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CustomControl {
+    /// What kind of control it is, for recordings.
+    pub name: String,
+    /// Its states.
+    pub states: Vec<CustomState>,
+}
+
+/// A state of a custom control.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CustomState {
+    /// Its name in recordings; empty for its number.
+    pub name: String,
+    /// The shapes that there are in this state.
+    pub parts: Vec<Part>,
+    /// The state to which triggering leads, for each of the [simple parts](Shape::simple_parts) of these shapes.
+    pub next: Vec<Option<u32>>,
+    /// What coming into this state does to other objects, in this order.
+    #[serde(default)]
+    pub changes: Vec<Change>,
+}
+
+/// Something that a control does to other objects.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Change {
+    /// It removes an object.
+    Remove {
+        /// Its id.
+        object: String,
+    },
+    /// It gives an object another colour.
+    Recolor {
+        /// Its id.
+        object: String,
+        /// The colour.
+        color: Rgb,
+    },
+    /// It makes an object, at a pose on the table.
+    Spawn(Box<ObjectSpec>),
 }
 
 impl Dynamics {
@@ -87,60 +279,21 @@ impl ObjectSpec {
     }
 }
 
-/// The objects on the table: by id, and in the order in which they were created.
-#[derive(Resource, Clone, Debug, Default, Reflect)]
-#[reflect(Resource)]
-pub struct ObjectIndex {
-    by_id: BTreeMap<String, Entity>,
-    in_order: Vec<Entity>,
-}
-
-impl ObjectIndex {
-    /// The object of this id.
-    pub fn get(&self, id: &str) -> Option<Entity> {
-        self.by_id.get(id).copied()
-    }
-
-    /// The objects in the order of their creation.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = Entity> + '_ {
-        self.in_order.iter().copied()
-    }
-
-    /// The ids, in alphabetical order.
-    pub fn ids(&self) -> impl Iterator<Item = &str> {
-        self.by_id.keys().map(String::as_str)
-    }
-
-    /// How many objects there are.
-    pub fn len(&self) -> usize {
-        self.in_order.len()
-    }
-
-    /// Whether the table is empty.
-    pub fn is_empty(&self) -> bool {
-        self.in_order.is_empty()
-    }
-
-    /// Notes a new object. An id that is already there is taken over by the new object.
-    pub fn insert(&mut self, id: impl Into<String>, object: Entity) {
-        if let Some(previous) = self.by_id.insert(id.into(), object) {
-            self.in_order.retain(|&entity| entity != previous);
+impl Part {
+    /// A part that cannot be pointed to.
+    pub fn new(id: impl Into<String>, pose: Pose, shape: Shape) -> Self {
+        Self {
+            id: id.into(),
+            pose,
+            shape,
+            pointable: false,
         }
-        self.in_order.push(object);
-    }
-
-    /// Forgets an object, and returns its entity.
-    pub fn remove(&mut self, id: &str) -> Option<Entity> {
-        let object = self.by_id.remove(id)?;
-        self.in_order.retain(|&entity| entity != object);
-        Some(object)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Rgb;
 
     #[test]
     fn a_description_named_shape_takes_the_first_place() {
@@ -164,19 +317,5 @@ mod tests {
             spec.all_descriptions(),
             [("shape", "globe"), ("use", "toy")]
         );
-    }
-
-    #[test]
-    fn the_index_keeps_the_order_of_creation() {
-        let mut world = World::new();
-        let [a, b, c] = std::array::from_fn(|_| world.spawn_empty().id());
-        let mut index = ObjectIndex::default();
-        index.insert("z", a);
-        index.insert("a", b);
-        index.insert("m", c);
-        assert_eq!(index.remove("a"), Some(b));
-        assert_eq!(index.iter().collect::<Vec<_>>(), [a, c]);
-        assert_eq!(index.get("m"), Some(c));
-        assert_eq!(index.get("a"), None);
     }
 }

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{JointedSpec, ObjectSpec, Pose, Primitive, Rgb, Rollback, Shape, Solid};
+use crate::{Bounds, JointedSpec, ObjectSpec, Pose, Primitive, Rgb, Rollback, Shape, Solid};
 
 /// The content of a task file, in the file's order, before ids are made unique.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -158,5 +158,34 @@ impl LidBoxSpec {
             handle_thickness: self.handle_thickness,
             handle_color: self.handle_color,
         }
+    }
+}
+
+impl Bounds {
+    /// Around an element of a task file, roughly if it is a chain.
+    pub fn of_item(item: &SceneItem) -> Self {
+        match item {
+            SceneItem::Object(object) => Self::of_shape(&object.shape, object.pose),
+            SceneItem::Chain(chain) => Self::of_chain(chain),
+            SceneItem::LidBox(lidbox) => Self::of_lidbox(lidbox),
+            SceneItem::Jointed(jointed) => {
+                let [first, second] = jointed
+                    .placed()
+                    .map(|object| Self::of_shape(&object.shape, object.pose));
+                first.union(second)
+            }
+        }
+    }
+
+    fn of_chain(chain: &ChainSpec) -> Self {
+        let reach = chain.link_span.max_element();
+        Self::around(chain.start, Vec3::splat(reach))
+            .union(Self::around(chain.end, Vec3::splat(reach)))
+    }
+
+    fn of_lidbox(lidbox: &LidBoxSpec) -> Self {
+        let top = lidbox.thickness + lidbox.handle_span.z;
+        let center = lidbox.pose * Pose::at(Vec3::Z * top / 2.0);
+        Self::of_cuboid(lidbox.span + Vec3::Z * top, center)
     }
 }

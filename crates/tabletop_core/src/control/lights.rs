@@ -1,0 +1,29 @@
+//! Indicator lights.
+
+use serde::{Deserialize, Serialize};
+
+use crate::Rgb;
+
+/// A row of lights along X.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct IndicatorLights {
+    /// Radius of a light, in units.
+    pub radius: f32,
+    /// Height of a light, in units.
+    pub zspan: f32,
+    /// How many lights there are.
+    pub lights: u32,
+    /// Length of the row, in units.
+    pub xspan: f32,
+    /// What each state shows.
+    pub states: Vec<LightState>,
+}
+
+/// The lights that are on in a state.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LightState {
+    /// Its name in recordings; empty for its number.
+    pub name: String,
+    /// The numbers and colours of the lights that are on.
+    pub lights: Vec<(u32, Rgb)>,
+}

@@ -1,0 +1,74 @@
+//! The objects on the table, and how to find them.
+
+use std::collections::BTreeMap;
+
+use bevy::prelude::*;
+
+/// The objects on the table: by id, and in the order in which they were created.
+#[derive(Resource, Clone, Debug, Default, Reflect)]
+#[reflect(Resource)]
+pub struct ObjectIndex {
+    by_id: BTreeMap<String, Entity>,
+    in_order: Vec<Entity>,
+}
+
+impl ObjectIndex {
+    /// The object of this id.
+    pub fn get(&self, id: &str) -> Option<Entity> {
+        self.by_id.get(id).copied()
+    }
+
+    /// The objects in the order of their creation.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Entity> + '_ {
+        self.in_order.iter().copied()
+    }
+
+    /// The ids, in alphabetical order.
+    pub fn ids(&self) -> impl Iterator<Item = &str> {
+        self.by_id.keys().map(String::as_str)
+    }
+
+    /// How many objects there are.
+    pub fn len(&self) -> usize {
+        self.in_order.len()
+    }
+
+    /// Whether the table is empty.
+    pub fn is_empty(&self) -> bool {
+        self.in_order.is_empty()
+    }
+
+    /// Notes a new object. An id that is already there is taken over by the new object.
+    pub fn insert(&mut self, id: impl Into<String>, object: Entity) {
+        if let Some(previous) = self.by_id.insert(id.into(), object) {
+            self.in_order.retain(|&entity| entity != previous);
+        }
+        self.in_order.push(object);
+    }
+
+    /// Forgets an object, and returns its entity.
+    pub fn remove(&mut self, id: &str) -> Option<Entity> {
+        let object = self.by_id.remove(id)?;
+        self.in_order.retain(|&entity| entity != object);
+        Some(object)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_index_keeps_the_order_of_creation() {
+        let mut world = World::new();
+        let [a, b, c] = std::array::from_fn(|_| world.spawn_empty().id());
+        let mut index = ObjectIndex::default();
+        index.insert("z", a);
+        index.insert("a", b);
+        index.insert("m", c);
+        assert_eq!(index.remove("a"), Some(b));
+        assert_eq!(index.iter().collect::<Vec<_>>(), [a, c]);
+        assert_eq!(index.get("m"), Some(c));
+        assert_eq!(index.get("a"), None);
+    }
+}

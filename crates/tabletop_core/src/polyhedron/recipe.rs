@@ -1,0 +1,59 @@
+//! What regular polyhedra are made of.
+
+use bevy::prelude::*;
+
+/// As many sides and more look round, and are meant to: 20° and less between two of them.
+pub const ROUND_SIDES: u32 = 18;
+
+/// More sides than these are not to be told apart: a solid with more has so many.
+pub const MOST_SIDES: u32 = 64;
+
+/// What a polyhedron is made of, with the bits of its lengths.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Recipe {
+    Tapered {
+        along: Along,
+        radii: [u32; 2],
+        span: u32,
+        sides: u32,
+    },
+    Ring {
+        radii: [u32; 2],
+        span: u32,
+        sides: u32,
+    },
+    Wedge {
+        radii: [u32; 2],
+        span: u32,
+        sides: u32,
+    },
+    Scaled {
+        of: usize,
+        by: [u32; 3],
+    },
+}
+
+/// The axis of a solid.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Along {
+    Y,
+    Z,
+}
+
+impl Along {
+    pub(super) const fn axis(self) -> Vec3 {
+        match self {
+            Self::Y => Vec3::Y,
+            Self::Z => Vec3::Z,
+        }
+    }
+
+    /// The point at a height on the axis and so far from it, at an angle from X.
+    pub(super) fn point(self, height: f32, radius: f32, angle: f32) -> Vec3 {
+        let (sin, cos) = libm::sincosf(angle);
+        match self {
+            Self::Y => Vec3::new(radius * cos, height, -radius * sin),
+            Self::Z => Vec3::new(radius * cos, radius * sin, height),
+        }
+    }
+}

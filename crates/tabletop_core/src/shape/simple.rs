@@ -1,0 +1,108 @@
+//! The simple shapes of which a shape consists.
+
+use bevy::prelude::*;
+
+use crate::{Control, Part, Pose, Shape};
+
+impl Shape {
+    /// The simple shapes that are to be seen of it, in the order of the task file, each with its pose in the frame of this shape:
+    /// all but composites and lids.
+    pub fn simple_parts(&self) -> Vec<Part> {
+        self.simple_parts_with(Control::seen)
+    }
+
+    /// The simple shapes that can be touched, of which some may not be seen.
+    pub(crate) fn simple_touched(&self) -> Vec<Part> {
+        self.simple_parts_with(Control::touched)
+    }
+
+    fn simple_parts_with(&self, of_control: fn(&Control) -> Vec<Part>) -> Vec<Part> {
+        fn collect(
+            id: &str,
+            pose: Pose,
+            shape: &Shape,
+            of_control: fn(&Control) -> Vec<Part>,
+            simple: &mut Vec<Part>,
+        ) {
+            let mut add = |pose, shape| simple.push(Part::new(id, pose, shape));
+            match *shape {
+                Shape::Composite { ref parts } => {
+                    for part in parts {
+                        let pose = pose * part.pose;
+                        collect(&part.id, pose, &part.shape, of_control, simple);
+                    }
+                }
+                Shape::Control(ref control) => {
+                    for part in of_control(control) {
+                        let pose = pose * part.pose;
+                        collect(&part.id, pose, &part.shape, of_control, simple);
+                    }
+                }
+                Shape::BondPoint(_) => {}
+                Shape::Lid {
+                    span,
+                    color,
+                    handle_span,
+                    handle_thickness,
+                    handle_color,
+                } => {
+                    let on_top = Pose::at(Vec3::Z * (span.z + handle_span.z) / 2.0);
+                    let handle = Shape::Box {
+                        span: handle_span,
+                        thickness: handle_thickness,
+                        color: handle_color,
+                    };
+                    add(pose, Shape::Block { span, color });
+                    add(pose * on_top, handle);
+                }
+                Shape::Block { .. }
+                | Shape::Cylinder { .. }
+                | Shape::Sphere { .. }
+                | Shape::Box { .. }
+                | Shape::Prism { .. }
+                | Shape::Frustum { .. }
+                | Shape::Ring { .. }
+                | Shape::Mesh { .. }
+                | Shape::Link { .. } => add(pose, shape.clone()),
+            }
+        }
+        let mut simple = Vec::new();
+        collect("", Pose::IDENTITY, self, of_control, &mut simple);
+        simple
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Rgb;
+
+    #[test]
+    fn poses_of_nested_parts_compose() {
+        let block = Shape::Block {
+            span: Vec3::ONE,
+            color: Rgb::GRAY,
+        };
+        let inner = Shape::Composite {
+            parts: vec![Part {
+                pointable: false,
+                id: "inner".into(),
+                pose: Pose::at(Vec3::X),
+                shape: block,
+            }],
+        };
+        let shape = Shape::Composite {
+            parts: vec![Part {
+                id: String::new(),
+                pose: Pose::from_degrees(Vec3::Z, Vec3::new(0.0, 0.0, 90.0)),
+                shape: inner,
+                pointable: false,
+            }],
+        };
+        let [part] = &shape.simple_parts()[..] else {
+            panic!("{:?}", shape.simple_parts());
+        };
+        assert_eq!(part.id, "inner");
+        assert!((part.pose.location - Vec3::new(0.0, 1.0, 1.0)).length() < 1e-6);
+    }
+}
