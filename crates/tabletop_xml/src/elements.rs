@@ -10,8 +10,11 @@ mod hollow;
 mod jointed;
 mod lidbox;
 pub(crate) mod mesh_files;
+mod names;
 mod object;
 mod overlap;
+mod role;
+mod simple_shape;
 pub(crate) mod value;
 
 use tabletop_core::{JointMotion, SceneItem, SceneSpec, Table};
@@ -23,59 +26,11 @@ use crate::{
         attributes::AttributeReader,
         cost::{Cost, Excess},
         mesh_files::MeshFiles,
+        names::{DESCRIPTION, INNER, ITEMS, TEMPLATES},
     },
     fault::{Excerpt, Faults},
     suggestion::nearest,
 };
-
-pub(crate) const DESCRIPTION: &str = "description";
-/// Elements of objects.
-pub(crate) const OBJECTS: [&str; 11] = [
-    "block",
-    "cylinder",
-    "frustum",
-    "ring",
-    "sphere",
-    "box",
-    "custom",
-    "composite",
-    "toggleSwitch",
-    "indicatorLights",
-    "customControl",
-];
-const ITEMS: [&str; 16] = [
-    "block",
-    "cylinder",
-    "frustum",
-    "ring",
-    "sphere",
-    "box",
-    "custom",
-    "composite",
-    "toggleSwitch",
-    "indicatorLights",
-    "customControl",
-    "chain",
-    "lidbox",
-    "sliderJoint",
-    "hingeJoint",
-    "scissors",
-];
-/// Elements that stand in others.
-const INNER: [&str; 9] = [
-    "remove",
-    "recolor",
-    "spawn",
-    "guestBondPoint",
-    "hostBondPoint",
-    "tightness",
-    "downstream",
-    "state",
-    "light",
-];
-
-/// Elements that are replaced before the others are read.
-const TEMPLATES: [&str; 3] = ["include", "def", "instance"];
 
 /// Reads what the root element stands for.
 pub(crate) fn scene(root: &Element, meshes: &mut MeshFiles, faults: &mut Faults) -> SceneSpec {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use tabletop_core::{SceneItem, SceneSpec};
+use tabletop_core::{ObjectSpec, SceneItem, SceneSpec};
 
 use crate::{Fault, NAMESPACE, fault::Faults, origin::Sources, parse};
 
@@ -20,6 +20,14 @@ pub(crate) fn items_of(content: &str) -> Vec<SceneItem> {
     let task = parse(Path::new("f"), file("", content).as_bytes());
     assert_eq!(task.faults, [], "{content}");
     task.scene.items
+}
+
+/// The only object of a file with this content.
+pub(crate) fn only_object(content: &str) -> ObjectSpec {
+    match items_of(content).as_slice() {
+        [SceneItem::Object(object)] => object.clone(),
+        other => panic!("{other:?}"),
+    }
 }
 
 /// The faults of a whole file.

@@ -1,21 +1,21 @@
 //! Scenes as task files.
 
 pub(crate) mod angles;
+mod bond;
+mod control;
 pub(crate) mod expanded;
+mod markup;
+mod text;
 
-use std::fmt::Write as _;
-
-use bevy::math::{DVec3, Vec3};
-use quick_xml::escape::escape;
+use bevy::math::Vec3;
 use tabletop_core::{
-    BondEnd, BondPoint, ChainSpec, Change, Control, ControlKind, Dynamics, JointMotion,
-    JointedSpec, LidBoxSpec, NAMED_COLORS, ObjectSpec, Part, Pose, Rgb, SceneItem, SceneSpec,
-    Shape, Side,
+    ChainSpec, Dynamics, JointMotion, JointedSpec, LidBoxSpec, ObjectSpec, Part, SceneItem,
+    SceneSpec, Shape,
 };
 
 use crate::{
-    NAMESPACE, document::decode::is_xml_character, elements::value::is_id_character,
-    write::angles::angles_of,
+    NAMESPACE,
+    write::text::{as_attribute, as_literal},
 };
 
 /// Writes a scene as a task file, which [reads](crate::parse()) back as the same scene: numbers exactly, colours to
@@ -100,7 +100,11 @@ impl Writer {
     }
 
     /// Writes a part, and to which states triggering its simple parts leads.
-    fn part_in_state(&mut self, part: &Part, next: &mut dyn Iterator<Item = Option<u32>>) {
+    pub(super) fn part_in_state(
+        &mut self,
+        part: &Part,
+        next: &mut dyn Iterator<Item = Option<u32>>,
+    ) {
         self.open(element_name(&part.shape));
         self.id(&part.id);
         self.pose(part.pose);
@@ -140,127 +144,6 @@ impl Writer {
             | Shape::Ring { .. }
             | Shape::Mesh { .. }
             | Shape::Link { .. } => {}
-        }
-    }
-
-    fn content_of_control(&mut self, control: &Control) {
-        for id in &control.downstream {
-            self.open("downstream");
-            self.attribute("id", &as_id(id));
-            self.close();
-        }
-        match &control.kind {
-            ControlKind::ToggleSwitch(_) => {}
-            ControlKind::IndicatorLights(lights) => {
-                for state in &lights.states {
-                    self.open_state(&state.name);
-                    for &(light, color) in &state.lights {
-                        self.open("light");
-                        self.attribute("id", &light.to_string());
-                        self.color("color", color);
-                        self.close();
-                    }
-                    self.close();
-                }
-            }
-            ControlKind::Custom(custom) => {
-                for state in &custom.states {
-                    self.open_state(&state.name);
-                    let mut next = state.next.iter().copied();
-                    for part in &state.parts {
-                        self.part_in_state(part, &mut next);
-                    }
-                    state.changes.iter().for_each(|change| self.change(change));
-                    self.close();
-                }
-            }
-        }
-    }
-
-    fn change(&mut self, change: &Change) {
-        match change {
-            Change::Remove { object } => {
-                self.open("remove");
-                self.attribute("id", &as_id(object));
-            }
-            Change::Recolor { object, color } => {
-                self.open("recolor");
-                self.attribute("id", &as_id(object));
-                self.color("color", *color);
-            }
-            Change::Spawn(object) => {
-                self.open("spawn");
-                self.object(object);
-            }
-        }
-        self.close();
-    }
-
-    fn open_state(&mut self, name: &str) {
-        self.open("state");
-        if !name.is_empty() {
-            self.attribute("descriptionName", &as_id(name));
-        }
-    }
-
-    fn attributes_of_control(&mut self, control: &Control) {
-        self.attribute("initState", &control.state.to_string());
-        match &control.kind {
-            ControlKind::ToggleSwitch(switch) => {
-                self.spans(["xspan", "yspan", "zspan"], switch.span);
-                self.number("angle", switch.angle);
-                self.color("color", switch.color);
-                let is_left = switch.pressed == Side::Left;
-                self.attribute("leftPressed", &is_left.to_string());
-                self.attribute("numStates", &switch.states.to_string());
-            }
-            ControlKind::IndicatorLights(lights) => {
-                self.number("lightRadius", lights.radius);
-                self.number("lightZspan", lights.zspan);
-                self.attribute("numLights", &lights.lights.to_string());
-                self.number("xspan", lights.xspan);
-            }
-            ControlKind::Custom(custom) => {
-                self.attribute("name", &as_attribute(&as_literal(&custom.name)));
-            }
-        }
-    }
-
-    fn attributes_of_bond_point(&mut self, point: &BondPoint) {
-        self.attribute("type", &as_attribute(&as_literal(&point.fit)));
-        let ids = match &point.end {
-            BondEnd::Guest(guest) => {
-                let tightness = guest.tightness.to_string();
-                self.attribute("initBondTightness", &tightness);
-                vec![("initBondHostId", &guest.host)]
-            }
-            BondEnd::Host(host) => vec![
-                ("downstream", &host.downstream),
-                ("downstreamOverride", &host.downstream_override),
-                ("downstreamLock", &host.downstream_lock),
-            ],
-        };
-        for (name, id) in ids {
-            if !id.is_empty() {
-                self.attribute(name, &as_id(id));
-            }
-        }
-    }
-
-    fn steps_of(&mut self, point: &BondPoint) {
-        let BondEnd::Host(host) = &point.end else {
-            return;
-        };
-        for step in &host.steps {
-            self.open("tightness");
-            self.pose(step.pose);
-            if let Some(state) = step.state {
-                self.attribute("downstreamState", &state.to_string());
-            }
-            if step.locks {
-                self.attribute("downstreamLock", "true");
-            }
-            self.close();
         }
     }
 
@@ -395,85 +278,6 @@ impl Writer {
         }
         self.close();
     }
-
-    fn descriptions(&mut self, descriptions: &[(String, String)]) {
-        for (name, value) in descriptions {
-            self.open("description");
-            self.attribute("name", &as_id(name));
-            self.attribute("value", &as_attribute(&as_literal(value)));
-            self.close();
-        }
-    }
-
-    fn id(&mut self, id: &str) {
-        if !id.is_empty() {
-            self.attribute("id", &as_id(id));
-        }
-    }
-
-    fn pose(&mut self, pose: Pose) {
-        self.vector("location", pose.location);
-        if pose.rotation != Pose::IDENTITY.rotation {
-            let DVec3 { x, y, z } = angles_of(pose.rotation);
-            self.attribute("rotation", &format!("({x},{y},{z})"));
-        }
-    }
-
-    fn vector(&mut self, name: &str, vector: Vec3) {
-        let Vec3 { x, y, z } = vector;
-        self.attribute(name, &format!("({x},{y},{z})"));
-    }
-
-    fn spans(&mut self, names: [&str; 3], spans: Vec3) {
-        for (name, span) in names.into_iter().zip(spans.to_array()) {
-            self.number(name, span);
-        }
-    }
-
-    fn number(&mut self, name: &str, number: f32) {
-        self.attribute(name, &number.to_string());
-    }
-
-    fn color(&mut self, name: &str, color: Rgb) {
-        match NAMED_COLORS.iter().find(|(_, named)| *named == color) {
-            Some((known, _)) => self.attribute(name, known),
-            None => self.attribute(name, &color.to_string()),
-        }
-    }
-
-    fn attribute(&mut self, name: &str, value: &str) {
-        // Writing to a `String` does not fail.
-        let _written = write!(self.text, " {name}=\"{value}\"");
-    }
-
-    fn open(&mut self, name: &'static str) {
-        if self.is_empty {
-            self.text.push('>');
-        }
-        self.begin_line();
-        self.text.push('<');
-        self.text.push_str(name);
-        self.open.push(name);
-        self.is_empty = true;
-    }
-
-    fn close(&mut self) {
-        let Some(name) = self.open.pop() else {
-            return;
-        };
-        if self.is_empty {
-            self.text.push_str("/>");
-        } else {
-            self.begin_line();
-            let _written = write!(self.text, "</{name}>");
-        }
-        self.is_empty = false;
-    }
-
-    fn begin_line(&mut self) {
-        self.text.push('\n');
-        self.text.push_str(&"  ".repeat(self.open.len()));
-    }
 }
 
 fn element_name(shape: &Shape) -> &'static str {
@@ -484,30 +288,10 @@ fn element_name(shape: &Shape) -> &'static str {
     }
 }
 
-fn as_id(text: &str) -> String {
-    text.replace(|character| !is_id_character(character), "_")
-}
-
-/// A text without expressions. A single dollar sign needs no other: older programs then read it, too.
-fn as_literal(text: &str) -> String {
-    match text.matches('$').count() {
-        0 | 1 => text.to_owned(),
-        _ => text.replace('$', "$$"),
-    }
-}
-
-/// A text as the value of an attribute; what XML does not allow becomes U+FFFD.
-fn as_attribute(text: &str) -> String {
-    let allowed = text.replace(|character| !is_xml_character(character), "\u{fffd}");
-    // What a reader of XML takes for a blank if it is written as it is.
-    escape(allowed)
-        .replace('\t', "&#9;")
-        .replace('\n', "&#10;")
-        .replace('\r', "&#13;")
-}
-
 #[cfg(test)]
 mod tests {
+    use tabletop_core::{Pose, Rgb};
+
     use super::*;
     use crate::test_support::scene_of;
 

@@ -7,13 +7,10 @@ use crate::{
     elements::{
         ElementReader,
         attributes::AttributeReader,
-        control::DOWNSTREAM,
+        names::{DOWNSTREAM, TIGHTNESS},
         value::{self, STATES},
     },
 };
-
-pub(crate) const BOND_POINTS: [&str; 2] = ["guestBondPoint", "hostBondPoint"];
-pub(crate) const TIGHTNESS: &str = "tightness";
 
 impl ElementReader<'_, '_> {
     /// Reads the steps in a host point; nothing if one of them is faulty. A guest point has none.
@@ -54,7 +51,7 @@ impl ElementReader<'_, '_> {
     }
 }
 
-/// The point of an element that is one of [`BOND_POINTS`].
+/// The point of an element that is one of [`BOND_POINTS`](super::names::BOND_POINTS).
 pub(super) fn bond_point(
     element: &Element,
     steps: Vec<TightnessStep>,

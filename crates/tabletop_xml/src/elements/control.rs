@@ -9,17 +9,15 @@ use tabletop_core::{
 use crate::{
     document::tree::Element,
     elements::{
-        DESCRIPTION, ElementReader,
+        ElementReader,
         attributes::AttributeReader,
-        object::{ObjectRole, SHAPES, SPANS},
+        names::{DESCRIPTION, DOWNSTREAM, LIGHT, SHAPES, STATE},
+        role::ObjectRole,
+        simple_shape::SPANS,
         value::{self, LIGHTS, STATES, SWITCH_ANGLES},
     },
 };
 
-pub(crate) const CONTROLS: [&str; 3] = ["toggleSwitch", "indicatorLights", "customControl"];
-pub(crate) const DOWNSTREAM: &str = "downstream";
-pub(crate) const STATE: &str = "state";
-pub(crate) const LIGHT: &str = "light";
 const RECOLOR: &str = "recolor";
 const SPAWN: &str = "spawn";
 /// What a state does to other objects.
@@ -187,7 +185,7 @@ impl ElementReader<'_, '_> {
     }
 }
 
-/// The control of an element that is one of [`CONTROLS`].
+/// The control of an element that is one of [`CONTROLS`](super::names::CONTROLS).
 pub(super) fn control(
     element: &Element,
     content: ControlContent,

@@ -5,9 +5,10 @@ use tabletop_core::{JointMotion, JointedSpec, ObjectSpec};
 use crate::{
     document::tree::Element,
     elements::{
-        ElementReader, OBJECTS,
+        ElementReader,
         attributes::AttributeReader,
         blades::blades,
+        names::OBJECTS,
         value::{self, ANGLES, DISPLACEMENTS, PROPORTIONS},
     },
 };

@@ -4,12 +4,9 @@ use bevy::math::Vec3;
 use tabletop_core::LidBoxSpec;
 
 use crate::{
-    document::tree::Element,
-    elements::attributes::AttributeReader,
-    elements::hollow::check_hollow,
-    elements::object::SPANS,
+    document::tree::Element, elements::ElementReader, elements::attributes::AttributeReader,
+    elements::hollow::check_hollow, elements::names::DESCRIPTION, elements::simple_shape::SPANS,
     elements::value,
-    elements::{DESCRIPTION, ElementReader},
 };
 
 impl ElementReader<'_, '_> {
