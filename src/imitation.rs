@@ -7,10 +7,11 @@ use tabletop_core::{
 };
 use tabletop_kinematics::{ModelError, baxter};
 use tabletop_planner::{
-    LimbOrder, LimbSight, Piece, RobotBody, SeenObject, Sight, Stage, Stopped, angles, scatter,
+    LimbOrder, LimbSight, Piece, PlanningStage, RobotBody, SeenObject, Sight, Stopped, angles,
+    scatter,
 };
 use tabletop_scene::{IdAllocator, assemble};
-use tabletop_task::{Arrangement, Convex};
+use tabletop_task::{Arrangement, PlacedSolid};
 
 /// What there is to see in a world, with the robot at the table.
 pub fn sight(world: &mut World) -> Sight {
@@ -112,7 +113,7 @@ impl<'a> AppStage<'a> {
     }
 }
 
-impl Stage for AppStage<'_> {
+impl PlanningStage for AppStage<'_> {
     fn sight(&self) -> &Sight {
         &self.sight
     }
@@ -140,7 +141,7 @@ pub fn baxter_body(table: &Table) -> Result<RobotBody, ModelError> {
 /// something stays with it, and nothing is put near what is `kept` free. None if there is no room.
 pub fn scattered(
     scene: &SceneSpec,
-    kept: &[Convex],
+    kept: &[PlacedSolid],
     body: Option<&RobotBody>,
     seed: u64,
 ) -> Option<SceneSpec> {
@@ -177,7 +178,7 @@ pub fn scattered(
                 let colliding = part.shape.colliding();
                 colliding
                     .into_iter()
-                    .map(move |solid| Convex::of(&solid, *pose))
+                    .map(move |solid| PlacedSolid::of(&solid, *pose))
             });
             let piece = Piece {
                 solids: solids.collect(),

@@ -20,7 +20,7 @@ use tabletop_core::{
     StepApp as _, WriteCommand as _,
 };
 use tabletop_kinematics::ModelError;
-use tabletop_planner::{Failure, RobotBody, imitate};
+use tabletop_planner::{PlanFailure, RobotBody, imitate};
 use tabletop_recorder::{Durability, RecorderError, RecorderPlugin, RecordingReader};
 use tabletop_scene::{IdAllocator, assemble};
 use tabletop_task::{Binding, Demonstration, RequirementError, Requirements, Task};
@@ -70,7 +70,7 @@ pub enum Dropped {
     /// There was no room for everything.
     NoRoom,
     /// A step of the task has failed.
-    Step(usize, Failure),
+    Step(usize, PlanFailure),
 }
 
 /// Why a demonstration cannot be multiplied.
@@ -194,7 +194,7 @@ impl Multiplication {
         attempt: u64,
         random: &mut Random,
         folder: &Path,
-    ) -> Result<Result<(), (usize, Failure)>, MultiplyError> {
+    ) -> Result<Result<(), (usize, PlanFailure)>, MultiplyError> {
         let objects = assemble(&scene, &mut IdAllocator::default()).objects;
         let binding = self.task.bind(&self.requirements, &objects)?;
         let camera = self.variation.camera(&scene.table, random);
@@ -238,7 +238,7 @@ impl Multiplication {
         }
     }
 
-    fn act(&self, app: &mut App, binding: &Binding, seed: u64) -> Result<(), (usize, Failure)> {
+    fn act(&self, app: &mut App, binding: &Binding, seed: u64) -> Result<(), (usize, PlanFailure)> {
         let Some(body) = &self.body else {
             return perform(app, &self.shown, &self.task, binding);
         };

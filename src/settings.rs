@@ -10,7 +10,7 @@ use tabletop_core::{
 };
 use tabletop_physics::PhysicsSettings;
 use tabletop_recorder::SessionSettings;
-use tabletop_robot::{Description, DescriptionError, RobotPlugin, Source};
+use tabletop_robot::{Description, DescriptionError, DescriptionSource, RobotPlugin};
 
 /// Names of the settings in a session log.
 pub(crate) const PHYSICS: &str = "physics";
@@ -75,7 +75,7 @@ fn first_difference(name: &str, recorded: &Value, here: &Value) -> Option<String
 pub(crate) struct RobotSettings {
     mode: RobotMode,
     /// Its description, if it is not the one that comes with the program.
-    description: Option<Source>,
+    description: Option<DescriptionSource>,
 }
 
 impl RobotSettings {
@@ -130,12 +130,12 @@ fn note_task_file(mut facts: MessageReader<SimFact>, mut settings: ResMut<Sessio
 }
 
 /// The same, wherever the program runs that replays it: its meshes are beside the file.
-fn from_everywhere(source: Source) -> Source {
+fn from_everywhere(source: DescriptionSource) -> DescriptionSource {
     let path = match is_shipped(&source.path) {
         true => source.path,
         false => absolute(&source.path).unwrap_or(source.path),
     };
-    Source { path, ..source }
+    DescriptionSource { path, ..source }
 }
 
 fn note_robot(
@@ -170,7 +170,7 @@ mod tests {
         let found = difference(&moon).unwrap();
         assert_eq!(found, "settings.physics.gravity was 16.0, and is 98.1 here");
         let mut other = settings();
-        other.robot.description = Some(Source {
+        other.robot.description = Some(DescriptionSource {
             path: "robot.urdf".into(),
             urdf: "<robot/>".repeat(100),
             layout: None,

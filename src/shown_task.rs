@@ -4,7 +4,7 @@ use std::path::Path;
 
 use tabletop_core::{NAMED_COLORS, Required, ShownProperty, ShownRole, ShownStep, ShownTask};
 use tabletop_task::{
-    Binding, Reference, Requirements, Role, Step, Task, has_value, properties, property,
+    Binding, Reference, Requirements, Role, Task, TaskStep, has_value, properties, property,
 };
 
 /// A task, with what is required in its sentences. The objects are those that take its roles, if that is known, else those with which it was shown.
@@ -29,7 +29,7 @@ pub fn shown_task(
     }
 }
 
-fn shown_step(task: &Task, step: &Step, binding: Option<&Binding>) -> ShownStep {
+fn shown_step(task: &Task, step: &TaskStep, binding: Option<&Binding>) -> ShownStep {
     let color = |id: &str| {
         let shape = &task.role(id)?.shown.shape;
         shape.drawn().first().map(|solid| solid.color)

@@ -9,7 +9,7 @@ use clap::Args;
 use serde_json::json;
 use tabletop::{
     scene::{IdAllocator, assemble},
-    task::{DetourKind, Requirements, Role, Step, Task},
+    task::{DetourKind, Requirements, Role, Task, TaskStep},
 };
 use tabletop_core::TICKS_PER_SECOND;
 
@@ -98,8 +98,8 @@ pub(super) fn read(recording: &Path) -> Result<(Task, Requirements), Failure> {
 }
 
 /// A step with its number, and what must come before it if that is not just the step before.
-fn numbered(step: &Step) -> String {
-    let Step {
+fn numbered(step: &TaskStep) -> String {
+    let TaskStep {
         number,
         sentence,
         after,

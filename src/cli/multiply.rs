@@ -20,7 +20,7 @@ use tabletop::multiplication::{Demonstrator, Made, Multiplication, MultiplyError
 
 use super::{
     Failure, Output,
-    progress::Progress,
+    progress::ProgressLine,
     terminal::{say, show_warnings},
 };
 
@@ -145,13 +145,13 @@ fn is_empty(folder: &Path) -> bool {
 
 /// What became of all of them.
 #[derive(Default)]
-struct Outcome {
+struct Tally {
     made: u64,
     dropped: BTreeMap<String, u64>,
     given_up: Vec<u64>,
 }
 
-impl Outcome {
+impl Tally {
     fn note(&mut self, number: u64, made: &Made) {
         match made.is_kept {
             true => self.made += 1,
@@ -191,13 +191,13 @@ fn make_all(
     args: &MultiplyArgs,
     multiplication: &Multiplication,
     missing: &[u64],
-) -> Result<Outcome, Failure> {
+) -> Result<Tally, Failure> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let jobs = args.jobs.unwrap_or(cores).clamp(1, missing.len().max(1));
     let next = AtomicU64::new(0);
     let is_ended = AtomicBool::new(false);
-    let outcome = Mutex::new(Outcome::default());
-    let mut progress = Progress::new(missing.len() as u64);
+    let outcome = Mutex::new(Tally::default());
+    let mut progress = ProgressLine::new(missing.len() as u64);
     let (sender, done) = mpsc::channel::<Result<(u64, Made), Failure>>();
     thread::scope(|scope| {
         for _ in 0..jobs {

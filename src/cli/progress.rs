@@ -6,7 +6,7 @@ use std::{
 };
 
 /// A line on standard error that says how far it is, if that is a terminal.
-pub(super) struct Progress {
+pub(super) struct ProgressLine {
     all: u64,
     done: u64,
     start: Instant,
@@ -19,7 +19,7 @@ const PERIOD: Duration = Duration::from_millis(100);
 /// How many characters the bar has.
 const WIDTH: usize = 24;
 
-impl Progress {
+impl ProgressLine {
     pub fn new(all: u64) -> Self {
         Self {
             all,

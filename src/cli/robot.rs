@@ -89,7 +89,7 @@ enum Angles {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Reach {
+struct ReachGoal {
     arm: LimbName,
     /// In m in the torso's frame, in units in the table's.
     position: [f64; 3],
@@ -217,7 +217,7 @@ impl Answerer {
     }
 
     fn inverse(&self, line: &[u8]) -> Result<Value, NoAnswer> {
-        let reach: Reach = read(line)?;
+        let reach: ReachGoal = read(line)?;
         let limb = self.limb(reach.arm)?;
         let arm = limb.name;
         let root = &self.robot.link(self.robot.root()).name;

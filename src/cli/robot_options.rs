@@ -9,7 +9,7 @@ use bevy::prelude::*;
 use clap::Args;
 use tabletop::{
     core::{LayoutFile, RobotCommand, RobotMode, WriteCommand as _},
-    robot::{Description, RobotPlugin, Source},
+    robot::{Description, DescriptionSource, RobotPlugin},
     script::{
         ENGINE_VARIABLE, EngineChoice, EngineKind, EngineLocator, FieldPolicy, ScriptSettings,
     },
@@ -84,13 +84,13 @@ pub(super) fn describe(path: &Path) -> Result<Description, Failure> {
                 return Err(at(path, &problem));
             }
             let urdf = path.with_file_name(&file.urdf);
-            Source {
+            DescriptionSource {
                 urdf: read(&urdf)?,
                 path: true_path(&urdf),
                 layout: Some(text),
             }
         }
-        false => Source {
+        false => DescriptionSource {
             path: true_path(path),
             urdf: text,
             layout: None,

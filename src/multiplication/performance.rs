@@ -6,12 +6,13 @@ use bevy::prelude::*;
 use tabletop_core::{
     Hand, HandCommand, Hands, ObjectIndex, Pose, SimTick, StepApp as _, WriteCommand as _,
 };
-use tabletop_planner::{Before, Failure, Sight, is_met, undone};
+use tabletop_planner::{Before, PlanFailure, Sight, is_met, undone};
 use tabletop_task::{
-    Binding, Convex, Demonstration, Place, Reference, Relation, Step, Task, angle_between,
+    Binding, Demonstration, PlaceRange, PlacedSolid, Reference, Relation, Task, TaskStep,
+    angle_between,
 };
 
-use super::way::{Carried, Moment};
+use super::way::{CarriedWay, WayPoint};
 use crate::imitation::sight;
 
 /// Ticks between a release and the next grasp: as many as were shown, within these.
@@ -35,7 +36,7 @@ pub(super) fn perform(
     shown: &Demonstration,
     task: &Task,
     binding: &Binding,
-) -> Result<(), (usize, Failure)> {
+) -> Result<(), (usize, PlanFailure)> {
     let sight = sight(app.world_mut());
     let beginning = sight
         .objects
@@ -65,24 +66,24 @@ struct Performance<'a> {
     binding: &'a Binding,
     before: Before,
     /// The steps, in the order in which their objects were grasped.
-    acts: Vec<Act<'a>>,
+    acts: Vec<StepPerformance<'a>>,
 }
 
 /// A step, as it is shown again.
-struct Act<'a> {
-    step: &'a Step,
-    carried: Carried,
-    progress: Progress,
+struct StepPerformance<'a> {
+    step: &'a TaskStep,
+    carried: CarriedWay,
+    progress: CarryProgress,
     /// Where its object was before.
     from: Pose,
 }
 
-enum Progress {
+enum CarryProgress {
     Waiting,
     Carrying {
         begun: SimTick,
         hand: Hand,
-        way: Vec<Moment>,
+        way: Vec<WayPoint>,
         next: usize,
         /// Where the object is to be.
         target: Pose,
@@ -95,15 +96,19 @@ enum Progress {
     Done(SimTick),
 }
 
-fn acts<'a>(shown: &Demonstration, task: &'a Task) -> Result<Vec<Act<'a>>, (usize, Failure)> {
+fn acts<'a>(
+    shown: &Demonstration,
+    task: &'a Task,
+) -> Result<Vec<StepPerformance<'a>>, (usize, PlanFailure)> {
     let mut acts = Vec::new();
     for step in &task.steps {
-        let carried = Carried::of(shown, step);
-        let carried = carried.ok_or_else(|| (step.number, Failure::Gone(step.object.clone())))?;
-        acts.push(Act {
+        let carried = CarriedWay::of(shown, step);
+        let carried =
+            carried.ok_or_else(|| (step.number, PlanFailure::Gone(step.object.clone())))?;
+        acts.push(StepPerformance {
             step,
             carried,
-            progress: Progress::Waiting,
+            progress: CarryProgress::Waiting,
             from: Pose::IDENTITY,
         });
     }
@@ -113,7 +118,7 @@ fn acts<'a>(shown: &Demonstration, task: &'a Task) -> Result<Vec<Act<'a>>, (usiz
 
 impl Performance<'_> {
     fn is_over(&self) -> bool {
-        let is_done = |act: &Act| matches!(act.progress, Progress::Done(_));
+        let is_done = |act: &StepPerformance| matches!(act.progress, CarryProgress::Done(_));
         self.acts.iter().all(is_done)
     }
 
@@ -127,11 +132,11 @@ impl Performance<'_> {
         self.acts[..i].iter().all(|earlier| {
             let is_meanwhile = earlier.step.release > own.grasp;
             match &earlier.progress {
-                Progress::Waiting => false,
-                Progress::Carrying { begun, .. } => {
+                CarryProgress::Waiting => false,
+                CarryProgress::Carrying { begun, .. } => {
                     is_meanwhile && now - begun.0 >= own.grasp.0 - earlier.step.grasp.0
                 }
-                Progress::Done(since) => {
+                CarryProgress::Done(since) => {
                     let pause = own.grasp.0.saturating_sub(earlier.step.release.0);
                     is_meanwhile || now - since.0 >= pause.clamp(PAUSE.0, PAUSE.1)
                 }
@@ -139,9 +144,9 @@ impl Performance<'_> {
         })
     }
 
-    fn begin_what_is_due(&mut self) -> Result<(), (usize, Failure)> {
+    fn begin_what_is_due(&mut self) -> Result<(), (usize, PlanFailure)> {
         for i in 0..self.acts.len() {
-            if !matches!(self.acts[i].progress, Progress::Waiting) || !self.is_due(i) {
+            if !matches!(self.acts[i].progress, CarryProgress::Waiting) || !self.is_due(i) {
                 continue;
             }
             let step = self.acts[i].step;
@@ -151,14 +156,14 @@ impl Performance<'_> {
         Ok(())
     }
 
-    fn begin(&mut self, i: usize) -> Result<(), Failure> {
+    fn begin(&mut self, i: usize) -> Result<(), PlanFailure> {
         let sight = sight(self.app.world_mut());
         let step = self.acts[i].step;
         let id = self.bound(&step.object)?.to_owned();
         let object = sight
             .objects
             .get(&id)
-            .ok_or_else(|| Failure::Gone(id.clone()))?;
+            .ok_or_else(|| PlanFailure::Gone(id.clone()))?;
         let from = object.pose;
         let carried = &self.acts[i].carried;
         let reference = self.reference(step, carried, &sight, from)?;
@@ -171,7 +176,7 @@ impl Performance<'_> {
         let begun = self.now();
         let act = &mut self.acts[i];
         act.from = from;
-        act.progress = Progress::Carrying {
+        act.progress = CarryProgress::Carrying {
             begun,
             hand,
             way,
@@ -184,28 +189,28 @@ impl Performance<'_> {
         Ok(())
     }
 
-    fn bound(&self, role: &str) -> Result<&str, Failure> {
+    fn bound(&self, role: &str) -> Result<&str, PlanFailure> {
         let bound = self.binding.object(role);
-        bound.ok_or_else(|| Failure::Gone(role.to_owned()))
+        bound.ok_or_else(|| PlanFailure::Gone(role.to_owned()))
     }
 
     /// Where that is now to which the goal of a step is relative. Without a goal, nothing is.
     fn reference(
         &self,
-        step: &Step,
-        carried: &Carried,
+        step: &TaskStep,
+        carried: &CarriedWay,
         sight: &Sight,
         from: Pose,
-    ) -> Result<Option<Pose>, Failure> {
+    ) -> Result<Option<Pose>, PlanFailure> {
         let Some(goal) = &step.goal else {
             return Ok(None);
         };
-        let gone = |id: &str| Failure::Gone(id.to_owned());
+        let gone = |id: &str| PlanFailure::Gone(id.to_owned());
         let pose = match &goal.reference {
-            Reference::Table if goal.place == Place::Anywhere => {
+            Reference::Table if goal.place == PlaceRange::Anywhere => {
                 let id = self.bound(&step.object)?;
                 let aside = free_place(sight, id, carried, from);
-                aside.ok_or_else(|| Failure::NoRoom(id.to_owned()))?
+                aside.ok_or_else(|| PlanFailure::NoRoom(id.to_owned()))?
             }
             Reference::Table => Pose::IDENTITY,
             Reference::Itself => from,
@@ -224,7 +229,7 @@ impl Performance<'_> {
     fn move_hands(&mut self) {
         let now = self.now();
         for act in &mut self.acts {
-            let Progress::Carrying {
+            let CarryProgress::Carrying {
                 hand,
                 way,
                 next,
@@ -248,7 +253,7 @@ impl Performance<'_> {
                 } else if first != Some(&Relation::Held) {
                     world.write_command(HandCommand::Release(*hand));
                 }
-                act.progress = Progress::Done(now);
+                act.progress = CarryProgress::Done(now);
                 continue;
             };
             *next += 1;
@@ -288,10 +293,10 @@ impl Performance<'_> {
     }
 
     /// Looks where what is held has come to.
-    fn look(&mut self) -> Result<(), (usize, Failure)> {
+    fn look(&mut self) -> Result<(), (usize, PlanFailure)> {
         let world = self.app.world();
         for act in &mut self.acts {
-            let Progress::Carrying {
+            let CarryProgress::Carrying {
                 hand, last, still, ..
             } = &mut act.progress
             else {
@@ -302,7 +307,7 @@ impl Performance<'_> {
             let held = world.resource::<Hands>().held_by(*hand);
             let transform = object.and_then(|object| world.get::<Transform>(object));
             let Some(transform) = transform.filter(|_| held == object) else {
-                return Err((act.step.number, Failure::NotHeld(id.to_owned())));
+                return Err((act.step.number, PlanFailure::NotHeld(id.to_owned())));
             };
             let here = Pose::from(transform);
             let is_same = here.location.distance(last.location) < SAME
@@ -314,7 +319,7 @@ impl Performance<'_> {
     }
 
     /// Whether all relations hold; else the step of one that does not.
-    fn judge(mut self, task: &Task) -> Result<(), (usize, Failure)> {
+    fn judge(mut self, task: &Task) -> Result<(), (usize, PlanFailure)> {
         let sight = sight(self.app.world_mut());
         if let Some(undone) = undone(task, self.binding, &sight, &self.before) {
             return Err(undone);
@@ -322,7 +327,7 @@ impl Performance<'_> {
         for act in &self.acts {
             let step = act.step;
             let Some(id) = self.binding.object(&step.object) else {
-                return Err((step.number, Failure::Gone(step.object.clone())));
+                return Err((step.number, PlanFailure::Gone(step.object.clone())));
             };
             let is_last = !task.steps[step.number..]
                 .iter()
@@ -341,7 +346,7 @@ impl Performance<'_> {
             };
             match is_so {
                 Ok(true) => {}
-                Ok(false) => return Err((step.number, Failure::Misplaced(id.to_owned()))),
+                Ok(false) => return Err((step.number, PlanFailure::Misplaced(id.to_owned()))),
                 Err(failure) => return Err((step.number, failure)),
             }
         }
@@ -350,7 +355,7 @@ impl Performance<'_> {
 }
 
 /// What a hand has to keep clear of on its way with an object: not what it carries along, nor what the object slides on.
-fn obstacles(step: &Step, sight: &Sight, id: &str) -> Vec<Convex> {
+fn obstacles(step: &TaskStep, sight: &Sight, id: &str) -> Vec<PlacedSolid> {
     if matches!(step.relations.first(), Some(Relation::Slid { .. })) {
         return Vec::new();
     }
@@ -368,7 +373,7 @@ fn obstacles(step: &Step, sight: &Sight, id: &str) -> Vec<Convex> {
 }
 
 /// Where the frame of the table would be for an object to be put aside at a free place: as far from where it stands as was shown, or near there.
-fn free_place(sight: &Sight, id: &str, carried: &Carried, from: Pose) -> Option<Pose> {
+fn free_place(sight: &Sight, id: &str, carried: &CarriedWay, from: Pose) -> Option<Pose> {
     const AROUND: u16 = 12;
     const RINGS: u16 = 12;
     let object = sight.objects.get(id)?;

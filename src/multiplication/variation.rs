@@ -9,7 +9,7 @@ use tabletop_core::{
 };
 use tabletop_planner::RobotBody;
 use tabletop_scene::{IdAllocator, assemble};
-use tabletop_task::{Convex, Place, Reference, Requirements, Task};
+use tabletop_task::{PlaceRange, PlacedSolid, Reference, Requirements, Task};
 
 use crate::imitation::scattered;
 
@@ -93,10 +93,10 @@ impl Varying<'_> {
     }
 
     /// Where objects are put at places of the table.
-    fn kept(&self) -> Vec<Convex> {
+    fn kept(&self) -> Vec<PlacedSolid> {
         let goals = self.task.steps.iter().filter_map(|step| {
             let goal = step.goal.as_ref()?;
-            let is_place = goal.reference == Reference::Table && goal.place == Place::Exact;
+            let is_place = goal.reference == Reference::Table && goal.place == PlaceRange::Exact;
             let role = self.task.role(&step.object)?;
             is_place.then_some((&role.shown.shape, goal.pose))
         });
@@ -104,7 +104,7 @@ impl Varying<'_> {
             let colliding = shape.colliding();
             colliding
                 .into_iter()
-                .map(move |solid| Convex::of(&solid, pose))
+                .map(move |solid| PlacedSolid::of(&solid, pose))
         });
         solids.collect()
     }
@@ -144,9 +144,9 @@ impl Varying<'_> {
             };
             let pose = frame * goal.pose;
             now.insert(step.object.as_str(), pose);
-            goal.place == Place::Anywhere
+            goal.place == PlaceRange::Anywhere
                 || shape.colliding().iter().all(|solid| {
-                    let solid = Convex::of(solid, pose);
+                    let solid = PlacedSolid::of(solid, pose);
                     [Vec3::X, Vec3::Y].into_iter().all(|way| {
                         let reach = |way: Vec3| solid.farthest(way).dot(way);
                         reach(way).max(reach(-way)) < half.dot(way)

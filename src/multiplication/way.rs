@@ -2,11 +2,11 @@
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{Hand, Pose, Primitive, Shape, SimTick};
-use tabletop_task::{Convex, Deed, Demonstration, Reference, Step, angle_between};
+use tabletop_task::{Demonstration, HandDeed, PlacedSolid, Reference, TaskStep, angle_between};
 
 /// How the object of a step was carried.
 #[derive(Clone, Debug)]
-pub(super) struct Carried {
+pub(super) struct CarriedWay {
     /// Where it was, tick by tick, from before it was grasped until it was let go of.
     poses: Vec<Pose>,
     /// The hands that took it, and after which of its poses.
@@ -17,7 +17,7 @@ pub(super) struct Carried {
 
 /// What a hand does in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Moment {
+pub(super) struct WayPoint {
     /// Where the object is to be.
     pub pose: Pose,
     /// The hand that takes it.
@@ -33,9 +33,9 @@ const GAP: f32 = 0.1;
 /// The farthest, in units, and the largest angle, in rad, that a hand goes in a tick where it had not gone farther when it was shown.
 const STEP: (f32, f32) = (0.15, 0.08);
 
-impl Carried {
+impl CarriedWay {
     /// How the object of a step was carried in a demonstration. None if the demonstration does not say.
-    pub fn of(shown: &Demonstration, step: &Step) -> Option<Self> {
+    pub fn of(shown: &Demonstration, step: &TaskStep) -> Option<Self> {
         let track = &shown.named(&step.object)?.track;
         let first = step.grasp.0.saturating_sub(1);
         let poses: Option<Vec<_>> = (first..=step.release.0)
@@ -43,7 +43,7 @@ impl Carried {
             .collect();
         let poses = poses?;
         let taken = shown.acts.iter().filter_map(|act| {
-            let is_meant = matches!(&act.deed, Deed::Grasp(id) if *id == step.object);
+            let is_meant = matches!(&act.deed, HandDeed::Grasp(id) if *id == step.object);
             let is_meanwhile = (step.grasp..=step.release).contains(&act.tick);
             let after = (act.tick.0 - first) as usize;
             (is_meant && is_meanwhile).then_some((after, act.hand))
@@ -84,8 +84,8 @@ impl Carried {
         shape: &Shape,
         from: Pose,
         reference: Option<Pose>,
-        obstacles: &[Convex],
-    ) -> Vec<Moment> {
+        obstacles: &[PlacedSolid],
+    ) -> Vec<WayPoint> {
         let at_start = from * self.poses[0].inverse();
         let at_end = reference.map_or(at_start, |now| now * self.frame.inverse());
         let lengths = self.lengths();
@@ -105,7 +105,7 @@ impl Carried {
         }
         let solids = shape.colliding();
         let lift = lift_over(&solids, &way[lifted..=lowered], obstacles);
-        let mut moments = Vec::<Moment>::new();
+        let mut moments = Vec::<WayPoint>::new();
         for (i, mut pose) in way.into_iter().enumerate() {
             if (lifted..=lowered).contains(&i) {
                 pose.location.z += lift;
@@ -118,13 +118,13 @@ impl Carried {
                 ),
             };
             if let Some(last) = moments.last().map(|moment| moment.pose) {
-                moments.extend(between(last, pose, longest).map(|pose| Moment {
+                moments.extend(between(last, pose, longest).map(|pose| WayPoint {
                     pose,
                     taken_by: None,
                 }));
             }
             let taken_by = self.hands.iter().skip(1).find(|(after, _)| *after == i);
-            moments.push(Moment {
+            moments.push(WayPoint {
                 pose,
                 taken_by: taken_by.map(|(_, hand)| *hand),
             });
@@ -196,11 +196,11 @@ fn between(from: Pose, to: Pose, (length, angle): (f32, f32)) -> impl Iterator<I
 }
 
 /// By how much a way must be lifted for what goes along it to meet nothing; 0 if that does not help.
-fn lift_over(solids: &[Primitive], way: &[Pose], obstacles: &[Convex]) -> f32 {
+fn lift_over(solids: &[Primitive], way: &[Pose], obstacles: &[PlacedSolid]) -> f32 {
     const STEP: f32 = 0.25;
     const MOST: u16 = 40;
     let meets = |pose: Pose| {
-        let mut own = solids.iter().map(|solid| Convex::of(solid, pose));
+        let mut own = solids.iter().map(|solid| PlacedSolid::of(solid, pose));
         own.any(|own| {
             obstacles.iter().any(|other| {
                 let apart = own.pose.location.distance(other.pose.location);
@@ -226,7 +226,7 @@ mod tests {
     use super::*;
 
     /// Up by 3, across by 6, down by 2, in steps of a tenth.
-    fn carried() -> Carried {
+    fn carried() -> CarriedWay {
         let mut at = Vec3::new(0.0, 0.0, 0.5);
         let mut poses = vec![Pose::at(at)];
         for (way, steps) in [(Vec3::Z, 30), (Vec3::X, 60), (Vec3::NEG_Z, 20)] {
@@ -235,7 +235,7 @@ mod tests {
                 poses.push(Pose::at(at));
             }
         }
-        Carried {
+        CarriedWay {
             poses,
             hands: vec![(1, Hand::Left), (60, Hand::Right)],
             frame: Pose::at(Vec3::new(6.0, 0.0, 0.5)),
@@ -293,13 +293,13 @@ mod tests {
     #[test]
     fn what_stands_in_the_way_is_passed_above() {
         let carried = carried();
-        let tower = Convex {
+        let tower = PlacedSolid {
             pose: Pose::at(Vec3::new(3.0, 0.0, 2.5)),
             solid: Solid::Cuboid(Vec3::new(1.0, 1.0, 5.0)),
         };
         let way = carried.retargeted(&cube(), carried.poses[0], Some(carried.frame), &[tower]);
         for moment in &way {
-            let own = Convex {
+            let own = PlacedSolid {
                 pose: moment.pose,
                 solid: Solid::Cuboid(Vec3::ONE),
             };

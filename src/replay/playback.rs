@@ -76,7 +76,7 @@ struct Opened {
     /// Ticks from one keyframe to the next.
     spacing: u64,
     /// Where the world is being brought.
-    goal: Option<Destination>,
+    goal: Option<PlayheadTarget>,
 }
 
 /// A moment that can be gone back to.
@@ -89,7 +89,7 @@ struct Keyframe {
 
 /// A moment that the world is being brought to.
 #[derive(Clone, Copy, Debug)]
-struct Destination {
+struct PlayheadTarget {
     /// The tick that comes next there.
     tick: SimTick,
     /// Whether the simulation then stands still.
@@ -147,7 +147,7 @@ fn try_open(world: &mut World, folder: PathBuf) -> Result<(), String> {
     world.insert_resource(replay.camera());
     set_earlier_commands(world, replay.begin, &[]);
     let player = Player::new(&replay.session);
-    let goal = Destination {
+    let goal = PlayheadTarget {
         tick: player.start(),
         stops: false,
     };
@@ -233,7 +233,7 @@ impl Opened {
     fn aim_at(&mut self, tick: SimTick, stops: bool) {
         let recording = self.replay.recording();
         let tick = tick.clamp(recording.first_tick(), recording.last_tick());
-        self.goal = Some(Destination {
+        self.goal = Some(PlayheadTarget {
             tick: SimTick(tick.0 + 1),
             stops,
         });
@@ -264,7 +264,7 @@ fn go_on(world: &mut World) {
     };
     if opened.goal.is_none() && begins_again {
         let start = opened.replay.recording().first_tick();
-        opened.goal = Some(Destination {
+        opened.goal = Some(PlayheadTarget {
             tick: start,
             stops: false,
         });
@@ -275,7 +275,7 @@ fn go_on(world: &mut World) {
     publish(world);
 }
 
-fn approach(world: &mut World, mut goal: Destination) {
+fn approach(world: &mut World, mut goal: PlayheadTarget) {
     let deadline = Instant::now() + BUDGET;
     world.resource_mut::<Time<Virtual>>().pause();
     for issued in world.resource_mut::<Messages<IssuedCommand>>().drain() {

@@ -10,7 +10,7 @@ use tabletop_core::{
 };
 use tabletop_gui::{Notices, Tone};
 
-use self::{imitator::Imitator, understood::Understood};
+use self::{imitator::RobotImitator, understood::Understood};
 
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Understood>()
@@ -43,7 +43,7 @@ fn obey(
     mut orders: MessageReader<TaskOrder>,
     mut understood: ResMut<Understood>,
     mut shown: ResMut<ShownTask>,
-    mut imitator: ResMut<Imitator>,
+    mut imitator: ResMut<RobotImitator>,
     mut putting: ResMut<PuttingBack>,
     mut notices: ResMut<Notices>,
     agent: Res<Agent>,
@@ -90,7 +90,7 @@ fn put_back(
     mut putting: ResMut<PuttingBack>,
     mut commands: CommandWriter,
     mut orders: MessageWriter<PlaybackOrder>,
-    mut imitator: ResMut<Imitator>,
+    mut imitator: ResMut<RobotImitator>,
     mut notices: ResMut<Notices>,
     understood: Res<Understood>,
     timeline: Res<Timeline>,

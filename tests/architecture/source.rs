@@ -7,6 +7,8 @@ use std::collections::BTreeSet;
 pub struct Source {
     pub uses: Vec<Use>,
     pub items: BTreeSet<String>,
+    /// Its types: structures, enumerations and traits, those of modules within it, too.
+    pub types: Vec<String>,
     pub paths: Vec<Vec<String>>,
 }
 
@@ -17,6 +19,9 @@ pub struct Use {
     /// The name in this file; `*` for all that is at the path.
     pub name: String,
 }
+
+/// What stands before the name of a type.
+const TYPES: [&str; 3] = ["struct", "enum", "trait"];
 
 /// What stands before the name of an item.
 const ITEMS: [&str; 9] = [
@@ -55,6 +60,9 @@ impl Source {
                     rest = after;
                 }
                 item if ITEMS.contains(&item) && rest.len() > 1 => {
+                    if TYPES.contains(&item) {
+                        source.types.push(rest[1].clone());
+                    }
                     source.items.insert(rest[1].clone());
                     rest = &rest[1..];
                 }
@@ -74,6 +82,7 @@ impl Source {
 
     /// Adds what a module within the file needs. Its `super` is the file.
     fn add_inline_module(&mut self, module: Self) {
+        self.types.extend(module.types);
         let uses = module.uses.into_iter().filter(|it| !it.is_public);
         let uses = uses.map(|it| it.path);
         for mut path in module.paths.into_iter().chain(uses) {

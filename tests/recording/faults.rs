@@ -11,7 +11,7 @@ use tabletop::{
     core::{Drive, HeadCamera, ScriptCommand},
     headless_app_with,
     prelude::*,
-    recorder::{Durability, Fault, RecorderPlugin, SessionCommand, Storage},
+    recorder::{Durability, RecorderPlugin, SessionCommand, Storage, StorageFault},
     replay::Replay,
     script::{EngineChoice, EngineKind, ScriptPlugin, ScriptSettings},
 };
@@ -68,7 +68,7 @@ fn try_faults(name: &str, calls: Calls, record: impl Fn(RecorderPlugin)) {
     assert!(count > 100, "{count}");
     let mut ends = BTreeSet::new();
     for call in (0..count).skip(calls.first).step_by(calls.step) {
-        for fault in Fault::ALL {
+        for fault in StorageFault::ALL {
             let folder = fresh_folder_in_memory(name);
             // An earlier recording, which must not be lost.
             fs::create_dir_all(folder.join("demo")).unwrap();

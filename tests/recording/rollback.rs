@@ -16,7 +16,7 @@ use tabletop::{
     history::RollbackRegistry,
     prelude::*,
     recorder::RecorderPlugin,
-    robot::{Description, RobotPlugin, Source},
+    robot::{Description, DescriptionSource, RobotPlugin},
     scenario::{Outcome, Program, Scenario, ScenarioRun},
     xml::read_task,
 };
@@ -123,7 +123,7 @@ fn no_component_that_a_shipped_scenario_changes_is_forgotten() {
 /// The shipped robot of one arm.
 fn panda() -> Description {
     let read = |name: &str| fs::read_to_string(Path::new("assets/panda").join(name)).unwrap();
-    let source = Source {
+    let source = DescriptionSource {
         path: "assets/panda/panda.urdf".into(),
         urdf: read("panda.urdf"),
         layout: Some(read("robot.ron")),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::{Bond, BondPoint, Bonds, HostPoint, ObjectSpec, Placed, Pose};
+use crate::{Bond, BondPoint, Bonds, HostPoint, ObjectSpec, PlacedPart, Pose};
 
 /// A host farther away than this, in units, is not fastened to.
 const REACH: f32 = 2.0;
@@ -17,15 +17,15 @@ pub enum Turn {
 }
 
 /// A bond point on the table.
-struct Point<'a> {
+struct FasteningPoint<'a> {
     id: &'a str,
     object: &'a str,
     at: Pose,
     fit: &'a str,
 }
 
-impl<'a> Point<'a> {
-    fn new(spec: &'a ObjectSpec, pose: Pose, point: &Placed<'a, BondPoint>) -> Self {
+impl<'a> FasteningPoint<'a> {
+    fn new(spec: &'a ObjectSpec, pose: Pose, point: &PlacedPart<'a, BondPoint>) -> Self {
         Self {
             id: point.id,
             object: &spec.id,
@@ -35,18 +35,18 @@ impl<'a> Point<'a> {
     }
 }
 
-fn guests<'a>(objects: &[(&'a ObjectSpec, Pose)]) -> Vec<Point<'a>> {
+fn guests<'a>(objects: &[(&'a ObjectSpec, Pose)]) -> Vec<FasteningPoint<'a>> {
     let of = |&(spec, pose): &(&'a ObjectSpec, Pose)| {
         let points = spec.guest_points().into_iter();
-        points.map(move |(point, _)| Point::new(spec, pose, &point))
+        points.map(move |(point, _)| FasteningPoint::new(spec, pose, &point))
     };
     objects.iter().flat_map(of).collect()
 }
 
-fn hosts<'a>(objects: &[(&'a ObjectSpec, Pose)]) -> Vec<(Point<'a>, &'a HostPoint)> {
+fn hosts<'a>(objects: &[(&'a ObjectSpec, Pose)]) -> Vec<(FasteningPoint<'a>, &'a HostPoint)> {
     let of = |&(spec, pose): &(&'a ObjectSpec, Pose)| {
         let points = spec.host_points().into_iter();
-        points.map(move |(point, host)| (Point::new(spec, pose, &point), host))
+        points.map(move |(point, host)| (FasteningPoint::new(spec, pose, &point), host))
     };
     objects.iter().flat_map(of).collect()
 }
@@ -174,9 +174,9 @@ impl Bonds {
     /// The guest point and the free host point for it that are nearest to each other.
     fn nearest<'p, 'a>(
         &self,
-        guests: &'p [Point<'a>],
-        hosts: &'p [(Point<'a>, &HostPoint)],
-    ) -> Option<(&'p Point<'a>, &'p Point<'a>)> {
+        guests: &'p [FasteningPoint<'a>],
+        hosts: &'p [(FasteningPoint<'a>, &HostPoint)],
+    ) -> Option<(&'p FasteningPoint<'a>, &'p FasteningPoint<'a>)> {
         let mut nearest = None;
         let mut least = REACH;
         for guest in guests {
@@ -195,7 +195,7 @@ impl Bonds {
     }
 
     /// True if nothing can be fastened to a host point nor loosened from it, because a bond elsewhere locks it.
-    fn is_locked(&self, hosts: &[(Point, &HostPoint)], host_point: &str) -> bool {
+    fn is_locked(&self, hosts: &[(FasteningPoint, &HostPoint)], host_point: &str) -> bool {
         hosts.iter().any(|(point, host)| {
             host.downstream_lock == host_point
                 && self.0.iter().any(|bond| {

@@ -101,7 +101,7 @@ pub use keymap::{
     Modifiers, Situation, Way, was_struck,
 };
 pub use light::{LIGHT, Light};
-pub use mechanism::{Placed, Surface};
+pub use mechanism::{PlacedPart, TouchedSurface};
 pub use mesh::{MeshError, MeshSpec};
 pub use navigation::{CameraMotion, CameraView, Steering};
 pub use number::Decimal;

@@ -6,7 +6,7 @@ use crate::{BondEnd, BondPoint, Control, GuestPoint, HostPoint, ObjectSpec, Part
 
 /// A part of an object with an id of its own, or the whole object.
 #[derive(Clone, Copy, Debug)]
-pub struct Placed<'a, T> {
+pub struct PlacedPart<'a, T> {
     /// Its id.
     pub id: &'a str,
     /// Its pose in the frame of the object.
@@ -17,7 +17,7 @@ pub struct Placed<'a, T> {
 
 /// What is touched where an object is touched.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Surface<'a> {
+pub struct TouchedSurface<'a> {
     /// The simple shape, in the frame of the object.
     pub part: Part,
     /// Id of the control that it belongs to, and which of the control's simple parts it is.
@@ -28,11 +28,11 @@ pub struct Surface<'a> {
 
 impl ObjectSpec {
     /// Everything of the object that can be touched.
-    pub fn surfaces(&self) -> Vec<Surface<'_>> {
+    pub fn surfaces(&self) -> Vec<TouchedSurface<'_>> {
         fn collect<'a>(
             (id, pose, shape): (&'a str, Pose, &'a Shape),
             pointable: &'a str,
-            surfaces: &mut Vec<Surface<'a>>,
+            surfaces: &mut Vec<TouchedSurface<'a>>,
         ) {
             if let Shape::Composite { parts } = shape {
                 for part in parts {
@@ -48,7 +48,7 @@ impl ObjectSpec {
                     pose: pose * part.pose,
                     ..part
                 };
-                surfaces.push(Surface {
+                surfaces.push(TouchedSurface {
                     part,
                     control: is_control.then_some((id, number)),
                     pointable,
@@ -65,8 +65,8 @@ impl ObjectSpec {
     }
 
     /// What a ray, in the frame of the table, first touches of the object at a pose, and how far away.
-    pub fn touched_along(&self, ray: Ray3d, pose: Pose) -> Option<(Surface<'_>, f32)> {
-        let distance = |surface: &Surface| {
+    pub fn touched_along(&self, ray: Ray3d, pose: Pose) -> Option<(TouchedSurface<'_>, f32)> {
+        let distance = |surface: &TouchedSurface| {
             let solids = surface.part.shape.colliding();
             let at = pose * surface.part.pose;
             let distances = solids
@@ -82,11 +82,11 @@ impl ObjectSpec {
     }
 
     /// The object's controls: itself, or parts of it.
-    pub fn controls(&self) -> Vec<Placed<'_, Control>> {
+    pub fn controls(&self) -> Vec<PlacedPart<'_, Control>> {
         let mut controls = Vec::new();
         self.visit(&mut |id, pose, shape| {
             if let Shape::Control(control) = shape {
-                controls.push(Placed {
+                controls.push(PlacedPart {
                     id,
                     pose,
                     what: &**control,
@@ -110,7 +110,7 @@ impl ObjectSpec {
     }
 
     /// The points at which it is fastened to others.
-    pub fn guest_points(&self) -> Vec<(Placed<'_, BondPoint>, &GuestPoint)> {
+    pub fn guest_points(&self) -> Vec<(PlacedPart<'_, BondPoint>, &GuestPoint)> {
         let points = self.bond_points().into_iter();
         points
             .filter_map(|point| match &point.what.end {
@@ -121,7 +121,7 @@ impl ObjectSpec {
     }
 
     /// The points at which others are fastened to it.
-    pub fn host_points(&self) -> Vec<(Placed<'_, BondPoint>, &HostPoint)> {
+    pub fn host_points(&self) -> Vec<(PlacedPart<'_, BondPoint>, &HostPoint)> {
         let points = self.bond_points().into_iter();
         points
             .filter_map(|point| match &point.what.end {
@@ -132,11 +132,11 @@ impl ObjectSpec {
     }
 
     /// All its bond points.
-    pub fn bond_points(&self) -> Vec<Placed<'_, BondPoint>> {
+    pub fn bond_points(&self) -> Vec<PlacedPart<'_, BondPoint>> {
         let mut points = Vec::new();
         self.visit(&mut |id, pose, shape| {
             if let Shape::BondPoint(point) = shape {
-                points.push(Placed {
+                points.push(PlacedPart {
                     id,
                     pose,
                     what: &**point,

@@ -10,10 +10,10 @@ use crate::{Polyhedron, PolyhedronError};
 /// A surface of triangles and the convex solids that fill it, as they are scaled. Its frame is that of a shape: lengths in units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "MeshRecord", into = "MeshRecord")]
-pub struct MeshSpec(Arc<Content>);
+pub struct MeshSpec(Arc<MeshContent>);
 
 #[derive(Debug, PartialEq)]
-struct Content {
+struct MeshContent {
     file: String,
     scale: f32,
     surface: Polyhedron,
@@ -81,7 +81,7 @@ impl MeshSpec {
         if solids.iter().any(|solid| solid.volume() <= 0.0) {
             return Err(MeshError::NoVolume);
         }
-        Ok(Self(Arc::new(Content {
+        Ok(Self(Arc::new(MeshContent {
             file,
             scale,
             surface,

@@ -20,10 +20,10 @@ use crate::{Bounds, Pose, polyhedron::recipe::Recipe};
 /// A solid with flat faces, in its own frame. Each is kept once as long as the program runs, so that a copy is a reference and equal ones are
 /// the same.
 #[derive(Clone, Copy)]
-pub struct Polyhedron(&'static Facets);
+pub struct Polyhedron(&'static PolyhedronData);
 
 /// What a polyhedron is.
-struct Facets {
+struct PolyhedronData {
     /// Its place among all.
     number: usize,
     corners: Vec<Vec3>,
@@ -50,14 +50,14 @@ pub enum PolyhedronError {
 
 /// The polyhedra that there are.
 #[derive(Default)]
-struct Kept {
+struct PolyhedronStore {
     count: usize,
     /// By what they are made of.
     made: BTreeMap<Recipe, Polyhedron>,
     read: HashMap<(Vec<[u32; 3]>, Vec<[u32; 3]>), Polyhedron>,
 }
 
-static KEPT: Mutex<Option<Kept>> = Mutex::new(None);
+static KEPT: Mutex<Option<PolyhedronStore>> = Mutex::new(None);
 
 /// Cosines of the angles below which faces are parts of the same surface: a flat one, and a round one of [`ROUND_SIDES`].
 const FLAT: f32 = 0.999_96;
@@ -208,12 +208,12 @@ impl Polyhedron {
     }
 }
 
-fn with_kept<T>(act: impl FnOnce(&mut Kept) -> T) -> T {
+fn with_kept<T>(act: impl FnOnce(&mut PolyhedronStore) -> T) -> T {
     let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     act(kept.get_or_insert_default())
 }
 
-impl Kept {
+impl PolyhedronStore {
     fn keep(
         &mut self,
         corners: Vec<Vec3>,
@@ -229,7 +229,7 @@ impl Kept {
             let [a, b, c] = triangle.map(|corner| corners[corner as usize].as_dvec3());
             a.dot(b.cross(c))
         });
-        Polyhedron(Box::leak(Box::new(Facets {
+        Polyhedron(Box::leak(Box::new(PolyhedronData {
             number,
             bounds: Bounds {
                 low: low.unwrap_or_default(),

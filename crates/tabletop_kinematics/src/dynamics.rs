@@ -37,7 +37,7 @@ impl Index<(ModelJointId, ModelJointId)> for InertiaMatrix {
 
 /// A body in motion: how its frame's origin accelerates, and how it turns.
 #[derive(Clone, Copy, Default)]
-struct BodyMotion {
+struct LinkMotion {
     acceleration: DVec3,
     spin: DVec3,
     spin_rate: DVec3,
@@ -175,16 +175,16 @@ impl RobotModel {
         velocities: &JointValues,
         accelerations: &JointValues,
         gravity: DVec3,
-    ) -> Vec<BodyMotion> {
+    ) -> Vec<LinkMotion> {
         let mut motions = Vec::with_capacity(self.links.len());
-        motions.push(BodyMotion {
+        motions.push(LinkMotion {
             acceleration: -gravity,
-            ..BodyMotion::default()
+            ..LinkMotion::default()
         });
         for (i, joint) in self.joints.iter().enumerate() {
-            let parent: BodyMotion = motions[joint.parent.index()];
+            let parent: LinkMotion = motions[joint.parent.index()];
             let arm = frames[joint.child].translation - frames[joint.parent].translation;
-            let mut motion = BodyMotion {
+            let mut motion = LinkMotion {
                 acceleration: parent.acceleration_at(arm),
                 ..parent
             };
@@ -238,7 +238,7 @@ impl RobotModel {
     }
 }
 
-impl BodyMotion {
+impl LinkMotion {
     /// The acceleration of a point of the body, this far from its frame's origin.
     fn acceleration_at(&self, arm: DVec3) -> DVec3 {
         self.acceleration + self.spin_rate.cross(arm) + self.spin.cross(self.spin.cross(arm))

@@ -18,30 +18,30 @@ const MOST_BYTES: usize = 16 << 20;
 const MOST_ATTRIBUTES: usize = 100;
 
 /// What is wrong with a text, and up to which byte it was read.
-pub(crate) struct Fault {
+pub(crate) struct ReadFault {
     pub offset: usize,
     pub what: String,
 }
 
 /// Writes a text anew without comments, processing instructions, namespaces, and what is of other languages: elements and attributes
 /// with a prefix.
-pub(crate) fn plain(text: &str) -> Result<String, Fault> {
+pub(crate) fn plain(text: &str) -> Result<String, ReadFault> {
     if text.len() > MOST_BYTES {
         let what = format!("it has more than {MOST_BYTES} bytes");
-        return Err(Fault { offset: 0, what });
+        return Err(ReadFault { offset: 0, what });
     }
     let mut writer = Plain::default();
     let mut reader = Reader::from_str(text);
     loop {
         let offset = |reader: &Reader<_>| usize::try_from(reader.buffer_position()).unwrap_or(0);
-        let event = reader.read_event().map_err(|error| Fault {
+        let event = reader.read_event().map_err(|error| ReadFault {
             offset: usize::try_from(reader.error_position()).unwrap_or(0),
             what: error.to_string(),
         })?;
         if let Event::Eof = event {
             return writer.finish(text.len());
         }
-        writer.write(event).map_err(|what| Fault {
+        writer.write(event).map_err(|what| ReadFault {
             offset: offset(&reader),
             what,
         })?;
@@ -122,10 +122,10 @@ impl Plain {
         Ok(())
     }
 
-    fn finish(self, offset: usize) -> Result<String, Fault> {
+    fn finish(self, offset: usize) -> Result<String, ReadFault> {
         match self.open.last() {
             None => Ok(self.text),
-            Some(name) => Err(Fault {
+            Some(name) => Err(ReadFault {
                 offset,
                 what: format!("{name} does not end"),
             }),

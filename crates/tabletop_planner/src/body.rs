@@ -6,7 +6,7 @@ use tabletop_kinematics::{
     ArmChain, Frames, Geometry, JointValues, LinkId, LinkShape, MOST_ARM_JOINTS, ModelError,
     RobotModel, Target,
 };
-use tabletop_task::Convex;
+use tabletop_task::PlacedSolid;
 
 /// The angles of an arm from its base to its tip, in rad; 0 beyond its last joint.
 pub type Angles = [f64; MOST_ARM_JOINTS];
@@ -65,7 +65,7 @@ struct CarriedSolid {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LinkSolid {
     pub link: usize,
-    pub solid: Convex,
+    pub solid: PlacedSolid,
 }
 
 /// A link that can be touched.
@@ -225,14 +225,14 @@ impl RobotBody {
     }
 
     /// The solids of each link with these angles of the limbs, in the table's frame.
-    fn links_at(&self, angles: &[Angles]) -> Vec<Vec<Convex>> {
+    fn links_at(&self, angles: &[Angles]) -> Vec<Vec<PlacedSolid>> {
         let mut frames = Frames::default();
         self.model.frames_into(&self.values(angles), &mut frames);
         let placed = self.links.iter().map(|link| {
             let frame = self.base * in_units(frames[link.link]);
             let solids = link.solids.iter();
             solids
-                .map(|(pose, solid)| Convex {
+                .map(|(pose, solid)| PlacedSolid {
                     pose: frame * *pose,
                     solid: *solid,
                 })
@@ -267,7 +267,7 @@ impl RobotBody {
         solids.clear();
         solids.extend(limb.solids.iter().map(|part| LinkSolid {
             link: part.link,
-            solid: Convex {
+            solid: PlacedSolid {
                 pose: frames[part.joint] * part.pose,
                 solid: part.solid,
             },
@@ -285,9 +285,14 @@ impl RobotBody {
     }
 
     /// The fingers of a limb whose end effector is here and whose gripper is open so far.
-    pub(crate) fn fingers(&self, limb: usize, end_effector: Pose, opening: f32) -> [Convex; 2] {
+    pub(crate) fn fingers(
+        &self,
+        limb: usize,
+        end_effector: Pose,
+        opening: f32,
+    ) -> [PlacedSolid; 2] {
         let finger = self.limbs[limb].finger;
-        [-1.0, 1.0].map(|side| Convex {
+        [-1.0, 1.0].map(|side| PlacedSolid {
             pose: end_effector * Pose::at(Vec3::X * side * (opening + finger.x) / 2.0),
             solid: Solid::Cuboid(finger),
         })

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{Pose, Table};
-use tabletop_task::Convex;
+use tabletop_task::PlacedSolid;
 
 use crate::{
     body::{Angles, LinkSolid, RobotBody},
@@ -18,15 +18,15 @@ pub(crate) struct Clearance<'a> {
     /// The angles of all limbs; those of the others stay.
     angles: Vec<Angles>,
     table: Table,
-    obstacles: Vec<Convex>,
+    obstacles: Vec<PlacedSolid>,
     /// The rest of the robot, and the fingers of other limbs.
     rest: Vec<LinkSolid>,
-    others_fingers: Vec<Convex>,
+    others_fingers: Vec<PlacedSolid>,
     scratch: RefCell<Vec<LinkSolid>>,
     /// How far the gripper is open, in units.
     pub opening: f32,
     /// What it holds, in the end effector's frame.
-    pub held: Vec<Convex>,
+    pub held: Vec<PlacedSolid>,
     /// From what is held, when it does not lean, to the end effector's frame.
     upright: Quat,
 }
@@ -98,11 +98,11 @@ impl<'a> Clearance<'a> {
 
     /// Holding this object, which the end effector carries at `grip`, in its frame, and which is as it was when the end effector was turned
     /// by the inverse of `upright`.
-    pub fn holding(mut self, solids: &[Convex], grip: Pose, upright: Quat) -> Self {
+    pub fn holding(mut self, solids: &[PlacedSolid], grip: Pose, upright: Quat) -> Self {
         self.upright = upright;
         self.held = solids
             .iter()
-            .map(|solid| Convex {
+            .map(|solid| PlacedSolid {
                 pose: grip * solid.pose,
                 solid: solid.solid,
             })
@@ -144,7 +144,7 @@ impl<'a> Clearance<'a> {
         let held: Vec<_> = self
             .held
             .iter()
-            .map(|solid| Convex {
+            .map(|solid| PlacedSolid {
                 pose: end_effector * solid.pose,
                 solid: solid.solid,
             })
@@ -163,8 +163,8 @@ impl<'a> Clearance<'a> {
         {
             return false;
         }
-        let meets_fingers = |solids: &[Convex]| {
-            let near = |one: &Convex| {
+        let meets_fingers = |solids: &[PlacedSolid]| {
+            let near = |one: &PlacedSolid| {
                 self.others_fingers
                     .iter()
                     .any(|other| one.is_within(0.15, other))
@@ -177,7 +177,7 @@ impl<'a> Clearance<'a> {
         let mut own = self.scratch.borrow_mut();
         self.body.own(self.limb, angles, &mut own);
         let far_out = |link: &LinkSolid| self.body.is_far_out(link.link);
-        let is_clear = |solid: &Convex| {
+        let is_clear = |solid: &PlacedSolid| {
             !self.is_at_table(solid, LINKS)
                 && !self.meets(&[*solid], LINKS)
                 && !meets_fingers(&[*solid])
@@ -203,8 +203,8 @@ impl<'a> Clearance<'a> {
         !self.meets(&fingers, margin)
     }
 
-    fn meets(&self, solids: &[Convex], margin: f32) -> bool {
-        let near = |one: &Convex| {
+    fn meets(&self, solids: &[PlacedSolid], margin: f32) -> bool {
+        let near = |one: &PlacedSolid| {
             self.obstacles
                 .iter()
                 .any(|other| one.is_within(margin, other))
@@ -213,7 +213,7 @@ impl<'a> Clearance<'a> {
     }
 
     /// Whether it is nearer to the table's top than this, or below it.
-    fn is_at_table(&self, solid: &Convex, margin: f32) -> bool {
+    fn is_at_table(&self, solid: &PlacedSolid, margin: f32) -> bool {
         let half = Vec3::new(self.table.xspan, self.table.yspan, 0.0) / 2.0;
         let at = solid.pose.location;
         let radius = solid.radius();

@@ -12,10 +12,10 @@ use tabletop_task::{Binding, Task};
 
 use crate::{
     body::RobotBody,
-    failure::Failure,
+    failure::PlanFailure,
     imitation::{Doing, Imitation, imitate},
     sight::Sight,
-    stage::{LimbOrder, Stage, Stopped},
+    stage::{LimbOrder, PlanningStage, Stopped},
 };
 
 /// A robot that does a task, for those who let time pass themselves: it asks for a tick, and goes on when it has seen it. It plans in a
@@ -29,7 +29,7 @@ pub struct Execution {
 
 /// What an execution is about.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Turn {
+pub enum ExecutionTurn {
     /// It plans.
     Planning,
     /// It waits for a tick with these orders, one for each limb; then [`Execution::see`].
@@ -51,7 +51,7 @@ struct Correspondence {
     news: Sender<News>,
 }
 
-impl Stage for Correspondence {
+impl PlanningStage for Correspondence {
     fn sight(&self) -> &Sight {
         &self.sight
     }
@@ -100,20 +100,20 @@ impl Execution {
     }
 
     /// What is to be done next, as soon as it is known, or after this long.
-    pub fn turn(&mut self, within: Duration) -> Turn {
+    pub fn turn(&mut self, within: Duration) -> ExecutionTurn {
         if let Some(imitation) = &self.over {
-            return Turn::Over(imitation.clone());
+            return ExecutionTurn::Over(imitation.clone());
         }
         loop {
             match self.news.get().recv_timeout(within) {
                 Ok(News::Doing(doing)) => self.doing = Some(doing),
-                Ok(News::Orders(orders)) => return Turn::Orders(orders),
+                Ok(News::Orders(orders)) => return ExecutionTurn::Orders(orders),
                 Ok(News::Over(imitation)) => return self.end(imitation),
-                Err(RecvTimeoutError::Timeout) => return Turn::Planning,
+                Err(RecvTimeoutError::Timeout) => return ExecutionTurn::Planning,
                 Err(RecvTimeoutError::Disconnected) => {
                     let step = self.doing.map_or(1, |doing| doing.step);
                     return self.end(Imitation {
-                        failure: Some((step, Failure::Stopped)),
+                        failure: Some((step, PlanFailure::Stopped)),
                         ..Imitation::default()
                     });
                 }
@@ -121,9 +121,9 @@ impl Execution {
         }
     }
 
-    fn end(&mut self, imitation: Imitation) -> Turn {
+    fn end(&mut self, imitation: Imitation) -> ExecutionTurn {
         self.over = Some(imitation.clone());
-        Turn::Over(imitation)
+        ExecutionTurn::Over(imitation)
     }
 
     /// Tells it what is seen after the tick that it has asked for.
@@ -173,7 +173,7 @@ mod tests {
 
     struct Alone(Sight, Vec<Vec<LimbOrder>>);
 
-    impl Stage for Alone {
+    impl PlanningStage for Alone {
         fn sight(&self) -> &Sight {
             &self.0
         }
@@ -209,13 +209,13 @@ mod tests {
         let mut orders = Vec::new();
         let step_by_step = loop {
             match execution.turn(Duration::MAX) {
-                Turn::Planning => {}
-                Turn::Orders(next) => {
+                ExecutionTurn::Planning => {}
+                ExecutionTurn::Orders(next) => {
                     sight = passed(sight, &next);
                     orders.push(next);
                     execution.see(sight.clone());
                 }
-                Turn::Over(imitation) => break imitation,
+                ExecutionTurn::Over(imitation) => break imitation,
             }
         };
         let body = body();
@@ -231,17 +231,26 @@ mod tests {
         assert_eq!(step_by_step, at_a_stretch);
         assert!(orders.len() > 30);
         assert_eq!(orders, alone.1);
-        assert_eq!(execution.turn(Duration::ZERO), Turn::Over(at_a_stretch));
+        assert_eq!(
+            execution.turn(Duration::ZERO),
+            ExecutionTurn::Over(at_a_stretch)
+        );
     }
 
     #[test]
     fn it_waits_for_the_tick_that_it_has_asked_for() {
         let (mut execution, sight) = begun();
-        let Turn::Orders(_) = execution.turn(Duration::MAX) else {
+        let ExecutionTurn::Orders(_) = execution.turn(Duration::MAX) else {
             panic!("arms are to be parked");
         };
-        assert_eq!(execution.turn(Duration::from_millis(20)), Turn::Planning);
+        assert_eq!(
+            execution.turn(Duration::from_millis(20)),
+            ExecutionTurn::Planning
+        );
         execution.see(sight);
-        assert!(matches!(execution.turn(Duration::MAX), Turn::Orders(_)));
+        assert!(matches!(
+            execution.turn(Duration::MAX),
+            ExecutionTurn::Orders(_)
+        ));
     }
 }

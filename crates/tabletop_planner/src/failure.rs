@@ -6,7 +6,7 @@ use crate::stage::Stopped;
 
 /// What went wrong, in words for who watches.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Failure {
+pub enum PlanFailure {
     /// An object of the task is not there.
     Gone(String),
     /// No arm reaches it.
@@ -34,13 +34,13 @@ pub enum Failure {
     Stopped,
 }
 
-impl From<Stopped> for Failure {
+impl From<Stopped> for PlanFailure {
     fn from(_: Stopped) -> Self {
         Self::Stopped
     }
 }
 
-impl Failure {
+impl PlanFailure {
     /// The class of the failure, for a table.
     pub const fn class(&self) -> &'static str {
         match self {
@@ -58,7 +58,7 @@ impl Failure {
     }
 }
 
-impl fmt::Display for Failure {
+impl fmt::Display for PlanFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Gone(object) => write!(f, "{object} is no longer there"),

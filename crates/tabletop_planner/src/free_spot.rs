@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 use tabletop_core::Pose;
-use tabletop_task::Convex;
+use tabletop_task::PlacedSolid;
 
 use crate::{
     body::RobotBody,
@@ -25,7 +25,7 @@ pub(crate) fn free_spots(
     id: &str,
     near: Vec3,
     limbs: &[usize],
-    kept: &[Convex],
+    kept: &[PlacedSolid],
 ) -> Vec<Pose> {
     let Some(object) = sight.objects.get(id) else {
         return Vec::new();

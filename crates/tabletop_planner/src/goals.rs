@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{Pose, Table};
 use tabletop_task::{
-    Arrangement, Binding, Convex, Place, Reference, Relation, Step, Symmetry, twist_about,
+    Arrangement, Binding, PlaceRange, PlacedSolid, Reference, Relation, Symmetry, TaskStep,
+    twist_about,
 };
 
 use crate::{
-    failure::Failure,
+    failure::PlanFailure,
     sight::{Sight, lean},
 };
 
@@ -40,16 +41,16 @@ const UPRIGHT: f32 = 0.1;
 
 /// The poses of its object with which a step is done, as far as they can be reached by turning it about the vertical.
 pub(crate) fn candidates(
-    step: &Step,
+    step: &TaskStep,
     binding: &Binding,
     sight: &Sight,
     before: &Before,
-) -> Result<Vec<Candidate>, Failure> {
+) -> Result<Vec<Candidate>, PlanFailure> {
     let id = bound(binding, &step.object)?;
     let object = sight
         .objects
         .get(id)
-        .ok_or_else(|| Failure::Gone(id.to_owned()))?;
+        .ok_or_else(|| PlanFailure::Gone(id.to_owned()))?;
     let mut found = Vec::<Candidate>::new();
     for exact in exact(step, binding, sight, before)? {
         let symmetry = Symmetry::of(&object.shape);
@@ -72,7 +73,7 @@ pub(crate) fn candidates(
         }
     }
     if found.is_empty() {
-        return Err(Failure::Tipped(id.to_owned()));
+        return Err(PlanFailure::Tipped(id.to_owned()));
     }
     let least = found
         .iter()
@@ -82,7 +83,7 @@ pub(crate) fn candidates(
     let is_exact = step
         .goal
         .as_ref()
-        .is_some_and(|goal| goal.place == Place::Exact);
+        .is_some_and(|goal| goal.place == PlaceRange::Exact);
     if is_exact || is_on(step) {
         // Turned with its reference, a place may be beside what the object has to stand on, or above what it has to stand beside.
         let mut fitting = Vec::new();
@@ -104,7 +105,7 @@ pub(crate) fn candidates(
 }
 
 /// Whether no part of a solid is beside the table.
-fn is_over(table: &Table, solid: &Convex) -> bool {
+fn is_over(table: &Table, solid: &PlacedSolid) -> bool {
     let reach = |way: Vec3| solid.farthest(way).dot(way);
     reach(Vec3::X).max(reach(Vec3::NEG_X)) < table.xspan / 2.0
         && reach(Vec3::Y).max(reach(Vec3::NEG_Y)) < table.yspan / 2.0
@@ -112,11 +113,11 @@ fn is_over(table: &Table, solid: &Convex) -> bool {
 
 /// Whether an object stands on, in and around what a step puts it on, in and around.
 fn stands(
-    step: &Step,
+    step: &TaskStep,
     binding: &Binding,
     arrangement: &Arrangement,
     id: &str,
-) -> Result<bool, Failure> {
+) -> Result<bool, PlanFailure> {
     for relation in &step.relations {
         let is_so = match relation {
             Relation::On { object } => arrangement.supports(id).contains(&bound(binding, object)?),
@@ -143,15 +144,15 @@ fn stands(
 
 /// The poses that a step's goal names, with the freedom that the symmetry of its reference leaves.
 fn exact(
-    step: &Step,
+    step: &TaskStep,
     binding: &Binding,
     sight: &Sight,
     before: &Before,
-) -> Result<Vec<Candidate>, Failure> {
+) -> Result<Vec<Candidate>, PlanFailure> {
     let Some(goal) = &step.goal else {
         return Ok(Vec::new());
     };
-    let gone = |id: &str| Failure::Gone(id.to_owned());
+    let gone = |id: &str| PlanFailure::Gone(id.to_owned());
     let frames = match &goal.reference {
         Reference::Table => vec![Pose::IDENTITY],
         Reference::Itself => {
@@ -186,14 +187,14 @@ fn exact(
         .iter()
         .map(|one| one.pose.location.z)
         .fold(f32::NEG_INFINITY, f32::max);
-    if goal.place == Place::Exact && shown_height > 0.3 && is_on(step) {
+    if goal.place == PlaceRange::Exact && shown_height > 0.3 && is_on(step) {
         all.retain(|one| one.pose.location.z > highest - 0.1);
     }
     all.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     Ok(all)
 }
 
-fn is_on(step: &Step) -> bool {
+fn is_on(step: &TaskStep) -> bool {
     step.relations.iter().any(|relation| {
         matches!(
             relation,
@@ -203,7 +204,7 @@ fn is_on(step: &Step) -> bool {
 }
 
 /// How far a goal is from the side of its reference on which it was shown, in rad.
-fn change_of_side(step: &Step, frame: Pose, pose: Pose) -> f32 {
+fn change_of_side(step: &TaskStep, frame: Pose, pose: Pose) -> f32 {
     let way = (pose.location - frame.location).with_z(0.0);
     match step.relations.first() {
         Some(Relation::Beside { side, .. }) if way.length() > 0.2 => way.angle_between(side.way()),
@@ -216,11 +217,11 @@ fn change_of_side(step: &Step, frame: Pose, pose: Pose) -> f32 {
 /// # Errors
 /// It is not there, or what it was put to is not.
 pub fn is_met(
-    step: &Step,
+    step: &TaskStep,
     binding: &Binding,
     sight: &Sight,
     before: &Before,
-) -> Result<bool, Failure> {
+) -> Result<bool, PlanFailure> {
     let id = bound(binding, &step.object)?;
     let Some(object) = sight.objects.get(id) else {
         return Ok(matches!(step.relations.first(), Some(Relation::Destroyed)));
@@ -228,7 +229,7 @@ pub fn is_met(
     let Some(goal) = &step.goal else {
         return Ok(true);
     };
-    if goal.place == Place::Anywhere {
+    if goal.place == PlaceRange::Anywhere {
         return Ok(true);
     }
     if let Some(Relation::Slid { .. }) = step.relations.first() {
@@ -240,7 +241,7 @@ pub fn is_met(
     if !stands(step, binding, &sight.arrangement(), id)? {
         return Ok(false);
     }
-    if goal.place == Place::Inside {
+    if goal.place == PlaceRange::Inside {
         return Ok(true);
     }
     let near = match goal.reference {
@@ -256,10 +257,10 @@ pub fn is_met(
 }
 
 /// The object that takes a role.
-pub(crate) fn bound<'b>(binding: &'b Binding, role: &str) -> Result<&'b str, Failure> {
+pub(crate) fn bound<'b>(binding: &'b Binding, role: &str) -> Result<&'b str, PlanFailure> {
     binding
         .object(role)
-        .ok_or_else(|| Failure::Gone(role.to_owned()))
+        .ok_or_else(|| PlanFailure::Gone(role.to_owned()))
 }
 
 /// The rotations about the vertical by which a container can be searched for a free place.

@@ -4,7 +4,7 @@ use std::f32::consts::{FRAC_PI_2, PI};
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{Pose, Shape, Solid};
-use tabletop_task::Convex;
+use tabletop_task::PlacedSolid;
 
 /// A way to take an object from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,11 +30,11 @@ const DEPTH: f32 = 0.45;
 /// that fit between the fingers. `finger` is the length of a finger, `widest` the largest opening, in units.
 pub fn grasps(shape: &Shape, rotation: Quat, finger: f32, widest: f32) -> Vec<Grasp> {
     let upright = Pose::new(Vec3::ZERO, rotation);
-    let solids = |shape: &Shape, pose: Pose| -> Vec<Convex> {
+    let solids = |shape: &Shape, pose: Pose| -> Vec<PlacedSolid> {
         let solids = shape.colliding();
         solids
             .iter()
-            .map(|solid| Convex::of(solid, upright * pose))
+            .map(|solid| PlacedSolid::of(solid, upright * pose))
             .collect()
     };
     let mut wholes = vec![solids(shape, Pose::IDENTITY)];
@@ -96,7 +96,7 @@ pub fn grasps(shape: &Shape, rotation: Quat, finger: f32, widest: f32) -> Vec<Gr
 }
 
 /// The angles about the vertical in which fingers meet opposite faces.
-fn yaws(solids: &[Convex]) -> Vec<f32> {
+fn yaws(solids: &[PlacedSolid]) -> Vec<f32> {
     let Some(first) = solids.first() else {
         return Vec::new();
     };
@@ -141,7 +141,7 @@ fn around(count: u16) -> Vec<f32> {
 }
 
 /// From where to where solids reach along a way.
-fn extent(solids: &[Convex], way: Vec3) -> [f32; 2] {
+fn extent(solids: &[PlacedSolid], way: Vec3) -> [f32; 2] {
     let reach = |way: Vec3| {
         let all = solids.iter().map(|solid| solid.farthest(way).dot(way));
         all.fold(f32::NEG_INFINITY, f32::max)

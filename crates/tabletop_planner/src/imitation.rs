@@ -2,19 +2,19 @@
 
 use bevy::math::Vec3;
 use tabletop_core::{JointKind, Pose};
-use tabletop_task::{Binding, Convex, Place, Reference, Relation, Step, Task};
+use tabletop_task::{Binding, PlaceRange, PlacedSolid, Reference, Relation, Task, TaskStep};
 
 use crate::{
     body::{Angles, RobotBody},
     clearance::Clearance,
-    failure::Failure,
+    failure::PlanFailure,
     free_spot::free_spots,
     goals::{Before, Candidate, bound, candidates, inside, is_met},
     motion::{follow, wait},
     sight::Sight,
-    stage::{Stage, Stopped},
+    stage::{PlanningStage, Stopped},
     transfer::Transfer,
-    transit::{Search, transit},
+    transit::{WaySearch, transit},
 };
 
 /// What has become of a task.
@@ -25,7 +25,7 @@ pub struct Imitation {
     /// How often a step was tried again.
     pub corrections: usize,
     /// Why the robot gave up, and the number of the step, if it did.
-    pub failure: Option<(usize, Failure)>,
+    pub failure: Option<(usize, PlanFailure)>,
 }
 
 /// What the robot is doing.
@@ -46,7 +46,7 @@ const PARKED: Vec3 = Vec3::new(7.0, -6.0, 4.5);
 
 /// Does a task. Whatever is tried by chance is decided by `seed`; `tell` hears of every step before it is tried.
 pub fn imitate(
-    stage: &mut dyn Stage,
+    stage: &mut dyn PlanningStage,
     body: &RobotBody,
     task: &Task,
     binding: &Binding,
@@ -72,7 +72,7 @@ pub fn imitate(
     };
     if imitator.do_all(stage, &mut tell).is_err() {
         let step = imitator.outcome.steps_done + 1;
-        imitator.outcome.failure = Some((step, Failure::Stopped));
+        imitator.outcome.failure = Some((step, PlanFailure::Stopped));
     }
     imitator.outcome
 }
@@ -84,12 +84,12 @@ pub fn undone(
     binding: &Binding,
     sight: &Sight,
     before: &Before,
-) -> Option<(usize, Failure)> {
-    let is_last = |step: &&Step| {
+) -> Option<(usize, PlanFailure)> {
+    let is_last = |step: &&TaskStep| {
         let mut later = task.steps[step.number..].iter();
         !later.any(|later| later.object == step.object)
     };
-    let stays = |step: &&Step| {
+    let stays = |step: &&TaskStep| {
         step.goal
             .as_ref()
             .is_some_and(|goal| goal.reference != Reference::Itself)
@@ -99,7 +99,7 @@ pub fn undone(
         Ok(true) => None,
         Ok(false) => {
             let object = binding.object(&step.object).unwrap_or(&step.object);
-            Some((step.number, Failure::Misplaced(object.to_owned())))
+            Some((step.number, PlanFailure::Misplaced(object.to_owned())))
         }
         Err(gone) => Some((step.number, gone)),
     })
@@ -147,7 +147,7 @@ struct Imitator<'a> {
 impl Imitator<'_> {
     fn do_all(
         &mut self,
-        stage: &mut dyn Stage,
+        stage: &mut dyn PlanningStage,
         tell: &mut dyn FnMut(Doing),
     ) -> Result<(), Stopped> {
         self.park_all(stage)?;
@@ -163,7 +163,7 @@ impl Imitator<'_> {
                 });
                 self.outcome.corrections += usize::from(tries > 0);
                 failure = self.do_step(stage, i).err();
-                if failure == Some(Failure::Stopped) {
+                if failure == Some(PlanFailure::Stopped) {
                     return Err(Stopped);
                 }
                 wait(stage, 10)?;
@@ -174,14 +174,14 @@ impl Imitator<'_> {
                         if step
                             .goal
                             .as_ref()
-                            .is_some_and(|goal| goal.place != Place::Anywhere) =>
+                            .is_some_and(|goal| goal.place != PlaceRange::Anywhere) =>
                     {
                         failure = None;
                         break;
                     }
                     (Ok(false), None) => {
                         let object = self.binding.object(&step.object).unwrap_or(&step.object);
-                        failure = Some(Failure::Misplaced(object.to_owned()));
+                        failure = Some(PlanFailure::Misplaced(object.to_owned()));
                     }
                     (Err(gone), _) => failure = Some(gone),
                     (Ok(_), Some(_)) => {}
@@ -197,7 +197,7 @@ impl Imitator<'_> {
         if self.outcome.failure.is_none() {
             self.outcome.failure = undone(self.task, self.binding, stage.sight(), &self.before);
         }
-        let is_held = |step: &Step| step.relations.first() == Some(&Relation::Held);
+        let is_held = |step: &TaskStep| step.relations.first() == Some(&Relation::Held);
         if !self.task.steps.iter().any(is_held) {
             for limb in 0..self.body.limbs.len() {
                 self.try_to_park(stage, limb)?;
@@ -206,14 +206,14 @@ impl Imitator<'_> {
         wait(stage, 30)
     }
 
-    fn do_step(&self, stage: &mut dyn Stage, i: usize) -> Result<(), Failure> {
+    fn do_step(&self, stage: &mut dyn PlanningStage, i: usize) -> Result<(), PlanFailure> {
         let step = &self.task.steps[i];
         let id = bound(self.binding, &step.object)?;
         let sight = stage.sight().clone();
         let object = sight
             .objects
             .get(id)
-            .ok_or_else(|| Failure::Gone(id.to_owned()))?;
+            .ok_or_else(|| PlanFailure::Gone(id.to_owned()))?;
         for above in sight.above(id) {
             self.clear(stage, &above, i)?;
         }
@@ -221,7 +221,7 @@ impl Imitator<'_> {
             Some(Relation::Slid { object: holder, .. }) => {
                 let holder = bound(self.binding, holder)?;
                 let by = slide(&sight, step, id, holder)
-                    .ok_or_else(|| Failure::Gone(holder.to_owned()))?;
+                    .ok_or_else(|| PlanFailure::Gone(holder.to_owned()))?;
                 self.by_some_limb(stage, id, object.pose.location, |transfer, stage| {
                     transfer.slide(stage, by)
                 })
@@ -262,8 +262,14 @@ impl Imitator<'_> {
     }
 
     /// Puts an object to where a step wants it; by way of a place that two limbs reach, if no limb reaches both ends.
-    fn put(&self, stage: &mut dyn Stage, step: &Step, id: &str, i: usize) -> Result<(), Failure> {
-        let goals = |stage: &mut dyn Stage| self.goals(stage, step);
+    fn put(
+        &self,
+        stage: &mut dyn PlanningStage,
+        step: &TaskStep,
+        id: &str,
+        i: usize,
+    ) -> Result<(), PlanFailure> {
+        let goals = |stage: &mut dyn PlanningStage| self.goals(stage, step);
         let at = goals(stage)?
             .first()
             .map_or(Vec3::ZERO, |goal| goal.pose.location);
@@ -273,7 +279,7 @@ impl Imitator<'_> {
                 transfer.carry_out(stage, &goals)
             })
         };
-        let Err(failure @ (Failure::OutOfReach(_) | Failure::NoWay(_))) = straight else {
+        let Err(failure @ (PlanFailure::OutOfReach(_) | PlanFailure::NoWay(_))) = straight else {
             return straight;
         };
         let sight = stage.sight().clone();
@@ -310,13 +316,17 @@ impl Imitator<'_> {
         })
     }
 
-    fn goals(&self, stage: &dyn Stage, step: &Step) -> Result<Vec<Candidate>, Failure> {
+    fn goals(
+        &self,
+        stage: &dyn PlanningStage,
+        step: &TaskStep,
+    ) -> Result<Vec<Candidate>, PlanFailure> {
         let sight = stage.sight();
         let goals = candidates(step, self.binding, sight, &self.before)?;
         let is_inside = step
             .goal
             .as_ref()
-            .is_some_and(|goal| goal.place == Place::Inside);
+            .is_some_and(|goal| goal.place == PlaceRange::Inside);
         Ok(match is_inside {
             true => goals
                 .iter()
@@ -329,16 +339,16 @@ impl Imitator<'_> {
     /// Lets the limb do it that is on the side of both ends; if it cannot, the others. They wait meanwhile.
     fn by_some_limb(
         &self,
-        stage: &mut dyn Stage,
+        stage: &mut dyn PlanningStage,
         id: &str,
         towards: Vec3,
-        act: impl Fn(&Transfer, &mut dyn Stage) -> Result<(), Failure>,
-    ) -> Result<(), Failure> {
+        act: impl Fn(&Transfer, &mut dyn PlanningStage) -> Result<(), PlanFailure>,
+    ) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
         let object = sight
             .objects
             .get(id)
-            .ok_or_else(|| Failure::Gone(id.to_owned()))?;
+            .ok_or_else(|| PlanFailure::Gone(id.to_owned()))?;
         let middle = object.pose.location.midpoint(towards);
         let mut limbs: Vec<_> = (0..self.body.limbs.len()).collect();
         let distance = |limb: &usize| {
@@ -346,7 +356,7 @@ impl Imitator<'_> {
             parked.location.distance(middle)
         };
         limbs.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let mut failure = Failure::OutOfReach(id.to_owned());
+        let mut failure = PlanFailure::OutOfReach(id.to_owned());
         for limb in limbs {
             for other in (0..self.body.limbs.len()).filter(|&other| other != limb) {
                 self.try_to_park(stage, other)?;
@@ -360,10 +370,12 @@ impl Imitator<'_> {
             match act(&transfer, stage) {
                 Ok(()) => return Ok(()),
                 Err(new) => {
-                    let is_telling = !matches!(new, Failure::OutOfReach(_));
+                    let is_telling = !matches!(new, PlanFailure::OutOfReach(_));
                     let has_acted = matches!(
                         new,
-                        Failure::Blocked { .. } | Failure::NotHeld(_) | Failure::Gone(_)
+                        PlanFailure::Blocked { .. }
+                            | PlanFailure::NotHeld(_)
+                            | PlanFailure::Gone(_)
                     ) || stage.sight().limbs[limb]
                         .holds
                         .iter()
@@ -371,7 +383,7 @@ impl Imitator<'_> {
                     if is_telling {
                         failure = new;
                     }
-                    if failure == Failure::Stopped {
+                    if failure == PlanFailure::Stopped {
                         return Err(failure);
                     }
                     if has_acted {
@@ -385,27 +397,32 @@ impl Imitator<'_> {
     }
 
     /// Opens a gripper that still holds something after a failure, and lifts it.
-    fn set_down(&self, stage: &mut dyn Stage, limb: usize) -> Result<(), Failure> {
+    fn set_down(&self, stage: &mut dyn PlanningStage, limb: usize) -> Result<(), PlanFailure> {
         let widest = f64::from(self.body.limbs[limb].widest);
         crate::motion::grip(stage, limb, widest)?;
         let sight = stage.sight().clone();
         let clearance = Clearance::new(self.body, &sight, limb, &[]);
         if let Some(up) = crate::path::lift(&clearance, &clearance.here(), 1.0) {
             // After other failures it stays where it is.
-            if let Err(Failure::Stopped) = follow(stage, self.body, limb, &up, 2.5, "") {
-                return Err(Failure::Stopped);
+            if let Err(PlanFailure::Stopped) = follow(stage, self.body, limb, &up, 2.5, "") {
+                return Err(PlanFailure::Stopped);
             }
         }
         Ok(())
     }
 
     /// What is where a step's object is to be, and does not belong there.
-    fn occupant(&self, sight: &Sight, step: &Step, id: &str) -> Result<Option<String>, Failure> {
+    fn occupant(
+        &self,
+        sight: &Sight,
+        step: &TaskStep,
+        id: &str,
+    ) -> Result<Option<String>, PlanFailure> {
         let goals = candidates(step, self.binding, sight, &self.before)?;
         let object = sight
             .objects
             .get(id)
-            .ok_or_else(|| Failure::Gone(id.to_owned()))?;
+            .ok_or_else(|| PlanFailure::Gone(id.to_owned()))?;
         let others = step.relations.iter().filter_map(Relation::object);
         let meant: Vec<_> = others
             .filter_map(|role| self.binding.object(role))
@@ -420,7 +437,7 @@ impl Imitator<'_> {
             });
             let mut overlapping = others.filter(|(_, other)| {
                 let other = other.solids();
-                let meets = |solid: &Convex| {
+                let meets = |solid: &PlacedSolid| {
                     other
                         .iter()
                         .any(|other| solid.shrunk(0.01).is_within(1e-3, other))
@@ -438,7 +455,7 @@ impl Imitator<'_> {
     }
 
     /// Moves something out of the way, with what stands on it.
-    fn clear(&self, stage: &mut dyn Stage, id: &str, i: usize) -> Result<(), Failure> {
+    fn clear(&self, stage: &mut dyn PlanningStage, id: &str, i: usize) -> Result<(), PlanFailure> {
         for above in stage.sight().above(id) {
             self.clear(stage, &above, i)?;
         }
@@ -452,11 +469,11 @@ impl Imitator<'_> {
 
     fn put_aside(
         &self,
-        stage: &mut dyn Stage,
+        stage: &mut dyn PlanningStage,
         id: &str,
         near: Vec3,
         i: usize,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
         let kept = self.kept(&sight, i);
         let mut spots = Vec::new();
@@ -472,7 +489,7 @@ impl Imitator<'_> {
             })
             .collect();
         if goals.is_empty() {
-            return Err(Failure::NoRoom(id.to_owned()));
+            return Err(PlanFailure::NoRoom(id.to_owned()));
         }
         self.by_some_limb(stage, id, near, |transfer, stage| {
             transfer.carry_out(stage, &goals)
@@ -480,13 +497,13 @@ impl Imitator<'_> {
     }
 
     /// What will stand on the table when the steps from this one on have been done: nothing else is put there.
-    fn kept(&self, sight: &Sight, from: usize) -> Vec<Convex> {
+    fn kept(&self, sight: &Sight, from: usize) -> Vec<PlacedSolid> {
         let steps = self.task.steps[from..].iter();
         let later = steps.filter(|step| {
             let is_exact = step
                 .goal
                 .as_ref()
-                .is_some_and(|goal| goal.place == Place::Exact);
+                .is_some_and(|goal| goal.place == PlaceRange::Exact);
             is_exact
                 && !matches!(
                     step.relations.first(),
@@ -501,7 +518,7 @@ impl Imitator<'_> {
         places.flatten().collect()
     }
 
-    fn park_all(&mut self, stage: &mut dyn Stage) -> Result<(), Stopped> {
+    fn park_all(&mut self, stage: &mut dyn PlanningStage) -> Result<(), Stopped> {
         for (limb, seen) in stage.sight().limbs.iter().enumerate() {
             let side = self
                 .body
@@ -521,9 +538,9 @@ impl Imitator<'_> {
     }
 
     /// Brings a limb to where it waits, if a way is free.
-    fn try_to_park(&self, stage: &mut dyn Stage, limb: usize) -> Result<(), Stopped> {
+    fn try_to_park(&self, stage: &mut dyn PlanningStage, limb: usize) -> Result<(), Stopped> {
         match self.park(stage, limb) {
-            Err(Failure::Stopped) => Err(Stopped),
+            Err(PlanFailure::Stopped) => Err(Stopped),
             Ok(()) | Err(_) => Ok(()),
         }
     }
@@ -532,7 +549,7 @@ impl Imitator<'_> {
     ///
     /// # Errors
     /// No way is free, or something stops it.
-    fn park(&self, stage: &mut dyn Stage, limb: usize) -> Result<(), Failure> {
+    fn park(&self, stage: &mut dyn PlanningStage, limb: usize) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
         let clearance = Clearance::new(self.body, &sight, limb, &[]);
         let here = clearance.here();
@@ -544,15 +561,15 @@ impl Imitator<'_> {
             &clearance,
             &here,
             &self.parked[limb],
-            Search::Trying(self.seed),
+            WaySearch::Trying(self.seed),
         );
-        let way = way.ok_or_else(|| Failure::NoWay(name()))?;
+        let way = way.ok_or_else(|| PlanFailure::NoWay(name()))?;
         follow(stage, self.body, limb, &way, 6.0, &name())
     }
 }
 
 /// By how much an object has to be slid for a step.
-fn slide(sight: &Sight, step: &Step, id: &str, holder: &str) -> Option<Vec3> {
+fn slide(sight: &Sight, step: &TaskStep, id: &str, holder: &str) -> Option<Vec3> {
     let Some(Relation::Slid {
         opening, travel, ..
     }) = step.relations.first()

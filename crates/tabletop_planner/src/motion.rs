@@ -4,9 +4,9 @@ use tabletop_core::TICK_SECONDS;
 
 use crate::{
     body::{Angles, RobotBody},
-    failure::Failure,
+    failure::PlanFailure,
     sight::Sight,
-    stage::{LimbOrder, Stage, Stopped},
+    stage::{LimbOrder, PlanningStage, Stopped},
 };
 
 /// How fast fingers move, in units/s.
@@ -19,7 +19,7 @@ const PATIENCE: u32 = 20;
 const FINGER_TICKS: u32 = 200;
 
 /// Lets time pass with nothing moving.
-pub(crate) fn wait(stage: &mut dyn Stage, ticks: u32) -> Result<(), Stopped> {
+pub(crate) fn wait(stage: &mut dyn PlanningStage, ticks: u32) -> Result<(), Stopped> {
     let still = vec![LimbOrder::default(); stage.sight().limbs.len()];
     for _ in 0..ticks {
         stage.tick(&still)?;
@@ -29,13 +29,13 @@ pub(crate) fn wait(stage: &mut dyn Stage, ticks: u32) -> Result<(), Stopped> {
 
 /// Moves an arm along a path, its end effector no faster than `speed`, in units/s.
 pub(crate) fn follow(
-    stage: &mut dyn Stage,
+    stage: &mut dyn PlanningStage,
     body: &RobotBody,
     limb: usize,
     path: &[Angles],
     speed: f64,
     object: &str,
-) -> Result<(), Failure> {
+) -> Result<(), PlanFailure> {
     let step = f64::from(TICK_SECONDS);
     let start = stage.sight().limbs[limb].angles;
     // When each posture is to be reached, in s.
@@ -76,9 +76,9 @@ pub(crate) fn follow(
     }
 }
 
-fn blocked(sight: &Sight, limb: usize, object: &str) -> Failure {
+fn blocked(sight: &Sight, limb: usize, object: &str) -> PlanFailure {
     let by = sight.limbs[limb].blocked_by.clone();
-    Failure::Blocked {
+    PlanFailure::Blocked {
         object: object.to_owned(),
         by: by.unwrap_or_else(|| "something that is pushed".into()),
     }
@@ -98,7 +98,11 @@ fn at(schedule: &[(f64, Angles)], time: f64) -> Angles {
 }
 
 /// Opens or closes a gripper, until it is there, holds something, or is stopped.
-pub(crate) fn grip(stage: &mut dyn Stage, limb: usize, opening: f64) -> Result<(), Stopped> {
+pub(crate) fn grip(
+    stage: &mut dyn PlanningStage,
+    limb: usize,
+    opening: f64,
+) -> Result<(), Stopped> {
     let mut still = 0;
     let mut orders = vec![LimbOrder::default(); stage.sight().limbs.len()];
     for _ in 0..FINGER_TICKS {

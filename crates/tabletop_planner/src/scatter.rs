@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{Pose, Random, Table};
-use tabletop_task::{Arrangement, Convex};
+use tabletop_task::{Arrangement, PlacedSolid};
 
 use crate::body::RobotBody;
 
@@ -14,7 +14,7 @@ pub struct Piece {
     /// The ids of its objects.
     pub ids: Vec<String>,
     /// Their solids.
-    pub solids: Vec<Convex>,
+    pub solids: Vec<PlacedSolid>,
     /// The point about which it is turned.
     pub centre: Vec3,
     /// What the robot must reach of it.
@@ -35,7 +35,7 @@ pub fn scatter(
     pieces: &[Piece],
     arrangement: &Arrangement,
     table: &Table,
-    kept: &[Convex],
+    kept: &[PlacedSolid],
     is_reached: impl Fn(Vec3) -> bool,
     seed: u64,
 ) -> Option<Vec<Pose>> {
@@ -58,12 +58,12 @@ pub fn scatter(
             let solids: Vec<_> = group
                 .iter()
                 .flat_map(|&piece| &pieces[piece].solids)
-                .map(|solid| Convex {
+                .map(|solid| PlacedSolid {
                     pose: motion * solid.pose,
                     solid: solid.solid,
                 })
                 .collect();
-            let reach = |solid: &Convex, way: Vec3| solid.farthest(way).dot(way);
+            let reach = |solid: &PlacedSolid, way: Vec3| solid.farthest(way).dot(way);
             let is_on_table = solids.iter().all(|solid| {
                 reach(solid, Vec3::X) < half.x
                     && reach(solid, Vec3::NEG_X) < half.x

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use bevy::math::Vec3;
 use tabletop_core::{JointSpec, Pose, Shape, Table};
-use tabletop_task::{Arrangement, Convex};
+use tabletop_task::{Arrangement, PlacedSolid};
 
 use crate::body::Angles;
 
@@ -47,14 +47,17 @@ pub struct LimbSight {
 
 impl SeenObject {
     /// Its solids where it is.
-    pub fn solids(&self) -> Vec<Convex> {
+    pub fn solids(&self) -> Vec<PlacedSolid> {
         self.solids_at(self.pose)
     }
 
     /// Its solids where it might be.
-    pub fn solids_at(&self, pose: Pose) -> Vec<Convex> {
+    pub fn solids_at(&self, pose: Pose) -> Vec<PlacedSolid> {
         let solids = self.shape.colliding();
-        solids.iter().map(|solid| Convex::of(solid, pose)).collect()
+        solids
+            .iter()
+            .map(|solid| PlacedSolid::of(solid, pose))
+            .collect()
     }
 }
 
@@ -84,8 +87,8 @@ impl Sight {
 }
 
 /// The lowest and the highest Z of solids.
-pub(crate) fn heights(solids: &[Convex]) -> [f32; 2] {
-    let all = solids.iter().map(Convex::heights);
+pub(crate) fn heights(solids: &[PlacedSolid]) -> [f32; 2] {
+    let all = solids.iter().map(PlacedSolid::heights);
     all.reduce(|[low, high], [lower, higher]| [low.min(lower), high.max(higher)])
         .unwrap_or_default()
 }

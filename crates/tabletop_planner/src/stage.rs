@@ -3,7 +3,7 @@
 use crate::{body::Angles, sight::Sight};
 
 /// A world in which time passes tick by tick.
-pub trait Stage {
+pub trait PlanningStage {
     /// What there is to see now.
     fn sight(&self) -> &Sight;
 

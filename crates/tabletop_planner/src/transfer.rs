@@ -4,19 +4,19 @@ use std::{cell::Cell, collections::BTreeMap};
 
 use bevy::math::Vec3;
 use tabletop_core::Pose;
-use tabletop_task::{Convex, angle_between};
+use tabletop_task::{PlacedSolid, angle_between};
 
 use crate::{
     body::{Angles, RobotBody},
     clearance::{Clearance, Margins},
-    failure::Failure,
+    failure::PlanFailure,
     goals::Candidate,
     grasp::{Grasp, grasps},
     motion::{follow, grip, wait},
     path::{Path, largest_turn, lift, line},
     sight::{SeenObject, Sight, heights},
-    stage::Stage,
-    transit::{Search, transit},
+    stage::PlanningStage,
+    transit::{WaySearch, transit},
 };
 
 /// How fast an end effector goes on its way, in units/s, and near what it takes or puts.
@@ -68,7 +68,7 @@ struct Placing {
 
 /// What stands in the way of a plan.
 #[derive(Clone, Copy, Debug, Default)]
-struct Found {
+struct Obstructions {
     /// A grasp is within reach.
     reached: bool,
     /// A grasp is free.
@@ -79,7 +79,11 @@ struct Found {
 
 impl Transfer<'_> {
     /// Takes the object, and puts it to one of these places.
-    pub fn carry_out(&self, stage: &mut dyn Stage, goals: &[Candidate]) -> Result<(), Failure> {
+    pub fn carry_out(
+        &self,
+        stage: &mut dyn PlanningStage,
+        goals: &[Candidate],
+    ) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
         let (taking, approach) = self.plan(&sight, goals)?;
         self.take(stage, &taking, &approach)?;
@@ -87,7 +91,7 @@ impl Transfer<'_> {
     }
 
     /// Takes the object, and lifts it.
-    pub fn pick_up(&self, stage: &mut dyn Stage) -> Result<(), Failure> {
+    pub fn pick_up(&self, stage: &mut dyn PlanningStage) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
         let object = self.seen(&sight)?;
         let goal = Candidate {
@@ -103,7 +107,7 @@ impl Transfer<'_> {
     }
 
     /// Takes the object, and moves it along a straight line by so much, as a joint lets it.
-    pub fn slide(&self, stage: &mut dyn Stage, by: Vec3) -> Result<(), Failure> {
+    pub fn slide(&self, stage: &mut dyn PlanningStage, by: Vec3) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
         let object = self.seen(&sight)?.clone();
         let goal = Candidate {
@@ -123,17 +127,17 @@ impl Transfer<'_> {
         self.let_go(stage, opening)
     }
 
-    fn seen<'s>(&self, sight: &'s Sight) -> Result<&'s SeenObject, Failure> {
+    fn seen<'s>(&self, sight: &'s Sight) -> Result<&'s SeenObject, PlanFailure> {
         let object = sight.objects.get(self.object);
-        object.ok_or_else(|| Failure::Gone(self.object.to_owned()))
+        object.ok_or_else(|| PlanFailure::Gone(self.object.to_owned()))
     }
 
-    fn no_way(&self) -> Failure {
-        Failure::NoWay(self.object.to_owned())
+    fn no_way(&self) -> PlanFailure {
+        PlanFailure::NoWay(self.object.to_owned())
     }
 
     /// A grasp from which one of the goals can be reached, and the way to it.
-    fn plan(&self, sight: &Sight, goals: &[Candidate]) -> Result<(Taking, [Path; 2]), Failure> {
+    fn plan(&self, sight: &Sight, goals: &[Candidate]) -> Result<(Taking, [Path; 2]), PlanFailure> {
         let object = self.seen(sight)?;
         let limb = &self.body.limbs[self.limb];
         let mut all = grasps(
@@ -143,35 +147,35 @@ impl Transfer<'_> {
             limb.widest,
         );
         if all.is_empty() {
-            return Err(Failure::NoGrasp(self.object.to_owned()));
+            return Err(PlanFailure::NoGrasp(self.object.to_owned()));
         }
         all.sort_by(|a, b| a.off.total_cmp(&b.off));
         let found = Cell::default();
         let mut looked_into = Vec::new();
         for some in all.chunks(GRASPS) {
             let takings = self.takings(sight, object, some, &found);
-            if let Some(plan) = self.best(sight, &takings, goals, Search::Simple, &found) {
+            if let Some(plan) = self.best(sight, &takings, goals, WaySearch::Simple, &found) {
                 return Ok(plan);
             }
             looked_into.push(takings);
         }
-        let search = Search::Trying(self.seed);
+        let search = WaySearch::Trying(self.seed);
         let searched = looked_into
             .iter()
             .find_map(|takings| self.best(sight, takings, goals, search, &found));
         let found = found.get();
         searched.ok_or_else(|| match found {
-            Found {
+            Obstructions {
                 free: true,
                 put: true,
                 ..
             }
-            | Found {
+            | Obstructions {
                 reached: true,
                 free: false,
                 ..
             } => self.no_way(),
-            Found { .. } => Failure::OutOfReach(self.object.to_owned()),
+            Obstructions { .. } => PlanFailure::OutOfReach(self.object.to_owned()),
         })
     }
 
@@ -181,7 +185,7 @@ impl Transfer<'_> {
         sight: &Sight,
         object: &SeenObject,
         grasps: &[Grasp],
-        found: &Cell<Found>,
+        found: &Cell<Obstructions>,
     ) -> Vec<Taking> {
         let limb = &self.body.limbs[self.limb];
         let mut free = Clearance::new(self.body, sight, self.limb, &[self.object]);
@@ -201,7 +205,7 @@ impl Transfer<'_> {
                 let Some(at) = free.reach(pose, &seed) else {
                     break;
                 };
-                found.set(Found {
+                found.set(Obstructions {
                     reached: true,
                     ..found.get()
                 });
@@ -216,7 +220,7 @@ impl Transfer<'_> {
                 }
             }
         }
-        found.set(Found {
+        found.set(Obstructions {
             free: found.get().free || !takings.is_empty(),
             ..found.get()
         });
@@ -229,8 +233,8 @@ impl Transfer<'_> {
         sight: &Sight,
         takings: &[Taking],
         goals: &[Candidate],
-        search: Search,
-        found: &Cell<Found>,
+        search: WaySearch,
+        found: &Cell<Obstructions>,
     ) -> Option<(Taking, [Path; 2])> {
         let object = self.seen(sight).ok()?;
         let here = sight.limbs[self.limb].angles;
@@ -250,8 +254,8 @@ impl Transfer<'_> {
         let mut approaches = BTreeMap::new();
         let mut lifts = BTreeMap::new();
         let mut tries = match search {
-            Search::Simple => PAIRS,
-            Search::Trying(_) => SEARCHED_PAIRS,
+            WaySearch::Simple => PAIRS,
+            WaySearch::Trying(_) => SEARCHED_PAIRS,
         };
         for (_, i, goal) in pairs {
             let taking = &takings[i];
@@ -261,7 +265,7 @@ impl Transfer<'_> {
             let Some(put) = holding.reach(end, &taking.at) else {
                 continue;
             };
-            found.set(Found {
+            found.set(Obstructions {
                 put: true,
                 ..found.get()
             });
@@ -295,14 +299,15 @@ impl Transfer<'_> {
     }
 
     /// Whether fingers that are open so far are beside the object, not in another part of it.
-    fn fits(&self, object: &[Convex], end_effector: Pose, opening: f32) -> bool {
+    fn fits(&self, object: &[PlacedSolid], end_effector: Pose, opening: f32) -> bool {
         let fingers = self.body.fingers(self.limb, end_effector, opening);
-        let is_apart = |finger: &Convex| object.iter().all(|solid| !finger.is_within(0.02, solid));
+        let is_apart =
+            |finger: &PlacedSolid| object.iter().all(|solid| !finger.is_within(0.02, solid));
         fingers.iter().all(is_apart)
     }
 
     /// The ways to above the object, and down to it.
-    fn approach(&self, sight: &Sight, taking: &Taking, search: Search) -> Option<[Path; 2]> {
+    fn approach(&self, sight: &Sight, taking: &Taking, search: WaySearch) -> Option<[Path; 2]> {
         let object = self.seen(sight).ok()?;
         let near =
             Clearance::new(self.body, sight, self.limb, &[self.object]).opened(taking.opening);
@@ -372,7 +377,7 @@ impl Transfer<'_> {
         let near = others
             .flat_map(|(_, other)| other.solids())
             .filter(|other| {
-                let is_near = |solid: &Convex| solid.gap_from_above(other) < 0.12;
+                let is_near = |solid: &PlacedSolid| solid.gap_from_above(other) < 0.12;
                 let is_within = (other.pose.location - at.location).truncate().length() < 0.3;
                 is_within || solids.iter().any(is_near)
             });
@@ -389,7 +394,7 @@ impl Transfer<'_> {
         lifted: &Path,
         goal: Candidate,
         put: &Angles,
-        search: Search,
+        search: WaySearch,
     ) -> Option<Placing> {
         if !holding.is_free(put, Margins::NARROW) {
             return None;
@@ -416,10 +421,10 @@ impl Transfer<'_> {
 
     fn take(
         &self,
-        stage: &mut dyn Stage,
+        stage: &mut dyn PlanningStage,
         taking: &Taking,
         [way, down]: &[Path; 2],
-    ) -> Result<(), Failure> {
+    ) -> Result<(), PlanFailure> {
         grip(stage, self.limb, f64::from(taking.opening))?;
         follow(stage, self.body, self.limb, way, FAST, self.object)?;
         follow(stage, self.body, self.limb, down, SLOW, self.object)?;
@@ -429,17 +434,17 @@ impl Transfer<'_> {
             return Ok(());
         }
         self.retreat(stage)?;
-        Err(Failure::NotHeld(self.object.to_owned()))
+        Err(PlanFailure::NotHeld(self.object.to_owned()))
     }
 
     /// Opens the gripper, and goes up.
-    fn retreat(&self, stage: &mut dyn Stage) -> Result<(), Failure> {
+    fn retreat(&self, stage: &mut dyn PlanningStage) -> Result<(), PlanFailure> {
         let limb = &self.body.limbs[self.limb];
         grip(stage, self.limb, f64::from(limb.widest))?;
         self.go_up(stage)
     }
 
-    fn go_up(&self, stage: &mut dyn Stage) -> Result<(), Failure> {
+    fn go_up(&self, stage: &mut dyn PlanningStage) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
         let clearance = Clearance::new(self.body, &sight, self.limb, &[self.object]);
         let here = clearance.here();
@@ -452,7 +457,7 @@ impl Transfer<'_> {
         }
     }
 
-    fn let_go(&self, stage: &mut dyn Stage, opening: f32) -> Result<(), Failure> {
+    fn let_go(&self, stage: &mut dyn PlanningStage, opening: f32) -> Result<(), PlanFailure> {
         let widest = self.body.limbs[self.limb].widest;
         grip(stage, self.limb, f64::from(opening.min(widest)))?;
         self.go_up(stage)?;
@@ -460,7 +465,7 @@ impl Transfer<'_> {
     }
 
     /// Puts what is held to one of these places: as it lies in the fingers now.
-    fn put(&self, stage: &mut dyn Stage, goals: &[Candidate]) -> Result<(), Failure> {
+    fn put(&self, stage: &mut dyn PlanningStage, goals: &[Candidate]) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
         let object = self.seen(&sight)?;
         let seen = &sight.limbs[self.limb];
@@ -480,14 +485,14 @@ impl Transfer<'_> {
             })
             .collect();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let with = |search: Search, pairs: usize| {
+        let with = |search: WaySearch, pairs: usize| {
             let some = sorted.iter().take(pairs);
             some.into_iter().find_map(|(_, goal, put)| {
                 self.placing(&holding, &sight, &lifted, *goal, put, search)
             })
         };
-        let placing = with(Search::Simple, PAIRS)
-            .or_else(|| with(Search::Trying(self.seed), PAIRS))
+        let placing = with(WaySearch::Simple, PAIRS)
+            .or_else(|| with(WaySearch::Trying(self.seed), PAIRS))
             .ok_or_else(|| self.no_way())?;
         let Placing { way, down, opening } = placing;
         follow(stage, self.body, self.limb, &lifted, SLOW, self.object)?;

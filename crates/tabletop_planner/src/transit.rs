@@ -15,7 +15,7 @@ const TRAVERSES: [f32; 4] = [2.6, 3.4, 4.2, 5.0];
 
 /// How a way is looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Search {
+pub(crate) enum WaySearch {
     /// Evenly, or at some height across.
     Simple,
     /// Else by trying, which this decides.
@@ -27,7 +27,7 @@ pub(crate) fn transit(
     clearance: &Clearance,
     from: &Angles,
     to: &Angles,
-    search: Search,
+    search: WaySearch,
 ) -> Option<Path> {
     let ends_are_free = |margins| {
         [from, to]
@@ -38,8 +38,8 @@ pub(crate) fn transit(
         .into_iter()
         .find(|margins| ends_are_free(*margins))?;
     simple(clearance, from, to, margins).or_else(|| match search {
-        Search::Simple => None,
-        Search::Trying(seed) => connect(clearance, from, to, margins, seed),
+        WaySearch::Simple => None,
+        WaySearch::Trying(seed) => connect(clearance, from, to, margins, seed),
     })
 }
 

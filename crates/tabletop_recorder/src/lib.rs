@@ -42,7 +42,7 @@ pub use files::{
     session::{
         Session, SessionCommand, SessionHeader, SessionObject, SessionScene, SessionSettings,
     },
-    storage::{Fault, Storage},
+    storage::{Storage, StorageFault},
 };
 pub use reading::{
     event::{Occurrence, RecordedEvent},

@@ -37,7 +37,7 @@ pub(crate) enum Owner {
 
 /// A convex solid that goes from one pose to another, or stays.
 #[derive(Clone, Debug)]
-pub(crate) struct Solid {
+pub(crate) struct SweptSolid {
     /// What it belongs to.
     pub owner: Owner,
     shape: rapier::SharedShape,
@@ -46,7 +46,7 @@ pub(crate) struct Solid {
     bounds: Aabb,
 }
 
-impl Solid {
+impl SweptSolid {
     /// The solids of something that goes from one pose to another.
     pub fn moving(
         parts: &[Convex],
@@ -206,13 +206,14 @@ mod tests {
             pose: Pose::at(Vec3::NEG_Z * 2.0),
             shape: rapier::SharedShape::cuboid(10.0, 6.0, 2.0),
         };
-        let table = Solid::resting(slab, Owner::Body(0));
+        let table = SweptSolid::resting(slab, Owner::Body(0));
         let cylinder = Convex {
             pose: Pose::IDENTITY,
             shape: rapier::SharedShape::cylinder(1.0, 0.6),
         };
         let [from, to] = [from, to].map(|z| Pose::from_degrees(Vec3::Z * z, Vec3::X * 90.0));
-        Solid::moving(&[cylinder], Owner::Body(1), from, to).any(|it| it.collides_with(&table, 0.0))
+        SweptSolid::moving(&[cylinder], Owner::Body(1), from, to)
+            .any(|it| it.collides_with(&table, 0.0))
     }
 
     #[test]
@@ -231,10 +232,10 @@ mod tests {
         };
         let push = |from: f32| {
             let [from, to] = [from, from - 0.1].map(|z| Pose::at(Vec3::Z * z));
-            let solid = Solid::moving(&[block(0.0)], Owner::Body(0), from, to).next();
+            let solid = SweptSolid::moving(&[block(0.0)], Owner::Body(0), from, to).next();
             let approach = solid
                 .unwrap()
-                .approach(&Solid::resting(block(0.0), Owner::Body(1)));
+                .approach(&SweptSolid::resting(block(0.0), Owner::Body(1)));
             approach.map_or(1.0, Approach::part)
         };
         assert_eq!(push(1.5), 1.0);

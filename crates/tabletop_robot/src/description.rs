@@ -18,12 +18,12 @@ pub struct Description {
     /// Its limbs and joints.
     pub layout: RobotLayout,
     /// Where it was read from; `None` for the robot that comes with the program.
-    pub source: Option<Source>,
+    pub source: Option<DescriptionSource>,
 }
 
 /// Where a robot's description was read from.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Source {
+pub struct DescriptionSource {
     /// The URDF, beside which its meshes are.
     pub path: PathBuf,
     /// What it says.
@@ -50,7 +50,7 @@ impl Description {
     /// # Errors
     ///
     /// The texts cannot be used, or the URDF lacks joints or links that the `robot.ron` names; the error names them.
-    pub fn read(source: Source) -> Result<Self, DescriptionError> {
+    pub fn read(source: DescriptionSource) -> Result<Self, DescriptionError> {
         let model = RobotModel::from_urdf(&source.urdf)?;
         let layout = match &source.layout {
             Some(text) => LayoutFile::read(text)?.layout(|joint| {

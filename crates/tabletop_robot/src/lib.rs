@@ -36,13 +36,13 @@ pub mod look;
 mod motion;
 mod plugin;
 
-pub use articulation::link_entities::RobotBody;
-pub use description::{Description, DescriptionError, Source};
+pub use articulation::link_entities::RobotLink;
+pub use description::{Description, DescriptionError, DescriptionSource};
 pub use gripper::closing::STEEPEST_GRIP;
 pub use plugin::RobotPlugin;
 
 /// The names that most users of this crate need.
 pub mod prelude {
     #[doc(hidden)]
-    pub use crate::{Description, RobotBody, RobotPlugin};
+    pub use crate::{Description, RobotLink, RobotPlugin};
 }

@@ -9,7 +9,7 @@ use tabletop_history::{RollbackApp, is_rolling_back};
 
 use crate::{
     articulation::{
-        link_entities::{LinkEntities, RobotBody},
+        link_entities::{LinkEntities, RobotLink},
         self_collision::SelfCollisionMatrix,
         tree::Articulation,
     },
@@ -59,7 +59,7 @@ impl Plugin for RobotPlugin {
             warn!("link {link} is not touched where this mesh would be: {error}");
         }
         let layout = description.layout.clone();
-        app.register_type::<RobotBody>()
+        app.register_type::<RobotLink>()
             .insert_resource(SelfCollisionMatrix::new(&articulation))
             .insert_resource(articulation)
             .insert_resource(description)

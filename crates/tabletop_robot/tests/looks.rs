@@ -7,12 +7,12 @@ use bevy::prelude::*;
 use bevy_rapier3d::{prelude::Collider, rapier::prelude::SharedShape};
 use kit::Stage;
 use tabletop_core::{Face, Figure, RobotCommand, StepApp};
-use tabletop_robot::{Description, RobotBody, RobotPlugin, Source};
+use tabletop_robot::{Description, DescriptionSource, RobotLink, RobotPlugin};
 
 /// Triangles of every body that is seen, by name.
 fn seen(stage: &mut Stage) -> Vec<(String, usize)> {
     let world = stage.app.world_mut();
-    let mut bodies = world.query::<(&RobotBody, &Figure)>();
+    let mut bodies = world.query::<(&RobotLink, &Figure)>();
     let mut seen: Vec<_> = bodies
         .iter(world)
         .map(|(body, figure)| (body.name.clone(), figure.fine.indices.len()))
@@ -56,7 +56,7 @@ fn a_link_is_touched_by_the_hulls_of_its_meshes() {
         let urdf = include_str!("../../../assets/baxter/baxter.urdf");
         assert!(urdf.contains(box_of_torso));
         let mesh = format!("<mesh filename=\"{mesh}\"/>");
-        let source = Source {
+        let source = DescriptionSource {
             path: folder.join("my.urdf"),
             urdf: urdf.replacen(box_of_torso, &mesh, 1),
             layout: None,
@@ -66,7 +66,7 @@ fn a_link_is_touched_by_the_hulls_of_its_meshes() {
             ..default()
         });
         let world = stage.app.world_mut();
-        let mut bodies = world.query::<(&RobotBody, &Collider)>();
+        let mut bodies = world.query::<(&RobotLink, &Collider)>();
         let (_, torso) = bodies
             .iter(world)
             .find(|(body, _)| body.name == "torso")
@@ -114,7 +114,7 @@ fn what_has_no_mesh_is_shown_by_what_it_is_touched_by() {
     let urdf = include_str!("../../../assets/baxter/baxter.urdf");
     let missing = "package://nowhere/wrist.stl";
     let urdf = urdf.replace("package://tabletop/wrist.shape.json", missing);
-    let source = Source {
+    let source = DescriptionSource {
         path: "my.urdf".into(),
         urdf,
         layout: None,

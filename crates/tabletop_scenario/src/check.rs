@@ -8,7 +8,7 @@ use crate::{
     RobotCheck,
     fault::fault_of_vector,
     rest::Stillness,
-    seen::{Seen, SeenObject},
+    seen::{ScenarioObject, Seen},
 };
 
 /// Something that is to be true. Lengths are in units of 10 cm, angles in degrees.
@@ -178,7 +178,7 @@ fn fault_of_tolerance(within: f32) -> Option<String> {
     (!makes_sense).then(|| format!("expected a tolerance from 0, found {within}"))
 }
 
-fn is_at(object: &SeenObject, at: Vec3, within: f32) -> Result<(), String> {
+fn is_at(object: &ScenarioObject, at: Vec3, within: f32) -> Result<(), String> {
     let found = object.pose.location;
     let distance = found.distance(at);
     (distance <= within).then_some(()).ok_or_else(|| {
@@ -191,7 +191,7 @@ fn is_at(object: &SeenObject, at: Vec3, within: f32) -> Result<(), String> {
     })
 }
 
-fn is_turned(object: &SeenObject, degrees: Vec3, within: f32) -> Result<(), String> {
+fn is_turned(object: &ScenarioObject, degrees: Vec3, within: f32) -> Result<(), String> {
     let expected = quat_from_degrees(degrees);
     let angle = object.pose.rotation.angle_between(expected).to_degrees();
     (angle <= within).then_some(()).ok_or_else(|| {
@@ -204,7 +204,7 @@ fn is_turned(object: &SeenObject, degrees: Vec3, within: f32) -> Result<(), Stri
     })
 }
 
-fn is_on_top(upper: &SeenObject, lower: &SeenObject, within: f32) -> Result<(), String> {
+fn is_on_top(upper: &ScenarioObject, lower: &ScenarioObject, within: f32) -> Result<(), String> {
     let support = lower.bounds();
     let gap = upper.bounds().low.z - support.high.z;
     let is_over = support.is_below(upper.pose.location);
@@ -216,7 +216,7 @@ fn is_on_top(upper: &SeenObject, lower: &SeenObject, within: f32) -> Result<(), 
     })
 }
 
-fn is_on_table(object: &SeenObject, seen: &Seen, within: f32) -> Result<(), String> {
+fn is_on_table(object: &ScenarioObject, seen: &Seen, within: f32) -> Result<(), String> {
     let table = seen.table.ok_or("expected a table, found none")?;
     let gap = object.bounds().low.z;
     let found = object.pose.location;
@@ -239,7 +239,7 @@ fn lies_on(gap: f32, within: f32, is_over: bool) -> Result<(), String> {
     }
 }
 
-fn is_inside(inner: &SeenObject, outer: &SeenObject, within: f32) -> Result<(), String> {
+fn is_inside(inner: &ScenarioObject, outer: &ScenarioObject, within: f32) -> Result<(), String> {
     let outside = outer.bounds().distance_out(inner.bounds());
     (outside <= within).then_some(()).ok_or_else(|| {
         format!(
@@ -251,7 +251,7 @@ fn is_inside(inner: &SeenObject, outer: &SeenObject, within: f32) -> Result<(), 
     })
 }
 
-fn is_held_by(object: &SeenObject, hand: Option<Hand>) -> Result<(), String> {
+fn is_held_by(object: &ScenarioObject, hand: Option<Hand>) -> Result<(), String> {
     let name = |hand: Option<Hand>| hand.map_or("no hand", Hand::name);
     (object.holder == hand).then_some(()).ok_or_else(|| {
         format!(

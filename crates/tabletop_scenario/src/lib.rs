@@ -42,7 +42,7 @@ mod test_stage;
 
 pub use check::Check;
 pub use error::ScenarioError;
-pub use place::Place;
+pub use place::RandomPlace;
 pub use program::Program;
 pub use robot::{RobotCheck, RobotStep};
 pub use run::{Outcome, ScenarioRun};
@@ -62,7 +62,7 @@ use tabletop_core::{
     Pose, RestApp as _, RestingSystems, Robot, RobotLayout, SimFact, Table,
 };
 
-use crate::seen::{Seen, SeenObject};
+use crate::seen::{ScenarioObject, Seen};
 
 /// Runs the [`ScenarioRun`] that is in the world, if there is one. Needs [`CorePlugin`](tabletop_core::CorePlugin).
 ///
@@ -121,7 +121,7 @@ fn take_due_steps(
     }
     let objects = index.iter().filter_map(|entity| {
         let (spec, transform) = objects.get(entity).ok()?;
-        Some(SeenObject {
+        Some(ScenarioObject {
             entity,
             spec,
             pose: Pose::from(transform),

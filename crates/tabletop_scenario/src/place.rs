@@ -14,7 +14,7 @@ const TRIES: u32 = 1000;
 /// Lengths are in units of 10 cm, angles in degrees.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Place {
+pub struct RandomPlace {
     /// Its id in the task file.
     pub object: String,
     /// Its origin's least and greatest X.
@@ -26,7 +26,7 @@ pub struct Place {
     pub turn: (f32, f32),
 }
 
-impl Place {
+impl RandomPlace {
     /// Its fault, if it makes no sense.
     pub(crate) fn fault(&self) -> Option<String> {
         [("x", self.x), ("y", self.y), ("turn", self.turn)]
@@ -39,7 +39,7 @@ impl Place {
 /// Puts objects of a scene elsewhere, one after the other.
 pub(crate) fn place_all(
     scene: &mut SceneSpec,
-    places: &[Place],
+    places: &[RandomPlace],
     random: &mut Random,
 ) -> Result<(), String> {
     let placed = places
@@ -88,7 +88,7 @@ fn index_of(scene: &SceneSpec, id: &str) -> Result<usize, String> {
 }
 
 /// The item at a random pose.
-fn moved(item: &SceneItem, place: &Place, random: &mut Random) -> SceneItem {
+fn moved(item: &SceneItem, place: &RandomPlace, random: &mut Random) -> SceneItem {
     let (x, y) = (random.between(place.x), random.between(place.y));
     let turn = turn_about(Vec3::Z, random.between(place.turn).to_radians());
     let mut item = item.clone();
@@ -131,8 +131,8 @@ mod tests {
         }
     }
 
-    fn place(object: &str, half: f32) -> Place {
-        Place {
+    fn place(object: &str, half: f32) -> RandomPlace {
+        RandomPlace {
             object: object.into(),
             x: (-half, half),
             y: (-half, half),
@@ -174,8 +174,8 @@ mod tests {
         let mut random = Random::new(0);
         for (id, half, words) in [("b0", 0.0, "no free place"), ("x", 1.0, "has no object")] {
             let mut scene = scene(2);
-            let Place { turn, .. } = place(id, half);
-            let place = Place {
+            let RandomPlace { turn, .. } = place(id, half);
+            let place = RandomPlace {
                 object: id.into(),
                 x: (1.5 - half, 1.5 + half),
                 y: (-half, half),

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use bevy::prelude::*;
 use tabletop_core::{Pose, TICKS_PER_SECOND};
 
-use crate::seen::{Seen, SeenObject};
+use crate::seen::{ScenarioObject, Seen};
 
 /// The most that an object at rest may move, in units, and turn, in radians.
 const TREMBLE: (f32, f32) = (0.005, 0.005);
@@ -60,11 +60,11 @@ impl Stillness {
         }
     }
 
-    pub fn is_at_rest(&self, object: &SeenObject) -> bool {
+    pub fn is_at_rest(&self, object: &ScenarioObject) -> bool {
         self.ticks(object) >= TICKS_TO_REST
     }
 
-    pub fn has_arrived(&self, object: &SeenObject) -> bool {
+    pub fn has_arrived(&self, object: &ScenarioObject) -> bool {
         self.ticks(object) >= TICKS_TO_ARRIVE
     }
 
@@ -75,7 +75,7 @@ impl Stillness {
         Some(&moving.spec.id)
     }
 
-    fn ticks(&self, object: &SeenObject) -> u32 {
+    fn ticks(&self, object: &ScenarioObject) -> u32 {
         self.0.get(&object.entity).map_or(0, |stay| stay.ticks)
     }
 }

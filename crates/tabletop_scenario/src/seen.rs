@@ -7,7 +7,7 @@ use tabletop_core::{Bonds, Bounds, Hand, ObjectSpec, Pose, Robot, RobotLayout, T
 #[derive(Clone, Debug)]
 pub(crate) struct Seen<'a> {
     /// The objects in the order of their creation.
-    pub objects: Vec<SeenObject<'a>>,
+    pub objects: Vec<ScenarioObject<'a>>,
     /// The table.
     pub table: Option<Table>,
     /// The selected hand.
@@ -24,7 +24,7 @@ pub(crate) struct Seen<'a> {
 
 /// An object as a scenario sees it.
 #[derive(Clone, Debug)]
-pub(crate) struct SeenObject<'a> {
+pub(crate) struct ScenarioObject<'a> {
     /// Its entity.
     pub entity: Entity,
     /// The value.
@@ -35,7 +35,7 @@ pub(crate) struct SeenObject<'a> {
     pub holder: Option<Hand>,
 }
 
-impl SeenObject<'_> {
+impl ScenarioObject<'_> {
     /// The upright cuboid around it.
     pub fn bounds(&self) -> Bounds {
         Bounds::of_shape(&self.spec.shape, self.pose)
@@ -44,7 +44,7 @@ impl SeenObject<'_> {
 
 impl<'a> Seen<'a> {
     /// The object of this id, or why there is none.
-    pub fn object(&self, id: &str) -> Result<&SeenObject<'a>, String> {
+    pub fn object(&self, id: &str) -> Result<&ScenarioObject<'a>, String> {
         self.objects
             .iter()
             .find(|object| object.spec.id == id)
@@ -52,7 +52,7 @@ impl<'a> Seen<'a> {
     }
 
     /// The object in a hand, or the reason why there is none.
-    pub fn held_by(&self, hand: Hand) -> Result<&SeenObject<'a>, String> {
+    pub fn held_by(&self, hand: Hand) -> Result<&ScenarioObject<'a>, String> {
         self.objects
             .iter()
             .find(|object| object.holder == Some(hand))

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use tabletop_core::{Hand, Preset};
 
 use crate::{
-    Check, Place, RobotStep,
+    Check, RandomPlace, RobotStep,
     fault::{fault_of_time, fault_of_vector},
 };
 
@@ -24,7 +24,7 @@ pub enum Step {
         file: PathBuf,
         /// The objects that are put elsewhere, at random.
         #[serde(default)]
-        place: Vec<Place>,
+        place: Vec<RandomPlace>,
     },
     /// Remove every object that no hand holds.
     Clear,
@@ -163,7 +163,7 @@ impl Step {
     /// Its fault, if it makes no sense.
     pub(crate) fn fault(&self) -> Option<String> {
         match self {
-            Self::Load { place, .. } => place.iter().find_map(Place::fault),
+            Self::Load { place, .. } => place.iter().find_map(RandomPlace::fault),
             Self::Make(preset) => preset.fault(),
             Self::With(_, step) if !step.is_done_by_a_hand() => {
                 Some("`With` must be followed by a step that a hand does".to_owned())

@@ -9,7 +9,7 @@ use tabletop_core::{
 
 use crate::{
     Outcome, Program, Scenario, ScenarioRun,
-    seen::{Seen, SeenObject},
+    seen::{ScenarioObject, Seen},
 };
 
 /// A world that holds still unless a test moves it.
@@ -57,7 +57,7 @@ impl Stage {
             .specs
             .iter()
             .enumerate()
-            .map(|(index, spec)| SeenObject {
+            .map(|(index, spec)| ScenarioObject {
                 entity: world.spawn_empty().id(),
                 spec,
                 pose: self.poses[index],

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, f32::consts::TAU};
 use bevy::math::Vec3;
 use tabletop_core::{Pose, Shape};
 
-use crate::convex::Convex;
+use crate::convex::PlacedSolid;
 
 /// Objects at a moment.
 #[derive(Clone, Debug, Default)]
@@ -17,7 +17,7 @@ pub struct Arrangement {
 #[derive(Clone, Debug)]
 pub(crate) struct Placed {
     pub pose: Pose,
-    pub solids: Vec<Convex>,
+    pub solids: Vec<PlacedSolid>,
 }
 
 /// How far apart what touches may be, in units.
@@ -111,7 +111,10 @@ impl Placed {
         let solids = shape.colliding();
         Self {
             pose,
-            solids: solids.iter().map(|solid| Convex::of(solid, pose)).collect(),
+            solids: solids
+                .iter()
+                .map(|solid| PlacedSolid::of(solid, pose))
+                .collect(),
         }
     }
 
@@ -121,7 +124,7 @@ impl Placed {
 
     /// The lowest and the highest Z of it.
     pub fn heights(&self) -> [f32; 2] {
-        let all = self.solids.iter().map(Convex::heights);
+        let all = self.solids.iter().map(PlacedSolid::heights);
         all.reduce(|[low, high], [lower, higher]| [low.min(lower), high.max(higher)])
             .unwrap_or([self.pose.location.z; 2])
     }
@@ -131,7 +134,10 @@ impl Placed {
         (self.pose.location - point).truncate().length()
     }
 
-    fn pairs<'a>(&'a self, other: &'a Self) -> impl Iterator<Item = (&'a Convex, &'a Convex)> {
+    fn pairs<'a>(
+        &'a self,
+        other: &'a Self,
+    ) -> impl Iterator<Item = (&'a PlacedSolid, &'a PlacedSolid)> {
         let own = self.solids.iter();
         own.flat_map(|own| other.solids.iter().map(move |other| (own, other)))
     }
@@ -172,7 +178,7 @@ impl Placed {
 
     /// Whether a point is in a solid of it.
     fn holds(&self, point: Vec3) -> bool {
-        let spot = Convex {
+        let spot = PlacedSolid {
             pose: Pose::at(point),
             solid: tabletop_core::Solid::Ball(1e-3),
         };

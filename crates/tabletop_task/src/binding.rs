@@ -12,7 +12,7 @@ use crate::{
     requirement::Requirements,
     role::Role,
     sentence::listed,
-    step::Step,
+    step::TaskStep,
     task::Task,
 };
 
@@ -163,7 +163,7 @@ impl Task {
         role: &Role,
         objects: &[ObjectSpec],
     ) -> Unbound {
-        let is_meant = |step: &&Step| {
+        let is_meant = |step: &&TaskStep| {
             let others = step.relations.iter().filter_map(Relation::object);
             step.object == role.id || others.into_iter().any(|other| other == role.id)
         };

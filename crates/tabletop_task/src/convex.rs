@@ -5,14 +5,14 @@ use tabletop_core::{Bounds, Pose, Primitive, Solid};
 
 /// A convex solid at its place, in the table's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Convex {
+pub struct PlacedSolid {
     /// The pose of its centre.
     pub pose: Pose,
     /// The solid.
     pub solid: Solid,
 }
 
-impl Convex {
+impl PlacedSolid {
     /// A solid of a body that is at this pose.
     pub fn of(primitive: &Primitive, body: Pose) -> Self {
         Self {
@@ -294,8 +294,8 @@ mod tests {
 
     use super::*;
 
-    fn convex(solid: Solid, location: Vec3, degrees: Vec3) -> Convex {
-        Convex {
+    fn convex(solid: Solid, location: Vec3, degrees: Vec3) -> PlacedSolid {
+        PlacedSolid {
             pose: Pose::from_degrees(location, degrees),
             solid,
         }

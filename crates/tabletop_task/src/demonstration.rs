@@ -52,12 +52,12 @@ pub struct HandAct {
     /// The hand.
     pub hand: Hand,
     /// What it did.
-    pub deed: Deed,
+    pub deed: HandDeed,
 }
 
 /// What a hand does.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Deed {
+pub enum HandDeed {
     /// It takes an object.
     Grasp(String),
     /// It lets go of what it holds.
@@ -196,9 +196,9 @@ impl Demonstration {
                         }
                     }
                     Occurrence::Move { .. } => {}
-                    Occurrence::Grasp { hand, id } => act(*hand, Deed::Grasp(id.clone())),
-                    Occurrence::Release { hand } => act(*hand, Deed::Release),
-                    Occurrence::Destroy { hand } => act(*hand, Deed::Destroy),
+                    Occurrence::Grasp { hand, id } => act(*hand, HandDeed::Grasp(id.clone())),
+                    Occurrence::Release { hand } => act(*hand, HandDeed::Release),
+                    Occurrence::Destroy { hand } => act(*hand, HandDeed::Destroy),
                     Occurrence::ChangeControlState { control, state } => {
                         if let Some(operation) = self.operations.last_mut() {
                             operation.states.push((control.clone(), state.clone()));

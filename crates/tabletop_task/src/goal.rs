@@ -21,7 +21,7 @@ pub struct Goal {
     /// Which other orientations are as good: those after which the object looks the same.
     pub freedom: Freedom,
     /// Which other locations are as good.
-    pub place: Place,
+    pub place: PlaceRange,
 }
 
 /// What a goal is relative to. Objects are meant by their ids.
@@ -64,7 +64,7 @@ pub enum Freedom {
 /// Which locations do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Place {
+pub enum PlaceRange {
     /// That of the goal.
     Exact,
     /// Any in the reference.
@@ -95,10 +95,10 @@ impl Goal {
         }
         let object = shown.named(&manipulation.object)?;
         let after = shown.at(manipulation.rest);
-        let mut place = Place::Exact;
+        let mut place = PlaceRange::Exact;
         let reference = match relations.first() {
             Some(Relation::Inside { object }) => {
-                place = Place::Inside;
+                place = PlaceRange::Inside;
                 Reference::Object {
                     object: object.clone(),
                 }
@@ -117,7 +117,7 @@ impl Goal {
             },
             Some(Relation::Turned { .. }) => Reference::Itself,
             Some(Relation::Aside) => {
-                place = Place::Anywhere;
+                place = PlaceRange::Anywhere;
                 Reference::Table
             }
             Some(Relation::OnTable | Relation::Destroyed | Relation::Held) | None => {

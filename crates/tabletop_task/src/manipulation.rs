@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use tabletop_core::{Hand, Pose, SimTick};
 
-use crate::demonstration::{Deed, Demonstration};
+use crate::demonstration::{Demonstration, HandDeed};
 
 /// An object in a hand, or in one hand after the other.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,12 +50,12 @@ impl Manipulation {
         for act in &shown.acts {
             let end = |ending| move |(object, grasp)| (act.hand, object, grasp, act.tick, ending);
             let ended = match &act.deed {
-                Deed::Grasp(id) => {
+                HandDeed::Grasp(id) => {
                     let before = held.insert(act.hand, (id.clone(), act.tick));
                     before.map(end(Ending::Released))
                 }
-                Deed::Release => held.remove(&act.hand).map(end(Ending::Released)),
-                Deed::Destroy => held.remove(&act.hand).map(end(Ending::Destroyed)),
+                HandDeed::Release => held.remove(&act.hand).map(end(Ending::Released)),
+                HandDeed::Destroy => held.remove(&act.hand).map(end(Ending::Destroyed)),
             };
             all.extend(ended);
         }

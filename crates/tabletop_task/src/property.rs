@@ -90,7 +90,7 @@ fn around(shape: &Shape) -> Vec3 {
     let solids: Vec<_> = shape
         .colliding()
         .iter()
-        .map(|solid| crate::convex::Convex::of(solid, tabletop_core::Pose::IDENTITY))
+        .map(|solid| crate::convex::PlacedSolid::of(solid, tabletop_core::Pose::IDENTITY))
         .collect();
     let reach = |way: Vec3| {
         let all = solids.iter().map(|solid| solid.farthest(way).dot(way));

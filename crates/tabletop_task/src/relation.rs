@@ -37,7 +37,7 @@ pub enum Relation {
         /// The object.
         object: String,
         /// On which side of it, as the robot sees it.
-        side: Side,
+        side: RelativeSide,
     },
     /// Its sides are parallel to those of an object.
     AlignedWith {
@@ -76,7 +76,7 @@ pub enum Relation {
 /// On which side of an object another one is, as the robot sees it, in front of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Side {
+pub enum RelativeSide {
     /// Towards -X.
     Left,
     /// Towards +X.
@@ -95,7 +95,7 @@ pub enum Side {
     BehindRight,
 }
 
-impl Side {
+impl RelativeSide {
     /// The way to it across the table, a unit vector.
     pub fn way(self) -> Vec3 {
         let way = match self {
@@ -317,7 +317,7 @@ fn beside(after: &Arrangement, id: &str, later: &[Manipulation]) -> Option<Relat
         .filter(|(other, placed)| stays(other) && placed.lowest().abs() < TOUCH)
         .map(|(other, placed)| (own.gap(placed), other, placed))
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let side = Side::of(own.pose.location - other.pose.location);
+    let side = RelativeSide::of(own.pose.location - other.pose.location);
     (gap < NEIGHBOURHOOD).then(|| Relation::Beside {
         object: object.to_owned(),
         side,

@@ -4,9 +4,9 @@ use bevy::math::Vec3;
 use tabletop_core::Hand;
 
 use crate::{
-    relation::{Relation, Side},
+    relation::{Relation, RelativeSide},
     requirement::Requirements,
-    step::Step,
+    step::TaskStep,
     task::Task,
 };
 
@@ -25,7 +25,7 @@ impl Task {
 }
 
 /// What a step does, in one sentence.
-fn sentence(task: &Task, step: &Step) -> String {
+fn sentence(task: &Task, step: &TaskStep) -> String {
     let noun = |id: &str| {
         task.role(id)
             .map_or_else(|| id.to_owned(), |role| role.noun.clone())
@@ -75,7 +75,7 @@ fn sentence(task: &Task, step: &Step) -> String {
 }
 
 /// Where a step puts its object.
-fn place(task: &Task, step: &Step) -> String {
+fn place(task: &Task, step: &TaskStep) -> String {
     let noun = |id: &str| {
         task.role(id)
             .map_or_else(|| id.to_owned(), |role| role.noun.clone())
@@ -119,16 +119,16 @@ fn place(task: &Task, step: &Step) -> String {
     }
 }
 
-fn beside(side: Side) -> &'static str {
+fn beside(side: RelativeSide) -> &'static str {
     match side {
-        Side::Left => "to the left of",
-        Side::Right => "to the right of",
-        Side::Front => "in front of",
-        Side::FrontLeft => "in front and to the left of",
-        Side::FrontRight => "in front and to the right of",
-        Side::Behind => "behind",
-        Side::BehindLeft => "behind and to the left of",
-        Side::BehindRight => "behind and to the right of",
+        RelativeSide::Left => "to the left of",
+        RelativeSide::Right => "to the right of",
+        RelativeSide::Front => "in front of",
+        RelativeSide::FrontLeft => "in front and to the left of",
+        RelativeSide::FrontRight => "in front and to the right of",
+        RelativeSide::Behind => "behind",
+        RelativeSide::BehindLeft => "behind and to the left of",
+        RelativeSide::BehindRight => "behind and to the right of",
     }
 }
 

@@ -7,7 +7,7 @@ use crate::{goal::Goal, relation::Relation};
 
 /// A manipulation of a task.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Step {
+pub struct TaskStep {
     /// Its number, from 1.
     pub number: usize,
     /// What it does, as a sentence.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use tabletop_core::{JointSpec, Table};
 
-use crate::{detour::Detour, operation::Operation, role::Role, step::Step};
+use crate::{detour::Detour, operation::Operation, role::Role, step::TaskStep};
 
 /// What a demonstration shows to be done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -15,7 +15,7 @@ pub struct Task {
     /// What connects the objects of the demonstration.
     pub joints: Vec<JointSpec>,
     /// What is done, in the order in which it was shown.
-    pub steps: Vec<Step>,
+    pub steps: Vec<TaskStep>,
     /// What was done besides, and does not matter.
     pub detours: Vec<Detour>,
     /// What was operated, pointed to, fastened and loosened, in the order in which it was shown.
@@ -30,7 +30,7 @@ impl Task {
     }
 
     /// The step of this number, from 1.
-    pub fn step(&self, number: usize) -> Option<&Step> {
+    pub fn step(&self, number: usize) -> Option<&TaskStep> {
         self.steps.get(number.checked_sub(1)?)
     }
 }

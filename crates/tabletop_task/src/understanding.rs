@@ -14,7 +14,7 @@ use crate::{
     relation::{Relation, established},
     requirement::Requirements,
     role::Role,
-    step::Step,
+    step::TaskStep,
     symmetry::Symmetry,
     task::Task,
 };
@@ -39,7 +39,7 @@ impl Task {
         let steps = (0..manipulations.len()).map(|i| {
             let manipulation = &manipulations[i];
             let before = i.checked_sub(1).map(|before| &manipulations[before]);
-            Step {
+            TaskStep {
                 number: i + 1,
                 sentence: String::new(),
                 object: manipulation.object.clone(),
@@ -67,7 +67,7 @@ impl Task {
 }
 
 /// The objects that steps are about.
-fn cast(shown: &Demonstration, steps: &[Step]) -> Vec<Role> {
+fn cast(shown: &Demonstration, steps: &[TaskStep]) -> Vec<Role> {
     let nouns = Nouns::of(shown);
     let mut ids = Vec::<&str>::new();
     for step in steps {

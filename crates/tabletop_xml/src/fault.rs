@@ -132,12 +132,12 @@ impl Place<'_> {
 /// The faults found so far, in any order.
 #[derive(Debug, Default)]
 pub(crate) struct Faults {
-    found: Vec<Found>,
+    found: Vec<UnplacedFault>,
     first_left_out: Option<Origin>,
 }
 
 #[derive(Debug)]
-struct Found {
+struct UnplacedFault {
     origin: Origin,
     element: Option<String>,
     attribute: Option<String>,
@@ -146,7 +146,7 @@ struct Found {
     repeats: usize,
 }
 
-impl Found {
+impl UnplacedFault {
     /// Whether it is the same fault, brought by another instance.
     fn is_repeated_by(&self, other: &Self) -> bool {
         let (mine, others) = (self.origin, other.origin);
@@ -176,7 +176,7 @@ impl Faults {
             return;
         }
         let name = |name: &str| Excerpt(name).to_string();
-        let fault = Found {
+        let fault = UnplacedFault {
             origin: place.origin,
             element: place.element.map(name),
             attribute: place.attribute.map(name),
@@ -200,7 +200,7 @@ impl Faults {
             .sort_by_key(|found| (found.origin.source, found.origin.offset));
         if let Some(origin) = self.first_left_out {
             let last = self.found.last().map_or(origin, |found| found.origin);
-            self.found.push(Found {
+            self.found.push(UnplacedFault {
                 origin: Origin {
                     instance: None,
                     ..origin.max(last)
@@ -220,7 +220,7 @@ impl Faults {
             let position = positions.get(&(origin.source, origin.offset));
             position.cloned().unwrap_or_default()
         };
-        let located = |found: Found| {
+        let located = |found: UnplacedFault| {
             let Position { file, line, column } = position(found.origin);
             Fault {
                 file,

@@ -53,7 +53,7 @@ pub struct ExpandedTask {
 /// ```
 pub fn parse(file: &Path, text: &[u8]) -> ParsedTask {
     let tree = FileTree::Absent;
-    Task::read(&tree, &tree.task(file), text.to_vec(), &Arena::default()).parsed()
+    TaskReading::read(&tree, &tree.task(file), text.to_vec(), &Arena::default()).parsed()
 }
 
 /// Puts everything into the content of a task file. It includes nothing: a text has no folder.
@@ -74,11 +74,11 @@ pub fn parse(file: &Path, text: &[u8]) -> ParsedTask {
 /// ```
 pub fn expand(file: &Path, text: &[u8]) -> ExpandedTask {
     let tree = FileTree::Absent;
-    Task::read(&tree, &tree.task(file), text.to_vec(), &Arena::default()).expanded()
+    TaskReading::read(&tree, &tree.task(file), text.to_vec(), &Arena::default()).expanded()
 }
 
 /// A task with everything put in.
-pub(crate) struct Task<'a, 't> {
+pub(crate) struct TaskReading<'a, 't> {
     tree: &'t FileTree<'t>,
     path: &'t TaskPath,
     root: Option<Element<'a>>,
@@ -86,7 +86,7 @@ pub(crate) struct Task<'a, 't> {
     faults: Faults,
 }
 
-impl<'a, 't> Task<'a, 't> {
+impl<'a, 't> TaskReading<'a, 't> {
     pub fn read(
         tree: &'t FileTree<'t>,
         path: &'t TaskPath,

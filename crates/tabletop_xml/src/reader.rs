@@ -10,7 +10,7 @@ use tabletop_core::ShippedFiles;
 use crate::{
     ExpandedTask, MAX_FILE_BYTES, ParsedTask,
     files::{Arena, FileTree, TaskPath, read_file},
-    parse::Task,
+    parse::TaskReading,
 };
 
 /// Where task files come from: the disk, and the inside of the program.
@@ -47,7 +47,7 @@ impl<'s> TaskReader<'s> {
     /// There is no such file, it is not a file, it cannot be read, or it is larger than [`MAX_FILE_BYTES`].
     pub fn read(&self, path: &Path) -> Result<ParsedTask, ReadError> {
         let file = self.open(path)?;
-        Ok(Task::read(&file.tree, &file.path, file.bytes, &Arena::default()).parsed())
+        Ok(TaskReading::read(&file.tree, &file.path, file.bytes, &Arena::default()).parsed())
     }
 
     /// Reads a task file, and puts everything in.
@@ -57,7 +57,7 @@ impl<'s> TaskReader<'s> {
     /// As [`read`](Self::read).
     pub fn expand(&self, path: &Path) -> Result<ExpandedTask, ReadError> {
         let file = self.open(path)?;
-        Ok(Task::read(&file.tree, &file.path, file.bytes, &Arena::default()).expanded())
+        Ok(TaskReading::read(&file.tree, &file.path, file.bytes, &Arena::default()).expanded())
     }
 
     fn open(&self, path: &Path) -> Result<OpenFile<'s>, ReadError> {

@@ -9,7 +9,7 @@ use tabletop_core::{
     WriteCommand as _,
 };
 use tabletop_gui::{Notices, Tone};
-use tabletop_planner::{Execution, Imitation, RobotBody, Turn, goal_poses};
+use tabletop_planner::{Execution, ExecutionTurn, Imitation, RobotBody, goal_poses};
 use tabletop_robot::Description;
 use tabletop_task::Task;
 
@@ -23,10 +23,10 @@ const PREPARATION: u32 = 30;
 
 /// The robot that does what was shown.
 #[derive(Resource, Default)]
-pub(super) struct Imitator(State);
+pub(super) struct RobotImitator(ImitatorState);
 
 #[derive(Default)]
-enum State {
+enum ImitatorState {
     #[default]
     Idle,
     Preparing {
@@ -45,7 +45,7 @@ enum State {
 }
 
 pub(super) fn plugin(app: &mut App) {
-    app.init_resource::<Imitator>()
+    app.init_resource::<RobotImitator>()
         .add_systems(
             FixedUpdate,
             act.run_if(SimBlocked::is_clear)
@@ -54,19 +54,19 @@ pub(super) fn plugin(app: &mut App) {
                 .in_set(RestingSystems),
         )
         .wake_while(is_busy)
-        .add_systems(Update, publish.run_if(resource_changed::<Imitator>));
+        .add_systems(Update, publish.run_if(resource_changed::<RobotImitator>));
 }
 
-fn is_busy(imitator: Res<Imitator>) -> bool {
-    !matches!(imitator.0, State::Idle)
+fn is_busy(imitator: Res<RobotImitator>) -> bool {
+    !matches!(imitator.0, ImitatorState::Idle)
 }
 
-impl Imitator {
+impl RobotImitator {
     /// Gets ready to do what was shown.
     pub fn prepare(&mut self, understood: &Understood) -> Result<(), String> {
         let lesson = understood.lesson();
         let lesson = lesson.ok_or("nothing was shown yet: record a demonstration first")?;
-        self.0 = State::Preparing {
+        self.0 = ImitatorState::Preparing {
             lesson: Box::new(lesson.clone()),
             ticks: 0,
         };
@@ -74,15 +74,15 @@ impl Imitator {
     }
 
     pub fn stop(&mut self) {
-        self.0 = State::Idle;
+        self.0 = ImitatorState::Idle;
     }
 
     /// How it gets on.
     fn progress(&self) -> Imitating {
         match &self.0 {
-            State::Idle => Imitating::Idle,
-            State::Preparing { .. } => Imitating::Preparing,
-            State::Acting {
+            ImitatorState::Idle => Imitating::Idle,
+            ImitatorState::Preparing { .. } => Imitating::Preparing,
+            ImitatorState::Acting {
                 execution,
                 is_planning,
                 ..
@@ -99,7 +99,7 @@ impl Imitator {
 
     /// Where the steps that are not done yet are going to put their objects.
     fn ghosts(&self) -> Vec<Ghost> {
-        let State::Acting {
+        let ImitatorState::Acting {
             execution, ghosts, ..
         } = &self.0
         else {
@@ -116,7 +116,11 @@ impl Imitator {
 }
 
 /// Tells panels and view how the robot gets on.
-fn publish(imitator: Res<Imitator>, mut imitating: ResMut<Imitating>, mut ghosts: ResMut<Ghosts>) {
+fn publish(
+    imitator: Res<RobotImitator>,
+    mut imitating: ResMut<Imitating>,
+    mut ghosts: ResMut<Ghosts>,
+) {
     imitating.set_if_neq(imitator.progress());
     ghosts.set_if_neq(Ghosts(imitator.ghosts()));
 }
@@ -126,17 +130,17 @@ fn act(world: &mut World) {
     if world.resource::<Paused>().0 {
         return;
     }
-    let mut imitator = std::mem::take(&mut *world.resource_mut::<Imitator>());
+    let mut imitator = std::mem::take(&mut *world.resource_mut::<RobotImitator>());
     let outcome = match () {
         () if world.resource::<Replaying>().0 => Some(Err("a recording was opened".into())),
         () if world.resource::<Agent>().is_on() => Some(Err("a script was started".into())),
-        () if !is_there(world) && !matches!(imitator.0, State::Preparing { .. }) => {
+        () if !is_there(world) && !matches!(imitator.0, ImitatorState::Preparing { .. }) => {
             Some(Err("the robot was taken away".into()))
         }
         () => imitator.go_on(world),
     };
     match outcome {
-        None => *world.resource_mut::<Imitator>() = imitator,
+        None => *world.resource_mut::<RobotImitator>() = imitator,
         Some(Ok(told)) => world.resource_mut::<Notices>().append(Tone::News, &told),
         Some(Err(reason)) => {
             let told = format!("the robot has stopped: {reason}");
@@ -149,12 +153,12 @@ fn is_there(world: &World) -> bool {
     world.resource::<Robot>().is_shown
 }
 
-impl Imitator {
+impl RobotImitator {
     /// Goes on by a tick. What it returns is the end.
     fn go_on(&mut self, world: &mut World) -> Option<Result<String, String>> {
         match &mut self.0 {
-            State::Idle => None,
-            State::Preparing { lesson, ticks } => {
+            ImitatorState::Idle => None,
+            ImitatorState::Preparing { lesson, ticks } => {
                 if *ticks == 0 && !is_there(world) {
                     world.write_command_of(Actor::Panel, RobotCommand::Show(true));
                 }
@@ -170,7 +174,7 @@ impl Imitator {
                     Err(reason) => Some(Err(reason)),
                 }
             }
-            State::Acting {
+            ImitatorState::Acting {
                 execution,
                 task,
                 is_expecting,
@@ -182,10 +186,10 @@ impl Imitator {
                     *is_expecting = false;
                 }
                 let turn = execution.turn(LONGEST_WAIT);
-                *is_planning = turn == Turn::Planning;
+                *is_planning = turn == ExecutionTurn::Planning;
                 match turn {
-                    Turn::Planning => None,
-                    Turn::Orders(orders) => {
+                    ExecutionTurn::Planning => None,
+                    ExecutionTurn::Orders(orders) => {
                         *is_expecting = true;
                         let command = command(world.resource::<RobotLayout>(), &orders);
                         if let Some(command) = command {
@@ -193,7 +197,7 @@ impl Imitator {
                         }
                         None
                     }
-                    Turn::Over(imitation) => Some(told(task, &imitation)),
+                    ExecutionTurn::Over(imitation) => Some(told(task, &imitation)),
                 }
             }
         }
@@ -212,7 +216,7 @@ fn told(task: &Task, imitation: &Imitation) -> Result<String, String> {
 }
 
 /// Begins with what is on the table now.
-fn begin(world: &mut World, lesson: &Lesson) -> Result<State, String> {
+fn begin(world: &mut World, lesson: &Lesson) -> Result<ImitatorState, String> {
     let index = world.resource::<ObjectIndex>();
     let objects: Vec<_> = index
         .iter()
@@ -247,7 +251,7 @@ fn begin(world: &mut World, lesson: &Lesson) -> Result<State, String> {
     let ghosts = ghosts.collect();
     let execution = Execution::begin(body, task.clone(), binding, sight, SEED);
     let execution = execution.map_err(|error| error.to_string())?;
-    Ok(State::Acting {
+    Ok(ImitatorState::Acting {
         execution: Box::new(execution),
         task: Box::new(task),
         ghosts,

@@ -14,7 +14,7 @@ use crate::{
 /// The last picture, as far as it shows what the one before it has shown.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct KeptBands {
-    shown: Shown,
+    shown: PictureContent,
     /// For each band, whether it shows what it has shown in the picture before.
     stays: Vec<bool>,
     is_kept: Vec<bool>,
@@ -23,7 +23,7 @@ pub(crate) struct KeptBands {
 
 /// What a picture shows.
 #[derive(Clone, Debug, Default)]
-struct Shown {
+struct PictureContent {
     view: Option<([u32; 11], bool)>,
     solids: Vec<(DrawnSolid, Range<u32>)>,
     figures: Vec<(FigureKey, Range<u32>)>,

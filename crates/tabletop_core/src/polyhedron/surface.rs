@@ -6,13 +6,13 @@ use bevy::prelude::*;
 
 use crate::{
     Rgb, Triangles,
-    polyhedron::{Facets, Polyhedron},
+    polyhedron::{Polyhedron, PolyhedronData},
 };
 
 impl Polyhedron {
     /// Its surface in a colour, with normals: those of its faces, and of the round surface where it is meant to be one.
     pub fn surface(self, color: Rgb) -> Triangles {
-        let Facets {
+        let PolyhedronData {
             corners,
             triangles,
             crease,

@@ -7,17 +7,17 @@ use crate::{Bounds, MOST_SIDES, Part, Polyhedron, Pose, Primitive, Shape, Solid,
 impl Shape {
     /// The solids to be drawn. Rings and meshes are polyhedra that are not convex.
     pub fn drawn(&self) -> Vec<Primitive> {
-        primitives(self.simple_parts(), Purpose::Drawing)
+        primitives(self.simple_parts(), SolidPurpose::Drawing)
     }
 
     /// Convex solids that fill what is drawn; a mesh nearly.
     pub fn filled(&self) -> Vec<Primitive> {
-        primitives(self.simple_parts(), Purpose::Filling)
+        primitives(self.simple_parts(), SolidPurpose::Filling)
     }
 
     /// The convex solids that other bodies touch.
     pub fn colliding(&self) -> Vec<Primitive> {
-        primitives(self.simple_touched(), Purpose::Colliding)
+        primitives(self.simple_touched(), SolidPurpose::Colliding)
     }
 }
 
@@ -35,13 +35,13 @@ impl Bounds {
 
 /// What solids of a shape are for.
 #[derive(Clone, Copy)]
-enum Purpose {
+enum SolidPurpose {
     Drawing,
     Filling,
     Colliding,
 }
 
-fn primitives(simple_parts: Vec<Part>, purpose: Purpose) -> Vec<Primitive> {
+fn primitives(simple_parts: Vec<Part>, purpose: SolidPurpose) -> Vec<Primitive> {
     let mut primitives = Vec::new();
     for part in simple_parts {
         let mut add = |pose: Pose, solid, color| {
@@ -95,11 +95,11 @@ fn primitives(simple_parts: Vec<Part>, purpose: Purpose) -> Vec<Primitive> {
                 sides,
                 color,
             } => match purpose {
-                Purpose::Drawing => {
+                SolidPurpose::Drawing => {
                     let ring = Polyhedron::ring(radius_outer, radius_inner, zspan, sides);
                     add(center, Solid::Polyhedron(ring), color);
                 }
-                Purpose::Filling | Purpose::Colliding => {
+                SolidPurpose::Filling | SolidPurpose::Colliding => {
                     let sides = sides.clamp(3, MOST_SIDES);
                     let wedge = Polyhedron::wedge(radius_outer, radius_inner, zspan, sides);
                     for side in 0..sides {
@@ -110,8 +110,8 @@ fn primitives(simple_parts: Vec<Part>, purpose: Purpose) -> Vec<Primitive> {
                 }
             },
             Shape::Mesh { ref mesh, color } => match purpose {
-                Purpose::Drawing => add(center, Solid::Polyhedron(mesh.surface()), color),
-                Purpose::Filling | Purpose::Colliding => {
+                SolidPurpose::Drawing => add(center, Solid::Polyhedron(mesh.surface()), color),
+                SolidPurpose::Filling | SolidPurpose::Colliding => {
                     for &solid in mesh.solids() {
                         add(center, Solid::Polyhedron(solid), color);
                     }
@@ -123,8 +123,8 @@ fn primitives(simple_parts: Vec<Part>, purpose: Purpose) -> Vec<Primitive> {
                 color,
             } => {
                 let ends = match purpose {
-                    Purpose::Drawing | Purpose::Filling => Vec3::Y * 2.0 * padding,
-                    Purpose::Colliding => Vec3::ZERO,
+                    SolidPurpose::Drawing | SolidPurpose::Filling => Vec3::Y * 2.0 * padding,
+                    SolidPurpose::Colliding => Vec3::ZERO,
                 };
                 add(center, Solid::Cuboid(span + ends), color);
             }

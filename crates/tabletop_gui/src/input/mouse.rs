@@ -14,7 +14,7 @@ use crate::input::{
 
 /// The purpose of the pressed button.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) enum Press {
+pub(crate) enum MousePress {
     /// Nothing.
     #[default]
     Idle,
@@ -24,7 +24,7 @@ pub(crate) enum Press {
     Drag(Drag),
 }
 
-impl Press {
+impl MousePress {
     /// True if the mouse moves something.
     pub fn is_drag(&self) -> bool {
         matches!(self, Self::Drag(_))
@@ -32,7 +32,7 @@ impl Press {
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Press>()
+    app.init_resource::<MousePress>()
         .init_resource::<Pointer>()
         .configure_sets(
             RunFixedMainLoop,
@@ -48,8 +48,8 @@ pub(crate) fn plugin(app: &mut App) {
         );
 }
 
-fn forget_press(mut press: ResMut<Press>) {
-    press.set_if_neq(Press::Idle);
+fn forget_press(mut press: ResMut<MousePress>) {
+    press.set_if_neq(MousePress::Idle);
 }
 
 /// The button goes down: on what the selected hand holds a drag begins, and anywhere else the hand lets go; with an empty
@@ -61,7 +61,7 @@ fn press(
     hands: Res<Hands>,
     plane: Res<DragPlane>,
     places: Query<&Transform>,
-    mut press: ResMut<Press>,
+    mut press: ResMut<MousePress>,
     mut commands: CommandWriter,
 ) {
     if !buttons.just_pressed(MouseButton::Left) || pointer.is_panels {
@@ -72,15 +72,15 @@ fn press(
     };
     let picked = pickable.object_along(ray);
     *press = match hands.held_by(hands.selected) {
-        None => picked.map_or(Press::Idle, Press::Click),
+        None => picked.map_or(MousePress::Idle, MousePress::Click),
         Some(held) if picked == Some(held) => places
             .get(held)
             .ok()
             .and_then(|place| Drag::start(held, place.translation, plane.normal(), ray))
-            .map_or(Press::Idle, Press::Drag),
+            .map_or(MousePress::Idle, MousePress::Drag),
         Some(_) => {
             commands.write(Actor::Mouse, HandCommand::Release(hands.selected));
-            Press::Idle
+            MousePress::Idle
         }
     };
 }
@@ -92,10 +92,10 @@ fn drag(
     plane: Res<DragPlane>,
     places: Query<&Transform>,
     tables: Query<&Table>,
-    mut press: ResMut<Press>,
+    mut press: ResMut<MousePress>,
     mut commands: CommandWriter,
 ) {
-    let (Press::Drag(drag), Some(ray)) = (*press, pointer.ray) else {
+    let (MousePress::Drag(drag), Some(ray)) = (*press, pointer.ray) else {
         return;
     };
     let side = DragPlane::side(&tables.iter().next().copied().unwrap_or_default());
@@ -106,7 +106,7 @@ fn drag(
         .filter(|_| hands.held_by(hand) == Some(drag.object))
         .and_then(|place| drag.follow(ray, place.translation, plane.normal(), side));
     let Some(moved) = moved else {
-        *press = Press::Idle;
+        *press = MousePress::Idle;
         return;
     };
     if moved.target != drag.target {
@@ -118,7 +118,7 @@ fn drag(
             },
         );
     }
-    press.set_if_neq(Press::Drag(moved));
+    press.set_if_neq(MousePress::Drag(moved));
 }
 
 /// The button comes up: a drag ends, and a click takes the object that it began on.
@@ -128,13 +128,13 @@ fn come_up(
     pickable: Pickable,
     hands: Res<Hands>,
     specs: Query<&ObjectSpec>,
-    mut press: ResMut<Press>,
+    mut press: ResMut<MousePress>,
     mut commands: CommandWriter,
 ) {
     if buttons.pressed(MouseButton::Left) {
         return;
     }
-    if let Press::Click(object) = *press
+    if let MousePress::Click(object) = *press
         && !pointer.is_panels
         && pointer.ray.and_then(|ray| pickable.object_along(ray)) == Some(object)
         && let Ok(spec) = specs.get(object)
@@ -147,7 +147,7 @@ fn come_up(
             },
         );
     }
-    press.set_if_neq(Press::Idle);
+    press.set_if_neq(MousePress::Idle);
 }
 
 #[cfg(test)]
@@ -232,7 +232,7 @@ mod tests {
         assert_eq!(hand, Hand::Any);
         assert!(location.distance(Vec3::new(3.0, 0.0, 4.0)) < 1e-4);
         assert_eq!(test.hold_still(), []);
-        assert!(test.app.world().resource::<Press>().is_drag());
+        assert!(test.app.world().resource::<MousePress>().is_drag());
         assert_eq!(test.come_up(), []);
         test.point_at(Vec3::Z * 3.0);
         assert_eq!(test.hold_still(), []);
@@ -252,10 +252,10 @@ mod tests {
             test.hold("red", Vec3::Z);
             test.point_at(Vec3::Z);
             test.press();
-            assert!(test.app.world().resource::<Press>().is_drag());
+            assert!(test.app.world().resource::<MousePress>().is_drag());
             end(&mut test);
             assert_eq!(test.hold_still(), []);
-            assert!(!test.app.world().resource::<Press>().is_drag());
+            assert!(!test.app.world().resource::<MousePress>().is_drag());
         }
     }
 

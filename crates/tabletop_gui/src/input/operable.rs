@@ -2,7 +2,8 @@
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
-    Action, Bonds, Hand, Hands, MechanismCommand, ObjectIndex, ObjectSpec, Pose, Surface, Turn,
+    Action, Bonds, Hand, Hands, MechanismCommand, ObjectIndex, ObjectSpec, Pose, TouchedSurface,
+    Turn,
 };
 
 use crate::input::pick::Pickable;
@@ -110,7 +111,11 @@ impl Operable<'_, '_> {
     }
 }
 
-fn trigger(hand: Hand, spec: &ObjectSpec, surface: &Surface) -> Result<MechanismCommand, String> {
+fn trigger(
+    hand: Hand,
+    spec: &ObjectSpec,
+    surface: &TouchedSurface,
+) -> Result<MechanismCommand, String> {
     let (id, part) = surface
         .control
         .ok_or_else(|| format!("`{}` is no control there", spec.id))?;

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use tabletop_core::{Action, CameraMotion, DragPlane, Hand, Hands, Keys, Paused, UserCamera};
 
-use crate::input::{mouse::Press, pointer::MouseSystems};
+use crate::input::{mouse::MousePress, pointer::MouseSystems};
 
 /// Speed of the plane in radians a second.
 const SPEED: f32 = 0.3;
@@ -48,7 +48,7 @@ fn turn(
     buttons: Res<PlaneButtons>,
     time: Res<Time>,
     hands: Res<Hands>,
-    press: Res<Press>,
+    press: Res<MousePress>,
     places: Query<&Transform>,
     mut plane: ResMut<DragPlane>,
     mut motions: MessageWriter<CameraMotion>,

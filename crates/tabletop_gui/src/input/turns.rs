@@ -12,9 +12,9 @@ pub(crate) const AXES: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
 /// Sums of the turns since a hand took what it holds, in whole degrees. They are no orientation: every turn is about an
 /// axis of the world, on top of those before.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Turns([[i32; 3]; 4]);
+pub(crate) struct TurnSums([[i32; 3]; 4]);
 
-impl Turns {
+impl TurnSums {
     /// The sums of a hand about each of the [`AXES`].
     pub fn of(&self, hand: Hand) -> [i32; 3] {
         self.0[hand as usize]
@@ -34,17 +34,18 @@ impl Turns {
 }
 
 pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Turns>().add_systems(Update, begin_anew);
+    app.init_resource::<TurnSums>()
+        .add_systems(Update, begin_anew);
 }
 
 /// Every grasp begins at 0, an empty hand stands there, and what an undo brings back begins there, too.
-fn begin_anew(mut facts: MessageReader<SimFact>, mut turns: ResMut<Turns>) {
+fn begin_anew(mut facts: MessageReader<SimFact>, mut turns: ResMut<TurnSums>) {
     for fact in facts.read() {
         match fact {
             SimFact::Grasped { hand, .. }
             | SimFact::Released { hand, .. }
             | SimFact::Destroyed { hand, .. } => turns.0[*hand as usize] = [0; 3],
-            SimFact::Undone { .. } | SimFact::Redone { .. } => *turns = Turns::default(),
+            SimFact::Undone { .. } | SimFact::Redone { .. } => *turns = TurnSums::default(),
             SimFact::TaskLoaded { .. }
             | SimFact::ObjectCreated { .. }
             | SimFact::ObjectDeleted { .. }
@@ -83,7 +84,7 @@ mod tests {
 
     #[test]
     fn what_a_slider_moves_is_what_is_turned() {
-        let mut turns = Turns::default();
+        let mut turns = TurnSums::default();
         for (to, by) in [(45, 45.0), (30, -15.0), (-30, -60.0)] {
             assert_eq!(degrees_of(turns.turn_to(Hand::Left, 1, to)), Some(by));
         }
@@ -94,7 +95,7 @@ mod tests {
 
     #[test]
     fn no_slider_goes_beyond_half_a_turn() {
-        let mut turns = Turns::default();
+        let mut turns = TurnSums::default();
         let turned = turns.turn_to(Hand::Any, 2, 1000);
         assert_eq!(degrees_of(turned), Some(180.0));
         assert_eq!(turns.turn_to(Hand::Any, 2, 181), None);
@@ -107,7 +108,7 @@ mod tests {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
-        let mut turns = app.world_mut().resource_mut::<Turns>();
+        let mut turns = app.world_mut().resource_mut::<TurnSums>();
         turns.turn_to(Hand::Left, 0, 10);
         turns.turn_to(Hand::Right, 2, 20);
         let cause = CommandId(0);
@@ -117,11 +118,11 @@ mod tests {
             id: "red".into(),
         });
         app.update();
-        let turns = *app.world().resource::<Turns>();
+        let turns = *app.world().resource::<TurnSums>();
         assert_eq!(turns.of(Hand::Left), [0; 3]);
         assert_eq!(turns.of(Hand::Right), [0, 0, 20]);
         app.world_mut().write_message(SimFact::Undone { cause });
         app.update();
-        assert_eq!(*app.world().resource::<Turns>(), Turns::default());
+        assert_eq!(*app.world().resource::<TurnSums>(), TurnSums::default());
     }
 }

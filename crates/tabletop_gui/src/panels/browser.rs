@@ -32,12 +32,12 @@ pub enum Purpose {
 /// A window that shows a folder, in which the user chooses a file.
 #[derive(Resource, Debug, Default)]
 pub struct Browser {
-    search: Option<Search>,
+    search: Option<FileSearch>,
 }
 
 /// The user's search.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Search {
+struct FileSearch {
     purpose: Purpose,
     folder: FolderContent,
     /// The name that is selected or typed.
@@ -87,7 +87,7 @@ pub(crate) fn plugin(app: &mut App) {
 impl Browser {
     /// Lets the user look for a file, first in this folder.
     pub fn ask(&mut self, purpose: Purpose, folder: &Path) {
-        self.search = Some(Search {
+        self.search = Some(FileSearch {
             purpose,
             folder: FolderContent::read(folder),
             name: match purpose {
@@ -139,7 +139,7 @@ fn show_browser(
     }
 }
 
-fn show(ui: &mut Ui, search: &mut Search) -> Option<Request> {
+fn show(ui: &mut Ui, search: &mut FileSearch) -> Option<Request> {
     ui.set_width(WIDTH);
     let (title, verb) = match search.purpose {
         Purpose::Open => ("Open a task file or a recording", "Open"),
@@ -204,7 +204,7 @@ fn place(ui: &mut Ui, folder: &FolderContent) -> Option<Request> {
     .flatten()
 }
 
-fn entries(ui: &mut Ui, search: &mut Search) -> Option<Request> {
+fn entries(ui: &mut Ui, search: &mut FileSearch) -> Option<Request> {
     let mut request = None;
     let list = ScrollArea::vertical()
         .max_height(HEIGHT)
@@ -242,7 +242,7 @@ fn entries(ui: &mut Ui, search: &mut Search) -> Option<Request> {
     request
 }
 
-impl Search {
+impl FileSearch {
     /// Takes what is selected or typed.
     fn choose(&self) -> Request {
         let mut path = self.folder.path.join(self.name.trim());

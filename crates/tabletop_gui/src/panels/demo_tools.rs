@@ -14,7 +14,7 @@ use tabletop_core::{
 };
 
 use crate::{
-    input::{plane::PlaneButtons, turns::Turns},
+    input::{plane::PlaneButtons, turns::TurnSums},
     panels::{Panel, Panels},
     widgets::{
         button::{button, hold_button},
@@ -104,7 +104,7 @@ struct Sources<'w, 's> {
 }
 
 impl Sources<'_, '_> {
-    fn model(&self, turns: &Turns) -> Model<'_> {
+    fn model(&self, turns: &TurnSums) -> Model<'_> {
         let hand = self.hands.selected;
         let held = self.hands.held_by(hand);
         let held = held.and_then(|object| self.specs.get(object).ok());
@@ -123,7 +123,7 @@ fn show_panel(
     mut contexts: EguiContexts,
     mut panels: ResMut<Panels>,
     sources: Sources,
-    mut turns: ResMut<Turns>,
+    mut turns: ResMut<TurnSums>,
     mut plane_buttons: ResMut<PlaneButtons>,
     mut commands: CommandWriter,
 ) {
@@ -141,7 +141,7 @@ fn show_panel(
 }
 
 /// The command that carries out what is asked of the panel while a hand is selected.
-fn command(request: Request, hand: Hand, turns: &mut Turns) -> Option<SimCommand> {
+fn command(request: Request, hand: Hand, turns: &mut TurnSums) -> Option<SimCommand> {
     Some(match request {
         Request::Select(hand) => SimCommand::Hand(HandCommand::Select(hand)),
         Request::Release => SimCommand::Hand(HandCommand::Release(hand)),

@@ -162,7 +162,7 @@ fn open_with_recording(
 
 /// The resources from which the model is made.
 #[derive(SystemParam)]
-struct Source<'w> {
+struct Sources<'w> {
     timeline: Res<'w, Timeline>,
     playback: Res<'w, Playback>,
     tick: Res<'w, SimTick>,
@@ -176,7 +176,7 @@ struct Source<'w> {
 fn show_panel(
     mut contexts: EguiContexts,
     mut panels: ResMut<Panels>,
-    source: Source,
+    source: Sources,
     mut view: ResMut<View>,
     mut orders: orders::Orders,
 ) {

@@ -11,7 +11,7 @@ const MOST_LEVELS: usize = 512;
 /// # Errors
 /// It is no such value, or is nested deeper than recordings are.
 pub(crate) fn from_json<'j, T: Deserialize<'j>>(json: &'j [u8]) -> Result<T, Error> {
-    if Outline::of(json).depth > MOST_LEVELS {
+    if JsonOutline::of(json).depth > MOST_LEVELS {
         let reason = format!("it is nested more than {MOST_LEVELS} levels deep");
         return Err(serde::de::Error::custom(reason));
     }
@@ -31,19 +31,19 @@ pub(crate) fn to_json_line(value: &impl Serialize) -> Result<Vec<u8>, Error> {
 
 /// Whether a value that was written reads back: it has no number that is none, which is written as `null`, and is not too deep.
 pub(crate) fn reads_back(json: &[u8]) -> bool {
-    let Outline { depth, has_null } = Outline::of(json);
+    let JsonOutline { depth, has_null } = JsonOutline::of(json);
     !has_null && depth <= MOST_LEVELS
 }
 
 /// What is seen of JSON without reading it.
 #[derive(Debug, Default, PartialEq)]
-struct Outline {
+struct JsonOutline {
     /// How deep brackets are nested, at most.
     depth: usize,
     has_null: bool,
 }
 
-impl Outline {
+impl JsonOutline {
     fn of(json: &[u8]) -> Self {
         let (mut outline, mut depth) = (Self::default(), 0_usize);
         let (mut is_text, mut is_escaped) = (false, false);
@@ -84,7 +84,7 @@ mod tests {
             );
         }
         let text = r#"["[[[\"[[", {"a": [1]}]"#;
-        let outline = Outline::of(text.as_bytes());
+        let outline = JsonOutline::of(text.as_bytes());
         assert_eq!((outline.depth, outline.has_null), (3, false));
         assert!(from_json::<Value>(b"[] []").is_err());
     }

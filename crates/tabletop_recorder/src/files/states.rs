@@ -4,12 +4,12 @@ use tabletop_core::{Pose, SimTick, Twist};
 
 /// An object's state at the end of a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct State {
+pub(crate) struct ObjectState {
     pub(crate) pose: Pose,
     pub(crate) twist: Twist,
 }
 
-impl State {
+impl ObjectState {
     /// True if two states are the same in every bit.
     pub(crate) fn is_same(self, other: Self) -> bool {
         self.numbers().map(f32::to_bits) == other.numbers().map(f32::to_bits)
@@ -35,7 +35,7 @@ pub(crate) fn header() -> Vec<String> {
 
 /// A row: location in units, orientation as a unit quaternion, velocities in units/s and rad/s, with the digits that read
 /// back to the same bits.
-pub(crate) fn row(tick: SimTick, id: &str, state: State) -> Vec<String> {
+pub(crate) fn row(tick: SimTick, id: &str, state: ObjectState) -> Vec<String> {
     let numbers = state.numbers().map(|number| format!("{number:?}"));
     [tick.0.to_string(), id.to_owned()]
         .into_iter()
@@ -59,7 +59,7 @@ mod tests {
             linear: Vec3::new(-1e-20, 3.0, 0.3),
             angular: Vec3::NEG_Z,
         };
-        let row = row(SimTick(12), "it", State { pose, twist });
+        let row = row(SimTick(12), "it", ObjectState { pose, twist });
         assert_eq!(row.len(), header().len());
         assert_eq!(row[..2], ["12", "it"]);
         let numbers: Vec<f32> = row[2..].iter().map(|text| text.parse().unwrap()).collect();

@@ -21,21 +21,21 @@ const BETWEEN_LOCK_ATTEMPTS: Duration = Duration::from_millis(5);
 /// Tests make one of its calls fail. The calls of a recording are counted from 0; the same commands make the same calls.
 ///
 /// ```
-/// use tabletop_recorder::{Fault, Storage};
+/// use tabletop_recorder::{StorageFault, Storage};
 ///
 /// let counted = Storage::default();
-/// let failing = Storage::with_fault(Fault::Full, 12);
+/// let failing = Storage::with_fault(StorageFault::Full, 12);
 /// assert_eq!((counted.calls(), failing.calls()), (0, 0));
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Storage {
     calls: Arc<AtomicU64>,
-    failpoint: Option<(Fault, u64)>,
+    failpoint: Option<(StorageFault, u64)>,
 }
 
 /// The failure of calls to a [`Storage`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Fault {
+pub enum StorageFault {
     /// One call finds the disk full. Of what it was to write, half is written.
     FullOnce,
     /// From one call on, the disk is full.
@@ -48,7 +48,7 @@ pub enum Fault {
     KilledWithin,
 }
 
-impl Fault {
+impl StorageFault {
     /// All faults.
     pub const ALL: [Self; 5] = [
         Self::FullOnce,
@@ -84,7 +84,7 @@ impl Fault {
 
 impl Storage {
     /// A storage of which this call fails.
-    pub fn with_fault(fault: Fault, call: u64) -> Self {
+    pub fn with_fault(fault: StorageFault, call: u64) -> Self {
         Self {
             failpoint: Some((fault, call)),
             ..Self::default()

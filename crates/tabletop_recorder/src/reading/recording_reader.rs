@@ -21,7 +21,7 @@ use crate::{
     reading::{
         event::{self, RecordedEvent},
         rows::{self, JointRow, StateRow},
-        segment::{self, Hands, RecordedFrame, RecordedSegment, begin_of},
+        segment::{self, HandContents, RecordedFrame, RecordedSegment, begin_of},
     },
 };
 
@@ -134,7 +134,7 @@ impl RecordingReader {
     /// A file cannot be read, or a line of it is none that a recorder writes; it is named.
     pub fn segments(&self) -> Result<Vec<RecordedSegment>, RecorderError> {
         let mut segments = Vec::new();
-        let mut hands = Hands::default();
+        let mut hands = HandContents::default();
         let mut commands = &self.session.commands[..];
         for number in 0.. {
             let Some(events) = read_events(&self.folder, number)? else {
@@ -167,7 +167,7 @@ impl RecordingReader {
     /// As for [`segments`](Self::segments).
     pub fn undone(&self) -> Result<Vec<RecordedSegment>, RecorderError> {
         let mut segments = Vec::new();
-        let mut hands = Hands::default();
+        let mut hands = HandContents::default();
         let mut next = 0;
         while let Some(events) = read_events(&self.folder, next)? {
             hands.follow(&events);

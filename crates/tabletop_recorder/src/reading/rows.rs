@@ -132,7 +132,7 @@ mod tests {
 
     #[test]
     fn states_read_back_to_the_bit() {
-        let state = states::State {
+        let state = states::ObjectState {
             pose: Pose::new(
                 Vec3::new(0.1, -1e-30, 3e7),
                 Quat::from_rotation_x(1.0 / 3.0),

@@ -51,9 +51,9 @@ impl RecordedSegment {
 
 /// The objects in the hands, as far as events tell.
 #[derive(Debug, Default)]
-pub(super) struct Hands(BTreeMap<Hand, String>);
+pub(super) struct HandContents(BTreeMap<Hand, String>);
 
-impl Hands {
+impl HandContents {
     /// Follows the events of a segment. Returns the first thing that a hand did, and its frame.
     pub(super) fn follow(&mut self, events: &[RecordedEvent]) -> Option<(Act, u64)> {
         let acts = events

@@ -7,7 +7,7 @@ use tabletop_core::{ObjectSpec, Rgb, SimTick};
 use crate::{
     files::{event::Event, states},
     recording::{
-        stage::{Shown, Stage},
+        stage::{PixelSubject, RecordedWorld},
         tracked::Tracked,
     },
 };
@@ -95,7 +95,7 @@ impl RecordedObjects {
     }
 
     /// A row of states for each object that has moved.
-    pub(crate) fn moved_rows(&mut self, tick: SimTick, stage: &Stage) -> Vec<Vec<String>> {
+    pub(crate) fn moved_rows(&mut self, tick: SimTick, stage: &RecordedWorld) -> Vec<Vec<String>> {
         let moved = self.tracked.iter_mut().filter_map(|object| {
             let state = stage.state(&object.id)?;
             object
@@ -106,14 +106,14 @@ impl RecordedObjects {
     }
 
     /// What stands for something in an image of ids.
-    pub(crate) fn number_of(&self, shown: Shown) -> u16 {
+    pub(crate) fn number_of(&self, shown: PixelSubject) -> u16 {
         let number = match shown {
-            Shown::Table => Some(1),
-            Shown::Object(spec) => {
+            PixelSubject::Table => Some(1),
+            PixelSubject::Object(spec) => {
                 let object = self.tracked.iter().find(|object| object.id == spec.id);
                 object.and_then(|object| u16::try_from(object.number + 1).ok())
             }
-            Shown::Other => None,
+            PixelSubject::Other => None,
         };
         number.unwrap_or(u16::MAX)
     }

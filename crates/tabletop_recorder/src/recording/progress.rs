@@ -6,18 +6,18 @@ use crate::{
     files::{intent::Lengths, session::SessionCommand},
     recording::{
         objects::RecordedObjects,
-        stage::Sight,
+        stage::FrameSight,
         timeline_mark::{TimelineMark, TimelineTail},
     },
 };
 
 /// The progress of a recording at a moment.
 #[derive(Clone, Debug)]
-pub(crate) struct Progress {
+pub(crate) struct RecordingProgress {
     pub(crate) files: Lengths,
     pub(crate) objects: RecordedObjects,
     /// The sight at the last frame.
-    pub(crate) sight: Sight,
+    pub(crate) sight: FrameSight,
     pub(crate) last_joints: Option<Vec<JointState>>,
     pub(crate) is_paused: bool,
 }
@@ -25,7 +25,7 @@ pub(crate) struct Progress {
 /// The moment before a segment began.
 #[derive(Clone, Debug)]
 pub(crate) struct SegmentStart {
-    pub(crate) before: Progress,
+    pub(crate) before: RecordingProgress,
     pub(crate) timeline: TimelineMark,
     /// The commands in the session log in place of the one that began it, if the recording goes on from here: a grasp that takes an
     /// object out of another hand is a release and a grasp, in segments of their own.
@@ -37,6 +37,6 @@ pub(crate) struct SegmentStart {
 #[derive(Clone, Debug)]
 pub(crate) struct UndoneSegment {
     pub(crate) start: SegmentStart,
-    pub(crate) end: Progress,
+    pub(crate) end: RecordingProgress,
     pub(crate) timeline: TimelineTail,
 }

@@ -16,7 +16,7 @@ use crate::{
         frame::TICKS_PER_FRAME,
         session::{SessionCommand, SessionHeader},
     },
-    recording::{earlier_commands::EarlierCommands, episode::Episode, stage::Stage},
+    recording::{earlier_commands::EarlierCommands, episode::Episode, stage::RecordedWorld},
 };
 
 /// Why a recording cannot be started.
@@ -49,7 +49,7 @@ impl Recorder {
         &mut self,
         cause: CommandId,
         tick: SimTick,
-        stage: &Stage,
+        stage: &RecordedWorld,
         timeline: &mut Timeline,
     ) -> Result<SimFact, RecorderError> {
         let header = SessionHeader {
@@ -90,7 +90,7 @@ pub(crate) fn take_commands(
     mut timeline: ResMut<Timeline>,
     tick: Res<SimTick>,
     hands: Res<Hands>,
-    stage: Stage,
+    stage: RecordedWorld,
 ) {
     let mut commands: Vec<_> = commands.read().cloned().collect();
     commands.sort_by_key(|issued| issued.command.phase());
@@ -181,7 +181,7 @@ pub(crate) fn record(
     mut timeline: ResMut<Timeline>,
     tick: Res<SimTick>,
     paused: Res<Paused>,
-    stage: Stage,
+    stage: RecordedWorld,
     image: Option<Res<SensorImage>>,
 ) {
     let finish = recorder.finish.clone();

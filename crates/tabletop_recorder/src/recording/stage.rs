@@ -9,14 +9,14 @@ use tabletop_core::{
 use crate::{
     files::{
         session::{SessionObject, SessionScene, SessionSettings},
-        states::State,
+        states::ObjectState,
     },
     recording::tracked::Tracked,
 };
 
 /// The world as recordings see it.
 #[derive(SystemParam)]
-pub(crate) struct Stage<'w, 's> {
+pub(crate) struct RecordedWorld<'w, 's> {
     index: Res<'w, ObjectIndex>,
     objects: Query<
         'w,
@@ -35,7 +35,7 @@ pub(crate) struct Stage<'w, 's> {
     pub(crate) layout: Res<'w, RobotLayout>,
 }
 
-impl Stage<'_, '_> {
+impl RecordedWorld<'_, '_> {
     pub(crate) fn scene(&self) -> SessionScene {
         let place = |object| self.index.iter().position(|other| other == object);
         let mut joints: Vec<_> = self.joints.iter().collect();
@@ -72,17 +72,17 @@ impl Stage<'_, '_> {
         self.objects.get(object).ok().map(|(spec, ..)| spec)
     }
 
-    pub(crate) fn shown(&self, entity: Entity) -> Shown<'_> {
+    pub(crate) fn shown(&self, entity: Entity) -> PixelSubject<'_> {
         match self.spec(entity) {
-            Some(spec) => Shown::Object(spec),
-            None if self.tables.contains(entity) => Shown::Table,
-            None => Shown::Other,
+            Some(spec) => PixelSubject::Object(spec),
+            None if self.tables.contains(entity) => PixelSubject::Table,
+            None => PixelSubject::Other,
         }
     }
 
-    pub(crate) fn state(&self, id: &str) -> Option<State> {
+    pub(crate) fn state(&self, id: &str) -> Option<ObjectState> {
         let (_, transform, twist) = self.objects.get(self.index.get(id)?).ok()?;
-        Some(State {
+        Some(ObjectState {
             pose: transform.into(),
             twist: twist.copied().unwrap_or_default(),
         })
@@ -94,12 +94,12 @@ impl Stage<'_, '_> {
     }
 
     /// The sight of these objects and the robot, wherever they are.
-    pub(crate) fn sight(&self, objects: &[Tracked]) -> Sight {
+    pub(crate) fn sight(&self, objects: &[Tracked]) -> FrameSight {
         let shape = |id: &str| Some(self.spec(self.index.get(id)?)?.shape.clone());
         let seen = objects
             .iter()
             .filter_map(|object| Some((object.number, shape(&object.id)?)));
-        Sight {
+        FrameSight {
             objects: seen.collect(),
             robot: self.robot.is_shown,
         }
@@ -108,7 +108,7 @@ impl Stage<'_, '_> {
 
 /// The subject of a pixel.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Shown<'w> {
+pub(crate) enum PixelSubject<'w> {
     Table,
     Object(&'w ObjectSpec),
     Other,
@@ -116,7 +116,7 @@ pub(crate) enum Shown<'w> {
 
 /// The sight of a frame: everything that can be seen, wherever it is.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Sight {
+pub(crate) struct FrameSight {
     /// The number of each object's `create` line, and how it looks.
     objects: Vec<(usize, Shape)>,
     /// True if the robot stands at the table.

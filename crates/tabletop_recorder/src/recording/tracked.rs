@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 use tabletop_core::Pose;
 
-use crate::files::states::State;
+use crate::files::states::ObjectState;
 
 /// Square of the distance, in units, beyond which a move is reported.
 const REPORTED_DISTANCE_SQUARED: f32 = 0.001;
@@ -18,7 +18,7 @@ pub(crate) struct Tracked {
     /// Which `create` line of the recording is its, from 1.
     pub(crate) number: usize,
     /// Its state at the end of the tick before.
-    last: Option<State>,
+    last: Option<ObjectState>,
     /// The pose in its last `move` line.
     reported: Option<Pose>,
 }
@@ -53,7 +53,7 @@ impl Tracked {
     }
 
     /// Notes its state at the end of a tick, and says whether that differs in any bit from the tick before.
-    pub(crate) fn note(&mut self, state: State) -> bool {
+    pub(crate) fn note(&mut self, state: ObjectState) -> bool {
         let last = self.last.replace(state);
         !last.is_some_and(|last| last.is_same(state))
     }
@@ -86,8 +86,8 @@ mod tests {
 
     use super::*;
 
-    fn still(pose: Pose) -> State {
-        State { pose, ..default() }
+    fn still(pose: Pose) -> ObjectState {
+        ObjectState { pose, ..default() }
     }
 
     fn reported_at(pose: Pose) -> Tracked {

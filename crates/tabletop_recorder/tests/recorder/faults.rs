@@ -15,7 +15,7 @@ use tabletop_core::{
     StepApp as _, WriteCommand as _,
 };
 use tabletop_recorder::{
-    Channels, Durability, Fault, RecorderPlugin, RecordingReader, SessionCommand, Storage,
+    Channels, Durability, RecorderPlugin, RecordingReader, SessionCommand, Storage, StorageFault,
     whole_lines,
 };
 
@@ -49,7 +49,7 @@ fn try_every_fault(script: &Script) {
     assert!(calls > 100, "only {calls} calls");
     let mut ends = BTreeSet::new();
     for call in 0..calls {
-        for fault in Fault::ALL {
+        for fault in StorageFault::ALL {
             let place = Place::in_memory();
             fs::create_dir_all(place.demo()).unwrap();
             fs::write(place.demo().join("note"), "an earlier recording").unwrap();
@@ -231,7 +231,7 @@ fn an_undo_that_was_interrupted_is_finished_though_the_log_is_locked_for_a_momen
     let mut interrupted = 0;
     for call in 0.. {
         let place = Place::in_memory();
-        let storage = Storage::with_fault(Fault::Killed, call);
+        let storage = Storage::with_fault(StorageFault::Killed, call);
         run(&mut recorder(&place, storage.clone(), EVERY_TICK), &script);
         if storage.calls() <= call {
             break;

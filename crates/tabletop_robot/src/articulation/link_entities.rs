@@ -14,7 +14,7 @@ use crate::articulation::tree::{Articulation, Body, Positions, TreePosition};
 #[derive(Component, Clone, Debug, Reflect)]
 #[require(Transform, Rollback)]
 #[reflect(Component)]
-pub struct RobotBody {
+pub struct RobotLink {
     /// What it is called.
     pub name: String,
 }
@@ -35,7 +35,7 @@ pub(crate) fn spawn(world: &mut World) -> Result {
     for (body, &pose) in articulation.bodies.iter().zip(posture.bodies()) {
         let place = Transform::from(pose);
         let mut part = world.spawn((
-            RobotBody {
+            RobotLink {
                 name: body.name.clone(),
             },
             place,

@@ -5,7 +5,7 @@ use tabletop_core::{JointRole, Pose};
 
 use crate::{
     articulation::tree::{Articulation, Body, Positions, TreePosition},
-    clearance::{Owner, Solid},
+    clearance::{Owner, SweptSolid},
 };
 
 /// Joints between two bodies of a limb that can meet.
@@ -73,7 +73,7 @@ const fn are_apart(a: TreePosition, b: TreePosition) -> bool {
 }
 
 /// The solids of every body in a known pose.
-fn known_posture(articulation: &Articulation, angles: &[f64]) -> Vec<Vec<Solid>> {
+fn known_posture(articulation: &Articulation, angles: &[f64]) -> Vec<Vec<SweptSolid>> {
     let joints = articulation.layout.joints.iter();
     let positions: Positions = joints
         .map(|joint| match joint.role {
@@ -87,12 +87,12 @@ fn known_posture(articulation: &Articulation, angles: &[f64]) -> Vec<Vec<Solid>>
     let posture = articulation.posture(&positions, Pose::IDENTITY);
     let solids = |(number, body): (usize, &Body)| {
         let pose = posture.bodies()[number];
-        Solid::moving(&body.parts, Owner::Body(number), pose, pose).collect()
+        SweptSolid::moving(&body.parts, Owner::Body(number), pose, pose).collect()
     };
     articulation.bodies.iter().enumerate().map(solids).collect()
 }
 
-fn overlap(a: &[Solid], b: &[Solid]) -> bool {
+fn overlap(a: &[SweptSolid], b: &[SweptSolid]) -> bool {
     a.iter().any(|a| b.iter().any(|b| a.is_within(ROUGH, b)))
 }
 

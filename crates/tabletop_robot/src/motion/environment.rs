@@ -10,8 +10,8 @@ use bevy_rapier3d::{
 use tabletop_physics::{Convex, nearby};
 
 use crate::{
-    articulation::link_entities::RobotBody,
-    clearance::{MARGIN, Owner, Solid, are_near},
+    articulation::link_entities::RobotLink,
+    clearance::{MARGIN, Owner, SweptSolid, are_near},
 };
 
 /// Something free that the robot can push or take.
@@ -28,16 +28,16 @@ pub(crate) struct FreeObject {
 
 impl FreeObject {
     /// Its solids, where they are.
-    pub fn solids(&self) -> impl Iterator<Item = Solid> {
+    pub fn solids(&self) -> impl Iterator<Item = SweptSolid> {
         let parts = self.parts.iter().cloned();
-        parts.map(|part| Solid::resting(part, Owner::Thing(self.object)))
+        parts.map(|part| SweptSolid::resting(part, Owner::Thing(self.object)))
     }
 }
 
 /// What is around the robot, as far as it is near.
 pub(crate) struct Environment {
     /// What it cannot pass.
-    pub immovable: Vec<Solid>,
+    pub immovable: Vec<SweptSolid>,
     /// What it pushes, in the order of its creation.
     pub free: Vec<FreeObject>,
 }
@@ -47,7 +47,7 @@ impl Environment {
     pub fn new(
         rapier: &RapierContextMut,
         near: &Aabb,
-        is_robot: &Query<(), With<RobotBody>>,
+        is_robot: &Query<(), With<RobotLink>>,
         held: &BTreeSet<Entity>,
         is_shown: bool,
     ) -> Self {
@@ -73,7 +73,7 @@ impl Environment {
             } else {
                 let solids = parts
                     .into_iter()
-                    .map(|part| Solid::resting(part, Owner::Thing(object)));
+                    .map(|part| SweptSolid::resting(part, Owner::Thing(object)));
                 environment.immovable.extend(solids);
             }
         }

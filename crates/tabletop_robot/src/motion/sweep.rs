@@ -10,7 +10,7 @@ use tabletop_physics::Convex;
 use crate::{
     articulation::self_collision::SelfCollisionMatrix,
     articulation::tree::{Articulation, Body, Carrier, Positions, Posture, TreePosition},
-    clearance::{Owner, Solid, are_near, part_left},
+    clearance::{Owner, SweptSolid, are_near, part_left},
     command::joint_targets::{JointTargets, Setpoint},
     gripper::{
         alignment::PRESS,
@@ -297,7 +297,7 @@ impl TickMotion<'_> {
         limb: LimbId,
         from: &Positions,
         to: &Positions,
-    ) -> Vec<(usize, Solid)> {
+    ) -> Vec<(usize, SweptSolid)> {
         let [from, to] = [from, to].map(|positions| self.poses(positions));
         self.solids_of(limb, &from, &to, |_| true)
     }
@@ -309,19 +309,19 @@ impl TickMotion<'_> {
         from: &Poses,
         to: &Poses,
         is_needed: impl Fn(usize) -> bool,
-    ) -> Vec<(usize, Solid)> {
+    ) -> Vec<(usize, SweptSolid)> {
         let mut solids = Vec::new();
         for number in self.bodies_of(limb).filter(|number| is_needed(*number)) {
             let parts = &self.articulation.bodies[number].parts;
             let [from, to] = [from, to].map(|poses| poses.bodies[number]);
-            let moving = Solid::moving(parts, Owner::Body(number), from, to);
+            let moving = SweptSolid::moving(parts, Owner::Body(number), from, to);
             solids.extend(moving.map(|solid| (number, solid)));
         }
         let finger = self.finger(limb);
         for carried in &self.carried[limb.index()] {
             let [from, to] =
                 [from, to].map(|poses| poses.end_effectors[limb.index()] * carried.pose);
-            let moving = Solid::moving(&carried.parts, Owner::Thing(carried.object), from, to);
+            let moving = SweptSolid::moving(&carried.parts, Owner::Thing(carried.object), from, to);
             solids.extend(moving.map(|solid| (finger, solid)));
         }
         solids
@@ -394,7 +394,12 @@ impl TickMotion<'_> {
     }
 
     /// The body of the robot that solids of an arm would run into.
-    fn own_body(&self, limb: LimbId, solids: &[(usize, Solid)], here: &Poses) -> Option<Owner> {
+    fn own_body(
+        &self,
+        limb: LimbId,
+        solids: &[(usize, SweptSolid)],
+        here: &Poses,
+    ) -> Option<Owner> {
         for (i, (a, solid)) in solids.iter().enumerate() {
             let met = solids[..i].iter().find(|(b, other)| {
                 self.self_collisions.can_meet(*a, *b) && solid.collides_with(other, 0.0)
@@ -408,14 +413,14 @@ impl TickMotion<'_> {
                 continue;
             }
             let around = self.around(number, here);
-            let may_meet = |(a, solid): &(usize, Solid)| {
+            let may_meet = |(a, solid): &(usize, SweptSolid)| {
                 self.self_collisions.can_meet(*a, number) && are_near(solid.bounds(), &around)
             };
             if !solids.iter().any(may_meet) {
                 continue;
             }
             let pose = here.bodies[number];
-            for other in Solid::moving(&body.parts, Owner::Body(number), pose, pose) {
+            for other in SweptSolid::moving(&body.parts, Owner::Body(number), pose, pose) {
                 let is_met = solids.iter().any(|(a, solid)| {
                     self.self_collisions.can_meet(*a, number) && solid.collides_with(&other, 0.0)
                 });

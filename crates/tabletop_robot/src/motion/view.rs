@@ -9,7 +9,7 @@ use tabletop_physics::convex_parts;
 
 use crate::{
     articulation::{
-        link_entities::{LinkEntities, RobotBody, positions},
+        link_entities::{LinkEntities, RobotLink, positions},
         self_collision::SelfCollisionMatrix,
         tree::{Articulation, Posture},
     },
@@ -29,7 +29,7 @@ pub(crate) struct RobotView<'w, 's> {
     pub self_collisions: Res<'w, SelfCollisionMatrix>,
     pub parts: Res<'w, LinkEntities>,
     pub tables: Query<'w, 's, &'static Table>,
-    pub bodies: Query<'w, 's, (), With<RobotBody>>,
+    pub bodies: Query<'w, 's, (), With<RobotLink>>,
     pub objects: Query<'w, 's, (&'static ObjectSpec, Has<Held>)>,
 }
 

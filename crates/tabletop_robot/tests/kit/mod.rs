@@ -10,7 +10,7 @@ use tabletop_core::*;
 use tabletop_demonstrator::DemonstratorPlugin;
 use tabletop_history::HistoryPlugin;
 use tabletop_physics::PhysicsPlugin;
-use tabletop_robot::{RobotBody, RobotPlugin};
+use tabletop_robot::{RobotLink, RobotPlugin};
 use tabletop_scene::ScenePlugin;
 
 pub struct Stage {
@@ -138,7 +138,7 @@ pub fn inside_the_table(stage: &mut Stage) -> Vec<String> {
     let table = rapier::SharedShape::cuboid(span.x / 2.0, span.y / 2.0, span.z / 2.0);
     let table_at = rapier::Pose::from_translation(slab.pose.location);
     let world = stage.app.world_mut();
-    let mut bodies = world.query::<(&RobotBody, &Transform, &Collider)>();
+    let mut bodies = world.query::<(&RobotLink, &Transform, &Collider)>();
     bodies
         .iter(world)
         .filter(|(body, ..)| body.name.contains("left") || body.name.contains("right"))

@@ -18,7 +18,7 @@ use crate::{
 };
 
 /// What stands in the element of a shape.
-enum Content {
+enum ShapeContent {
     Nothing,
     Parts(Vec<Part>),
     Control(ControlContent),
@@ -108,19 +108,23 @@ impl ElementReader<'_, '_> {
 
     /// What stands in the element of a shape; nothing if that is faulty as a whole. Of the parts of a composite, also to which states
     /// triggering them leads.
-    fn content(&mut self, element: &Element, role: ObjectRole) -> (Option<Content>, NextStates) {
+    fn content(
+        &mut self,
+        element: &Element,
+        role: ObjectRole,
+    ) -> (Option<ShapeContent>, NextStates) {
         if CONTROLS.contains(&element.name) {
             let content = self.control_content(element, role);
-            return (content.map(Content::Control), Vec::new());
+            return (content.map(ShapeContent::Control), Vec::new());
         }
         if BOND_POINTS.contains(&element.name) {
             let steps = self.tightness_steps(element);
-            return (steps.map(Content::Steps), Vec::new());
+            return (steps.map(ShapeContent::Steps), Vec::new());
         }
         let (parts, next) = self.parts(element, role);
         let content = match element.name {
-            "composite" => Content::Parts(parts),
-            _ => Content::Nothing,
+            "composite" => ShapeContent::Parts(parts),
+            _ => ShapeContent::Nothing,
         };
         (Some(content), next)
     }
@@ -185,16 +189,16 @@ impl ElementReader<'_, '_> {
 /// The shape of an element; absent for a composite of no parts, and for a mesh that cannot be read.
 fn shape(
     element: &Element,
-    content: Content,
+    content: ShapeContent,
     meshes: &mut MeshFiles,
     attributes: &mut AttributeReader,
 ) -> Option<Shape> {
     match content {
-        Content::Nothing => simple_shape(element, meshes, attributes),
-        Content::Parts(parts) if parts.is_empty() => None,
-        Content::Parts(parts) => Some(Shape::Composite { parts }),
-        Content::Control(content) => Some(control(element, content, attributes)),
-        Content::Steps(steps) => Some(bond_point(element, steps, attributes)),
+        ShapeContent::Nothing => simple_shape(element, meshes, attributes),
+        ShapeContent::Parts(parts) if parts.is_empty() => None,
+        ShapeContent::Parts(parts) => Some(Shape::Composite { parts }),
+        ShapeContent::Control(content) => Some(control(element, content, attributes)),
+        ShapeContent::Steps(steps) => Some(bond_point(element, steps, attributes)),
     }
 }
 

@@ -4,10 +4,10 @@ use std::cell::OnceCell;
 
 /// Bytes that stay where they are while more are added.
 #[derive(Debug, Default)]
-pub(crate) struct Arena(OnceCell<Box<Kept>>);
+pub(crate) struct Arena(OnceCell<Box<ArenaEntry>>);
 
 #[derive(Debug)]
-struct Kept {
+struct ArenaEntry {
     bytes: Vec<u8>,
     next: Arena,
 }
@@ -20,7 +20,9 @@ impl Arena {
             end = &kept.next;
         }
         let next = Self::default();
-        &end.0.get_or_init(|| Box::new(Kept { bytes, next })).bytes
+        &end.0
+            .get_or_init(|| Box::new(ArenaEntry { bytes, next }))
+            .bytes
     }
 }
 

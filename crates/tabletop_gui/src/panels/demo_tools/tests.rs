@@ -168,7 +168,7 @@ fn a_recording_is_started_or_finished_undone_and_redone() {
 
 #[test]
 fn every_request_becomes_its_command() {
-    let mut turns = Turns::default();
+    let mut turns = TurnSums::default();
     let hand = Hand::Left;
     for (request, expected) in [
         (

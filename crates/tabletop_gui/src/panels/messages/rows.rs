@@ -16,13 +16,13 @@ pub(super) struct Row {
 /// The rows of all notices that are shown, made anew when something changes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
-    made_for: Option<Made>,
+    made_for: Option<RowInputs>,
     rows: Vec<Row>,
 }
 
 /// The inputs that decide the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Made {
+struct RowInputs {
     revision: u64,
     tones: [bool; Tone::ALL.len()],
     columns: usize,
@@ -36,7 +36,7 @@ impl Rows {
         tones: [bool; Tone::ALL.len()],
         columns: usize,
     ) -> &[Row] {
-        let wanted = Made {
+        let wanted = RowInputs {
             revision: notices.revision(),
             tones,
             columns,

@@ -1,0 +1,169 @@
+//! The numbers of an element.
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+
+use crate::{Geometry, Inertial, LinkShape, ModelError, turn::from_roll_pitch_yaw};
+
+/// The largest length, in m.
+const LONGEST: f64 = 1000.0;
+
+/// The largest mass, in kg.
+const HEAVIEST: f64 = 1e6;
+
+/// The largest moment of inertia, in kg m²; beyond, products of three are not finite.
+const MOST_INERTIA: f64 = 1e12;
+
+/// Reads the numbers of an element.
+pub(super) struct Numbers {
+    pub line: usize,
+    pub element: String,
+}
+
+impl Numbers {
+    pub fn fault(&self, fault: &'static str) -> ModelError {
+        ModelError::Number {
+            line: self.line,
+            element: self.element.clone(),
+            fault,
+        }
+    }
+
+    pub fn vector(&self, numbers: [f64; 3], fault: &'static str) -> Result<DVec3, ModelError> {
+        let vector = DVec3::from_array(numbers);
+        match vector.is_finite() {
+            true => Ok(vector),
+            false => Err(self.fault(fault)),
+        }
+    }
+
+    /// A number from 0 to infinity.
+    pub fn amount(&self, number: f64, fault: &'static str) -> Result<f64, ModelError> {
+        match number >= 0.0 {
+            true => Ok(number),
+            false => Err(self.fault(fault)),
+        }
+    }
+
+    /// A length from 0 up, in m.
+    fn length(&self, number: f64) -> Result<f64, ModelError> {
+        match number {
+            0.0..=LONGEST => Ok(number.abs()),
+            LONGEST.. => Err(self.fault("a length is over 1000 m")),
+            _ => Err(self.fault("a length is negative or not finite")),
+        }
+    }
+
+    fn rotation(&self, rpy: [f64; 3]) -> Result<DQuat, ModelError> {
+        let DVec3 { x, y, z } = self.vector(rpy, "an rpy is not finite")?;
+        Ok(from_roll_pitch_yaw(x, y, z))
+    }
+
+    pub fn pose(&self, pose: &urdf_rs::Pose) -> Result<DAffine3, ModelError> {
+        Ok(DAffine3::from_rotation_translation(
+            self.rotation(*pose.rpy)?,
+            self.vector(*pose.xyz, "an xyz is not finite")?,
+        ))
+    }
+
+    pub fn inertial(&self, inertial: &urdf_rs::Inertial) -> Result<Inertial, ModelError> {
+        let mass = inertial.mass.value;
+        if !(mass >= 0.0 && mass.is_finite()) {
+            return Err(self.fault("its mass is negative or not finite"));
+        }
+        if mass > HEAVIEST {
+            return Err(self.fault("its mass is over 1,000,000 kg"));
+        }
+        let i = &inertial.inertia;
+        let fault = "its inertia is negative or not finite";
+        let moments = self.vector([i.ixx, i.iyy, i.izz], fault)?;
+        let products = self.vector([i.ixy, i.ixz, i.iyz], fault)?;
+        if moments.min_element() < 0.0 {
+            return Err(self.fault(fault));
+        }
+        if !is_of_a_body(moments, products) {
+            return Err(self.fault("no body has its inertia: it has a negative principal moment"));
+        }
+        let own = DMat3::from_cols_array_2d(&[
+            [i.ixx, i.ixy, i.ixz],
+            [i.ixy, i.iyy, i.iyz],
+            [i.ixz, i.iyz, i.izz],
+        ]);
+        let origin = self.pose(&inertial.origin)?;
+        Ok(Inertial {
+            mass,
+            center: origin.translation,
+            inertia: origin.matrix3 * own * origin.matrix3.transpose(),
+        })
+    }
+
+    pub fn shape(
+        &self,
+        origin: &urdf_rs::Pose,
+        geometry: &urdf_rs::Geometry,
+        color: Option<&urdf_rs::Color>,
+    ) -> Result<LinkShape, ModelError> {
+        let geometry = match geometry {
+            urdf_rs::Geometry::Box { size } => Geometry::Box {
+                size: DVec3::new(
+                    self.length(size[0])?,
+                    self.length(size[1])?,
+                    self.length(size[2])?,
+                ),
+            },
+            urdf_rs::Geometry::Cylinder { radius, length } => Geometry::Cylinder {
+                radius: self.length(*radius)?,
+                length: self.length(*length)?,
+            },
+            urdf_rs::Geometry::Sphere { radius } => Geometry::Sphere {
+                radius: self.length(*radius)?,
+            },
+            urdf_rs::Geometry::Mesh { filename, scale } => Geometry::Mesh {
+                file: filename.clone(),
+                scale: match scale {
+                    Some(scale) => self.vector(**scale, "a mesh's scale is not finite")?,
+                    None => DVec3::ONE,
+                },
+            },
+            urdf_rs::Geometry::Capsule { .. } => {
+                return Err(ModelError::Capsule {
+                    line: self.line,
+                    element: self.element.clone(),
+                });
+            }
+        };
+        Ok(LinkShape {
+            origin: self.pose(origin)?,
+            geometry,
+            color: color.map(|color| *color.rgba),
+        })
+    }
+}
+
+/// Whether no principal moment is negative, but for what rounding does.
+fn is_of_a_body(moments: DVec3, products: DVec3) -> bool {
+    let scale = moments.max_element();
+    if scale > MOST_INERTIA {
+        return false;
+    }
+    if scale == 0.0 {
+        return products == DVec3::ZERO;
+    }
+    let (
+        DVec3 {
+            x: xx,
+            y: yy,
+            z: zz,
+        },
+        DVec3 {
+            x: xy,
+            y: xz,
+            z: yz,
+        },
+    ) = (moments / scale, products / scale);
+    let minors = [xx * yy - xy * xy, xx * zz - xz * xz, yy * zz - yz * yz];
+    let determinant = xx * minors[2] - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+    minors
+        .iter()
+        .chain([&determinant])
+        .all(|&minor| minor >= -1e-9)
+}

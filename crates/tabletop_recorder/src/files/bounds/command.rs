@@ -1,0 +1,162 @@
+//! What commands may say.
+
+use bevy::math::Vec3;
+use tabletop_core::{
+    ClockCommand, Drive, HandCommand, MechanismCommand, RecordingCommand, RobotCommand,
+    SceneCommand, SimCommand,
+};
+
+use crate::files::bounds::{
+    scene::check_scene_spec,
+    values::{Checked, check_count, finite, finite_pose},
+};
+
+pub(crate) fn check_command(command: &SimCommand) -> Checked {
+    match command {
+        SimCommand::Recording(RecordingCommand::Finish)
+        | SimCommand::Clock(ClockCommand::SetPaused(_)) => Ok(()),
+        SimCommand::Recording(RecordingCommand::Start) | SimCommand::History(_) => {
+            Err("no recording holds this command".into())
+        }
+        SimCommand::Scene(command) => check_scene_command(command),
+        SimCommand::Hand(command) => check_hand_command(command),
+        SimCommand::Mechanism(command) => check_mechanism_command(command),
+        SimCommand::Robot(command) => check_robot_command(command),
+    }
+}
+
+fn check_scene_command(command: &SceneCommand) -> Checked {
+    match command {
+        SceneCommand::Load(_) => Err("a recording holds scenes, and no names of task files".into()),
+        SceneCommand::Set(scene) => check_scene_spec(scene),
+        SceneCommand::Clear => Ok(()),
+        SceneCommand::Make { preset, .. } => preset.fault().map_or(Ok(()), Err),
+    }
+}
+
+fn check_hand_command(command: &HandCommand) -> Checked {
+    match command {
+        HandCommand::Select(_)
+        | HandCommand::Release(_)
+        | HandCommand::Cut(_)
+        | HandCommand::Destroy(_) => Ok(()),
+        HandCommand::Grasp { object, .. } => check_count("letters", object.len()),
+        HandCommand::MoveTo { location, .. } => finite("location", *location),
+        HandCommand::MoveBy { offset, .. } => finite("offset", *offset),
+        HandCommand::Turn { axis, degrees, .. } => {
+            finite("axis", *axis)?;
+            finite("degrees", Vec3::splat(*degrees))
+        }
+    }
+}
+
+fn check_mechanism_command(command: &MechanismCommand) -> Checked {
+    let id = match command {
+        MechanismCommand::Trigger { control, .. } => control,
+        MechanismCommand::PointTo { target, .. } => target,
+        MechanismCommand::Fasten { guest, .. } | MechanismCommand::Loosen { guest, .. } => guest,
+    };
+    check_count("letters", id.len())
+}
+
+fn check_robot_command(command: &RobotCommand) -> Checked {
+    match command {
+        RobotCommand::Show(_) | RobotCommand::ShowFace(_) => Ok(()),
+        RobotCommand::Drive(drives) => {
+            check_count("drives", drives.len())?;
+            let is_finite = drives.iter().all(|(_, drive)| match *drive {
+                Drive::Velocity(value)
+                | Drive::Position(value)
+                | Drive::Toward(value)
+                | Drive::Torque(value) => value.is_finite(),
+            });
+            match is_finite {
+                true => Ok(()),
+                false => Err("Drive: a number is not finite".into()),
+            }
+        }
+        RobotCommand::ReachTo { pose, .. } => finite_pose(*pose),
+        RobotCommand::ShowMarkers(markers) => {
+            check_count("markers", markers.len())?;
+            markers
+                .iter()
+                .try_for_each(|marker| finite("ShowMarkers", *marker))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::prelude::default;
+    use tabletop_core::{Hand, ObjectSpec, Part, Pose, Preset, Rgb, SceneItem, SceneSpec, Shape};
+
+    use super::*;
+    use crate::files::bounds::values::MOST_VALUES;
+
+    fn block() -> Shape {
+        Shape::Block {
+            span: Vec3::ONE,
+            color: Rgb::GRAY,
+        }
+    }
+
+    fn nested(levels: usize) -> Shape {
+        (0..levels).fold(block(), |shape, _| Shape::Composite {
+            parts: vec![Part {
+                pointable: false,
+                id: String::new(),
+                pose: Pose::IDENTITY,
+                shape,
+            }],
+        })
+    }
+
+    fn set(shape: Shape) -> SimCommand {
+        let object = ObjectSpec::new("it", Pose::IDENTITY, 1.0, shape);
+        SceneCommand::Set(Box::new(SceneSpec {
+            items: vec![SceneItem::Object(object)],
+            ..default()
+        }))
+        .into()
+    }
+
+    #[test]
+    fn what_makes_no_sense_is_refused_with_its_place_and_limit() {
+        let hand = Hand::Left;
+        let location = Vec3::new(0.0, f32::INFINITY, 0.0);
+        let ball = |radius| Shape::Sphere {
+            radius,
+            color: Rgb::GRAY,
+        };
+        let preset = Preset::Stack(u32::MAX);
+        for (command, problem) in [
+            (
+                HandCommand::MoveTo { hand, location }.into(),
+                "location: a number is not finite",
+            ),
+            (set(ball(0.0)), "it: radius: 0 is not from 0.001 to 1000"),
+            (set(ball(f32::NAN)), "it: radius: NaN is not"),
+            (
+                set(Shape::Composite { parts: vec![] }),
+                "it: a composite has no parts",
+            ),
+            (set(nested(101)), "nested more than 100 deep"),
+            (
+                SceneCommand::Load("/dev/zero".into()).into(),
+                "no names of task files",
+            ),
+            (
+                SceneCommand::Make { preset, seed: 1 }.into(),
+                "a stack has 1 to 50 blocks",
+            ),
+            (
+                RobotCommand::ShowMarkers(vec![Vec3::ZERO; MOST_VALUES + 1]).into(),
+                "1048577 markers, expected at most 1048576",
+            ),
+        ] {
+            let found = check_command(&command).unwrap_err();
+            assert!(found.contains(problem), "{found}");
+        }
+        assert_eq!(check_command(&set(nested(100))), Ok(()));
+    }
+}
