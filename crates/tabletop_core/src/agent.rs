@@ -4,8 +4,7 @@ use std::time::Duration;
 
 use bevy::prelude::*;
 
-/// A command to the script bridge. It is none to the simulation: a recording holds the commands that come of the script, not
-/// the script.
+/// A command to the script bridge. It is not a command to the simulation: a recording holds the commands that the script gives, not the script.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ScriptCommand {
     /// Start the script engine and the script.
@@ -24,50 +23,50 @@ pub enum ScriptEvent {
     },
     /// The script has written this line.
     Printed {
-        /// The line.
+        /// A line that the script wrote.
         line: String,
-        /// Whether it was written as a warning or an error.
+        /// True if it was written as a warning or an error.
         is_error: bool,
     },
-    /// The program remarks this about the script.
+    /// A remark of the program about the script.
     Noted {
         /// The line.
         line: String,
     },
-    /// The script has ended, by itself or on command.
+    /// The script has ended by itself or on command.
     Stopped,
-    /// The script or its engine has failed, and is stopped.
+    /// The script or its engine has failed and was stopped.
     Failed {
-        /// What happened, and where.
+        /// The failure and its place.
         reason: String,
     },
 }
 
-/// What the script that drives the robot is doing (report section 5.2).
+/// The state of the script that drives the robot (report section 5.2).
 #[derive(Resource, Clone, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Resource)]
 pub enum Agent {
-    /// Nothing: there is none.
+    /// There is no script.
     #[default]
     Off,
-    /// Its engine is coming up.
+    /// Its engine is starting.
     Starting,
     /// It is called in every tick.
     Online {
-        /// How long the last call took.
+        /// Duration of the last call.
         took: Duration,
     },
     /// The simulation waits for it.
     Waiting {
-        /// For how long it has.
+        /// Duration of the wait so far.
         since: Duration,
     },
-    /// It was stopped by an error.
+    /// An error has stopped it.
     Failed,
 }
 
 impl Agent {
-    /// Whether a script drives the robot.
+    /// True while a script drives the robot.
     pub const fn is_on(&self) -> bool {
         matches!(
             self,
@@ -76,13 +75,13 @@ impl Agent {
     }
 }
 
-/// Whether something outside of the simulation is not ready, so that it stands still: no part of a tick runs.
+/// A block on the simulation: while it is set, something outside is not ready and no part of a tick runs.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Resource)]
 pub struct SimBlocked(pub bool);
 
 impl SimBlocked {
-    /// Run condition: nothing is waited for.
+    /// Run condition: the simulation waits for nothing.
     pub fn is_clear(blocked: Res<Self>) -> bool {
         !blocked.0
     }

@@ -1,4 +1,4 @@
-//! Points at which objects are fastened to each other: a screw's tip and the hole for it.
+//! Bond points: where objects are fastened to each other, such as a screw's tip and its hole.
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -8,45 +8,45 @@ use crate::Pose;
 /// A point of a composite at which it can be fastened to another object.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BondPoint {
-    /// Only points of one type fit each other.
+    /// The type of the point. Only points of the same type fit each other.
     pub fit: String,
-    /// Which end of a bond it is.
+    /// The end of the bond that this point is.
     pub end: BondEnd,
 }
 
 /// The two ends of a bond.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum BondEnd {
-    /// What is fastened: a screw.
+    /// The end that is fastened: a screw.
     Guest(GuestPoint),
-    /// What it is fastened to: a hole.
+    /// The end that it is fastened to: a hole.
     Host(HostPoint),
 }
 
-/// The end of what is fastened.
+/// The end of a bond that is fastened.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GuestPoint {
     /// Id of the host point to which it is bonded at first; empty for none.
     pub host: String,
-    /// How tight it is at first; 0 for not bonded.
+    /// Its tightness at first; 0 if it is not bonded.
     pub tightness: u32,
 }
 
-/// The end of what it is fastened to. Each step of the tightness has effects on others.
+/// The end of a bond to which another is fastened. Each step of tightness can act on other parts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HostPoint {
     /// Id of the control whose state is the tightness; empty for none.
     pub downstream: String,
-    /// Id of the control whose state is overridden with that of the step; empty for none.
+    /// Id of the control whose state a step overrides; empty for none.
     pub downstream_override: String,
-    /// Id of another host point that steps lock; empty for none.
+    /// Id of another host point that a step can lock; empty for none.
     pub downstream_lock: String,
     /// The steps, from the loosest.
     pub steps: Vec<TightnessStep>,
 }
 
 impl HostPoint {
-    /// The step of a tightness; none of 0.
+    /// The step at a tightness; none at 0.
     pub fn step(&self, tightness: u32) -> Option<&TightnessStep> {
         let number = tightness.checked_sub(1)?;
         self.steps.get(number as usize)
@@ -56,29 +56,29 @@ impl HostPoint {
 /// A step of a host point's tightness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TightnessStep {
-    /// Where the guest point is, in the frame of the host point.
+    /// Pose of the guest point in the frame of the host point.
     pub pose: Pose,
-    /// The state with which it overrides that of a control.
+    /// The state that overrides the control's own.
     pub state: Option<u32>,
-    /// Whether it locks another host point.
+    /// True if it locks the other host point.
     pub locks: bool,
 }
 
-/// What is fastened to what, and how tight.
+/// A guest point fastened to a host point, and its tightness.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Bond {
     /// Id of the host point.
     pub host_point: String,
-    /// Id of the object that it is a part of.
+    /// Id of the object to which the host point belongs.
     pub host: String,
     /// Id of the guest point.
     pub guest_point: String,
-    /// Id of the object that it is a part of.
+    /// Id of the object to which the guest point belongs.
     pub guest: String,
-    /// The step of its tightness; 0 when it is no more.
+    /// The tightness, as a step; 0 once the bond is gone.
     pub tightness: u32,
 }
 
-/// The bonds that there are, in the order in which they were made.
+/// All bonds, in the order in which they were made.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bonds(pub Vec<Bond>);

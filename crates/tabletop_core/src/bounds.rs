@@ -5,14 +5,14 @@ use bevy::prelude::*;
 /// An upright cuboid, in units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Its corner of the least coordinates.
+    /// The corner of least coordinates.
     pub low: Vec3,
-    /// Its corner of the greatest coordinates.
+    /// The corner of greatest coordinates.
     pub high: Vec3,
 }
 
 impl Bounds {
-    /// Around a point, as far in each direction.
+    /// The bounds that reach equally far from a point to both sides of each axis.
     pub fn around(center: Vec3, reach: Vec3) -> Self {
         Self {
             low: center - reach,
@@ -20,7 +20,7 @@ impl Bounds {
         }
     }
 
-    /// Around this one and another.
+    /// The bounds of this one and another together.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self {
@@ -29,19 +29,19 @@ impl Bounds {
         }
     }
 
-    /// Whether a point is straight above or below it, or in it.
+    /// True if a point is inside, or straight above or below.
     pub fn is_below(self, point: Vec3) -> bool {
         let point = point.xy();
         point.cmpge(self.low.xy()).all() && point.cmple(self.high.xy()).all()
     }
 
-    /// Whether the two have points in common that are farther than a distance inside of both.
+    /// True if the two share a point that lies deeper than `distance` inside both.
     pub fn overlaps(self, other: Self, distance: f32) -> bool {
         let depth = (self.high - other.low).min(other.high - self.low);
         depth.min_element() > distance
     }
 
-    /// How far another one stands out of this one.
+    /// Distance by which another one stands out of this one.
     pub fn distance_out(self, other: Self) -> f32 {
         (self.low - other.low)
             .max(other.high - self.high)
@@ -49,7 +49,7 @@ impl Bounds {
             .max(0.0)
     }
 
-    /// Whether less than this distance is between the two as seen from above.
+    /// True if the gap between the two, seen from above, is less than `distance`.
     pub fn is_crowded_by(self, other: Self, distance: f32) -> bool {
         let gap = (self.low - other.high).max(other.low - self.high);
         gap.xy().max_element() < distance

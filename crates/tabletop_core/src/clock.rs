@@ -82,8 +82,8 @@ fn advance_tick(mut tick: ResMut<SimTick>) {
     tick.0 += 1;
 }
 
-/// Runs the schedules of a tick on one thread: they are many short systems, and handing them to a pool of threads
-/// costs more than ten times what they do.
+/// Runs the schedules of a tick on one thread. Their systems are many and short: handing them to a thread pool
+/// costs more than ten times the work itself.
 pub(crate) fn run_ticks_on_one_thread(app: &mut App) {
     fn on_one_thread(schedule: &mut Schedule) {
         schedule.set_executor(SingleThreadedExecutor::new());
@@ -95,13 +95,13 @@ pub(crate) fn run_ticks_on_one_thread(app: &mut App) {
         .edit_schedule(FixedLast, on_one_thread);
 }
 
-/// Stepping an app without a window as fast as it can.
+/// Steps an app without a window as fast as the machine can.
 pub trait StepApp {
     /// Finishes the plugins and runs the start-up schedules, once; afterwards the app can be [stepped](Self::step).
     fn start(&mut self) -> &mut Self;
 
-    /// Simulates so many ticks, with nothing of the frame around them: no wall clock, no [`Update`]. Those [at rest](RestingSystems) are
-    /// passed over.
+    /// Simulates this many ticks, without anything of the frame around them: no wall clock, no [`Update`]. Ticks
+    /// [at rest](RestingSystems) are passed over.
     fn step(&mut self, ticks: u64) -> &mut Self;
 }
 
@@ -134,7 +134,7 @@ impl StepApp for App {
     }
 }
 
-/// Forgets the messages and removals of the tick before: after two ticks, nothing is left of them.
+/// Forgets the messages and removals of the previous tick. After two ticks, nothing is left of them.
 fn end_tick(world: &mut World) {
     if let Err(error) = world.run_system_cached(message_update_system) {
         error!("cannot clear old messages: {error}");

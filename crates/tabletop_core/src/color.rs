@@ -73,13 +73,13 @@ impl Rgb {
         Self { red, green, blue }
     }
 
-    /// The nearest colour of 8 bits a part.
+    /// The nearest colour with 8 bits a channel.
     pub fn to_bytes(self) -> [u8; 3] {
         [self.red, self.green, self.blue].map(|part| (part.clamp(0.0, 1.0) * 255.0 + 0.5) as u8)
     }
 }
 
-/// What is wrong with the text of a colour.
+/// The error of a text that is no colour.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is not a colour; expected #rrggbb or one of {names}", names = NAMED_COLORS.map(|(name, _)| name).join(", "))]
 pub struct ColorError(String);
@@ -87,7 +87,7 @@ pub struct ColorError(String);
 impl FromStr for Rgb {
     type Err = ColorError;
 
-    /// Reads a colour name or `#rrggbb`, in upper or lower case, with or without blanks around it.
+    /// Reads a colour name or `#rrggbb`, in upper or lower case, with or without spaces around it.
     fn from_str(text: &str) -> Result<Self, ColorError> {
         let color = text.trim();
         if let Some(hex) = color.strip_prefix('#')

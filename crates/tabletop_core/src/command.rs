@@ -1,8 +1,8 @@
-//! Commands: what the simulation is to do in its next tick, and who says so.
+//! Commands: requests for the next tick, each with the one who gives it.
 //!
-//! A [`SimCommand`] is nested by who carries it out, and each of its kinds is matched by exactly one system. A command is given
-//! with [`CommandWriter`] or [`WriteCommand`], and travels as an [`IssuedCommand`]: with its [id](CommandId), which the
-//! [facts](crate::SimFact) that come of it name, and with the [`Actor`] who gave it.
+//! A [`SimCommand`] is nested by the part of the simulator that carries it out, and exactly one system matches each kind. A command is
+//! given with [`CommandWriter`] or [`WriteCommand`], and travels as an [`IssuedCommand`]: with its [id](CommandId), which the resulting
+//! [facts](crate::SimFact) name, and with the [`Actor`] who gave it.
 
 mod carry_out;
 mod clock;
@@ -31,28 +31,28 @@ use serde::{Deserialize, Serialize};
 
 use crate::CommandSystems;
 
-/// Something the simulation is to do in its next tick.
+/// A request to the simulation for its next tick.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum SimCommand {
-    /// For the recorder.
+    /// To the recorder.
     Recording(RecordingCommand),
-    /// For the clock.
+    /// To the clock.
     Clock(ClockCommand),
-    /// For what puts objects on the table.
+    /// To the scene, which puts objects on the table.
     Scene(SceneCommand),
-    /// For what keeps the world as it was.
+    /// To the history, which undoes and redoes.
     History(HistoryCommand),
-    /// For the demonstrator's hands.
+    /// To the demonstrator's hands.
     Hand(HandCommand),
-    /// For what can be operated and fastened.
+    /// To mechanisms: everything that can be operated or fastened.
     Mechanism(MechanismCommand),
-    /// For the robot.
+    /// To the robot.
     Robot(RobotCommand),
 }
 
 impl SimCommand {
-    /// The phase of a tick in which it is carried out. Of two commands of a tick, the one with the earlier phase comes first, and
-    /// of two in one phase the one that was written first.
+    /// The phase of a tick in which it is carried out. Of two commands in a tick, the one with the earlier phase comes first; within
+    /// a phase, the one that was written first.
     pub const fn phase(&self) -> CommandSystems {
         match self {
             Self::Recording(_) => CommandSystems::Recording,
@@ -66,9 +66,9 @@ impl SimCommand {
     }
 }
 
-/// The commands that one part of the simulator carries out.
+/// A kind of command: those that one part of the simulator carries out.
 pub trait CommandKind: Clone + Into<SimCommand> {
-    /// The command, if it is of this kind.
+    /// This kind's part of a command; `None` if the command is of another kind.
     fn of(command: &SimCommand) -> Option<&Self>;
 }
 

@@ -1,4 +1,4 @@
-//! Controls: switches, lights, and shapes with states of their own.
+//! Controls: switches, lights, and shapes with their own states.
 
 pub(crate) mod lights;
 pub(crate) mod switch;
@@ -20,7 +20,7 @@ impl Control {
         }
     }
 
-    /// How many states it has.
+    /// Number of states.
     pub fn states(&self) -> u32 {
         match &self.kind {
             ControlKind::ToggleSwitch(switch) => switch.states,
@@ -36,7 +36,7 @@ impl Control {
             .unwrap_or(self.state)
     }
 
-    /// The kind of control in recordings: the name of its element, or of a custom control.
+    /// The kind of control in recordings: the name of its element, or of the custom control.
     pub fn type_name(&self) -> &str {
         match &self.kind {
             ControlKind::ToggleSwitch(_) => "toggleSwitch",
@@ -45,8 +45,8 @@ impl Control {
         }
     }
 
-    /// The name of its shown state in recordings: that of its side for a switch (0 left down, 1 right down), the state's own name, or
-    /// its number.
+    /// The name of the shown state in recordings: for a switch that of the pressed side (0 left, 1 right), otherwise the state's own
+    /// name, or its number.
     pub fn state_name(&self) -> String {
         let state = self.shown_state();
         let name = match &self.kind {
@@ -66,7 +66,7 @@ impl Control {
         }
     }
 
-    /// What it consists of, as it is touched; lights that are off are there, too.
+    /// The parts that can be touched, including lights that are off.
     pub(crate) fn touched(&self) -> Vec<Part> {
         match &self.kind {
             ControlKind::ToggleSwitch(switch) => switch.blocks().into(),
@@ -80,7 +80,7 @@ impl Control {
         }
     }
 
-    /// What is to be seen of it: of lights, those that are on.
+    /// The parts that can be seen, without lights that are off.
     pub(crate) fn seen(&self) -> Vec<Part> {
         match &self.kind {
             ControlKind::IndicatorLights(lights) => lights
@@ -94,7 +94,7 @@ impl Control {
         }
     }
 
-    /// What it does to other objects as it comes into its state.
+    /// Changes to other objects when it enters its present state.
     pub fn changes(&self) -> &[Change] {
         match &self.kind {
             ControlKind::Custom(custom) => custom
@@ -105,7 +105,7 @@ impl Control {
         }
     }
 
-    /// The state to which triggering one of its simple parts leads, or the first one that leads anywhere.
+    /// The state to which triggering a simple part leads; without a part, that of the first part that leads anywhere.
     pub fn next_state(&self, part: Option<u32>) -> Option<u32> {
         match &self.kind {
             ControlKind::ToggleSwitch(switch) => {
@@ -153,7 +153,7 @@ impl ToggleSwitch {
 }
 
 impl IndicatorLights {
-    /// One of its lights. Several stand in a row on the origin's plane; a single one is half below it.
+    /// One of its lights. Several lights stand in a row on the origin's plane; half of a single light is below the plane.
     fn light(&self, light: u32, color: Rgb) -> Part {
         let center = match self.lights {
             0 | 1 => Vec3::ZERO,

@@ -1,4 +1,4 @@
-//! Facts: what has happened in a tick, and which command it came of.
+//! Facts: the events of a tick, each with the command that caused it.
 
 use std::path::PathBuf;
 
@@ -6,21 +6,21 @@ use bevy::prelude::*;
 
 use crate::{Bond, CommandId, Hand, LimbName, Obstacle, Operator};
 
-/// Something that has happened in this tick.
+/// An event of this tick.
 #[derive(Message, Clone, Debug, PartialEq)]
 pub enum SimFact {
-    /// A task file was read. Its scene is on the table in this tick, without the faulty elements.
+    /// A task file was read. Its scene is on the table in this tick, but for the faulty elements.
     TaskLoaded {
-        /// The command that it came of.
+        /// The command that caused it.
         cause: CommandId,
         /// The file.
         path: PathBuf,
-        /// What is wrong with it, each with its place.
+        /// Its faults, each with its place.
         faults: Vec<String>,
     },
     /// An object has appeared.
     ObjectCreated {
-        /// The command that it came of, if it came of one.
+        /// The command that caused it, if one did.
         cause: Option<CommandId>,
         /// Its id.
         id: String,
@@ -29,19 +29,19 @@ pub enum SimFact {
     },
     /// An object has gone.
     ObjectDeleted {
-        /// The command that it came of, if it came of one.
+        /// The command that caused it, if one did.
         cause: Option<CommandId>,
         /// Its id.
         id: String,
     },
-    /// A hand is about to act: what follows belongs to a new segment of a recording.
+    /// A hand is about to act: a new segment of the recording begins.
     SegmentBegun {
-        /// The command that it came of.
+        /// The command that caused it.
         cause: CommandId,
     },
     /// A hand has taken an object.
     Grasped {
-        /// The command that it came of.
+        /// The command that caused it.
         cause: CommandId,
         /// The hand.
         hand: Hand,
@@ -50,43 +50,43 @@ pub enum SimFact {
     },
     /// A hand has let go of an object.
     Released {
-        /// The command that it came of, if it came of one.
+        /// The command that caused it, if one did.
         cause: Option<CommandId>,
         /// The hand that held it.
         hand: Hand,
         /// Id of the object.
         id: String,
     },
-    /// A hand has removed an object; its [`ObjectDeleted`](Self::ObjectDeleted) has come before.
+    /// A hand has removed an object; its [`ObjectDeleted`](Self::ObjectDeleted) comes before this.
     Destroyed {
-        /// The command that it came of.
+        /// The command that caused it.
         cause: CommandId,
         /// The hand that held it.
         hand: Hand,
         /// Id of the object.
         id: String,
     },
-    /// Somebody has operated a control.
+    /// A control was operated.
     Triggered {
-        /// The command that it came of, if it came of one.
+        /// The command that caused it, if one did.
         cause: Option<CommandId>,
-        /// Who.
+        /// The operator.
         by: Operator,
         /// Id of the control.
         control: String,
     },
     /// A control has another state.
     ControlChanged {
-        /// The command that it came of, if it came of one.
+        /// The command that caused it, if one did.
         cause: Option<CommandId>,
         /// Id of the control.
         control: String,
-        /// The name of the state that it shows now.
+        /// Name of the state that it now shows.
         state: String,
     },
     /// A hand has pointed to something.
     PointedTo {
-        /// The command that it came of.
+        /// The command that caused it.
         cause: CommandId,
         /// The hand.
         hand: Hand,
@@ -95,62 +95,62 @@ pub enum SimFact {
         /// Id of the object.
         object: String,
     },
-    /// A bond was made, or is tighter by a step.
+    /// A bond was made, or tightened by a step.
     Fastened {
-        /// The command that it came of, if it came of one.
+        /// The command that caused it, if one did.
         cause: Option<CommandId>,
-        /// Who.
+        /// The operator.
         by: Operator,
-        /// What is bonded, and how tight it is now.
+        /// The bond with its new tightness.
         bond: Bond,
     },
-    /// A bond is looser by a step, or no more.
+    /// A bond was loosened by a step, or undone.
     Loosened {
-        /// The command that it came of, if it came of one.
+        /// The command that caused it, if one did.
         cause: Option<CommandId>,
-        /// Who.
+        /// The operator.
         by: Operator,
-        /// What is bonded, and how tight it is now.
+        /// The bond with its new tightness.
         bond: Bond,
     },
     /// A recording has begun.
     RecordingStarted {
-        /// The command that it came of.
+        /// The command that caused it.
         cause: CommandId,
         /// Its folder.
         folder: PathBuf,
     },
-    /// A recording has ended as it should.
+    /// A recording has ended properly.
     RecordingFinished {
-        /// The command that it came of.
+        /// The command that caused it.
         cause: CommandId,
         /// Its folder.
         folder: PathBuf,
     },
-    /// A recording could not begin or go on. What was written of it before stays.
+    /// A recording could not begin or go on. What was written before stays.
     RecordingFailed {
-        /// The command that it came of, if it came of one.
+        /// The command that caused it, if one did.
         cause: Option<CommandId>,
         /// Its folder.
         folder: PathBuf,
-        /// What went wrong, and what can be done.
+        /// The fault, and what the user can do.
         reason: String,
     },
-    /// The world is again as it was before the last segment of the recording began; the tick has gone back with it.
+    /// The world, its tick included, is back where the recording's last segment began.
     Undone {
-        /// The command that it came of.
+        /// The command that caused it.
         cause: CommandId,
     },
-    /// The world is again as it was when the undone segment was undone; the tick has gone forward with it.
+    /// The world, its tick included, is back where the segment was undone.
     Redone {
-        /// The command that it came of.
+        /// The command that caused it.
         cause: CommandId,
     },
-    /// The robot now stands at the table, or no longer does.
+    /// The robot was put at the table, or taken away.
     RobotShown {
-        /// The command that it came of.
+        /// The command that caused it.
         cause: CommandId,
-        /// Whether it stands there now.
+        /// True if it now stands there.
         shown: bool,
     },
     /// A gripper has closed on an object and holds it.
@@ -160,34 +160,34 @@ pub enum SimFact {
         /// Id of the object.
         id: String,
     },
-    /// Both fingers of a closing gripper touch an object, and cannot hold it like this.
+    /// Both fingers of a closing gripper touch an object, but at an angle at which they cannot hold it.
     GripRefused {
         /// The arm.
         arm: LimbName,
         /// Id of the object.
         id: String,
-        /// The angle θ of the report's figure 11, in rad, which had to be below π/16.
+        /// The angle θ of the report's figure 11, in rad. It has to be below π/16.
         angle: f32,
     },
-    /// A gripper has let go of an object, or it was taken from it.
+    /// A gripper has let go of an object, or the object was taken from it.
     GripReleased {
         /// The arm.
         arm: LimbName,
         /// Id of the object.
         id: String,
     },
-    /// An arm was stopped by something that it cannot push away; reported once until it is free again.
+    /// An obstacle that the arm cannot push away has stopped it. Reported once, until the arm is free again.
     ArmBlocked {
         /// The arm.
         arm: LimbName,
-        /// What is in its way.
+        /// The obstacle.
         by: Obstacle,
     },
-    /// A command, or something else that was asked for, was not carried out.
+    /// A command, or another request, was not carried out.
     Refused {
-        /// The command that it came of, if it came of one.
+        /// The command that was refused, if it was one.
         cause: Option<CommandId>,
-        /// What and why.
+        /// The request, and the reason for the refusal.
         reason: String,
     },
 }

@@ -1,18 +1,18 @@
-//! What can be fastened to what, and how tight.
+//! Fastening: the bonds that turning a guest makes, tightens and loosens.
 
 use std::collections::BTreeSet;
 
 use crate::{Bond, BondPoint, Bonds, HostPoint, ObjectSpec, PlacedPart, Pose};
 
-/// A host farther away than this, in units, is not fastened to.
+/// The greatest distance, in units, at which a host is fastened to.
 const REACH: f32 = 2.0;
 
-/// Which way a guest is turned.
+/// A direction in which a guest is turned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Turn {
-    /// It is fastened.
+    /// It fastens.
     Tighter,
-    /// It is loosened.
+    /// It loosens.
     Looser,
 }
 
@@ -52,10 +52,10 @@ fn hosts<'a>(objects: &[(&'a ObjectSpec, Pose)]) -> Vec<(FasteningPoint<'a>, &'a
 }
 
 impl Bonds {
-    /// The bond that comes of turning a guest point, or the object that it is a part of, by a step; of tightness 0, it is no more.
+    /// The bond after a guest point is turned by a step; for an object, its guest point is chosen. At tightness 0 the bond is gone.
     ///
     /// # Errors
-    /// Why it cannot be turned.
+    /// The reason why it cannot be turned.
     pub fn turned(
         &self,
         objects: &[(&ObjectSpec, Pose)],
@@ -116,7 +116,7 @@ impl Bonds {
     /// The bond that a guest point has at first.
     ///
     /// # Errors
-    /// Why it cannot have it.
+    /// The reason why it cannot have this bond.
     pub fn first(
         &self,
         objects: &[(&ObjectSpec, Pose)],
@@ -155,7 +155,7 @@ impl Bonds {
         })
     }
 
-    /// The objects that bonds connect with one, with itself, in the order of their ids.
+    /// The object and all that bonds connect with it, in the order of their ids.
     pub fn connected<'a>(&'a self, object: &'a str) -> BTreeSet<&'a str> {
         let mut connected = BTreeSet::from([object]);
         let mut due = vec![object];
@@ -171,7 +171,7 @@ impl Bonds {
         connected
     }
 
-    /// The guest point and the free host point for it that are nearest to each other.
+    /// The nearest pair of a guest point and a free host point that fits it.
     fn nearest<'p, 'a>(
         &self,
         guests: &'p [FasteningPoint<'a>],
@@ -194,7 +194,7 @@ impl Bonds {
         nearest
     }
 
-    /// True if nothing can be fastened to a host point nor loosened from it, because a bond elsewhere locks it.
+    /// True if a bond elsewhere locks the host point: nothing can be fastened to it or loosened from it.
     fn is_locked(&self, hosts: &[(FasteningPoint, &HostPoint)], host_point: &str) -> bool {
         hosts.iter().any(|(point, host)| {
             host.downstream_lock == host_point
@@ -239,7 +239,7 @@ mod tests {
         })
     }
 
-    /// A screw that is turned as long as it goes.
+    /// Turns a screw as far as it goes.
     fn turns(bonds: &mut Bonds, objects: &[ObjectSpec], guest: &str, turn: Turn) -> (u32, String) {
         let objects: Vec<_> = objects.iter().map(|spec| (spec, spec.pose)).collect();
         let mut turns = 0;

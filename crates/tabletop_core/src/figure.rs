@@ -1,4 +1,4 @@
-//! Things that are seen and are not objects: what the robot is made of.
+//! Figures: visible things that are no objects, such as the robot's links.
 
 use std::sync::Arc;
 
@@ -6,11 +6,11 @@ use bevy::prelude::*;
 
 use crate::Rgb;
 
-/// A surface of triangles, with a normal and a colour at each vertex. Seen from outside, a triangle's vertices go round
-/// counterclockwise. Lengths in units.
+/// A surface of triangles, with a normal and a colour at each vertex. A triangle's vertices run
+/// counterclockwise as seen from outside. Lengths in units.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Triangles {
-    /// Where the vertices are, in the frame of what the surface belongs to.
+    /// Locations of the vertices, in the frame of the surface's owner.
     pub positions: Vec<Vec3>,
     /// Outward unit normals of the vertices.
     pub normals: Vec<Vec3>,
@@ -20,19 +20,19 @@ pub struct Triangles {
     pub indices: Vec<[u32; 3]>,
 }
 
-/// What an entity looks like that is not an object: seen by the user and by the head camera wherever the entity's
-/// [`GlobalTransform`] is, as long as it has this component.
+/// The look of an entity that is no object. The user and the head camera see it at the entity's
+/// [`GlobalTransform`] as long as the entity has this component.
 #[derive(Component, Clone, Debug)]
 #[component(immutable)]
 #[require(Transform)]
 pub struct Figure {
-    /// For the window.
+    /// The surface for the window.
     pub fine: Arc<Triangles>,
-    /// For the head camera, and for finding out what the mouse points at.
+    /// The surface for the head camera and for picking with the mouse.
     pub coarse: Arc<Triangles>,
 }
 
-/// Marks a figure that carries the head camera: it is not in the camera's pictures.
+/// Marks a figure that carries the head camera: the camera's pictures leave it out.
 #[derive(Component, Clone, Copy, Debug, Default, Reflect)]
 #[reflect(Component)]
 pub struct CarriesHeadCamera;
@@ -52,7 +52,7 @@ impl Triangles {
         );
     }
 
-    /// How far along a ray it meets the surface from outside; `None` if it does not. The surface stands at `body`.
+    /// Distance along a ray at which it meets the surface from outside; `None` if it misses. `body` is the surface's pose.
     pub fn distance_along(&self, ray: Ray3d, body: crate::Pose) -> Option<f32> {
         let to_body = body.inverse();
         let origin = to_body * ray.origin;
@@ -67,7 +67,7 @@ impl Triangles {
     }
 }
 
-/// Where a ray enters a triangle through its front (Möller and Trumbore).
+/// The point where a ray enters a triangle through its front (Möller and Trumbore).
 pub(crate) fn enter_triangle(
     origin: Vec3,
     direction: Vec3,

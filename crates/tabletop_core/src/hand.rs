@@ -5,7 +5,7 @@ use std::fmt;
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// One of the demonstrator's hands (report section 4, figure 8a). At most two of them hold something at a time.
+/// One of the demonstrator's hands (report section 4, figure 8a). At most two of them hold something at the same time.
 #[derive(
     Clone,
     Copy,
@@ -53,7 +53,7 @@ impl fmt::Display for Hand {
     }
 }
 
-/// Which hand is selected, and what each holds.
+/// The selected hand, and the object in each hand.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Resource)]
 pub struct Hands {
@@ -75,12 +75,12 @@ impl Hands {
             .find(|&hand| self.held_by(hand) == Some(object))
     }
 
-    /// Whether any hand holds an object.
+    /// True if any hand holds an object.
     pub fn hold_something(&self) -> bool {
         self.held.iter().any(Option::is_some)
     }
 
-    /// Puts an object into a hand, or takes away what it has.
+    /// Puts an object into a hand, or empties the hand.
     pub fn set_held(&mut self, hand: Hand, object: Option<Entity>) {
         self.held[hand as usize] = object;
     }

@@ -1,10 +1,10 @@
-//! Who holds an object.
+//! Holders of objects.
 
 use bevy::prelude::*;
 
 use crate::{Hand, LimbName};
 
-/// Who holds an object.
+/// The holder of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Reflect)]
 pub enum Holder {
     /// One of the demonstrator's hands.
@@ -17,6 +17,6 @@ pub enum Holder {
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[reflect(Component)]
 pub struct Held {
-    /// Who holds it.
+    /// The holder.
     pub by: Holder,
 }

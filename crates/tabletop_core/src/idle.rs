@@ -1,10 +1,10 @@
-//! A window in which nothing happens but what the user does.
+//! Rest of a window in which only the user acts.
 
 use bevy::prelude::*;
 
 use crate::{RestingSystems, rest};
 
-/// For how many ticks nothing can happen in the world unless the user does something: 0 while something moves.
+/// Number of ticks in which nothing can happen unless the user acts; 0 while something moves.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Idle(pub u64);
 
@@ -21,8 +21,8 @@ fn look_for_rest(world: &mut World) {
     world.resource_mut::<Idle>().set_if_neq(idle);
 }
 
-/// Passes over the ticks of a frame in which nothing could happen, but for the last one: frames may be far apart then, and what
-/// the user does now is done in one tick as in any other frame.
+/// Passes over the ticks of a frame in which nothing could happen, except the last one. Frames may then be far apart, and the
+/// user's next command is still carried out in one tick, as in any other frame.
 fn catch_up(world: &mut World) {
     let Idle(most) = std::mem::take(&mut *world.resource_mut::<Idle>());
     let time = world.resource::<Time<Fixed>>();

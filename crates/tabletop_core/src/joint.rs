@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Pose, Rollback};
 
-/// How two objects are connected.
+/// The kind of a joint between two objects.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 pub enum JointKind {
     /// The origins of both joint frames coincide; all rotations are free.
@@ -20,7 +20,7 @@ pub enum JointKind {
         max: f32,
         /// Coefficient of the dry friction, as a fraction of the second object's weight.
         friction: f32,
-        /// The share of its speed that the joint takes away in a tick, 0 to 1.
+        /// Share of the speed that the joint takes away in a tick, 0 to 1.
         #[serde(default)]
         damping: f32,
     },
@@ -30,13 +30,13 @@ pub enum JointKind {
         min: f32,
         /// Greatest angle, in radians.
         max: f32,
-        /// The share of its speed that the joint takes away in a tick, 0 to 1.
+        /// Share of the speed that the joint takes away in a tick, 0 to 1.
         damping: f32,
     },
     /// The frames coincide, and nothing moves.
     Fixed,
-    /// The second frame turns about X of the first, and springs back to the greatest angle. A link of a chain that both objects
-    /// touch is cut.
+    /// The second frame turns about X of the first and springs back to the greatest angle. Closing it cuts a chain link that
+    /// touches both objects.
     Shears {
         /// Angle when they are shut, in radians.
         min: f32,
@@ -45,21 +45,21 @@ pub enum JointKind {
     },
 }
 
-/// A connection between two objects.
+/// A joint between two objects, by their ids.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointSpec {
     /// Ids of the two objects.
     pub objects: [String; 2],
     /// The joint's frame in the frame of each object.
     pub frames: [Pose; 2],
-    /// What the joint leaves free.
+    /// The motion that the joint leaves free.
     pub kind: JointKind,
-    /// Whether the objects collide with each other.
+    /// True if the objects collide with each other.
     #[serde(default)]
     pub collides: bool,
 }
 
-/// A joint on the table. Its entity is a child of the second object's, and is gone with either of the two.
+/// A joint on the table. Its entity is a child of the second object's and disappears with either of the two.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[component(immutable)]
 #[require(Transform, Rollback)]
@@ -69,8 +69,8 @@ pub struct Joint {
     pub objects: [Entity; 2],
     /// The joint's frame in the frame of each object.
     pub frames: [Pose; 2],
-    /// What the joint leaves free.
+    /// The motion that the joint leaves free.
     pub kind: JointKind,
-    /// Whether the objects collide with each other.
+    /// True if the objects collide with each other.
     pub collides: bool,
 }

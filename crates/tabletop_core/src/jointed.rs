@@ -5,39 +5,39 @@ use serde::{Deserialize, Serialize};
 
 use crate::{JointKind, ObjectSpec, Pose};
 
-/// Two objects, of which the second one slides or turns against the first (`<sliderJoint>`, `<hingeJoint>`). Displacements are in
+/// Two objects of which the second slides or turns against the first (`<sliderJoint>`, `<hingeJoint>`). Displacements are in
 /// units or degrees.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointedSpec {
     /// The joint's frame.
     pub pose: Pose,
-    /// The objects. The pose of the first is in the joint's frame, that of the second in the frame that has moved with it.
+    /// The objects. The first has its pose in the joint's frame, the second in the frame that moves with it.
     pub objects: [ObjectSpec; 2],
-    /// How the second object moves.
+    /// The motion of the second object.
     pub motion: JointMotion,
     /// Its least and greatest displacement.
     pub limits: [f32; 2],
     /// Its displacement at first.
     pub init: f32,
-    /// Whether the two objects collide with each other.
+    /// True if the two objects collide with each other.
     pub collides: bool,
-    /// The share of its speed that the joint takes away in a tick, 0 to 1.
+    /// Share of the speed that the joint takes away in a tick, 0 to 1.
     pub damping: f32,
 }
 
-/// How a joint lets its second object move.
+/// The motion that a joint leaves to its second object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum JointMotion {
     /// It slides along -X of the joint.
     Slide,
     /// It turns about X of the joint.
     Turn,
-    /// It turns about X of the joint, springs open, and cuts links of chains.
+    /// It turns about X of the joint, springs open, and cuts chain links.
     Shear,
 }
 
 impl JointedSpec {
-    /// The frame that moves with the second object, in the joint's frame, at a displacement.
+    /// The frame of the second object at a displacement, in the joint's frame.
     pub fn moved(&self, displacement: f32) -> Pose {
         match self.motion {
             JointMotion::Slide => Pose::at(Vec3::NEG_X * displacement),
@@ -47,7 +47,7 @@ impl JointedSpec {
         }
     }
 
-    /// The displacement at which two objects are, by the poses of both in the world.
+    /// The displacement that follows from the objects' poses in the world.
     pub fn displacement(&self, poses: [Pose; 2]) -> f32 {
         let [first, second] = [0, 1].map(|index| poses[index] * self.objects[index].pose.inverse());
         let moved = first.inverse() * second;
@@ -76,7 +76,7 @@ impl JointedSpec {
         self.objects.each_ref().map(|object| object.pose.inverse())
     }
 
-    /// What the joint leaves free.
+    /// The motion that the joint leaves free.
     pub fn kind(&self) -> JointKind {
         let [min, max] = self.limits;
         let damping = self.damping;

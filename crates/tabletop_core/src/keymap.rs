@@ -1,4 +1,4 @@
-//! Which keys do what.
+//! The keymap: which keys do which actions.
 
 mod action;
 mod binding;
@@ -18,8 +18,8 @@ use bevy_input::{ButtonInput, keyboard::KeyCode};
 use self::table::ActionRow;
 use crate::{Hands, RobotLayout};
 
-/// The keys of each action. Keys are told apart by their places on the keyboard, whatever is printed on them, unless
-/// [Ctrl or the like](KeyLetters) is held down as well. The robot's layout says which joints there are to be moved.
+/// The keys of each action. A key is known by its place on the keyboard, whatever is printed on it, unless
+/// [Ctrl or the like](KeyLetters) is held down with it. The robot's layout decides which joints have actions.
 #[derive(Resource, Clone, Debug, PartialEq, Eq)]
 pub struct Keymap {
     groups: Vec<(ActionGroup, String)>,
@@ -35,7 +35,7 @@ impl Default for Keymap {
 }
 
 impl Keymap {
-    /// The keys for a robot, as they are shipped.
+    /// The default keys for a robot.
     pub fn of(layout: &RobotLayout) -> Self {
         let rows = table::rows(layout);
         let bindings = rows
@@ -79,22 +79,22 @@ impl Keymap {
         self.row(action).map_or("", |row| &row.label)
     }
 
-    /// What an action does, in a sentence; empty if this robot cannot do it.
+    /// Description of an action, a sentence; empty if this robot cannot do it.
     pub fn description(&self, action: Action) -> &'static str {
         self.row(action).map_or("", |row| row.tooltip)
     }
 
-    /// When an action can be asked for.
+    /// The situation in which an action is available.
     pub fn situation(&self, action: Action) -> Situation {
         self.row(action).map_or(Situation::Any, |row| row.situation)
     }
 
-    /// Whether an action goes on while its key is held down.
+    /// True if an action continues while its key is held down.
     pub fn is_continuous(&self, action: Action) -> bool {
         self.row(action).is_some_and(|row| row.is_continuous)
     }
 
-    /// The keys that do an action unless the user binds others.
+    /// The keys of an action unless the user binds others.
     pub fn default_bindings(&self, action: Action) -> &[KeyBinding] {
         self.row(action).map_or(&[], |row| &row.default_keys)
     }
@@ -104,14 +104,14 @@ impl Keymap {
         self.bindings.get(&action).map_or(&[], Vec::as_slice)
     }
 
-    /// Gives an action these keys instead of those that it had. Another action that has one of them in the same situation keeps it:
+    /// Gives an action these keys in place of its old ones. If another action of the same situation has one of them, both keep it:
     /// see [`conflicts`](Self::conflicts).
     pub fn bind(&mut self, action: Action, bindings: impl IntoIterator<Item = KeyBinding>) {
         let bindings = bindings.into_iter().collect();
         self.bindings.insert(action, bindings);
     }
 
-    /// Keys that two actions have in the same situation, so that the second one is out of reach.
+    /// Keys that two actions share in one situation, so that the second action is out of reach.
     pub fn conflicts(&self) -> Vec<(KeyBinding, Action, Action)> {
         let mut owners = BTreeMap::new();
         let mut conflicts = Vec::new();
@@ -130,8 +130,8 @@ impl Keymap {
         conflicts
     }
 
-    /// What a key does that is struck with these modifiers: with Shift what it does without unless Shift has a meaning of its
-    /// own, and with something in the hand first of all what is done to that.
+    /// The action of a key pressed with these modifiers. Shift has no effect on a key unless a binding names it. While the hand
+    /// holds something, the actions on the held object come first.
     pub fn action(&self, key: KeyCode, held: Modifiers, is_holding: bool) -> Option<Action> {
         let fitting = self.rows.iter().flat_map(|row| {
             let bindings = self.bindings(row.action).iter();
@@ -141,7 +141,7 @@ impl Keymap {
             .filter(|(binding, row)| {
                 let fits = match row.situation {
                     Situation::Any => binding.fits(held),
-                    // Ctrl is a key of its own then.
+                    // Here Ctrl is a key of its own.
                     Situation::Holding => {
                         is_holding && (binding.fits(held) || binding.fits(held.without_ctrl()))
                     }
@@ -161,7 +161,7 @@ impl Keymap {
         labels.collect::<Vec<_>>().join(" or ")
     }
 
-    /// What an action does, and its keys: `Stops the simulation, or lets it run on (Space)`.
+    /// Description of an action with its keys: `Stops the simulation, or lets it run on (Space)`.
     pub fn tooltip(&self, action: Action) -> String {
         match (self.description(action), self.hint(action)) {
             (tooltip, hint) if hint.is_empty() => tooltip.to_owned(),
@@ -170,20 +170,20 @@ impl Keymap {
     }
 }
 
-/// Who has the keyboard. The panels set it.
+/// The owner of the keyboard. The panels set it.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum KeyboardFocus {
-    /// Nobody: keys do what they are bound to.
+    /// The world: keys do their actions.
     #[default]
     World,
-    /// Something that is open over the window, such as a list: Esc closes it.
+    /// An overlay, such as an open list: Esc closes it.
     Overlay,
-    /// A field in which text or a number is being typed: keys write.
+    /// A field for text or a number: keys write into it.
     Text,
 }
 
 impl KeyboardFocus {
-    /// Whether a key still does what it is bound to.
+    /// True if a key still does its action.
     pub fn leaves(self, key: KeyCode) -> bool {
         match self {
             Self::World => true,
@@ -193,7 +193,7 @@ impl KeyboardFocus {
     }
 }
 
-/// What the user asks for with the keyboard at the moment.
+/// The actions that the user asks for with the keyboard in this frame.
 #[derive(SystemParam)]
 pub struct Keys<'w> {
     keymap: Res<'w, Keymap>,
@@ -204,19 +204,19 @@ pub struct Keys<'w> {
 }
 
 impl Keys<'_> {
-    /// Whether a key of this action is held down.
+    /// True while a key of this action is held down.
     pub fn is_held(&self, action: Action) -> bool {
         let mut held = self.keys.get_pressed();
         held.any(|key| self.meaning(*key) == Some(action))
     }
 
-    /// Whether a key of this action has gone down in this frame, even if it is up again.
+    /// True if a key of this action went down in this frame, even if it is up again.
     pub fn was_struck(&self, action: Action) -> bool {
         let mut struck = self.keys.get_just_pressed();
         struck.any(|key| self.meaning(*key) == Some(action))
     }
 
-    /// What a key that is or was down in this frame asks for.
+    /// The action of a key that is or was down in this frame.
     pub fn meaning(&self, key: KeyCode) -> Option<Action> {
         let is_holding = self.hands.held_by(self.hands.selected).is_some();
         let modifiers = self.modifiers_of(key);
@@ -230,7 +230,7 @@ impl Keys<'_> {
         f32::from(i8::from(self.is_held(plus)) - i8::from(self.is_held(minus)))
     }
 
-    /// In a slow frame, modifiers may have come up as well since a key did.
+    /// The modifiers of a key. In a slow frame they may have come up since the key did.
     fn modifiers_of(&self, key: KeyCode) -> Modifiers {
         let is_up_again = !self.keys.pressed(key);
         Modifiers::that_are(|key| {
@@ -276,7 +276,7 @@ mod tests {
         hands.set_held(Hand::Left, Some(object));
     }
 
-    /// What is asked for with these keys held down.
+    /// Actions asked for with these keys held down.
     fn held(world: &mut World, keys: &[KeyCode]) -> Vec<Action> {
         press(world, keys);
         let held = |keys: Keys| {

@@ -1,8 +1,7 @@
-//! The vocabulary that the parts of the tabletop simulator share.
+//! The vocabulary shared by the parts of the tabletop simulator.
 //!
-//! Here stands what two parts that must not know each other both need: what an object is ([`ObjectSpec`], [`Shape`]),
-//! what a task file says ([`SceneSpec`]), what the simulation is to do and what has happened ([`SimCommand`], [`SimFact`]) and when
-//! things happen in a tick ([`SimSystems`]).
+//! This crate holds everything that two parts need which must not know each other: objects ([`ObjectSpec`], [`Shape`]), the contents of
+//! task files ([`SceneSpec`]), commands and facts ([`SimCommand`], [`SimFact`]), and the phases of a tick ([`SimSystems`]).
 //!
 //! The world is right-handed with its origin at the centre of the table's top: X to the right, Y away from the robot,
 //! **Z up**. A unit of length is 10 cm; masses are in kg, times in s. Angles are in radians in code, in degrees in files.
@@ -159,7 +158,7 @@ pub mod prelude {
 /// Adds clock, commands and facts. Every other plugin of the simulator needs it.
 #[derive(Clone, Copy, Debug)]
 pub struct CorePlugin {
-    /// Run the fixed schedules on one thread, which is much faster for them; `false` leaves the app's executors alone.
+    /// Run the fixed schedules on one thread, which is much faster for them. With `false`, the app's executors stay as they are.
     pub one_thread: bool,
 }
 

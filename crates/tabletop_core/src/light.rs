@@ -1,9 +1,9 @@
-//! How much of their colours surfaces show: the same in the window and to the robot's eye.
+//! Light: the share of its colour that a surface shows, in the window and in the head camera alike.
 
 use bevy::math::Vec3;
 
-/// The light of the scene, in display values: no lamp, no shadows, no highlights, no gamma. A surface shows a share of its
-/// colour that depends on nothing but the direction in which it faces. One that faces up shows its colour itself.
+/// The light of the scene, in display values: no lamp, no shadows, no highlights, no gamma. The share of its colour that a surface
+/// shows depends only on the direction in which it faces. A surface that faces up shows its full colour.
 ///
 /// ```
 /// use bevy::math::Vec3;
@@ -14,22 +14,22 @@ use bevy::math::Vec3;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Light {
-    /// The shares of what faces along X (right), Y (away from the user) and Z (up).
+    /// Shares of surfaces that face along X (right), Y (away from the user) and Z (up).
     pub along: Vec3,
-    /// The shares of what faces the other way: left, towards the user, down.
+    /// Shares of surfaces that face the other way: left, towards the user, down.
     pub against: Vec3,
 }
 
-/// The light of every scene. As in the original program, the sides that the user and the robot see first show 80 %; the others
-/// differ from them, so that edges are seen.
+/// The light of every scene. As in the original program, the sides that the user and the robot see first show 80 %. The others
+/// differ from them, so that edges are visible.
 pub const LIGHT: Light = Light {
     along: Vec3::new(0.9, 0.85, 1.0),
     against: Vec3::new(0.7, 0.8, 0.6),
 };
 
 impl Light {
-    /// What a surface with this outward normal of unit length shows of its colour, at most 1: the mean of what it would show if it
-    /// faced along the axes, weighted by the squares of the normal's components, which makes round surfaces smooth.
+    /// The share of its colour, at most 1, that a surface with this outward unit normal shows: the mean of the shares along the
+    /// axes, weighted by the squares of the normal's components, so that round surfaces look smooth.
     #[inline]
     pub fn share(&self, normal: Vec3) -> f32 {
         let shares = Vec3::select(normal.cmpgt(Vec3::ZERO), self.along, self.against);

@@ -1,4 +1,4 @@
-//! What numbers of scenes may be, in task files and in recordings.
+//! Limits on the numbers of scenes, in task files and recordings.
 
 use std::ops::RangeInclusive;
 
@@ -11,14 +11,14 @@ pub const MASSES: RangeInclusive<f32> = 0.0..=1e6;
 /// Paddings of links, in units.
 pub const PADDINGS: RangeInclusive<f32> = 0.0..=1000.0;
 
-/// How far joints slide, in units.
+/// Displacements of sliding joints, in units.
 pub const DISPLACEMENTS: RangeInclusive<f32> = -1000.0..=1000.0;
 
-/// Shares of a whole.
+/// Proportions of a whole.
 pub const PROPORTIONS: RangeInclusive<f32> = 0.0..=1.0;
 
-/// How far the blocks of a switch are turned, in degrees.
+/// Angles of a switch's blocks, in degrees.
 pub const SWITCH_ANGLES: RangeInclusive<f32> = 0.0..=80.0;
 
-/// Most links of a chain.
+/// Largest number of links of a chain.
 pub const MOST_LINKS: u32 = 1000;

@@ -1,33 +1,33 @@
-//! The parts of objects that do something or can be spoken of: controls, bond points, and what can be pointed to.
+//! Parts of objects with an id or a function: controls, bond points, and parts that can be pointed to.
 
 use bevy::prelude::*;
 
 use crate::{BondEnd, BondPoint, Control, GuestPoint, HostPoint, ObjectSpec, Part, Pose, Shape};
 
-/// A part of an object with an id of its own, or the whole object.
+/// An object, or a part of one with an id of its own.
 #[derive(Clone, Copy, Debug)]
 pub struct PlacedPart<'a, T> {
     /// Its id.
     pub id: &'a str,
     /// Its pose in the frame of the object.
     pub pose: Pose,
-    /// What it is.
+    /// The part.
     pub what: &'a T,
 }
 
-/// What is touched where an object is touched.
+/// A touched surface of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TouchedSurface<'a> {
     /// The simple shape, in the frame of the object.
     pub part: Part,
-    /// Id of the control that it belongs to, and which of the control's simple parts it is.
+    /// Id of the control that the surface belongs to, and the number of the control's simple part.
     pub control: Option<(&'a str, u32)>,
-    /// Id of the innermost part around it to which one can point, or of the object.
+    /// Id of the innermost pointable part around it, or of the object.
     pub pointable: &'a str,
 }
 
 impl ObjectSpec {
-    /// Everything of the object that can be touched.
+    /// All surfaces of the object that can be touched.
     pub fn surfaces(&self) -> Vec<TouchedSurface<'_>> {
         fn collect<'a>(
             (id, pose, shape): (&'a str, Pose, &'a Shape),
@@ -64,7 +64,7 @@ impl ObjectSpec {
         surfaces
     }
 
-    /// What a ray, in the frame of the table, first touches of the object at a pose, and how far away.
+    /// The first surface of the object that a ray touches, with its distance. The ray is in the table's frame, the object at `pose`.
     pub fn touched_along(&self, ray: Ray3d, pose: Pose) -> Option<(TouchedSurface<'_>, f32)> {
         let distance = |surface: &TouchedSurface| {
             let solids = surface.part.shape.colliding();
@@ -81,7 +81,7 @@ impl ObjectSpec {
             .map(|(distance, surface)| (surface, distance))
     }
 
-    /// The object's controls: itself, or parts of it.
+    /// The object's controls: the object itself, or parts of it.
     pub fn controls(&self) -> Vec<PlacedPart<'_, Control>> {
         let mut controls = Vec::new();
         self.visit(&mut |id, pose, shape| {
@@ -96,7 +96,7 @@ impl ObjectSpec {
         controls
     }
 
-    /// The control of an id.
+    /// The control with this id.
     pub fn control(&self, id: &str) -> Option<&Control> {
         let mut controls = self.controls().into_iter();
         controls
@@ -104,12 +104,12 @@ impl ObjectSpec {
             .map(|control| control.what)
     }
 
-    /// The control of an id, to be changed.
+    /// The control with this id, for changing it.
     pub fn control_mut(&mut self, id: &str) -> Option<&mut Control> {
         control_of(&mut self.shape, &self.id, id)
     }
 
-    /// The points at which it is fastened to others.
+    /// Its guest points, by which it is fastened to others.
     pub fn guest_points(&self) -> Vec<(PlacedPart<'_, BondPoint>, &GuestPoint)> {
         let points = self.bond_points().into_iter();
         points
@@ -120,7 +120,7 @@ impl ObjectSpec {
             .collect()
     }
 
-    /// The points at which others are fastened to it.
+    /// Its host points, to which others are fastened.
     pub fn host_points(&self) -> Vec<(PlacedPart<'_, BondPoint>, &HostPoint)> {
         let points = self.bond_points().into_iter();
         points
@@ -146,7 +146,7 @@ impl ObjectSpec {
         points
     }
 
-    /// Whether a part of it that can be pointed to has this id.
+    /// True if it has a pointable part with this id.
     pub fn has_pointable(&self, id: &str) -> bool {
         fn among(parts: &[Part], id: &str) -> bool {
             parts.iter().any(|part| {
@@ -157,7 +157,7 @@ impl ObjectSpec {
         matches!(&self.shape, Shape::Composite { parts } if among(parts, id))
     }
 
-    /// The object itself and all parts of composites, with the ids and the poses in the frame of the object.
+    /// Visits the object and all parts of composites, with their ids and their poses in the object's frame.
     fn visit<'a>(&'a self, see: &mut impl FnMut(&'a str, Pose, &'a Shape)) {
         fn visit<'a>(
             id: &'a str,
@@ -176,7 +176,7 @@ impl ObjectSpec {
     }
 }
 
-/// The control of an id in a shape that has an id of its own.
+/// The control with this id in a shape whose own id is `own`.
 fn control_of<'a>(shape: &'a mut Shape, own: &str, id: &str) -> Option<&'a mut Control> {
     match shape {
         Shape::Control(control) => (own == id).then_some(&mut **control),

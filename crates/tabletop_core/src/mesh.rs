@@ -1,4 +1,4 @@
-//! What a file of triangles describes.
+//! Meshes: shapes made of the triangles of a file.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Polyhedron, PolyhedronError};
 
-/// A surface of triangles and the convex solids that fill it, as they are scaled. Its frame is that of a shape: lengths in units.
+/// A mesh, already scaled: a surface of triangles and the convex solids that fill it. Lengths in units, in the shape's frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "MeshRecord", into = "MeshRecord")]
 pub struct MeshSpec(Arc<MeshContent>);
@@ -20,7 +20,7 @@ struct MeshContent {
     solids: Vec<Polyhedron>,
 }
 
-/// A mesh as it is written.
+/// A mesh as it is serialised.
 #[derive(Serialize, Deserialize)]
 struct MeshRecord {
     file: String,
@@ -35,7 +35,7 @@ struct PolyhedronRecord {
     triangles: Vec<[u32; 3]>,
 }
 
-/// Why something is no mesh.
+/// The error of data that is no mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MeshError {
     /// Its surface or one of its solids is no polyhedron.
@@ -53,13 +53,13 @@ pub enum MeshError {
 }
 
 impl MeshSpec {
-    /// No surface has more triangles.
+    /// Largest number of triangles of a surface.
     pub const MOST_TRIANGLES: usize = 100_000;
 
-    /// No mesh has more solids.
+    /// Largest number of solids of a mesh.
     pub const MOST_SOLIDS: usize = 1_000;
 
-    /// What was read from a file, whose name is as the task file has it, with lengths of the file multiplied by a scale.
+    /// A mesh read from a file. `file` is the name in the task file; lengths of the file are multiplied by `scale`.
     ///
     /// # Errors
     /// There are too many triangles or solids, none, or solids without volume.
@@ -89,12 +89,12 @@ impl MeshSpec {
         })))
     }
 
-    /// The name of its file, as the task file has it.
+    /// The name of its file, as in the task file.
     pub fn file(&self) -> &str {
         &self.0.file
     }
 
-    /// By what the lengths of its file are multiplied.
+    /// The factor on the lengths of its file.
     pub fn scale(&self) -> f32 {
         self.0.scale
     }
@@ -109,7 +109,7 @@ impl MeshSpec {
         &self.0.solids
     }
 
-    /// What it shows: the name of its file up to the first dot, without folders.
+    /// Its name in recordings: that of its file up to the first dot, without folders.
     pub fn name(&self) -> &str {
         let file = self.0.file.rsplit(['/', '\\']).next().unwrap_or_default();
         file.split('.').next().unwrap_or_default()

@@ -1,11 +1,11 @@
-//! Where the head camera is mounted.
+//! The mount of the head camera.
 
 use std::f64::consts::FRAC_PI_2;
 
 use crate::{CameraCarrier, HeadCamera, Pose, Table, turn_about_x, turn_about_z};
 
 impl HeadCamera {
-    /// Where it stands before this table. It looks along its own -Z with its Y up.
+    /// Its pose before this table. The camera looks along its own -Z with its Y up.
     pub fn pose(&self, table: &Table) -> Pose {
         self.mount
             .unwrap_or_else(|| head_pose(&self.carrier, self.pan, table))

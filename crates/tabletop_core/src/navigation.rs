@@ -1,8 +1,8 @@
-//! How the user moves his camera (report section 3).
+//! The user's camera and its motions (report section 3).
 
 use bevy::prelude::*;
 
-/// How the camera is steered at the moment: speeds along and about its own directions. Panels set it while something in them is
+/// The present steering of the camera: speeds along and about its own directions. Panels set it while one of their controls is
 /// held down.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource)]
@@ -19,43 +19,44 @@ pub struct Steering {
     pub turn_up: f32,
 }
 
-/// A motion of the camera, at once. It stays upright, within reach of the table, and does not sink below the table's top.
+/// A motion of the camera, done at once. The camera stays upright and within reach of the table, and never sinks below the
+/// table's top.
 #[derive(Message, Clone, Copy, Debug, PartialEq)]
 pub enum CameraMotion {
-    /// Around a point, which it sees in the same place afterwards.
+    /// Around a point, which stays in the same place of the picture.
     Orbit {
         /// The point, in units.
         center: Vec3,
-        /// How far about the vertical line through it, in radians, counter-clockwise as seen from above.
+        /// Angle about the vertical line through it, in radians, counterclockwise as seen from above.
         angle: f32,
-        /// How far up above it, in radians.
+        /// Angle upwards about it, in radians.
         rise: f32,
     },
-    /// By so many units, looking the same way.
+    /// By this vector, in units, without turning.
     Shift(Vec3),
-    /// Towards a point, which it sees in the same place afterwards, or away from it.
+    /// Towards a point or away from it. The point stays in the same place of the picture.
     Approach {
         /// The point, in units.
         point: Vec3,
-        /// What the distance is multiplied by.
+        /// Factor on the distance.
         factor: f32,
     },
-    /// To one of the views.
+    /// To one of the fixed views.
     Look(CameraView),
 }
 
-/// Where the camera can be put at once.
+/// A view that the camera can take at once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraView {
-    /// Where it was when the first table appeared, for the table that is there now.
+    /// The first view of a table, for the present table.
     Start,
-    /// Above the table, looking down on all of it.
+    /// From above, looking down on the whole table.
     Top,
-    /// Before the table's near edge, looking level.
+    /// From before the table's near edge, looking level.
     Front,
-    /// Where the robot's head camera is, looking as it does.
+    /// The view of the robot's head camera.
     RobotEye,
-    /// Looking as before, with what the selected hand holds in the middle; the table's centre if it holds nothing.
+    /// In the same direction as before, with the held object in the middle, or the table's centre if nothing is held.
     Center,
 }
 

@@ -1,8 +1,8 @@
-//! Numbers as recordings and tables write them.
+//! Numbers as recordings and tables show them.
 
 use std::fmt;
 
-/// Displays a number as the original program's recordings do: the shortest digits that read back to the same `f32`,
+/// A number displayed as in the original program's recordings: the shortest digits that read back to the same `f32`,
 /// always with a decimal point, and with an exponent below 0.001 and from ten million.
 ///
 /// ```

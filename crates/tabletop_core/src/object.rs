@@ -1,48 +1,49 @@
-//! What an object is: its shape, and the shapes with states that are objects or parts themselves.
+//! Objects: their descriptions and shapes, and the controls among these.
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::{BondPoint, IndicatorLights, MeshSpec, Pose, Rgb, Rollback, ToggleSwitch};
 
-/// What an object is: everything that physics, pictures and recordings need to know of it.
+/// The description of an object: everything that physics, pictures and recordings need to know of it.
 ///
-/// As a component it marks the entity of an object on the table; the entity's `Transform` is where the object is now,
-/// while [`pose`](Self::pose) stays where it was put.
+/// As a component it marks the entity of an object on the table; the entity's `Transform` is the object's present pose;
+/// [`pose`](Self::pose) remains the one that it was given at first.
 #[derive(Component, Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 #[component(immutable)]
 #[require(Transform, Rollback)]
 #[reflect(Component)]
 pub struct ObjectSpec {
-    /// Its id. In a [`SceneSpec`](crate::SceneSpec) it is the id that the file asks for (empty: any), on the table it is unique.
+    /// Its id. In a [`SceneSpec`](crate::SceneSpec) it is the id that the file asks for (empty: any); on the table it is unique.
     pub id: String,
-    /// Where it is put: the pose of its centre (for a composite: its reference point), which is also its centre of mass.
+    /// Its first pose: that of its centre (for a composite: of its reference point), which is also its centre of mass.
     pub pose: Pose,
     /// Mass in kg; 0 makes it immovable.
     pub mass: f32,
     /// Its geometry and colours.
     pub shape: Shape,
-    /// How it slides, bounces and begins to move.
+    /// Its friction, restitution and initial velocity.
     #[serde(default, skip_serializing_if = "Dynamics::is_default")]
     pub dynamics: Dynamics,
-    /// Symbolic properties for recordings, as name and value, in the order of the file.
+    /// Symbolic properties for recordings, as names and values in the order of the file.
     pub descriptions: Vec<(String, String)>,
 }
 
-/// How an object slides, bounces and begins to move, where that is not as for all objects.
+/// An object's friction, restitution and initial velocity, where they differ from the defaults.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, Reflect)]
 #[serde(default)]
 pub struct Dynamics {
-    /// Coulomb friction of its surface. Two surfaces in contact have the product of theirs.
+    /// Coulomb friction of its surface. The friction of a contact is the product of both surfaces'.
     pub friction: Option<f32>,
-    /// The share of the speed of an impact with which it bounces back, 0 to 1. Two surfaces in contact have the mean of theirs.
+    /// Restitution of its surface, 0 to 1: the share of an impact's speed with which it bounces back. That of a contact is the mean of
+    /// both surfaces'.
     pub restitution: Option<f32>,
-    /// Its velocity when it appears, in units/s.
+    /// Its initial velocity, in units/s.
     pub velocity: Vec3,
 }
 
-/// The shape of an object or of a part of one (report section 6.2). Sizes are full extents in units of 10 cm;
-/// the shape's origin is its centre, for a composite its reference point.
+/// The shape of an object or a part (report section 6.2). Sizes are full extents in units of 10 cm. The shape's origin is its
+/// centre, or the reference point of a composite.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 #[reflect(opaque)]
 pub enum Shape {
@@ -84,20 +85,20 @@ pub enum Shape {
         radius: f32,
         /// Length.
         yspan: f32,
-        /// How many flat sides, 3 or more.
+        /// Number of flat sides, 3 or more.
         sides: u32,
         /// Its colour.
         color: Rgb,
     },
     /// A prism, or a part of a pyramid, along Z; its first corner is towards X.
     Frustum {
-        /// Radius of the corners of its end towards +Z.
+        /// Radius of the corners at its +Z end.
         radius_top: f32,
-        /// Radius of the corners of its end towards -Z.
+        /// Radius of the corners at its -Z end.
         radius_bottom: f32,
         /// Length.
         zspan: f32,
-        /// How many flat sides, 3 or more.
+        /// Number of flat sides, 3 or more.
         sides: u32,
         /// Its colour.
         color: Rgb,
@@ -110,12 +111,12 @@ pub enum Shape {
         radius_inner: f32,
         /// Height.
         zspan: f32,
-        /// How many flat sides, 3 or more.
+        /// Number of flat sides, 3 or more.
         sides: u32,
         /// Its colour.
         color: Rgb,
     },
-    /// What a file describes by triangles.
+    /// A mesh of the triangles in a file.
     Mesh {
         /// Its surface, and the solids that fill it.
         mesh: MeshSpec,
@@ -158,45 +159,45 @@ pub enum Shape {
 /// A shape as a part of a composite.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Part {
-    /// The part's id as the task file has it; empty if it has none. Need not be unique.
+    /// The part's id as in the task file; empty if it has none. It need not be unique.
     pub id: String,
-    /// Its pose in the frame of the composite that it is a direct part of.
+    /// Its pose in the frame of the composite that directly contains it.
     pub pose: Pose,
     /// Its shape.
     pub shape: Shape,
-    /// Whether the demonstrator can point to it. Its id is then unique on the table.
+    /// True if the demonstrator can point to it. Its id is then unique on the table.
     #[serde(default)]
     pub pointable: bool,
 }
 
-/// A shape with states, numbered from 0: an object of its own or a part of a composite. Its id is that of the object or part.
+/// A shape with states, numbered from 0. It is an object or a part of a composite, whose id is the control's.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Control {
-    /// What it is.
+    /// Its kind.
     pub kind: ControlKind,
     /// Its state.
     pub state: u32,
-    /// The state that is shown and reported instead, if there is one.
+    /// The state that is shown and reported instead, if any.
     pub override_state: Option<u32>,
-    /// Ids of the controls that take over its state whenever it changes.
+    /// Ids of the controls that copy its state whenever it changes.
     pub downstream: Vec<String>,
 }
 
 /// The kinds of controls.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ControlKind {
-    /// Two blocks that meet at an angle: pressing the raised one presses the other one up and changes the state.
+    /// Two blocks that meet at an angle: pressing the raised one lifts the other and changes the state.
     ToggleSwitch(ToggleSwitch),
-    /// A row of lights, of which a state shows some.
+    /// A row of lights. Each state turns some of them on.
     IndicatorLights(IndicatorLights),
-    /// Shapes of its own for every state.
+    /// A control whose task file gives the shapes of every state.
     Custom(CustomControl),
 }
 
-/// A control of its own shapes.
+/// A control with shapes of its own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CustomControl {
-    /// What kind of control it is, for recordings.
+    /// The kind of control, as recordings name it.
     pub name: String,
     /// Its states.
     pub states: Vec<CustomState>,
@@ -207,36 +208,36 @@ pub struct CustomControl {
 pub struct CustomState {
     /// Its name in recordings; empty for its number.
     pub name: String,
-    /// The shapes that there are in this state.
+    /// The shapes of this state.
     pub parts: Vec<Part>,
-    /// The state to which triggering leads, for each of the [simple parts](Shape::simple_parts) of these shapes.
+    /// For each [simple part](Shape::simple_parts) of these shapes, the state to which triggering it leads.
     pub next: Vec<Option<u32>>,
-    /// What coming into this state does to other objects, in this order.
+    /// Changes to other objects when the control enters this state, in order.
     #[serde(default)]
     pub changes: Vec<Change>,
 }
 
-/// Something that a control does to other objects.
+/// A change that a control makes to another object.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Change {
-    /// It removes an object.
+    /// Remove an object.
     Remove {
         /// Its id.
         object: String,
     },
-    /// It gives an object another colour.
+    /// Give an object another colour.
     Recolor {
         /// Its id.
         object: String,
         /// The colour.
         color: Rgb,
     },
-    /// It makes an object, at a pose on the table.
+    /// Make an object at a pose on the table.
     Spawn(Box<ObjectSpec>),
 }
 
 impl Dynamics {
-    /// Whether it is as for all objects, and at rest.
+    /// True if all of it is as by default: an ordinary object that starts at rest.
     pub fn is_default(&self) -> bool {
         *self == Self::default()
     }
@@ -255,7 +256,7 @@ impl ObjectSpec {
         }
     }
 
-    /// Whether nothing moves it.
+    /// True if nothing can move it.
     pub fn is_fixed(&self) -> bool {
         self.mass == 0.0
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use bevy::prelude::*;
 
-/// The objects on the table: by id, and in the order in which they were created.
+/// The index of the objects on the table: by id, and in the order in which they were created.
 #[derive(Resource, Clone, Debug, Default, Reflect)]
 #[reflect(Resource)]
 pub struct ObjectIndex {
@@ -13,7 +13,7 @@ pub struct ObjectIndex {
 }
 
 impl ObjectIndex {
-    /// The object of this id.
+    /// The object with this id.
     pub fn get(&self, id: &str) -> Option<Entity> {
         self.by_id.get(id).copied()
     }
@@ -28,17 +28,17 @@ impl ObjectIndex {
         self.by_id.keys().map(String::as_str)
     }
 
-    /// How many objects there are.
+    /// Number of objects.
     pub fn len(&self) -> usize {
         self.in_order.len()
     }
 
-    /// Whether the table is empty.
+    /// True if the table is empty.
     pub fn is_empty(&self) -> bool {
         self.in_order.is_empty()
     }
 
-    /// Notes a new object. An id that is already there is taken over by the new object.
+    /// Adds a new object. If its id is taken, the new object takes it over.
     pub fn insert(&mut self, id: impl Into<String>, object: Entity) {
         if let Some(previous) = self.by_id.insert(id.into(), object) {
             self.in_order.retain(|&entity| entity != previous);
@@ -46,7 +46,7 @@ impl ObjectIndex {
         self.in_order.push(object);
     }
 
-    /// Forgets an object, and returns its entity.
+    /// Removes an object, and returns its entity.
     pub fn remove(&mut self, id: &str) -> Option<Entity> {
         let object = self.by_id.remove(id)?;
         self.in_order.retain(|&entity| entity != object);

@@ -1,4 +1,4 @@
-//! Who operates a mechanism.
+//! Operators of mechanisms.
 
 use std::{fmt, str::FromStr};
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Hand, LimbName};
 
-/// Who operates a control or fastens something.
+/// The operator of a control or a bond.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Operator {
     /// A hand of the demonstrator.
@@ -17,7 +17,7 @@ pub enum Operator {
     Object(String),
 }
 
-/// What stands before the name of an operator in recordings that is no hand.
+/// Prefix of operators in recordings that are limbs.
 const LIMB: &str = "robot:";
 const OBJECT: &str = "object:";
 
@@ -31,7 +31,7 @@ impl fmt::Display for Operator {
     }
 }
 
-/// Why a text is no operator.
+/// The error of a text that is no operator.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OperatorError(String);
 

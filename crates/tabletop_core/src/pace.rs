@@ -1,4 +1,4 @@
-//! How fast simulated time passes in a window, and single steps.
+//! Pace: how fast simulated time passes in a window, and single steps.
 
 use std::time::{Duration, Instant};
 
@@ -9,13 +9,13 @@ use crate::{
     SimTick, TICK_SECONDS, idle,
 };
 
-/// How long the ticks of a frame may take together, so that pictures keep coming whatever the pace.
+/// Longest time that the ticks of a frame may take together, so that pictures keep coming at any pace.
 const LONGEST_TICKS: Duration = Duration::from_millis(50);
 
-/// After a frame of more than this, simulated time stands still for the rest.
+/// Longest part of a frame that is simulated. Simulated time stands still for the rest.
 const LONGEST_FRAME: Duration = Duration::from_millis(250);
 
-/// How many times as fast as real time the simulation is to go. What it computes does not depend on it.
+/// The pace of the simulation, as a multiple of real time. Its results do not depend on it.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Reflect)]
 #[reflect(Resource)]
 pub enum Pace {
@@ -45,7 +45,7 @@ impl Pace {
         Self::Eightfold,
     ];
 
-    /// Simulated seconds a second.
+    /// Simulated seconds per second.
     pub const fn factor(self) -> f32 {
         match self {
             Self::Quarter => 0.25,
@@ -57,7 +57,7 @@ impl Pace {
         }
     }
 
-    /// As the user reads it.
+    /// Its label for the user.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Quarter => "¼×",
@@ -88,7 +88,7 @@ impl Pace {
 #[derive(Message, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SingleStep;
 
-/// Lets an app with a window go at its [`Pace`], and make [`SingleStep`]s. Needs [`CorePlugin`](crate::CorePlugin).
+/// Lets an app with a window run at its [`Pace`] and make [`SingleStep`]s. Needs [`CorePlugin`](crate::CorePlugin).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PacePlugin;
 
@@ -115,7 +115,7 @@ impl Plugin for PacePlugin {
     }
 }
 
-/// Lets the simulation run for a tick, by the commands with which a user would.
+/// Lets the simulation run for one tick, by the commands that a user would give.
 fn make_steps(
     mut asked_for: MessageReader<SingleStep>,
     mut steps: Local<usize>,
@@ -135,12 +135,12 @@ fn make_steps(
     }
 }
 
-/// How long ticks take.
+/// Measured duration of ticks.
 #[derive(Resource, Debug)]
 struct TickCost {
     begin: Instant,
     first: SimTick,
-    /// Of a tick, as a mean of the last ones.
+    /// Duration of a tick, as a moving mean.
     tick: Duration,
 }
 
@@ -155,14 +155,14 @@ impl Default for TickCost {
 }
 
 impl TickCost {
-    /// Takes in that so many ticks took so long.
+    /// Takes a measurement in: this many ticks took this long.
     fn note(&mut self, ticks: u32, took: Duration) {
         if let Some(tick) = took.checked_div(ticks) {
             self.tick = (self.tick * 3 + tick) / 4;
         }
     }
 
-    /// How much of the time of a frame is simulated, so that its ticks take no longer than they may. A tick always is.
+    /// Longest part of a frame that can be simulated without its ticks exceeding their time; one tick at least.
     fn longest_frame(&self, pace: Pace) -> Duration {
         let ticks = LONGEST_TICKS.as_secs_f32() / self.tick.as_secs_f32().max(1e-6);
         let seconds = ticks.max(1.0) * TICK_SECONDS / pace.factor();

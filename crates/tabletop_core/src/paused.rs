@@ -1,16 +1,16 @@
-//! Whether the simulation stands still.
+//! The pause of the simulation.
 
 use bevy::prelude::*;
 
 use crate::{ClockCommand, IssuedCommand};
 
-/// Whether the simulation stands still. Commands are still carried out, so files can be loaded.
+/// The pause: while it is true, time stands still. Commands are still carried out, so files can be loaded.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Resource)]
 pub struct Paused(pub bool);
 
 impl Paused {
-    /// Whether the tick that begins is one of a pause, which may have been asked for just now: for systems that give orders.
+    /// True if the tick that is beginning belongs to a pause, which may have just been asked for. For systems that give commands.
     pub fn will_be(
         mut commands: MessageReader<IssuedCommand>,
         mut asked_for: Local<Option<bool>>,
@@ -20,7 +20,7 @@ impl Paused {
         let pauses = commands.map(|(_, command)| match command {
             ClockCommand::SetPaused(pause) => *pause,
         });
-        // While the simulation is blocked, what was asked for in an earlier frame is still to be done.
+        // While the simulation is blocked, a request of an earlier frame is still to be carried out.
         *asked_for = pauses.last().or(*asked_for).filter(|ask| *ask != paused.0);
         asked_for.unwrap_or(paused.0)
     }

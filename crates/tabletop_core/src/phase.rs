@@ -1,8 +1,8 @@
-//! The phases of a tick: which systems run in which order.
+//! The phases of a tick: the order in which its systems run.
 
 use bevy::prelude::*;
 
-/// Everything of a tick: whatever is in [`FixedUpdate`] and in none of the [`OrderSystems`]. Does not run while
+/// All systems of a tick: everything in [`FixedUpdate`] outside the [`OrderSystems`]. They do not run while
 /// [`SimBlocked`](crate::SimBlocked) is set.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct TickSystems;
@@ -10,9 +10,9 @@ pub struct TickSystems;
 /// The phases of a tick, in their order, all in the [`FixedUpdate`] schedule.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SimSystems {
-    /// Commands that name files become commands that hold their content.
+    /// Commands that name files become commands that hold the files' contents.
     Load,
-    /// Commands, scenarios and scripts are carried out: things appear, disappear and get targets. Runs while paused, too.
+    /// Commands are carried out: objects appear and disappear, joints get targets. Runs while paused, too.
     Ingest,
     /// Hands, joints and grippers turn targets into kinematic poses and motor commands.
     Actuate,
@@ -20,34 +20,34 @@ pub enum SimSystems {
     Physics,
     /// Global transforms are brought up to this tick. Runs while paused, too.
     Propagate,
-    /// Contacts, grips and forward kinematics are read from the new state; then [the picture is taken](crate::PictureSystems).
+    /// Contacts, grips and forward kinematics are read from the new state. Then [the picture is taken](crate::PictureSystems).
     Sense,
-    /// Recorders and scripts get what this tick brought.
+    /// Recorders and scripts receive the results of this tick.
     Record,
-    /// [`SimTick`](crate::SimTick) moves on.
+    /// [`SimTick`](crate::SimTick) advances.
     Advance,
 }
 
-/// Who gives commands for the tick that begins, in this order, before [`TickSystems`].
+/// The givers of commands for the tick that is beginning, in order, before [`TickSystems`].
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum OrderSystems {
     /// Scenarios.
     Scenario,
-    /// What a user holds down: keys and buttons.
+    /// Keys and buttons that the user holds down.
     User,
     /// Scripts.
     Script,
 }
 
-/// The phases in which commands are carried out, in this order, after [`SimSystems::Load`] and before [`SimSystems::Actuate`].
-/// [`SimCommand::phase`](crate::SimCommand::phase) says which command has which. They run while paused, too.
+/// The phases in which commands are carried out, in order, after [`SimSystems::Load`] and before [`SimSystems::Actuate`].
+/// [`SimCommand::phase`](crate::SimCommand::phase) assigns them. They run while paused, too.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum CommandSystems {
     /// Recordings begin.
     Recording,
-    /// The clock is stopped, or runs on.
+    /// The clock is paused or resumed.
     Clock,
-    /// Objects appear and go. It is part of [`SimSystems::Ingest`].
+    /// Objects appear and disappear. Part of [`SimSystems::Ingest`].
     Scene,
     /// Undo and redo.
     History,
@@ -59,7 +59,7 @@ pub enum CommandSystems {
     Robot,
 }
 
-/// Who moves things in [`SimSystems::Actuate`], in this order.
+/// The parts of [`SimSystems::Actuate`], in order.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ActuateSystems {
     /// The demonstrator's hands.

@@ -1,30 +1,30 @@
-//! Playing an open recording.
+//! Playback of an open recording.
 
 use bevy::prelude::*;
 
 use crate::SimTick;
 
-/// How the open recording plays. Whoever replays it sets this.
+/// The playback of the open recording. The replayer sets this.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Resource)]
 pub struct Playback {
-    /// The moment that the world is being brought to.
+    /// The tick that the world is being brought to.
     pub goal: Option<SimTick>,
-    /// Whether it begins again when it is over.
+    /// True if it begins again at its end.
     pub loops: bool,
-    /// Whether it is over, so that the user can act.
+    /// True if it has ended, so that the user can act.
     pub is_over: bool,
 }
 
-/// What is to become of the open recording. Whoever replays it reads this.
+/// A request to the playback of the open recording. The replayer reads it.
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlaybackOrder {
-    /// Bring the world to the end of this tick, and let it stand still or play on as before.
+    /// Bring the world to the end of this tick, then stand still or play on as before.
     GoTo(SimTick),
-    /// Bring the world to the end of this tick, and let it stand still.
+    /// Bring the world to the end of this tick, then stand still.
     StopAt(SimTick),
-    /// Begin again when it is over, or do not.
+    /// Begin again at its end, or do not.
     Loop(bool),
-    /// Put it away, and begin with a fresh task.
+    /// Close it and begin with a fresh task.
     Close,
 }

@@ -1,4 +1,4 @@
-//! Solids with flat faces: what frustums, rings and meshes are made of.
+//! Polyhedra: the solids of frustums, rings and meshes.
 
 mod nearest;
 mod recipe;
@@ -17,14 +17,14 @@ use bevy::prelude::*;
 
 use crate::{Bounds, Pose, polyhedron::recipe::Recipe};
 
-/// A solid with flat faces, in its own frame. Each is kept once as long as the program runs, so that a copy is a reference and equal ones are
-/// the same.
+/// A solid with flat faces, in its own frame. Each one is stored once for as long as the program runs: a copy is a reference, and equal
+/// solids are the same one.
 #[derive(Clone, Copy)]
 pub struct Polyhedron(&'static PolyhedronData);
 
-/// What a polyhedron is.
+/// The data of a polyhedron.
 struct PolyhedronData {
-    /// Its place among all.
+    /// Its number among all polyhedra.
     number: usize,
     corners: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
@@ -34,40 +34,41 @@ struct PolyhedronData {
     crease: f32,
 }
 
-/// Why numbers are no polyhedron.
+/// The error of data that is no polyhedron.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PolyhedronError {
     /// It has no triangles.
     #[error("it has no triangles")]
     Empty,
-    /// A coordinate is no number or beyond a million units.
+    /// A coordinate is not a number, or is beyond a million units.
     #[error("a corner is not a place")]
     NoPlace,
-    /// A triangle names a corner that is not there.
+    /// A triangle names a corner that does not exist.
     #[error("a triangle has a corner that is not there")]
     NoCorner,
 }
 
-/// The polyhedra that there are.
+/// All polyhedra of the program.
 #[derive(Default)]
 struct PolyhedronStore {
     count: usize,
-    /// By what they are made of.
+    /// The polyhedra by their recipes.
     made: BTreeMap<Recipe, Polyhedron>,
     read: HashMap<(Vec<[u32; 3]>, Vec<[u32; 3]>), Polyhedron>,
 }
 
 static KEPT: Mutex<Option<PolyhedronStore>> = Mutex::new(None);
 
-/// Cosines of the angles below which faces are parts of the same surface: a flat one, and a round one of [`ROUND_SIDES`].
+/// Cosines of the angles below which neighbouring faces form one surface: a flat one, or a round one of [`ROUND_SIDES`].
 const FLAT: f32 = 0.999_96;
 const ROUND: f32 = 0.939;
 
 impl Polyhedron {
-    /// Of these corners and triangles, whose corners go round counterclockwise as seen from outside. A solid if they enclose one.
+    /// A polyhedron of these corners and triangles, whose corners run counterclockwise as seen from outside. It is a solid if they enclose
+    /// one.
     ///
     /// # Errors
-    /// There is no triangle, or the numbers are no places or no corners.
+    /// There is no triangle, a coordinate is out of range, or a triangle names a corner that does not exist.
     pub fn new(corners: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, PolyhedronError> {
         const FARTHEST: f32 = 1e6;
         if triangles.is_empty() {
@@ -99,7 +100,7 @@ impl Polyhedron {
         }))
     }
 
-    /// Stretched along its axes from its frame's origin, by factors above 0.
+    /// The polyhedron stretched along its axes from its frame's origin, by factors above 0.
     #[must_use]
     pub fn scaled(self, by: Vec3) -> Self {
         let recipe = Recipe::Scaled {
@@ -145,7 +146,7 @@ impl Polyhedron {
         &self.0.corners
     }
 
-    /// Its surface, as triangles of its corners, counterclockwise as seen from outside.
+    /// Its surface as triangles of corners, counterclockwise as seen from outside.
     pub fn triangles(self) -> &'static [[u32; 3]] {
         &self.0.triangles
     }
@@ -186,7 +187,7 @@ impl Polyhedron {
             .unwrap_or_default()
     }
 
-    /// The radius of the ball about its frame's origin that holds it.
+    /// Radius of the ball about its frame's origin that encloses it.
     pub fn radius(self) -> f32 {
         let distances = self.0.corners.iter().map(|corner| corner.length());
         distances.fold(0.0, f32::max)
@@ -197,12 +198,12 @@ impl Polyhedron {
         self.0.volume
     }
 
-    /// The axis that it is round about, if it is meant to be.
+    /// The axis of its round surface, if it is meant to be round.
     pub fn axis(self) -> Option<Vec3> {
         self.0.axis
     }
 
-    /// Its place among all polyhedra of the program: different in the next run.
+    /// Its number among all polyhedra of the program. It differs from run to run.
     pub fn number(self) -> usize {
         self.0.number
     }
@@ -264,7 +265,7 @@ impl fmt::Debug for Polyhedron {
 }
 
 impl Bounds {
-    /// Around a polyhedron at a pose.
+    /// The bounds of a polyhedron at a pose.
     pub fn of_polyhedron(polyhedron: Polyhedron, at: Pose) -> Self {
         let corners = polyhedron.corners().iter().map(|corner| at * *corner);
         corners

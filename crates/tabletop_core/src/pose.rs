@@ -1,4 +1,4 @@
-//! Where something is: location and orientation.
+//! Poses: location and orientation.
 
 use std::ops::Mul;
 
@@ -15,7 +15,7 @@ pub const UNITS_PER_METER: f64 = 10.0;
 
 /// A rigid motion: rotate, then translate. Lengths in units of 10 cm.
 ///
-/// `a_from_b * b_from_c == a_from_c`; `pose * point` takes a point of the body's own frame to the frame the pose is given in.
+/// `a_from_b * b_from_c == a_from_c`; `pose * point` takes a point from the body's own frame to the frame in which the pose is given.
 ///
 /// ```
 /// use bevy::math::Vec3;
@@ -33,7 +33,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// No motion at all.
+    /// The pose that moves nothing.
     pub const IDENTITY: Self = Self::new(Vec3::ZERO, Quat::IDENTITY);
 
     /// A pose from its parts.
@@ -56,13 +56,13 @@ impl Pose {
         Self::from(&Transform::from_translation(from).looking_at(at, Vec3::Z))
     }
 
-    /// The motion that undoes this one.
+    /// The inverse motion.
     pub fn inverse(self) -> Self {
         let rotation = self.rotation.inverse();
         Self::new(rotation * -self.location, rotation)
     }
 
-    /// The orientation as a task file and a recording write it; see [`degrees_from_quat`].
+    /// The orientation as task files and recordings write it; see [`degrees_from_quat`].
     pub fn degrees(self) -> Vec3 {
         degrees_from_quat(self.rotation)
     }
@@ -109,8 +109,8 @@ pub fn quat_from_degrees(degrees: impl Into<DVec3>) -> Quat {
     rotation.as_quat().normalize()
 }
 
-/// The angles, in degrees, that [`quat_from_degrees`] takes to this rotation: Y in [-90, 90], X and Z in (-180, 180];
-/// where Y is ±90 they are not unique, and X is 0.
+/// The angles, in degrees, for which [`quat_from_degrees`] gives this rotation: Y in [-90, 90], X and Z in (-180, 180].
+/// Where Y is ±90 they are not unique, and X is 0.
 pub fn degrees_from_quat(rotation: Quat) -> Vec3 {
     let m = DMat3::from_quat(rotation.as_dquat().normalize());
     // The third row and first column of Rz·Ry·Rx.

@@ -4,7 +4,7 @@ use std::{fmt, ops::RangeInclusive};
 
 use serde::{Deserialize, Serialize};
 
-/// Objects that are made in random colours at a random free place over the table.
+/// Objects in random colours at a random free place over the table.
 ///
 /// ```
 /// use tabletop_core::Preset;
@@ -16,17 +16,17 @@ use serde::{Deserialize, Serialize};
 pub enum Preset {
     /// A cube of 1.5 units that falls from 10 units, turned.
     BigBlock,
-    /// So many unit cubes that stand on each other.
+    /// This many unit cubes on top of each other.
     Stack(u32),
     /// A gray box, open at the top, that falls from 10 units.
     BoxContainer,
 }
 
 impl Preset {
-    /// How many blocks a stack can have.
+    /// Numbers of blocks that a stack can have.
     pub const STACKED: RangeInclusive<u32> = 1..=50;
 
-    /// What makes no sense in it.
+    /// The fault of a preset that makes no sense.
     pub fn fault(self) -> Option<String> {
         match self {
             Self::Stack(blocks) if !Self::STACKED.contains(&blocks) => Some(format!(

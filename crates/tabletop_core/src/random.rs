@@ -1,4 +1,4 @@
-//! Random numbers that are the same everywhere and for ever.
+//! Random numbers that are the same on every machine, in every version.
 
 /// SplitMix64: a counter, scrambled (Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014).
 ///
@@ -13,7 +13,7 @@
 pub struct Random(u64);
 
 impl Random {
-    /// The stream of numbers that this seed begins.
+    /// The generator with this seed.
     pub const fn new(seed: u64) -> Self {
         Self(seed)
     }

@@ -1,12 +1,12 @@
-//! Where a ray meets a solid: for picking with the mouse, and for what lies below something.
+//! Intersection of rays with solids: for picking with the mouse, and for finding what lies below something.
 
 use bevy::prelude::*;
 
 use crate::{Pose, Primitive, Solid};
 
 impl Primitive {
-    /// How far along the ray it enters this primitive, when the primitive belongs to a body of this pose. A ray that
-    /// begins inside, or that only passes behind its origin, does not enter.
+    /// Distance along the ray at which it enters this primitive of a body at this pose. A ray that
+    /// begins inside, or passes only behind its origin, does not enter.
     pub fn distance_along(&self, ray: Ray3d, body: Pose) -> Option<f32> {
         let world_from_solid = body * self.pose;
         let solid_from_world = world_from_solid.inverse();
@@ -17,9 +17,9 @@ impl Primitive {
 }
 
 impl Solid {
-    /// Where a ray enters the solid, as a factor of its direction.
+    /// The point where a ray enters the solid, as a factor of its direction.
     fn entry(self, origin: Vec3, direction: Vec3) -> Option<f32> {
-        // Where the straight line enters, and where it leaves: it misses the solid if it leaves before it enters.
+        // The points where the straight line enters and leaves. It misses the solid if it leaves before it enters.
         let (enter, leave) = match self {
             Self::Cuboid(span) => {
                 let half = span / 2.0;
@@ -40,12 +40,12 @@ impl Solid {
     }
 }
 
-/// The part of a line that lies in both parts.
+/// The common part of two parts of a line.
 fn both(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {
     (a.0.max(b.0), a.1.min(b.1))
 }
 
-/// The part of a line that lies between two parallel planes, `half` to either side of the origin.
+/// The part of a line between two parallel planes, each `half` away from the origin.
 fn between(origin: f32, direction: f32, half: f32) -> Option<(f32, f32)> {
     if direction == 0.0 {
         return (origin.abs() <= half).then_some((f32::NEG_INFINITY, f32::INFINITY));
@@ -54,8 +54,8 @@ fn between(origin: f32, direction: f32, half: f32) -> Option<(f32, f32)> {
     Some((a.min(b), a.max(b)))
 }
 
-/// The part of a line that lies in a ball about the origin, or in an endless cylinder if the line is given without its
-/// part along the axis.
+/// The part of a line in a ball about the origin, or in an endless cylinder if the line is given without its
+/// component along the axis.
 fn within(origin: Vec3, direction: Vec3, radius: f32) -> Option<(f32, f32)> {
     let speed = direction.length_squared();
     if speed == 0.0 {
@@ -63,7 +63,7 @@ fn within(origin: Vec3, direction: Vec3, radius: f32) -> Option<(f32, f32)> {
         return is_inside.then_some((f32::NEG_INFINITY, f32::INFINITY));
     }
     let nearest = -origin.dot(direction) / speed;
-    // From the nearest point of the line, not from its origin: exact for things that are far away, too.
+    // Measured from the nearest point of the line, not from its origin: exact for distant things, too.
     let room = radius * radius - (origin + direction * nearest).length_squared();
     let half_chord = (room >= 0.0).then(|| (room / speed).sqrt())?;
     Some((nearest - half_chord, nearest + half_chord))
@@ -126,7 +126,7 @@ mod tests {
         ] {
             assert_eq!(distance(solid, Pose::IDENTITY, beside, down), None);
         }
-        // Above the caps and towards the axis.
+        // It enters above the caps, towards the axis.
         assert_eq!(
             distance(CYLINDER, Pose::IDENTITY, [5.0, 2.5, 0.0], [-1.0, 0.0, 0.0]),
             None

@@ -1,4 +1,4 @@
-//! The types of the simulation that inspectors and scenes can look into.
+//! Reflection: the types of the simulation, for inspectors and scenes.
 
 use bevy::prelude::*;
 
@@ -8,7 +8,7 @@ use crate::{
     SimBlocked, SimTick, Steering, Table, Twist, UserCamera,
 };
 
-/// Registers components and resources with all that they consist of.
+/// Registers components and resources with all the types in them.
 pub(crate) fn register(app: &mut App) {
     app.register_type::<Agent>()
         .register_type::<CarriesHeadCamera>()

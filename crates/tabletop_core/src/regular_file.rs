@@ -1,4 +1,4 @@
-//! Reading files that a stranger may have made or named.
+//! Regular files that a stranger may have made or named.
 
 use std::{
     fs::File,
@@ -6,7 +6,7 @@ use std::{
     path::Path,
 };
 
-/// The bytes of a regular file: no pipe, which would be waited for, and no device, which may never end.
+/// The bytes of a regular file. A pipe or a device is refused: it could wait for ever or never end.
 ///
 /// # Errors
 /// It is something else, has more than `most` bytes, or cannot be read.

@@ -1,4 +1,4 @@
-//! Ticks that begin at rest: nothing can change in them but the clock, so nothing else is run.
+//! Rest: ticks in which nothing can change but the clock, so that nothing else is run.
 
 use bevy::{
     app::FixedMainScheduleOrder,
@@ -17,32 +17,32 @@ use crate::{
     Agent, Hands, IssuedCommand, Paused, PictureDemand, ScriptCommand, SimBlocked, SimFact, SimTick,
 };
 
-/// Systems that change nothing in a tick that begins at rest: when no [wake source](RestApp::wake_while) is awake. While all systems of
-/// the fixed schedules are among them, `StepApp::step` passes over such ticks; any other system that is added to an
-/// app runs in every tick.
+/// Systems that change nothing in a tick at rest: one that begins while no [wake source](RestApp::wake_while) is awake. While all
+/// systems of the fixed schedules belong to these, `StepApp::step` passes over such ticks. Any other system that is added to an
+/// app makes every tick run.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RestingSystems;
 
-/// Ticks at rest that are made before the first one is passed over: engines tidy up after the last thing has stopped.
+/// Number of ticks at rest that run before the first is passed over: engines tidy up after the last thing has stopped.
 const SETTLING_TICKS: u64 = 16;
 
-/// Says when something can change.
+/// Declares when something can change.
 pub trait RestApp {
-    /// Makes every tick before which this condition holds: something can change in it. Time alone must not make it hold, as
+    /// Runs every tick before which this condition holds, as something can change in it. Time alone must not make it hold, because
     /// nobody asks while time is passed over.
     fn wake_while<M>(&mut self, is_awake: impl SystemCondition<M>) -> &mut Self;
 
-    /// Makes a tick although the world rests: the one before which this number is 0, and which so many ticks come before. `None` if time
-    /// can go by without end.
+    /// Runs a tick although the world rests: after as many ticks as this system returns, and at once for 0. `None` lets time go by without
+    /// end.
     fn wake_after<M, S>(&mut self, ticks: S) -> &mut Self
     where
         S: IntoSystem<(), Option<u64>, M, System: ReadOnlySystem>;
 
-    /// Does this for ticks that are passed over, of which it is told the number.
+    /// Runs this upkeep for ticks that are passed over; it receives their number.
     fn at_rest(&mut self, upkeep: Upkeep) -> &mut Self;
 }
 
-/// What is left to be done for so many ticks at rest.
+/// The upkeep for a number of ticks at rest.
 pub type Upkeep = fn(&mut World, u64) -> Result;
 
 impl RestApp for App {
@@ -73,24 +73,24 @@ impl RestApp for App {
     }
 }
 
-/// For how many ticks the world may rest.
+/// The number of ticks for which the world may rest.
 type Alarm = Box<dyn ReadOnlySystem<In = (), Out = Option<u64>>>;
 
-/// Whether the world is at rest, and since when.
+/// The rest of the world.
 #[derive(Resource, Default)]
 pub(crate) struct Rest {
     wake_sources: Vec<BoxedCondition>,
     alarms: Vec<Alarm>,
     upkeep: Vec<Upkeep>,
-    /// The first of the ticks, one after the other, before which nothing was awake.
+    /// The first tick of the unbroken row of ticks before which nothing was awake.
     quiet_since: Option<u64>,
     resting: Known,
 }
 
-/// Which schedules hold none but [`RestingSystems`], with the sizes that they had then.
+/// For each schedule, whether it holds only [`RestingSystems`], with its sizes when that was found out.
 type Known = HashMap<InternedScheduleLabel, (Sizes, bool)>;
 
-/// How many systems a schedule has, and how many of them are [`RestingSystems`].
+/// The number of a schedule's systems, and of the [`RestingSystems`] among them.
 type Sizes = (usize, usize);
 
 pub(crate) fn configure(app: &mut App) {
@@ -118,8 +118,8 @@ fn is_used(
     paused.0 || blocked.0 || agent.is_on() || hands.hold_something() || is_asked
 }
 
-/// For how many ticks, from the one that begins on, nothing can change unless the world is changed from outside. No system of another's
-/// is asked.
+/// The number of ticks, including the one that is beginning, in which nothing can change unless the world is changed from outside. Systems
+/// outside the crate's own are not asked.
 pub(crate) fn ticks_of_rest(world: &mut World) -> u64 {
     let Some(mut rest) = world.get_resource_mut::<Rest>() else {
         return 0;
@@ -130,7 +130,7 @@ pub(crate) fn ticks_of_rest(world: &mut World) -> u64 {
     ticks
 }
 
-/// Whether each tick at rest may be passed over: there are none but [`RestingSystems`].
+/// True if every tick at rest may be passed over: all systems are [`RestingSystems`].
 pub(crate) fn holds_for_all_systems(world: &mut World) -> bool {
     let mut known = std::mem::take(&mut world.resource_mut::<Rest>().resting);
     let holds = hold_for_all_systems(&mut known, world);
@@ -138,7 +138,7 @@ pub(crate) fn holds_for_all_systems(world: &mut World) -> bool {
     holds
 }
 
-/// Lets the time of so many ticks go by.
+/// Lets the time of this many ticks pass.
 pub(crate) fn pass_over(world: &mut World, ticks: u64) {
     let rest = world.resource::<Rest>();
     for upkeep in rest.upkeep.clone() {
@@ -151,7 +151,7 @@ pub(crate) fn pass_over(world: &mut World, ticks: u64) {
 
 impl Rest {
     fn ticks(&mut self, world: &World) -> u64 {
-        // What cannot be asked is awake.
+        // A condition that cannot be asked counts as awake.
         let is_awake = |source: &mut BoxedCondition| source.run_readonly((), world).unwrap_or(true);
         let tick = world.resource::<SimTick>().0;
         if self.wake_sources.iter_mut().any(is_awake) {
@@ -228,7 +228,7 @@ mod tests {
         ticks.0 += 1;
     }
 
-    /// An app in which ticks are counted that are made.
+    /// An app that counts the ticks that are run.
     fn app() -> App {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default()))
@@ -263,7 +263,7 @@ mod tests {
     #[test]
     fn a_wake_source_that_is_awake_wakes() {
         let mut app = app();
-        // Time alone makes it hold, between two calls of `step`.
+        // Time alone makes this hold, between two calls of `step`.
         app.wake_while(|tick: Res<SimTick>| (50..60).contains(&tick.0))
             .start();
         for (ticks, made) in [(50, SETTLING_TICKS), (1, 1), (9, 9), (40, SETTLING_TICKS)] {

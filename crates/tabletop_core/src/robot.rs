@@ -1,4 +1,4 @@
-//! The robot: its joints, what they are told, and what is known of it.
+//! The robot: its joints, the commands to them, and its state.
 
 mod baxter;
 mod layout;
@@ -24,12 +24,12 @@ use crate::{Pose, TICK_SECONDS};
 /// Speed of manual control, in rad/s, and units/s for grippers (report section 5.1).
 pub const MANUAL_SPEED: f64 = 1.0;
 
-/// What a joint is told. Angles in rad, openings of grippers in units, times in s.
+/// A command to a joint. Angles in rad, openings of grippers in units, times in s.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Drive {
     /// Move at this speed for the present tick only.
     Velocity(f64),
-    /// Be at this position now; in dynamic mode, get there as fast as the motor can.
+    /// Be at this position now. In dynamic mode, get there as fast as the motor can.
     Position(f64),
     /// Go to this position at the speed of manual control, over as many ticks as it takes.
     Toward(f64),
@@ -37,17 +37,17 @@ pub enum Drive {
     Torque(f64),
 }
 
-/// How the robot's joints move.
+/// The mode in which the robot's joints move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Reflect)]
 pub enum RobotMode {
-    /// Exactly as told, without masses and forces.
+    /// Exactly as commanded, without masses and forces.
     #[default]
     Kinematic,
-    /// By motors with limited torque, which move the masses of the links and what they meet.
+    /// By motors with limited torque, which move the masses of the links and whatever these push.
     Dynamic,
 }
 
-/// What the robot's screen shows.
+/// A face on the robot's screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Reflect)]
 pub enum Face {
     /// Calm, eyes open.
@@ -80,7 +80,7 @@ impl Face {
     }
 }
 
-/// What is known of a joint.
+/// The state of a joint.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 pub struct JointState {
     /// Angle in rad, opening in units.
@@ -91,33 +91,33 @@ pub struct JointState {
     pub torque: f64,
 }
 
-/// What is known of a limb.
+/// The state of a limb.
 #[derive(Clone, Debug, Default, PartialEq, Reflect)]
 pub struct LimbState {
     /// The end effector: a point midway between the fingers, its x along the opening, its -z where the fingers point.
     pub end_effector: Pose,
-    /// Origins of the joints that are [tracked](LimbLayout::trackers), in the table's frame.
+    /// Origins of the [tracked](LimbLayout::trackers) joints, in the table's frame.
     pub joint_origins: Vec<Vec3>,
-    /// The objects that the gripper holds, in the order in which it took them.
+    /// The objects that the gripper holds, in the order in which it gripped them.
     pub holds: Vec<Entity>,
-    /// What the arm is stopped by; `None` if nothing is in its way.
+    /// The obstacle that stops the arm; `None` if its way is free.
     pub blocked_by: Option<Obstacle>,
-    /// Whether it is on its way to a position that it was told to go to.
+    /// True while it is on its way to a commanded position.
     pub is_moving: bool,
 }
 
-/// A thing that a body of the robot touches.
+/// A contact of a body of the robot with a thing.
 #[derive(Clone, Debug, PartialEq, Reflect)]
 pub struct RobotContact {
     /// The body: the link's name in the robot's description, or a finger (`left-gripper-right-finger`).
     pub body: String,
     /// The object, or the table.
     pub thing: Entity,
-    /// Where on the thing's surface, in the table's frame: the centre of the pressure, the middle of the area that a finger
-    /// holds, or, where neither presses nor holds, the nearest point.
+    /// The contact's place on the thing's surface, in the table's frame: the centre of pressure; for a finger that holds, the middle of the
+    /// held area; where nothing presses or holds, the nearest point.
     pub point: Vec3,
-    /// How hard they pressed each other in the last tick, along the normals, in kg units/s; 0 for what the robot holds and
-    /// for what only stops it.
+    /// Impulse of the last tick along the normals, in kg units/s; 0 for an object that the robot holds and
+    /// for one that only stops it.
     pub impulse: f32,
 }
 
@@ -125,17 +125,17 @@ pub struct RobotContact {
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Resource)]
 pub struct Robot {
-    /// Whether it stands at the table; hidden, it can neither be seen nor touched, but its camera works.
+    /// True if it stands at the table. A hidden robot can neither be seen nor touched, but its camera works.
     pub is_shown: bool,
-    /// How its joints move.
+    /// The mode in which its joints move.
     pub mode: RobotMode,
-    /// What its screen shows.
+    /// The face on its screen.
     pub face: Face,
     /// Its joints, by [`JointId`].
     pub joints: Vec<JointState>,
     /// Its limbs, by [`LimbId`].
     pub limbs: Vec<LimbState>,
-    /// What its bodies touch: body by body, of each the table first, then the objects in the order of their creation.
+    /// The contacts of its bodies, body by body: for each the table first, then the objects in the order of their creation.
     pub contacts: Vec<RobotContact>,
 }
 
@@ -147,7 +147,7 @@ impl Default for Robot {
 }
 
 impl Robot {
-    /// A hidden robot with its joints where they are when the program starts.
+    /// A hidden robot whose joints are at their home positions.
     pub fn at_home(layout: &RobotLayout) -> Self {
         let joints = layout.joints.iter().map(|joint| JointState {
             position: joint.home,
@@ -163,12 +163,12 @@ impl Robot {
         }
     }
 
-    /// What is known of a joint.
+    /// The state of a joint.
     pub fn joint(&self, joint: impl Into<JointId>) -> &JointState {
         &self.joints[joint.into().index()]
     }
 
-    /// What is known of a limb.
+    /// The state of a limb.
     pub fn limb(&self, limb: impl Into<LimbId>) -> &LimbState {
         &self.limbs[limb.into().index()]
     }
@@ -186,7 +186,7 @@ impl Robot {
             .collect()
     }
 
-    /// Puts the joints to these positions, reached in a tick.
+    /// Puts the joints at these positions, as reached in one tick.
     pub fn move_to(&mut self, positions: &[f64]) {
         for (joint, position) in self.joints.iter_mut().zip(positions) {
             joint.velocity = (position - joint.position) / f64::from(TICK_SECONDS);
@@ -195,7 +195,7 @@ impl Robot {
     }
 }
 
-/// Points that a script wants to see: transparent blue balls that nothing touches.
+/// Points that a script shows: transparent blue balls that nothing touches.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource)]
 pub struct Markers(pub Vec<Vec3>);
@@ -203,7 +203,7 @@ pub struct Markers(pub Vec<Vec3>);
 impl Markers {
     /// Radius of a marker, in units.
     pub const RADIUS: f32 = 1.0;
-    /// How much of what lies behind a marker is covered by it.
+    /// Opacity of a marker, from 0 to 1.
     pub const OPACITY: f32 = 0.5;
 
     /// Colour of a marker.

@@ -1,12 +1,12 @@
-//! Events of the robot, in words.
+//! Events of the robot, as sentences.
 
 use crate::{Obstacle, Operator, SimFact};
 
-/// The angle of the report's figure 11 has to be below this, in degrees.
+/// Limit on the angle of the report's figure 11, in degrees.
 const LARGEST_GRIP_ANGLE: f32 = 180.0 / 16.0;
 
 impl SimFact {
-    /// What the robot has done, in words; nothing of what others have.
+    /// The sentence for an event of the robot; `None` for other events.
     pub fn robot_event(&self) -> Option<String> {
         Some(match self {
             Self::GripMade { arm, id } => format!("the {arm} gripper holds {id}"),

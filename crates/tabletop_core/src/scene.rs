@@ -1,4 +1,4 @@
-//! What a task file says: the table and what stands on it.
+//! Scenes: the table and the objects on it, as a task file describes them.
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,7 @@ use crate::{Bounds, JointedSpec, ObjectSpec, Pose, Primitive, Rgb, Rollback, Sha
 pub struct SceneSpec {
     /// The table.
     pub table: Table,
-    /// What stands on it.
+    /// The elements on it.
     pub items: Vec<SceneItem>,
 }
 
@@ -71,13 +71,13 @@ pub enum SceneItem {
 pub struct ChainSpec {
     /// Prefix of the ids of links and ends; empty for any.
     pub id: String,
-    /// Where it begins.
+    /// Its start.
     pub start: Vec3,
-    /// Where it ends.
+    /// Its end.
     pub end: Vec3,
     /// Extents of a link; Y is along the chain.
     pub link_span: Vec3,
-    /// How many links; 0 for as many as the distance needs.
+    /// Number of links; 0 for as many as the distance needs.
     pub link_count: u32,
     /// Length added to each drawn link at both ends.
     pub link_padding: f32,
@@ -88,7 +88,7 @@ pub struct ChainSpec {
 }
 
 impl ChainSpec {
-    /// How many links it has.
+    /// Number of its links.
     pub fn links(&self) -> u32 {
         match self.link_count {
             0 => (self.start.distance(self.end) / self.link_span.y).ceil() as u32,
@@ -106,7 +106,7 @@ impl ChainSpec {
         )
     }
 
-    /// The least number of links that reaches from start to end: all of them together may be half a link short.
+    /// The least number of links that reach from start to end; together they may be half a link short.
     pub fn least_links(&self) -> u32 {
         (self.start.distance(self.end) / self.link_span.y - 0.5).ceil() as u32
     }
@@ -162,7 +162,7 @@ impl LidBoxSpec {
 }
 
 impl Bounds {
-    /// Around an element of a task file, roughly if it is a chain.
+    /// The bounds of an element of a task file; rough for a chain.
     pub fn of_item(item: &SceneItem) -> Self {
         match item {
             SceneItem::Object(object) => Self::of_shape(&object.shape, object.pose),

@@ -1,4 +1,4 @@
-//! What the robot's eye is asked for, and what it has seen.
+//! The head camera and its pictures.
 
 use std::{
     f32::consts::FRAC_PI_3,
@@ -10,29 +10,29 @@ use serde::{Deserialize, Serialize};
 
 use crate::{CameraCarrier, Paused, Pose, SimTick};
 
-/// How the robot's head camera looks at the table (report section 4, "head camera").
+/// The settings of the robot's head camera (report section 4, "head camera").
 ///
-/// Where it is mounted follows from the table, in front of which the robot stands, unless it is said.
+/// Its pose follows from the table, in front of which the robot stands, unless [`mount`](Self::mount) gives one.
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 #[reflect(Resource)]
 pub struct HeadCamera {
     /// Angle of the neck joint H0 in radians; positive turns the view to the robot's left.
     pub pan: f32,
-    /// Angle between the lower and the upper edge of the picture in radians, above 0 and below π.
+    /// Angle between the lower and upper edges of the picture in radians, above 0 and below π.
     pub vertical_fov: f32,
-    /// Make the angle between the left and the right edge equal to [`vertical_fov`](Self::vertical_fov), whatever the size
-    /// of the picture: its pixels are not square then, as in the pictures of the original program.
+    /// Makes the angle between the left and right edges equal to [`vertical_fov`](Self::vertical_fov), whatever the size
+    /// of the picture. Its pixels are then not square, as in the pictures of the original program.
     pub square_fov: bool,
     /// Columns of the picture.
     pub width: u32,
     /// Rows of the picture.
     pub height: u32,
-    /// Smooth edges, from four samples a pixel.
+    /// Smooths edges by four samples a pixel.
     pub antialiasing: bool,
     /// The robot that carries it.
     #[serde(default, skip_serializing_if = "is_baxter")]
     pub carrier: CameraCarrier,
-    /// Where it is instead of on the robot's head: it looks along its own -Z, with its Y up. Lengths in units.
+    /// Pose of a camera that is not on the robot's head: it looks along its own -Z, with its Y up. Lengths in units.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mount: Option<Pose>,
 }
@@ -44,12 +44,12 @@ impl HeadCamera {
     )]
     const WIDEST_VIEW: f32 = 3.141;
 
-    /// The most pixels of a picture, whose rows and columns are at most [`MOST_SIDE`](Self::MOST_SIDE).
+    /// Largest number of pixels of a picture. Its rows and columns are at most [`MOST_SIDE`](Self::MOST_SIDE).
     pub const MOST_PIXELS: u64 = 1 << 24;
-    /// The most rows, and the most columns, of a picture.
+    /// Largest number of rows, and of columns, of a picture.
     pub const MOST_SIDE: u32 = 8192;
 
-    /// What makes no sense in it.
+    /// The fault of settings that make no sense.
     pub fn fault(&self) -> Option<String> {
         let Self { width, height, .. } = *self;
         let sides = 1..=Self::MOST_SIDE;
@@ -96,7 +96,7 @@ impl Default for HeadCamera {
     }
 }
 
-/// What a camera has seen: one value a pixel in each list, row by row from the top, each row from the left.
+/// A picture of a camera: one value per pixel in each list, row by row from the top, each row from the left.
 /// The pixel in column x of row y has index `y * width + x`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
@@ -104,17 +104,17 @@ pub struct Picture {
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// Red, green and blue of each pixel as displayed, 0..=255; black where nothing is.
+    /// Displayed red, green and blue of each pixel, 0..=255; black where nothing is.
     pub rgb: Vec<u8>,
-    /// How far ahead of the camera what is seen through the pixel's centre lies, in units along the axis of view;
+    /// Depth of the surface at each pixel's centre: its distance ahead of the camera, in units along the axis of view;
     /// infinity where nothing is.
     pub depth: Vec<f32>,
-    /// Number of the object that is seen through the pixel's centre; 0 where nothing is.
+    /// Number of the object at each pixel's centre; 0 where nothing is.
     pub objects: Vec<u32>,
 }
 
 impl Picture {
-    /// Makes it so many pixels large, without saying what they show.
+    /// Sets its size in pixels; their values are arbitrary afterwards.
     pub fn resize(&mut self, width: u32, height: u32) {
         let pixels = width as usize * height as usize;
         self.width = width;
@@ -144,25 +144,25 @@ pub struct SensorImage {
     pub tick: SimTick,
     /// The picture.
     pub picture: Picture,
-    /// What the numbers in [`Picture::objects`] stand for: number 1 is the first entity, and so on. The table comes first,
+    /// The entities behind the numbers in [`Picture::objects`]: number 1 is the first entity, and so on. The table comes first,
     /// if there is one, then the objects in the order of their creation, then the figures likewise.
     pub shown: Vec<Entity>,
 }
 
 impl SensorImage {
-    /// The table or object that is seen through the centre of a pixel.
+    /// The table or object at the centre of a pixel.
     pub fn shown_at(&self, column: u32, row: u32) -> Option<Entity> {
         let number = *self.picture.objects.get(self.picture.index(column, row)?)?;
         self.shown.get((number as usize).checked_sub(1)?).copied()
     }
 }
 
-/// Asks the head camera for a picture of the end of a tick. Without that it takes none.
+/// A request to the head camera for a picture at the end of a tick. Without a request it takes none.
 ///
-/// It is asked before [`SimSystems::Sense`](crate::SimSystems::Sense) of that tick, and the [`SensorImage`] is there in
-/// [`SimSystems::Record`](crate::SimSystems::Record) of the same tick. Whoever asks needs only shared access, and asking
-/// twice is asking once, so it does not matter in which order several systems ask. While the simulation stands still, a
-/// demand waits, unless it is [insisted](Self::insist) on.
+/// Ask before [`SimSystems::Sense`](crate::SimSystems::Sense); the [`SensorImage`] is ready in
+/// [`SimSystems::Record`](crate::SimSystems::Record) of the same tick. Asking needs only shared access, and asking
+/// twice is the same as asking once, so the order of the systems that ask does not matter. While the simulation stands still, a
+/// request waits, unless it is [insisted](Self::insist) on.
 #[derive(Resource, Debug, Default)]
 pub struct PictureDemand {
     is_asked: AtomicBool,
@@ -175,30 +175,30 @@ impl PictureDemand {
         self.is_asked.store(true, Ordering::Relaxed);
     }
 
-    /// Asks for a picture of this tick, also if the simulation is paused in it.
+    /// Asks for a picture of this tick, even if the simulation is paused.
     pub fn insist(&self) {
         self.ask();
         self.is_insisted.store(true, Ordering::Relaxed);
     }
 
-    /// Whether a picture was asked for.
+    /// True if a picture was asked for.
     pub(crate) fn is_asked(&self) -> bool {
         self.is_asked.load(Ordering::Relaxed)
     }
 
-    /// Whether a picture was asked for; afterwards none is.
+    /// Takes the request back; true if there was one.
     pub fn take(&mut self) -> bool {
         *self.is_insisted.get_mut() = false;
         std::mem::take(self.is_asked.get_mut())
     }
 
-    /// Run condition: the simulation is running, or somebody insists.
+    /// Run condition: the simulation is running, or a system insists.
     pub(crate) fn is_due(demand: Option<Res<Self>>, paused: Res<Paused>) -> bool {
         !paused.0 || demand.is_some_and(|demand| demand.is_insisted.load(Ordering::Relaxed))
     }
 }
 
-/// Taking the picture, after [`SimSystems::Sense`](crate::SimSystems::Sense) and before
+/// The systems that take the picture, after [`SimSystems::Sense`](crate::SimSystems::Sense) and before
 /// [`SimSystems::Record`](crate::SimSystems::Record).
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PictureSystems;

@@ -6,7 +6,7 @@ mod solids;
 use crate::{BondEnd, ControlKind, Rgb, Shape};
 
 impl Shape {
-    /// The element name of this shape in a task file, or the name that recordings give it.
+    /// The name of this shape's element in a task file, or its name in recordings.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Block { .. } | Self::Link { .. } => "block",
@@ -30,7 +30,7 @@ impl Shape {
         }
     }
 
-    /// Gives everything but controls this colour.
+    /// Paints everything but controls in this colour.
     pub fn paint(&mut self, new: Rgb) {
         match self {
             Self::Block { color, .. }

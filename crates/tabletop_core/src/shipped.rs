@@ -1,29 +1,29 @@
-//! Files that are inside the program.
+//! Files that ship inside the program.
 
 use std::path::{Component, Path, PathBuf};
 
 use bevy::prelude::*;
 
-/// What the name of a shipped file begins with.
+/// Prefix of a shipped file's name.
 const PREFIX: &str = "shipped:";
 
-/// A file that is inside the program.
+/// A file that ships inside the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShippedFile {
     /// Its place in a working folder, with slashes: `tablesetup/default.xml`.
     pub path: &'static str,
-    /// What it holds.
+    /// Its content.
     pub text: &'static str,
 }
 
 impl ShippedFile {
-    /// The path that means this file and never one on disk: `shipped:tablesetup/default.xml`.
+    /// The path that always means this file and never one on disk: `shipped:tablesetup/default.xml`.
     pub fn name(&self) -> PathBuf {
         format!("{PREFIX}{}", self.path).into()
     }
 }
 
-/// The files that are inside the program, so that it can be started in any folder.
+/// The files that ship inside the program, so that it can be started in any folder.
 ///
 /// ```
 /// use std::path::Path;
@@ -47,20 +47,20 @@ impl ShippedFiles {
         Self(files)
     }
 
-    /// The files in a folder and those below it, by path.
+    /// The files in a folder and its subfolders, by path.
     pub fn in_folder(&self, folder: &str) -> impl Iterator<Item = &ShippedFile> {
         let is_inside = move |file: &&ShippedFile| Path::new(file.path).starts_with(folder);
         self.0.iter().filter(is_inside)
     }
 
-    /// The file that a path means.
+    /// The shipped file that a path means.
     pub fn find(&self, path: &Path) -> Option<&ShippedFile> {
         let inside = self.resolve(path)?;
         self.0.iter().find(|file| Path::new(file.path) == inside)
     }
 
-    /// The place in a working folder that a path means, if a file or folder is shipped for it. The path is a [name](ShippedFile::name),
-    /// or a path relative to the working folder at which nothing is: what is there goes first.
+    /// The place in a working folder that a path means, if a file or folder is shipped there. The path is a [name](ShippedFile::name),
+    /// or is relative to the working folder. A path at which something exists on disk means that, not the shipped file.
     pub fn resolve(&self, path: &Path) -> Option<PathBuf> {
         let inside = match path.to_str()?.strip_prefix(PREFIX) {
             Some(inside) => inside,
@@ -74,7 +74,7 @@ impl ShippedFiles {
     }
 }
 
-/// A path that a file names, seen from the file's folder.
+/// The path that a file names, seen from that file's folder.
 pub fn seen_from(folder: &Path, path: &Path) -> PathBuf {
     match is_shipped(path) {
         true => path.to_owned(),
@@ -82,12 +82,12 @@ pub fn seen_from(folder: &Path, path: &Path) -> PathBuf {
     }
 }
 
-/// Whether a path is the [name](ShippedFile::name) of a shipped file.
+/// True if a path is the [name](ShippedFile::name) of a shipped file.
 pub fn is_shipped(path: &Path) -> bool {
     path.to_str().is_some_and(|path| path.starts_with(PREFIX))
 }
 
-/// A relative path without `.` and `..`; `None` if it leads out of its folder.
+/// The relative path without `.` and `..`; `None` if it leads out of its folder.
 fn lexical(path: &Path) -> Option<PathBuf> {
     let mut inside = PathBuf::new();
     for component in path.components() {

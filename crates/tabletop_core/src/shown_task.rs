@@ -1,4 +1,4 @@
-//! The task that a recording shows, as panels and view know it.
+//! The demonstrated task, as panels and view know it.
 
 use std::path::PathBuf;
 
@@ -6,62 +6,62 @@ use bevy::prelude::*;
 
 use crate::{Pose, Rgb, Shape, SimTick};
 
-/// The task that a recording shows, in words. Whoever understands recordings sets it.
+/// The task that a recording demonstrates, in words. The crate that explains recordings sets it.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
 pub struct ShownTask {
     /// The recording's folder.
     pub folder: PathBuf,
-    /// What is done, in the order in which it was shown; nothing if there is no task.
+    /// The steps, in the order in which they were demonstrated; empty if there is no task.
     pub steps: Vec<ShownStep>,
-    /// The objects that it is about.
+    /// The objects that the task is about.
     pub roles: Vec<ShownRole>,
-    /// Why the recording could not be understood.
+    /// The reason why the recording could not be explained.
     pub fault: Option<String>,
 }
 
 /// A step of a [`ShownTask`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShownStep {
-    /// What it does, as a sentence.
+    /// The step as a sentence.
     pub sentence: String,
     /// The tick in which its object was grasped.
     pub grasp: SimTick,
-    /// The tick in which its object was let go of.
+    /// The tick in which its object was released.
     pub release: SimTick,
     /// The colour of the object.
     pub color: Option<Rgb>,
     /// Id of the object that is moved.
     pub object: String,
-    /// What is so afterwards: `on`, `inside`, `beside`, `on-table`, …
+    /// The relation that the step achieves: `on`, `inside`, `beside`, `on-table`, …
     pub relation: String,
-    /// Id of the object to which that is a relation; `table` if it is to none.
+    /// Id of the object that the relation refers to; `table` if it refers to none.
     pub reference: String,
-    /// Where the object is to be, in the frame of the reference: nowhere if it is removed or only picked up.
+    /// Goal of the object, in the frame of the reference; `None` if it is removed or only picked up.
     pub goal: Option<Pose>,
 }
 
 /// An object that a [`ShownTask`] is about.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownRole {
-    /// Id of the object with which it was shown.
+    /// Id of the object in the demonstration.
     pub id: String,
-    /// What it is called in the sentences.
+    /// Its name in the sentences.
     pub noun: String,
-    /// What is required of the object that takes its place.
+    /// The requirements on the object that takes its place.
     pub required: Required,
-    /// What the object has, and whether that is required.
+    /// The object's properties, each with whether it is required.
     pub properties: Vec<ShownProperty>,
 }
 
-/// What is required of an object.
+/// The requirements on an object.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Required {
-    /// That it is most like the one with which the task was shown.
+    /// It is to be the one most like the demonstrated object.
     #[default]
     AsShown,
     /// Nothing.
     Nothing,
-    /// Some of its properties.
+    /// It is to have some of the properties.
     Some,
 }
 
@@ -70,60 +70,60 @@ pub enum Required {
 pub struct ShownProperty {
     /// Its name.
     pub name: String,
-    /// What the object has, or what is required of another one.
+    /// The value that the object has, or that is required of another one.
     pub value: String,
-    /// Whether an object must have it to take the place of this one.
+    /// True if an object needs it to take the place of this one.
     pub is_required: bool,
 }
 
-/// What the user wants with the task that was shown. Whoever understands it reads this.
+/// A request of the user about the demonstrated task. The crate that explains recordings reads it.
 #[derive(Message, Clone, Debug, PartialEq, Eq)]
 pub enum TaskOrder {
-    /// Require a property of an object, or no longer.
+    /// Require a property of an object, or no longer require it.
     Require {
         /// The [role's](ShownRole) id.
         role: String,
         /// The property's name.
         property: String,
-        /// Whether it is required from now on.
+        /// True if it is required from now on.
         is_required: bool,
     },
-    /// Let any object take the place of this one, or again what is most like it.
+    /// Let any object take the place of this one, or again only the one most like it.
     Free {
         /// The [role's](ShownRole) id.
         role: String,
-        /// Whether any object may.
+        /// True if any object may.
         is_free: bool,
     },
-    /// Let the robot do it with what is on the table.
+    /// Let the robot imitate the task with the objects on the table.
     Imitate,
-    /// Let the robot stop doing it.
+    /// Stop the imitation.
     Stop,
-    /// Put everything to where it was in the beginning of the recording.
+    /// Put every object back where the recording began.
     PutBack,
 }
 
-/// How the robot gets on with the task that was shown. Whoever moves it sets this.
+/// The robot's progress with the demonstrated task. The crate that moves the robot sets it.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
 pub enum Imitating {
-    /// It does not do it.
+    /// The robot does not imitate.
     #[default]
     Idle,
-    /// It comes to the table.
+    /// The robot is being put at the table.
     Preparing,
-    /// It does a step.
+    /// The robot does a step.
     Step {
         /// The number of the step, from 1.
         number: usize,
-        /// How often it was tried before.
+        /// Number of earlier tries.
         tries: usize,
-        /// Whether it is still to be found out how.
+        /// True while the motion is still being planned.
         is_planning: bool,
     },
 }
 
 impl Imitating {
-    /// Whether the robot is busy with it.
+    /// True while the robot imitates.
     pub const fn is_on(&self) -> bool {
         match self {
             Self::Idle => false,
@@ -132,24 +132,24 @@ impl Imitating {
     }
 }
 
-/// Where objects are going to be put: seen in the window as if through a veil, and nowhere else. Whoever moves them sets it.
+/// Ghosts: translucent previews in the window, and only there, of objects at their goals. The crate that moves the objects sets them.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
 pub struct Ghosts(pub Vec<Ghost>);
 
-/// Where an object is going to be put.
+/// The preview of an object at its goal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ghost {
     /// Id of the object.
     pub id: String,
     /// Its shape.
     pub shape: Shape,
-    /// Where it is going to be.
+    /// Its goal.
     pub pose: Pose,
-    /// Whether it is the next one, to which a line leads from where the object is.
+    /// True for the next object to be moved: a line leads to the ghost from the object.
     pub is_next: bool,
 }
 
 impl Ghost {
-    /// How much of what lies behind it is covered.
+    /// Opacity of a ghost, from 0 to 1.
     pub const OPACITY: f32 = 0.35;
 }

@@ -4,7 +4,7 @@ use bevy::prelude::*;
 
 use crate::{Bounds, Polyhedron, Pose, Rgb};
 
-/// A solid: what every shape is made of in the end.
+/// A solid: every shape consists of these in the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Solid {
     /// A cuboid of these full extents.
@@ -18,7 +18,7 @@ pub enum Solid {
     },
     /// A ball of this radius.
     Ball(f32),
-    /// A polyhedron, which is convex but for the surfaces of rings and meshes that [are drawn](Shape::drawn).
+    /// A polyhedron. It is convex, except for the [drawn](Shape::drawn) surfaces of rings and meshes.
     Polyhedron(Polyhedron),
 }
 
@@ -47,7 +47,7 @@ impl Solid {
 }
 
 impl Bounds {
-    /// Around a solid of a shape whose origin is at a pose.
+    /// The bounds of a solid; the origin of its shape is at the given pose.
     pub fn of_primitive(part: Primitive, at: Pose) -> Self {
         let at = at * part.pose;
         match part.solid {

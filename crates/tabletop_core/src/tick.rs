@@ -9,7 +9,7 @@ pub const TICKS_PER_SECOND: u32 = 60;
 /// Length of a tick in seconds.
 pub const TICK_SECONDS: f32 = 1.0 / TICKS_PER_SECOND as f32;
 
-/// How many ticks have been simulated.
+/// The number of ticks simulated so far.
 #[derive(
     Resource,
     Clone,

@@ -1,4 +1,4 @@
-//! What happens in a recording, along its time.
+//! The timeline of a recording: its segments, pictures and grips.
 
 use std::{fmt, path::PathBuf};
 
@@ -6,10 +6,10 @@ use bevy::prelude::*;
 
 use crate::{Hand, LimbName, Operator, Rgb, SimFact, SimTick};
 
-/// The recording that is being made, was made last, or is open. The recorder fills it in, or whoever replays a recording.
+/// The timeline of the recording that is being made, was made last, or is open. The recorder or the replayer fills it in.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
 pub struct Timeline {
-    /// What becomes of the recording.
+    /// The stage of the recording.
     pub stage: TimelineStage,
     /// The recording's folder.
     pub folder: PathBuf,
@@ -21,21 +21,21 @@ pub struct Timeline {
     pub segments: Vec<TimelineSegment>,
     /// Its pictures, the first one first.
     pub pictures: Vec<TimelinePicture>,
-    /// What the grippers took and let go of, as far as is known.
+    /// The grips that are known.
     pub grips: Vec<TimelineGrip>,
 }
 
-/// What becomes of the recording of a [`Timeline`].
+/// The stage of the recording of a [`Timeline`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TimelineStage {
     /// There is none.
     #[default]
     Absent,
-    /// It is being made.
+    /// The recording is running.
     Running,
-    /// It was made.
+    /// The recording has ended.
     Finished,
-    /// It is open, and its [`Playback`](crate::Playback) can be told.
+    /// A recording is open: [`PlaybackOrder`](crate::PlaybackOrder)s control it.
     Open,
 }
 
@@ -44,44 +44,44 @@ pub enum TimelineStage {
 pub struct TimelineSegment {
     /// Its first tick.
     pub start: SimTick,
-    /// What it begins with; nothing in the first one.
+    /// The act that it begins with; none in the first one.
     pub act: Option<Act>,
-    /// The colour of the object of that.
+    /// Colour of the act's object.
     pub color: Option<Rgb>,
 }
 
 /// A picture of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimelinePicture {
-    /// The tick whose end it shows.
+    /// The tick at whose end it was taken.
     pub tick: SimTick,
     /// The file.
     pub path: PathBuf,
-    /// How many pictures were taken before it, also of what was undone: another picture in the same file has another number.
+    /// Number of pictures taken before it, including undone ones: when a file gets another picture, this number changes.
     pub serial: usize,
 }
 
-/// A moment in which a gripper took something or let go of it.
+/// The moment of a grip or a release by a gripper.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimelineGrip {
     /// The tick.
     pub tick: SimTick,
-    /// What happened.
+    /// The grip or release.
     pub act: Act,
 }
 
-/// What was done to which object, and with what.
+/// An act on an object.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Act {
-    /// With what.
+    /// The hand or gripper that did it.
     pub manipulator: Manipulator,
-    /// What.
+    /// The kind of act.
     pub verb: Verb,
     /// Id of the object, if it is known.
     pub object: Option<String>,
 }
 
-/// What takes objects and lets go of them.
+/// A hand or a gripper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Manipulator {
     /// A hand of the demonstrator.
@@ -90,27 +90,27 @@ pub enum Manipulator {
     Gripper(LimbName),
 }
 
-/// What is done to an object.
+/// A kind of act on an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verb {
-    /// It is taken.
+    /// The object is grasped.
     Grasp,
-    /// It is let go of.
+    /// The object is released.
     Release,
-    /// It is removed from the world.
+    /// The object is removed from the world.
     Destroy,
-    /// It is operated.
+    /// The control is operated.
     Trigger,
-    /// It is pointed to.
+    /// The object is pointed to.
     PointTo,
-    /// It is fastened to another one, or tighter.
+    /// The object is fastened to another one, or tightened.
     Fasten,
-    /// It is loosened.
+    /// The object is loosened.
     Loosen,
 }
 
 impl Timeline {
-    /// The segment of a tick.
+    /// The segment that a tick belongs to.
     pub fn segment_at(&self, tick: SimTick) -> Option<usize> {
         let begun = self
             .segments
@@ -118,7 +118,7 @@ impl Timeline {
         begun.checked_sub(1)
     }
 
-    /// The last picture that shows a tick or one before it.
+    /// The last picture of a tick or of one before it.
     pub fn picture_at(&self, tick: SimTick) -> Option<&TimelinePicture> {
         let shown = self
             .pictures
@@ -134,7 +134,7 @@ impl Timeline {
 }
 
 impl Act {
-    /// What somebody has done to an object, if that is what has happened.
+    /// The act that a fact reports, if it reports one.
     pub fn of(fact: &SimFact) -> Option<Self> {
         let (manipulator, verb, id) = match fact {
             SimFact::Grasped { hand, id, .. } => (Manipulator::Hand(*hand), Verb::Grasp, id),
@@ -187,7 +187,7 @@ impl Act {
 }
 
 impl Verb {
-    /// As a word for a short text.
+    /// Its word in short texts.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Grasp => "grasps",

@@ -1,5 +1,5 @@
-//! Rotations that are the same on every processor. Those of glam ask the C library for sine and cosine, which chooses by the
-//! processor how it computes them: of 64 bits the last may differ, of 32 bits only beyond 16 rad.
+//! Rotations that are the same on every processor. Those of glam use sine and cosine of the C library, which chooses its algorithm by the
+//! processor: with 64 bits the last bit may differ, with 32 bits only beyond 16 rad.
 
 use bevy::math::{DQuat, Quat, Vec3};
 

@@ -1,8 +1,8 @@
-//! How fast something moves.
+//! Twists: velocities of objects.
 
 use bevy::prelude::*;
 
-/// How fast an object moves and turns at the end of a tick, in the table's frame. Physics writes it.
+/// The velocity of an object at the end of a tick, in the table's frame. Physics writes it.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component)]
 pub struct Twist {

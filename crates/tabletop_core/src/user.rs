@@ -1,4 +1,4 @@
-//! What the window's view and its panels must agree on.
+//! Types that the window's view and its panels share.
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -19,14 +19,14 @@ pub struct KeySystems;
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource)]
 pub struct DragPlane {
-    /// How far the plane is turned about Z, in radians. At 0 it lies along X and faces somebody who looks along Y.
+    /// Angle of the plane about Z, in radians. At 0 it lies along X and faces a viewer who looks along Y.
     pub heading: f32,
-    /// Whether the plane at right angles stands in for it at the moment.
+    /// True while the perpendicular plane stands in for it.
     pub is_perpendicular: bool,
 }
 
 impl DragPlane {
-    /// The plane that is seen from the front by somebody who looks in this direction.
+    /// The plane that a viewer with this direction of view sees from the front.
     pub fn facing(direction_of_view: Vec3) -> Self {
         Self {
             heading: libm::atan2f(-direction_of_view.x, direction_of_view.y),
@@ -34,7 +34,7 @@ impl DragPlane {
         }
     }
 
-    /// The rotation about Z that brings the plane along X and Z to where it is shown.
+    /// The rotation about Z from the plane of X and Z to the shown plane.
     pub fn rotation(self) -> Quat {
         let quarter = if self.is_perpendicular {
             FRAC_PI_2
@@ -44,12 +44,12 @@ impl DragPlane {
         Quat::from_rotation_z(self.heading + quarter)
     }
 
-    /// The level direction at right angles to it, away from whom it faces.
+    /// Its level normal, which points away from the viewer.
     pub fn normal(self) -> Vec3 {
         self.rotation() * Vec3::Y
     }
 
-    /// Length of the sides of the square of it that is used, in units.
+    /// Side length of the plane's square, in units.
     pub fn side(table: &Table) -> f32 {
         4.0 * table.xspan
     }

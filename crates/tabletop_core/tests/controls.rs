@@ -1,4 +1,4 @@
-//! `docs/controls.md` names every key, and tests that exist.
+//! `docs/controls.md` names every key, and every test that it names exists.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::{fs, path::Path};
@@ -14,7 +14,7 @@ fn page() -> String {
     fs::read_to_string(root().join("docs/controls.md")).unwrap()
 }
 
-/// How the line of an action begins.
+/// The beginning of an action's line.
 fn line_of(action: Action) -> String {
     let keymap = Keymap::default();
     let bindings = keymap.bindings(action).iter();
@@ -73,7 +73,7 @@ fn every_line_of_a_table_is_proven_by_tests_that_exist() {
     }
 }
 
-/// What is compiled of the program: its sources without their tests, but for the table of actions itself.
+/// The program's sources without their tests and without the table of actions itself.
 fn sources() -> String {
     fn read(folder: &Path, text: &mut String) {
         for entry in fs::read_dir(folder).unwrap() {

@@ -1,4 +1,4 @@
-//! The robot's body, as planning needs it.
+//! The robot's body, as planning uses it.
 
 use bevy::math::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
 use tabletop_core::{LimbLayout, LinkFrame, Pose, RobotLayout, Solid, Table, UNITS_PER_METER};
@@ -11,7 +11,7 @@ use tabletop_task::PlacedSolid;
 /// The angles of an arm from its base to its tip, in rad; 0 beyond its last joint.
 pub type Angles = [f64; MOST_ARM_JOINTS];
 
-/// These angles, 0 beyond the last.
+/// These angles, with 0 beyond the last.
 pub fn angles(each: impl IntoIterator<Item = f64>) -> Angles {
     let mut all = Angles::default();
     for (place, angle) in all.iter_mut().zip(each) {
@@ -28,40 +28,40 @@ pub struct RobotBody {
     /// Its limbs.
     pub limbs: Vec<LimbBody>,
     links: Vec<LinkBody>,
-    /// Pairs of links that cannot meet, or overlap as they are described.
+    /// Pairs of links that cannot meet, or whose solids overlap anyway.
     apart: Vec<(usize, usize)>,
 }
 
 /// An arm with its gripper.
 #[derive(Clone, Debug)]
 pub struct LimbBody {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     chain: ArmChain,
     end_effector: DAffine3,
     /// Extents of a finger, in units, in the end effector's frame.
     pub finger: Vec3,
-    /// How far its gripper opens, in units.
+    /// Largest opening of its gripper, in units.
     pub widest: f32,
-    /// How fast its joints are turned, in rad/s.
+    /// Speeds of its joints, in rad/s.
     pub speeds: Angles,
-    /// The angles that it begins with.
+    /// Its angles at the beginning.
     pub home: Angles,
-    /// What its joints carry.
+    /// The solids that its joints carry.
     solids: Vec<CarriedSolid>,
 }
 
-/// A solid that is rigid with what a joint of a limb turns.
+/// A solid that is rigidly connected with what a joint of a limb turns.
 #[derive(Clone, Copy, Debug)]
 struct CarriedSolid {
     link: usize,
     joint: usize,
-    /// In the joint's frame, in units.
+    /// Its pose in the joint's frame, in units.
     pose: Pose,
     solid: Solid,
 }
 
-/// A solid of a link at its place.
+/// A solid of a link, with its pose.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LinkSolid {
     pub link: usize,
@@ -72,16 +72,16 @@ pub(crate) struct LinkSolid {
 #[derive(Clone, Debug)]
 struct LinkBody {
     link: LinkId,
-    /// The limb that moves it, and by how many of its joints.
+    /// The limb that moves it, and the number of joints that do.
     carrier: Option<(usize, usize)>,
     solids: Vec<(Pose, Solid)>,
 }
 
-/// From how many postures it is tried to reach a pose.
+/// Number of postures from which a pose is tried.
 const STARTS: usize = 24;
-/// The part of their motors' speed at which joints are turned.
+/// Share of the motors' speed that joints use.
 const SHARE_OF_SPEED: f64 = 0.75;
-/// How fast joints without a motor are turned, in rad/s.
+/// Speed of joints without a motor, in rad/s.
 const SPEED: f64 = 1.0;
 
 impl LimbBody {
@@ -127,17 +127,17 @@ impl LimbBody {
         self.chain.limits()
     }
 
-    /// The angles that it has joints for.
+    /// The angles of the joints that it has.
     fn own<'a>(&self, angles: &'a Angles) -> &'a [f64] {
         &angles[..self.chain.joints().len()]
     }
 }
 
 impl RobotBody {
-    /// The robot of this layout and description, at this table.
+    /// The robot of this layout and model, at this table.
     ///
     /// # Errors
-    /// The description has no such limbs.
+    /// The model does not have the layout's limbs.
     pub fn new(layout: &RobotLayout, model: RobotModel, table: &Table) -> Result<Self, ModelError> {
         let limbs: Result<Vec<_>, ModelError> = layout
             .limbs
@@ -169,7 +169,7 @@ impl RobotBody {
         Ok(body)
     }
 
-    /// Notes which solids each joint carries.
+    /// Finds the solids that each joint carries.
     fn carry(&mut self) {
         let mut frames = Frames::default();
         let zero = self.model.zero();
@@ -191,7 +191,7 @@ impl RobotBody {
         }
     }
 
-    /// Pairs of links that touch at home, or hang on each other.
+    /// Pairs of links that touch at home, or are neighbours.
     fn always_together(&self) -> Vec<(usize, usize)> {
         let home: Vec<_> = self.limbs.iter().map(|limb| limb.home).collect();
         let solids = self.links_at(&home);
@@ -224,7 +224,7 @@ impl RobotBody {
         values
     }
 
-    /// The solids of each link with these angles of the limbs, in the table's frame.
+    /// The solids of each link at these angles of the limbs, in the table's frame.
     fn links_at(&self, angles: &[Angles]) -> Vec<Vec<PlacedSolid>> {
         let mut frames = Frames::default();
         self.model.frames_into(&self.values(angles), &mut frames);
@@ -241,7 +241,7 @@ impl RobotBody {
         placed.collect()
     }
 
-    /// The solids of everything but this limb, with these angles of all limbs.
+    /// The solids of everything but this limb, at these angles of all limbs.
     pub(crate) fn rest(&self, limb: usize, angles: &[Angles]) -> Vec<LinkSolid> {
         let links = self.links_at(angles).into_iter().enumerate();
         links
@@ -257,7 +257,7 @@ impl RobotBody {
         self.links[link].carrier.is_some_and(|(own, _)| own == limb)
     }
 
-    /// The solids of a limb with these angles.
+    /// The solids of a limb at these angles.
     pub(crate) fn own(&self, limb: usize, angles: &Angles, solids: &mut Vec<LinkSolid>) {
         let limb = &self.limbs[limb];
         let mut frames = [Pose::IDENTITY; MOST_ARM_JOINTS];
@@ -274,17 +274,17 @@ impl RobotBody {
         }));
     }
 
-    /// Whether a solid of a limb can run into what is around: the first two joints only turn what is beside the trunk.
+    /// True if a link of a limb can collide with its surroundings: the first two joints move only parts beside the trunk.
     pub(crate) fn is_far_out(&self, link: usize) -> bool {
         self.links[link].carrier.is_some_and(|(_, place)| place > 2)
     }
 
-    /// Whether two links can meet.
+    /// True if two links can meet.
     pub(crate) fn can_meet(&self, one: usize, other: usize) -> bool {
         one != other && !self.apart.contains(&(one.min(other), one.max(other)))
     }
 
-    /// The fingers of a limb whose end effector is here and whose gripper is open so far.
+    /// The fingers of a limb, for an end effector at this pose and this opening of the gripper.
     pub(crate) fn fingers(
         &self,
         limb: usize,
@@ -298,18 +298,18 @@ impl RobotBody {
         })
     }
 
-    /// Where the end effector of a limb is, in the table's frame.
+    /// Pose of a limb's end effector, in the table's frame.
     pub fn end_effector(&self, limb: usize, angles: &Angles) -> Pose {
         let limb = &self.limbs[limb];
         self.base * in_units(limb.chain.tip(limb.own(angles)) * limb.end_effector)
     }
 
-    /// Angles that bring the end effector of a limb there, near the seed where there is a choice.
+    /// Angles that bring a limb's end effector to this pose; of several solutions, one near the seed.
     pub fn reach(&self, limb: usize, pose: Pose, seed: &Angles) -> Option<Angles> {
         self.solve(limb, pose, seed, STARTS)
     }
 
-    /// The same, if the seed leads there.
+    /// The same, if the search from the seed alone finds it.
     pub(crate) fn reach_from(&self, limb: usize, pose: Pose, seed: &Angles) -> Option<Angles> {
         self.solve(limb, pose, seed, 1)
     }
@@ -318,7 +318,7 @@ impl RobotBody {
         let limb = &self.limbs[limb];
         let shoulder = limb.chain.tip(limb.own(&limb.home)).translation;
         let target = in_meters(self.base.inverse() * pose) * limb.end_effector.inverse();
-        // What is far beyond an arm's length takes long to be found out of reach.
+        // For a target far beyond an arm's length, the search would take long to fail.
         if (target.translation - shoulder).length() > 1.6 {
             return None;
         }
@@ -332,7 +332,7 @@ impl RobotBody {
     }
 }
 
-/// The limb whose joints move a link, and how many of them do.
+/// The limb whose joints move a link, and their number.
 fn carrier(model: &RobotModel, limbs: &[LimbBody], link: LinkId) -> Option<(usize, usize)> {
     let carriers: Vec<_> = std::iter::successors(Some(link), |&link| model.parent(link))
         .filter_map(|link| model.link(link).joint)
@@ -348,14 +348,14 @@ fn carrier(model: &RobotModel, limbs: &[LimbBody], link: LinkId) -> Option<(usiz
     })
 }
 
-/// A body of a link as a solid; none for a mesh.
+/// A body of a link as a solid; `None` for a mesh.
 fn solid(shape: &LinkShape) -> Option<(Pose, Solid)> {
     let pose = in_units(shape.origin);
     let units = |meters: f64| (meters * UNITS_PER_METER) as f32;
     match shape.geometry {
         Geometry::Box { size } => Some((pose, Solid::Cuboid((size * UNITS_PER_METER).as_vec3()))),
         Geometry::Cylinder { radius, length } => Some((
-            // A solid cylinder is along y.
+            // A cylinder of ours lies along y.
             pose * Pose::new(
                 Vec3::ZERO,
                 Quat::from_rotation_x(std::f32::consts::FRAC_PI_2),

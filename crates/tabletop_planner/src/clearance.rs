@@ -1,4 +1,4 @@
-//! Whether a posture of the robot is free.
+//! Clearance: whether a posture of the robot is free of collisions.
 
 use std::cell::RefCell;
 
@@ -11,52 +11,52 @@ use crate::{
     sight::{Sight, lean},
 };
 
-/// A limb among what it must not touch.
+/// A limb among the obstacles that it must not touch.
 pub(crate) struct Clearance<'a> {
     pub body: &'a RobotBody,
     pub limb: usize,
-    /// The angles of all limbs; those of the others stay.
+    /// The angles of all limbs; those of the other limbs are fixed.
     angles: Vec<Angles>,
     table: Table,
     obstacles: Vec<PlacedSolid>,
-    /// The rest of the robot, and the fingers of other limbs.
+    /// The rest of the robot, including the fingers of other limbs.
     rest: Vec<LinkSolid>,
     others_fingers: Vec<PlacedSolid>,
     scratch: RefCell<Vec<LinkSolid>>,
-    /// How far the gripper is open, in units.
+    /// Opening of the gripper, in units.
     pub opening: f32,
-    /// What it holds, in the end effector's frame.
+    /// The held solids, in the end effector's frame.
     pub held: Vec<PlacedSolid>,
-    /// From what is held, when it does not lean, to the end effector's frame.
+    /// Rotation from the held object, when it does not lean, to the end effector's frame.
     upright: Quat,
 }
 
-/// How much is kept from what.
+/// Distances to be kept from obstacles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Margins {
     fingers: f32,
     held: f32,
     held_above_table: f32,
-    /// How far what is held may lean, in rad.
+    /// Largest angle by which the held object may lean, in rad.
     lean: f32,
 }
 
 impl Margins {
-    /// On the way.
+    /// For motions between places.
     pub const WIDE: Self = Self {
         fingers: 0.1,
         held: 0.1,
         held_above_table: 0.08,
         lean: 0.3,
     };
-    /// On the way, where there is no room for more.
+    /// For motions between places where there is no more room.
     pub const TIGHT: Self = Self {
         fingers: 0.04,
         held: 0.03,
         held_above_table: 0.03,
         lean: 0.3,
     };
-    /// Where something is taken or put.
+    /// For motions where an object is grasped or put down.
     pub const NARROW: Self = Self {
         fingers: 0.025,
         held: 0.004,
@@ -65,11 +65,11 @@ impl Margins {
     };
 }
 
-/// What the links of an arm keep from objects and table.
+/// Distance of an arm's links from objects and table.
 const LINKS: f32 = 0.05;
 
 impl<'a> Clearance<'a> {
-    /// Among all that is seen, but for these objects.
+    /// A limb among all that is seen, except these objects.
     pub fn new(body: &'a RobotBody, sight: &Sight, limb: usize, without: &[&str]) -> Self {
         let angles: Vec<_> = sight.limbs.iter().map(|limb| limb.angles).collect();
         let objects = sight.objects.iter();
@@ -96,8 +96,8 @@ impl<'a> Clearance<'a> {
         }
     }
 
-    /// Holding this object, which the end effector carries at `grip`, in its frame, and which is as it was when the end effector was turned
-    /// by the inverse of `upright`.
+    /// The limb with an object that its end effector carries at `grip`, a pose in the end effector's frame. The object does not lean when the end
+    /// effector is turned by the inverse of `upright`.
     pub fn holding(mut self, solids: &[PlacedSolid], grip: Pose, upright: Quat) -> Self {
         self.upright = upright;
         self.held = solids
@@ -115,7 +115,7 @@ impl<'a> Clearance<'a> {
         self
     }
 
-    /// Where the limb is now.
+    /// Present angles of the limb.
     pub fn here(&self) -> Angles {
         self.angles[self.limb]
     }
@@ -132,12 +132,12 @@ impl<'a> Clearance<'a> {
         self.body.reach_from(self.limb, pose, seed)
     }
 
-    /// Whether all of a way is free.
+    /// True if every posture of a path is free.
     pub fn is_way_free(&self, way: &[Angles], margins: Margins) -> bool {
         way.iter().all(|angles| self.is_free(angles, margins))
     }
 
-    /// Whether nothing is in the way of the limb with these angles.
+    /// True if the limb collides with nothing at these angles.
     pub fn is_free(&self, angles: &Angles, margins: Margins) -> bool {
         let end_effector = self.end_effector(angles);
         let fingers = self.body.fingers(self.limb, end_effector, self.opening);
@@ -197,7 +197,7 @@ impl<'a> Clearance<'a> {
             })
     }
 
-    /// Whether fingers that are open so far have room.
+    /// True if there is room for fingers at this opening.
     pub fn has_room_for_fingers(&self, end_effector: Pose, opening: f32, margin: f32) -> bool {
         let fingers = self.body.fingers(self.limb, end_effector, opening);
         !self.meets(&fingers, margin)
@@ -212,7 +212,7 @@ impl<'a> Clearance<'a> {
         solids.iter().any(near)
     }
 
-    /// Whether it is nearer to the table's top than this, or below it.
+    /// True if it is nearer to the table's top than this margin, or below it.
     fn is_at_table(&self, solid: &PlacedSolid, margin: f32) -> bool {
         let half = Vec3::new(self.table.xspan, self.table.yspan, 0.0) / 2.0;
         let at = solid.pose.location;

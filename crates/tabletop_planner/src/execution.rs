@@ -1,4 +1,4 @@
-//! Doing a task beside the simulation, tick by tick.
+//! Execution of a task beside the simulation, tick by tick.
 
 use std::{
     io,
@@ -18,37 +18,38 @@ use crate::{
     stage::{LimbOrder, PlanningStage, Stopped},
 };
 
-/// A robot that does a task, for those who let time pass themselves: it asks for a tick, and goes on when it has seen it. It plans in a
-/// thread of its own, and stops when it is dropped.
+/// The execution of a task, for callers that advance time themselves: it asks for a tick and continues when it is given the result. It plans in
+/// its own thread, and stops when it is dropped.
 pub struct Execution {
     sights: Sender<Sight>,
-    news: SyncCell<Receiver<News>>,
+    events: SyncCell<Receiver<Event>>,
     doing: Option<Doing>,
     over: Option<Imitation>,
 }
 
-/// What an execution is about.
+/// The next move of an execution.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExecutionTurn {
-    /// It plans.
+    /// It is planning.
     Planning,
-    /// It waits for a tick with these orders, one for each limb; then [`Execution::see`].
+    /// It waits for a tick with these orders, one for each limb; then call [`Execution::see`].
     Orders(Vec<LimbOrder>),
-    /// Nothing more is done.
+    /// It has ended.
     Over(Imitation),
 }
 
-enum News {
+/// An event of the planning thread.
+enum Event {
     Doing(Doing),
     Orders(Vec<LimbOrder>),
     Over(Imitation),
 }
 
-/// The world as its thread knows it.
+/// The world as the planning thread knows it.
 struct Correspondence {
     sight: Sight,
     sights: Receiver<Sight>,
-    news: Sender<News>,
+    events: Sender<Event>,
 }
 
 impl PlanningStage for Correspondence {
@@ -57,15 +58,15 @@ impl PlanningStage for Correspondence {
     }
 
     fn tick(&mut self, orders: &[LimbOrder]) -> Result<(), Stopped> {
-        let orders = News::Orders(orders.to_vec());
-        self.news.send(orders).map_err(|_| Stopped)?;
+        let orders = Event::Orders(orders.to_vec());
+        self.events.send(orders).map_err(|_| Stopped)?;
         self.sight = self.sights.recv().map_err(|_| Stopped)?;
         Ok(())
     }
 }
 
 impl Execution {
-    /// Begins a task in a world that looks like this. Whatever is tried by chance is decided by `seed`.
+    /// Begins a task in a world that looks like this. `seed` decides all random choices.
     ///
     /// # Errors
     /// The system has no thread for it.
@@ -77,38 +78,38 @@ impl Execution {
         seed: u64,
     ) -> io::Result<Self> {
         let (sights, seen) = channel();
-        let (news, heard) = channel();
+        let (events, received) = channel();
         let plan = move || {
-            let told = news.clone();
+            let sender = events.clone();
             let mut stage = Correspondence {
                 sight,
                 sights: seen,
-                news,
+                events,
             };
             // Nobody listens any more if it is dropped.
-            let tell = |doing| drop(told.send(News::Doing(doing)));
-            let imitation = imitate(&mut stage, &body, &task, &binding, seed, tell);
-            drop(told.send(News::Over(imitation)));
+            let report = |doing| drop(sender.send(Event::Doing(doing)));
+            let imitation = imitate(&mut stage, &body, &task, &binding, seed, report);
+            drop(sender.send(Event::Over(imitation)));
         };
         thread::Builder::new().name("planner".into()).spawn(plan)?;
         Ok(Self {
             sights,
-            news: SyncCell::new(heard),
+            events: SyncCell::new(received),
             doing: None,
             over: None,
         })
     }
 
-    /// What is to be done next, as soon as it is known, or after this long.
+    /// The next move, as soon as it is known; after `within`, [`ExecutionTurn::Planning`].
     pub fn turn(&mut self, within: Duration) -> ExecutionTurn {
         if let Some(imitation) = &self.over {
             return ExecutionTurn::Over(imitation.clone());
         }
         loop {
-            match self.news.get().recv_timeout(within) {
-                Ok(News::Doing(doing)) => self.doing = Some(doing),
-                Ok(News::Orders(orders)) => return ExecutionTurn::Orders(orders),
-                Ok(News::Over(imitation)) => return self.end(imitation),
+            match self.events.get().recv_timeout(within) {
+                Ok(Event::Doing(doing)) => self.doing = Some(doing),
+                Ok(Event::Orders(orders)) => return ExecutionTurn::Orders(orders),
+                Ok(Event::Over(imitation)) => return self.end(imitation),
                 Err(RecvTimeoutError::Timeout) => return ExecutionTurn::Planning,
                 Err(RecvTimeoutError::Disconnected) => {
                     let step = self.doing.map_or(1, |doing| doing.step);
@@ -126,13 +127,13 @@ impl Execution {
         ExecutionTurn::Over(imitation)
     }
 
-    /// Tells it what is seen after the tick that it has asked for.
+    /// Passes on what is seen after the tick that it asked for.
     pub fn see(&self, sight: Sight) {
-        // After its end, nobody looks.
+        // After the end, nobody looks.
         drop(self.sights.send(sight));
     }
 
-    /// The step that is done, since the last [`Execution::turn`].
+    /// The step that is being done; `None` before the first one.
     pub fn doing(&self) -> Option<Doing> {
         self.doing
     }
@@ -161,7 +162,7 @@ mod tests {
         }
     }
 
-    /// What is seen after a tick with these orders, if nothing is in the way.
+    /// The expected sight after a tick with these orders, if nothing is in the way.
     fn passed(mut sight: Sight, orders: &[LimbOrder]) -> Sight {
         for (limb, order) in sight.limbs.iter_mut().zip(orders) {
             let turns = limb.angles.into_iter().zip(order.joints);

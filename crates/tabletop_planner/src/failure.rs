@@ -1,36 +1,36 @@
-//! Why a step cannot be done.
+//! Failures of steps.
 
 use std::fmt;
 
 use crate::stage::Stopped;
 
-/// What went wrong, in words for who watches.
+/// The reason why a step failed, with words for the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PlanFailure {
-    /// An object of the task is not there.
+    /// An object of the task is missing.
     Gone(String),
-    /// No arm reaches it.
+    /// No arm reaches the object.
     OutOfReach(String),
-    /// Nothing of it fits between the fingers as it stands.
+    /// No part of the object fits between the fingers as it stands.
     NoGrasp(String),
-    /// It would have to be tipped over, and the robot takes things from above.
+    /// The object would have to be tipped over, and the robot grasps only from above.
     Tipped(String),
-    /// No way to take it there is free.
+    /// No free path leads to the goal.
     NoWay(String),
-    /// The fingers have closed, and it is not held.
+    /// The fingers have closed without holding the object.
     NotHeld(String),
-    /// Something stopped the arm.
+    /// An obstacle stopped the arm.
     Blocked {
-        /// What was to be moved.
+        /// The object that was to be moved.
         object: String,
-        /// What stopped it.
+        /// The obstacle.
         by: String,
     },
-    /// No free place was found for what is in the way.
+    /// No free place was found for an object that is in the way.
     NoRoom(String),
-    /// It was put down, and is not where it belongs.
+    /// The object was put down but is not where it belongs.
     Misplaced(String),
-    /// Somebody stopped the robot.
+    /// The robot was stopped from outside.
     Stopped,
 }
 
@@ -41,7 +41,7 @@ impl From<Stopped> for PlanFailure {
 }
 
 impl PlanFailure {
-    /// The class of the failure, for a table.
+    /// Class of the failure, for a table.
     pub const fn class(&self) -> &'static str {
         match self {
             Self::Gone(_) => "gone",

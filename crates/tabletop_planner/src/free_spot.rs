@@ -9,16 +9,16 @@ use crate::{
     sight::{Sight, heights},
 };
 
-/// How far from others something is put, so that fingers reach it, in units.
+/// Distance from other objects at which something is put, so that fingers reach it, in units.
 const ROOM: f32 = 0.9;
-/// How far from the table's edges, in units.
+/// Distance from the table's edges, in units.
 const EDGE: f32 = 0.3;
-/// How many places are found.
+/// Largest number of places that are found.
 const MOST: usize = 10;
-/// Distance between the places that are looked at, in units.
+/// Distance between the candidate places, in units.
 const GRID: f32 = 0.5;
 
-/// Places where an object can be put, turned as it is, the nearest to `near` first. `kept` are solids of what will be there later.
+/// Places where an object can be put in its present orientation, the nearest to `near` first. `kept` are solids that will be there later.
 pub(crate) fn free_spots(
     body: &RobotBody,
     sight: &Sight,

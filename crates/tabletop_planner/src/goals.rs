@@ -1,4 +1,4 @@
-//! Where an object may be put to do a step.
+//! Goals of a step: the poses that its object may take.
 
 use std::collections::BTreeMap;
 
@@ -14,32 +14,32 @@ use crate::{
     sight::{Sight, lean},
 };
 
-/// A place that does, and how much worse it is than the best.
+/// A pose that does, and its cost above that of the best.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Candidate {
     pub pose: Pose,
     pub cost: f32,
 }
 
-/// Where things were before.
+/// Earlier poses of objects.
 #[derive(Clone, Debug, Default)]
 pub struct Before {
-    /// In the beginning, by object.
+    /// Poses at the beginning, by object.
     pub beginning: BTreeMap<String, Pose>,
-    /// Before this step, the object that is moved.
+    /// Pose of the moved object before this step.
     pub step: Option<Pose>,
 }
 
-/// How near to where it is to be an object has to be, in units: relative to an object, and to a place.
+/// Largest distance from its goal, in units, at which an object is there: for goals relative to an object, and to a place.
 const NEAR: (f32, f32) = (0.15, 0.3);
-/// How far it may be turned from how it is to be, in rad.
+/// Largest angle from its goal, in rad.
 const TURNED: f32 = 0.14;
-/// How much farther from the side on which it was shown a place may be than the best one, in rad.
+/// Largest angle, in rad, by which a place may be farther from the demonstrated side than the best place.
 const SIDES: f32 = 0.6;
-/// How far what is upright may lean, in rad.
+/// Largest angle by which an upright object may lean, in rad.
 const UPRIGHT: f32 = 0.1;
 
-/// The poses of its object with which a step is done, as far as they can be reached by turning it about the vertical.
+/// The poses of the object that fulfil a step, as far as a turn about the vertical reaches them.
 pub(crate) fn candidates(
     step: &TaskStep,
     binding: &Binding,
@@ -55,7 +55,7 @@ pub(crate) fn candidates(
     for exact in exact(step, binding, sight, before)? {
         let symmetry = Symmetry::of(&object.shape);
         for variant in symmetry.variants(exact.pose) {
-            // What stands is turned about the vertical alone.
+            // A standing object is turned only about the vertical.
             let turn = variant.rotation * object.pose.rotation.inverse();
             if lean(turn) > UPRIGHT {
                 continue;
@@ -85,7 +85,7 @@ pub(crate) fn candidates(
         .as_ref()
         .is_some_and(|goal| goal.place == PlaceRange::Exact);
     if is_exact || is_on(step) {
-        // Turned with its reference, a place may be beside what the object has to stand on, or above what it has to stand beside.
+        // If the reference has turned, a place may be beside the object's support, or above its neighbour.
         let mut fitting = Vec::new();
         for candidate in &found {
             let arrangement = sight.arrangement_with(id, candidate.pose);
@@ -104,14 +104,14 @@ pub(crate) fn candidates(
     Ok(found)
 }
 
-/// Whether no part of a solid is beside the table.
+/// True if no part of a solid reaches beyond the table.
 fn is_over(table: &Table, solid: &PlacedSolid) -> bool {
     let reach = |way: Vec3| solid.farthest(way).dot(way);
     reach(Vec3::X).max(reach(Vec3::NEG_X)) < table.xspan / 2.0
         && reach(Vec3::Y).max(reach(Vec3::NEG_Y)) < table.yspan / 2.0
 }
 
-/// Whether an object stands on, in and around what a step puts it on, in and around.
+/// True if an object stands on, in and around the objects that a step names.
 fn stands(
     step: &TaskStep,
     binding: &Binding,
@@ -142,7 +142,7 @@ fn stands(
     Ok(true)
 }
 
-/// The poses that a step's goal names, with the freedom that the symmetry of its reference leaves.
+/// The poses of a step's goal, with the freedom that the symmetry of its reference leaves.
 fn exact(
     step: &TaskStep,
     binding: &Binding,
@@ -180,7 +180,7 @@ fn exact(
     });
     let is_level = |candidate: &Candidate| candidate.pose.location.z > 0.0;
     let upright = poses.filter(is_level);
-    // A reference that looks the same upside down does not turn a goal upside down.
+    // A reference that looks the same upside down must not turn the goal upside down.
     let shown_height = goal.pose.location.length();
     let mut all: Vec<_> = upright.collect();
     let highest = all
@@ -203,7 +203,7 @@ fn is_on(step: &TaskStep) -> bool {
     })
 }
 
-/// How far a goal is from the side of its reference on which it was shown, in rad.
+/// Angle between a goal and the demonstrated side of its reference, in rad.
 fn change_of_side(step: &TaskStep, frame: Pose, pose: Pose) -> f32 {
     let way = (pose.location - frame.location).with_z(0.0);
     match step.relations.first() {
@@ -212,10 +212,10 @@ fn change_of_side(step: &TaskStep, frame: Pose, pose: Pose) -> f32 {
     }
 }
 
-/// Whether the object of a step is where it has to be.
+/// True if the object of a step is where it has to be.
 ///
 /// # Errors
-/// It is not there, or what it was put to is not.
+/// The object, or its reference, is missing.
 pub fn is_met(
     step: &TaskStep,
     binding: &Binding,
@@ -263,7 +263,7 @@ pub(crate) fn bound<'b>(binding: &'b Binding, role: &str) -> Result<&'b str, Pla
         .ok_or_else(|| PlanFailure::Gone(role.to_owned()))
 }
 
-/// The rotations about the vertical by which a container can be searched for a free place.
+/// The rotations about the vertical with which a container is searched for a free place.
 pub(crate) fn inside(pose: Pose, by: f32) -> impl Iterator<Item = Candidate> {
     let steps = [0.0, 1.0, -1.0, 2.0, -2.0];
     steps.into_iter().flat_map(move |x| {

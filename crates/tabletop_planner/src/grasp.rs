@@ -1,4 +1,4 @@
-//! How an object can be taken.
+//! Grasps of objects.
 
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -6,27 +6,27 @@ use bevy::math::{Quat, Vec3};
 use tabletop_core::{Pose, Shape, Solid};
 use tabletop_task::PlacedSolid;
 
-/// A way to take an object from above.
+/// A grasp of an object from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grasp {
-    /// Where the end effector is then, in the object's frame.
+    /// Pose of the end effector, in the object's frame.
     pub end_effector: Pose,
-    /// How wide what is between the fingers is, in units.
+    /// Width of the part between the fingers, in units.
     pub width: f32,
-    /// How far it is off the middle of what is taken, and above the lowest hold of it, in units.
+    /// Distance from the middle of the grasped part, and height above its lowest hold, in units.
     pub off: f32,
 }
 
-/// Least distance between a finger and what it is to take, in units.
+/// Least gap between a finger and the part that it grasps, in units.
 const PLAY: f32 = 0.05;
-/// How far fingers' ends stay above what an object stands on, in units.
+/// Least height of the fingertips above the object's support, in units.
 const ABOVE_GROUND: f32 = 0.03;
-/// How deep fingers reach down at least, in units.
+/// Least depth to which fingers reach down, in units.
 const SHALLOW: f32 = 0.2;
-/// How deep fingers reach down at a high object, in units.
+/// Depth to which fingers reach down at a high object, in units.
 const DEPTH: f32 = 0.45;
 
-/// The ways to take an object that stands like this: from above, at the whole of it or at a part such as a handle, by opposite faces
+/// The grasps of an object that stands like this: from above, at the whole of it or at a part such as a handle, by opposite faces
 /// that fit between the fingers. `finger` is the length of a finger, `widest` the largest opening, in units.
 pub fn grasps(shape: &Shape, rotation: Quat, finger: f32, widest: f32) -> Vec<Grasp> {
     let upright = Pose::new(Vec3::ZERO, rotation);
@@ -42,7 +42,7 @@ pub fn grasps(shape: &Shape, rotation: Quat, finger: f32, widest: f32) -> Vec<Gr
     if parts.len() > 1 {
         wholes.extend(parts.iter().map(|part| solids(&part.shape, part.pose)));
     }
-    // Whatever is taken, the fingers must not go below what the object stands on.
+    // Whatever part is grasped, the fingers must not go below the object's support.
     let ground = wholes[0]
         .iter()
         .map(|solid| solid.heights()[0])
@@ -69,7 +69,7 @@ pub fn grasps(shape: &Shape, rotation: Quat, finger: f32, widest: f32) -> Vec<Gr
             } else {
                 &[0.0]
             };
-            // Higher holds leave room for what is below and around.
+            // Higher holds leave room for objects below and around.
             let highest = z[1] + finger / 2.0 - SHALLOW;
             for share in [0.0, 0.5, 1.0] {
                 let rise = (highest - height).max(0.0) * share;
@@ -95,7 +95,7 @@ pub fn grasps(shape: &Shape, rotation: Quat, finger: f32, widest: f32) -> Vec<Gr
     all
 }
 
-/// The angles about the vertical in which fingers meet opposite faces.
+/// Angles about the vertical at which fingers meet opposite faces.
 fn yaws(solids: &[PlacedSolid]) -> Vec<f32> {
     let Some(first) = solids.first() else {
         return Vec::new();
@@ -140,7 +140,7 @@ fn around(count: u16) -> Vec<f32> {
         .collect()
 }
 
-/// From where to where solids reach along a way.
+/// Extent of solids in a direction.
 fn extent(solids: &[PlacedSolid], way: Vec3) -> [f32; 2] {
     let reach = |way: Vec3| {
         let all = solids.iter().map(|solid| solid.farthest(way).dot(way));

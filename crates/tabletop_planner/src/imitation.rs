@@ -1,4 +1,4 @@
-//! Doing a task: step by step, with a look after each.
+//! Imitation: the steps of a task, with a look at the world after each.
 
 use bevy::math::Vec3;
 use tabletop_core::{JointKind, Pose};
@@ -17,31 +17,31 @@ use crate::{
     transit::{WaySearch, transit},
 };
 
-/// What has become of a task.
+/// The result of doing a task.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Imitation {
-    /// How many steps were done.
+    /// Number of steps done.
     pub steps_done: usize,
-    /// How often a step was tried again.
+    /// Number of repeated tries.
     pub corrections: usize,
-    /// Why the robot gave up, and the number of the step, if it did.
+    /// The number of the failed step and the reason, if the robot gave up.
     pub failure: Option<(usize, PlanFailure)>,
 }
 
-/// What the robot is doing.
+/// The robot's present step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Doing {
-    /// The number of the step.
+    /// Number of the step.
     pub step: usize,
-    /// How often it was tried before.
+    /// Number of earlier tries.
     pub tries: usize,
 }
 
-/// How often a step is tried.
+/// Number of tries of a step.
 const TRIES: usize = 3;
-/// How many things are moved out of the way for a step.
+/// Number of objects that are moved out of the way for a step.
 const MOST_CLEARED: usize = 4;
-/// Where limbs wait, so that they are not in each other's way: beside the table's front corners, in units.
+/// Place where limbs wait, out of each other's way: beside the table's front corners, in units.
 const PARKED: Vec3 = Vec3::new(7.0, -6.0, 4.5);
 
 /// Does a task. Whatever is tried by chance is decided by `seed`; `tell` hears of every step before it is tried.
@@ -77,8 +77,8 @@ pub fn imitate(
     imitator.outcome
 }
 
-/// The first step of a task that has been done of which the relations do not hold, if there is one: a later step has undone it. Of several steps
-/// with an object, only the last one counts.
+/// The first finished step whose relations no longer hold, because a later step has undone them; `None` if all hold. Of several steps
+/// with one object, only the last counts.
 pub fn undone(
     task: &Task,
     binding: &Binding,
@@ -105,7 +105,7 @@ pub fn undone(
     })
 }
 
-/// Where the steps of a task will put their objects, as far as that is known before the robot begins: the number of the step, the object,
+/// Goals of the task's objects, as far as they are known before the robot begins: the number of the step, the object,
 /// and its pose.
 pub fn goal_poses(task: &Task, binding: &Binding, sight: &Sight) -> Vec<(usize, String, Pose)> {
     let mut sight = sight.clone();
@@ -261,7 +261,7 @@ impl Imitator<'_> {
         }
     }
 
-    /// Puts an object to where a step wants it; by way of a place that two limbs reach, if no limb reaches both ends.
+    /// Puts an object where a step wants it. If no limb reaches both ends, it goes by way of a place that two limbs reach.
     fn put(
         &self,
         stage: &mut dyn PlanningStage,
@@ -294,7 +294,7 @@ impl Imitator<'_> {
         let spots: Vec<_> = spots
             .into_iter()
             .flat_map(|pose| {
-                // Turned as it may be taken then.
+                // The orientations in which it may be grasped there.
                 [0.0_f32, 0.8, -0.8, 1.6].map(|turn| Candidate {
                     pose: Pose::new(
                         pose.location,
@@ -336,7 +336,7 @@ impl Imitator<'_> {
         })
     }
 
-    /// Lets the limb do it that is on the side of both ends; if it cannot, the others. They wait meanwhile.
+    /// Gives the work to the limb on the side of both ends or, if it cannot do it, to the others. The remaining limbs wait.
     fn by_some_limb(
         &self,
         stage: &mut dyn PlanningStage,
@@ -396,14 +396,14 @@ impl Imitator<'_> {
         Err(failure)
     }
 
-    /// Opens a gripper that still holds something after a failure, and lifts it.
+    /// Opens and lifts a gripper that still holds something after a failure.
     fn set_down(&self, stage: &mut dyn PlanningStage, limb: usize) -> Result<(), PlanFailure> {
         let widest = f64::from(self.body.limbs[limb].widest);
         crate::motion::grip(stage, limb, widest)?;
         let sight = stage.sight().clone();
         let clearance = Clearance::new(self.body, &sight, limb, &[]);
         if let Some(up) = crate::path::lift(&clearance, &clearance.here(), 1.0) {
-            // After other failures it stays where it is.
+            // After any other failure it stays where it is.
             if let Err(PlanFailure::Stopped) = follow(stage, self.body, limb, &up, 2.5, "") {
                 return Err(PlanFailure::Stopped);
             }
@@ -411,7 +411,7 @@ impl Imitator<'_> {
         Ok(())
     }
 
-    /// What is where a step's object is to be, and does not belong there.
+    /// The object that occupies the goal of a step's object and does not belong there.
     fn occupant(
         &self,
         sight: &Sight,
@@ -454,7 +454,7 @@ impl Imitator<'_> {
         })
     }
 
-    /// Moves something out of the way, with what stands on it.
+    /// Moves an object out of the way, with everything that stands on it.
     fn clear(&self, stage: &mut dyn PlanningStage, id: &str, i: usize) -> Result<(), PlanFailure> {
         for above in stage.sight().above(id) {
             self.clear(stage, &above, i)?;
@@ -496,7 +496,7 @@ impl Imitator<'_> {
         })
     }
 
-    /// What will stand on the table when the steps from this one on have been done: nothing else is put there.
+    /// The solids that will stand on the table after this and the later steps. Nothing else is put there.
     fn kept(&self, sight: &Sight, from: usize) -> Vec<PlacedSolid> {
         let steps = self.task.steps[from..].iter();
         let later = steps.filter(|step| {
@@ -537,7 +537,7 @@ impl Imitator<'_> {
         Ok(())
     }
 
-    /// Brings a limb to where it waits, if a way is free.
+    /// Brings a limb to its waiting place if a path is free.
     fn try_to_park(&self, stage: &mut dyn PlanningStage, limb: usize) -> Result<(), Stopped> {
         match self.park(stage, limb) {
             Err(PlanFailure::Stopped) => Err(Stopped),
@@ -545,10 +545,10 @@ impl Imitator<'_> {
         }
     }
 
-    /// Brings a limb to where it waits.
+    /// Brings a limb to its waiting place.
     ///
     /// # Errors
-    /// No way is free, or something stops it.
+    /// No path is free, or something stops the limb.
     fn park(&self, stage: &mut dyn PlanningStage, limb: usize) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
         let clearance = Clearance::new(self.body, &sight, limb, &[]);
@@ -568,7 +568,7 @@ impl Imitator<'_> {
     }
 }
 
-/// By how much an object has to be slid for a step.
+/// The displacement by which a step slides an object.
 fn slide(sight: &Sight, step: &TaskStep, id: &str, holder: &str) -> Option<Vec3> {
     let Some(Relation::Slid {
         opening, travel, ..

@@ -1,8 +1,8 @@
-//! How a robot does what was shown: grasps from the geometry of objects, ways free of collisions, and a closed loop that looks after
+//! Imitation of demonstrated tasks by a robot: grasps from the geometry of objects, collision-free paths, and a closed loop that looks after
 //! each step, compares with the relations of the task, and corrects.
 //!
-//! [`imitate`] does a [`Task`](tabletop_task::Task) on a [`PlanningStage`]: whatever lets time pass tick by tick, tells what is seen, and takes
-//! velocities of joints. It knows the robot by a [`RobotBody`]: the URDF's links and the frames of the grippers.
+//! [`imitate`] does a [`Task`](tabletop_task::Task) on a [`PlanningStage`], which advances time tick by tick, reports what is seen, and takes
+//! joint velocities. It knows the robot as a [`RobotBody`]: the URDF's links and the frames of the grippers.
 
 mod body;
 mod clearance;

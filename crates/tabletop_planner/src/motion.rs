@@ -1,4 +1,4 @@
-//! Moving an arm and its gripper, tick by tick.
+//! Motion of an arm and its gripper, tick by tick.
 
 use tabletop_core::TICK_SECONDS;
 
@@ -9,16 +9,16 @@ use crate::{
     stage::{LimbOrder, PlanningStage, Stopped},
 };
 
-/// How fast fingers move, in units/s.
+/// Speed of fingers, in units/s.
 const FINGER_SPEED: f64 = 2.0;
-/// How far joints may lag behind, in rad.
+/// Largest lag of joints behind their targets, in rad.
 const LAG: f64 = 2e-3;
-/// After how many ticks without getting on an arm counts as stopped.
+/// Number of ticks without progress after which an arm counts as stopped.
 const PATIENCE: u32 = 20;
-/// Most ticks for fingers to move.
+/// Largest number of ticks for a motion of fingers.
 const FINGER_TICKS: u32 = 200;
 
-/// Lets time pass with nothing moving.
+/// Lets time pass without motion.
 pub(crate) fn wait(stage: &mut dyn PlanningStage, ticks: u32) -> Result<(), Stopped> {
     let still = vec![LimbOrder::default(); stage.sight().limbs.len()];
     for _ in 0..ticks {
@@ -38,7 +38,7 @@ pub(crate) fn follow(
 ) -> Result<(), PlanFailure> {
     let step = f64::from(TICK_SECONDS);
     let start = stage.sight().limbs[limb].angles;
-    // When each posture is to be reached, in s.
+    // The time, in s, at which each posture is to be reached.
     let mut schedule = vec![(0.0, start)];
     for next in path {
         let (time, last) = schedule[schedule.len() - 1];
@@ -97,7 +97,7 @@ fn at(schedule: &[(f64, Angles)], time: f64) -> Angles {
     std::array::from_fn(|i| from[i] + (to[i] - from[i]) * part)
 }
 
-/// Opens or closes a gripper, until it is there, holds something, or is stopped.
+/// Opens or closes a gripper until it is at its opening, holds something, or is stopped.
 pub(crate) fn grip(
     stage: &mut dyn PlanningStage,
     limb: usize,

@@ -1,4 +1,4 @@
-//! Ways of an arm.
+//! Paths of an arm.
 
 use bevy::math::Vec3;
 use tabletop_core::Pose;
@@ -6,14 +6,14 @@ use tabletop_task::angle_between;
 
 use crate::{body::Angles, clearance::Clearance};
 
-/// A way as postures, the first one not included.
+/// A path as a list of postures without the first one.
 pub(crate) type Path = Vec<Angles>;
 
-/// Farthest apart postures of a straight line are, in units and rad.
+/// Largest step between postures of a straight line, in units and rad.
 const LINE_STEP: (f32, f32) = (0.25, 0.25);
-/// How far a joint may turn from one posture of a line to the next, in rad.
+/// Largest turn of a joint between neighbouring postures of a line, in rad.
 const JUMP: f64 = 0.5;
-/// How far a joint turns from one posture of a free way to the next, in rad.
+/// Largest turn of a joint between neighbouring postures of a free path, in rad.
 const JOINT_STEP: f64 = 0.06;
 
 /// The largest turn of a joint between two postures, in rad.
@@ -28,7 +28,7 @@ fn between(a: &Angles, b: &Angles, part: f64) -> Angles {
     std::array::from_fn(|i| a[i] + (b[i] - a[i]) * part)
 }
 
-/// The way on which all joints turn evenly.
+/// The path on which all joints turn evenly.
 pub(crate) fn even(from: &Angles, to: &Angles) -> Path {
     let steps = (largest_turn(from, to) / JOINT_STEP).ceil().max(1.0) as u32;
     (1..=steps)
@@ -36,7 +36,7 @@ pub(crate) fn even(from: &Angles, to: &Angles) -> Path {
         .collect()
 }
 
-/// The way on which the end effector goes straight to a pose; none if the arm cannot.
+/// The path on which the end effector goes straight to a pose; `None` if the arm cannot.
 pub(crate) fn line(clearance: &Clearance, from: &Angles, to: Pose) -> Option<Path> {
     let start = clearance.end_effector(from);
     let length = start.location.distance(to.location);
@@ -63,7 +63,7 @@ pub(crate) fn line(clearance: &Clearance, from: &Angles, to: Pose) -> Option<Pat
     Some(path)
 }
 
-/// The way on which the end effector goes straight up.
+/// The path on which the end effector goes straight up.
 pub(crate) fn lift(clearance: &Clearance, from: &Angles, by: f32) -> Option<Path> {
     let mut to = clearance.end_effector(from);
     to.location += Vec3::Z * by;

@@ -1,4 +1,4 @@
-//! A way found by trying: two trees that grow towards each other (Kuffner and LaValle: RRT-Connect, 2000).
+//! Random search for a path: two trees that grow towards each other (Kuffner and LaValle: RRT-Connect, 2000).
 
 use tabletop_core::Random;
 
@@ -8,11 +8,11 @@ use crate::{
     path::{Path, even, largest_turn},
 };
 
-/// How often a tree grows.
+/// Number of times that a tree grows.
 const TRIES: u32 = 60;
-/// How far a branch is, in rad of its fastest joint.
+/// Length of a branch, in rad of its fastest joint.
 const BRANCH: f64 = 0.5;
-/// How often it is tried to make the way shorter.
+/// Number of tries to shorten a path.
 const SHORTCUTS: u32 = 40;
 
 struct Tree(Vec<(Angles, usize)>);
@@ -27,7 +27,7 @@ impl Tree {
         nearest.map_or(0, |(i, _)| i)
     }
 
-    /// Grows towards a posture, by one branch or as far as it is free. The last branch, and whether it is there.
+    /// Grows towards a posture, by one branch or as far as it is free. Returns the last branch, and whether it has arrived.
     fn grow(
         &mut self,
         clearance: &Clearance,
@@ -69,7 +69,7 @@ impl Tree {
     }
 }
 
-/// A free way from one posture to another, if one is found.
+/// A free path from one posture to another, if one is found.
 pub(crate) fn connect(
     clearance: &Clearance,
     from: &Angles,
@@ -86,7 +86,7 @@ pub(crate) fn connect(
             let share = f64::from(random.between((0.0, 1.0)));
             match turn % 3 {
                 0 => least + (most - least) * share,
-                // Around the middle of the way.
+                // Random angles around the middle of the path.
                 _ => (f64::midpoint(from[i], to[i]) + 2.4 * (share - 0.5)).clamp(least, most),
             }
         });

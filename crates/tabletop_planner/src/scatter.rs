@@ -1,4 +1,4 @@
-//! A scene with everything elsewhere.
+//! Scattering: a scene whose objects are moved to random places.
 
 use std::f32::consts::PI;
 
@@ -8,28 +8,28 @@ use tabletop_task::{Arrangement, PlacedSolid};
 
 use crate::body::RobotBody;
 
-/// Something of a scene that is moved as one: the ids of its objects and where their solids are.
+/// A group of objects that is moved as one.
 #[derive(Clone, Debug)]
 pub struct Piece {
     /// The ids of its objects.
     pub ids: Vec<String>,
     /// Their solids.
     pub solids: Vec<PlacedSolid>,
-    /// The point about which it is turned.
+    /// Point about which it is turned.
     pub centre: Vec3,
-    /// What the robot must reach of it.
+    /// Points of it that the robot must reach.
     pub reached: Vec<Vec3>,
 }
 
-/// Least distance between pieces, as seen from above, in units.
+/// Least distance between pieces, seen from above, in units.
 const GAP: f32 = 0.3;
-/// How often a place is tried.
+/// Number of tries to find a place.
 const TRIES: u32 = 3000;
-/// How far from the table's edges pieces stay, in units.
+/// Distance of pieces from the table's edges, in units.
 const EDGE: f32 = 0.05;
 
-/// A motion for every piece that brings all of them to random places where `is_reached` holds of the points that must be reached, turned by
-/// random angles; pieces that stand on, in or around others stay with them. Nothing comes near what is to be `kept` free. None if there is
+/// Motions that bring all pieces to random places, turned by random angles. `is_reached` must hold of the points that have to be reached.
+/// Pieces that stand on, in or around others move with them. Nothing comes near the solids `kept` free. `None` if there is
 /// no room.
 pub fn scatter(
     pieces: &[Piece],
@@ -94,7 +94,7 @@ pub fn scatter(
 }
 
 impl RobotBody {
-    /// Whether some limb reaches a point from above, and above it, whichever way its fingers are turned.
+    /// True if some limb reaches a point, and the space above it, from above, with its fingers turned in any direction.
     pub fn reaches_from_above(&self, point: Vec3) -> bool {
         (0..self.limbs.len()).any(|limb| {
             let home = self.limbs[limb].home;
@@ -110,7 +110,7 @@ impl RobotBody {
     }
 }
 
-/// The pieces that stand on, in or around each other, by index.
+/// Groups of pieces that stand on, in or around each other, by index.
 fn groups(pieces: &[Piece], arrangement: &Arrangement) -> Vec<Vec<usize>> {
     let mut group_of: Vec<usize> = (0..pieces.len()).collect();
     for (i, piece) in pieces.iter().enumerate() {

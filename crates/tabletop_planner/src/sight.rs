@@ -1,4 +1,4 @@
-//! What is seen of the world.
+//! The world as it is seen.
 
 use std::collections::BTreeMap;
 
@@ -15,20 +15,20 @@ pub struct Sight {
     pub table: Table,
     /// The objects, by id.
     pub objects: BTreeMap<String, SeenObject>,
-    /// What connects objects.
+    /// Joints between objects.
     pub joints: Vec<JointSpec>,
     /// The robot's limbs.
     pub limbs: Vec<LimbSight>,
 }
 
-/// An object.
+/// An object that is seen.
 #[derive(Clone, Debug)]
 pub struct SeenObject {
     /// Its shape.
     pub shape: Shape,
-    /// Where it is.
+    /// Its pose.
     pub pose: Pose,
-    /// Whether nothing moves it.
+    /// True if nothing can move it.
     pub is_fixed: bool,
 }
 
@@ -37,21 +37,21 @@ pub struct SeenObject {
 pub struct LimbSight {
     /// The angles of its joints, in rad.
     pub angles: Angles,
-    /// How far its gripper is open, in units.
+    /// Opening of its gripper, in units.
     pub opening: f64,
     /// Ids of the objects that its gripper holds.
     pub holds: Vec<String>,
-    /// What is in its way.
+    /// The obstacle in its way.
     pub blocked_by: Option<String>,
 }
 
 impl SeenObject {
-    /// Its solids where it is.
+    /// Its solids at its present pose.
     pub fn solids(&self) -> Vec<PlacedSolid> {
         self.solids_at(self.pose)
     }
 
-    /// Its solids where it might be.
+    /// Its solids at another pose.
     pub fn solids_at(&self, pose: Pose) -> Vec<PlacedSolid> {
         let solids = self.shape.colliding();
         solids
@@ -62,13 +62,13 @@ impl SeenObject {
 }
 
 impl Sight {
-    /// Where the objects are to each other.
+    /// The arrangement of the objects.
     pub fn arrangement(&self) -> Arrangement {
         let objects = self.objects.iter();
         Arrangement::new(objects.map(|(id, object)| (id.as_str(), &object.shape, object.pose)))
     }
 
-    /// Where the objects would be to each other if one of them were here.
+    /// The arrangement of the objects if one of them were at this pose.
     pub(crate) fn arrangement_with(&self, moved: &str, pose: Pose) -> Arrangement {
         let objects = self.objects.iter().map(|(id, object)| match id == moved {
             true => (id.as_str(), &object.shape, pose),
@@ -77,7 +77,7 @@ impl Sight {
         Arrangement::new(objects)
     }
 
-    /// The ids of what stands on an object, directly.
+    /// Ids of the objects that stand directly on an object.
     pub fn above(&self, id: &str) -> Vec<String> {
         let arrangement = self.arrangement();
         let others = self.objects.keys();
@@ -86,14 +86,14 @@ impl Sight {
     }
 }
 
-/// The lowest and the highest Z of solids.
+/// Lowest and highest Z of solids.
 pub(crate) fn heights(solids: &[PlacedSolid]) -> [f32; 2] {
     let all = solids.iter().map(PlacedSolid::heights);
     all.reduce(|[low, high], [lower, higher]| [low.min(lower), high.max(higher)])
         .unwrap_or_default()
 }
 
-/// How far an orientation leans from another one about level axes, in rad.
+/// Angle by which an orientation leans from another one about level axes, in rad.
 pub(crate) fn lean(rotation: bevy::math::Quat) -> f32 {
     (rotation * Vec3::Z).angle_between(Vec3::Z)
 }

@@ -1,24 +1,24 @@
-//! What the planner acts on.
+//! The stage on which the planner acts.
 
 use crate::{body::Angles, sight::Sight};
 
-/// A world in which time passes tick by tick.
+/// A world that advances tick by tick.
 pub trait PlanningStage {
-    /// What there is to see now.
+    /// The present sight.
     fn sight(&self) -> &Sight;
 
-    /// Gives these orders, one for each limb, and lets a tick pass.
+    /// Gives these orders, one for each limb, and advances by a tick.
     ///
     /// # Errors
     /// The robot is to stop.
     fn tick(&mut self, orders: &[LimbOrder]) -> Result<(), Stopped>;
 }
 
-/// Nothing more is to be done.
+/// The request to do nothing more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stopped;
 
-/// How a limb is to move in a tick.
+/// The motion of a limb in one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LimbOrder {
     /// Velocities of its joints, in rad/s.

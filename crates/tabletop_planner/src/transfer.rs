@@ -1,4 +1,4 @@
-//! Taking an object, and putting it somewhere.
+//! Transfer: grasping an object and putting it down elsewhere.
 
 use std::{cell::Cell, collections::BTreeMap};
 
@@ -19,37 +19,37 @@ use crate::{
     transit::{WaySearch, transit},
 };
 
-/// How fast an end effector goes on its way, in units/s, and near what it takes or puts.
+/// Speed of an end effector, in units/s: on its way, and near the place of a grasp or release.
 const FAST: f64 = 6.0;
 const SLOW: f64 = 2.5;
-/// How fast something comes down on what it is put on, so that it does not push that away, in units/s, and for how many postures of
-/// its way.
+/// Speed, in units/s, at which an object comes down on its support without pushing it away, and the number of last postures
+/// at which it applies.
 const GENTLE: f64 = 0.5;
 const GENTLE_POSTURES: usize = 2;
-/// How high above where it comes to rest something is let go of, in units.
+/// Height above its goal at which an object is released, in units.
 const DROP: f32 = 0.02;
-/// How much wider than what they take fingers are opened, in units: the most that has room.
+/// Openings of the fingers before a grasp, in units beyond the object's width. The first that has room is used.
 const OPENINGS: [f32; 3] = [0.35, 0.18, 0.1];
-/// How much wider than what they hold fingers are opened to let go of it, in units: the most that has room.
+/// Openings of the fingers for a release, in units beyond the held width. The first that has room is used.
 const RELEASES: [f32; 5] = [0.35, 0.22, 0.14, 0.08, 0.05];
-/// What opening fingers keep from what stands beside, in units.
+/// Distance of opening fingers from neighbouring objects, in units.
 const BESIDE: f32 = 0.012;
-/// How many grasps are looked into at a time, the best first.
+/// Number of grasps that are examined at a time, the best first.
 const GRASPS: usize = 24;
-/// How many pairs of grasp and goal are looked into for each, and with ways that have to be searched for.
+/// Number of pairs of grasp and goal that are examined for each, and of those whose paths have to be searched for.
 const PAIRS: usize = 24;
 const SEARCHED_PAIRS: usize = 4;
 
-/// What is to be moved by whom.
+/// A limb's transfer of an object.
 pub(crate) struct Transfer<'a> {
     pub body: &'a RobotBody,
     pub limb: usize,
     pub object: &'a str,
-    /// Decides what is tried where a way has to be searched for.
+    /// Seed of the search for paths.
     pub seed: u64,
 }
 
-/// A grasp that can be done.
+/// A feasible grasp.
 #[derive(Clone, Copy)]
 struct Taking {
     grasp: Grasp,
@@ -57,28 +57,28 @@ struct Taking {
     at: Angles,
 }
 
-/// How what is held can be put down.
+/// A feasible way to put the held object down.
 struct Placing {
-    /// To above the place.
+    /// Path to above the place.
     way: Path,
     down: Path,
-    /// How far the fingers are opened there, in units.
+    /// Opening of the fingers there, in units.
     opening: f32,
 }
 
-/// What stands in the way of a plan.
+/// The stages that a plan has passed, from which the reason of a failure follows.
 #[derive(Clone, Copy, Debug, Default)]
 struct Obstructions {
     /// A grasp is within reach.
     reached: bool,
-    /// A grasp is free.
+    /// A grasp is free of collisions.
     free: bool,
     /// A place is within reach with such a grasp.
     put: bool,
 }
 
 impl Transfer<'_> {
-    /// Takes the object, and puts it to one of these places.
+    /// Grasps the object and puts it at one of these goals.
     pub fn carry_out(
         &self,
         stage: &mut dyn PlanningStage,
@@ -90,7 +90,7 @@ impl Transfer<'_> {
         self.put(stage, goals)
     }
 
-    /// Takes the object, and lifts it.
+    /// Grasps the object and lifts it.
     pub fn pick_up(&self, stage: &mut dyn PlanningStage) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
         let object = self.seen(&sight)?;
@@ -106,7 +106,7 @@ impl Transfer<'_> {
         follow(stage, self.body, self.limb, &up, SLOW, self.object)
     }
 
-    /// Takes the object, and moves it along a straight line by so much, as a joint lets it.
+    /// Grasps the object and moves it along a straight line, as a joint allows.
     pub fn slide(&self, stage: &mut dyn PlanningStage, by: Vec3) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
         let object = self.seen(&sight)?.clone();
@@ -136,7 +136,7 @@ impl Transfer<'_> {
         PlanFailure::NoWay(self.object.to_owned())
     }
 
-    /// A grasp from which one of the goals can be reached, and the way to it.
+    /// A grasp from which one of the goals can be reached, and the paths of that transfer.
     fn plan(&self, sight: &Sight, goals: &[Candidate]) -> Result<(Taking, [Path; 2]), PlanFailure> {
         let object = self.seen(sight)?;
         let limb = &self.body.limbs[self.limb];
@@ -179,7 +179,7 @@ impl Transfer<'_> {
         })
     }
 
-    /// Those of some grasps that can be done.
+    /// The feasible ones of some grasps.
     fn takings(
         &self,
         sight: &Sight,
@@ -227,7 +227,7 @@ impl Transfer<'_> {
         takings
     }
 
-    /// The first of some grasps, by how much they and the goals ask for, with which a goal can be reached, and the way to it.
+    /// The first grasp, by the cost of grasp and goal together, with which a goal can be reached, and the paths of that transfer.
     fn best(
         &self,
         sight: &Sight,
@@ -298,7 +298,7 @@ impl Transfer<'_> {
         None
     }
 
-    /// Whether fingers that are open so far are beside the object, not in another part of it.
+    /// True if fingers at this opening are beside the object, not inside another part of it.
     fn fits(&self, object: &[PlacedSolid], end_effector: Pose, opening: f32) -> bool {
         let fingers = self.body.fingers(self.limb, end_effector, opening);
         let is_apart =
@@ -306,7 +306,7 @@ impl Transfer<'_> {
         fingers.iter().all(is_apart)
     }
 
-    /// The ways to above the object, and down to it.
+    /// Paths to above the object, and down to it.
     fn approach(&self, sight: &Sight, taking: &Taking, search: WaySearch) -> Option<[Path; 2]> {
         let object = self.seen(sight).ok()?;
         let near =
@@ -336,7 +336,7 @@ impl Transfer<'_> {
         Some([way, down])
     }
 
-    /// Holding the object like this, with fingers that are open so far, since the arm was `at` these angles.
+    /// The clearance of the arm that holds the object like this, with fingers at this opening; the arm held it first at the angles `at`.
     fn holding(
         &self,
         sight: &Sight,
@@ -352,21 +352,21 @@ impl Transfer<'_> {
             .opened(opening)
     }
 
-    /// The way up with what is held, until it is above what is around it.
+    /// The path up with the held object, until it is above everything around it.
     fn lifted(&self, holding: &Clearance, sight: &Sight, from: &Angles, at: Pose) -> Option<Path> {
         let by = self.height(sight, at);
         [by, by + 0.5, (by - 0.4).max(0.3)]
             .into_iter()
             .find_map(|by| {
                 let up = lift(holding, from, by)?;
-                // What is held touches what it stands on, in the beginning.
+                // At the beginning, the held object touches its support.
                 holding
                     .is_way_free(&up[1.min(up.len() - 1)..], Margins::NARROW)
                     .then_some(up)
             })
     }
 
-    /// How far an object has to be lifted to pass over what stands around this place of it, in units.
+    /// Height, in units, to which an object must be lifted to pass over everything around this place of it.
     fn height(&self, sight: &Sight, at: Pose) -> f32 {
         let Some(object) = sight.objects.get(self.object) else {
             return 0.5;
@@ -386,7 +386,7 @@ impl Transfer<'_> {
             .fold(0.4, |by, top| by.max(top + 0.2))
     }
 
-    /// The ways from where the object is lifted to above a goal, and down to where the arm has these angles.
+    /// Paths from where the object is lifted to above a goal, and down to these angles of the arm.
     fn placing(
         &self,
         holding: &Clearance,
@@ -437,7 +437,7 @@ impl Transfer<'_> {
         Err(PlanFailure::NotHeld(self.object.to_owned()))
     }
 
-    /// Opens the gripper, and goes up.
+    /// Opens the gripper and goes up.
     fn retreat(&self, stage: &mut dyn PlanningStage) -> Result<(), PlanFailure> {
         let limb = &self.body.limbs[self.limb];
         grip(stage, self.limb, f64::from(limb.widest))?;
@@ -464,7 +464,7 @@ impl Transfer<'_> {
         Ok(wait(stage, 15)?)
     }
 
-    /// Puts what is held to one of these places: as it lies in the fingers now.
+    /// Puts the held object at one of these goals, as it now lies in the fingers.
     fn put(&self, stage: &mut dyn PlanningStage, goals: &[Candidate]) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
         let object = self.seen(&sight)?;
@@ -504,7 +504,7 @@ impl Transfer<'_> {
     }
 }
 
-/// Where an end effector lets go of what it holds like this, so that it comes to rest at a goal.
+/// Pose of an end effector that releases an object held like this, so that it comes to rest at a goal.
 fn above_place(goal: Candidate, grip: Pose) -> Pose {
     Pose::new(goal.pose.location + Vec3::Z * DROP, goal.pose.rotation) * grip.inverse()
 }

@@ -1,4 +1,4 @@
-//! Free ways of an arm.
+//! Collision-free paths of an arm.
 
 use tabletop_core::Pose;
 
@@ -10,19 +10,19 @@ use crate::{
     sight::lean,
 };
 
-/// Heights in which an arm goes across the table, in units.
+/// Heights at which an arm crosses the table, in units.
 const TRAVERSES: [f32; 4] = [2.6, 3.4, 4.2, 5.0];
 
-/// How a way is looked for.
+/// The search for a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum WaySearch {
-    /// Evenly, or at some height across.
+    /// Even turns of the joints, or a crossing at some height.
     Simple,
-    /// Else by trying, which this decides.
+    /// These first, then random search with this seed.
     Trying(u64),
 }
 
-/// A free way from one posture to another.
+/// A free path from one posture to another.
 pub(crate) fn transit(
     clearance: &Clearance,
     from: &Angles,

@@ -1,4 +1,4 @@
-//! The robot's bodies, and how its joints carry them.
+//! The robot's bodies, and the joints that carry them.
 
 pub(crate) mod link_entities;
 pub(crate) mod self_collision;

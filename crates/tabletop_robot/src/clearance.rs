@@ -1,4 +1,4 @@
-//! Whether solids that are to move have something in their way.
+//! Clearance: whether the way of a moving solid is free.
 
 use bevy::prelude::*;
 use bevy_rapier3d::{
@@ -11,22 +11,22 @@ use bevy_rapier3d::{
 use tabletop_core::Pose;
 use tabletop_physics::{Convex, contact, to_rapier};
 
-/// Distance, in units, that is kept from what is in the way.
+/// Distance, in units, that is kept from obstacles.
 pub(crate) const MARGIN: f32 = 0.01;
 
-/// How deep what is held may go into what it is put on, in units.
+/// Depth to which a held object may enter its support, in units.
 const GIVE: f32 = 0.03;
 
-/// Changes of distance, in units, that are no approach.
+/// Largest change of distance, in units, that does not count as approach.
 const APPROACH: f32 = 1e-5;
 
-/// Distance, in units, at which something free is touched, and pushed from the next tick on.
+/// Distance, in units, at which a free object is touched, and pushed from the next tick on.
 pub(crate) const TOUCHING: f32 = 0.01;
 
-/// Depth, in units, to which something free is squeezed before what squeezes it stops.
+/// Depth, in units, to which a free object is squeezed before its pusher stops.
 const SQUEEZE: f32 = 0.05;
 
-/// What a solid belongs to.
+/// The owner of a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Owner {
     /// An object or the table.
@@ -35,10 +35,10 @@ pub(crate) enum Owner {
     Body(usize),
 }
 
-/// A convex solid that goes from one pose to another, or stays.
+/// A convex solid that moves from one pose to another, or stays.
 #[derive(Clone, Debug)]
 pub(crate) struct SweptSolid {
-    /// What it belongs to.
+    /// Its owner.
     pub owner: Owner,
     shape: rapier::SharedShape,
     from: Pose,
@@ -47,7 +47,7 @@ pub(crate) struct SweptSolid {
 }
 
 impl SweptSolid {
-    /// The solids of something that goes from one pose to another.
+    /// The solids of a body that moves from one pose to another.
     pub fn moving(
         parts: &[Convex],
         owner: Owner,
@@ -66,7 +66,7 @@ impl SweptSolid {
         })
     }
 
-    /// A solid that stays where it is, in the table's frame.
+    /// A solid that stays in place, in the table's frame.
     pub fn resting(part: Convex, owner: Owner) -> Self {
         Self {
             owner,
@@ -77,7 +77,7 @@ impl SweptSolid {
         }
     }
 
-    /// How deep it may go into what it is put on, in units: what a gripper holds gives way between its fingers.
+    /// Depth to which it may enter its support, in units: an object in a gripper gives way between the fingers.
     pub const fn give(&self) -> f32 {
         match self.owner {
             Owner::Thing(_) => GIVE,
@@ -85,7 +85,7 @@ impl SweptSolid {
         }
     }
 
-    /// Whether the two solids would come nearer to each other than they may: the margin, or so deep into each other as the first one gives.
+    /// True if the two would come closer than the margin, or deeper into each other than the first one gives.
     pub fn collides_with(&self, other: &Self, give: f32) -> bool {
         if !are_near(&self.bounds, &other.bounds) {
             return false;
@@ -100,7 +100,7 @@ impl SweptSolid {
                 .is_none_or(|here| ahead < here - APPROACH)
     }
 
-    /// How this solid comes nearer to something free on its way in a tick; `None` if it does not.
+    /// The approach of this solid to a free object in a tick; `None` if it comes no nearer.
     pub fn approach(&self, free: &Self) -> Option<Approach> {
         let reach = self.from.location.distance(self.to.location)
             + self.from.rotation.angle_between(self.to.rotation) * self.extent();
@@ -113,42 +113,42 @@ impl SweptSolid {
         (approach.way > 0.0).then_some(approach)
     }
 
-    /// How deep this solid is inside another one, in units, before they move.
+    /// Depth of this solid inside another, in units, before they move.
     pub fn depth_in(&self, other: &Self) -> f32 {
         let distance = self.distance(self.from, other, other.from, 0.0);
         distance.map_or(0.0, |distance| -distance)
     }
 
-    /// Where this solid is nearest to another one before they move, if that is no farther than `most`, in units.
+    /// The point of this solid nearest to another before they move, if the gap is at most `most`, in units.
     pub fn contact(&self, other: &Self, most: f32) -> Option<Contact> {
         let [here, there] = [self, other].map(|solid| to_rapier(solid.from));
         contact(&here, &*self.shape, &there, &*other.shape, most)
     }
 
-    /// The radius of a ball about the solid's origin that holds it.
+    /// Radius of the ball about the solid's origin that encloses it.
     fn extent(&self) -> f32 {
         let ball = self.shape.compute_local_bounding_sphere();
         ball.center().length() + ball.radius()
     }
 
-    /// Whether the two solids are nearer to each other than `distance`, in units, before they move.
+    /// True if the two solids are nearer to each other than `distance`, in units, before they move.
     pub fn is_within(&self, distance: f32, other: &Self) -> bool {
         self.distance(self.from, other, other.from, distance)
             .is_some()
     }
 
-    /// Whether its way passes a box.
+    /// True if it passes the box on its way.
     pub fn passes(&self, bounds: &Aabb) -> bool {
         let start = self.shape.compute_aabb(&to_rapier(self.from));
         are_near(&self.bounds.merged(&start), bounds)
     }
 
-    /// The box around it where it goes.
+    /// The box around it on its whole way.
     pub const fn bounds(&self) -> &Aabb {
         &self.bounds
     }
 
-    /// How far the solids are apart at these poses, in units, negative inside; `None` if farther than `most`.
+    /// Gap between the solids at these poses, in units, negative inside; `None` if larger than `most`.
     fn distance(&self, at: Pose, other: &Self, other_at: Pose, most: f32) -> Option<f32> {
         contact(
             &to_rapier(at),
@@ -161,23 +161,23 @@ impl SweptSolid {
     }
 }
 
-/// How a solid comes nearer to something free in a tick.
+/// The approach of a solid to a free object in a tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Approach {
-    /// How far apart they are at its beginning, in units.
+    /// Gap at the beginning of the tick, in units.
     distance: f32,
-    /// By how much less that would be at its end.
+    /// Decrease of the gap by its end.
     way: f32,
 }
 
 impl Approach {
-    /// Whether the physics engine knows that they touch, so that the one pushes the other.
+    /// True if the physics engine already has the contact, so that one pushes the other.
     pub fn is_push(self) -> bool {
         self.distance <= TOUCHING
     }
 
-    /// The part of its way that the solid can go: it reaches what is free in one tick and pushes it from the next one on,
-    /// the slower the more it squeezes it.
+    /// The part of its way that the solid can go: it reaches a free object in one tick and pushes it from the next one on,
+    /// the slower the more it squeezes the object.
     pub fn part(self) -> f32 {
         if self.is_push() {
             part_left(-self.distance)
@@ -187,12 +187,12 @@ impl Approach {
     }
 }
 
-/// The part of a push that is left when something is squeezed so deep, in units.
+/// The part of a push that is left at this depth of squeezing, in units.
 pub(crate) fn part_left(depth: f32) -> f32 {
     (1.0 - depth / SQUEEZE).clamp(0.0, 1.0)
 }
 
-/// Whether two boxes are no farther apart than the margin.
+/// True if two boxes are no farther apart than the margin.
 pub(crate) fn are_near(a: &Aabb, b: &Aabb) -> bool {
     a.mins.cmple(b.maxs + MARGIN).all() && a.maxs.cmpge(b.mins - MARGIN).all()
 }

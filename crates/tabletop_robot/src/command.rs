@@ -1,4 +1,4 @@
-//! What the robot is commanded to do.
+//! Commands to the robot.
 
 pub(crate) mod joint_targets;
 pub(crate) mod obey;

@@ -1,4 +1,4 @@
-//! What the robot touches.
+//! Contacts of the robot.
 
 pub(crate) mod contact;
 pub(crate) mod sense;

@@ -1,4 +1,4 @@
-//! Which robot it is.
+//! Descriptions of robots.
 
 use std::path::{Path, PathBuf};
 
@@ -10,36 +10,36 @@ use thiserror::Error;
 
 use crate::articulation::tree::Articulation;
 
-/// Which robot stands at the table.
+/// The description of the robot at the table.
 #[derive(Resource, Clone, Debug)]
 pub struct Description {
     /// Its model.
     pub model: RobotModel,
     /// Its limbs and joints.
     pub layout: RobotLayout,
-    /// Where it was read from; `None` for the robot that comes with the program.
+    /// The files that it was read from; `None` for the robot that ships with the program.
     pub source: Option<DescriptionSource>,
 }
 
-/// Where a robot's description was read from.
+/// The files that a robot was read from.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DescriptionSource {
-    /// The URDF, beside which its meshes are.
+    /// Path of the URDF, beside which its meshes are.
     pub path: PathBuf,
-    /// What it says.
+    /// Content of the URDF.
     pub urdf: String,
-    /// What the `robot.ron` says. Without it, limbs and joints are those of Baxter.
+    /// Content of the `robot.ron`. Without it, limbs and joints are those of Baxter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub layout: Option<String>,
 }
 
-/// Why a robot cannot be used.
+/// The error of a robot that cannot be used.
 #[derive(Debug, Error)]
 pub enum DescriptionError {
-    /// Its URDF cannot, or lacks what the `robot.ron` names.
+    /// Its URDF cannot be used, or lacks a name of the `robot.ron`.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// Its `robot.ron` cannot.
+    /// Its `robot.ron` cannot be used.
     #[error("robot.ron: {0}")]
     Layout(#[from] LayoutError),
 }
@@ -72,11 +72,11 @@ impl Description {
         self.source.as_ref().map(|source| source.path.as_path())
     }
 
-    /// The Baxter that comes with the program.
+    /// The Baxter that ships with the program.
     ///
     /// # Errors
     ///
-    /// None that a test of the program would not find.
+    /// None that the program's tests would not find.
     pub fn baxter() -> Result<Self, DescriptionError> {
         Ok(Self {
             model: tabletop_kinematics::baxter()?,

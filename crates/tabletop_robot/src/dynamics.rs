@@ -1,4 +1,4 @@
-//! Limbs with masses, moved by motors.
+//! Dynamics of limbs whose masses are moved by motors.
 
 pub(crate) mod contact_loads;
 pub(crate) mod impulse;

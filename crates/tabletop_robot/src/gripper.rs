@@ -1,4 +1,4 @@
-//! Grippers, and what they hold.
+//! Grippers and their grips.
 
 pub(crate) mod alignment;
 pub(crate) mod closing;

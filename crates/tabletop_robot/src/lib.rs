@@ -1,9 +1,9 @@
 //! The robot: a Baxter, or another robot that a `robot.ron` describes, in the world of the tabletop simulator (report section 5).
 //!
-//! It is told what to do by [`SimCommand`](tabletop_core::SimCommand)s and its state is in
-//! [`Robot`](tabletop_core::Robot). It starts hidden: it can neither be seen nor touched then, but its camera works.
+//! [`SimCommand`](tabletop_core::SimCommand)s control it, and [`Robot`](tabletop_core::Robot) is its state. It starts hidden: it can
+//! then neither be seen nor touched, but its camera works.
 //!
-//! In kinematic mode its joints move exactly as told; in dynamic mode motors with limited torque move its masses
+//! In kinematic mode its joints move exactly as commanded; in dynamic mode motors with limited torque move its masses
 //! ([`RobotMode`](tabletop_core::RobotMode)).
 //!
 //! ```

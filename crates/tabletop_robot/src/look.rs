@@ -1,7 +1,7 @@
-//! What robots look like: Baxter's own shapes, faces on its screen, and the meshes of other robots.
+//! Looks of robots: Baxter's own shapes, faces on its screen, and the meshes of other robots.
 //!
-//! [`figure_of`] makes what is seen of a visual of a robot's description; a link with several of them has them [`merged`].
-//! Where that fails, [`stand_in`] shows what the link would be touched by. Descriptions are in metres, figures in units.
+//! [`figure_of`] makes the figure of a visual of a robot's description; a link with several visuals has them [`merged`].
+//! Where that fails, [`stand_in`] shows the link's collision shapes. Descriptions are in metres, figures in units.
 
 mod axis;
 mod boxes;

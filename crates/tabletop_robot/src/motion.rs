@@ -1,4 +1,4 @@
-//! How far the joints go in a tick.
+//! Motion of the joints in a tick.
 
 pub(crate) mod advance;
 pub(crate) mod environment;

@@ -1,4 +1,4 @@
-//! What the plugin adds to an app.
+//! The robot's plugin.
 
 use bevy::prelude::*;
 use tabletop_core::{
@@ -28,9 +28,9 @@ use crate::{
 /// Adds the robot. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin).
 #[derive(Clone, Debug, Default)]
 pub struct RobotPlugin {
-    /// Another robot than the one that comes with the program.
+    /// A robot other than the one that ships with the program.
     pub description: Option<Description>,
-    /// How its joints move.
+    /// The mode in which its joints move.
     pub mode: RobotMode,
 }
 
@@ -110,7 +110,7 @@ impl Plugin for RobotPlugin {
     }
 }
 
-/// Whether the robot moves, or pulls at anything.
+/// True if the robot moves or pulls at anything.
 fn can_move(robot: Res<Robot>, targets: Res<JointTargets>, grips: Res<Grips>) -> bool {
     let is_dynamic = robot.mode == RobotMode::Dynamic;
     is_dynamic || robot.is_changed() || targets.are_given() || grips.all().next().is_some()

@@ -1,4 +1,4 @@
-//! What the robot touches, where and how hard.
+//! Contacts of the robot: their places and impulses.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod kit;
@@ -24,7 +24,7 @@ fn object(stage: &Stage, id: &str) -> Entity {
     stage.app.world().resource::<ObjectIndex>().get(id).unwrap()
 }
 
-/// What is touched, by its bodies' names.
+/// Names of the bodies in contact.
 fn bodies(stage: &Stage) -> Vec<&str> {
     let contacts = stage.robot().contacts.iter();
     contacts.map(|contact| contact.body.as_str()).collect()
@@ -87,7 +87,7 @@ fn a_finger_that_pushes_a_block_feels_its_inertia_and_its_friction() {
             if contact.impulse == 0.0 {
                 continue;
             }
-            // The table holds it back with a quarter of what presses on it: its weight, and friction with the finger.
+            // The table takes a quarter of the force on it: the block's weight, and friction with the finger.
             let friction = contact.impulse - momentum;
             let of_weight = 0.25 * mass * GRAVITY * TICK_SECONDS;
             let of_finger = 0.25 * 0.5 * contact.impulse;

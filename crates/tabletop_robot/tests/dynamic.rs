@@ -1,4 +1,4 @@
-//! How the robot moves in dynamic mode.
+//! Motion of the robot in dynamic mode.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod kit;
@@ -17,10 +17,10 @@ use tabletop_kinematics::baxter;
 
 const SECONDS: f64 = TICK_SECONDS as f64;
 
-/// Straight out to the side of the table, level, over nothing but the table.
+/// Straight out to the side, level, over nothing but the table.
 const STRAIGHT: [f64; JOINTS_PER_ARM] = [0.0, -0.25, 0.0, 0.0, 0.0, 0.0, 0.0];
 
-/// A block of a mass in the right gripper, which then is stretched out.
+/// The right gripper holds a block of this mass, with its arm stretched out.
 fn stretched_with(mass: f32) -> Stage {
     let mut stage = Stage::dynamic();
     stage.reach(ARM, Vec3::new(3.0, -2.0, 0.9), 0.0);

@@ -1,4 +1,4 @@
-//! Grippers and what they take.
+//! Grips of the grippers.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod kit;
@@ -13,7 +13,7 @@ use tabletop_robot::STEEPEST_GRIP;
 
 const ARM: Arm = Arm::Right;
 
-/// A gripper over a place on the table, its fingers pointing down and wide open, around an object that is put there.
+/// A wide open gripper over a place on the table, its fingers pointing down around an object there.
 fn gripper_around(shape: Shape, mass: f32, place: Vec3, degrees: Vec3) -> Stage {
     let mut stage = Stage::new();
     stage.reach(ARM, Vec3::new(3.0, -2.0, place.z.max(0.85)), 0.0);
@@ -230,7 +230,7 @@ fn two_blocks_are_held_at_once_and_let_go_of_together() {
     assert!(stage.robot().limb(ARM).holds.is_empty());
 }
 
-/// A gripper that has come down around a block that is as wide as it opens.
+/// A gripper around a block as wide as it opens.
 fn around_wide_block(mut stage: Stage) -> Stage {
     let place = Vec3::new(3.0, -2.0, 1.0);
     let pose = Pose::from_degrees(place, Vec3::NEG_Z * 15.0);
@@ -252,7 +252,7 @@ fn a_block_as_wide_as_the_gripper_is_taken_carried_and_put_down() {
         assert_eq!(grip_facts(close(&mut stage)), made(), "{mode:?}");
         stage.reach(ARM, Vec3::new(3.0, -2.0, 3.0), -15.0);
         stage.reach(ARM, Vec3::new(4.0, -1.0, 3.0), 0.0);
-        // A little above the table, before which the arm stops.
+        // A little above the table, which would stop the arm.
         stage.reach(ARM, Vec3::new(4.0, -1.0, 1.7), 0.0);
         stage.reach(ARM, Vec3::new(4.0, -1.0, 1.53), 0.0);
         let put = stage.place("thing").location.with_z(1.0);

@@ -1,4 +1,4 @@
-//! What is seen of the robot in the world.
+//! Figures of the robot in the world.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod kit;

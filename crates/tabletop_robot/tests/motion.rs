@@ -1,4 +1,4 @@
-//! How the robot moves in kinematic mode.
+//! Motion of the robot in kinematic mode.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod kit;

@@ -1,4 +1,4 @@
-//! What arms with motors push, and what stops them.
+//! Objects that arms with motors push, and obstacles that stop them.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod kit;
@@ -46,13 +46,13 @@ fn a_swing_into_a_fixed_block_stops_there_within_the_efforts() {
     assert_eq!(facts, [blocked]);
 }
 
-/// What came of pushing a block along the table for a second.
+/// The result of pushing a block along the table for a second.
 struct Pushed {
-    /// How far the hand has come, in units.
+    /// Distance of the hand, in units.
     hand: f32,
-    /// How far the block has come.
+    /// Distance of the block, in units.
     block: f32,
-    /// Largest share of its effort that a motor has pulled with while touching it.
+    /// Largest share of its effort with which a motor has pulled while touching the block.
     strongest: f64,
     facts: Vec<SimFact>,
     robot: Robot,

@@ -1,4 +1,4 @@
-//! Where objects are at a moment, and how they lie to each other.
+//! Arrangements: where objects are at a moment, and how they relate to each other.
 
 use std::{collections::BTreeMap, f32::consts::TAU};
 
@@ -7,26 +7,26 @@ use tabletop_core::{Pose, Shape};
 
 use crate::convex::PlacedSolid;
 
-/// Objects at a moment.
+/// Objects with their poses at one moment.
 #[derive(Clone, Debug, Default)]
 pub struct Arrangement {
     objects: BTreeMap<String, Placed>,
 }
 
-/// An object at its place.
+/// An object with its pose.
 #[derive(Clone, Debug)]
 pub(crate) struct Placed {
     pub pose: Pose,
     pub solids: Vec<PlacedSolid>,
 }
 
-/// How far apart what touches may be, in units.
+/// Largest gap, in units, at which objects count as touching.
 pub const TOUCH: f32 = 0.06;
-/// How much of an edge may stand over without being a support, in units.
+/// Largest overhang of an edge, in units, that does not count as support.
 const EDGE: f32 = 0.03;
 
 impl Arrangement {
-    /// Objects by their ids, shapes and poses.
+    /// An arrangement of objects, by their ids, shapes and poses.
     pub fn new<'a>(objects: impl IntoIterator<Item = (&'a str, &'a Shape, Pose)>) -> Self {
         let placed = objects
             .into_iter()
@@ -36,7 +36,7 @@ impl Arrangement {
         }
     }
 
-    /// Where an object is.
+    /// Pose of an object.
     pub fn pose(&self, id: &str) -> Option<Pose> {
         self.get(id).map(|object| object.pose)
     }
@@ -55,7 +55,7 @@ impl Arrangement {
         others.map(|(id, object)| (id.as_str(), object))
     }
 
-    /// What an object stands on, the nearest to its centre first; the table is not among them.
+    /// The objects that an object stands on, the nearest to its centre first. The table is not among them.
     pub fn supports(&self, id: &str) -> Vec<&str> {
         let Some(object) = self.get(id) else {
             return Vec::new();
@@ -69,13 +69,13 @@ impl Arrangement {
         supports.into_iter().map(|(_, id)| id).collect()
     }
 
-    /// Whether it touches the table's top.
+    /// True if an object touches the table's top.
     pub fn is_on_table(&self, id: &str) -> bool {
         self.get(id)
             .is_some_and(|object| object.lowest().abs() < TOUCH)
     }
 
-    /// The objects that an object is inside of, with walls on all sides.
+    /// The objects that contain an object, with walls on all sides.
     pub fn containers(&self, id: &str) -> Vec<&str> {
         let Some(object) = self.get(id) else {
             return Vec::new();
@@ -89,7 +89,7 @@ impl Arrangement {
         all.map(|(id, _)| id).collect()
     }
 
-    /// The objects that an object is around, as a ring is around a peg.
+    /// The objects that an object surrounds, as a ring surrounds a peg.
     pub fn posts(&self, id: &str) -> Vec<&str> {
         let Some(object) = self.get(id) else {
             return Vec::new();
@@ -122,14 +122,14 @@ impl Placed {
         self.heights()[0]
     }
 
-    /// The lowest and the highest Z of it.
+    /// Its lowest and highest Z.
     pub fn heights(&self) -> [f32; 2] {
         let all = self.solids.iter().map(PlacedSolid::heights);
         all.reduce(|[low, high], [lower, higher]| [low.min(lower), high.max(higher)])
             .unwrap_or([self.pose.location.z; 2])
     }
 
-    /// How far a point is from its origin, seen from above.
+    /// Distance of a point from its origin, seen from above.
     fn across(&self, point: Vec3) -> f32 {
         (self.pose.location - point).truncate().length()
     }
@@ -142,31 +142,31 @@ impl Placed {
         own.flat_map(|own| other.solids.iter().map(move |other| (own, other)))
     }
 
-    /// Whether it would fall if the other went, as far as these two tell: it lies on top of a part of it.
+    /// True if it lies on top of a part of the other: if only these two were there, it would fall without the other.
     fn rests_on(&self, other: &Self) -> bool {
         const LIFT: f32 = 0.15;
         self.pairs(other).any(|(own, other)| {
-            // A solid that touches has no direction; lifted, it has.
+            // A touching solid has no direction; a lifted one has.
             let away = own.shrunk(EDGE).moved(Vec3::Z * LIFT).away_from(other);
             let gap = away.length() - LIFT;
             away.z > 0.7 * away.length() && away.z > 0.0 && (gap - EDGE).abs() < TOUCH
         })
     }
 
-    /// How far apart they are.
+    /// Gap between the two.
     pub fn gap(&self, other: &Self) -> f32 {
         self.pairs(other)
             .map(|(own, other)| own.away_from(other).length())
             .fold(f32::INFINITY, f32::min)
     }
 
-    /// Whether a part of it is above or below a part of the other.
+    /// True if a part of it is above or below a part of the other.
     pub fn shares_column_with(&self, other: &Self) -> bool {
         self.pairs(other)
             .any(|(own, other)| own.shrunk(EDGE).gap_from_above(&other.shrunk(EDGE)) <= 0.0)
     }
 
-    /// Whether every level way from a point meets it.
+    /// True if every level line from a point meets it.
     fn encloses(&self, point: Vec3) -> bool {
         const WAYS: u16 = 16;
         (0..WAYS).all(|i| {
@@ -176,7 +176,7 @@ impl Placed {
         })
     }
 
-    /// Whether a point is in a solid of it.
+    /// True if a point is in one of its solids.
     fn holds(&self, point: Vec3) -> bool {
         let spot = PlacedSolid {
             pose: Pose::at(point),
@@ -187,7 +187,7 @@ impl Placed {
             .any(|solid| solid.away_from(&spot).length() < 1e-3)
     }
 
-    /// Whether it reaches nowhere beyond the outline of the other, as seen from above.
+    /// True if it stays within the outline of the other, seen from above.
     fn is_within(&self, other: &Self) -> bool {
         let reach = |object: &Self, way: Vec3| {
             let all = object

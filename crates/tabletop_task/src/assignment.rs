@@ -1,9 +1,9 @@
-//! The cheapest way to give each row a column of its own.
+//! The assignment problem: the cheapest way to give each row a column of its own.
 
 use std::collections::BTreeSet;
 
-/// For each row the column that it is given, so that the sum of the costs is least; among equals, columns in their order. None if
-/// there is no way. A row cannot have a column without a cost.
+/// The column assigned to each row, with the least sum of costs; among equal assignments, the columns come in order. `None` if there is no
+/// assignment. A row cannot take a column without a cost.
 pub(crate) fn cheapest(costs: &[Vec<Option<i64>>]) -> Option<Vec<usize>> {
     const FORBIDDEN: i64 = 1 << 44;
     const UNIT: i64 = 1 << 24;
@@ -12,12 +12,12 @@ pub(crate) fn cheapest(costs: &[Vec<Option<i64>>]) -> Option<Vec<usize>> {
     if columns < rows {
         return None;
     }
-    // What is equal goes to the first columns, in the order of the rows.
+    // Among equal costs, the first columns go to the first rows.
     let cost = |row: usize, column: usize| match costs[row][column] {
         None => FORBIDDEN,
         Some(cost) => cost * UNIT + (column * (2 * rows - row)) as i64,
     };
-    // The Hungarian method, a row at a time along the cheapest way to a free column. Index 0 is no row and no column.
+    // The Hungarian method: row by row along the cheapest path to a free column. Index 0 is no row and no column.
     let mut of_row = vec![0; rows + 1];
     let mut of_column = vec![0; columns + 1];
     let mut taken_by = vec![0; columns + 1];
@@ -69,7 +69,7 @@ pub(crate) fn cheapest(costs: &[Vec<Option<i64>>]) -> Option<Vec<usize>> {
     is_allowed.then_some(given)
 }
 
-/// Rows that have fewer columns between them than they are, and those columns. There are some if no assignment exists.
+/// Rows that share fewer columns than there are rows, and those columns. There are some if no assignment exists.
 pub(crate) fn shortage(costs: &[Vec<Option<i64>>]) -> (Vec<usize>, Vec<usize>) {
     let columns_of =
         |row: usize| (0..costs[row].len()).filter(move |&column| costs[row][column].is_some());

@@ -1,4 +1,4 @@
-//! Which objects of a table take the roles of a task.
+//! Bindings: which objects of a table take the roles of a task.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,11 +16,11 @@ use crate::{
     task::Task,
 };
 
-/// For each role of a task, by its id, the id of an object.
+/// The id of an object for each role of a task, by the role's id.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Binding(pub BTreeMap<String, String>);
 
-/// Why no objects fit.
+/// The reason why no objects fit.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum Unbound {
@@ -46,11 +46,11 @@ impl Binding {
 }
 
 impl Task {
-    /// Finds an object of a table for each role: what is required of it; where nothing is, the object of the same id, else one of the
-    /// same shape and size, preferably of the same colour. What is alike is taken in the order of the table.
+    /// Finds an object of the table for each role. It must meet the role's requirements; without requirements, it is the object of the same id,
+    /// otherwise one of the same shape and size, preferably of the same colour. Equal candidates are taken in the order of the table.
     ///
     /// # Errors
-    /// A role has no object, or some roles have too few.
+    /// A role has no object, or several roles have too few between them.
     pub fn bind(
         &self,
         requirements: &Requirements,
@@ -126,7 +126,7 @@ impl Task {
         groups
     }
 
-    /// How little an object is like that of a role; none if it cannot take it.
+    /// The difference between an object and that of a role, as a cost; `None` if the object cannot take the role.
     fn cost(
         &self,
         requirements: &Requirements,
@@ -172,7 +172,7 @@ impl Task {
             .iter()
             .find(is_meant)
             .map_or(1, |step| step.number);
-        // What comes nearest says most.
+        // The nearest candidate explains the failure best.
         let nearest = objects
             .iter()
             .filter_map(|object| Some((requirements.lacks(&role.id, object)?, object)))

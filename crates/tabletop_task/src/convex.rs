@@ -1,9 +1,9 @@
-//! How far convex solids are from each other (Gilbert, Johnson and Keerthi's algorithm).
+//! Distances between convex solids (Gilbert, Johnson and Keerthi's algorithm).
 
 use bevy::math::{Vec2, Vec3, Vec3Swizzles as _};
 use tabletop_core::{Bounds, Pose, Primitive, Solid};
 
-/// A convex solid at its place, in the table's frame.
+/// A convex solid with its pose, in the table's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlacedSolid {
     /// The pose of its centre.
@@ -13,7 +13,7 @@ pub struct PlacedSolid {
 }
 
 impl PlacedSolid {
-    /// A solid of a body that is at this pose.
+    /// A solid of a body at this pose.
     pub fn of(primitive: &Primitive, body: Pose) -> Self {
         Self {
             pose: body * primitive.pose,
@@ -36,7 +36,7 @@ impl PlacedSolid {
         self.pose * point
     }
 
-    /// The radius of the ball about its centre that holds it.
+    /// Radius of the ball about its centre that encloses it.
     pub fn radius(&self) -> f32 {
         match self.solid {
             Solid::Cuboid(span) => span.length() / 2.0,
@@ -46,12 +46,12 @@ impl PlacedSolid {
         }
     }
 
-    /// The lowest and the highest Z of it.
+    /// Its lowest and highest Z.
     pub fn heights(&self) -> [f32; 2] {
         [Vec3::NEG_Z, Vec3::Z].map(|way| self.farthest(way).z)
     }
 
-    /// The same solid, made thinner by this on all sides.
+    /// The same solid, made thinner by this length on all sides.
     pub fn shrunk(mut self, by: f32) -> Self {
         let less = |extent: f32| (extent - 2.0 * by).max(extent * 0.1);
         self.solid = match self.solid {
@@ -79,12 +79,12 @@ impl PlacedSolid {
         self
     }
 
-    /// From the nearest point of the other solid to that of this one; zero if they overlap.
+    /// The vector from the other solid's nearest point to this one's; zero if they overlap.
     pub fn away_from(&self, other: &Self) -> Vec3 {
         self.away(other, None)
     }
 
-    /// Whether they are nearer to each other than this.
+    /// True if they are nearer to each other than this distance.
     pub fn is_within(&self, distance: f32, other: &Self) -> bool {
         let between = self.pose.location.distance(other.pose.location);
         between - self.radius() - other.radius() < distance
@@ -97,7 +97,7 @@ impl PlacedSolid {
         })
     }
 
-    /// How far apart they are seen from above; 0 if one is above a part of the other.
+    /// Gap between the two, seen from above; 0 if one is above a part of the other.
     pub fn gap_from_above(&self, other: &Self) -> f32 {
         let flat = |point: Vec3| point.xy().extend(0.0);
         let between = self.pose.location - other.pose.location;
@@ -108,11 +108,11 @@ impl PlacedSolid {
         .length()
     }
 
-    /// Whether a ray meets it.
+    /// True if a ray meets it.
     pub fn is_hit_by(&self, from: Vec3, towards: Vec3) -> bool {
         let origin = self.pose.inverse() * from;
         let ray = self.pose.rotation.inverse() * towards;
-        // Between which lengths of the ray a coordinate is within its extent.
+        // The interval of the ray in which a coordinate is within its extent.
         let slab = |from: f32, along: f32, half: f32| match along.abs() < 1e-9 {
             true if from.abs() <= half => (f32::NEG_INFINITY, f32::INFINITY),
             true => (f32::INFINITY, f32::NEG_INFINITY),
@@ -161,8 +161,8 @@ impl PlacedSolid {
     }
 }
 
-/// The point of a convex set that is nearest to the origin, where the set is known by its farthest points. Once it is clear on which side
-/// of the distance `enough` it is, a point on that side does.
+/// The point of a convex set that is nearest to the origin. The set is given by its farthest points. As soon as it is clear on which side
+/// of the distance `enough` the nearest point is, any point on that side does.
 fn nearest_to_origin(inside: Vec3, enough: Option<f32>, farthest: impl Fn(Vec3) -> Vec3) -> Vec3 {
     const STEPS: usize = 64;
     let mut nearest = farthest(-inside);
@@ -175,7 +175,7 @@ fn nearest_to_origin(inside: Vec3, enough: Option<f32>, farthest: impl Fn(Vec3) 
         let next = farthest(-nearest);
         let towards = nearest.dot(next);
         if let Some(enough) = enough {
-            // No point is nearer than its part along the nearest one known.
+            // No point is nearer than its component along the nearest known one.
             let is_beyond = towards > 0.0 && towards * towards > length * enough * enough;
             if is_beyond || length < enough * enough {
                 break;
@@ -199,7 +199,7 @@ fn nearest_to_origin(inside: Vec3, enough: Option<f32>, farthest: impl Fn(Vec3) 
     nearest
 }
 
-/// Up to four corners.
+/// A simplex of up to four corners.
 #[derive(Clone, Copy)]
 struct Simplex {
     all: [Vec3; 4],
@@ -223,9 +223,9 @@ impl Simplex {
         self.count += 1;
     }
 
-    /// The point that is nearest to the origin, and the corners that it lies between.
+    /// The point nearest to the origin, and the corners between which it lies.
     fn nearest(&self) -> (Vec3, Self) {
-        // Of every face, in ascending dimension, the foot of the origin if it is within the face.
+        // The foot of the origin on every face that contains it, in ascending dimension.
         let mut best: Option<(Vec3, Self)> = None;
         for chosen in 1_u32..1 << self.count {
             let mut face = Self {

@@ -1,4 +1,4 @@
-//! What a recording shows: which objects were where, and what the hands did.
+//! Demonstrations: the objects, their motions, and the acts of the hands that a recording shows.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -12,18 +12,18 @@ use crate::{
     track::Track,
 };
 
-/// A recording, as far as a task is to be seen in it.
+/// The part of a recording that a task is inferred from.
 #[derive(Clone, Debug, Default)]
 pub struct Demonstration {
     /// The table.
     pub table: Table,
     /// The objects, in the order of their creation.
     pub objects: Vec<ShownObject>,
-    /// What connects objects.
+    /// Joints between objects.
     pub joints: Vec<JointSpec>,
-    /// What the hands did, in its order.
+    /// Acts of the hands, in order.
     pub acts: Vec<HandAct>,
-    /// What was operated, pointed to, fastened and loosened, in its order.
+    /// Objects that were operated, pointed to, fastened and loosened, in order.
     pub operations: Vec<Operation>,
     /// The first tick.
     pub start: SimTick,
@@ -34,35 +34,35 @@ pub struct Demonstration {
 /// An object of a demonstration.
 #[derive(Clone, Debug)]
 pub struct ShownObject {
-    /// What it is; its pose is where it was first.
+    /// Its description, with its first pose.
     pub spec: ObjectSpec,
-    /// Where it was.
+    /// Its poses.
     pub track: Track,
-    /// When it came.
+    /// The tick in which it appeared.
     pub created: SimTick,
-    /// When it went, if it did.
+    /// The tick in which it disappeared, if it did.
     pub deleted: Option<SimTick>,
 }
 
-/// What a hand did.
+/// An act of a hand.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HandAct {
     /// The tick.
     pub tick: SimTick,
     /// The hand.
     pub hand: Hand,
-    /// What it did.
+    /// The kind of act.
     pub deed: HandDeed,
 }
 
-/// What a hand does.
+/// A kind of act of a hand.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HandDeed {
-    /// It takes an object.
+    /// It grasps an object.
     Grasp(String),
-    /// It lets go of what it holds.
+    /// It releases the held object.
     Release,
-    /// It removes what it holds.
+    /// It removes the held object from the world.
     Destroy,
 }
 
@@ -70,15 +70,12 @@ impl Demonstration {
     /// Reads a recording.
     ///
     /// # Errors
-    /// A file cannot be read, or a line of it is none that a recorder writes; it is named.
+    /// A file cannot be read, or has a line that no recorder writes; the error names the file.
     pub fn read(folder: impl AsRef<Path>) -> Result<Self, RecorderError> {
         Self::of(&RecordingReader::open(folder)?)
     }
 
-    /// What a recording shows.
-    ///
-    /// # Errors
-    /// As for [`read`](Self::read).
+    /// The demonstration of a recording.
     pub fn of(recording: &RecordingReader) -> Result<Self, RecorderError> {
         let scene = &recording.session().scene;
         let mut shown = Self {
@@ -107,8 +104,8 @@ impl Demonstration {
         Ok(shown)
     }
 
-    /// What segments of events show: all that there is of a recording of the original program. Objects are what the properties of
-    /// their events say; of a composite, they do not say how it is built.
+    /// The demonstration of segments of events, which are all that a recording of the original program has. Objects are as the properties in their
+    /// events describe them; those of a composite do not describe its parts.
     pub fn of_events(segments: &[RecordedSegment], ticks_per_frame: u64) -> Self {
         let mut shown = Self::default();
         shown.follow(segments, ticks_per_frame, true);
@@ -127,7 +124,7 @@ impl Demonstration {
         self.objects.iter_mut().find(|object| object.spec.id == id)
     }
 
-    /// Where all objects that are there are at the end of a tick.
+    /// The arrangement of all present objects at the end of a tick.
     pub(crate) fn at(&self, tick: SimTick) -> Arrangement {
         let there = self.objects.iter().filter(|object| {
             object.created <= tick && object.deleted.is_none_or(|deleted| tick < deleted)
@@ -147,10 +144,10 @@ impl Demonstration {
         });
     }
 
-    /// Follows the events; the moves only if there is nothing better.
+    /// Follows the events; their moves only if `moves` is true, for want of anything better.
     fn follow(&mut self, segments: &[RecordedSegment], ticks_per_frame: u64, moves: bool) {
         for segment in segments {
-            // An act is shown by the first frame after it; when it was is known of the first one.
+            // An act shows in the first frame after it. For the first frame, the tick of the act itself is known.
             let mut begun = segment.act.is_some();
             for event in &segment.events {
                 let shown = SimTick(self.start.0 + event.frame * ticks_per_frame);
@@ -225,7 +222,7 @@ impl Demonstration {
     }
 }
 
-/// The object that properties of a recording tell of.
+/// The object that the properties of a recording describe.
 fn spec_of(id: &str, properties: &[(String, String)]) -> ObjectSpec {
     let known: BTreeMap<&str, &str> = properties
         .iter()

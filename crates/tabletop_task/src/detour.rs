@@ -1,4 +1,4 @@
-//! What was done on the way, and does not matter.
+//! Detours: acts on the way that do not matter.
 
 use serde::{Deserialize, Serialize};
 use tabletop_core::SimTick;
@@ -10,39 +10,39 @@ use crate::{
     symmetry::Symmetry,
 };
 
-/// A manipulation, or a part of one, that leaves no trace in what was shown.
+/// A manipulation, or a part of one, that leaves no trace in the result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Detour {
     /// Id of the object.
     pub object: String,
-    /// Why it does not matter.
+    /// The reason why it does not matter.
     pub kind: DetourKind,
     /// The tick in which the object was grasped.
     pub grasp: SimTick,
-    /// The tick in which it was let go of.
+    /// The tick in which the object was released.
     pub release: SimTick,
 }
 
-/// Why something does not matter.
+/// The reason why a detour does not matter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DetourKind {
-    /// It was grasped and released in its place.
+    /// It was grasped and released in place.
     InPlace,
-    /// It was moved, and in the end it stood where it had been.
+    /// It was moved and brought back to where it had stood.
     AwayAndBack,
-    /// It was put down, and nothing happened before it was taken on that needed this.
+    /// It was put down, and nothing that happened before it was grasped again needed this.
     PutDown,
     /// It went from one hand to another.
     HandedOver,
 }
 
-/// How far from where it was an object is in the same place, in units and rad.
+/// Largest displacement, in units and rad, at which an object counts as in the same place.
 const SAME_PLACE: (f32, f32) = (0.05, 0.05);
-/// How far an object that is only held moves.
+/// Largest displacement, in units, of an object that is only held.
 const HELD_STILL: f32 = 0.1;
 
-/// Takes what was only a detour out of the manipulations. They stay in their order.
+/// Takes the detours out of the manipulations, which stay in order.
 pub fn fold(shown: &Demonstration, manipulations: &mut Vec<Manipulation>) -> Vec<Detour> {
     let mut detours: Vec<_> = manipulations
         .iter()
@@ -98,7 +98,7 @@ fn detour(manipulation: &Manipulation, kind: DetourKind) -> Detour {
     }
 }
 
-/// Whether an object looks in the end as it did before.
+/// True if an object looks the same after a manipulation as before it.
 fn is_back(shown: &Demonstration, manipulation: &Manipulation) -> bool {
     let Some(object) = shown.named(&manipulation.object) else {
         return false;
@@ -108,7 +108,7 @@ fn is_back(shown: &Demonstration, manipulation: &Manipulation) -> bool {
     moved < SAME_PLACE.0 && turned < SAME_PLACE.1
 }
 
-/// How far an object went from where it was, in units.
+/// Largest distance of an object from where it was, in units.
 fn farthest(shown: &Demonstration, manipulation: &Manipulation) -> f32 {
     let Some(object) = shown.named(&manipulation.object) else {
         return 0.0;
@@ -119,14 +119,14 @@ fn farthest(shown: &Demonstration, manipulation: &Manipulation) -> f32 {
         .fold(0.0, f32::max)
 }
 
-/// Whether neither has made room for the other, nor carries it: the places of one are not above or below those of the other.
+/// True if neither has made room for the other nor carries it: the places of one are not above or below those of the other.
 fn is_apart(shown: &Demonstration, one: &Manipulation, other: &Manipulation) -> bool {
     let [ones, others] = [one, other].map(|manipulation| places(shown, manipulation));
     ones.iter()
         .all(|one| others.iter().all(|other| !one.shares_column_with(other)))
 }
 
-/// An object where it was before a manipulation, and where it was put.
+/// The object at its places before and after a manipulation.
 pub(crate) fn places(shown: &Demonstration, manipulation: &Manipulation) -> Vec<Placed> {
     let Some(object) = shown.named(&manipulation.object) else {
         return Vec::new();

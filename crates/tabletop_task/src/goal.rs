@@ -1,4 +1,4 @@
-//! Where an object is to be.
+//! Goals of objects.
 
 use bevy::math::Vec3;
 use serde::{Deserialize, Serialize};
@@ -11,65 +11,65 @@ use crate::{
     symmetry::{Symmetry, Turns},
 };
 
-/// The pose that a step is to bring its object to, relative to something else.
+/// The pose to which a step brings its object, relative to a reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Goal {
-    /// Relative to what.
+    /// The reference.
     pub reference: Reference,
-    /// The object's pose in the frame of the reference, as it was shown.
+    /// The object's pose in the frame of the reference, as demonstrated.
     pub pose: Pose,
-    /// Which other orientations are as good: those after which the object looks the same.
+    /// The orientations that are as good: those in which the object looks the same.
     pub freedom: Freedom,
-    /// Which other locations are as good.
+    /// The locations that are as good.
     pub place: PlaceRange,
 }
 
-/// What a goal is relative to. Objects are meant by their ids.
+/// The reference of a goal. Objects are given by their ids.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Reference {
     /// The table.
     Table,
-    /// Where another object is.
+    /// The present pose of another object.
     Object {
         /// The object.
         object: String,
     },
-    /// Where an object was in the beginning.
+    /// The first pose of an object.
     PlaceOf {
         /// The object.
         object: String,
     },
-    /// Where the object itself was before the step.
+    /// The pose of the moved object itself before the step.
     Itself,
 }
 
-/// How many orientations look like that of a goal.
+/// The freedom of a goal's orientation: the orientations that look like the demonstrated one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Freedom {
-    /// So many.
+    /// A number of orientations.
     Orientations(usize),
-    /// All about an axis of the object, and perhaps those upside down.
+    /// All orientations about an axis of the object, perhaps including those upside down.
     About {
         /// The axis, in the object's frame.
         axis: Vec3,
-        /// Whether upside down looks the same.
+        /// True if the object looks the same upside down.
         ends_alike: bool,
     },
-    /// All.
+    /// All orientations.
     Any,
 }
 
-/// Which locations do.
+/// The freedom of a goal's location.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PlaceRange {
-    /// That of the goal.
+    /// The location of the goal only.
     Exact,
-    /// Any in the reference.
+    /// Any location inside the reference.
     Inside,
-    /// Any free one on the table.
+    /// Any free location on the table.
     Anywhere,
 }
 
@@ -84,7 +84,7 @@ impl From<&Symmetry> for Freedom {
 }
 
 impl Goal {
-    /// The goal of a manipulation that establishes these relations; none for what is removed or only held.
+    /// The goal of a manipulation that establishes these relations; `None` if its object is removed or only held.
     pub(crate) fn of(
         shown: &Demonstration,
         manipulation: &Manipulation,

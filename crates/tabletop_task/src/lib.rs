@@ -1,8 +1,8 @@
-//! What a recording shows, as a task: the manipulations, the relations that each establishes, the goals with the freedoms that
-//! symmetry leaves, the order that matters, and what is required of the objects that take its roles (report sections 1 and 4).
+//! The task that a recording demonstrates: the manipulations, the relations that each establishes, the goals with the freedoms that
+//! symmetry leaves, the order that matters, and the requirements on the objects that take its roles (report sections 1 and 4).
 //!
-//! [`Demonstration`] is what a recording holds of this: objects, their ways, the deeds of the hands. [`Task`] is what it means.
-//! [`Requirements`] say which objects may take its roles, [`Task::bind`] finds them on another table.
+//! A [`Demonstration`] is the relevant part of a recording: the objects, their motions and the acts of the hands. A [`Task`] is its meaning.
+//! [`Requirements`] restrict which objects may take its roles, and [`Task::bind`] finds such objects on another table.
 //!
 //! ```no_run
 //! use tabletop_task::Task;

@@ -1,4 +1,4 @@
-//! What hands did to objects, from grasp to release.
+//! Manipulations: what hands did to an object, from grasp to release.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use tabletop_core::{Hand, Pose, SimTick};
 
 use crate::demonstration::{Demonstration, HandDeed};
 
-/// An object in a hand, or in one hand after the other.
+/// The handling of one object, by one hand or by several in turn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Manipulation {
     /// Id of the object.
@@ -16,19 +16,19 @@ pub struct Manipulation {
     pub hands: Vec<Hand>,
     /// The tick in which it was grasped.
     pub grasp: SimTick,
-    /// The tick in which it was let go of or removed.
+    /// The tick in which it was released or removed.
     pub release: SimTick,
     /// The tick by which it has come to rest.
     pub rest: SimTick,
-    /// How it ended.
+    /// Its ending.
     pub ending: Ending,
-    /// Where the object was before.
+    /// Pose of the object before.
     pub from: Pose,
-    /// Where it came to rest.
+    /// Pose in which the object came to rest.
     pub to: Pose,
 }
 
-/// How a manipulation ends.
+/// The ending of a manipulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Ending {
     /// The hand let go of it.
@@ -39,7 +39,7 @@ pub enum Ending {
     Held,
 }
 
-/// Ticks between release and grasp in a hand-over.
+/// Most ticks between release and grasp in a hand-over.
 const HAND_OVER: u64 = 2;
 
 impl Manipulation {

@@ -1,4 +1,4 @@
-//! What objects are called in sentences.
+//! Names of objects in sentences.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use tabletop_core::{NAMED_COLORS, ObjectSpec, Rgb};
 
 use crate::demonstration::Demonstration;
 
-/// A name for every object of a demonstration: `the red block` where there is only one, `the small red block` of two sizes, else its
+/// A name for every object of a demonstration: `the red block` if it is unique, `the small red block` if there are two sizes, otherwise its
 /// id.
 #[derive(Clone, Debug)]
 pub struct Nouns(BTreeMap<String, String>);
@@ -76,7 +76,7 @@ fn kind(spec: &ObjectSpec) -> Option<String> {
     }
 }
 
-/// The named colour that is nearest.
+/// The nearest named colour.
 pub fn color_name(color: Rgb) -> &'static str {
     let distance = |other: Rgb| {
         let parts = [

@@ -1,20 +1,20 @@
-//! What was operated, pointed to, fastened and loosened.
+//! Operations: the objects that were operated, pointed to, fastened and loosened.
 
 use serde::{Deserialize, Serialize};
 use tabletop_core::{Bond, SimTick};
 
-/// Something that a demonstration shows besides what is moved.
+/// An act of a demonstration that moves no object.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Operation {
     /// The tick in which it was done.
     pub tick: SimTick,
-    /// What was done.
+    /// The kind of act.
     pub deed: OperationDeed,
-    /// The controls that came into other states by it, and the names of the states.
+    /// The controls whose states it changed, with the names of the new states.
     pub states: Vec<(String, String)>,
 }
 
-/// What was done to a control, an object or a bond.
+/// An act on a control, an object or a bond.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OperationDeed {
     /// A control was triggered.
@@ -27,14 +27,14 @@ pub enum OperationDeed {
         /// Its id.
         part: String,
     },
-    /// A bond was made, or is tighter.
+    /// A bond was made or tightened.
     Fasten(Bond),
-    /// A bond is looser, or no more.
+    /// A bond was loosened or undone.
     Loosen(Bond),
 }
 
 impl Operation {
-    /// It, in one sentence.
+    /// The operation in one sentence.
     pub fn sentence(&self) -> String {
         let what = match &self.deed {
             OperationDeed::Trigger { control } => format!("Trigger {control}"),

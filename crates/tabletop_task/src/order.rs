@@ -1,4 +1,4 @@
-//! Which steps must be done before which.
+//! The partial order of steps.
 
 use std::collections::BTreeSet;
 
@@ -6,8 +6,8 @@ use crate::{
     demonstration::Demonstration, detour::places, manipulation::Manipulation, relation::Relation,
 };
 
-/// For each manipulation, those that must come before it, by index: whose object or place it needs, above or below whose places it
-/// is, or that make room for it. What follows from the others is left out.
+/// For each manipulation, the indices of those that must come before it: it needs their object or place, lies above or below their places,
+/// or needs the room that they make. An order that follows from others is left out.
 pub(crate) fn partial_order(
     shown: &Demonstration,
     manipulations: &[Manipulation],

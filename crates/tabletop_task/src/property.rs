@@ -1,9 +1,9 @@
-//! What can be said of an object.
+//! Properties of objects.
 
 use bevy::math::Vec3;
 use tabletop_core::{ObjectSpec, Rgb, Shape};
 
-/// The properties of an object, as name and value: `id`, `shape`, `color` if it has just one, `size`, what its shape is made by
+/// The properties of an object as names and values: `id`, `shape`, `color` if it has just one, `size`, the lengths of its shape
 /// (`xspan`, `radius`, ...), `mass`, then its descriptions.
 pub fn properties(spec: &ObjectSpec) -> Vec<(String, String)> {
     let mut all = vec![("id".to_owned(), spec.id.clone())];
@@ -48,7 +48,7 @@ fn only_color(shape: &Shape) -> Option<Rgb> {
         .then_some(first)
 }
 
-/// The lengths that a shape is made by, in units; of a composite, of the cuboid around it.
+/// The lengths that define a shape, in units; for a composite, those of the cuboid around it.
 fn lengths(shape: &Shape) -> Vec<(&'static str, f32)> {
     let spans = |span: Vec3| vec![("xspan", span.x), ("yspan", span.y), ("zspan", span.z)];
     match shape {
@@ -85,7 +85,7 @@ fn lengths(shape: &Shape) -> Vec<(&'static str, f32)> {
     }
 }
 
-/// The extents of the cuboid around a shape, along the axes of its frame, to a hundredth of a unit.
+/// Extents of the cuboid around a shape, along the axes of its frame, to a hundredth of a unit.
 fn around(shape: &Shape) -> Vec3 {
     let solids: Vec<_> = shape
         .colliding()
@@ -100,7 +100,7 @@ fn around(shape: &Shape) -> Vec3 {
     (Vec3::from(extents) * 100.0).round() / 100.0
 }
 
-/// Whether a property has the value that is asked for: a colour by its name or `#rrggbb`, a number within 1 %, a range `1..2`, lengths
+/// True if a property has the wanted value: a colour by its name or `#rrggbb`, a number within 1 %, a range `1..2`, lengths
 /// with `x` between them, or else a text, in upper or lower case.
 pub fn has_value(name: &str, value: &str, wanted: &str) -> bool {
     if name == "color" {

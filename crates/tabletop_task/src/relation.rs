@@ -1,4 +1,4 @@
-//! How an object is to others when it has been put somewhere.
+//! Relations between an object and its surroundings after it was put down.
 
 use bevy::math::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ use crate::{
     symmetry::{Symmetry, angle_between},
 };
 
-/// What a manipulation establishes. Objects are meant by their ids.
+/// A relation that a manipulation establishes. Objects are given by their ids.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Relation {
@@ -22,7 +22,7 @@ pub enum Relation {
         /// The object.
         object: String,
     },
-    /// It is in an object, with walls on all sides.
+    /// It is in an object that has walls on all sides.
     Inside {
         /// The object.
         object: String,
@@ -36,7 +36,7 @@ pub enum Relation {
     Beside {
         /// The object.
         object: String,
-        /// On which side of it, as the robot sees it.
+        /// The side of that object, as the robot sees it.
         side: RelativeSide,
     },
     /// Its sides are parallel to those of an object.
@@ -44,36 +44,36 @@ pub enum Relation {
         /// The object.
         object: String,
     },
-    /// It is where an object was in the beginning.
+    /// It is at the first pose of an object.
     InPlaceOf {
         /// The object.
         object: String,
     },
-    /// It is out of the way, to be moved again later.
+    /// It is out of the way, and will be moved again later.
     Aside,
     /// It has slid along the joint that connects it with an object.
     Slid {
         /// The object.
         object: String,
-        /// How far it is open, in units.
+        /// Its final opening, in units.
         opening: f32,
-        /// How far it can be open, in units.
+        /// Largest possible opening, in units.
         travel: f32,
     },
-    /// It is turned in its place.
+    /// It has turned in place.
     Turned {
-        /// About which axis, in the table's frame.
+        /// The axis, in the table's frame.
         axis: Vec3,
-        /// By which angle.
+        /// The angle, in degrees.
         degrees: f32,
     },
-    /// It is no longer there.
+    /// It was removed.
     Destroyed,
-    /// A hand holds it in the end.
+    /// A hand still holds it at the end.
     Held,
 }
 
-/// On which side of an object another one is, as the robot sees it, in front of the table.
+/// The side of an object on which another one is, as the robot sees it, in front of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RelativeSide {
@@ -96,7 +96,7 @@ pub enum RelativeSide {
 }
 
 impl RelativeSide {
-    /// The way to it across the table, a unit vector.
+    /// The direction to it across the table, a unit vector.
     pub fn way(self) -> Vec3 {
         let way = match self {
             Self::Left => Vec3::NEG_X,
@@ -111,9 +111,9 @@ impl RelativeSide {
         way.normalize()
     }
 
-    /// The side of what is this way across the table.
+    /// The side in this direction across the table.
     pub fn of(way: Vec3) -> Self {
-        // More than 22° off an axis is off both.
+        // A direction more than 22° off an axis has a part of both sides.
         let is_along = |along: f32, across: f32| along.abs() > 2.4 * across.abs();
         match (way.x > 0.0, way.y > 0.0) {
             (right, _) if is_along(way.x, way.y) => match right {
@@ -151,7 +151,7 @@ impl Relation {
         }
     }
 
-    /// The object to which it is a relation.
+    /// The other object of the relation.
     pub fn object(&self) -> Option<&str> {
         match self {
             Self::On { object }
@@ -168,16 +168,16 @@ impl Relation {
     }
 }
 
-/// How far from where another one was an object is in its place, in units.
+/// Largest distance, in units, from the first place of another object at which an object counts as in that place.
 const PLACE: f32 = 0.3;
-/// Within which distance objects are beside each other, in units.
+/// Largest gap, in units, between objects beside each other.
 const NEIGHBOURHOOD: f32 = 0.6;
-/// Within which angle objects are aligned, in rad.
+/// Largest angle, in rad, between aligned objects.
 const ALIGNED: f32 = 0.1;
-/// How far what is turned in its place moves across, in units, and by which angle it turns at least, in rad.
+/// Largest displacement across the table, in units, and least angle, in rad, of an object that turns in place.
 const TURNED: (f32, f32) = (0.15, 0.05);
 
-/// The relations that a manipulation establishes, the one that says most first. `later` are the manipulations after it.
+/// The relations that a manipulation establishes, the most telling first. `later` are the manipulations after it.
 pub(crate) fn established(
     shown: &Demonstration,
     manipulation: &Manipulation,
@@ -236,7 +236,7 @@ pub(crate) fn established(
     relations
 }
 
-/// The joint along which an object slides: the object that it slides on, and the joint's frame in that one, with its travel.
+/// The joint along which an object slides, with the greatest displacement that it allows.
 pub(crate) fn slider<'s>(joints: &'s [JointSpec], id: &str) -> Option<(&'s JointSpec, f32)> {
     joints.iter().find_map(|joint| match joint.kind {
         JointKind::Slider { max, .. } if joint.objects[1] == id => Some((joint, max)),
@@ -275,7 +275,7 @@ fn turned(shown: &Demonstration, manipulation: &Manipulation) -> Option<Relation
         turn = -turn;
     }
     let (mut axis, mut angle) = turn.to_axis_angle();
-    // One way to say it: about an axis that points up, or right, or away.
+    // A unique axis: one that points up, or right, or away.
     let main = axis.abs().max_position();
     if axis[main] < 0.0 {
         (axis, angle) = (-axis, -angle);
@@ -324,13 +324,13 @@ fn beside(after: &Arrangement, id: &str, later: &[Manipulation]) -> Option<Relat
     })
 }
 
-/// Whether some orientation that looks like that of the one is some that looks like that of the other.
+/// True if an orientation that looks like the one object's equals an orientation that looks like the other's.
 fn is_aligned(shown: &Demonstration, after: &Arrangement, id: &str, other: &str) -> bool {
     let known = [id, other].map(|id| Some((shown.named(id)?, after.pose(id)?)));
     let [Some((_, own)), Some((_, other))] = known else {
         return false;
     };
-    // Blocks are aligned whatever their sides are called: modulo quarter turns.
+    // Blocks are aligned up to quarter turns, whatever their sides are called.
     let relative = other.rotation.inverse() * own.rotation;
     let quarters = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| relative * axis);
     quarters.iter().all(|axis| {

@@ -1,5 +1,5 @@
-//! What an object must be to take a role: the report's "symbolic properties, such as specifying that a block being picked up must be
-//! red".
+//! Requirements on the objects that take the roles of a task: the report's "symbolic properties, such as specifying that a block being
+//! picked up must be red".
 
 use std::{
     collections::BTreeMap,
@@ -18,16 +18,16 @@ use crate::{
     task::Task,
 };
 
-/// What is required of the objects that take the roles of a task. It is kept as `task.json` in the recording's folder.
+/// The requirements on the objects that take a task's roles. They are kept in the file `task.json` in the recording's folder.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Requirements {
-    /// By role: properties and their values. A role that is not here takes what is most like the object with which it was shown; a
+    /// Required properties and their values, by role. A role that is missing here takes the object most like the demonstrated one; a
     /// role without properties takes any object.
     pub roles: BTreeMap<String, BTreeMap<String, String>>,
 }
 
-/// What is wrong with a requirement or its file.
+/// The error of a requirement or its file.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum RequirementError {
@@ -55,17 +55,17 @@ pub enum RequirementError {
     Color(String),
 }
 
-/// The property that means the object of another step.
+/// The property that means "the same object as in another step".
 const SAME: &str = "same";
 
 impl Requirements {
     /// The name of their file in a recording's folder.
     pub const FILE: &str = "task.json";
 
-    /// Reads those of a recording; there are none without a file.
+    /// Reads the requirements of a recording; without a file there are none.
     ///
     /// # Errors
-    /// The file cannot be read, or is not what [`write`](Self::write) writes.
+    /// The file cannot be read, or has not the format that [`write`](Self::write) gives it.
     pub fn read(folder: &Path) -> Result<Self, RequirementError> {
         let path = folder.join(Self::FILE);
         let text = match fs::read_to_string(&path) {
@@ -76,7 +76,7 @@ impl Requirements {
         serde_json::from_str(&text).map_err(|source| RequirementError::File { path, source })
     }
 
-    /// Writes them to a recording's folder; without any, there is no file.
+    /// Writes the requirements to a recording's folder; if there are none, the file is removed.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -96,7 +96,7 @@ impl Requirements {
         fs::write(&path, text.map_err(failed)? + "\n").map_err(failed)
     }
 
-    /// Adds a requirement, as `name=value`, `name` for the value with which the role was shown, `same=STEP`, or `any` for none at all.
+    /// Adds a requirement: `name=value`, `name` for the demonstrated value, `same=STEP`, or `any` for no requirement at all.
     ///
     /// # Errors
     /// The object has no such property, or there is no such value or step.
@@ -138,7 +138,7 @@ impl Requirements {
         Ok(())
     }
 
-    /// Takes away a requirement by its property's name, or all of a role. Whether there was one.
+    /// Removes the requirement on a property, or all requirements of a role. True if there was one.
     pub fn remove(&mut self, role: &Role, name: Option<&str>) -> bool {
         let Some(name) = name else {
             return self.roles.remove(&role.id).is_some();
@@ -153,7 +153,7 @@ impl Requirements {
         was_there
     }
 
-    /// What an object lacks to take a role, as `name value`; nothing if it fits. Only if there are requirements of the role.
+    /// The properties that an object lacks for a role, as `name value`; empty if it fits, `None` if the role has no requirements.
     pub fn lacks(&self, role: &str, object: &ObjectSpec) -> Option<Vec<String>> {
         let wanted = self
             .roles
@@ -170,12 +170,12 @@ impl Requirements {
         )
     }
 
-    /// The step whose object a role has to take as well.
+    /// The step whose object a role must take as well.
     pub(crate) fn same_as(&self, role: &str) -> Option<usize> {
         self.roles.get(role)?.get(SAME)?.parse().ok()
     }
 
-    /// What a role is called in sentences, if requirements say it.
+    /// Name of a role in sentences, if its requirements determine one.
     pub(crate) fn phrase(&self, role: &str) -> Option<String> {
         let wanted = self.roles.get(role)?;
         if wanted.is_empty() {

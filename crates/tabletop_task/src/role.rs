@@ -1,19 +1,19 @@
-//! The objects that a task is about.
+//! Roles: the objects that a task is about.
 
 use serde::{Deserialize, Serialize};
 use tabletop_core::ObjectSpec;
 
 use crate::symmetry::Symmetry;
 
-/// An object of a task.
+/// A role of a task, which an object takes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Role {
-    /// Id of the object with which it was shown; steps name it by this.
+    /// Id of the demonstrated object; steps name the role by it.
     pub id: String,
-    /// What it is called in sentences, such as `the red block`.
+    /// Its name in sentences, such as `the red block`.
     pub noun: String,
-    /// The object with which it was shown, where it was in the beginning.
+    /// The demonstrated object, with its first pose.
     pub shown: ObjectSpec,
-    /// Which turns leave it as it looks.
+    /// The rotations that leave its look unchanged.
     pub symmetry: Symmetry,
 }

@@ -1,4 +1,4 @@
-//! A step as a sentence.
+//! Sentences about steps.
 
 use bevy::math::Vec3;
 use tabletop_core::Hand;
@@ -11,7 +11,7 @@ use crate::{
 };
 
 impl Task {
-    /// Writes the sentences anew, with what is required of the objects.
+    /// Writes the sentences again, with the requirements on the objects.
     pub fn phrase(&mut self, requirements: &Requirements) {
         for role in &mut self.roles {
             if let Some(phrase) = requirements.phrase(&role.id) {
@@ -24,7 +24,7 @@ impl Task {
     }
 }
 
-/// What a step does, in one sentence.
+/// A step in one sentence.
 fn sentence(task: &Task, step: &TaskStep) -> String {
     let noun = |id: &str| {
         task.role(id)
@@ -74,7 +74,7 @@ fn sentence(task: &Task, step: &TaskStep) -> String {
     first.into_iter().chain(letters).chain(['.']).collect()
 }
 
-/// Where a step puts its object.
+/// The place to which a step brings its object.
 fn place(task: &Task, step: &TaskStep) -> String {
     let noun = |id: &str| {
         task.role(id)
@@ -167,7 +167,7 @@ fn turn(axis: Vec3, degrees: f32) -> String {
     format!("by {}° about {about}", degrees.round())
 }
 
-/// Where a pose is across the table, for a sentence.
+/// A location on the table, in words.
 fn spot(location: Vec3) -> String {
     let short = |x: f32| {
         let rounded = (x * 10.0).round() / 10.0 + 0.0;

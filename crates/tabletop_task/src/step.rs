@@ -1,4 +1,4 @@
-//! What a task consists of.
+//! Steps of tasks.
 
 use serde::{Deserialize, Serialize};
 use tabletop_core::{Hand, SimTick};
@@ -10,22 +10,22 @@ use crate::{goal::Goal, relation::Relation};
 pub struct TaskStep {
     /// Its number, from 1.
     pub number: usize,
-    /// What it does, as a sentence.
+    /// The step as a sentence.
     pub sentence: String,
-    /// The role of the object that is moved.
+    /// The role of the moved object.
     pub object: String,
-    /// The hands that were used, one after the other.
+    /// The hands used, one after the other.
     pub hands: Vec<Hand>,
     /// The tick in which the object was grasped.
     pub grasp: SimTick,
-    /// The tick in which it was let go of.
+    /// The tick in which it was released.
     pub release: SimTick,
-    /// Whether the step before had not ended when this one began.
+    /// True if the previous step had not ended when this one began.
     pub meanwhile: bool,
-    /// What is so afterwards, the most telling first.
+    /// The relations that it establishes, the most telling first.
     pub relations: Vec<Relation>,
-    /// Where the object is to be; nowhere if it is removed or only picked up.
+    /// The goal of the object; `None` if it is removed or only picked up.
     pub goal: Option<Goal>,
-    /// The numbers of the steps that must be done before it.
+    /// Numbers of the steps that must be done before it.
     pub after: Vec<usize>,
 }

@@ -1,39 +1,39 @@
-//! Which turns leave a shape as it looks.
+//! Symmetry: the rotations that leave a shape's look unchanged.
 
 use bevy::math::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 use tabletop_core::{Polyhedron, Pose, Primitive, Shape, Solid};
 
-/// The turns after which a shape looks the same, as to its solids and their colours: about its centre, in its own frame.
+/// The symmetry of a shape: the rotations about its centre, in its own frame, after which its solids and their colours look the same.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Symmetry {
-    /// The point that every one of them leaves where it is, in the shape's frame.
+    /// The point that every rotation leaves in place, in the shape's frame.
     pub centre: Vec3,
-    /// The turns.
+    /// The rotations.
     pub turns: Turns,
 }
 
 /// A group of rotations.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Turns {
-    /// So many, of which the first is none at all: 24 for a cube, 4 for a brick.
+    /// A finite group whose first member is the identity: 24 rotations for a cube, 4 for a brick.
     Finite(Vec<Quat>),
-    /// Any about an axis, as for a cone.
+    /// All rotations about an axis, as for a cone.
     About {
         /// The axis, a unit vector.
         axis: Vec3,
-        /// Whether its ends look the same, as for a cylinder.
+        /// True if its ends look the same, as for a cylinder.
         ends_alike: bool,
     },
-    /// Any at all, as for a ball.
+    /// All rotations, as for a ball.
     Any,
 }
 
-/// Lengths in which solids may differ and look the same, in units.
+/// Largest difference, in units, of lengths that look the same.
 const SAME_LENGTH: f32 = 0.01;
 
 impl Symmetry {
-    /// That of a shape.
+    /// The symmetry of a shape.
     pub fn of(shape: &Shape) -> Self {
         let solids = shape.drawn();
         let centre = centre_of(&solids);
@@ -51,7 +51,7 @@ impl Symmetry {
         Self { centre, turns }
     }
 
-    /// That of a shape without any.
+    /// The symmetry of a shape that has none.
     pub fn none() -> Self {
         Self {
             centre: Vec3::ZERO,
@@ -59,7 +59,7 @@ impl Symmetry {
         }
     }
 
-    /// How many orientations look the same; none if there is no end of them.
+    /// Number of orientations that look the same; `None` if there are infinitely many.
     pub fn order(&self) -> Option<usize> {
         match &self.turns {
             Turns::Finite(turns) => Some(turns.len()),
@@ -67,9 +67,9 @@ impl Symmetry {
         }
     }
 
-    /// Of the poses that look like `pose`, the one that is turned least from `near`.
+    /// The pose that looks like `pose` and is turned least from `near`.
     pub fn nearest(&self, pose: Pose, near: Pose) -> Pose {
-        // `pose * turn` is to be like `near`.
+        // The turn for which `pose * turn` is closest to `near`.
         let wanted = pose.rotation.inverse() * near.rotation;
         let turn = match &self.turns {
             Turns::Finite(turns) => turns
@@ -97,8 +97,8 @@ impl Symmetry {
         self.turned(pose, turn)
     }
 
-    /// Between two poses of the shape: how far its centre is moved, in units, and by which angle it is turned, in rad, at least, for it to
-    /// look as in the other pose.
+    /// The difference between two poses: the displacement of the centre, in units, and the least angle, in rad, that makes the shape look as in the
+    /// other pose.
     pub fn difference(&self, a: Pose, b: Pose) -> (f32, f32) {
         let like_b = self.nearest(a, b);
         (
@@ -107,7 +107,7 @@ impl Symmetry {
         )
     }
 
-    /// Some poses that look like this one: all that look different from each other to a gripper that opens along X or Y, at least.
+    /// Poses that look like this one: at least all that differ for a gripper that opens along X or Y.
     pub fn variants(&self, pose: Pose) -> Vec<Pose> {
         let steps_about = |axis: Vec3| {
             (0..8).map(move |i| Quat::from_axis_angle(axis, i as f32 * std::f32::consts::FRAC_PI_4))
@@ -130,7 +130,7 @@ impl Symmetry {
             .collect()
     }
 
-    /// A pose, after a turn about the centre in the shape's own frame.
+    /// The pose after a turn about the centre in the shape's own frame.
     fn turned(&self, pose: Pose, turn: Quat) -> Pose {
         let rotation = (pose.rotation * turn).normalize();
         Pose::new(pose * self.centre - rotation * self.centre, rotation)
@@ -143,7 +143,7 @@ pub fn angle_between(a: Quat, b: Quat) -> f32 {
     2.0 * turn.xyz().length().atan2(turn.w.abs())
 }
 
-/// The part of a rotation that is about an axis.
+/// The component of a rotation about an axis (swing–twist decomposition).
 pub fn twist_about(rotation: Quat, axis: Vec3) -> Quat {
     let along = axis * rotation.xyz().dot(axis);
     let twist = Quat::from_xyzw(along.x, along.y, along.z, rotation.w);
@@ -169,7 +169,7 @@ fn centre_of(solids: &[Primitive]) -> Vec3 {
     }
 }
 
-/// What all solids can be turned about, if they are balls and cylinders on a line.
+/// The common axis of solids that are balls and cylinders on one line.
 enum CommonAxis {
     All,
     Along(Vec3),
@@ -203,7 +203,7 @@ fn common_axis(solids: &[Primitive], centre: Vec3) -> Option<CommonAxis> {
     is_on_axis.then_some(CommonAxis::Along(axis))
 }
 
-/// The turns of a shape that has only so many: those of the cube, and those of prisms with up to 36 sides, about the axes of the
+/// The rotations of a shape with finitely many: those of the cube, and those of prisms with up to 36 sides, about the axes of the
 /// shape's frame.
 fn finite(solids: &[Primitive], centre: Vec3) -> Vec<Quat> {
     const MOST: usize = 120;
@@ -226,7 +226,7 @@ fn finite(solids: &[Primitive], centre: Vec3) -> Vec<Quat> {
             add(&mut found, turn);
         }
     }
-    // Turns after turns.
+    // Products of the turns.
     let mut next = 1;
     while next < found.len() && found.len() < MOST {
         for i in 1..=next {
@@ -258,7 +258,7 @@ fn add(turns: &mut Vec<Quat>, turn: Quat) {
     }
 }
 
-/// Whether every solid lies where one like it was.
+/// True if every solid lands on one that looks like it.
 fn looks_the_same(solids: &[Primitive], centre: Vec3, turn: Quat) -> bool {
     let about = Pose::new(centre - turn * centre, turn);
     solids.iter().all(|solid| {
@@ -267,7 +267,7 @@ fn looks_the_same(solids: &[Primitive], centre: Vec3, turn: Quat) -> bool {
     })
 }
 
-/// Whether a solid at a pose takes the place of another.
+/// True if a solid at a pose takes the place of another.
 fn is_like(solid: &Primitive, at: Pose, other: &Primitive) -> bool {
     let same = |a: f32, b: f32| (a - b).abs() < SAME_LENGTH;
     let is_there = at.location.distance(other.pose.location) < SAME_LENGTH;
@@ -305,9 +305,9 @@ fn is_like(solid: &Primitive, at: Pose, other: &Primitive) -> bool {
     is_there && is_same_solid && solid.color == other.color
 }
 
-/// Whether every corner of a turned polyhedron is where the other one has a corner, or may have one if they are round.
+/// True if every corner of a turned polyhedron lands on a corner of the other; of round ones, on a place where a corner could be.
 fn is_same_polyhedron(turned: Polyhedron, other: Polyhedron, turn: Quat) -> bool {
-    /// To compare more corners with each other takes too long: so fine a mesh looks like itself alone.
+    /// Largest number of corners that are compared, as more would take too long. A finer mesh has no symmetry.
     const MOST: usize = 300;
     let count = turned.corners().len();
     if count != other.corners().len() || count > MOST {
@@ -356,7 +356,7 @@ mod tests {
         }
     }
 
-    /// A ring of so many blocks about Z.
+    /// A ring of blocks about Z.
     fn ring(sides: u16) -> Shape {
         let parts = (0..sides).map(|i| {
             let degrees = Vec3::Z * 360.0 * f32::from(i) / f32::from(sides);

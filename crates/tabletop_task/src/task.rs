@@ -1,35 +1,35 @@
-//! What is to be done.
+//! Tasks.
 
 use serde::{Deserialize, Serialize};
 use tabletop_core::{JointSpec, Table};
 
 use crate::{detour::Detour, operation::Operation, role::Role, step::TaskStep};
 
-/// What a demonstration shows to be done.
+/// The task that a demonstration teaches.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Task {
-    /// The table on which it was shown.
+    /// The table of the demonstration.
     pub table: Table,
     /// The objects that it is about, in the order in which its steps name them.
     pub roles: Vec<Role>,
-    /// What connects the objects of the demonstration.
+    /// Joints between the objects of the demonstration.
     pub joints: Vec<JointSpec>,
-    /// What is done, in the order in which it was shown.
+    /// Steps, in the order of the demonstration.
     pub steps: Vec<TaskStep>,
-    /// What was done besides, and does not matter.
+    /// Detours that do not matter.
     pub detours: Vec<Detour>,
-    /// What was operated, pointed to, fastened and loosened, in the order in which it was shown.
+    /// Objects that were operated, pointed to, fastened and loosened, in the order of the demonstration.
     #[serde(default)]
     pub operations: Vec<Operation>,
 }
 
 impl Task {
-    /// The role of this id.
+    /// The role with this id.
     pub fn role(&self, id: &str) -> Option<&Role> {
         self.roles.iter().find(|role| role.id == id)
     }
 
-    /// The step of this number, from 1.
+    /// The step with this number, from 1.
     pub fn step(&self, number: usize) -> Option<&TaskStep> {
         self.steps.get(number.checked_sub(1)?)
     }

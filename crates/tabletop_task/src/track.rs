@@ -1,15 +1,15 @@
-//! Where something was, tick by tick.
+//! Tracks: poses of an object, tick by tick.
 
 use tabletop_core::{Pose, SimTick};
 
 use crate::symmetry::angle_between;
 
-/// The poses of an object along time: it keeps each until the next one.
+/// The poses of an object over time; each holds until the next one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Track(Vec<(SimTick, Pose)>);
 
 impl Track {
-    /// Notes where it is from a tick on. Ticks ascend.
+    /// Adds the pose from a tick on. Ticks must ascend.
     pub fn push(&mut self, tick: SimTick, pose: Pose) {
         match self.0.last_mut() {
             Some(last) if last.0 == tick => last.1 = pose,
@@ -17,7 +17,7 @@ impl Track {
         }
     }
 
-    /// Where it is at the end of a tick: before its first pose, there; nowhere if it has none.
+    /// The pose at the end of a tick; before the first pose, that one. `None` if there are no poses.
     pub fn at(&self, tick: SimTick) -> Option<Pose> {
         let known = self.0.partition_point(|(since, _)| *since <= tick);
         let (_, pose) = self.0.get(known.max(1) - 1)?;
@@ -34,7 +34,7 @@ impl Track {
         first.into_iter().chain(inner.map(|(_, pose)| *pose))
     }
 
-    /// The first tick from `from` on after which it stays where it is for a quarter of a second; `until` at the latest.
+    /// The first tick, not before `from`, after which the object stays in place for a quarter of a second; `until` at the latest.
     pub fn rest_after(&self, from: SimTick, until: SimTick) -> SimTick {
         const STILL_TICKS: u64 = 15;
         const STILL_LENGTH: f32 = 0.01;

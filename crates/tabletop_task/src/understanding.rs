@@ -1,4 +1,4 @@
-//! From a demonstration to the task that it shows.
+//! The inference of a task from a demonstration.
 
 use std::path::Path;
 
@@ -20,15 +20,15 @@ use crate::{
 };
 
 impl Task {
-    /// Reads a recording, and says what it shows.
+    /// Reads a recording and infers its task.
     ///
     /// # Errors
-    /// A file cannot be read, or a line of it is none that a recorder writes; it is named.
+    /// A file cannot be read, or has a line that no recorder writes; the error names the file.
     pub fn read(folder: impl AsRef<Path>) -> Result<Self, RecorderError> {
         Ok(Self::of(&Demonstration::read(folder)?))
     }
 
-    /// What a demonstration shows.
+    /// The task of a demonstration.
     pub fn of(shown: &Demonstration) -> Self {
         let mut manipulations = Manipulation::all(shown);
         let detours = fold(shown, &mut manipulations);
@@ -66,7 +66,7 @@ impl Task {
     }
 }
 
-/// The objects that steps are about.
+/// The roles of these steps.
 fn cast(shown: &Demonstration, steps: &[TaskStep]) -> Vec<Role> {
     let nouns = Nouns::of(shown);
     let mut ids = Vec::<&str>::new();

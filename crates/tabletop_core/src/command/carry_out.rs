@@ -9,8 +9,8 @@ use crate::SimFact;
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cause(pub Option<CommandId>);
 
-/// Carries out the commands of one kind that a system has not read yet, one after the other, each on the world that the one
-/// before has left. Meanwhile [`Cause`] names the command. If it says why it cannot, that is [refused](SimFact::Refused).
+/// Carries out all unread commands of one kind in turn, each on the world that the previous one left. Meanwhile [`Cause`] names the
+/// command. One that cannot be carried out is [refused](SimFact::Refused).
 ///
 /// # Errors
 ///

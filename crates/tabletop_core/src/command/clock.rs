@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A command to the clock. Core itself carries it out, before anything else of the tick sees whether it is paused.
+/// A command to the clock. Core carries it out itself, before any other system of the tick asks for the pause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ClockCommand {
-    /// Stop the clock, or let it run on.
+    /// Pause the clock, or resume it.
     SetPaused(bool),
 }

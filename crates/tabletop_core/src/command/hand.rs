@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::Hand;
 
-/// A command to the demonstrator's hands. [Selecting](Self::Select) a hand is one of them, because it says with which hand the
-/// next ones are given.
+/// A command to the demonstrator's hands. [Selecting](Self::Select) a hand is one too: it decides which hand the next
+/// commands of the mouse and the panels are for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum HandCommand {
-    /// Let mouse and panels act with this hand.
+    /// Select the hand that mouse and panels act with.
     Select(Hand),
     /// Take an object into a hand.
     Grasp {
@@ -18,21 +18,21 @@ pub enum HandCommand {
         /// Id of the object.
         object: String,
     },
-    /// Move what a hand holds to this location, as far as nothing is in its way.
+    /// Move the held object to this location, as far as nothing is in its way.
     MoveTo {
         /// The hand.
         hand: Hand,
-        /// Where the object's origin is to be, in units.
+        /// Target of the object's origin, in units.
         location: Vec3,
     },
-    /// Move what a hand holds on from where it is to be.
+    /// Move the held object on from its present target.
     MoveBy {
         /// The hand.
         hand: Hand,
-        /// How far, in units.
+        /// Displacement, in units.
         offset: Vec3,
     },
-    /// Turn what a hand holds about an axis of the world through the object's origin.
+    /// Turn the held object about an axis of the world through its origin.
     Turn {
         /// The hand.
         hand: Hand,
@@ -41,10 +41,10 @@ pub enum HandCommand {
         /// The angle in degrees.
         degrees: f32,
     },
-    /// Let go of what a hand holds.
+    /// Let go of the held object.
     Release(Hand),
-    /// Close the scissors that a hand holds by one of their blades.
+    /// Close the scissors that the hand holds by a blade.
     Cut(Hand),
-    /// Remove what a hand holds from the world.
+    /// Remove the held object from the world.
     Destroy(Hand),
 }

@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A command to what keeps the world as it was. It is no [`RecordingCommand`](crate::RecordingCommand), although it concerns the
-/// present recording: another part of the simulator carries it out, and the recorder follows the facts that come of it.
+/// A command to the history of the world. It is not a [`RecordingCommand`](crate::RecordingCommand), although it changes the
+/// present recording: the history carries it out, and the recorder follows the facts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum HistoryCommand {
-    /// Go back to where the present segment of the recording began, and discard it.
+    /// Go back to the beginning of the recording's present segment, and discard the segment.
     Undo,
     /// Bring back the segment that was undone last.
     Redo,

@@ -1,8 +1,8 @@
-//! How commands are told apart.
+//! Ids of commands.
 
-/// Tells a command from all others of an app. Of two commands, the one that was written later has the larger id.
+/// The id of a command, unique in an app. A later command has a larger id.
 ///
-/// A recording keeps no ids: a demonstration without what was undone is the same to the byte as one in which nothing was.
+/// A recording keeps no ids: a demonstration whose undone parts are gone is the same to the byte as one in which nothing was undone.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, bevy::reflect::Reflect,
 )]

@@ -1,11 +1,11 @@
-//! Commands on their way, and who gives them.
+//! Commands on their way, each with the one who gives it.
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use serde::{Deserialize, Serialize};
 
 use super::{CommandId, CommandKind, SimCommand};
 
-/// Who gives a command.
+/// The giver of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Actor {
     /// The user, with the mouse in the 3D view.
@@ -18,25 +18,25 @@ pub enum Actor {
     Scenario,
     /// The script that drives the robot.
     Script,
-    /// What replays a recording. The commands of the recording itself are given in the name of who gave them.
+    /// The replay of a recording. The commands of the recording itself keep the actor who gave them.
     Replay,
     /// The program around the simulation: the command line, a test, or an app of your own.
     App,
 }
 
-/// A command on its way to who carries it out. It is written by a [`CommandWriter`] or a [`WriteCommand`].
+/// A command on its way to the system that carries it out. A [`CommandWriter`] or a [`WriteCommand`] writes it.
 #[derive(Message, Clone, Debug, PartialEq)]
 pub struct IssuedCommand {
-    /// What the facts that come of it name.
+    /// The id that the resulting facts name.
     pub id: CommandId,
-    /// Who gives it.
+    /// The one who gives it.
     pub actor: Actor,
-    /// What is to be done.
+    /// The command.
     pub command: SimCommand,
 }
 
 impl IssuedCommand {
-    /// Its id and what is to be done, if that is of one kind.
+    /// The id and the command, if the command is of kind `C`.
     pub fn of_kind<C: CommandKind>(&self) -> Option<(CommandId, &C)> {
         Some((self.id, C::of(&self.command)?))
     }
@@ -54,7 +54,7 @@ impl NextCommandId {
     }
 }
 
-/// Gives commands.
+/// The system parameter that gives commands.
 #[derive(SystemParam)]
 pub struct CommandWriter<'w> {
     commands: MessageWriter<'w, IssuedCommand>,
@@ -73,7 +73,7 @@ impl CommandWriter<'_> {
         id
     }
 
-    /// Gives commands, the first one first.
+    /// Gives several commands, in order.
     pub fn write_batch<C: Into<SimCommand>>(
         &mut self,
         actor: Actor,
@@ -85,14 +85,14 @@ impl CommandWriter<'_> {
     }
 }
 
-/// Gives commands where there is a whole world, in the name of the [app](Actor::App).
+/// Gives commands with access to the whole world, in the name of the [app](Actor::App).
 pub trait WriteCommand {
     /// Gives a command.
     fn write_command(&mut self, command: impl Into<SimCommand>) -> CommandId {
         self.write_command_of(Actor::App, command)
     }
 
-    /// Gives a command in the name of somebody else.
+    /// Gives a command in the name of another actor.
     fn write_command_of(&mut self, actor: Actor, command: impl Into<SimCommand>) -> CommandId;
 }
 

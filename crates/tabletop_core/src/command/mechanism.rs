@@ -1,19 +1,19 @@
-//! Commands to mechanisms: what the demonstrator does to controls and bonds, and what is pointed to.
+//! Commands to mechanisms: operate a control, fasten and loosen bonds, point to something.
 
 use serde::{Deserialize, Serialize};
 
 use crate::Hand;
 
-/// A command to what can be operated, fastened or pointed to. A hand needs to hold nothing for it.
+/// A command to something that can be operated, fastened or pointed to. The hand can be empty.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum MechanismCommand {
-    /// Press a switch, or what leads to another state of a control.
+    /// Press a switch, or the part of a control that leads to another state.
     Trigger {
         /// The hand.
         hand: Hand,
         /// Id of the control.
         control: String,
-        /// Which of the control's [simple parts](crate::Shape::simple_parts) is touched, from 0; for none, the first one that leads
+        /// The touched one of the control's [simple parts](crate::Shape::simple_parts), from 0; for `None`, the first one that leads
         /// to another state.
         #[serde(default)]
         part: Option<u32>,
@@ -25,18 +25,18 @@ pub enum MechanismCommand {
         /// Id of the object or part.
         target: String,
     },
-    /// Fasten a guest to the nearest host, or one step tighter.
+    /// Fasten a guest to the nearest host, or tighten it by a step.
     Fasten {
         /// The hand.
         hand: Hand,
-        /// Id of a guest point, or of an object, whose point next to a host it is then.
+        /// Id of a guest point, or of an object; for an object, the point nearest to a host counts.
         guest: String,
     },
     /// Loosen a guest by a step.
     Loosen {
         /// The hand.
         hand: Hand,
-        /// Id of a guest point, or of an object, whose bonded point it is then.
+        /// Id of a guest point, or of an object; for an object, its bonded point counts.
         guest: String,
     },
 }

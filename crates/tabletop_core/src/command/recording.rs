@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A command to the recorder, or to what stands in for it. Recordings do not hold these, but for the one that ends them.
+/// A command to the recorder, or to its stand-in. Recordings hold none of these but the one that ends them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RecordingCommand {
     /// Begin to record.

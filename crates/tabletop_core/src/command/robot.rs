@@ -5,19 +5,19 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Drive, Face, JointName, LimbName, Pose};
 
-/// A command to the robot. Showing it and its [markers](crate::Markers) are two of them: both stay when a scene is cleared,
+/// A command to the robot. Showing the robot and its [markers](crate::Markers) are commands too: both stay when a scene is cleared,
 /// and only the robot's crate knows what they need.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum RobotCommand {
-    /// Put the robot to the table, or take it away.
+    /// Put the robot at the table, or take it away.
     Show(bool),
-    /// Move joints of the robot; of two orders for a joint in a tick the later one counts.
+    /// Move joints of the robot. Of two drives for one joint in a tick, the later counts.
     Drive(Vec<(JointName, Drive)>),
     /// Bring an end effector to a pose at the speed of manual control.
     ReachTo {
-        /// The limb.
+        /// Limb of the end effector.
         arm: LimbName,
-        /// Where [the end effector](crate::LimbState::end_effector) is to be, in the table's frame.
+        /// Target of [the end effector](crate::LimbState::end_effector), in the table's frame.
         pose: Pose,
     },
     /// Show this face on the robot's screen.
@@ -27,7 +27,7 @@ pub enum RobotCommand {
 }
 
 impl RobotCommand {
-    /// Move these joints.
+    /// A command that moves these joints.
     pub fn drive<J: Into<JointName>>(drives: impl IntoIterator<Item = (J, Drive)>) -> Self {
         let drives = drives.into_iter();
         Self::Drive(drives.map(|(joint, drive)| (joint.into(), drive)).collect())

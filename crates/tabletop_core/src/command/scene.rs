@@ -1,4 +1,4 @@
-//! Commands for what is on the table.
+//! Commands to the scene.
 
 use std::path::PathBuf;
 
@@ -6,21 +6,21 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Preset, SceneSpec};
 
-/// A command to what puts objects on the table and takes them away.
+/// A command to the scene: it puts objects on the table and takes them away.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum SceneCommand {
     /// Read this task file and [set its scene](Self::Set). In [`SimSystems::Load`](crate::SimSystems::Load) it becomes that
-    /// command, so a recording holds what the file said.
+    /// command, so a recording holds the file's content.
     Load(PathBuf),
-    /// Clear the table and put this on it.
+    /// Clear the table and put this scene on it.
     Set(Box<SceneSpec>),
     /// Remove every object from the table that no hand holds.
     Clear,
-    /// Make objects, without touching any that are there.
+    /// Make objects without touching those on the table.
     Make {
-        /// What to make.
+        /// The objects to make.
         preset: Preset,
-        /// Decides colours and place: the same seed makes the same in the same world.
+        /// The seed of their colours and place: the same seed makes the same objects in the same world.
         seed: u64,
     },
 }

@@ -11,15 +11,15 @@ pub struct IndicatorLights {
     pub radius: f32,
     /// Height of a light, in units.
     pub zspan: f32,
-    /// How many lights there are.
+    /// Number of lights.
     pub lights: u32,
     /// Length of the row, in units.
     pub xspan: f32,
-    /// What each state shows.
+    /// The states, each with the lights that it turns on.
     pub states: Vec<LightState>,
 }
 
-/// The lights that are on in a state.
+/// A state of indicator lights: the lights that it turns on.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LightState {
     /// Its name in recordings; empty for its number.

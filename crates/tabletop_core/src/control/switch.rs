@@ -16,7 +16,7 @@ pub struct ToggleSwitch {
     pub color: Rgb,
     /// The side that is down.
     pub pressed: Side,
-    /// How many states it has; each press leads to the next, and from the last one to the first.
+    /// Number of states; each press leads to the next, and from the last to the first.
     pub states: u32,
 }
 
@@ -30,7 +30,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// The side across from it.
+    /// The opposite side.
     #[must_use]
     pub const fn other(self) -> Self {
         match self {

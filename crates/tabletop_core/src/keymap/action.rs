@@ -1,4 +1,4 @@
-//! Actions: what keys do.
+//! Actions that keys do.
 
 use std::fmt;
 
@@ -6,14 +6,14 @@ use bevy::{prelude::*, reflect::enums::Enum as _};
 
 use crate::{JointName, robot::snake_case};
 
-/// Something that a key does.
+/// An action that a key does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Reflect)]
 pub enum Action {
-    /// Pause, resume (report section 2.4).
+    /// Pause or resume (report section 2.4).
     Pause,
     /// Quit (report section 2.4).
     Quit,
-    /// Simulate one tick of a pause.
+    /// While paused, simulate one tick.
     Step,
     /// Simulate more slowly.
     Slower,
@@ -21,7 +21,7 @@ pub enum Action {
     Faster,
     /// Move the camera along its direction of view (report section 3).
     CameraForward,
-    /// The other way.
+    /// Move the camera against its direction of view.
     CameraBack,
     /// Move the camera to its left.
     CameraLeft,
@@ -47,23 +47,23 @@ pub enum Action {
     ViewFront,
     /// Look at the table from where the robot's head is.
     ViewRobotEye,
-    /// Turn the drag plane counter-clockwise (report section 4.3).
+    /// Turn the drag plane counterclockwise (report section 4.3).
     PlaneCounterClockwise,
     /// Turn the drag plane clockwise.
     PlaneClockwise,
-    /// Show the plane at right angles while held down.
+    /// Show the perpendicular plane while held down.
     PlanePerpendicular,
     /// Discard the present segment of the recording (report section 4.1).
     Undo,
     /// Bring back the segment that was undone last.
     Redo,
-    /// Trigger the control that the cursor is on.
+    /// Trigger the control under the cursor.
     Trigger,
-    /// Point to what the cursor is on.
+    /// Point to the part under the cursor.
     PointTo,
-    /// Fasten what is held, or what the cursor is on, by a step.
+    /// Fasten the held object, or the one under the cursor, by a step.
     Fasten,
-    /// Loosen it by a step.
+    /// Loosen the held object, or the one under the cursor, by a step.
     Loosen,
     /// Make a big block (report section 6.1).
     MakeBlock,
@@ -71,42 +71,42 @@ pub enum Action {
     MakeStack,
     /// Remove every object that nobody holds (report section 6.1).
     ClearTable,
-    /// Choose a task file or a recording and open it.
+    /// Choose and open a task file or a recording.
     OpenFile,
-    /// Save what is on the table as a task file.
+    /// Save the scene on the table as a task file.
     SaveFile,
-    /// Show, hide the robot (report section 5).
+    /// Show or hide the robot (report section 5).
     ShowRobot,
-    /// Show, hide what the robot sees (report section 5).
+    /// Show or hide the head camera's view (report section 5).
     ShowHeadView,
-    /// Save what the robot sees as a picture (report section 5).
+    /// Save the head camera's view as a picture (report section 5).
     SaveHeadView,
     /// Show the robot's next face.
     ShowNextFace,
-    /// Start, stop the script that drives the robot (report section 5.2).
+    /// Start or stop the script that drives the robot (report section 5.2).
     RunScript,
-    /// Let the robot do what was shown, or stop.
+    /// Let the robot imitate the demonstrated task, or stop it.
     Imitate,
     /// Move a joint of the robot while held down (report section 5.1).
     Move(JointName, Way),
-    /// Show, hide what the keys do.
+    /// Show or hide the list of keys.
     ShowHelp,
-    /// Fill the screen with the window, or no longer.
+    /// Enter or leave full screen.
     FillScreen,
-    /// Draw panels and texts larger.
+    /// Draw panels and text larger.
     DrawLarger,
-    /// Draw panels and texts smaller.
+    /// Draw panels and text smaller.
     DrawSmaller,
-    /// Draw panels and texts as large as fits the window.
+    /// Draw panels and text as large as the window allows.
     DrawToFit,
 }
 
 /// One of the two ways in which a joint moves, with the signs of manual control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Reflect)]
 pub enum Way {
-    /// As the button + moves it: a gripper opens.
+    /// As button + moves it: a gripper opens.
     Plus,
-    /// As the button − moves it: a gripper closes.
+    /// As button − moves it: a gripper closes.
     Minus,
 }
 

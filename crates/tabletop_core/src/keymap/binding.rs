@@ -9,7 +9,7 @@ use bevy::reflect::{
 use bevy_input::keyboard::KeyCode::{self, *};
 use thiserror::Error;
 
-/// Keys that are held down together with another one.
+/// The modifier keys that are held down with another key.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Modifiers {
     /// Either Ctrl key.
@@ -22,16 +22,16 @@ pub struct Modifiers {
     pub super_key: bool,
 }
 
-/// A key, by its place on the keyboard, and the modifiers with which it is struck. In text: `Space`, `Ctrl+Shift+KeyZ`.
+/// A key, by its place on the keyboard, with its modifiers. As text: `Space`, `Ctrl+Shift+KeyZ`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct KeyBinding {
-    /// What is held down with it.
+    /// The modifiers.
     pub modifiers: Modifiers,
     /// The key.
     pub key: KeyCode,
 }
 
-/// Why a text is no binding.
+/// The error of a text that is no key binding.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum BindingError {
     /// There is no such key.
@@ -77,7 +77,7 @@ impl Modifiers {
         }
     }
 
-    /// Those of which one key or the other is on.
+    /// The modifiers of which at least one key is on.
     pub(super) fn that_are(is_on: impl core::ops::Fn(KeyCode) -> bool) -> Self {
         Self {
             ctrl: is_on(ControlLeft) || is_on(ControlRight),
@@ -94,8 +94,8 @@ impl KeyBinding {
         Self { modifiers, key }
     }
 
-    /// Whether its key is struck while these modifiers are held down. Shift may be held down in vain, and a modifier that is
-    /// itself the key does not care for others.
+    /// True if pressing the key with these modifiers is this binding. Superfluous Shift is ignored, and so is everything held with a
+    /// key that is itself a modifier.
     pub(super) fn fits(self, held: Modifiers) -> bool {
         let expected = Modifiers {
             shift: held.shift,
@@ -104,7 +104,7 @@ impl KeyBinding {
         is_modifier(self.key) || (expected == held && (held.shift || !self.modifiers.shift))
     }
 
-    /// How it is shown to the user: `Ctrl+Shift+Z`, with what a US keyboard has at the key's place.
+    /// Its label for the user: `Ctrl+Shift+Z`, with the key's letter on a US keyboard.
     pub fn label(self) -> String {
         format!("{}{}", self.modifiers, label(self.key))
     }
@@ -185,12 +185,12 @@ const fn is_modifier(key: KeyCode) -> bool {
     )
 }
 
-/// Whether a key writes nothing wherever it is struck.
+/// True if a key never writes text.
 pub(super) fn is_function_key(key: KeyCode) -> bool {
     (F1..=F35).contains(&key)
 }
 
-/// What a US keyboard has at the place of a key.
+/// The letter that a US keyboard has at the place of a key.
 #[expect(
     clippy::wildcard_enum_match_arm,
     reason = "Bevy knows many more keys than need a name of their own"

@@ -1,4 +1,4 @@
-//! What is printed on keys.
+//! Letters printed on the keys.
 
 use std::collections::BTreeMap;
 
@@ -7,15 +7,15 @@ use bevy_input::keyboard::{Key, KeyCode, KeyboardInput};
 
 use super::Modifiers;
 
-/// What the user's keyboard has at the places of keys, as far as it has been told. Together with Ctrl, Alt or Super that counts, so that
-/// Ctrl+Z is undo on every keyboard with Latin letters; else places do.
+/// The letters that the user's keyboard has on its keys, as far as key presses have revealed them. With Ctrl, Alt or Super the letter
+/// counts, so that Ctrl+Z is undo on every keyboard with Latin letters; otherwise the place of the key counts.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
 pub struct KeyLetters {
     letters: BTreeMap<KeyCode, KeyCode>,
 }
 
 impl KeyLetters {
-    /// Learns from a key that has gone down what it writes.
+    /// Learns the letter of a key from a press.
     pub fn learn(&mut self, input: &KeyboardInput) {
         let Key::Character(written) = &input.logical_key else {
             return;
@@ -25,7 +25,7 @@ impl KeyLetters {
         }
     }
 
-    /// The key of a US keyboard that this one stands for while these modifiers are held down.
+    /// The key of a US keyboard that has this key's meaning while these modifiers are held down.
     pub(super) fn with(&self, modifiers: Modifiers, key: KeyCode) -> KeyCode {
         let Modifiers {
             ctrl,
@@ -38,7 +38,7 @@ impl KeyLetters {
     }
 }
 
-/// The key of a US keyboard.
+/// The key of a US keyboard that writes a text.
 fn key_that_writes(text: &str) -> Option<KeyCode> {
     use KeyCode::*;
     const LETTERS: [KeyCode; 26] = [

@@ -1,4 +1,4 @@
-//! The table of actions, from which input, help, tooltips and documentation are made.
+//! The table of actions: the source of input, help, tooltips and documentation.
 
 use bevy_input::keyboard::KeyCode::{self, *};
 
@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{JointId, JointLayout, JointRole, LimbId, LimbLayout, RobotLayout};
 
-/// What an action belongs to.
+/// A group of actions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[expect(missing_docs, reason = "the names say it")]
 pub enum ActionGroup {
@@ -21,12 +21,12 @@ pub enum ActionGroup {
     Window,
 }
 
-/// When an action can be asked for.
+/// A situation in which actions are available.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Situation {
     /// Always.
     Any,
-    /// While the selected hand holds something. Then its keys come before those of [`Any`](Self::Any).
+    /// While the selected hand holds something. Its keys then come before those of [`Any`](Self::Any).
     Holding,
 }
 
@@ -39,12 +39,12 @@ pub(super) struct ActionRow {
     pub tooltip: &'static str,
     pub situation: Situation,
     pub is_continuous: bool,
-    /// The keys that do it unless the user binds others.
+    /// Its keys unless the user binds others.
     pub default_keys: Vec<KeyBinding>,
 }
 
 impl ActionRow {
-    /// It goes on while its key is held down; others are done once a press.
+    /// Makes the action continue while its key is held down; others are done once a press.
     fn continuous(self) -> Self {
         Self {
             is_continuous: true,
@@ -52,7 +52,7 @@ impl ActionRow {
         }
     }
 
-    /// It is done to what the selected hand holds.
+    /// Makes it an action on the held object.
     fn while_holding(self) -> Self {
         Self {
             situation: Situation::Holding,
@@ -111,7 +111,7 @@ fn row(
     }
 }
 
-/// The actions without a joint.
+/// The actions that move no joint.
 #[rustfmt::skip]
 fn plain_rows() -> Vec<ActionRow> {
     use ActionGroup::{Camera, Demonstration, Objects, Robot, Simulation, Window};
@@ -168,7 +168,7 @@ fn plain_rows() -> Vec<ActionRow> {
     ]
 }
 
-/// All joints in the order in which their keys lie on the keyboard: the last limb before the first, each from its tip to its base.
+/// All joints in the order of their keys on the keyboard: the last limb before the first, each from its tip to its base.
 fn joints_by_place(layout: &RobotLayout) -> impl Iterator<Item = JointId> {
     let limbs = layout.limbs.iter().rev();
     let joints = limbs.flat_map(|limb| {
@@ -178,7 +178,7 @@ fn joints_by_place(layout: &RobotLayout) -> impl Iterator<Item = JointId> {
     joints.chain(layout.neck)
 }
 
-/// Joints have a key each, which with Shift moves them the other way; grippers have two (report section 5.1).
+/// The two rows of a joint. A joint has one key, which Shift reverses; a gripper has two (report section 5.1).
 fn rows_of_joint(layout: &RobotLayout, joint: JointId) -> [ActionRow; 2] {
     let joint = layout.joint(joint);
     [Way::Plus, Way::Minus].map(|way| {

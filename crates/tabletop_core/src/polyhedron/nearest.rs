@@ -1,24 +1,24 @@
-//! Where rays and points meet polyhedra.
+//! Intersections and distances of rays and points with polyhedra.
 
 use bevy::prelude::*;
 
 use crate::{figure::enter_triangle, polyhedron::Polyhedron};
 
 impl Polyhedron {
-    /// Where a ray enters it through its surface, as a factor of the direction. A ray that begins inside does not enter.
+    /// The point where a ray enters its surface, as a factor of the direction. A ray that begins inside does not enter.
     pub fn entry(self, origin: Vec3, direction: Vec3) -> Option<f32> {
         self.faces()
             .filter_map(|[a, b, c]| enter_triangle(origin, direction, a, b, c))
             .min_by(f32::total_cmp)
     }
 
-    /// Whether a point is inside, if it is convex.
+    /// True if a point is inside. For convex ones.
     pub fn contains(self, point: Vec3) -> bool {
         self.faces()
             .all(|[a, b, c]| (b - a).cross(c - a).dot(point - a) <= 0.0)
     }
 
-    /// How far outside of it a point is, if it is convex.
+    /// Distance of a point outside it. For convex ones.
     pub fn distance_to(self, point: Vec3) -> f32 {
         if self.contains(point) {
             return 0.0;

@@ -1,14 +1,14 @@
-//! What regular polyhedra are made of.
+//! Recipes of regular polyhedra.
 
 use bevy::prelude::*;
 
-/// As many sides and more look round, and are meant to: 20° and less between two of them.
+/// The least number of sides with which a solid is meant to look round: 20° or less between two of them.
 pub const ROUND_SIDES: u32 = 18;
 
-/// More sides than these are not to be told apart: a solid with more has so many.
+/// The largest number of sides. More of them could not be told apart, so a solid that asks for more gets this number.
 pub const MOST_SIDES: u32 = 64;
 
-/// What a polyhedron is made of, with the bits of its lengths.
+/// The recipe of a polyhedron, with the bits of its lengths.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Recipe {
     Tapered {
@@ -48,7 +48,7 @@ impl Along {
         }
     }
 
-    /// The point at a height on the axis and so far from it, at an angle from X.
+    /// The point at a height on the axis, at a radius from it and an angle from X.
     pub(super) fn point(self, height: f32, radius: f32, angle: f32) -> Vec3 {
         let (sin, cos) = libm::sincosf(angle);
         match self {

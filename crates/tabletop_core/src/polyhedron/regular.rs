@@ -10,8 +10,8 @@ use crate::polyhedron::{
 };
 
 impl Polyhedron {
-    /// A prism or a part of a pyramid along Z, centred: with regular ends of these circumscribed radii, whose first corners are
-    /// towards X.
+    /// A prism or frustum of a pyramid along Z, centred. Its ends are regular polygons of these circumscribed radii; their first corners
+    /// are towards X.
     pub fn frustum(radius_top: f32, radius_bottom: f32, zspan: f32, sides: u32) -> Self {
         Self::tapered(Along::Z, [radius_bottom, radius_top], zspan, sides)
     }
@@ -49,7 +49,7 @@ impl Polyhedron {
         })
     }
 
-    /// A ring about Z, centred, whose hole is as wide as a circle of the inner radius. It is not convex.
+    /// A ring about Z, centred. Its hole is as wide as a circle of the inner radius. It is not convex.
     pub fn ring(radius_outer: f32, radius_inner: f32, zspan: f32, sides: u32) -> Self {
         let sides = sides.clamp(3, MOST_SIDES);
         let recipe = Recipe::Ring {
@@ -85,7 +85,7 @@ impl Polyhedron {
         })
     }
 
-    /// The part of a [ring](Self::ring) from its first corner to its second one, in the frame of the ring. It is convex.
+    /// The part of a [ring](Self::ring) between its first and second corner, in the frame of the ring. It is convex.
     pub fn wedge(radius_outer: f32, radius_inner: f32, zspan: f32, sides: u32) -> Self {
         let sides = sides.clamp(3, MOST_SIDES);
         let recipe = Recipe::Wedge {
@@ -117,7 +117,7 @@ impl Polyhedron {
     }
 }
 
-/// The radius of the corners of a regular polygon around a circle, but less than the outer radius.
+/// Radius of the corners of a regular polygon around a circle, limited to less than the outer radius.
 fn around_circle(radius: f32, outer: f32, sides: u32) -> f32 {
     let corner = radius / libm::cosf(TAU / 2.0 / sides as f32);
     corner.min(f32::midpoint(radius, outer))
@@ -129,7 +129,7 @@ mod tests {
 
     use super::*;
 
-    /// Whether every edge belongs to two triangles, which go along it in opposite directions.
+    /// True if every edge belongs to two triangles, which run along it in opposite directions.
     fn is_closed(polyhedron: Polyhedron) -> bool {
         let mut edges: Vec<_> = polyhedron
             .triangles()

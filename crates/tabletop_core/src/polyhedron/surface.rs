@@ -10,7 +10,7 @@ use crate::{
 };
 
 impl Polyhedron {
-    /// Its surface in a colour, with normals: those of its faces, and of the round surface where it is meant to be one.
+    /// Its surface in a colour. The normals are those of its faces, or of the round surface that it is meant to have.
     pub fn surface(self, color: Rgb) -> Triangles {
         let PolyhedronData {
             corners,

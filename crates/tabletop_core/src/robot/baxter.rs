@@ -1,4 +1,5 @@
-//! Baxter, the robot of the report: its layout, and its arms and joints by name, for programs and tests that are made for it. Everything else asks the [`RobotLayout`].
+//! Baxter, the robot of the report: its layout, and its arms and joints by name, for programs and tests made for it. All other code
+//! asks the [`RobotLayout`].
 
 use std::{fmt, sync::LazyLock};
 
@@ -156,7 +157,7 @@ impl RobotJoint {
         self as usize
     }
 
-    /// The joints of an arm from the shoulder to the wrist: S0, S1, E0, E1, W0, W1, W2.
+    /// The joints of an arm from shoulder to wrist: S0, S1, E0, E1, W0, W1, W2.
     pub fn of_arm(arm: Arm) -> [Self; JOINTS_PER_ARM] {
         std::array::from_fn(|i| Self::ALL[arm as usize * JOINTS_PER_ARM + i])
     }
@@ -169,7 +170,7 @@ impl RobotJoint {
         }
     }
 
-    /// What the layout says of it.
+    /// Its entry in the layout.
     pub fn layout(self) -> &'static JointLayout {
         RobotLayout::baxter().joint(self.into())
     }
@@ -189,7 +190,7 @@ impl RobotJoint {
         self.layout().clamp(value)
     }
 
-    /// Where it stands when the program starts.
+    /// Its position when the program starts.
     pub fn home(self) -> f64 {
         self.layout().home
     }

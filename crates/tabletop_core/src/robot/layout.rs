@@ -1,4 +1,4 @@
-//! Which limbs and joints the robot has.
+//! The layout of a robot: its limbs and joints.
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -30,11 +30,11 @@ impl LimbId {
     }
 }
 
-/// Which limbs and joints the robot has. It is read from a `robot.ron` (`docs/robot.md`) and a URDF and never changes while the
+/// The limbs and joints of the robot. The layout is read from a `robot.ron` (`docs/robot.md`) and a URDF, and never changes while the
 /// program runs.
 #[derive(Resource, Clone, Debug, PartialEq)]
 pub struct RobotLayout {
-    /// What the robot is called.
+    /// The robot's name.
     pub name: String,
     /// All joints, by [`JointId`]: those of the limbs, one limb after the other from its base to its tip, then the neck, then the
     /// openings of the grippers.
@@ -43,14 +43,14 @@ pub struct RobotLayout {
     pub limbs: Vec<LimbLayout>,
     /// The joint that turns the head and its camera.
     pub neck: Option<JointId>,
-    /// Where the robot stands.
+    /// The place of the robot.
     pub base: BaseLayout,
-    /// Where its camera is.
+    /// The place of its camera.
     pub camera: CameraLayout,
     /// The link whose front shows a face.
     pub screen: Option<String>,
-    /// Positions of the limbs' joints in poses that the real robot takes. Solids of links that overlap in one of them are rough there:
-    /// these links never stop each other.
+    /// Positions of the limbs' joints in postures that the real robot takes. If the solids of two links overlap in one of them, they are too
+    /// rough there: these links never stop each other.
     pub known_postures: Vec<Vec<f64>>,
     /// Links, by name, that never stop each other.
     pub may_touch: Vec<(String, String)>,
@@ -63,19 +63,19 @@ pub struct JointLayout {
     pub name: JointName,
     /// Its name on the screen, beside that of its limb: `E1`.
     pub label: String,
-    /// What it moves.
+    /// The part that it moves.
     pub role: JointRole,
-    /// Least and largest position, in rad, units for the opening of a gripper.
+    /// Least and greatest position, in rad; in units for a gripper's opening.
     pub limits: [f64; 2],
-    /// Where it stands when the program starts.
+    /// Position when the program starts.
     pub home: f64,
-    /// 1, or -1 for a joint that manual control turns the other way, so that limbs move as mirror images.
+    /// 1, or -1 for a joint that manual control turns the other way, so that the limbs move as mirror images.
     pub sign: f64,
-    /// Largest torque of its motor, in N m, if the URDF names none.
+    /// Largest torque of its motor, in N m, if the URDF gives none.
     pub effort: f64,
-    /// Largest speed of its motor, in rad/s, if the URDF names none.
+    /// Largest speed of its motor, in rad/s, if the URDF gives none.
     pub speed: f64,
-    /// The keys that move it up, and those that move it down, unless the user binds others.
+    /// The keys that move it up and the keys that move it down, unless the user binds others.
     pub keys: [Vec<KeyBinding>; 2],
 }
 
@@ -85,7 +85,7 @@ impl JointLayout {
         value.clamp(self.limits[0], self.limits[1])
     }
 
-    /// Whether it is the opening of a gripper, in units, and not an angle.
+    /// True if it is the opening of a gripper, in units, and not an angle.
     pub const fn is_gripper(&self) -> bool {
         matches!(self.role, JointRole::Gripper(_))
     }
@@ -99,14 +99,14 @@ impl JointLayout {
     }
 }
 
-/// What a joint moves.
+/// The part that a joint moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointRole {
     /// A limb.
     Limb {
         /// The limb.
         limb: LimbId,
-        /// How many joints are between it and the limb's base.
+        /// Number of joints between it and the limb's base.
         place: usize,
     },
     /// The head.
@@ -122,13 +122,13 @@ pub struct LimbLayout {
     pub name: LimbName,
     /// Its name on the screen: `Left`.
     pub label: String,
-    /// How the names of its tracked points begin for scripts: `l`.
+    /// Prefix of its tracked points' names in scripts: `l`.
     pub prefix: String,
     /// Its joints from the base to the tip.
     pub joints: Vec<JointId>,
     /// Its gripper.
     pub gripper: GripperLayout,
-    /// Where the point midway between the fingers is: on the first of these links that the URDF has.
+    /// The point midway between the fingers, as a frame on the first of these links that the URDF has.
     pub end_effector: Vec<LinkFrame>,
     /// The joints whose origins scripts may track.
     pub trackers: Vec<JointId>,
@@ -137,20 +137,20 @@ pub struct LimbLayout {
 /// A gripper of the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GripperLayout {
-    /// Its opening.
+    /// The joint that is its opening.
     pub joint: JointId,
-    /// How its fingers move.
+    /// The motion of its fingers.
     pub kind: GripperKind,
-    /// Extents of a finger across and along the opening and along the finger, in units: x, y, z of the end effector's frame.
+    /// Extents of a finger in units, along x, y and z of the end effector's frame; x is along the opening, z along the finger.
     pub finger: Vec3,
-    /// What a finger looks like; without it, the simulator draws what it is touched by.
+    /// Look of a finger; without it, the simulator draws the finger's collision shape.
     pub look: Option<FingerLook>,
-    /// The joints of the URDF that fingers have there; each moves by half of the opening. Only frames follow them.
+    /// The joints of the fingers in the URDF; each moves by half of the opening. Only frames follow them.
     pub finger_joints: Vec<String>,
 }
 
 impl GripperLayout {
-    /// How far the fingers' ends of a wide open gripper are from the end effector: across and along it, in units. `widest` is the
+    /// Distances of the finger tips from the end effector when the gripper is wide open, across and along it, in units. `widest` is the
     /// largest opening.
     pub fn finger_ends(&self, widest: f64) -> Vec2 {
         Vec2::new(
@@ -160,10 +160,10 @@ impl GripperLayout {
     }
 }
 
-/// How the fingers of a gripper move.
+/// The motion of a gripper's fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub enum GripperKind {
-    /// Two fingers move against each other and stay parallel.
+    /// Two fingers move towards each other and stay parallel.
     Parallel,
 }
 
@@ -181,13 +181,13 @@ pub struct LinkFrame {
     pub axes: [[f64; 3]; 3],
 }
 
-/// What a finger looks like.
+/// The look of a finger.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FingerLook {
-    /// Its shape: a file that a URDF could name.
+    /// Its shape file, of any kind that a URDF can name.
     pub file: String,
-    /// The shape's x, y and z axis in the finger's frame: x towards the other finger, z along the finger, back to the wrist.
+    /// The shape's x, y and z axes in the finger's frame: x towards the other finger, z along the finger, back to the wrist.
     #[serde(default = "unturned")]
     pub axes: [[f64; 3]; 3],
 }
@@ -196,13 +196,13 @@ const fn unturned() -> [[f64; 3]; 3] {
     [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 }
 
-/// Where the robot stands before the table.
+/// The place of the robot before the table.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 #[serde(deny_unknown_fields)]
 pub struct BaseLayout {
-    /// From the table's near edge back to the origin of the URDF's root link, in units.
+    /// Distance from the table's near edge back to the origin of the URDF's root link, in units.
     pub behind_edge: f32,
-    /// That origin above the table's top, in units.
+    /// Height of that origin above the table's top, in units.
     pub height: f32,
 }
 
@@ -216,29 +216,29 @@ impl BaseLayout {
     }
 }
 
-/// Where the head camera is on the robot. Lengths in units, in axes like the table's: x right, y forward, z up.
+/// The place of the head camera on the robot. Lengths in units, in axes like the table's: x right, y forward, z up.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 #[serde(deny_unknown_fields)]
 pub struct CameraLayout {
-    /// The axis of the neck, from the robot's origin.
+    /// Location of the neck's axis, from the robot's origin.
     pub neck: Vec3,
-    /// The camera, from the axis of the neck.
+    /// Location of the camera, from the neck's axis.
     pub at: Vec3,
-    /// How far below the horizon it looks, in rad.
+    /// Angle below the horizon at which it looks, in rad.
     pub tilt: f64,
 }
 
 /// The robot that carries the head camera.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 pub struct CameraCarrier {
-    /// Where the robot stands.
+    /// The place of the robot.
     pub base: BaseLayout,
-    /// Where the camera is on it.
+    /// The place of the camera on it.
     pub camera: CameraLayout,
 }
 
 impl CameraCarrier {
-    /// Whether all of its numbers are finite.
+    /// True if all its numbers are finite.
     pub fn is_finite(&self) -> bool {
         let Self { base, camera } = self;
         let numbers = [base.behind_edge, base.height];
@@ -279,13 +279,13 @@ impl RobotLayout {
         (0..self.limbs.len() as u8).map(LimbId)
     }
 
-    /// The joint of this name.
+    /// The joint with this name.
     pub fn find_joint(&self, name: JointName) -> Option<JointId> {
         let found = self.joints.iter().position(|joint| joint.name == name)?;
         Some(JointId(found as u16))
     }
 
-    /// The limb of this name.
+    /// The limb with this name.
     pub fn find_limb(&self, name: LimbName) -> Option<LimbId> {
         let found = self.limbs.iter().position(|limb| limb.name == name)?;
         Some(LimbId(found as u8))
@@ -303,7 +303,7 @@ impl RobotLayout {
         }
     }
 
-    /// Most joints that a limb has: the number of columns in scripts.
+    /// Largest number of joints of a limb: the number of columns in scripts.
     pub fn most_joints_of_a_limb(&self) -> usize {
         let counts = self.limbs.iter().map(|limb| limb.joints.len());
         counts.max().unwrap_or(0)

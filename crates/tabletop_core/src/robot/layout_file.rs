@@ -1,4 +1,4 @@
-//! `robot.ron`: what a URDF does not say of a robot.
+//! The file `robot.ron`: the properties of a robot that its URDF does not give.
 
 use std::fmt;
 
@@ -18,7 +18,7 @@ use crate::{
     },
 };
 
-/// What a `robot.ron` says; `docs/robot.md` explains it field by field.
+/// The content of a `robot.ron`; `docs/robot.md` explains it field by field.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, rename = "Robot")]
 pub struct LayoutFile {
@@ -91,21 +91,21 @@ const fn forward() -> f64 {
     1.0
 }
 
-/// Why a `robot.ron` cannot be used.
+/// The error of a `robot.ron` that cannot be used.
 #[derive(Debug, Error)]
 pub enum LayoutError {
-    /// It is not written as it should be.
+    /// Its syntax is wrong.
     #[error("{0}")]
     Syntax(#[from] Box<SpannedError>),
-    /// A key has no such name.
+    /// A key of a joint does not exist.
     #[error("joint {joint}: {source}")]
     Key {
         /// The joint.
         joint: String,
-        /// What is wrong.
+        /// The fault of the key.
         source: BindingError,
     },
-    /// What it says makes no sense.
+    /// Its content makes no sense.
     #[error("{0}")]
     Fault(String),
 }
@@ -119,17 +119,17 @@ impl LayoutFile {
     ///
     /// # Errors
     ///
-    /// The first thing that is wrong with how it is written, with its place.
+    /// The first syntax error, with its place.
     pub fn read(text: &str) -> Result<Self, LayoutError> {
         let options = Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
         Ok(options.from_str(text).map_err(Box::new)?)
     }
 
-    /// The layout. `limits` knows those of the URDF's joints, which count where the file has none.
+    /// The layout. `limits` gives the limits of the URDF's joints, which count where the file has none.
     ///
     /// # Errors
     ///
-    /// What the file says makes no sense; the error names what it is about.
+    /// The content makes no sense; the error names the place.
     pub fn layout(
         &self,
         limits: impl Fn(&str) -> Option<[f64; 2]>,

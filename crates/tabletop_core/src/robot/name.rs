@@ -1,4 +1,4 @@
-//! What joints and limbs of robots are called.
+//! Names of joints and limbs.
 
 use std::{
     borrow::Cow,
@@ -13,7 +13,7 @@ use serde::{
     de::{DeserializeSeed, EnumAccess, Error, VariantAccess, Visitor},
 };
 
-/// Every name that was ever read. Names are few and short, so they stay.
+/// Every name that was ever read. Names are few and short, so they are kept for ever.
 static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
 
 fn interned(name: &str) -> &'static str {
@@ -27,7 +27,7 @@ fn interned(name: &str) -> &'static str {
     name
 }
 
-/// `LeftE1` as `left_e1`, which stays as it is.
+/// Turns `LeftE1` into `left_e1`; a name in snake case stays as it is.
 pub(crate) fn snake_case(name: &str) -> Cow<'_, str> {
     if !name.contains(char::is_uppercase) {
         return Cow::Borrowed(name);

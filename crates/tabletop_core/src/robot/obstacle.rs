@@ -1,10 +1,10 @@
-//! What stops an arm.
+//! Obstacles that stop an arm.
 
 use std::fmt;
 
 use bevy::prelude::*;
 
-/// Something that an arm cannot pass or push away.
+/// An obstacle: something that an arm can neither pass nor push away.
 #[derive(Clone, Debug, PartialEq, Eq, Reflect)]
 pub enum Obstacle {
     /// The object of this id.

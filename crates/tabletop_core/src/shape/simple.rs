@@ -5,13 +5,13 @@ use bevy::prelude::*;
 use crate::{Control, Part, Pose, Shape};
 
 impl Shape {
-    /// The simple shapes that are to be seen of it, in the order of the task file, each with its pose in the frame of this shape:
-    /// all but composites and lids.
+    /// The simple shapes that can be seen of it: all but composites and lids. They come in the order of the task file, each with its pose in
+    /// the frame of this shape.
     pub fn simple_parts(&self) -> Vec<Part> {
         self.simple_parts_with(Control::seen)
     }
 
-    /// The simple shapes that can be touched, of which some may not be seen.
+    /// The simple shapes that can be touched, some of which may be invisible.
     pub(crate) fn simple_touched(&self) -> Vec<Part> {
         self.simple_parts_with(Control::touched)
     }

@@ -5,12 +5,12 @@ use bevy::prelude::*;
 use crate::{Bounds, MOST_SIDES, Part, Polyhedron, Pose, Primitive, Shape, Solid, turn_about};
 
 impl Shape {
-    /// The solids to be drawn. Rings and meshes are polyhedra that are not convex.
+    /// The solids to draw. Those of rings and meshes are polyhedra that are not convex.
     pub fn drawn(&self) -> Vec<Primitive> {
         primitives(self.simple_parts(), SolidPurpose::Drawing)
     }
 
-    /// Convex solids that fill what is drawn; a mesh nearly.
+    /// Convex solids that fill the drawn shape, for a mesh approximately.
     pub fn filled(&self) -> Vec<Primitive> {
         primitives(self.simple_parts(), SolidPurpose::Filling)
     }
@@ -22,7 +22,7 @@ impl Shape {
 }
 
 impl Bounds {
-    /// Around the solids of a shape whose origin is at a pose.
+    /// The bounds of a shape's solids; the shape's origin is at the given pose.
     pub fn of_shape(shape: &Shape, at: Pose) -> Self {
         shape
             .colliding()
@@ -33,7 +33,7 @@ impl Bounds {
     }
 }
 
-/// What solids of a shape are for.
+/// The purpose of a shape's solids.
 #[derive(Clone, Copy)]
 enum SolidPurpose {
     Drawing,

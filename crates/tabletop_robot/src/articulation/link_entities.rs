@@ -15,7 +15,7 @@ use crate::articulation::tree::{Articulation, Body, Positions, TreePosition};
 #[require(Transform, Rollback)]
 #[reflect(Component)]
 pub struct RobotLink {
-    /// What it is called.
+    /// Its name.
     pub name: String,
 }
 
@@ -23,7 +23,7 @@ pub struct RobotLink {
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct LinkEntities(pub Vec<Entity>);
 
-/// Friction of the robot's surface. Two surfaces in contact have the product of theirs.
+/// Friction of the robot's surface. The friction of a contact is the product of both surfaces'.
 pub(crate) const FRICTION: f32 = 1.0;
 
 /// Makes the bodies, disabled.
@@ -56,7 +56,7 @@ pub(crate) fn spawn(world: &mut World) -> Result {
             ));
         }
         parts.push(part.id());
-        // One by one, before other pending bodies: the order of bodies decides the last bits of their motion, and Bevy's tables have one
+        // One by one, before other pending bodies: the order of bodies decides the last bits of their motion, and Bevy's tables have an order
         // of their own.
         world.run_system_cached(init_rigid_bodies)?;
         world.run_system_cached(init_colliders)?;
@@ -85,7 +85,7 @@ pub(crate) fn positions(robot: &Robot) -> Positions {
     robot.joints.iter().map(|joint| joint.position).collect()
 }
 
-/// Where the torso's frame stands, in front of the present table.
+/// Pose of the torso's frame in front of the present table.
 pub(crate) fn base(world: &mut World) -> Pose {
     let mut tables = world.query::<&Table>();
     let table = tables.iter(world).next().copied();
@@ -96,7 +96,7 @@ pub(crate) fn base(world: &mut World) -> Pose {
         .pose(&table.unwrap_or_default())
 }
 
-/// Puts the bodies where a posture has them, without pushing anything on the way.
+/// Puts the bodies where the posture has them, without pushing anything on the way.
 pub(crate) fn teleport(world: &mut World) -> Result {
     let base = base(world);
     let posture = world
@@ -118,7 +118,7 @@ pub(crate) fn teleport(world: &mut World) -> Result {
     Ok(())
 }
 
-/// Puts a body somewhere, without pushing anything on the way.
+/// Puts a body at a pose, without pushing anything on the way.
 pub(crate) fn put(bodies: &mut RapierRigidBodySet, part: Entity, pose: Pose) {
     let handle = bodies.entity2body().get(&part).copied();
     if let Some(body) = handle.and_then(|handle| bodies.bodies.get_mut(handle)) {

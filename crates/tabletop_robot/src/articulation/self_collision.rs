@@ -1,4 +1,4 @@
-//! Which bodies of the robot can meet.
+//! Pairs of the robot's bodies that can collide.
 
 use bevy::prelude::*;
 use tabletop_core::{JointRole, Pose};
@@ -8,13 +8,13 @@ use crate::{
     clearance::{Owner, SweptSolid},
 };
 
-/// Joints between two bodies of a limb that can meet.
+/// Number of joints between two bodies of a limb that can collide.
 const JOINTS_BETWEEN: usize = 3;
 
-/// Distance, in units, at which bodies meet in a pose that the real robot takes: their solids are rough there.
+/// Distance, in units, at which bodies count as touching in a posture that the real robot takes: their solids are rough there.
 const ROUGH: f32 = 0.05;
 
-/// The bodies that can meet, as a table of all pairs.
+/// The pairs of bodies that can collide.
 #[derive(Resource, Clone, Debug)]
 pub(crate) struct SelfCollisionMatrix {
     bodies: usize,
@@ -22,12 +22,12 @@ pub(crate) struct SelfCollisionMatrix {
 }
 
 impl SelfCollisionMatrix {
-    /// Whether two bodies can meet, by their numbers.
+    /// True if two bodies can collide. They are given by their numbers.
     pub fn can_meet(&self, a: usize, b: usize) -> bool {
         self.can_meet[a * self.bodies + b]
     }
 
-    /// The pairs that are far enough from each other along the robot, without those whose solids overlap in poses that the
+    /// The pairs that are far enough apart along the robot, without those whose solids overlap in postures that the
     /// real robot takes.
     pub fn new(articulation: &Articulation) -> Self {
         let bodies = articulation.bodies.len();
@@ -60,7 +60,7 @@ impl SelfCollisionMatrix {
     }
 }
 
-/// Whether bodies are far enough from each other along the robot to meet.
+/// True if bodies are far enough apart along the robot to collide.
 const fn are_apart(a: TreePosition, b: TreePosition) -> bool {
     match (a, b) {
         (TreePosition::Limb(a, i), TreePosition::Limb(b, j)) if a.0 == b.0 => {
@@ -72,7 +72,7 @@ const fn are_apart(a: TreePosition, b: TreePosition) -> bool {
     }
 }
 
-/// The solids of every body in a known pose.
+/// The solids of every body in a known posture.
 fn known_posture(articulation: &Articulation, angles: &[f64]) -> Vec<Vec<SweptSolid>> {
     let joints = articulation.layout.joints.iter();
     let positions: Positions = joints

@@ -1,4 +1,4 @@
-//! The robot as the simulator moves it: which bodies it consists of, and where they are.
+//! The robot as a tree of bodies, and their poses.
 
 use std::{
     f32::consts::{FRAC_PI_2, PI},
@@ -22,11 +22,11 @@ use tabletop_physics::Convex;
 
 use crate::look::{error::LookError, figure::figure_of};
 
-/// How far a finger of a wide open gripper stands back, in units: more than the distance at which something counts as touched. So what
-/// is as wide as the opening is not jammed between the fingers.
+/// Distance, in units, by which a finger of a wide open gripper stands back: more than the distance at which things touch. So an object
+/// as wide as the opening is not jammed between the fingers.
 const PLAY: f32 = 0.015;
 
-/// From this share of the widest opening on, fingers begin to stand back.
+/// Share of the widest opening from which fingers begin to stand back.
 const ALMOST_OPEN: f32 = 0.99;
 
 /// One number for every joint of the robot, by [`JointId`].
@@ -37,19 +37,19 @@ pub(crate) type Positions = SmallVec<[f64; 24]>;
 pub(crate) struct Body {
     /// The link's name in the description; for fingers `left-gripper-right-finger`.
     pub id: String,
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// What carries it.
+    /// Its carrier.
     pub carrier: Carrier,
-    /// Where it is along the robot: bodies whose numbers are near each other cannot meet.
+    /// Its position along the robot: bodies near each other there cannot collide.
     pub place: TreePosition,
     /// Its solids, in its own frame.
     pub parts: Vec<Convex>,
-    /// The radius of a ball about its origin that holds them, in units.
+    /// Radius of the ball about its origin that encloses them, in units.
     pub radius: f32,
 }
 
-/// What carries a body.
+/// The carrier of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Carrier {
     /// It is a link.
@@ -58,18 +58,18 @@ pub(crate) enum Carrier {
     Gripper(LimbId, i8),
 }
 
-/// Where a body is along the robot.
+/// The position of a body along the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TreePosition {
-    /// It does not move.
+    /// The body does not move.
     Trunk,
-    /// It turns with the neck.
+    /// The body turns with the neck.
     Head,
-    /// So many joints of a limb carry it; fingers are carried by one more.
+    /// The number of a limb's joints that carry the body, and one more for a finger.
     Limb(LimbId, usize),
 }
 
-/// The robot's model, and what of it the simulator moves.
+/// The robot's model, and the parts of it that the simulator moves.
 #[derive(Resource, Clone, Debug)]
 pub(crate) struct Articulation {
     model: RobotModel,
@@ -82,17 +82,17 @@ pub(crate) struct Articulation {
     pub bodies: Vec<Body>,
 }
 
-/// What of the model a limb is.
+/// The model's part of a limb.
 #[derive(Clone, Debug)]
 struct Limb {
     chain: ArmChain,
-    /// What carries the end effector, and the end effector's frame there.
+    /// The link that carries the end effector, and the end effector's frame on it.
     end_effector: (LinkId, DAffine3),
     /// The links whose origins are tracked.
     trackers: Vec<LinkId>,
 }
 
-/// Where everything is at a moment.
+/// The posture of the robot: the frames of its links and the poses of its bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct Posture {
     values: JointValues,
@@ -104,22 +104,22 @@ pub(crate) struct Posture {
 }
 
 impl Posture {
-    /// Where the links are in the torso's frame, in m.
+    /// Frames of the links, from the torso's frame, in m.
     pub const fn frames(&self) -> &Frames {
         self.links.frames()
     }
 
-    /// Where the torso's frame stands, in units.
+    /// Pose of the torso's frame, in units.
     pub const fn base(&self) -> Pose {
         self.base
     }
 
-    /// Where the bodies are, by their numbers, in units.
+    /// Poses of the bodies, by their numbers, in units.
     pub fn bodies(&self) -> &[Pose] {
         &self.bodies
     }
 
-    /// Where the end effectors are, in units.
+    /// Poses of the end effectors, in units.
     pub fn end_effectors(&self) -> &[Pose] {
         &self.end_effectors
     }
@@ -149,8 +149,8 @@ impl Articulation {
         Ok(articulation)
     }
 
-    /// Adds the convex hulls of the meshes by which links are touched, as coarse as the head camera sees them. `urdf` is the
-    /// file of the description. Returns what could not be added, and the links that lack it.
+    /// Adds the convex hulls of the meshes that are the links' collision shapes, as coarse as the head camera sees them. `urdf` is the
+    /// file of the description. Returns the failures, each with the link that lacks the mesh.
     pub fn add_meshes(&mut self, urdf: Option<&Path>) -> Vec<(String, LookError)> {
         let mut lacking = Vec::new();
         for body in &mut self.bodies {
@@ -175,14 +175,14 @@ impl Articulation {
         &self.model
     }
 
-    /// The chain, with the limits of the layout, from the root to the link that carries an end effector, and the end effector's frame
+    /// The chain, with the limits of the layout, from the root to the link that carries the end effector, and the end effector's frame
     /// on that link.
     pub fn chain(&self, limb: LimbId) -> (&ArmChain, DAffine3) {
         let limb = &self.limbs[limb.index()];
         (&limb.chain, limb.end_effector.1)
     }
 
-    /// The joint of the model that a joint of the robot is.
+    /// The model's joint for a joint of the robot.
     pub fn joint(&self, joint: JointId) -> Option<ModelJointId> {
         self.joints.get(joint.index()).copied().flatten()
     }
@@ -210,7 +210,7 @@ impl Articulation {
         links.chain(fingers).collect()
     }
 
-    /// The body of a link; `None` for mere frames, and for the fingers of a description, whose place the simulator's take.
+    /// The body of a link; `None` for mere frames, and for a description's fingers, which the simulator replaces.
     fn link_body(&self, index: usize) -> Option<Body> {
         let link = &self.model.links()[index];
         let is_frame = link.collisions.is_empty() && link.visuals.is_empty();
@@ -229,7 +229,7 @@ impl Articulation {
         })
     }
 
-    /// How far along the robot a link is.
+    /// The position of a link along the robot.
     fn place(&self, link: LinkId) -> TreePosition {
         let carriers: Vec<_> = std::iter::successors(Some(link), |&link| self.model.parent(link))
             .filter_map(|link| self.model.link(link).joint)
@@ -251,7 +251,7 @@ impl Articulation {
             .unwrap_or(TreePosition::Trunk)
     }
 
-    /// Where everything is when the joints are at these positions, by [`JointId`], and the torso's frame stands at `base`, in units.
+    /// The posture at these positions of the joints, by [`JointId`], with the torso's frame at `base`, in units.
     pub fn posture(&self, positions: &[f64], base: Pose) -> Posture {
         let mut values = self.model.zero();
         self.set_values(&mut values, positions);
@@ -325,7 +325,7 @@ impl Articulation {
         }
     }
 
-    /// Where a finger is in its end effector's frame.
+    /// Pose of a finger in the frame of its end effector.
     fn finger(&self, limb: LimbId, side: i8, opening: f32) -> Pose {
         let gripper = &self.layout.limb(limb).gripper;
         let [_, widest] = self.layout.joint(gripper.joint).limits;
@@ -337,7 +337,7 @@ impl Articulation {
         )
     }
 
-    /// What the joints of a limb turn about: a point and a unit vector, in m in the torso's frame.
+    /// The axes of a limb's joints: a point and a unit vector, in m in the torso's frame.
     pub fn axes(&self, limb: LimbId, posture: &Posture) -> Vec<(DVec3, DVec3)> {
         let joints = self.limbs[limb.index()].chain.joints().iter();
         joints
@@ -349,7 +349,7 @@ impl Articulation {
             .collect()
     }
 
-    /// Something that an end effector carries, at this pose in its frame, in units, with this mass in kg.
+    /// The load of an object that the end effector carries at this pose in its frame, in units, with this mass in kg.
     pub fn load(&self, limb: LimbId, pose: Pose, mass: f64) -> Load {
         let (link, offset) = self.limbs[limb.index()].end_effector;
         Load {
@@ -359,7 +359,7 @@ impl Articulation {
         }
     }
 
-    /// Where the origins of the tracked joints of a limb are.
+    /// Origins of a limb's tracked joints.
     pub fn joint_origins(&self, limb: LimbId, posture: &Posture) -> impl Iterator<Item = Vec3> {
         let trackers = self.limbs[limb.index()].trackers.iter();
         trackers.map(|&link| {
@@ -430,7 +430,7 @@ pub(crate) fn in_meters(pose: Pose) -> DAffine3 {
     )
 }
 
-/// The radius of a ball about the origin that holds these solids.
+/// Radius of the ball about the origin that encloses these solids.
 fn radius(parts: &[Convex]) -> f32 {
     let farthest = parts.iter().map(|part| {
         let ball = part.shape.compute_local_bounding_sphere();
@@ -443,13 +443,13 @@ fn cuboid(span: Vec3) -> SharedShape {
     SharedShape::cuboid(span.x / 2.0, span.y / 2.0, span.z / 2.0)
 }
 
-/// How far a finger stands back at an opening, in units.
+/// Distance by which a finger stands back at an opening, in units.
 fn play(opening: f32, widest: f64) -> f32 {
     let share = opening / widest as f32;
     PLAY * ((share - ALMOST_OPEN) / (1.0 - ALMOST_OPEN)).clamp(0.0, 1.0)
 }
 
-/// The convex hull of a mesh, in the frame of the link that is touched by it.
+/// The convex hull of a mesh, in the frame of the link whose collision shape it is.
 fn hull_of(mesh: &LinkShape, file: &str, urdf: Option<&Path>) -> Result<Convex, LookError> {
     let points = &figure_of(mesh, urdf)?.coarse.positions;
     let hull = SharedShape::convex_hull(points);
@@ -460,7 +460,7 @@ fn hull_of(mesh: &LinkShape, file: &str, urdf: Option<&Path>) -> Result<Convex, 
     })
 }
 
-/// The solid of a link's collision geometry, in the link's frame; of a mesh, [`hull_of`] knows it.
+/// The solid of a link's collision geometry, in the link's frame. For a mesh, see [`hull_of`].
 fn convex(shape: &LinkShape) -> Option<Convex> {
     let origin = in_units(shape.origin);
     let scale = UNITS_PER_METER as f32;
@@ -470,7 +470,7 @@ fn convex(shape: &LinkShape) -> Option<Convex> {
             shape: cuboid(size.as_vec3() * scale),
         },
         Geometry::Cylinder { radius, length } => Convex {
-            // Along z there, along y here.
+            // It lies along z there, along y here.
             pose: origin * Pose::new(Vec3::ZERO, Quat::from_rotation_x(FRAC_PI_2)),
             shape: SharedShape::cylinder(*length as f32 * scale / 2.0, *radius as f32 * scale),
         },

@@ -1,32 +1,32 @@
-//! Where the joints are to go.
+//! Targets of the joints.
 
 use bevy::prelude::*;
 use tabletop_core::{Drive, JointId, JointRole, LimbId, MANUAL_SPEED, RobotLayout, TICK_SECONDS};
 
-/// What the joints are to do in this tick and later.
+/// Targets of the joints, for this tick and later ones.
 #[derive(Resource, Clone, Debug)]
 pub(crate) struct JointTargets {
-    /// What joints are to do in this tick, by [`JointId`].
+    /// Drives of this tick, by [`JointId`].
     now: Vec<Option<Drive>>,
-    /// Where joints are on their way to.
+    /// Goals of joints that move at the speed of manual control.
     toward: Vec<Option<f64>>,
-    /// Where joints are on their way to as fast as their motors can.
+    /// Goals of joints that move as fast as their motors can.
     rush: Vec<Option<f64>>,
-    /// Where whole limbs are on their way to, all joints arriving together.
+    /// Goals of whole limbs, whose joints arrive together.
     reach: Vec<Option<Vec<f64>>>,
-    /// For how many ticks each limb has waited for what it squeezes.
+    /// Number of ticks for which each limb has waited for an object that it squeezes.
     waiting: Vec<u32>,
 }
 
-/// Ticks for which an arm waits for what it squeezes to get out of its way.
+/// Number of ticks for which an arm waits for a squeezed object to get out of its way.
 const PATIENCE: u32 = 10;
 
-/// Where a joint is to be after this tick.
+/// The position of a joint at the end of this tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Setpoint {
-    /// There, by way of everything between.
+    /// This position, by way of all positions between.
     Move(f64),
-    /// There at once.
+    /// This position, at once.
     Jump(f64),
 }
 
@@ -40,7 +40,7 @@ impl Setpoint {
 }
 
 impl JointTargets {
-    /// No joint is to move.
+    /// Targets that move no joint.
     pub fn none(layout: &RobotLayout) -> Self {
         let (joints, limbs) = (layout.joints.len(), layout.limbs.len());
         Self {
@@ -52,7 +52,7 @@ impl JointTargets {
         }
     }
 
-    /// Takes an order for a joint, in place of all earlier ones for it.
+    /// Takes a drive of a joint, which replaces all earlier ones.
     pub fn take(&mut self, layout: &RobotLayout, joint: JointId, drive: Drive) {
         self.cancel(layout, joint);
         match drive {
@@ -65,7 +65,7 @@ impl JointTargets {
         }
     }
 
-    /// Sends a joint to a position as fast as its motor can, in place of all earlier orders for it.
+    /// Sends a joint to a position as fast as its motor can; replaces all earlier targets of the joint.
     pub fn rush(&mut self, layout: &RobotLayout, joint: JointId, position: f64) {
         self.cancel(layout, joint);
         self.rush[joint.index()] = Some(layout.joint(joint).clamp(position));
@@ -77,7 +77,7 @@ impl JointTargets {
         self.reach[limb.index()] = Some(angles);
     }
 
-    /// Forgets where a joint was on its way to.
+    /// Forgets the goal of a joint.
     fn cancel(&mut self, layout: &RobotLayout, joint: JointId) {
         self.now[joint.index()] = None;
         self.toward[joint.index()] = None;
@@ -87,7 +87,7 @@ impl JointTargets {
         }
     }
 
-    /// Whether any joint is to move.
+    /// True if any joint has a target.
     pub fn are_given(&self) -> bool {
         self.now.iter().any(Option::is_some)
             || self.toward.iter().any(Option::is_some)
@@ -95,7 +95,7 @@ impl JointTargets {
             || self.reach.iter().any(Option::is_some)
     }
 
-    /// Whether a limb is on its way to somewhere.
+    /// True while a limb is on its way to a goal.
     pub fn is_under_way(&self, layout: &RobotLayout, limb: LimbId) -> bool {
         let joints = &layout.limb(limb).joints;
         self.reach[limb.index()].is_some()
@@ -104,7 +104,7 @@ impl JointTargets {
             })
     }
 
-    /// Ends the orders of this tick, and those that have been carried out now that the joints are at these positions.
+    /// Ends the targets of this tick, and those that are reached now that the joints are at these positions.
     pub fn end_tick(&mut self, layout: &RobotLayout, reached: &[f64]) {
         self.now.fill(None);
         for goals in [&mut self.toward, &mut self.rush] {
@@ -118,21 +118,21 @@ impl JointTargets {
         }
     }
 
-    /// Notes what a limb waits for in this tick; returns it when it has waited for long enough.
+    /// Counts a tick in which the limb waits for a squeezed object; returns the object once the limb has waited long enough.
     pub fn wait_for(&mut self, limb: LimbId, squeezed: Option<Entity>) -> Option<Entity> {
         let waiting = &mut self.waiting[limb.index()];
         *waiting = if squeezed.is_some() { *waiting + 1 } else { 0 };
         squeezed.filter(|_| *waiting >= PATIENCE)
     }
 
-    /// Gives up where a limb was on its way to.
+    /// Gives up the goals of a limb.
     pub fn give_up(&mut self, layout: &RobotLayout, limb: LimbId) {
         for &joint in &layout.limb(limb).joints {
             self.cancel(layout, joint);
         }
     }
 
-    /// The torque that a joint is told to apply, in N m.
+    /// The commanded torque of a joint, in N m.
     pub fn torque(&self, joint: JointId) -> Option<f64> {
         match self.now[joint.index()] {
             Some(Drive::Torque(torque)) => Some(torque),
@@ -140,7 +140,7 @@ impl JointTargets {
         }
     }
 
-    /// Whether a gripper with this opening is told to open, also where it cannot open any wider.
+    /// True if a gripper with this opening is commanded to open, even where it cannot open any wider.
     pub fn open(&self, layout: &RobotLayout, gripper: JointId, opening: f64) -> bool {
         let [_, widest] = layout.joint(gripper).limits;
         let is_wider = |there: f64| there > opening || there >= widest;
@@ -152,7 +152,7 @@ impl JointTargets {
         }
     }
 
-    /// Where a joint is on its way to.
+    /// The goal of a joint.
     pub fn goal(&self, layout: &RobotLayout, joint: JointId) -> Option<f64> {
         let of_limb = || match layout.joint(joint).role {
             JointRole::Limb { limb, place } => {
@@ -166,7 +166,7 @@ impl JointTargets {
             .or_else(of_limb)
     }
 
-    /// Where a joint at `position` is to be after this tick, within its limits.
+    /// The setpoint of a joint at `position` for this tick, within its limits.
     pub fn setpoint(&self, layout: &RobotLayout, joint: JointId, position: f64) -> Setpoint {
         let limited = layout.joint(joint);
         let step = match self.now[joint.index()] {
@@ -181,7 +181,7 @@ impl JointTargets {
         Setpoint::Move(limited.clamp(position + step))
     }
 
-    /// Where the joints of a limb at these angles are to be after this tick.
+    /// The setpoints of a limb's joints at these angles for this tick.
     pub fn limb_setpoints(
         &self,
         layout: &RobotLayout,

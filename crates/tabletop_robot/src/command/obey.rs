@@ -1,4 +1,4 @@
-//! The commands to the robot, carried out.
+//! Execution of the commands to the robot.
 
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
@@ -91,12 +91,12 @@ fn refuse_while_paused(world: &World) -> Result<(), String> {
     }
 }
 
-/// Whether a joint is moved by a motor with limited torque.
+/// True if a motor with limited torque moves the joint.
 fn has_motor(mode: RobotMode, joint: &JointLayout) -> bool {
     mode == RobotMode::Dynamic && matches!(joint.role, JointRole::Limb { .. })
 }
 
-/// Whether a joint can do what it is told.
+/// Checks that a joint can do what it is commanded.
 fn check(mode: RobotMode, joint: &JointLayout, drive: Drive) -> Result<(), String> {
     let value = match drive {
         Drive::Velocity(value)

@@ -9,7 +9,7 @@ use crate::{
     articulation::tree::{Articulation, in_meters},
 };
 
-/// The angles of a limb that bring its end effector to a pose in the table's frame, near to those that it has now.
+/// Angles of a limb that bring its end effector to a pose in the table's frame, near its present angles.
 pub(crate) fn solve(world: &mut World, limb: LimbId, pose: Pose) -> Result<Vec<f64>, String> {
     let limb_layout = world.resource::<Articulation>().layout.limb(limb).clone();
     let arm = limb_layout.name;

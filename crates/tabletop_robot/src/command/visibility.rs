@@ -1,4 +1,4 @@
-//! Whether the robot stands at the table.
+//! The robot's presence at the table.
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -10,7 +10,7 @@ use crate::{
     motion::placement::{leave_obstacles, stand_at_table},
 };
 
-/// Puts the robot to the table, or takes it away; what its grippers hold is let go of before.
+/// Puts the robot at the table, or takes it away. Its grippers first let go of everything.
 pub(crate) fn show(world: &mut World, cause: CommandId, show: bool) {
     if world.resource::<Robot>().is_shown == show {
         return;
@@ -44,7 +44,7 @@ pub(crate) fn show(world: &mut World, cause: CommandId, show: bool) {
     world.write_message(SimFact::RobotShown { cause, shown: show });
 }
 
-/// Puts the bodies where the joints have them, if they can be there.
+/// Puts the bodies where the joints have them, if there is room.
 fn place(world: &mut World, show: bool) -> Result {
     if show {
         let () = world.run_system_cached(leave_obstacles)?;

@@ -1,4 +1,4 @@
-//! Where bodies of the robot touch things, and how hard.
+//! Contacts between bodies of the robot and things.
 
 use bevy::prelude::*;
 use bevy_rapier3d::{
@@ -13,20 +13,20 @@ use tabletop_physics::{contact, impulse_share};
 
 use crate::clearance::MARGIN;
 
-/// Distance, in units, at which something is touched: an arm stops at the margin before what it cannot push, or a little earlier.
+/// Distance, in units, at which something is touched: an arm stops at the margin before an obstacle, or a little earlier.
 const REACHED: f32 = 1.5 * MARGIN;
 
-/// How a thing is touched.
+/// A contact with a thing.
 pub(crate) struct Contact {
     /// An object or the table.
     pub thing: Entity,
-    /// Where on its surface, in the table's frame.
+    /// Its place on the thing's surface, in the table's frame.
     pub point: Vec3,
-    /// How hard in the last tick, in kg units/s.
+    /// Impulse of the last tick, in kg units/s.
     pub impulse: f32,
 }
 
-/// What a body pressed in the last tick, as the physics engine has it.
+/// Adds the contacts of a body in the last tick, as the physics engine reports them.
 pub(crate) fn with_pressed<'a>(
     rapier: &'a RapierContext,
     body: ColliderHandle,
@@ -50,12 +50,12 @@ pub(crate) fn with_pressed<'a>(
     })
 }
 
-/// The centre of the pressure on the first or the second collider of a pair, in its frame, and the impulse along the normals that the
+/// The centre of pressure on the first or the second collider of a pair, in its frame, and the impulse along the normals that the
 /// engine reports.
 fn pressure(pair: &ContactPair, on_first: bool) -> Option<(Vec3, f32)> {
     let (mut moment, mut impulse) = (Vec3::ZERO, 0.0);
     for manifold in pair.solver_manifolds() {
-        // Only what the solver has looked at in this tick: other points keep impulses of earlier ones.
+        // Only points that the solver has used in this tick: others keep impulses of earlier ticks.
         let solved = manifold.data.solver_contacts.iter();
         let numbers = solved.flat_map(|solved| solved.contact_indices());
         for point in numbers.filter_map(|number| manifold.points.get(number as usize)) {
@@ -70,11 +70,11 @@ fn pressure(pair: &ContactPair, on_first: bool) -> Option<(Vec3, f32)> {
     (impulse > 0.0).then(|| (moment / impulse, impulse))
 }
 
-/// A thing that bodies may come near to.
+/// A thing that bodies may come near.
 pub(crate) struct Thing<'a> {
     entity: Entity,
     collider: &'a Collider,
-    /// The box around all that touches it.
+    /// The box around all its colliders.
     bounds: Aabb,
 }
 
@@ -91,7 +91,7 @@ impl<'a> Thing<'a> {
     }
 }
 
-/// What a body has reached of these things: where they are nearest, and not how hard.
+/// Adds the things that a body has reached, each with the nearest point and no impulse.
 pub(crate) fn with_near<'a>(
     rapier: &'a RapierContext,
     body: ColliderHandle,

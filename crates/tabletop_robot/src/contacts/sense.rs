@@ -1,4 +1,4 @@
-//! What the grippers hold, and what the bodies touch.
+//! Sensing of grips and contacts.
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -11,7 +11,7 @@ use crate::{
     gripper::grips::Grips,
 };
 
-/// Notes what the grippers hold and what the robot touches.
+/// Writes the robot's grips and contacts.
 pub(crate) fn sense_contacts(
     articulation: Res<Articulation>,
     parts: Res<LinkEntities>,
@@ -55,7 +55,7 @@ pub(crate) fn sense_contacts(
     Ok(())
 }
 
-/// What a finger touches because its gripper holds it.
+/// The contacts of a finger with the objects that its gripper holds.
 fn with_gripped(carrier: Carrier, grips: &Grips, robot: &Robot) -> impl Iterator<Item = Contact> {
     let finger = match carrier {
         Carrier::Gripper(limb, side) => Some((limb, usize::from(side > 0))),
@@ -70,7 +70,7 @@ fn with_gripped(carrier: Carrier, grips: &Grips, robot: &Robot) -> impl Iterator
     })
 }
 
-/// The first contact with each thing, in this order of the things.
+/// The first contact with each thing, in the order of the things.
 fn once_in_order(
     contacts: impl Iterator<Item = Contact>,
     order: &[Entity],

@@ -1,7 +1,7 @@
-//! What an arm touches that is free to move, for the arm's own dynamics.
+//! Free objects that an arm touches, as the arm's own dynamics needs them.
 //!
-//! To physics the robot's bodies go where they go, whatever is in their way: what they push gets their speed at once. So what
-//! it takes to push something must be known before the arm moves, not after.
+//! For physics, the robot's bodies go where they are sent, whatever is in their way, and pushed objects get their speed at once. So the
+//! effort of a push must be known before the arm moves, not after.
 
 use bevy::{
     math::{DAffine3, DVec3},
@@ -23,11 +23,11 @@ use crate::{
     motion::sweep::TickMotion,
 };
 
-/// Cosine of the angle to a direction within which something fixed is straight ahead.
+/// Cosine of the largest angle to a direction at which something fixed is straight ahead.
 const AHEAD: f32 = 0.7;
 
-/// What an arm touches or is about to be touched by: each thing once, where it is nearest. `gravity` in units/s²; `is_mine` tells
-/// the robot's bodies and what it holds.
+/// The things that an arm touches or is about to be touched by, each once, where it is nearest. `gravity` in units/s²; `is_mine` is true for
+/// the robot's bodies and held objects.
 pub(crate) fn contact_loads(
     motion: &mut TickMotion,
     limb: LimbId,
@@ -48,7 +48,7 @@ pub(crate) fn contact_loads(
         let Some(body) = body(rapier, thing.object) else {
             continue;
         };
-        // What comes is touched on its way.
+        // An approaching thing is touched on its way.
         let reach = TOUCHING + body.linvel().length() * TICK_SECONDS;
         let bounds = thing.bounds.loosened(reach);
         let near = solids
@@ -69,7 +69,7 @@ pub(crate) fn contact_loads(
         if contact.dist > TOUCHING - speed.min(0.0) * TICK_SECONDS {
             continue;
         }
-        // What weighs on the arm falls towards it; what lies elsewhere stays there.
+        // A thing that rests on the arm falls towards it; a thing elsewhere stays in place.
         let falls = (Vec3::NEG_Z.dot(normal) * gravity * TICK_SECONDS).min(0.0);
         let carriers = match motion.articulation.bodies[number].place {
             TreePosition::Limb(_, joints) => joints.min(axes.len()),
@@ -100,7 +100,7 @@ pub(crate) fn contact_loads(
     touches
 }
 
-/// How fast a point goes along a direction per rad/s of each joint, in m, if so many of them carry it.
+/// Speed of a point along a direction per rad/s of each joint, in m. `joints` carry the point.
 fn lever(
     axes: &[(DVec3, DVec3)],
     carriers: usize,
@@ -119,8 +119,8 @@ fn lever(
     })
 }
 
-/// The momentum in kg units/s that what else touches a thing can take from it in a tick, if it goes that way: what it pushes there itself,
-/// and friction, by the impulses of the last tick.
+/// The momentum, in kg units/s, that the thing's other contacts can take from it in a tick if it goes that way: by pushing,
+/// and by friction, according to the impulses of the last tick.
 fn resistance(
     rapier: &RapierContextMut,
     thing: &FreeObject,

@@ -1,9 +1,9 @@
-//! An arm as masses that motors move.
+//! Dynamics of a limb: masses that motors move.
 //!
 //! Everything is in m, kg, s, rad and N m, one number for every joint. A step is implicit: all torques are those at its end,
-//! so that stiff motors are stable in steps of any length. What acts on a joint never grows with the joint's speed: motors pull
-//! less and less, up to their limits, and what is pushed and stops push back more and more. So there is exactly one answer, the
-//! minimum of a convex function, and Newton's method finds it from anywhere if it never goes too far.
+//! so stiff motors are stable in steps of any length. The torque on a joint never grows with the joint's speed: motors pull
+//! less and less, down to their limits, and pushed objects and stops push back more and more. So there is exactly one solution, the
+//! minimum of a convex function, and Newton's method with a line search finds it from any start.
 
 #[cfg(test)]
 mod tests;
@@ -14,48 +14,48 @@ use crate::dynamics::{
     motor::Motor,
 };
 
-/// An arm at a moment, and what acts on it besides its motors.
+/// The state of an arm, and the loads on it besides its motors.
 #[derive(Clone, Debug)]
 pub(crate) struct LimbDynamics {
-    /// Where the joints are, in rad.
+    /// Angles of the joints, in rad.
     pub angles: Joints,
-    /// How fast they are, in rad/s.
+    /// Velocities of the joints, in rad/s.
     pub velocities: Joints,
-    /// What they have to move, in kg m².
+    /// Inertia matrix of the joints, in kg m².
     pub inertia: Matrix,
-    /// The torque in N m that it takes not to be accelerated: against weights and what turns with the arm.
+    /// The torque, in N m, that keeps the joints from accelerating: against weights and the effects of rotation.
     pub bias: Joints,
     /// Torque against the motion of each joint, in N m per rad/s.
     pub damping: Joints,
-    /// Between which angles each joint can move, in rad.
+    /// Limits of each joint, in rad.
     pub stops: Vec<[f64; 2]>,
-    /// What the arm touches that is free to move.
+    /// The free objects that the arm touches.
     pub touches: Vec<ContactLoad>,
 }
 
-/// What a step makes of an arm.
+/// The result of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct DynamicsStep {
-    /// How fast the joints are at its end and move in it, in rad/s.
+    /// Velocities of the joints in the step and at its end, in rad/s.
     pub velocities: Joints,
     /// Torques of the motors, in N m.
     pub torques: Joints,
 }
 
-/// What stops push back with, in N m s per rad/s beyond what is left of the way.
+/// Stiffness of a stop, in N m s per rad/s beyond the rest of the way.
 const WALL: f64 = 1e6;
 
-/// Most rounds of Newton's method; a few are usual.
+/// Largest number of Newton steps; a few are usual.
 const MOST_NEWTON_STEPS: usize = 60;
 
-/// Angular momentum in N m s that may be unaccounted for.
+/// Largest residual that counts as zero, in N m s.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// Halvings of a way of Newton's method that goes too far.
+/// Largest number of halvings in a line search.
 const HALVINGS: usize = 30;
 
 impl LimbDynamics {
-    /// What `seconds` make of the arm.
+    /// The step of the arm through `seconds`.
     pub fn step(&self, motors: &[Motor], seconds: f64) -> DynamicsStep {
         let smooth = self.minimum(motors, self.velocities.clone(), &[], seconds);
         let draws = self.draws(&smooth);
@@ -81,13 +81,13 @@ impl LimbDynamics {
         }
     }
 
-    /// What can be drawn along by friction when the arm pushes as hard as it does with these velocities.
+    /// The loads of friction when the arm pushes as hard as it does with these velocities.
     fn draws(&self, velocities: &Joints) -> Vec<FrictionLoad<'_>> {
         let touches = self.touches.iter();
         touches.flat_map(|touch| touch.draws(velocities)).collect()
     }
 
-    /// The velocities at the end of a step, looked for from these on.
+    /// The velocities at the end of a step, by Newton's method from these.
     fn minimum(
         &self,
         motors: &[Motor],
@@ -113,7 +113,7 @@ impl LimbDynamics {
         velocities
     }
 
-    /// The angular momentum in N m s that would come from nowhere if the joints had these velocities at the end of a step.
+    /// The residual: the angular momentum, in N m s, that would come from nowhere if the joints had these velocities at the end of a step.
     fn residual(
         &self,
         motors: &[Motor],
@@ -147,7 +147,7 @@ impl LimbDynamics {
         })
     }
 
-    /// How that changes with the velocities.
+    /// The Hessian: the derivative of the residual by the velocities.
     fn hessian(
         &self,
         motors: &[Motor],
@@ -183,14 +183,14 @@ impl LimbDynamics {
         slope
     }
 
-    /// Velocities in rad/s between which a joint does not go beyond its stops.
+    /// Velocities, in rad/s, between which a joint stays within its stops.
     fn bounds(&self, joint: usize, seconds: f64) -> [f64; 2] {
         self.stops[joint].map(|stop| (stop - self.angles[joint]) / seconds)
     }
 }
 
-/// Goes from somewhere this way until it goes up again: the convex function whose slopes `residual` has goes down by
-/// `-start` where the way starts.
+/// The line search: goes in this direction until the convex function with the gradient `residual` rises again. At the start it
+/// falls with the slope `-start`.
 fn line_search(
     from: &Joints,
     way: &Joints,

@@ -1,4 +1,4 @@
-//! Equations in the joints of a limb.
+//! Linear algebra on the joints of a limb.
 
 use smallvec::SmallVec;
 
@@ -8,29 +8,29 @@ pub(crate) type Joints = SmallVec<[f64; 8]>;
 /// One number for every pair of joints of a limb.
 pub(crate) type Matrix = SmallVec<[Joints; 8]>;
 
-/// Least pivot that is divided by. It is below what the smallest hand has (kg m²), so it only matters to descriptions without masses.
+/// Least pivot of a division. It is below the inertia of the smallest hand (in kg m²), so it matters only for descriptions without masses.
 const LEAST_PIVOT: f64 = 1e-6;
 
-/// A number for each of so many joints.
+/// A number for each joint.
 pub(crate) fn each(joints: usize, number: impl FnMut(usize) -> f64) -> Joints {
     (0..joints).map(number).collect()
 }
 
-/// A number for each pair of so many joints.
+/// A number for each pair of joints.
 pub(crate) fn each_pair(joints: usize, number: impl Fn(usize, usize) -> f64) -> Matrix {
     (0..joints)
         .map(|i| each(joints, |j| number(i, j)))
         .collect()
 }
 
-/// A symmetric, positive definite matrix taken apart into L D Lᵀ, to solve equations with.
+/// The factorisation L D Lᵀ of a symmetric, positive definite matrix.
 pub(crate) struct Factors {
     lower: Matrix,
     pivots: Joints,
 }
 
 impl Factors {
-    /// Takes a matrix apart; only what is on and below its diagonal counts.
+    /// Factorises a matrix; only its diagonal and the part below it are read.
     pub fn of(matrix: &Matrix) -> Self {
         let joints = matrix.len();
         let mut factors = Self {
@@ -54,7 +54,7 @@ impl Factors {
         factors
     }
 
-    /// The x for which the matrix times x is the right side.
+    /// The solution x of matrix · x = `right`.
     pub fn solve(&self, right: Joints) -> Joints {
         let mut x = right;
         for row in 0..x.len() {
@@ -69,7 +69,7 @@ impl Factors {
     }
 }
 
-/// The sum of products.
+/// The dot product.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

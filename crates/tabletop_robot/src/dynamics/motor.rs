@@ -1,14 +1,14 @@
-//! The motor of a joint: what it can do, and what it tries to do.
+//! The motor of a joint: its limits and its task.
 
-/// How far a joint is from where it shall be, in rad, when its motor pulls with all its might: 0.57°.
+/// Angle between a joint and its target, in rad, at which the motor pulls with its full torque: 0.57°.
 ///
 /// So whatever a motor can hold at all, it holds within this angle, whether its weight is known or not.
 pub(crate) const STRETCH: f64 = 0.01;
 
-/// Time in s in which a joint that nothing hinders gets to where it shall be, but for a third.
+/// Time, in s, in which an unhindered joint covers two thirds of the way to its target.
 const SETTLING: f64 = 0.04;
 
-/// By how much, in rad/s, a motor is faster than it can be when it brakes with all its might.
+/// Speed, in rad/s, above its limit at which a motor brakes with its full torque.
 const SLIP: f64 = 1e-5;
 
 /// A motor in a tick.
@@ -18,20 +18,20 @@ pub(crate) struct Motor {
     pub effort: f64,
     /// Largest speed, in rad/s.
     pub speed: f64,
-    /// What it is to do.
+    /// Its task.
     pub task: MotorTask,
 }
 
-/// What a motor is to do in a tick.
+/// The task of a motor in a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum MotorTask {
-    /// Bring its joint to a place.
+    /// Bring the joint to an angle.
     Follow {
-        /// Where the joint shall be at the tick's end, in rad.
+        /// Angle of the joint at the tick's end, in rad.
         angle: f64,
-        /// How fast it shall be then, in rad/s.
+        /// Velocity of the joint then, in rad/s.
         velocity: f64,
-        /// What is known to pull at the joint, in N m the other way.
+        /// Known torque on the joint that the motor compensates, in N m.
         known: f64,
     },
     /// Pull with this torque, in N m.
@@ -39,13 +39,13 @@ pub(crate) enum MotorTask {
 }
 
 impl Motor {
-    /// The torque in N m that it has with its joint at this angle (rad) and velocity (rad/s).
+    /// Its torque, in N m, at this angle (rad) and velocity (rad/s) of the joint.
     pub fn torque(&self, at: f64, velocity: f64) -> f64 {
         let [least, most] = self.limits(velocity);
         self.wish(at, velocity).clamp(least, most)
     }
 
-    /// By how much its torque falls with the velocity that its joint has in a step and at its end, in N m per rad/s.
+    /// Decrease of its torque, in N m per rad/s, with the velocity that the joint has during a step and at its end.
     pub fn slope(&self, at: f64, velocity: f64, seconds: f64) -> f64 {
         let [least, most] = self.limits(velocity);
         let wish = self.wish(at, velocity);
@@ -62,7 +62,7 @@ impl Motor {
         }
     }
 
-    /// The torque in N m that it would have without limits.
+    /// Its torque, in N m, if it had no limits.
     fn wish(&self, at: f64, is: f64) -> f64 {
         let (stiffness, damping) = self.gains();
         match self.task {
@@ -75,7 +75,7 @@ impl Motor {
         }
     }
 
-    /// Torque per rad that the joint is away from where it shall be, and per rad/s that it is too slow or too fast.
+    /// Torque per rad of the joint's angle error, and per rad/s of its velocity error.
     fn gains(&self) -> (f64, f64) {
         match self.task {
             MotorTask::Follow { .. } => (self.effort / STRETCH, self.effort / STRETCH * SETTLING),
@@ -83,7 +83,7 @@ impl Motor {
         }
     }
 
-    /// Least and largest torque at a velocity: at its largest speed, it can only brake.
+    /// Least and largest torque at a velocity: at its largest speed, a motor can only brake.
     fn limits(&self, velocity: f64) -> [f64; 2] {
         let most = |velocity: f64| {
             let beyond = (velocity - self.speed) / SLIP;

@@ -1,8 +1,8 @@
-//! Dynamic mode: arms that motors with limited torque drive.
+//! Dynamic mode: motors with limited torque drive the arms.
 //!
-//! Each motor pulls its joint along with a place that goes where targets send it, as a joint of kinematic mode would. It is
-//! never farther ahead than the motor can pull, so a joint that is held back does not wind up. Grippers and neck go as in
-//! kinematic mode. The arms' own weight is borne by springs, as in the real robot; the motors bear what the grippers hold.
+//! Each motor pulls its joint towards an angle that moves as a joint of kinematic mode would. That angle is
+//! never farther ahead than the motor can pull, so a joint that is held back does not wind up. Grippers and neck move as in
+//! kinematic mode. Springs bear the arms' own weight, as in the real robot; the motors bear the objects that the grippers hold.
 
 use bevy::{math::DVec3, prelude::*};
 use tabletop_core::{LimbId, Robot, RobotLayout, TICK_SECONDS, UNITS_PER_METER};
@@ -18,16 +18,16 @@ use crate::{
     motion::sweep::TickMotion,
 };
 
-/// Share of a motor's torque with which a joint is slowed down before its goal.
+/// Share of a motor's torque that slows a joint down before its goal.
 const BRAKES: f64 = 0.5;
 
-/// Speed in rad/s below which a joint has arrived.
+/// Speed, in rad/s, below which a joint has arrived.
 const AT_REST: f64 = 0.02;
 
-/// Speed in rad/s below which a joint stands still, as gears do.
+/// Speed, in rad/s, below which a joint stands still, as gears do.
 const STILL: f64 = 1e-6;
 
-/// What the motors have to remember from tick to tick.
+/// The memory of the motors from tick to tick.
 #[derive(Resource, Clone, Debug, Default)]
 pub(crate) struct Motors {
     limbs: Vec<LimbMotors>,
@@ -37,17 +37,17 @@ pub(crate) struct Motors {
 /// An arm that motors drive.
 #[derive(Clone, Debug, Default)]
 struct LimbMotors {
-    /// Where the joints were when the motors left them, in rad.
+    /// Angles of the joints when the motors left them, in rad.
     angles: Joints,
-    /// How fast they were, in rad/s.
+    /// Their velocities then, in rad/s.
     velocities: Joints,
-    /// Where the motors pull them to, in rad.
+    /// Angles to which the motors pull them, in rad.
     places: Joints,
 }
 
 /// A tick of an arm.
 pub(crate) struct LimbStep {
-    /// What the arm touches, as the masses have it.
+    /// The touched objects, in the order of the dynamics' loads.
     touched: Vec<Entity>,
     masses: LimbDynamics,
     motors: Vec<Motor>,
@@ -55,7 +55,7 @@ pub(crate) struct LimbStep {
 }
 
 impl Motors {
-    /// Forgets the motion of arms that have been moved by something else.
+    /// Forgets the motion of arms that something else has moved.
     pub fn look(&mut self, layout: &RobotLayout, robot: &Robot) {
         let appears = std::mem::replace(&mut self.was_shown, robot.is_shown) != robot.is_shown;
         self.limbs
@@ -72,7 +72,7 @@ impl Motors {
         }
     }
 
-    /// What the motors do in this tick. `gravity` in units/s².
+    /// The steps of the arms in this tick. `gravity` in units/s².
     pub fn pull(
         &self,
         motion: &mut TickMotion,
@@ -145,13 +145,13 @@ impl Motors {
         pulls.collect()
     }
 
-    /// Notes what has become of a tick: how far the arms have come, and with which torques.
+    /// Takes in the result of a tick: how far the arms have come, and with which torques.
     pub fn note(&mut self, pulls: &[LimbStep], motion: &mut TickMotion, robot: &mut Robot) {
         let layout = &motion.articulation.layout;
         for (limb, pull) in layout.limb_ids().zip(pulls) {
             let joints = &layout.limb(limb).joints;
             let angles = each(joints.len(), |i| motion.positions[joints[i].index()]);
-            // Where something free is only just reached, an arm keeps its speed.
+            // Where a free object has only just been reached, an arm keeps its speed.
             let is_free =
                 motion.blocked_by[limb.index()].is_none() && !motion.is_squeezing[limb.index()];
             let (velocities, torques) = match is_free {
@@ -177,15 +177,15 @@ impl Motors {
         }
     }
 
-    /// Lets a limb stay where it is.
+    /// Lets a limb stay in place.
     pub fn stay(&mut self, limb: LimbId) {
         if let Some(motors) = self.limbs.get_mut(limb.index()) {
             motors.places.clone_from(&motors.angles);
         }
     }
 
-    /// How far orders have been carried out: to where the motors pull joints that have come to rest, and these positions
-    /// of all others.
+    /// The positions by which targets have been reached: for motor-driven joints at rest, the angle to which the motor pulls; for all
+    /// others, these positions.
     pub fn reached(&self, layout: &RobotLayout, positions: &[f64]) -> Positions {
         let mut reached = Positions::from_slice(positions);
         for (motors, limb) in self.limbs.iter().zip(&layout.limbs) {
@@ -201,7 +201,7 @@ impl Motors {
 }
 
 impl LimbMotors {
-    /// What the motors are to do in this tick. `inertia` in kg m², `weights` in N m.
+    /// The motors with their tasks in this tick. `inertia` in kg m², `weights` in N m.
     fn motors(
         &self,
         articulation: &Articulation,
@@ -232,7 +232,7 @@ impl LimbMotors {
                 Some(torque) => MotorTask::Torque(torque),
                 None => {
                     let way = setpoints[i].position() - self.places[i];
-                    // As fast as it can still stop where it is to go.
+                    // As fast as still allows it to stop at its goal.
                     let brakes = BRAKES * effort / inertia[i][i].max(f64::MIN_POSITIVE);
                     let left = targets
                         .goal(layout, joints[i])
@@ -263,7 +263,7 @@ impl LimbMotors {
 }
 
 impl LimbStep {
-    /// Where the joints are to be after the tick.
+    /// Setpoints of the joints for the tick.
     pub fn setpoints(&self) -> Vec<Setpoint> {
         let angles = self.masses.angles.iter().zip(&self.step.velocities);
         angles
@@ -275,7 +275,7 @@ impl LimbStep {
             .collect()
     }
 
-    /// What a motor pushes in vain with all its might.
+    /// An object against which a motor stalls.
     fn stalled_by(&self) -> Option<Entity> {
         let DynamicsStep {
             velocities,
@@ -291,7 +291,7 @@ impl LimbStep {
             .map(|(thing, _)| *thing)
     }
 
-    /// Velocities and torques of an arm that came only to these angles, because something is in its way.
+    /// Velocities and torques of an arm that came only to these angles because of an obstacle.
     fn held_back(&self, angles: &Joints) -> (Joints, Joints) {
         let velocities = each(angles.len(), |i| {
             (angles[i] - self.masses.angles[i]) / f64::from(TICK_SECONDS)

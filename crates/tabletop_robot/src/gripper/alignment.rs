@@ -1,17 +1,17 @@
-//! How closing fingers turn what they meet askew until it is flush with them.
+//! Alignment: closing fingers turn an object that lies askew until it is flush with them.
 
 use bevy::prelude::*;
 
 use crate::gripper::closing::STEEPEST_GRIP;
 
-/// How far fingers press into what they turn in a tick, in units: what yields no more than this is pushed no harder.
+/// Depth to which fingers press into an object that they turn, in units per tick. An object that yields no more than this is pushed no harder.
 pub(crate) const PRESS: f64 = 0.01;
 
 /// The angle θ below which an object is flush, in rad.
 const FLUSH: f32 = 0.02;
-/// By how much θ falls at least while an object is turned, in rad.
+/// Least decrease of θ while an object is turned, in rad.
 const PROGRESS: f32 = 0.002;
-/// For how many ticks an object is pressed without turning.
+/// Number of ticks for which an object is pressed without turning.
 const PATIENCE: u32 = 12;
 
 /// An object that closing fingers turn.
@@ -19,13 +19,13 @@ const PATIENCE: u32 = 12;
 pub(crate) struct Alignment {
     /// The object.
     pub object: Entity,
-    /// The least angle θ until now, in rad.
+    /// Least angle θ so far, in rad.
     angle: f32,
-    /// For how many ticks it has not become less.
+    /// Number of ticks since it last decreased.
     still: u32,
 }
 
-/// What becomes of an object that both fingers touch.
+/// The judgement on an object that both fingers touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Judgement {
     /// It is held.
@@ -36,7 +36,7 @@ pub(crate) enum Judgement {
     Refuse,
 }
 
-/// What becomes of an object that both fingers touch at the angle θ, in rad.
+/// The judgement on an object that both fingers touch at the angle θ, in rad.
 pub(crate) fn judge(alignment: &mut Option<Alignment>, object: Entity, angle: f32) -> Judgement {
     let is_steep = angle >= STEEPEST_GRIP;
     let Some(known) = alignment.as_mut().filter(|known| known.object == object) else {

@@ -1,4 +1,4 @@
-//! Whether a gripper holds what is between its fingers (report section 5, figure 11), and how far it can close.
+//! Closing of a gripper: whether it holds the objects between its fingers (report section 5, figure 11), and how far it can close.
 
 use std::{collections::BTreeMap, f32::consts::PI};
 
@@ -14,7 +14,7 @@ pub const STEEPEST_GRIP: f32 = PI / 16.0;
 /// Sum of the distances to both fingers, in units, at which an object counts as touched by both.
 const TOUCHING: f32 = 0.004;
 
-/// Something that may be between the fingers.
+/// An object that may be between the fingers.
 pub(crate) struct Graspable {
     /// The object.
     pub object: Entity,
@@ -22,10 +22,10 @@ pub(crate) struct Graspable {
     pub parts: Vec<Convex>,
 }
 
-/// What a gripper finds between its fingers.
+/// The findings of a closing gripper.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Closing {
-    /// By how much the opening can still shrink until something is in the way, in units.
+    /// Distance by which it can still close, in units.
     pub room: f32,
     /// The objects that both fingers touch.
     pub touched: Vec<Touched>,
@@ -38,11 +38,11 @@ pub(crate) struct Touched {
     pub object: Entity,
     /// The angle θ.
     pub angle: f32,
-    /// Where the left and the right finger touch it, in the table's frame.
+    /// Contact points of the left and the right finger, in the table's frame.
     pub points: [Vec3; 2],
 }
 
-/// What happens to a gripper that closes.
+/// The closing of a gripper.
 pub(crate) fn close(
     end_effector: Pose,
     opening: f32,
@@ -81,7 +81,7 @@ fn angle(left: FingerTouch, right: FingerTouch, end_effector: Pose) -> f32 {
     across.angle_between(end_effector.rotation * Vec3::X)
 }
 
-/// Adds what an object takes of each line from finger to finger, so that objects behind each other add up.
+/// Adds the thickness of an object along each line from finger to finger, so that objects behind each other add up.
 fn add_thickness(
     thickness: &mut BTreeMap<ProbeRay, f32>,
     [left, right]: [FingerPad; 2],
@@ -117,7 +117,7 @@ mod tests {
         candidate(SharedShape::cuboid(0.5, 0.5, 0.5), pose)
     }
 
-    /// θ when the gripper has closed on this, without moving it.
+    /// θ once the gripper has closed on this without moving it.
     fn theta(candidate: Graspable) -> f32 {
         let candidates = [candidate];
         let free = close(Pose::IDENTITY, 2.0, FINGER, &candidates);

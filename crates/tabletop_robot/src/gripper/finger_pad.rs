@@ -1,40 +1,40 @@
-//! Where a finger touches what is between the fingers.
+//! Finger pads: where a finger touches the objects between the fingers.
 
 use bevy::prelude::*;
 use bevy_rapier3d::parry::query::Ray;
 use tabletop_core::Pose;
 use tabletop_physics::{Convex, to_rapier};
 
-/// Rays across and along the face, with which it probes what is in front of it.
+/// Number of probe rays across and along the face.
 const PROBE_RAYS: (u32, u32) = (9, 31);
 
-/// How far the face yields to what presses on it, in units: what is nearer than this to the foremost point touches, too.
+/// Depth to which the face yields to pressure, in units: whatever is nearer than this to the foremost point touches, too.
 const YIELD: f32 = 0.04;
 
-/// How far inside the finger the rays begin, in units, so that they meet what has entered it a little.
+/// Depth inside the finger at which the rays begin, in units, so that they meet objects that have entered it slightly.
 const DEPTH: f32 = 0.1;
 
 /// One of the rays of a face: its number across and along.
 pub(crate) type ProbeRay = (u32, u32);
 
-/// The ray of the other finger that faces this one: the faces are turned against each other about their z axes.
+/// The opposite ray of the other finger: the faces are turned against each other about their z axes.
 pub(crate) const fn opposite(ray: ProbeRay) -> ProbeRay {
     (PROBE_RAYS.0 - 1 - ray.0, ray.1)
 }
 
-/// Something in front of a finger.
+/// A touch of a finger.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FingerTouch {
-    /// How far the finger is from it, in units; negative inside.
+    /// Distance from the finger, in units; negative inside.
     pub distance: f32,
-    /// Centre of the area that the finger touches when it arrives, in the table's frame.
+    /// Centre of the touched area once the finger arrives, in the table's frame.
     pub point: Vec3,
 }
 
 /// The inner face of a finger.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FingerPad {
-    /// Origin in the centre of the face, x inwards, z along the finger.
+    /// Its pose: origin in the centre of the face, x inwards, z along the finger.
     pub pose: Pose,
     /// Half its extents across and along the finger, in units.
     half: Vec2,
@@ -51,7 +51,7 @@ impl FingerPad {
         })
     }
 
-    /// How far each ray of the face goes to a body, no farther than `reach`.
+    /// Length of each ray of the face to a body, at most `reach`.
     pub fn probe<'a>(
         &'a self,
         body: &'a [Convex],
@@ -71,7 +71,7 @@ impl FingerPad {
         })
     }
 
-    /// Where the finger touches a body first, moving inwards no farther than `reach`.
+    /// The first touch of a body when the finger moves inwards by at most `reach`.
     pub fn touch(&self, body: &[Convex], reach: f32) -> Option<FingerTouch> {
         let hits: Vec<_> = self.probe(body, reach).collect();
         let distance = hits
@@ -96,7 +96,7 @@ fn probe_rays(half: Vec2) -> impl Iterator<Item = (ProbeRay, Vec3)> {
         .map(move |ray| (ray, place_of(ray, half)))
 }
 
-/// Where a ray is, in the frame of the face.
+/// Origin of a ray in the frame of the face.
 fn place_of(ray: ProbeRay, half: Vec2) -> Vec3 {
     let from_middle = |i: u32, count: u32| 2.0 * i as f32 / (count - 1) as f32 - 1.0;
     Vec3::new(

@@ -1,4 +1,4 @@
-//! What the grippers hold.
+//! Grips: the objects in the grippers.
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
@@ -9,15 +9,15 @@ use tabletop_physics::{Carry, hold, let_go, pull_velocity};
 
 use crate::gripper::{alignment::Alignment, closing::Touched};
 
-/// What the grippers hold, and how.
+/// The grips of all grippers.
 #[derive(Resource, Clone, Debug)]
 pub(crate) struct Grips {
     /// The limbs, by [`LimbId`].
     names: Vec<LimbName>,
     held: Vec<Vec<Grip>>,
-    /// Objects that a closing gripper could not hold, until it opens.
+    /// Objects that a closing gripper could not hold; forgotten when it opens.
     pub refused: Vec<Vec<Entity>>,
-    /// What each closing gripper turns between its fingers, until it opens.
+    /// The object that each closing gripper turns between its fingers, until it opens.
     pub alignments: Vec<Option<Alignment>>,
 }
 
@@ -28,9 +28,9 @@ pub(crate) struct Grip {
     pub object: Entity,
     /// Its pose in the end effector's frame.
     pub pose: Pose,
-    /// Where the left and the right finger touch it, in the end effector's frame.
+    /// Contact points of the left and the right finger, in the end effector's frame.
     pub points: [Vec3; 2],
-    /// Whether joints hold it, too: then it is pulled along as far as they let it.
+    /// True if joints hold it, too. It is then pulled along as far as they allow.
     pub is_jointed: bool,
 }
 
@@ -50,29 +50,29 @@ impl Grips {
         (0..self.held.len() as u8).map(LimbId)
     }
 
-    /// What a gripper holds, in the order in which it took it.
+    /// The grips of a gripper, in the order in which they were made.
     pub fn of(&self, limb: LimbId) -> &[Grip] {
         &self.held[limb.index()]
     }
 
-    /// Whether a gripper presses on what its fingers touch.
+    /// True while a gripper presses on objects that its fingers touch.
     pub fn is_pressing(&self, limb: LimbId) -> bool {
         let refused = &self.refused[limb.index()];
         self.alignments[limb.index()].is_some_and(|turned| !refused.contains(&turned.object))
     }
 
-    /// What a limb is called.
+    /// Name of a limb.
     pub fn name_of(&self, limb: LimbId) -> LimbName {
         self.names[limb.index()]
     }
 
-    /// Everything that is held.
+    /// All held objects.
     pub fn all(&self) -> impl Iterator<Item = Entity> {
         self.held.iter().flatten().map(|grip| grip.object)
     }
 }
 
-/// Takes an object into a gripper whose fingers touch it.
+/// Grips an object that the fingers touch.
 pub(crate) fn take(world: &mut World, limb: LimbId, touched: Touched) {
     let object = touched.object;
     let end_effector = world.resource::<Robot>().limb(limb).end_effector;
@@ -93,7 +93,7 @@ pub(crate) fn take(world: &mut World, limb: LimbId, touched: Touched) {
     world.write_message(SimFact::GripMade { arm, id });
 }
 
-/// Lets go of everything that a gripper holds.
+/// Releases every object that a gripper holds.
 pub(crate) fn release(world: &mut World, limb: LimbId) {
     let mut grips = world.resource_mut::<Grips>();
     let arm = grips.name_of(limb);
@@ -107,7 +107,7 @@ pub(crate) fn release(world: &mut World, limb: LimbId) {
     }
 }
 
-/// Pulls along what joints hold as well.
+/// Pulls along held objects that joints hold as well.
 pub(crate) fn pull_jointed(
     grips: Res<Grips>,
     robot: Res<Robot>,
@@ -123,7 +123,7 @@ pub(crate) fn pull_jointed(
     }
 }
 
-/// Gives up what a hand has taken out of a gripper.
+/// Ends the grip on an object that a hand has taken.
 pub(crate) fn give_to_hands(
     taken: Query<(&ObjectSpec, &Held), Changed<Held>>,
     mut grips: ResMut<Grips>,
@@ -145,7 +145,7 @@ pub(crate) fn give_to_hands(
     }
 }
 
-/// A gripper whose object goes without it is empty.
+/// Ends the grip on an object that is gone.
 pub(crate) fn note_lost(
     remove: On<Remove, Held>,
     objects: Query<&ObjectSpec>,
@@ -168,7 +168,7 @@ pub(crate) fn note_lost(
     }
 }
 
-/// Whether a gripper can take an object: it has mass, and nothing holds it.
+/// True if a gripper can take an object: it has mass, and nothing holds it.
 pub(crate) fn can_take(object: Entity, objects: &Query<(&ObjectSpec, Has<Held>)>) -> bool {
     objects
         .get(object)

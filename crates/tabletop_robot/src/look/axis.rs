@@ -3,7 +3,7 @@
 use bevy::math::Vec3;
 use serde::Deserialize;
 
-/// An axis of a link's frame, and with it the two others: u, v and the axis are right-handed.
+/// An axis of a link's frame, which also names the two others: u, v and the axis are right-handed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum LinkAxis {

@@ -1,13 +1,13 @@
-//! How closely triangles follow a shape.
+//! Levels of detail of shapes.
 
 use std::f64::consts::PI;
 
-/// How closely triangles follow a shape.
+/// The level of detail of a shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Detail {
-    /// For the window: what is round looks round.
+    /// For the window: round shapes look round.
     Fine,
-    /// For the head camera: few triangles, and nothing that is smaller than its pixels.
+    /// For the head camera: few triangles, and no parts smaller than its pixels.
     Coarse,
 }
 
@@ -20,7 +20,7 @@ impl Detail {
         }
     }
 
-    /// What is not longer than this along any axis, in m, is left out.
+    /// Extent in m along every axis up to which a part is left out.
     pub const fn least_extent(self) -> f32 {
         match self {
             Self::Fine => 0.0,
@@ -28,7 +28,7 @@ impl Detail {
         }
     }
 
-    /// Into how many straight lines a circle of this radius, in m, is divided: an even number.
+    /// Number of straight lines for a circle of this radius, in m: even.
     pub fn segments(self, radius: f32) -> usize {
         let (least, most) = match self {
             Self::Fine => (12, 64),

@@ -1,19 +1,19 @@
-//! Why something has no looks.
+//! Errors of looks.
 
 use std::{io, path::PathBuf};
 
 use thiserror::Error;
 
-/// Why it is not known what a link looks like.
+/// The reason why the look of a link is unknown.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LookError {
-    /// The file that the description of the robot names is not there.
+    /// The file that the robot's description names does not exist.
     #[error("{file}: there is no such file; it was looked for in {}", list(.searched))]
     Missing {
         /// The file, as the description names it.
         file: String,
-        /// Where it was looked for.
+        /// The places that were searched.
         searched: Vec<PathBuf>,
     },
     /// A file cannot be read, or its content is no mesh.
@@ -21,7 +21,7 @@ pub enum LookError {
     Mesh {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Its fault.
         source: io::Error,
     },
     /// A file of shapes has a mistake.
@@ -29,7 +29,7 @@ pub enum LookError {
     Shape {
         /// The file.
         file: String,
-        /// Where and what the mistake is.
+        /// The mistake and its place.
         source: serde_json::Error,
     },
     /// A mesh has no triangles, or numbers that cannot be drawn.

@@ -10,9 +10,9 @@ use super::{axis::LinkAxis, detail::Detail, hull::Hull};
 #[serde(deny_unknown_fields)]
 pub(super) struct Extrusion {
     pub axis: LinkAxis,
-    /// Where on the axis it begins.
+    /// Its beginning on the axis.
     pub from: f32,
-    /// Where on the axis it ends.
+    /// Its end on the axis.
     pub to: f32,
     /// Corners of the polygon, as u and v. Its edges do not cross.
     pub outline: Vec<[f32; 2]>,
@@ -81,7 +81,7 @@ fn triangles_in(corners: &[Vec2]) -> Vec<[u32; 3]> {
                     .iter()
                     .all(|other| ear.contains(other) || is_outside(corners[*other]))
         };
-        // A polygon that crosses itself has no ear at last; then any corner will do.
+        // A polygon that crosses itself runs out of ears; then any corner will do.
         let i = (0..count).find(is_ear).unwrap_or(0);
         triangles.push(around(i).map(|corner| corner as u32));
         left.remove(i);

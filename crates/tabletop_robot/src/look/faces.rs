@@ -1,4 +1,4 @@
-//! What the robot's screen shows: faces of flat shapes, one in front of the other.
+//! Faces on the robot's screen: flat shapes, one in front of the other.
 
 use std::f32::consts::{FRAC_PI_2, TAU};
 
@@ -8,7 +8,7 @@ use tabletop_core::{Face, Rgb, Triangles, UNITS_PER_METER};
 /// Size of the picture in m: the display is 1024 x 600 pixels.
 const PICTURE: Vec2 = Vec2::new(0.216, 0.127);
 
-/// How far in m the picture is in front of the display's frame; the glass is 2 mm in front of it.
+/// Distance, in m, of the picture in front of the display's frame; the glass is 2 mm in front of the frame.
 const IN_FRONT: f32 = 0.0028;
 
 /// From layer to layer, in m.
@@ -20,10 +20,10 @@ const IRIS: Rgb = Rgb::new(0.20, 0.60, 0.93);
 const PUPIL: Rgb = Rgb::new(0.04, 0.07, 0.11);
 const LINE: Rgb = Rgb::new(0.90, 0.97, 1.00);
 
-/// Where the eyes are, in m from the middle of the picture: the right one, and mirrored the left one.
+/// Location of the right eye, in m from the middle of the picture; the left eye mirrors it.
 const EYE: Vec2 = Vec2::new(0.047, 0.012);
 
-/// What the robot's screen shows, in the frame of `screen.shape.json`, in units: flat shapes in front of its glass, seen
+/// A face on the robot's screen, in the frame of `screen.shape.json`, in units: flat shapes in front of its glass, seen
 /// from x. A blank screen shows nothing.
 pub fn face(face: Face) -> Triangles {
     let mut drawing = Drawing::default();
@@ -83,11 +83,11 @@ impl Drawing {
         self.surface.indices.extend(fan);
     }
 
-    /// Both eyes, wide open, which look up by so much.
+    /// Both eyes, wide open, with pupils raised by `up`.
     fn eyes(&mut self, white: Vec2, up: f32) {
         for side in [-1.0, 1.0] {
             let eye = Vec2::new(side * EYE.x, EYE.y);
-            // A little towards the middle, at somebody in front of the robot.
+            // A little towards the middle, at someone in front of the robot.
             let pupil = eye + Vec2::new(-side * 0.003, up);
             self.shape(1, WHITE, ellipse(eye, white));
             self.shape(2, IRIS, ellipse(pupil, Vec2::splat(0.0155)));

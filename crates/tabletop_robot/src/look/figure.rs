@@ -1,4 +1,4 @@
-//! The looks of a visual of a link.
+//! Figures of a link's visuals.
 
 use std::{path::Path, sync::Arc};
 
@@ -8,12 +8,12 @@ use tabletop_kinematics::{Geometry, LinkShape};
 
 use crate::look::{error::LookError, faces::face, meshes, solids};
 
-/// What a visual of a link looks like, in the frame of the link, in units. `urdf` is the file of the description, from
-/// which the meshes that it names are found; without it only Baxter's own are known (`package://tabletop/...`).
+/// The figure of a link's visual, in the frame of the link, in units. `urdf` is the file of the description, from
+/// which named meshes are found; without it only Baxter's own are known (`package://tabletop/...`).
 ///
 /// # Errors
 ///
-/// If a mesh cannot be found or read.
+/// A mesh cannot be found or read.
 pub fn figure_of(visual: &LinkShape, urdf: Option<&Path>) -> Result<Figure, LookError> {
     let color = visual.color.map_or(Rgb::GRAY, |color| {
         let [red, green, blue, _] = color.map(|part| part as f32);
@@ -28,7 +28,7 @@ pub fn figure_of(visual: &LinkShape, urdf: Option<&Path>) -> Result<Figure, Look
     Ok(placed(figure, visual))
 }
 
-/// What shows that a link is there whose looks are not known: the bodies that it would be touched by, in grey, in the frame
+/// The stand-in of a link whose look is unknown: its collision shapes, in grey, in the frame
 /// of the link, in units. `None` if there are none but meshes.
 pub fn stand_in(collisions: &[LinkShape]) -> Option<Figure> {
     let solids = collisions
@@ -37,7 +37,7 @@ pub fn stand_in(collisions: &[LinkShape]) -> Option<Figure> {
     merged(solids.map(|shape| placed(solids::figure(&shape.geometry, Rgb::GRAY), shape)))
 }
 
-/// One figure that looks like all of these in one place; `None` of none.
+/// One figure that merges all of these; `None` if there are none.
 pub fn merged(figures: impl IntoIterator<Item = Figure>) -> Option<Figure> {
     figures.into_iter().reduce(|mut one, other| {
         let append = |surface: &mut Arc<Triangles>, more: &Triangles| {
@@ -49,12 +49,12 @@ pub fn merged(figures: impl IntoIterator<Item = Figure>) -> Option<Figure> {
     })
 }
 
-/// What the robot's screen looks like with a face on it, in the frame of its link, in units: a visual that is
+/// The robot's screen with a face on it, in the frame of its link, in units. Its visual is
 /// `screen.shape.json`.
 ///
 /// # Errors
 ///
-/// If the visual cannot be found or read.
+/// The visual cannot be found or read.
 pub fn screen_with(
     shown: Face,
     visual: &LinkShape,

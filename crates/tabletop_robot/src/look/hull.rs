@@ -1,14 +1,14 @@
-//! Surfaces of triangles without colours and normals, and how they get them.
+//! Surfaces of triangles, and their shading.
 
 use std::collections::HashMap;
 
 use bevy::math::Vec3;
 use tabletop_core::{Rgb, Triangles, UNITS_PER_METER};
 
-/// Faces that meet at a smaller angle are parts of one smooth surface: the cosine of 50°.
+/// Cosine of the largest angle, 50°, at which neighbouring faces form one smooth surface.
 const SMOOTH_COSINE: f32 = 0.643;
 
-/// A surface of triangles that share their corners. Seen from outside, a triangle's corners go round counterclockwise.
+/// A surface of triangles that share their corners, which run counterclockwise as seen from outside.
 /// Lengths in m.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Hull {
@@ -19,7 +19,7 @@ pub(super) struct Hull {
 }
 
 impl Hull {
-    /// The surface from ring to ring, closed at both ends. Rings have equally many points, or one, which is then a tip;
+    /// The surface from ring to ring, closed at both ends. All rings have equally many points, or one, which is a tip;
     /// those at the ends are flat and convex.
     pub fn through(rings: &[Vec<Vec3>]) -> Self {
         let mut hull = Self::around(rings);
@@ -93,7 +93,7 @@ impl Hull {
         self.triangles.iter().map(six_times).sum::<f32>() / 6.0
     }
 
-    /// The same surface with its outside outside.
+    /// The same surface, turned outside out.
     pub fn oriented(mut self) -> Self {
         if self.volume() < 0.0 {
             self.triangles
@@ -103,7 +103,7 @@ impl Hull {
         self
     }
 
-    /// The same surface with all points mapped by something that keeps it as it is but for its place, or mirrors it.
+    /// The same surface with its points mapped by a rigid motion or a reflection.
     pub fn mapped(mut self, map: impl Fn(Vec3) -> Vec3) -> Self {
         self.points
             .iter_mut()
@@ -111,7 +111,7 @@ impl Hull {
         self
     }
 
-    /// A similar surface of fewer triangles: points in the same cell of a grid become one.
+    /// A similar surface of fewer triangles: points in the same cell of a grid are merged.
     pub fn simplified(&self, cell: f32) -> Self {
         let mut cells = HashMap::new();
         let mut sums: Vec<(Vec3, f32)> = Vec::new();
@@ -205,7 +205,7 @@ const fn next_corner(corner: usize) -> usize {
     corner - corner % 3 + (corner + 1) % 3
 }
 
-/// The edges between two faces, each as the corners where it starts in the one and in the other face.
+/// The edges between two faces, each by the corners where it starts in either face.
 fn shared_edges(faces: &[([u32; 3], Vec3)]) -> Vec<[usize; 2]> {
     let mut halves: Vec<([u32; 2], usize)> = faces
         .iter()
@@ -230,7 +230,7 @@ fn shared_edges(faces: &[([u32; 3], Vec3)]) -> Vec<[usize; 2]> {
         .collect()
 }
 
-/// Numbers that belong together.
+/// A partition of numbers into groups.
 struct Joined(Vec<usize>);
 
 impl Joined {
@@ -238,7 +238,7 @@ impl Joined {
         Self((0..count).collect())
     }
 
-    /// The least of the numbers that belong to this one.
+    /// The least number of this one's group.
     fn root(&mut self, mut number: usize) -> usize {
         while self.0[number] != number {
             self.0[number] = self.0[self.0[number]];
@@ -258,7 +258,7 @@ mod tests {
     use super::*;
 
     impl Hull {
-        /// Whether each edge is passed once in each direction.
+        /// True if each edge is passed once in each direction.
         pub fn is_closed(&self) -> bool {
             let edges = self.triangles.iter();
             let mut edges: Vec<_> = edges

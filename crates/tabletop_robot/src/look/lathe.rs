@@ -7,14 +7,14 @@ use serde::Deserialize;
 
 use super::{axis::LinkAxis, detail::Detail, hull::Hull};
 
-/// What a lathe makes: a profile turned about an axis. Lengths in m.
+/// A surface of revolution: a profile turned about an axis. Lengths in m.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Lathe {
     /// A point of the axis.
     pub origin: Vec3,
     pub axis: LinkAxis,
-    /// Points as radius and height above the origin. Where it does not start or end at the axis, it is closed straight to it.
+    /// Points as radius and height above the origin. An end off the axis is closed straight to it.
     pub profile: Vec<[f32; 2]>,
 }
 

@@ -1,4 +1,4 @@
-//! What is seen of the robot in the world.
+//! Figures of the robot in the world.
 
 use std::collections::BTreeSet;
 
@@ -17,15 +17,15 @@ use crate::{
     look::figure::{figure_of, merged, screen_with, stand_in},
 };
 
-/// The looks of the robot's bodies, made when it is shown for the first time.
+/// The figures of the robot's bodies, made when it is shown for the first time.
 #[derive(Resource, Default)]
 pub(crate) struct LinkFigures {
     bodies: Vec<Option<Figure>>,
-    /// What is seen now: nothing, or this face on the robot whose first body is this one.
+    /// The present look: nothing, or this face on the robot with this first body.
     shown: Option<(Face, Entity)>,
 }
 
-/// Gives the bodies what they look like while the robot is shown, and its screen the face.
+/// Gives the bodies their figures while the robot is shown, and its screen the face.
 pub(crate) fn show_figures(
     robot: Res<Robot>,
     description: Res<Description>,
@@ -66,7 +66,7 @@ pub(crate) fn show_figures(
     figures.shown = show;
 }
 
-/// What the bodies look like. A mesh that cannot be read is told once, whatever shows it.
+/// The figures of the bodies. A mesh that cannot be read is reported once, however many visuals use it.
 fn figures_of(description: &Description, articulation: &Articulation) -> Vec<Option<Figure>> {
     let mut told = BTreeSet::new();
     let bodies = articulation.bodies.iter();
@@ -97,7 +97,7 @@ fn figures_of(description: &Description, articulation: &Articulation) -> Vec<Opt
         .collect()
 }
 
-/// What a link looks like; nothing if nothing of it is seen.
+/// The figure of a link; `None` if it has no visuals.
 fn figure_of_link(description: &Description, link: &Link) -> Result<Option<Figure>, LookError> {
     let visuals = link.visuals.iter();
     let visuals: Result<Vec<_>, _> = visuals.map(|visual| seen(visual, description)).collect();
@@ -117,12 +117,12 @@ fn seen(visual: &LinkShape, description: &Description) -> Result<Figure, LookErr
     figure_of(visual, description.path())
 }
 
-/// Whether a visual is one of the program's own shapes.
+/// True if a visual is one of the program's own shapes.
 fn is_ours(visual: &LinkShape) -> bool {
     matches!(&visual.geometry, Geometry::Mesh { file, .. } if file.starts_with("package://tabletop/"))
 }
 
-/// What a finger looks like.
+/// The figure of a finger.
 fn finger(gripper: &GripperLayout, description: &Description) -> Result<Option<Figure>, LookError> {
     let Some(FingerLook { file, axes }) = &gripper.look else {
         return Ok(stand_in(&[finger_solid(gripper)]));
@@ -138,7 +138,7 @@ fn finger(gripper: &GripperLayout, description: &Description) -> Result<Option<F
     seen(&visual, description).map(Some)
 }
 
-/// What a finger is touched by.
+/// The collision shape of a finger.
 fn finger_solid(gripper: &GripperLayout) -> LinkShape {
     LinkShape {
         origin: DAffine3::IDENTITY,

@@ -19,11 +19,11 @@ pub(super) struct Loft {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Section {
-    /// Where on the axis it is.
+    /// Its place on the axis.
     at: f32,
-    /// From where to where along u it reaches.
+    /// Its extent along u.
     u: [f32; 2],
-    /// From where to where along v it reaches.
+    /// Its extent along v.
     v: [f32; 2],
     exponent: f64,
 }
@@ -70,7 +70,7 @@ impl Loft {
             .iter()
             .map(Section::radius)
             .fold(0.0, f32::max);
-        // So that there are points where the sections are widest.
+        // A multiple of four puts points where the sections are widest.
         let segments = detail.segments(largest).next_multiple_of(4);
         let sizes: Vec<_> = self
             .sections

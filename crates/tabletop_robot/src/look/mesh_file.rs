@@ -2,13 +2,13 @@
 
 use bevy::math::Vec3;
 
-/// Most triangles of a mesh.
+/// Largest number of triangles of a mesh.
 const MOST_TRIANGLES: usize = 1_000_000;
 
-/// What a binary STL file has before its triangles: a title, and how many there are.
+/// Length of the head of a binary STL file: a title, and the number of triangles.
 const STL_HEAD: usize = 84;
 
-/// What it has for each: a normal, three corners, and two bytes without meaning.
+/// Length of its triangles: a normal, three corners, and two bytes without meaning.
 const STL_TRIANGLE: usize = 50;
 
 /// The corners of a triangle, in the units of its file.
@@ -17,7 +17,7 @@ pub type Corners = [Vec3; 3];
 /// The triangles of an STL file, binary or text.
 ///
 /// # Errors
-/// It is none, or has too many triangles.
+/// It is not such a file, or has too many triangles.
 pub fn read_stl(bytes: &[u8]) -> Result<Vec<Corners>, String> {
     let count = bytes
         .get(80..STL_HEAD)
@@ -79,10 +79,10 @@ fn read_text_stl(bytes: &[u8]) -> Result<Vec<Corners>, String> {
     }
 }
 
-/// The faces of an OBJ file, as triangles around their first corner. Normals, colours and groups are passed over.
+/// The faces of an OBJ file, as triangles around their first corner. Normals, colours and groups are ignored.
 ///
 /// # Errors
-/// It is none, or has too many triangles.
+/// It is not such a file, or has too many triangles.
 pub fn read_obj(bytes: &[u8]) -> Result<Vec<Corners>, String> {
     let mut points = Vec::new();
     let mut triangles = Vec::new();
@@ -106,7 +106,7 @@ pub fn read_obj(bytes: &[u8]) -> Result<Vec<Corners>, String> {
     Ok(triangles)
 }
 
-/// The point that `7`, `7/1/3` or `-1`, the last one so far, means.
+/// The point that a word means: `7`, `7/1/3`, or `-1` for the last one so far.
 fn corner(word: &str, points: &[Vec3]) -> Option<Vec3> {
     let number: i64 = word.split('/').next()?.parse().ok()?;
     let index = match number {
@@ -118,7 +118,7 @@ fn corner(word: &str, points: &[Vec3]) -> Option<Vec3> {
     points.get(index).copied()
 }
 
-/// The words of the lines that have some, each with its number.
+/// The words of all lines that are not empty, with the lines' numbers.
 fn lines(bytes: &[u8]) -> Result<impl Iterator<Item = (usize, Vec<&str>)>, String> {
     let text = str::from_utf8(bytes).map_err(|error| format!("it is no text: {error}"))?;
     let lines = text.lines().zip(1..).map(|(text, line)| {
@@ -129,7 +129,7 @@ fn lines(bytes: &[u8]) -> Result<impl Iterator<Item = (usize, Vec<&str>)>, Strin
     Ok(lines)
 }
 
-/// Most words of a line that are read, and so most corners of a face.
+/// Largest number of words of a line that are read, and so of corners of a face.
 const MOST_WORDS: usize = 1000;
 
 fn point(words: &[&str]) -> Option<Vec3> {

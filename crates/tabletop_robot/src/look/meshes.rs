@@ -1,4 +1,4 @@
-//! The meshes that descriptions of robots name.
+//! Meshes that descriptions of robots name.
 
 use std::{
     io,
@@ -17,23 +17,23 @@ use super::{
     shipped::PARTS,
 };
 
-/// How the shapes that are part of the program are named.
+/// Prefix of the names of the program's own shapes.
 const OUR_PACKAGE: &str = "package://tabletop/";
 
-/// The largest file that is read.
+/// Size of the largest file that is read.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// Meshes of more triangles than this have fewer where the head camera sees them.
+/// Number of triangles beyond which a mesh is simplified for the head camera.
 const COARSE_TRIANGLES: usize = 400;
 
-/// Into how many cells the longest side of such a mesh is divided.
+/// Number of cells along the longest side of such a mesh.
 const COARSE_CELLS: f32 = 24.0;
 
-/// Coordinates beyond this, in m, cannot be drawn.
+/// Largest coordinate, in m, that can be drawn.
 const FARTHEST: f32 = 1e6;
 
-/// What a mesh looks like, in units. `urdf` is the file of the description that names it, if there is one. Meshes without
-/// colours have this one.
+/// The figure of a mesh, in units. `urdf` is the file of the description that names it, if there is one. A mesh without
+/// colours has this one.
 pub(super) fn figure(
     file: &str,
     scale: Vec3,

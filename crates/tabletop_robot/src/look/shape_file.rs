@@ -1,5 +1,5 @@
-//! Our own files of shapes (`assets/baxter/*.shape.json`): links made of a few exact solids, for which any number of
-//! triangles can be worked out.
+//! The program's own shape files (`assets/baxter/*.shape.json`): links made of a few exact solids, which can be divided into any
+//! number of triangles.
 
 use bevy::math::Vec3;
 use serde::Deserialize;
@@ -14,7 +14,7 @@ use super::{
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ShapeFile {
-    /// What it is, for readers of the file.
+    /// Its description, for readers of the file.
     #[serde(rename = "about")]
     _about: String,
     parts: Vec<ShapePart>,
@@ -24,7 +24,7 @@ pub(super) struct ShapeFile {
 #[serde(deny_unknown_fields)]
 struct ShapePart {
     color: Paint,
-    /// Whether it is there once more, mirrored in the plane y = 0.
+    /// True if the plane y = 0 mirrors it.
     #[serde(default)]
     mirrored: bool,
     solid: ShapeForm,
@@ -85,7 +85,7 @@ impl ShapeFile {
         surface
     }
 
-    /// What it looks like, in units.
+    /// Its figure, in units.
     pub fn figure(&self) -> Figure {
         Figure {
             fine: self.surface(Detail::Fine).into(),
@@ -94,10 +94,10 @@ impl ShapeFile {
     }
 }
 
-/// What the text of such a file looks like, in units.
+/// The figure of a shape file's text, in units.
 ///
 /// # Errors
-/// Where and what the mistake is.
+/// The mistake and its place.
 pub fn read_shape(text: &str) -> Result<Figure, serde_json::Error> {
     Ok(ShapeFile::read(text)?.figure())
 }

@@ -1,4 +1,4 @@
-//! The shapes of links that are part of the program.
+//! The shapes of links that ship inside the program.
 
 macro_rules! shapes {
     ($($robot:literal: $($name:literal),* $(,)?;)*) => {

@@ -1,4 +1,4 @@
-//! The solids that descriptions of robots know.
+//! Solids that descriptions of robots can name.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use tabletop_kinematics::Geometry;
 
 use super::{axis::LinkAxis, boxes::Cuboid, detail::Detail, hull::Hull, lathe::Lathe};
 
-/// What a solid looks like, in its own frame, in units. Of a mesh nothing is seen.
+/// The figure of a solid, in its own frame, in units. For a mesh it is empty.
 pub(super) fn figure(solid: &Geometry, color: Rgb) -> Figure {
     let surface = |detail| -> Triangles { hull(solid, detail).shaded(color) };
     Figure {

@@ -20,10 +20,10 @@ use crate::{
     motion::view::RobotView,
 };
 
-/// Farthest that something moves in a tick, in units, and still pushes what it meets; what goes farther has jumped.
+/// Largest distance, in units, that something moves in a tick while pushing things in its way; anything faster has jumped.
 const JUMP: f32 = 1.0;
 
-/// What the robot moves.
+/// The bodies that the robot moves.
 #[derive(SystemParam)]
 pub(crate) struct MovedBodies<'w, 's> {
     rapier: WriteRapierContext<'w, 's>,
@@ -31,7 +31,7 @@ pub(crate) struct MovedBodies<'w, 's> {
     sleeping: Query<'w, 's, &'static mut Sleeping>,
 }
 
-/// Moves the joints, the grippers and what they hold.
+/// Moves the joints, the grippers and the objects in them.
 pub(crate) fn advance(
     known: RobotView,
     settings: Res<PhysicsSettings>,
@@ -130,7 +130,7 @@ pub(crate) fn advance(
     Ok(())
 }
 
-/// Nothing moves.
+/// Sets all velocities to zero.
 fn stand_still(robot: &mut ResMut<Robot>) {
     if robot.joints.iter().any(|joint| joint.velocity != 0.0) {
         for joint in &mut robot.joints {
@@ -139,8 +139,8 @@ fn stand_still(robot: &mut ResMut<Robot>) {
     }
 }
 
-/// Lets the robot's bodies sleep when they stand still and nothing else is awake. The engine would not: it finds velocities in what
-/// is rounded.
+/// Lets the robot's bodies sleep when they stand still and nothing else is awake. The engine would not, because rounding leaves them
+/// small velocities.
 fn let_sleep(parts: &LinkEntities, rapier: &mut WriteRapierContext) -> Result {
     let mut rapier = rapier.single_mut()?;
     let set = &rapier.rigidbody_set;
@@ -167,7 +167,7 @@ fn let_sleep(parts: &LinkEntities, rapier: &mut WriteRapierContext) -> Result {
     Ok(())
 }
 
-/// What a gripper does besides moving its fingers.
+/// A change of a gripper's grips.
 enum GripChange {
     Take(LimbId, Touched),
     Release(LimbId),
@@ -194,7 +194,7 @@ impl GripChange {
     }
 }
 
-/// What follows from a gripper's opening or closing.
+/// The change that a gripper's opening or closing causes.
 fn decide(
     known: &RobotView,
     limb: LimbId,

@@ -1,4 +1,4 @@
-//! What is around the robot.
+//! The surroundings of the robot.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ use crate::{
     clearance::{MARGIN, Owner, SweptSolid, are_near},
 };
 
-/// Something free that the robot can push or take.
+/// A free object that the robot can push or take.
 pub(crate) struct FreeObject {
     /// The object.
     pub object: Entity,
@@ -22,28 +22,28 @@ pub(crate) struct FreeObject {
     pub parts: Vec<Convex>,
     /// The box around it.
     pub bounds: Aabb,
-    /// Whether it sleeps.
+    /// True while it sleeps.
     pub is_sleeping: bool,
 }
 
 impl FreeObject {
-    /// Its solids, where they are.
+    /// Its solids at their present place.
     pub fn solids(&self) -> impl Iterator<Item = SweptSolid> {
         let parts = self.parts.iter().cloned();
         parts.map(|part| SweptSolid::resting(part, Owner::Thing(self.object)))
     }
 }
 
-/// What is around the robot, as far as it is near.
+/// The surroundings of the robot, as far as they are near.
 pub(crate) struct Environment {
-    /// What it cannot pass.
+    /// Solids that it cannot pass.
     pub immovable: Vec<SweptSolid>,
-    /// What it pushes, in the order of its creation.
+    /// Objects that it pushes, in the order of their creation.
     pub free: Vec<FreeObject>,
 }
 
 impl Environment {
-    /// Looks at what is in this box. A hidden robot meets nothing.
+    /// The surroundings in this box. A hidden robot meets nothing.
     pub fn new(
         rapier: &RapierContextMut,
         near: &Aabb,
@@ -82,8 +82,8 @@ impl Environment {
 }
 
 impl Environment {
-    /// How deep a free thing, by its number, and what it pushes in turn, are squeezed into each other and into what cannot
-    /// move, in units.
+    /// Depth, in units, to which a free object, given by its number, and the objects that it pushes in turn, are squeezed into each other
+    /// and into immovable solids.
     pub fn squeeze(&self, pushed: usize) -> f32 {
         let mut deepest = 0.0_f32;
         let mut cluster = vec![pushed];

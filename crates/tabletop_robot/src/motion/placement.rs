@@ -13,20 +13,20 @@ pub(crate) fn table_has_come(tables: Query<(), Added<Table>>) -> bool {
     !tables.is_empty()
 }
 
-/// Puts the robot in front of the table, as its joints have it.
+/// Puts the robot in front of the table, with its present joint positions.
 pub(crate) fn stand_at_table(world: &mut World) -> Result {
     link_entities::teleport(world)?;
     world.run_system_cached(publish)?;
     Ok(())
 }
 
-/// Writes where the arms are.
+/// Writes the state of the limbs.
 pub(crate) fn publish(known: RobotView, targets: Res<JointTargets>, mut robot: ResMut<Robot>) {
     let posture = known.posture(&robot, None);
     known.publish(&mut robot, &targets, &posture);
 }
 
-/// Puts the arms home that have come into the table or something else while the robot was hidden and met nothing.
+/// Sends arms home that have come into the table or something else while the robot was hidden and met nothing.
 pub(crate) fn leave_obstacles(
     known: RobotView,
     grips: Res<Grips>,

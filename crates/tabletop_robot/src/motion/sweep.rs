@@ -1,4 +1,4 @@
-//! How far the joints can go: where they are told to, as far as nothing is in the way (report section 5).
+//! Sweep: the joints go to their targets as far as nothing is in the way (report section 5).
 
 use std::rc::Rc;
 
@@ -19,22 +19,22 @@ use crate::{
     motion::environment::Environment,
 };
 
-/// Farthest a body goes, in units, before it is looked for what is in its way: less than a finger is thick.
+/// Largest distance of a body, in units, between two checks for obstacles: less than the thickness of a finger.
 const STEP: f32 = 0.2;
 
-/// Most steps of a tick: what is faster is looked at less often.
+/// Largest number of checks in a tick: a faster body is checked less densely.
 const MOST_STEPS: f32 = 400.0;
 
-/// Halvings of the last step, to come as near as possible.
+/// Number of halvings of the last step, to come as near as possible.
 const HALVINGS: u32 = 6;
 
-/// Least part of a tick's way that is gone.
+/// Least part of a tick's way that is made.
 const LEAST_PUSH: f64 = 0.05;
 
-/// How far from an end effector, in units, something may be between its fingers.
+/// Largest distance from an end effector, in units, of an object between its fingers.
 const BETWEEN: f32 = 2.0;
 
-/// What a gripper holds, as the arm carries it.
+/// An object in a gripper, as the arm carries it.
 pub(crate) struct Carried {
     /// The object.
     pub object: Entity,
@@ -46,7 +46,7 @@ pub(crate) struct Carried {
     pub parts: Vec<Convex>,
 }
 
-/// Where the robot is at some positions of the joints.
+/// Poses of the robot at some positions of the joints.
 pub(crate) struct Poses {
     positions: Positions,
     /// Its bodies.
@@ -54,39 +54,39 @@ pub(crate) struct Poses {
     end_effectors: Vec<Pose>,
 }
 
-/// What boxes around bodies are wider than they must be, in units, for what is rounded.
+/// Margin of boxes around bodies, in units, for rounding errors.
 const ROUNDING: f32 = 1e-3;
 
-/// Answers that are remembered.
+/// Number of answers that are remembered.
 const MOST_ASKED: usize = 4;
 
 /// The motion of a tick.
 pub(crate) struct TickMotion<'a> {
     /// The robot.
     pub articulation: &'a Articulation,
-    /// Which of its bodies can meet.
+    /// The pairs of its bodies that can collide.
     pub self_collisions: &'a SelfCollisionMatrix,
-    /// Where its torso stands.
+    /// Pose of its torso.
     pub base: Pose,
-    /// What is around it.
+    /// Its surroundings.
     pub environment: Environment,
-    /// Whether its grippers hold anything.
+    /// True for each gripper that holds anything.
     pub holds: Vec<bool>,
-    /// What its grippers hold rigidly.
+    /// The objects that its grippers hold rigidly.
     pub carried: Vec<Vec<Carried>>,
     /// Positions of the joints, by [`JointId`](tabletop_core::JointId).
     pub positions: Positions,
-    /// What stopped each arm in this tick.
+    /// The obstacle that stopped each arm in this tick.
     pub blocked_by: Vec<Option<Owner>>,
-    /// What each arm has squeezed so much in this tick that it waited.
+    /// The object that each arm has squeezed so much in this tick that it waited.
     pub held_up_by: Vec<Option<Entity>>,
-    /// Whether each arm was slowed in this tick by squeezing something free.
+    /// True for each arm that was slowed in this tick by squeezing a free object.
     pub is_squeezing: Vec<bool>,
-    /// Whether it can meet anything.
+    /// True if it can meet anything.
     pub is_shown: bool,
-    /// The last answers to where it is.
+    /// The last poses that were asked for.
     pub asked: Vec<Rc<Poses>>,
-    /// A posture to compute with.
+    /// Scratch space for a posture.
     pub scratch: Posture,
 }
 
@@ -100,7 +100,7 @@ impl TickMotion<'_> {
         }
     }
 
-    /// Moves the joints of an arm to where they are to be.
+    /// Moves the joints of an arm to their setpoints.
     pub fn move_arm(&mut self, limb: LimbId, setpoints: &[Setpoint]) {
         let joints = &self.articulation.layout.limb(limb).joints;
         let mut there = self.positions.clone();
@@ -130,7 +130,7 @@ impl TickMotion<'_> {
         self.blocked_by[limb.index()] = self.sweep(limb, lerp(&self.positions, &there, part));
     }
 
-    /// Opens or closes a gripper, which may be pressing on what its fingers touch. Returns what it has found between them while closing.
+    /// Opens or closes a gripper, which may be pressing on objects that its fingers touch. Returns the objects found between them while closing.
     pub fn move_fingers(
         &mut self,
         limb: LimbId,
@@ -167,12 +167,12 @@ impl TickMotion<'_> {
         closing
     }
 
-    /// Where an end effector is.
+    /// Pose of an end effector.
     pub fn end_effector(&mut self, limb: LimbId) -> Pose {
         self.poses(&self.positions.clone()).end_effectors[limb.index()]
     }
 
-    /// What may be between the fingers of a gripper.
+    /// Objects that may be between the fingers of a gripper.
     fn between(&mut self, limb: LimbId) -> Vec<Graspable> {
         let at = self.end_effector(limb).location;
         let near = Aabb::new(at - BETWEEN, at + BETWEEN);
@@ -186,7 +186,7 @@ impl TickMotion<'_> {
             .collect()
     }
 
-    /// Goes towards these positions, as far as nothing is in the way of an arm. Returns what is.
+    /// Goes towards these positions as far as no obstacle is in the way of an arm. Returns the obstacle.
     fn sweep(&mut self, limb: LimbId, there: Positions) -> Option<Owner> {
         let start = self.positions.clone();
         let between = |part: f64| lerp(&start, &there, part);
@@ -214,7 +214,7 @@ impl TickMotion<'_> {
         None
     }
 
-    /// The part of the way to these positions that an arm can go in a tick with what it pushes, and what it squeezes most.
+    /// The part of the way to these positions that an arm can go in a tick with the objects that it pushes, and the object that it squeezes most.
     fn push(&mut self, limb: LimbId, there: &Positions) -> (f64, Option<Entity>) {
         if self.environment.free.is_empty() {
             return (1.0, None);
@@ -253,7 +253,7 @@ impl TickMotion<'_> {
         (f64::from(part).max(least), most_pushed)
     }
 
-    /// About how far the bodies of an arm go between two positions, in units.
+    /// Approximate distance that the bodies of an arm go between two positions, in units.
     fn way(&mut self, limb: LimbId, from: &Positions, to: &Positions) -> f32 {
         let [from, to] = [from, to].map(|positions| self.poses(positions));
         self.bodies_of(limb)
@@ -272,7 +272,7 @@ impl TickMotion<'_> {
             .map(|(number, _)| number)
     }
 
-    /// Where the robot is. The last few answers are remembered: most are asked for several times.
+    /// Poses of the robot. The last few answers are remembered, because most are asked for several times.
     pub fn poses(&mut self, positions: &Positions) -> Rc<Poses> {
         let is_asked = |poses: &&Rc<Poses>| poses.positions == *positions;
         if let Some(poses) = self.asked.iter().find(is_asked) {
@@ -291,7 +291,7 @@ impl TickMotion<'_> {
         poses
     }
 
-    /// The solids of an arm and of what it holds, each with the number of a body that meets what it meets.
+    /// The solids of an arm and of the objects it holds, each with the number of the body by which it meets things.
     pub fn solids(
         &mut self,
         limb: LimbId,
@@ -302,7 +302,7 @@ impl TickMotion<'_> {
         self.solids_of(limb, &from, &to, |_| true)
     }
 
-    /// The solids of those bodies of an arm that are needed, and of what it holds.
+    /// The solids of the needed bodies of an arm, and of the objects it holds.
     fn solids_of(
         &self,
         limb: LimbId,
@@ -337,7 +337,7 @@ impl TickMotion<'_> {
             .unwrap_or(0)
     }
 
-    /// What an arm is inside of that it cannot pass.
+    /// An obstacle that an arm is inside of.
     pub fn is_inside(&mut self, limb: LimbId) -> Option<Owner> {
         let here = self.positions.clone();
         let solids = self.solids(limb, &here, &here);
@@ -351,7 +351,7 @@ impl TickMotion<'_> {
             .map(|obstacle| obstacle.owner)
     }
 
-    /// What is in the way of an arm between two positions.
+    /// The obstacle in the way of an arm between two positions.
     fn obstacle(&mut self, limb: LimbId, from: &Positions, to: &Positions) -> Option<Owner> {
         if !self.is_shown {
             return None;
@@ -370,14 +370,14 @@ impl TickMotion<'_> {
         outside.or_else(|| self.own_body(limb, &solids, &here))
     }
 
-    /// A box around a body, whichever way it is turned.
+    /// A box around a body in any orientation.
     fn around(&self, number: usize, poses: &Poses) -> Aabb {
         let at = poses.bodies[number].location;
         let radius = self.articulation.bodies[number].radius + ROUNDING;
         Aabb::new(at - radius, at + radius)
     }
 
-    /// Whether a body of an arm that goes there may come near to anything that it, or what the arm holds, cannot pass.
+    /// True if a body of an arm, or an object it holds, may come near an obstacle on this way.
     fn may_collide(&self, limb: LimbId, number: usize, here: &Poses, there: &Poses) -> bool {
         if !self.carried[limb.index()].is_empty() {
             return true;
@@ -393,7 +393,7 @@ impl TickMotion<'_> {
             })
     }
 
-    /// The body of the robot that solids of an arm would run into.
+    /// The body of the robot that solids of an arm would collide with.
     fn own_body(
         &self,
         limb: LimbId,
@@ -432,7 +432,7 @@ impl TickMotion<'_> {
         None
     }
 
-    /// Whether a solid of an arm is near this box where it is now.
+    /// True if a solid of an arm is near this box at present.
     pub fn is_near(&mut self, limb: LimbId, bounds: &Aabb) -> bool {
         let here = self.poses(&self.positions.clone());
         let may_be_near = |number| are_near(&self.around(number, &here), bounds);

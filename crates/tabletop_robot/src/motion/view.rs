@@ -1,4 +1,4 @@
-//! What the robot knows of the world.
+//! The robot's view of the world.
 
 use std::collections::BTreeSet;
 
@@ -22,7 +22,7 @@ use crate::{
     },
 };
 
-/// What the robot knows of the world.
+/// The robot's view of the world.
 #[derive(SystemParam)]
 pub(crate) struct RobotView<'w, 's> {
     pub articulation: Res<'w, Articulation>,
@@ -34,7 +34,7 @@ pub(crate) struct RobotView<'w, 's> {
 }
 
 impl RobotView<'_, '_> {
-    /// The tick's motion, before anything has moved.
+    /// The motion of the tick, before anything has moved.
     pub fn motion<'a>(
         &'a self,
         robot: &Robot,
@@ -80,7 +80,7 @@ impl RobotView<'_, '_> {
         }
     }
 
-    /// Where the robot is, computed from where it was known to be, if it was.
+    /// Posture of the robot, updated from a known one if there is one.
     pub fn posture(&self, robot: &Robot, known: Option<Posture>) -> Posture {
         let (base, positions) = (self.base(), positions(robot));
         let known = known.filter(|known| known.base() == base && !self.articulation.is_changed());
@@ -93,13 +93,13 @@ impl RobotView<'_, '_> {
         }
     }
 
-    /// Where the torso's frame stands, in front of the present table.
+    /// Pose of the torso's frame in front of the present table.
     pub fn base(&self) -> Pose {
         let table = self.tables.iter().next().copied().unwrap_or_default();
         self.articulation.layout.base.pose(&table)
     }
 
-    /// What an arm was stopped by in a tick: what cannot be passed, or what it has squeezed for too long.
+    /// The obstacle that stopped an arm in a tick: something immovable, or an object squeezed for too long.
     pub fn blocked_by(
         &self,
         limb: LimbId,
@@ -111,7 +111,7 @@ impl RobotView<'_, '_> {
         obstacle.map(|owner| self.obstacle(owner))
     }
 
-    /// Where the bodies are after a motion, and what the grippers hold rigidly.
+    /// Poses of the bodies and of the rigidly held objects after a motion.
     pub fn places(
         &self,
         motion: &mut TickMotion,
@@ -133,7 +133,7 @@ impl RobotView<'_, '_> {
         bodies.chain(held).collect()
     }
 
-    /// Something in the way.
+    /// The owner of a solid as an obstacle.
     pub fn obstacle(&self, owner: Owner) -> Obstacle {
         match owner {
             Owner::Body(number) => Obstacle::Link(self.articulation.bodies[number].name.clone()),
@@ -147,7 +147,7 @@ impl RobotView<'_, '_> {
         Some(spec.id.clone())
     }
 
-    /// Writes what is known of the arms.
+    /// Writes the state of the limbs.
     pub fn publish(&self, robot: &mut Robot, targets: &JointTargets, posture: &Posture) {
         for limb in self.articulation.layout.limb_ids() {
             let state = &mut robot.limbs[limb.index()];
@@ -160,7 +160,7 @@ impl RobotView<'_, '_> {
         }
     }
 
-    /// The sleeping objects that the arms may touch in this tick: Rapier lets things move into sleeping ones for a tick.
+    /// The sleeping objects that the arms may touch in this tick. Rapier would let things move into sleeping objects for a tick.
     pub fn near_arms(&self, motion: &mut TickMotion) -> Vec<Entity> {
         let things = motion.environment.free.iter();
         let sleeping = things.filter(|thing| thing.is_sleeping);

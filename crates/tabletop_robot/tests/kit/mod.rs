@@ -87,7 +87,7 @@ impl Stage {
         Pose::from(self.app.world().get::<Transform>(object).unwrap())
     }
 
-    /// The facts of so many ticks.
+    /// The facts of the next ticks.
     pub fn facts_of(&mut self, ticks: u64) -> Vec<SimFact> {
         let mut all = Vec::new();
         for _ in 0..ticks {
@@ -98,7 +98,7 @@ impl Stage {
         all
     }
 
-    /// Brings an end effector to a place, its fingers pointing down and opening along X, turned about Z.
+    /// Brings an end effector to a place, its fingers pointing down and opening along X, then turned about Z.
     pub fn reach(&mut self, arm: Arm, location: Vec3, yaw_degrees: f32) {
         let pose = Pose::from_degrees(location, Vec3::Z * yaw_degrees);
         self.tell(RobotCommand::ReachTo {
@@ -113,10 +113,10 @@ impl Stage {
             facts.extend(self.facts_of(1));
         }
         if self.robot().mode == RobotMode::Dynamic {
-            // It is there, but for what its motors still have to pull.
+            // It has arrived, apart from the last pull of its motors.
             facts.extend(self.facts_of(30));
         }
-        // A motor yields a little to what it slides along.
+        // A motor yields a little to an object that it slides along.
         let near = match self.robot().mode {
             RobotMode::Kinematic => 1e-3,
             RobotMode::Dynamic => 5e-3,
@@ -144,7 +144,7 @@ pub fn inside_the_table(stage: &mut Stage) -> Vec<String> {
         .filter(|(body, ..)| body.name.contains("left") || body.name.contains("right"))
         .filter(|(_, place, collider)| {
             let at = rapier::Pose::from_parts(place.translation, place.rotation);
-            // An intersection test takes some that are a hair apart for touching.
+            // An intersection test reports some bodies that are a hair apart as touching.
             let contact = parry::query::contact(&at, &*collider.raw, &table_at, &*table, 0.0);
             contact.unwrap().is_some_and(|contact| contact.dist < 0.0)
         })

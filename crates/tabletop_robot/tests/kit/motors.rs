@@ -1,10 +1,10 @@
-//! What tests of dynamic mode share.
+//! Helpers of the tests of dynamic mode.
 
 use tabletop_core::{Arm, Drive, JOINTS_PER_ARM, Robot, RobotCommand, RobotJoint, StepApp};
 
 use super::Stage;
 
-/// The arm that is looked at.
+/// The tested arm.
 pub const ARM: Arm = Arm::Right;
 
 /// Ticks of a second.
@@ -39,7 +39,7 @@ pub fn go(stage: &mut Stage, arm: Arm, angles: [f64; JOINTS_PER_ARM]) {
     );
 }
 
-/// How far the arm's joints are from these angles at most, in degrees.
+/// Largest difference of the arm's joints from these angles, in degrees.
 pub fn off(stage: &Stage, arm: Arm, angles: [f64; JOINTS_PER_ARM]) -> f64 {
     let is = stage.robot().angles(arm);
     is.iter()
@@ -57,7 +57,7 @@ pub fn effort(joint: RobotJoint) -> f64 {
     }
 }
 
-/// Checks what holds in every tick.
+/// Checks that motors stay within their limits.
 pub fn check_limits(robot: &Robot) {
     for joint in RobotJoint::of_arm(Arm::Left)
         .into_iter()

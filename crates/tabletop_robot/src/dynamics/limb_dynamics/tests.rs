@@ -1,4 +1,4 @@
-//! What motors, weights, stops and touches make of an arm.
+//! Effects of motors, weights, stops and contacts on an arm.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,7 +7,7 @@ use crate::dynamics::{impulse::FrictionAxis, matrix::each_pair, motor::MotorTask
 
 const SECONDS: f64 = 1.0 / 60.0;
 
-/// Joints that do not act on each other, each with this inertia in kg m².
+/// Joints that do not act on each other, each with this inertia, in kg m².
 fn apart(inertia: f64) -> LimbDynamics {
     LimbDynamics {
         angles: each(7, |_| 0.0),
@@ -178,7 +178,7 @@ fn a_light_thing_hardly_slows_the_arm_and_a_heavy_one_stalls_it() {
     };
     let free = 0.5 + 50.0 * SECONDS;
     assert!(push(0.02) > 0.98 * free, "{}", push(0.02));
-    // An arm of 1 kg m² on a lever of 0.5 m is like 4 kg.
+    // An arm of 1 kg m² on a lever of 0.5 m acts like 4 kg.
     let expected = (free * 4.0 - 2.0 * 0.5 * 9.81 * SECONDS / 0.5) / 6.0;
     assert!(
         (push(2.0) - expected).abs() < 1e-9,
