@@ -7,17 +7,17 @@
 use bevy::prelude::*;
 use tabletop::prelude::*;
 
-/// Everything that was told so far.
+/// All facts so far.
 #[derive(Resource, Default)]
-struct Told(Vec<SimFact>);
+struct Facts(Vec<SimFact>);
 
-fn listen(mut told: ResMut<Told>, mut facts: MessageReader<SimFact>) {
-    told.0.extend(facts.read().cloned());
+fn listen(mut all: ResMut<Facts>, mut facts: MessageReader<SimFact>) {
+    all.0.extend(facts.read().cloned());
 }
 
 fn main() -> Result {
     let mut app = headless_app();
-    app.init_resource::<Told>()
+    app.init_resource::<Facts>()
         .add_systems(FixedUpdate, listen.in_set(SimSystems::Record));
 
     let hand = Hand::Right;
@@ -57,7 +57,7 @@ fn main() -> Result {
     }
 
     let world = app.world();
-    for fact in &world.resource::<Told>().0 {
+    for fact in &world.resource::<Facts>().0 {
         println!("{fact:?}");
     }
     let red_block = world

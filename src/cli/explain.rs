@@ -51,7 +51,7 @@ pub(super) fn explain(args: &ExplainArgs) -> Result<ExitCode, Failure> {
         }
         return print(&format!("{json:#}\n"));
     }
-    let mut lines = told(&task);
+    let mut lines = reported(&task);
     if lines.is_empty() {
         lines.push("Nothing is moved for good.".into());
     }
@@ -80,13 +80,13 @@ pub(super) fn explain(args: &ExplainArgs) -> Result<ExitCode, Failure> {
 }
 
 /// The steps with their numbers, and what was operated between them.
-fn told(task: &Task) -> Vec<String> {
+fn reported(task: &Task) -> Vec<String> {
     let steps = task.steps.iter().map(|step| (step.grasp, numbered(step)));
     let operations = task.operations.iter();
     let operations = operations.map(|done| (done.tick, format!("- {}", done.sentence())));
-    let mut told: Vec<_> = steps.chain(operations).collect();
-    told.sort_by_key(|(tick, _)| *tick);
-    told.into_iter().map(|(_, line)| line).collect()
+    let mut reported: Vec<_> = steps.chain(operations).collect();
+    reported.sort_by_key(|(tick, _)| *tick);
+    reported.into_iter().map(|(_, line)| line).collect()
 }
 
 /// The task of a recording, with what is required in its sentences.

@@ -158,7 +158,7 @@ struct Attempt<'a> {
 }
 
 impl Attempt<'_> {
-    fn make(&self, is_told: bool) -> Result<Trial, Failure> {
+    fn make(&self, is_reported: bool) -> Result<Trial, Failure> {
         let start = Instant::now();
         let scene = match self.seed {
             Some(seed) => scattered(self.scene, &[], Some(self.body), seed),
@@ -200,7 +200,7 @@ impl Attempt<'_> {
         }
         let mut stage = AppStage::new(&mut app);
         let tell = |doing: Doing| {
-            if is_told {
+            if is_reported {
                 let again = if doing.tries > 0 { " (again)" } else { "" };
                 let sentence = self
                     .task

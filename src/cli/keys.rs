@@ -56,14 +56,14 @@ fn table(keymap: &Keymap, preferences: &Preferences) -> String {
         "Keys are those at these places of a US keyboard, whatever is printed on them.\n",
     );
     if let Some(path) = preferences.file("keys") {
-        let told = match path.exists() {
+        let reported = match path.exists() {
             true => format!("Yours are in {}.", path.display()),
             false => format!(
                 "To bind others: tabletop keys --ron > {}, and edit that file.",
                 path.display()
             ),
         };
-        let _infallible = writeln!(text, "{told}");
+        let _infallible = writeln!(text, "{reported}");
     }
     text
 }

@@ -389,7 +389,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_told_in_a_pause_is_told_in_a_pause() {
+    fn what_was_commanded_in_a_pause_is_commanded_in_a_pause() {
         let mut player = player(&[
             (1, SimCommand::Clock(ClockCommand::SetPaused(true))),
             (1, SimCommand::Hand(HandCommand::Release(Hand::Left))),

@@ -97,7 +97,7 @@ fn open(world: &mut World, path: &Path) {
 fn save(world: &mut World, path: &Path) {
     match save_task(world, path) {
         Ok(unsaid) => {
-            tell(world, Tone::News, &format!("{} is saved", path.display()));
+            tell(world, Tone::Event, &format!("{} is saved", path.display()));
             for unsaid in unsaid {
                 let unsaid = format!("{}: {unsaid}", name(path));
                 tell(world, Tone::Warning, &unsaid);
@@ -190,7 +190,7 @@ mod tests {
         issued.into_iter().map(|issued| issued.command).collect()
     }
 
-    fn told(app: &App) -> Vec<String> {
+    fn reported(app: &App) -> Vec<String> {
         let notices = app.world().resource::<Notices>();
         notices.iter().map(str::to_owned).collect()
     }
@@ -226,7 +226,7 @@ mod tests {
         for path in ["notes.txt", "missing.xml", ""] {
             let mut other = app(&folder);
             drop(&mut other, path);
-            assert_eq!(told(&other).len(), 1, "{path}");
+            assert_eq!(reported(&other).len(), 1, "{path}");
             assert!(commands_of(&other).is_empty());
             assert!(written::<OpenRecording>(&other).is_empty());
         }
@@ -266,12 +266,12 @@ mod tests {
     }
 
     #[test]
-    fn a_saved_state_is_told_and_remembered() {
+    fn a_saved_state_is_reported_and_remembered() {
         let folder = folder("saved");
         let mut app = app(&folder);
         let path = folder.join("saved.xml");
         ask(&mut app, FileRequest::Save(path.clone()));
-        assert_eq!(told(&app), [format!("{} is saved", path.display())]);
+        assert_eq!(reported(&app), [format!("{} is saved", path.display())]);
         assert_eq!(recent(&app), std::slice::from_ref(&path));
         let task = crate::xml::read_task(&path).unwrap();
         assert_eq!((task.scene, task.faults), default());
@@ -280,9 +280,9 @@ mod tests {
             FileRequest::Save(folder.join("missing/saved.xml")),
         );
         assert!(
-            told(&app)[1].contains("cannot be saved: "),
+            reported(&app)[1].contains("cannot be saved: "),
             "{:?}",
-            told(&app)
+            reported(&app)
         );
     }
 
@@ -334,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_during_a_recording_or_with_faults_is_told_and_changes_nothing() {
+    fn a_change_during_a_recording_or_with_faults_is_reported_and_changes_nothing() {
         let folder = folder("no_reload");
         let larger = TASK.replace("(0,0,1)", "(0,0,10)");
         for (text, is_recording, words) in [
@@ -344,8 +344,11 @@ mod tests {
             fs::write(folder.join("task.xml"), TASK).unwrap();
             let app = changed(&folder, text, true, is_recording);
             assert_eq!(commands_of(&app), []);
-            let told = told(&app);
-            assert!(told.len() == 1 && told[0].contains(words), "{told:?}");
+            let reported = reported(&app);
+            assert!(
+                reported.len() == 1 && reported[0].contains(words),
+                "{reported:?}"
+            );
         }
     }
 

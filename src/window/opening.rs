@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_memory_is_told_and_the_user_asked() {
+    fn a_damaged_memory_is_reported_and_the_user_asked() {
         let folder = std::env::temp_dir().join(format!("tabletop-damaged-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         std::fs::write(folder.join("display.ron"), "(resolution: big)").unwrap();

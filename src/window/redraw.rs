@@ -88,7 +88,7 @@ impl Redraw {
             if cause.is_motion() {
                 self.moved_at = now;
             }
-            if cause.is_news() {
+            if cause.is_event() {
                 self.news_at = now;
             }
         }

@@ -19,7 +19,7 @@ fn announce_end(
     if is_over && !std::mem::replace(&mut *was_over, is_over) {
         let folder = timeline.folder.display();
         let over = format!("the replay of {folder} is over; you can go on from here");
-        notices.add(Tone::News, &over);
+        notices.add(Tone::Event, &over);
     }
     *was_over = is_over;
 }

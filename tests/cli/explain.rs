@@ -200,7 +200,7 @@ fn a_place_on_the_way_is_left_out() {
 }
 
 #[test]
-fn turning_holding_removing_and_keeping_are_told_apart() {
+fn turning_holding_removing_and_keeping_are_distinguished() {
     means(
         &shown(
             "turned",
@@ -299,7 +299,7 @@ fn table(name: &str, colors: &[&str]) -> PathBuf {
 }
 
 #[test]
-fn requirements_are_kept_and_said() {
+fn requirements_are_kept_and_reported() {
     let demo = record("shipped:scenarios/stack_three.ron", "explain_required");
     let as_shown = [
         "Green (moved in step 1): as it was shown",
@@ -415,7 +415,7 @@ fn json_tells_all_of_it() {
 }
 
 #[test]
-fn what_is_no_recording_is_said() {
+fn what_is_no_recording_is_reported() {
     let output = tabletop(&["explain", "tablesetup"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(

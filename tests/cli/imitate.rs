@@ -13,9 +13,9 @@ fn recorded(scenario: &str) -> String {
 
 fn is_done(demo: &str, options: &[&str]) {
     let output = tabletop(&[&["imitate", demo], options].concat());
-    let told = stdout(&output) + &stderr(&output);
-    assert_eq!(output.status.code(), Some(0), "{told}");
-    assert!(told.contains("Done: "), "{told}");
+    let reported = stdout(&output) + &stderr(&output);
+    assert_eq!(output.status.code(), Some(0), "{reported}");
+    assert!(reported.contains("Done: "), "{reported}");
 }
 
 #[test]
@@ -98,13 +98,13 @@ fn trials_are_counted() {
 }
 
 #[test]
-fn what_cannot_be_done_is_said_in_a_sentence() {
+fn what_cannot_be_done_is_reported_in_a_sentence() {
     // The blocks of the default table are as wide as the gripper opens.
     let output = tabletop(&["imitate", &recorded("stack_two_blocks")]);
     assert_eq!(output.status.code(), Some(1));
-    let told = stdout(&output);
+    let reported = stdout(&output);
     assert!(
-        told.contains("Step 1 failed (Put the red block on the green block.): RedBlock cannot be taken from above"),
-        "{told}"
+        reported.contains("Step 1 failed (Put the red block on the green block.): RedBlock cannot be taken from above"),
+        "{reported}"
     );
 }

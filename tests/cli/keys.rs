@@ -36,13 +36,14 @@ fn the_list_that_is_printed_as_a_file_is_read_without_a_fault() {
 }
 
 #[test]
-fn faults_of_a_file_are_told_with_their_places() {
+fn faults_of_a_file_are_reported_with_their_places() {
     let path = place("faulty_keys.ron");
     fs::write(&path, "{\n  \"jump\": [\"Space\"],\n}").unwrap();
     let path = path.to_str().unwrap();
     let output = command(&["keys", "--keys", path]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
-    let told = format!("{path}:2:3: there is no action `jump`; `tabletop keys` lists them all\n");
-    assert_eq!(stderr(&output), told);
+    let reported =
+        format!("{path}:2:3: there is no action `jump`; `tabletop keys` lists them all\n");
+    assert_eq!(stderr(&output), reported);
     assert!(stdout(&output).contains("Space"));
 }

@@ -162,7 +162,7 @@ fn ik_takes_points_of_the_table_and_stays_near_its_seed() {
 }
 
 #[test]
-fn what_cannot_be_reached_is_told_and_ends_in_1() {
+fn what_cannot_be_reached_is_reported_and_ends_in_1() {
     let far = json!({ "arm": "left", "position": [-30.0, 20.0, 5.0] });
     let near = json!({ "arm": "left", "position": [-3.0, 0.0, 3.0] });
     let answers = robot(&["ik"], format!("{far}\n{near}\n").as_bytes());
@@ -176,7 +176,7 @@ fn what_cannot_be_reached_is_told_and_ends_in_1() {
 }
 
 #[test]
-fn wrong_lines_are_told_by_number_and_end_in_2() {
+fn wrong_lines_are_reported_by_number_and_end_in_2() {
     let good = json!({ "arm": "left", "position": [-3.0, 0.0, 3.0] }).to_string();
     let cases = [
         (b"{".as_slice(), "line 2: column 1: EOF"),

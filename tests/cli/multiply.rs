@@ -16,9 +16,9 @@ fn recorded(name: &str, scenario: &str) -> String {
 fn multiply(demo: &str, out: &Path, options: &[&str]) -> String {
     let out = out.to_str().unwrap();
     let output = tabletop(&[&["multiply", demo, "--out", out], options].concat());
-    let told = stdout(&output) + &stderr(&output);
-    assert_eq!(output.status.code(), Some(0), "{told}");
-    told
+    let reported = stdout(&output) + &stderr(&output);
+    assert_eq!(output.status.code(), Some(0), "{reported}");
+    reported
 }
 
 /// Every file below a folder, by its path in it.
@@ -82,12 +82,12 @@ fn the_same_seed_gives_the_same_bytes_and_what_is_there_is_kept() {
         .unwrap()
         .modified()
         .unwrap();
-    let told = multiply(
+    let reported = multiply(
         &demo,
         &other,
         &[&options[..], &["--count", "3", "--jobs", "1"]].concat(),
     );
-    assert!(told.contains("1 were there\n2 made in "), "{told}");
+    assert!(reported.contains("1 were there\n2 made in "), "{reported}");
     let still = fs::metadata(other.join("0000/states.csv"))
         .unwrap()
         .modified()
@@ -136,8 +136,8 @@ fn what_is_required_of_an_object_stays_so() {
     let options = ["--count", "3", "--colors", "--distractors", "2"];
     multiply(&demo, &out, &options);
     for number in ["0000", "0001", "0002"] {
-        let told = explained(&out.join(number));
-        assert!(told.contains("2. Put the red object on"), "{told}");
+        let reported = explained(&out.join(number));
+        assert!(reported.contains("2. Put the red object on"), "{reported}");
         let events = fs::read_to_string(out.join(number).join("0.txt")).unwrap();
         assert!(events.contains("create,Red,"), "{events}");
     }

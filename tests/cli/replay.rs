@@ -53,7 +53,7 @@ fn every_shipped_scenario_replays_to_the_same_bytes() {
 
 #[cfg(unix)]
 #[test]
-fn a_replay_that_cannot_be_written_is_told() {
+fn a_replay_that_cannot_be_written_is_reported() {
     let folder = recording("stack_two_blocks", "replay-small-files");
     let copy = place("replay-small-files-copy");
     let [folder, copy] = [&folder, &copy].map(|path| path.to_str().unwrap());

@@ -80,7 +80,7 @@ fn a_description_that_is_none_is_wrong_input() {
 }
 
 #[test]
-fn a_mesh_that_is_not_there_is_told_once() {
+fn a_mesh_that_is_not_there_is_reported_once() {
     let robot = place("no_mesh.urdf");
     let shipped = fs::read_to_string(shipped("assets", "baxter/baxter.urdf")).unwrap();
     let missing = shipped.replace("package://tabletop/wrist.shape.json", "missing.stl");

@@ -383,7 +383,7 @@ fn a_scenario_has_its_place_in_a_tick() {
 
 #[test]
 fn a_recording_ends_with_its_scenario() {
-    for (name, steps, told) in [
+    for (name, steps, reported) in [
         ("unfinished", "Start, Grasp(\"RedBlock\"), Wait(0.5),", ""),
         (
             "unstarted",
@@ -398,8 +398,8 @@ fn a_recording_ends_with_its_scenario() {
             &["--quiet", "--record", folder.to_str().unwrap()],
         );
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        assert_eq!(stderr(&output), told);
-        if told.is_empty() {
+        assert_eq!(stderr(&output), reported);
+        if reported.is_empty() {
             let output = tabletop(&["replay", folder.to_str().unwrap(), "--verify"]);
             assert_eq!(
                 (output.status.code(), stderr(&output)),
@@ -438,10 +438,10 @@ fn two_programs_do_not_record_into_one_folder() {
 }
 
 #[test]
-fn what_stops_an_arm_is_told_once() {
+fn what_stops_an_arm_is_reported_once() {
     let steps = "Robot(Show), Robot(Move([(RightS1, 1.0)])), Wait(2), Robot(Move([(RightS1, 1.0)])), Wait(0.5),";
     let output = run(&scenario("stopped.ron", steps), &[]);
-    let told = stderr(&output);
+    let reported = stderr(&output);
     let stop = "tabletop: the right arm is stopped by torso\n";
-    assert_eq!(told.matches(stop).count(), 1, "{told}");
+    assert_eq!(reported.matches(stop).count(), 1, "{reported}");
 }

@@ -259,7 +259,7 @@ fn an_error_of_a_script_ends_the_run_with_its_place() {
 }
 
 #[test]
-fn what_cannot_be_run_is_told_before_anything_starts() {
+fn what_cannot_be_run_is_reported_before_anything_starts() {
     let file = folder("file-for-folder").join("robot.py");
     fs::write(&file, "").unwrap();
     let matlab_file = format!("octave:{}", file.display());
@@ -310,7 +310,7 @@ fn what_cannot_be_run_is_told_before_anything_starts() {
 }
 
 #[test]
-fn wrong_options_are_told() {
+fn wrong_options_are_reported() {
     let script = python("options", "pass", "pass");
     for (arguments, message) in [
         (
@@ -427,7 +427,7 @@ fn any_engine_is_taken_if_the_option_says_so() {
 }
 
 #[test]
-fn a_script_that_fails_beside_a_scenario_is_told_once_when_it_does() {
+fn a_script_that_fails_beside_a_scenario_is_reported_once_when_it_does() {
     let script = python("beside", "pass", "raise ValueError('my bug')");
     for (name, steps, end) in [
         ("beside_done.ron", "Wait(0.2)", ""),
@@ -659,11 +659,11 @@ fn a_script_knows_the_task_of_a_recording() {
     let script = "python:learners/follow_task.py";
     let output = tabletop(&["run", scenario, "--script", script, "--task", demo]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let told = stderr(&output) + &stdout(&output);
+    let reported = stderr(&output) + &stdout(&output);
     for sentence in [
         "1. Put the green block on the blue block. Done.",
         "2. Put the red block on the green block. Done.",
     ] {
-        assert!(told.contains(sentence), "{told}");
+        assert!(reported.contains(sentence), "{reported}");
     }
 }

@@ -224,7 +224,7 @@ fn a_recording_that_loops_begins_again() {
 }
 
 #[test]
-fn what_cannot_be_opened_is_told_in_one_line() {
+fn what_cannot_be_opened_is_reported_in_one_line() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_recording");
     let _there_already = fs::create_dir_all(&folder);
     let moon = recording("moon_recording");

@@ -1,4 +1,4 @@
-//! Where a camera stands, what it takes in, and which ray goes through which point of its picture.
+//! Cameras: their poses, fields of view and rays.
 
 mod linear;
 
@@ -18,22 +18,22 @@ pub(crate) const NEAR: f32 = 0.01;
 /// The narrowest and the widest field of view, in radians.
 const FIELDS_OF_VIEW: Range<f32> = 1e-3..3.1;
 
-/// A camera: everything but the scene that a picture depends on.
+/// A camera: everything that a picture depends on except the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Where it stands. It looks along its own -Z; its X is to the right in the picture and its Y is up, as for a camera
+    /// Its pose. It looks along its own -Z; its X is to the right in the picture and its Y is up, as for a camera
     /// of Bevy.
     pub pose: Pose,
     /// Angle between the lower and the upper edge of the picture in radians; taken as the nearest of 0.001 to 3.1.
     pub vertical_fov: f32,
-    /// Make the angle between the left and the right edge the same, so that pixels are square only in a square picture.
+    /// Makes the angle between the left and right edges the same, so that pixels are square only in a square picture.
     pub square_fov: bool,
     /// Columns of the picture.
     pub width: u32,
     /// Rows of the picture.
     pub height: u32,
-    /// Smooth edges, from four samples a pixel. Changes colours only, and only of pixels in which more than one surface is
-    /// seen.
+    /// Smooths edges by four samples a pixel. This changes only colours, and only of pixels that show more than one
+    /// surface.
     pub antialiasing: bool,
 }
 
@@ -50,8 +50,8 @@ impl Camera {
         }
     }
 
-    /// The pixel in which a point is seen, as column and row; the centre of the upper left pixel is (0, 0). Points that are
-    /// not in front of the camera are not seen, others may lie outside the picture.
+    /// The pixel of a point, as column and row; the centre of the upper left pixel is (0, 0). `None` for points that are
+    /// not in front of the camera; others may lie outside the picture.
     pub fn pixel_of(&self, point: Vec3) -> Option<Vec2> {
         let view = PinholeView::of(self);
         view.pixel_of(point - view.eye)
@@ -59,8 +59,8 @@ impl Camera {
 }
 
 /// The rays of a camera. The ray through the point (x, y) of the picture, in pixels from the centre of the upper left one,
-/// has the direction `first + x * right + y * down`, whose component along the axis of view is 1. So what it meets after
-/// that direction times z lies at depth z.
+/// has the direction `first + x * right + y * down`, whose component along the axis of view is 1. So a point at
+/// that direction times z has depth z.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PinholeView {
     pub eye: Vec3,
@@ -106,7 +106,7 @@ impl PinholeView {
         }
     }
 
-    /// What tells it from all others.
+    /// Its bits, which identify it.
     pub fn bits(&self) -> [u32; 11] {
         let ([x, y, z], [a, b, c, d]) = (self.eye.to_array(), self.axes.to_array());
         let [right, down] = self.pixel.to_array();
@@ -114,12 +114,12 @@ impl PinholeView {
         [x, y, z, a, b, c, d, right, down, size[0], size[1]].map(f32::to_bits)
     }
 
-    /// Where a point, given relative to the eye, is seen.
+    /// The pixel of a point given relative to the eye.
     pub fn pixel_of(&self, point: Vec3) -> Option<Vec2> {
         self.pixel_of_local(self.axes.inverse() * point)
     }
 
-    /// Where points are seen that are given in the frame of a body.
+    /// The pixels of points given in the frame of a body.
     pub fn pixels_of(&self, body: Pose) -> impl Fn(Vec3A) -> Option<Vec2> {
         let to_camera = self.axes.inverse();
         let axes = Mat3A::from_quat(to_camera * body.rotation);
@@ -127,13 +127,13 @@ impl PinholeView {
         move |point| self.pixel_of_local((axes * point + origin).into())
     }
 
-    /// Where a point, given in the frame of the camera, is seen.
+    /// The pixel of a point given in the frame of the camera.
     fn pixel_of_local(&self, point: Vec3) -> Option<Vec2> {
         let depth = -point.z;
         (depth >= NEAR).then(|| self.center + Vec2::new(point.x, -point.y) / (depth * self.pixel))
     }
 
-    /// Where the convex hull of these points, given relative to the eye, may be seen.
+    /// The window around the convex hull of these points, given relative to the eye.
     pub fn window_of(&self, corners: &[Vec3; 8]) -> Option<Window> {
         let is_drawable = |corner: &Vec3| corner.abs().cmplt(Vec3::splat(FARTHEST)).all();
         if !corners.iter().all(is_drawable) {
@@ -169,7 +169,7 @@ impl Window {
     }
 }
 
-/// Corners that are farther away than this along any axis, in units, are not drawn: numbers are too coarse there.
+/// Largest distance along an axis, in units, of a corner that is drawn: beyond it, numbers are too coarse.
 const FARTHEST: f32 = 1e9;
 
 /// The pixels that have a sample between these two points, and perhaps their neighbours.

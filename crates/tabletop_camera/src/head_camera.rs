@@ -10,30 +10,30 @@ use tabletop_core::{
 
 use crate::{Camera, DrawnFigure, DrawnSolid, Facets, Rasterizer, Scene};
 
-/// The solids that an object is drawn as, in its own frame: they are worked out once.
+/// The drawn solids of an object, in its own frame, computed once.
 #[derive(Component, Debug)]
 #[component(immutable)]
 pub(crate) struct ObjectSolids(Vec<Primitive>);
 
-/// A figure, made ready for being drawn.
+/// A figure, prepared for drawing.
 #[derive(Component, Clone, Debug)]
 #[component(immutable)]
 pub(crate) struct DrawnFacets {
     facets: Arc<Facets>,
-    /// How many figures there were before it.
+    /// Number of figures before it.
     order: u64,
 }
 
-/// What is kept from picture to picture.
+/// Memory kept from picture to picture.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct HeadCameraRenderer {
     rasterizer: Rasterizer,
     scene: Scene,
-    /// So many figures there have been.
+    /// Number of figures so far.
     figures: u64,
 }
 
-/// Works out what an object looks like as soon as it appears or becomes another.
+/// Computes the drawn solids of an object when it appears or changes.
 pub(crate) fn prepare_object(
     insert: On<Insert, ObjectSpec>,
     objects: Query<&ObjectSpec>,
@@ -44,7 +44,7 @@ pub(crate) fn prepare_object(
     Ok(())
 }
 
-/// Makes a figure ready as soon as it appears or changes.
+/// Prepares a figure when it appears or changes.
 pub(crate) fn prepare_figure(
     insert: On<Insert, Figure>,
     figures: Query<(&Figure, Option<&DrawnFacets>)>,
@@ -61,12 +61,12 @@ pub(crate) fn prepare_figure(
     Ok(())
 }
 
-/// What is no figure any more is not drawn.
+/// Stops drawing what is no longer a figure.
 pub(crate) fn remove_figure(remove: On<Remove, Figure>, mut commands: Commands) {
     commands.entity(remove.entity).try_remove::<DrawnFacets>();
 }
 
-/// Draws what the head camera sees at this moment, if a picture was asked for.
+/// Draws the present view of the head camera, if a picture was asked for.
 pub(crate) fn render_head_camera(
     mut demand: ResMut<PictureDemand>,
     tick: Res<SimTick>,

@@ -1,9 +1,9 @@
-//! The robot's eye: what its head camera sees, as a picture with depth and object numbers, with or without a window.
+//! The robot's eye: the view of its head camera, as a picture with depth and object numbers, with or without a window.
 //!
-//! Everything is worked out on the processor from IEEE arithmetic, each row by itself, so the same scene gives the same bytes
-//! on every run, however many threads draw. Objects are no meshes: faces are found row by row from the planes through the
-//! eye and their edges, cylinders and balls by meeting each ray with the exact surface, and only what is seen in the end is lit. (The rasteriser crate `euc`
-//! 0.5 draws the same blocks at a seventh of the speed.) Figures are triangles, lit at their corners.
+//! Everything is computed on the processor in IEEE arithmetic, each row by itself, so the same scene gives the same bytes
+//! on every run, however many threads draw. Objects are not meshes. Faces are found row by row from the planes through the
+//! eye and their edges; cylinders and balls by intersecting each ray with the exact surface. Only visible surfaces are lit. (The rasteriser crate
+//! `euc` 0.5 draws the same blocks at a seventh of the speed.) Figures are triangles, lit at their corners.
 //! [`Rasterizer`] draws any [`Scene`] for any [`Camera`]; it knows no ECS:
 //!
 //! ```
@@ -54,7 +54,7 @@ pub use camera::Camera;
 pub use raster::Rasterizer;
 pub use scene::{DrawnFigure, DrawnSolid, Facets, Scene};
 
-/// What most users of this crate name.
+/// The names that most users of this crate need.
 pub mod prelude {
     #[doc(hidden)]
     pub use crate::{Camera, CameraPlugin, DrawnFigure, DrawnSolid, Facets, Rasterizer, Scene};
@@ -66,7 +66,7 @@ use tabletop_core::{
 };
 use tabletop_history::RollbackApp;
 
-/// Takes the head camera's picture when it is asked for: of [`HeadCamera`], on [`PictureDemand`], into [`SensorImage`].
+/// Takes the head camera's picture on demand: of [`HeadCamera`], on [`PictureDemand`], into [`SensorImage`].
 /// Needs [`CorePlugin`](tabletop_core::CorePlugin).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CameraPlugin;

@@ -1,4 +1,4 @@
-//! Drawing a picture, in bands of rows that several threads may draw at once.
+//! Drawing of a picture, in bands of rows that several threads may draw at once.
 
 mod backdrop;
 mod band;
@@ -35,11 +35,11 @@ use crate::{
     scene::Scene,
 };
 
-/// So many rows are a thread's task, whole bands. The pictures are the same whatever it is.
+/// Number of rows of a thread's task: whole bands. The pictures do not depend on it.
 const ROWS_IN_TASK: usize = 2 * ROWS;
 
-/// Draws pictures, one after the other. It keeps its memory, so that it allocates next to nothing once it has drawn a picture of
-/// the same size and a scene of the same length, and what it found out about the table and figures as long as they stay. Rows in which
+/// Draws pictures, one after the other. It keeps its memory, so it allocates next to nothing after a picture of
+/// the same size and a scene of the same length; it also keeps what it has computed about the table and figures that stay. Rows in which
 /// nothing has changed since the last picture are not drawn again.
 ///
 /// In an app, Bevy's compute threads help.
@@ -54,8 +54,8 @@ pub struct Rasterizer {
 }
 
 impl Rasterizer {
-    /// Draws what the camera sees. Of surfaces that are equally near, one of the first kind is seen (cuboids are before
-    /// cylinders and balls, these before figures, and polyhedra are last), and of those the first in the scene.
+    /// Draws the view of the camera. Of surfaces that are equally near, the first kind wins: cuboids come before
+    /// cylinders and balls, these before figures, and polyhedra are last; within a kind, the first in the scene wins.
     pub fn draw(&mut self, scene: &Scene, camera: &Camera, picture: &mut Picture) {
         let view = PinholeView::of(camera);
         self.polyhedra.find(&scene.solids);

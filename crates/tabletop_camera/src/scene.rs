@@ -1,4 +1,4 @@
-//! What a camera looks at.
+//! Scenes: what cameras look at.
 
 mod facets;
 
@@ -9,7 +9,7 @@ use tabletop_core::{Pose, Primitive, Rgb, Solid, Table};
 
 pub use facets::Facets;
 
-/// What a camera looks at.
+/// A scene for a camera.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// Solids.
@@ -27,7 +27,7 @@ pub struct DrawnFigure {
     pub pose: Pose,
     /// Its surface.
     pub facets: Arc<Facets>,
-    /// The number that its pixels have in [`Picture::objects`](tabletop_core::Picture::objects); above 0.
+    /// The number of its pixels in [`Picture::objects`](tabletop_core::Picture::objects); above 0.
     pub object: u32,
 }
 
@@ -40,25 +40,25 @@ pub struct DrawnSolid {
     pub solid: Solid,
     /// Its colour.
     pub color: Rgb,
-    /// The number that its pixels have in [`Picture::objects`](tabletop_core::Picture::objects); above 0.
+    /// The number of its pixels in [`Picture::objects`](tabletop_core::Picture::objects); above 0.
     pub object: u32,
 }
 
-/// What tells a pose from all others.
+/// The bits of a pose, which identify it.
 fn bits_of(pose: Pose) -> [u32; 7] {
     let ([x, y, z], [a, b, c, d]) = (pose.location.to_array(), pose.rotation.to_array());
     [x, y, z, a, b, c, d].map(f32::to_bits)
 }
 
 impl DrawnFigure {
-    /// What tells its pose from all others.
+    /// The bits of its pose, which identify it.
     pub(crate) fn pose_bits(&self) -> [u32; 7] {
         bits_of(self.pose)
     }
 }
 
 impl DrawnSolid {
-    /// What tells its pose from all others.
+    /// The bits of its pose, which identify it.
     pub(crate) fn pose_bits(&self) -> [u32; 7] {
         bits_of(self.pose)
     }

@@ -38,7 +38,7 @@ fn move_objects(mut objects: Query<&mut Transform, With<ObjectSpec>>) {
     }
 }
 
-/// The pictures that came, each with the tick in which it was there.
+/// The pictures that came, each with the tick of its arrival.
 #[derive(Resource, Default)]
 struct Seen(Vec<(u64, SensorImage)>);
 

@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn a_camera_looks_where_it_is_told_with_a_level_horizon() {
+    fn a_camera_looks_where_it_is_aimed_with_a_level_horizon() {
         let from = Vec3::new(1.0, -5.0, 4.0);
         for at in [
             Vec3::ZERO,

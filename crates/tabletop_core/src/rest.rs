@@ -95,11 +95,11 @@ type Sizes = (usize, usize);
 
 pub(crate) fn configure(app: &mut App) {
     app.init_resource::<Rest>()
-        .wake_while(is_told_something)
+        .wake_while(has_commands)
         .wake_while(is_used);
 }
 
-fn is_told_something(
+fn has_commands(
     commands: Res<Messages<IssuedCommand>>,
     facts: Res<Messages<SimFact>>,
     script_commands: Res<Messages<ScriptCommand>>,

@@ -1,4 +1,4 @@
-//! Moving what hands hold.
+//! Carrying: the motion of held objects.
 
 use bevy::prelude::*;
 use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*, rapier::prelude as rapier};
@@ -7,17 +7,17 @@ use tabletop_physics::{Carry, Convex, convex_parts, nearby, nearest, pull_veloci
 
 use crate::{grasp::CarryTarget, obstacles::slide};
 
-/// Fastest a hand moves, in units/s, and turns, in rad/s.
+/// Greatest speeds of a hand: in units/s, and in rad/s for turning.
 const FASTEST: (f32, f32) = (40.0, 10.0);
 
-/// Fastest a hand pushes free objects, in units/s.
+/// Greatest speed, in units/s, at which a hand pushes free objects.
 const FASTEST_PUSH: f32 = 6.0;
 
 /// Depth, in units, to which a free object may be squeezed against something before the hand yields.
 const MOST_SQUEEZE: f32 = 0.002;
 
-/// Moves every held object towards its target for one tick, and keeps awake what is near it: Rapier lets things fall into
-/// sleeping ones for a tick.
+/// Moves every held object towards its target for one tick, and keeps its surroundings awake: Rapier would let things fall into
+/// sleeping objects for a tick.
 pub(crate) fn carry(
     hands: Res<Hands>,
     rapier: ReadRapierContext,
@@ -55,15 +55,15 @@ fn collider_of<'a>(rapier: &'a RapierContext, object: Entity) -> Option<&'a rapi
     rapier.colliders.colliders.get(*handle)
 }
 
-/// The pose to which an object comes that is carried freely from one pose to another.
+/// The pose that a freely carried object reaches on its way from one pose to another.
 fn carried(collider: &rapier::Collider, here: Pose, mut next: Pose, near: &Near) -> Pose {
     let held = convex_parts(Pose::IDENTITY, collider.shared_shape());
     next.location = here.location + pushing(next.location - here.location, &held, here, &near.free);
     slide(&held, here, next, &near.immovable)
 }
 
-/// The part of a step that is left when free objects are reached in one tick and pushed from the next one on, no faster
-/// than a hand pushes, and not squeezed.
+/// The part of a step that remains when free objects are reached in one tick and pushed from the next one on, no faster
+/// than a hand pushes, and without being squeezed.
 fn pushing(mut step: Vec3, held: &[Convex], here: Pose, free: &[Convex]) -> Vec3 {
     let reach = step.length() + MOST_SQUEEZE;
     for nearest in nearest(held, here, free, reach) {

@@ -1,4 +1,4 @@
-//! Taking objects into hands and letting go of them.
+//! Grasping and releasing objects.
 
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
@@ -13,7 +13,7 @@ use crate::{
     shears::{shears_of, swing_shut},
 };
 
-/// The pose that a held object is to have.
+/// The target pose of a held object.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component)]
 pub struct CarryTarget(pub Pose);
@@ -175,13 +175,13 @@ fn turn(world: &mut World, hand: Hand, axis: Vec3, degrees: f32) -> Result<(), S
     Ok(())
 }
 
-/// The pose that a hand wants for its object.
+/// The target of a hand's object.
 fn target_of(world: &mut World, hand: Hand) -> Option<Mut<'_, CarryTarget>> {
     let object = world.resource::<Hands>().held_by(hand)?;
     world.get_mut(object)
 }
 
-/// A hand whose object goes without it (off the edge of the world, or despawned by someone) is empty.
+/// Empties a hand whose object is gone: off the edge of the world, or despawned by others.
 pub(crate) fn note_lost(
     remove: On<Remove, Held>,
     objects: Query<&ObjectSpec>,
@@ -202,7 +202,7 @@ pub(crate) fn note_lost(
     }
 }
 
-/// What a hand holds in another way than before, since it was fastened to something or loosened from it, is to be where it is now.
+/// Sets the target of a held object to its present pose when it is carried in a new way, because it was fastened or loosened.
 pub(crate) fn note_carried_anew(
     insert: On<Insert, Carry>,
     mut held: Query<(&Transform, &mut CarryTarget)>,

@@ -1,10 +1,9 @@
-//! The demonstrator's invisible hands (report section 4): they grasp objects, move and turn them, let go of them and
+//! The demonstrator's invisible hands (report section 4): they grasp objects, move and turn them, release them and
 //! destroy them.
 //!
-//! Hands are told what to do by [`SimCommand`](tabletop_core::SimCommand)s and what came of it is told by
-//! [`SimFact`](tabletop_core::SimFact)s. A held object does not fall; it slides along what it cannot pass (the table,
-//! fixed objects, what another hand holds) and pushes what is free. An object that joints hold as well, a chain's link or
-//! a lid, follows them.
+//! [`SimCommand`](tabletop_core::SimCommand)s control the hands, and [`SimFact`](tabletop_core::SimFact)s report the results. A held object
+//! does not fall; it slides along obstacles (the table, fixed objects, objects in another hand) and pushes free objects. An object that joints
+//! hold as well, such as a chain's link or a lid, follows its joints.
 //!
 //! ```
 //! use bevy::prelude::*;
@@ -59,8 +58,8 @@ use bevy::prelude::*;
 use tabletop_core::{ActuateSystems, CommandSystems, RestingSystems};
 use tabletop_history::{RollbackApp, is_rolling_back};
 
-/// Adds the hands. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin); with
-/// [`HistoryPlugin`](tabletop_history::HistoryPlugin), what they do can be undone.
+/// Adds the hands. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin). With
+/// [`HistoryPlugin`](tabletop_history::HistoryPlugin), their acts can be undone.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DemonstratorPlugin;
 

@@ -7,16 +7,16 @@ use tabletop_physics::{Convex, nearest};
 /// Depths, in units, that count as touching and not as inside.
 const TOUCHING: f32 = 1e-4;
 
-/// Least step towards the target when something is near, in units: thin against the thinnest wall.
+/// Least step towards the target near an obstacle, in units: small against the thinnest wall.
 const STEP: f32 = 0.02;
 
-/// Steps a move may take; a move that needs more goes on in the next tick.
+/// Largest number of steps in a move; a move that needs more continues in the next tick.
 const MOST_STEPS: usize = 96;
 
-/// Rounds in which an object is pushed out of what it has entered.
+/// Number of rounds in which an object is pushed out of obstacles.
 const MOST_PUSHES: usize = 12;
 
-/// The pose without depth: pushed out of what the object has entered, along the shortest ways. `None` if there is no way
+/// The pose without depth: pushed out of all entered obstacles, along the shortest ways. `None` if there is no way
 /// out. Every direction of a push is added to `pushed`.
 fn pushed_out(
     held: &[Convex],
@@ -37,8 +37,8 @@ fn pushed_out(
     None
 }
 
-/// The pose to which an object comes that moves from `from` to `to` and slides along its obstacles. It turns first, if there
-/// is room for it. The result touches obstacles at most; if `from` is inside one, it is a way out or `from` itself.
+/// The pose that an object reaches on its way from `from` to `to`, sliding along its obstacles. It turns first, if there
+/// is room. The result touches obstacles at most; if `from` is inside one, it is a way out or `from` itself.
 pub(crate) fn slide(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex]) -> Pose {
     let mut at = from;
     if from.rotation != to.rotation {
@@ -73,8 +73,8 @@ pub(crate) fn slide(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex])
     at
 }
 
-/// The distance that the object may go in a direction: convex solids that are some distance apart stay apart while they come
-/// nearer by less than that; but at least a step, from which it is pushed out again.
+/// The distance that the object may go in a direction. Convex solids stay apart while they approach by less than their gap;
+/// but it is at least a step, after which the object is pushed out again.
 fn free_way(held: &[Convex], at: Pose, direction: Vec3, length: f32, obstacles: &[Convex]) -> f32 {
     nearest(held, at, obstacles, length)
         .map(|nearest| {
@@ -87,7 +87,7 @@ fn free_way(held: &[Convex], at: Pose, direction: Vec3, length: f32, obstacles: 
         .fold(length, f32::min)
 }
 
-/// The rest of a way that may not go against any of these normals.
+/// The rest of a way after the components against these normals are removed.
 fn clipped(way: Vec3, normals: &[Vec3]) -> Vec3 {
     let mut clipped = way;
     for &normal in normals {

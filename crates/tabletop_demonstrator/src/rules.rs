@@ -1,12 +1,12 @@
-//! Which hands must let go before one can grasp.
+//! Rules of grasping: the hands that must let go before one can grasp.
 
 use tabletop_core::{Hand, Hands};
 
-/// Why a hand cannot grasp.
+/// The reason why a hand cannot grasp.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct BothHandsOccupied;
 
-/// The hands that let go, in their order, before this one grasps (never more than two hands hold something).
+/// The hands that let go, in order, before this one grasps. Never more than two hands hold something.
 pub(crate) fn letting_go_for(hand: Hand, hands: &Hands) -> Result<Vec<Hand>, BothHandsOccupied> {
     let holds = |hand| hands.held_by(hand).is_some();
     let mut letting_go = Vec::new();

@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
 use tabletop_core::{Joint, JointKind, Pose};
 
-/// How fast a hand closes scissors, in rad/s: against their spring, in a tenth of a second.
+/// Speed at which a hand closes scissors, in rad/s: against their spring, in a tenth of a second.
 const SWING: f32 = 15.0;
 
 /// The joint of the scissors that an object is a blade of.
@@ -16,7 +16,7 @@ pub(crate) fn shears_of(world: &mut World, blade: Entity) -> Option<Joint> {
     joints.iter(world).find(is_of_blade).copied()
 }
 
-/// Lets the other blade swing towards the one that is held.
+/// Lets the other blade swing towards the held one.
 pub(crate) fn swing_shut(world: &mut World, shears: Joint, held: Entity) {
     let [first, second] = shears.objects;
     let is_first_held = first == held;

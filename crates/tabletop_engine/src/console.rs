@@ -291,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn marks_are_told_from_text() {
+    fn marks_are_distinguished_from_text() {
         assert_eq!(
             pieces(&[b"a\n\nb\x01done 3\nc"]),
             ["a", "", "b", "<done 3>", "c"]

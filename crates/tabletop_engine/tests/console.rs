@@ -142,7 +142,7 @@ fn a_struct_shows_what_it_holds() {
 }
 
 #[test]
-fn what_was_shown_is_not_said_again() {
+fn what_was_shown_is_not_reported_again() {
     for trigger in TRIGGERS {
         let folder = Folder::pair(
             "fprintf(stderr, 'a warning\\n');",
@@ -195,7 +195,7 @@ fn a_struct_in_a_cell_keeps_its_values() {
 }
 
 #[test]
-fn nothing_is_said_of_what_the_driver_does() {
+fn nothing_is_reported_of_what_the_driver_does() {
     let folder = Folder::pair(
         "try, norm(1, 2, 3, 4), catch, end\nx = debug_on_error();\npath(path, tempdir); p = path; path(p);\ndisp ready",
         "",

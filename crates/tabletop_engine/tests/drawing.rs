@@ -49,7 +49,7 @@ fn nobody_chooses_files() {
 }
 
 #[test]
-fn that_no_file_is_made_is_said_once() {
+fn that_no_file_is_made_is_reported_once() {
     let folder = Folder::pair("", "print('-dpng', 'x.png'); fputs(stderr, \"done\\n\");");
     let mut config = octave(&folder.0, Trigger::Stdin);
     config.display = false;

@@ -85,7 +85,7 @@ fn callback_fault(init: &str, callback: &str, trigger: Trigger) -> EngineError {
 }
 
 #[test]
-fn a_crash_is_told_from_an_error() {
+fn a_crash_is_distinguished_from_an_error() {
     for trigger in TRIGGERS {
         let error = callback_fault("", "fprintf(stderr, 'last words\\n'); exit(3)", trigger);
         let EngineError::Died { status, stderr } = &error else {
@@ -137,7 +137,7 @@ fn an_engine_that_cannot_start_says_why() {
 
 #[test]
 #[cfg(unix)]
-fn an_engine_that_answers_nonsense_is_told() {
+fn an_engine_that_answers_nonsense_is_reported() {
     use std::{fs, os::unix::fs::PermissionsExt as _};
 
     let script = "#!/bin/sh\nread -r first\nread -r call\nfolder=$(echo \"$call\" | cut -d \"'\" -f 4)\n\

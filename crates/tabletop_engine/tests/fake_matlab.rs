@@ -42,7 +42,7 @@ fn a_matlab_on_the_path_is_started_and_driven() {
 }
 
 #[test]
-fn a_program_that_is_no_engine_is_told() {
+fn a_program_that_is_no_engine_is_reported() {
     let bin = Folder::new(&[(
         "matlab",
         "#!/bin/sh\necho licence has expired >&2\nexit 7\n",

@@ -8,7 +8,7 @@ use common::{Folder, Session, TRIGGERS, script_error};
 use tabletop_engine::Trigger;
 
 #[test]
-fn an_error_is_told_with_its_place() {
+fn an_error_is_reported_with_its_place() {
     for trigger in TRIGGERS {
         let folder = Folder::pair("x = 1;", "y = x;\nhelper(y);\n");
         fs::write(
@@ -44,7 +44,7 @@ fn an_error_is_told_with_its_place() {
 }
 
 #[test]
-fn errors_of_all_kinds_are_told() {
+fn errors_of_all_kinds_are_reported() {
     let faults = [
         ("error('my:id', 'no %d', 3)", "my:id", "no 3"),
         (
@@ -104,7 +104,7 @@ fn endless_recursion_is_an_error() {
 }
 
 #[test]
-fn wrong_syntax_is_told_with_its_place() {
+fn wrong_syntax_is_reported_with_its_place() {
     for script in ["x = 1;\nif x\n  y = = 3;\nend\n", "x = 1;\nbreak\ny = ;\n"] {
         let folder = Folder::pair("", script);
         let session = Session::octave(&folder.0, Trigger::Stdin);
@@ -121,7 +121,7 @@ fn wrong_syntax_is_told_with_its_place() {
 }
 
 #[test]
-fn what_is_missing_is_told() {
+fn what_is_missing_is_reported() {
     let folder = Folder::new(&[(
         "agentBehavior.m",
         "function [i, c] = agentBehavior()\ni = @nosuch;\nc = @nosuch;\nend\n",

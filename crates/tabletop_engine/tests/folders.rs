@@ -20,7 +20,7 @@ fn fault_of(agent: &Path) -> String {
 }
 
 #[test]
-fn a_script_that_would_be_mistaken_for_another_is_told() {
+fn a_script_that_would_be_mistaken_for_another_is_reported() {
     let named = Folder::pair("", "helper;");
     fs::write(named.0.join("helper.m"), "").unwrap();
     let current = Folder::new(&[("helper.m", "error('the wrong one');")]);
@@ -40,7 +40,7 @@ fn a_script_that_would_be_mistaken_for_another_is_told() {
 }
 
 #[test]
-fn what_is_no_folder_of_scripts_is_told() {
+fn what_is_no_folder_of_scripts_is_reported() {
     let folder = Folder::pair("", "");
     let file = folder.0.join("testInit.m");
     assert_eq!(
@@ -68,7 +68,7 @@ fn what_is_no_folder_of_scripts_is_told() {
 }
 
 #[test]
-fn a_script_that_is_missing_is_told() {
+fn a_script_that_is_missing_is_reported() {
     for name in ["testInit", "testCallback"] {
         let folder = Folder::pair("", "");
         fs::remove_file(folder.0.join(format!("{name}.m"))).unwrap();
@@ -106,7 +106,7 @@ fn scripts_may_be_named_in_many_ways() {
 }
 
 #[test]
-fn what_names_no_script_is_told() {
+fn what_names_no_script_is_reported() {
     for (text, message) in [
         (
             "function [i, c] = agentBehavior(), i = @testInit; c = ['abc'; 'def'] == 'a'; end",

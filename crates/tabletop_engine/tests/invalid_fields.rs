@@ -81,7 +81,7 @@ fn a_callback_may_be_changed_on_the_way() {
 }
 
 #[test]
-fn an_invalid_motor_is_told() {
+fn an_invalid_motor_is_reported() {
     let faults = [
         (
             "motor.jointVelocities = zeros(3, 7);",
@@ -165,7 +165,7 @@ fn an_invalid_motor_is_told() {
 }
 
 #[test]
-fn a_misused_aux_is_told() {
+fn a_misused_aux_is_reported() {
     for (script, message) in [
         (
             "aux.drawMarkers = [1 2];",
@@ -188,7 +188,7 @@ fn a_misused_aux_is_told() {
 }
 
 #[test]
-fn exit_is_told_whatever_its_value() {
+fn exit_is_reported_whatever_its_value() {
     for exit in ["aux.exit = false;", "aux.exit = [];", "aux.exit = 'now';"] {
         let folder = Folder::pair("", exit);
         let session = Session::octave(&folder.0, Trigger::Stdin);
@@ -202,7 +202,7 @@ fn exit_is_told_whatever_its_value() {
 }
 
 #[test]
-fn a_callback_that_is_overwritten_is_told() {
+fn a_callback_that_is_overwritten_is_reported() {
     let folder = Folder::pair("", "callbackFunc = 5;");
     let session = Session::octave(&folder.0, Trigger::Stdin);
     session.init().unwrap();

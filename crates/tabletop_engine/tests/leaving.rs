@@ -126,7 +126,7 @@ fn the_program_says_what_it_has_changed() {
 }
 
 #[test]
-fn what_is_left_where_it_cannot_be_is_told_with_what_to_write() {
+fn what_is_left_where_it_cannot_be_is_reported_with_what_to_write() {
     let elsewhere = Folder::pair("addpath([aux.path 'lib']);", "part");
     fs::create_dir(elsewhere.0.join("lib")).unwrap();
     fs::write(elsewhere.0.join("lib/part.m"), "if true, break, end").unwrap();

@@ -193,7 +193,7 @@ fn functions_of_their_own_variables_are_noted() {
 }
 
 #[test]
-fn what_to_do_is_said() {
+fn what_to_do_is_reported() {
     for (init, reported) in [
         (
             "function testInit, disp(aux.path)",

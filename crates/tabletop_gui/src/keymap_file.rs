@@ -147,9 +147,9 @@ fn entries_of<'a>(
                 parsed.map_err(|error| error.to_string())
             });
             let part = binding.trim().get_ron();
-            let told =
+            let reported =
                 parsed.map_err(|fault| faults.push(format!("{}: {fault}", place(part, text))));
-            Some((part, told.ok()?))
+            Some((part, reported.ok()?))
         });
         let bindings = bindings.collect();
         let action = string(name).and_then(|name| {
@@ -327,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn a_key_that_is_taken_from_an_action_is_told() {
+    fn a_key_that_is_taken_from_an_action_is_reported() {
         let (keymap, faults) = read_text("{\"pause\": [\"KeyR\"]}");
         let expected = "1:12: `pause` takes `KeyR` from `show_robot`: give that another key, or none: \"show_robot\": []";
         assert_eq!(faults, [expected]);
@@ -364,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn the_file_of_the_preferences_is_read_at_the_start_and_its_faults_are_told() {
+    fn the_file_of_the_preferences_is_read_at_the_start_and_its_faults_are_reported() {
         assert_eq!(started(None, "none"), (Keymap::default(), vec![]));
         let (keymap, notices) = started(Some("{\"pause\": [\"KeyV\", \"V\"]}"), "faulty");
         assert_eq!(keymap.bindings(Action::Pause), [binding("KeyV")]);
@@ -389,7 +389,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_map_of_lists_is_told_with_its_place() {
+    fn what_is_no_map_of_lists_is_reported_with_its_place() {
         for (text, place) in [
             ("{\n  \"pause\": \"Space\"}", "2:"),
             ("{\n\n  \"pause\" [\"Space\"]}", "3:"),

@@ -23,16 +23,16 @@ pub(crate) fn plugin(app: &mut App) {
 
 /// `bevy_egui` tells egui in every frame which modifiers are held, and egui wants another frame after each event.
 fn drop_repeated_modifiers(
-    mut told: Local<EntityHashMap<egui::Modifiers>>,
+    mut reported: Local<EntityHashMap<egui::Modifiers>>,
     mut inputs: Query<(Entity, &mut EguiInput)>,
 ) {
     for (context, mut input) in &mut inputs {
-        let told = told.entry(context).or_default();
+        let reported = reported.entry(context).or_default();
         input.events.retain(|event| {
             let egui::Event::ModifiersChanged(modifiers) = event else {
                 return true;
             };
-            std::mem::replace(told, *modifiers) != *modifiers
+            std::mem::replace(reported, *modifiers) != *modifiers
         });
     }
 }
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn egui_is_told_of_modifiers_when_they_change() {
+    fn egui_learns_of_modifiers_when_they_change() {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, plugin));
         let context = app.world_mut().spawn(EguiInput::default()).id();

@@ -1,9 +1,9 @@
-//! Undo and redo: the world as it was when a segment of a recording began, bit for bit.
+//! Undo and redo: the world as it was at the beginning of a recording's segment, bit for bit.
 //!
-//! Each plugin says what of its own rolls back, as in `bevy_ggrs`: components of the entities marked [`Rollback`](tabletop_core::Rollback),
-//! resources, and whatever else decides what comes next ([`RollbackState`]). While a recording runs, [`begin_segment`]
+//! Each plugin registers its own part, as in `bevy_ggrs`: components of the entities marked [`Rollback`](tabletop_core::Rollback),
+//! resources, and any other state that decides what comes next ([`RollbackState`]). While a recording runs, [`begin_segment`]
 //! keeps a [`WorldSnapshot`]; [`HistoryCommand`](tabletop_core::HistoryCommand)s
-//! go back and forth between them. Snapshots share what did not change.
+//! go back and forth between these. Snapshots share unchanged parts.
 //!
 //! ```
 //! use bevy::prelude::*;
@@ -52,10 +52,10 @@ use tabletop_core::{CommandSystems, Hands, Held, Markers, ObjectIndex, RestingSy
 
 use crate::segments::{Segments, undo_and_redo};
 
-/// Adds undo and redo. Needs [`CorePlugin`](tabletop_core::CorePlugin), for whose types it says what rolls back.
+/// Adds undo and redo. Needs [`CorePlugin`](tabletop_core::CorePlugin), whose types it registers for rollback.
 #[derive(Clone, Copy, Debug)]
 pub struct HistoryPlugin {
-    /// Most memory, in bytes, that snapshots take; when there is more, the oldest segment can no longer be undone.
+    /// Limit on the memory of snapshots, in bytes. Beyond it, the oldest segment can no longer be undone.
     pub most_bytes: usize,
 }
 

@@ -14,7 +14,7 @@ pub struct KeepRemoved {
 }
 
 impl KeepRemoved {
-    /// True if anybody wants them.
+    /// True if any reason applies.
     pub const fn is_on(self) -> bool {
         self.for_undo || self.for_playback
     }
@@ -35,7 +35,7 @@ pub fn despawn_or_park(world: &mut World, entity: Entity) {
     }
 }
 
-/// Removes for good what was removed, if nobody keeps it any more.
+/// Removes parked entities for good, if no reason keeps them any more.
 pub fn drop_removed(world: &mut World) {
     let keep = world.get_resource::<KeepRemoved>();
     if keep.is_some_and(|keep| keep.is_on()) {

@@ -1,4 +1,4 @@
-//! The registry of what rolls back. Owners register.
+//! The rollback registry, in which owners register their state.
 
 mod component;
 mod resource;
@@ -13,18 +13,18 @@ use std::any::TypeId;
 
 use bevy::prelude::*;
 
-/// Says what of a plugin rolls back.
+/// Registers the state of a plugin that rolls back.
 pub trait RollbackApp {
-    /// Undo and redo put this component of entities marked [`Rollback`](tabletop_core::Rollback) back, and remove it where it was not.
+    /// Undo and redo restore this component of entities marked [`Rollback`](tabletop_core::Rollback), and remove it where it was absent.
     fn rollback_component<C: Component + Clone>(&mut self) -> &mut Self;
 
-    /// This component of entities that roll back is computed anew from what does, before anything reads it.
+    /// This component of entities that roll back is derived: it is computed again from what rolls back, before anything reads it.
     fn derived_component<C: Component>(&mut self) -> &mut Self;
 
-    /// Undo and redo put this resource back.
+    /// Undo and redo restore this resource.
     fn rollback_resource<R: Resource + Clone>(&mut self) -> &mut Self;
 
-    /// Undo and redo put back what is neither. It is put back after all components and resources.
+    /// Undo and redo restore this state, which is neither component nor resource, after all components and resources.
     fn rollback_state<S: RollbackState>(&mut self) -> &mut Self;
 }
 
@@ -67,12 +67,12 @@ fn registry(app: &mut App) -> Mut<'_, RollbackRegistry> {
 /// Everything that rolls back.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct RollbackRegistry {
-    /// In the order in which they are put back.
+    /// In the order in which they are restored.
     parts: Vec<RollbackPart>,
     derived: Vec<TypeId>,
 }
 
-/// One thing that rolls back.
+/// A part of the state that rolls back.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RollbackPart {
     kind: RollbackKind,
@@ -80,10 +80,10 @@ pub(crate) struct RollbackPart {
     pub save: Save,
 }
 
-/// Copies a part of the world with these entities, or shares it with what was saved earlier.
+/// Copies a part of the world with these entities, or shares it with an earlier snapshot.
 type Save = fn(&mut World, &[Entity], Option<Earlier>) -> Box<dyn Saved>;
 
-/// In the order in which they are put back.
+/// The kinds of state, in the order in which they are restored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum RollbackKind {
     Resource,
@@ -107,7 +107,7 @@ impl RollbackRegistry {
         self.parts.iter().copied()
     }
 
-    /// True if undo takes care of a component: it is put back, or derived from what is.
+    /// True if undo takes care of a component: it is restored, or derived from what is.
     pub fn covers(&self, component: TypeId) -> bool {
         let is_put_back =
             |part: &RollbackPart| part.kind == RollbackKind::Component && part.of == component;
@@ -115,12 +115,12 @@ impl RollbackRegistry {
     }
 }
 
-/// True if the world is being put back to another moment. Observers of what rolls back do not act meanwhile: what they would do
-/// is put back as well.
+/// True while the world is being restored. Observers of state that rolls back do nothing meanwhile, because their effects
+/// are restored as well.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RollingBack(pub(crate) bool);
 
-/// Run condition for observers: the world is being put back to another moment.
+/// Run condition for observers: the world is being restored.
 pub fn is_rolling_back(rolling_back: Option<Res<RollingBack>>) -> bool {
     rolling_back.is_some_and(|rolling_back| rolling_back.0)
 }

@@ -18,15 +18,15 @@ use crate::{
 /// The segments of the present recording.
 #[derive(Resource)]
 pub(crate) struct Segments {
-    /// The beginnings of those that can be undone, the oldest first.
+    /// Beginnings of the segments that can be undone, the oldest first.
     undoable: VecDeque<Arc<WorldSnapshot>>,
-    /// Those that were undone, the last one last.
+    /// Undone segments, the last one last.
     redoable: Vec<Undone>,
-    /// The last snapshot that the world was equal to, and when.
+    /// The last snapshot that equalled the world, and its tick.
     last: Option<(Arc<WorldSnapshot>, Tick)>,
-    /// Most memory in bytes.
+    /// Limit on the memory, in bytes.
     most_bytes: usize,
-    /// The number of those that could not be kept.
+    /// Number of segments that could not be kept.
     dropped: usize,
 }
 
@@ -52,7 +52,7 @@ impl Segments {
         self.last = Some((snapshot.clone(), tick));
     }
 
-    /// Drops the oldest ones that do not fit into the memory; the last one can always be undone.
+    /// Drops the oldest ones that exceed the memory; the last one can always be undone.
     fn drop_oldest(&mut self) {
         while self.undoable.len() > 1 && self.bytes() > self.most_bytes {
             self.undoable.pop_front();
@@ -60,7 +60,7 @@ impl Segments {
         }
     }
 
-    /// The memory, in bytes, of all snapshots. Those that follow each other share what did not change.
+    /// Memory of all snapshots, in bytes. Neighbours share unchanged state.
     fn bytes(&self) -> usize {
         let undone = self.redoable.iter().rev();
         let undone = undone.flat_map(|segment| [&segment.begin, &segment.end]);
@@ -74,8 +74,8 @@ impl Segments {
     }
 }
 
-/// Reports that a hand is about to act because of a command. While a recording runs, remembers the world before it, so that it can be
-/// undone. Without [`HistoryPlugin`](crate::HistoryPlugin), nothing can.
+/// Reports that a hand is about to act because of a command. While a recording runs, the world before the act is kept, so that it can be
+/// undone. Without [`HistoryPlugin`](crate::HistoryPlugin), nothing is kept.
 pub fn begin_segment(world: &mut World, cause: CommandId) {
     world.write_message(SimFact::SegmentBegun { cause });
     if !world.resource::<Recording>().0 || !world.contains_resource::<Segments>() {
@@ -131,7 +131,7 @@ fn redo(world: &mut World, cause: CommandId) -> Result<SimFact, String> {
     Ok(SimFact::Redone { cause })
 }
 
-/// The present world, sharing with the last snapshot what has not changed.
+/// The present world, sharing unchanged state with the last snapshot.
 fn snapshot(world: &mut World) -> Arc<WorldSnapshot> {
     let last = world.resource::<Segments>().last.clone();
     let last = last.as_ref().map(|(snapshot, tick)| (&**snapshot, *tick));
@@ -145,7 +145,7 @@ fn restore(world: &mut World, snapshot: &Arc<WorldSnapshot>) {
     note(world, snapshot);
 }
 
-/// Notes that the world is now equal to a snapshot; what changes from now on has a later tick.
+/// Notes that the world now equals a snapshot; later changes have a later tick.
 fn note(world: &mut World, snapshot: &Arc<WorldSnapshot>) {
     let now = world.increment_change_tick();
     world.resource_mut::<Segments>().note(snapshot, now);
@@ -163,7 +163,7 @@ fn publish(world: &mut World) {
     world.resource_mut::<History>().set_if_neq(history);
 }
 
-/// Drops the snapshots and what was kept for them.
+/// Drops the snapshots and the entities kept for them.
 fn forget(world: &mut World) {
     if !world.resource::<KeepRemoved>().for_undo {
         return;
@@ -188,7 +188,7 @@ mod tests {
     #[derive(Component, Clone, Copy, Debug, PartialEq)]
     struct Lamp([u8; 1000]);
 
-    /// Lamps, and a history of at most so many bytes.
+    /// An app with lamps, and a history limited to this many bytes.
     fn app(most_bytes: usize) -> (App, Vec<Entity>) {
         let mut app = App::new();
         let history = HistoryPlugin { most_bytes };

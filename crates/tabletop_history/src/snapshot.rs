@@ -1,4 +1,4 @@
-//! The world at a moment, to be gone back to.
+//! Snapshots of the world.
 
 use bevy::{
     ecs::{change_detection::Tick, entity_disabling::Disabled},
@@ -11,9 +11,9 @@ use crate::{
     rollback::{Earlier, RollbackRegistry, RollingBack, Saved, Since},
 };
 
-/// The world at a moment between two ticks, bit for bit: what is [restored](Self::restore) goes on as it did then.
+/// The world between two ticks, bit for bit: a [restored](Self::restore) world goes on exactly as it did then.
 ///
-/// Entities that were removed since must have been [kept](crate::KeepRemoved). Whether the simulation is paused is not part
+/// Entities that were removed since must have been [kept](crate::KeepRemoved). The pause of the simulation is not part
 /// of it.
 pub struct WorldSnapshot {
     /// In order.
@@ -23,12 +23,12 @@ pub struct WorldSnapshot {
 }
 
 impl WorldSnapshot {
-    /// The present state.
+    /// A snapshot of the present world.
     pub fn take(world: &mut World) -> Self {
         Self::take_sharing(world, None)
     }
 
-    /// The present state, sharing what has not changed since the world was as in an earlier snapshot.
+    /// A snapshot of the present world that shares unchanged state with an earlier one.
     pub(crate) fn take_sharing(world: &mut World, earlier: Option<(&Self, Tick)>) -> Self {
         let registry = world.resource::<RollbackRegistry>().clone();
         let mut query = world.query_filtered::<Entity, With<Rollback>>();
@@ -49,7 +49,7 @@ impl WorldSnapshot {
         Self { entities, parts }
     }
 
-    /// Puts the world back into this state. What has come since is disabled.
+    /// Restores the world. Entities that have appeared since are disabled.
     pub fn restore(&self, world: &mut World) {
         world.insert_resource(RollingBack(true));
         let mut query = world.query_filtered::<Entity, With<Rollback>>();
@@ -69,7 +69,7 @@ impl WorldSnapshot {
         world.insert_resource(RollingBack(false));
     }
 
-    /// The memory, in bytes, that it does not share with another one.
+    /// Memory, in bytes, that it does not share with another one.
     pub(crate) fn bytes(&self, besides: Option<&Self>) -> usize {
         let own = size_of::<Self>() + size_of_val(&*self.entities);
         let parts = self.parts.iter().enumerate().map(|(number, part)| {

@@ -33,7 +33,7 @@ fn inertial(mass: &str, ixx: &str) -> String {
 }
 
 #[test]
-fn every_fault_is_told_with_its_place() {
+fn every_fault_is_reported_with_its_place() {
     let two_joints = |second: &str| {
         robot(&format!(
             "<joint name=\"j\" type=\"fixed\">{ENDS}</joint>\n{second}"

@@ -18,9 +18,9 @@ pub(crate) struct BondJoint(String);
 struct Point<'w> {
     id: &'w str,
     object: Entity,
-    /// Where it is, on the table.
+    /// Its pose on the table.
     pose: Pose,
-    /// Where it is in the object.
+    /// Its pose in the object.
     place: Pose,
 }
 
@@ -62,13 +62,13 @@ fn hosts(world: &World) -> Vec<(Point<'_>, &HostPoint)> {
     points
 }
 
-/// The bond that comes of turning a guest point, or the object that it is a part of, or why it cannot be turned.
+/// The bond after turning a guest point, or an object's guest point, or the reason why it cannot be turned.
 pub(crate) fn turned(world: &World, guest: &str, turn: Turn) -> Result<Bond, String> {
     let objects: Vec<_> = objects(world).map(|(_, spec, pose)| (spec, pose)).collect();
     world.resource::<Bonds>().turned(&objects, guest, turn)
 }
 
-/// The bond that a guest point has at first, or why it cannot have it.
+/// The bond that a guest point has at first, or the reason why it cannot have it.
 pub(crate) fn first(
     world: &World,
     guest_point: &str,
@@ -80,7 +80,7 @@ pub(crate) fn first(
     bonds.first(&objects, guest_point, host_point, tightness)
 }
 
-/// Turns a guest: it goes to its place, with all that is fastened to it, and stays there.
+/// Turns a guest: it moves to its place with everything that is fastened to it, and stays there.
 pub(crate) fn take_turn(
     world: &mut World,
     cause: Option<CommandId>,
@@ -98,7 +98,7 @@ pub(crate) fn take_turn(
     Ok(())
 }
 
-/// Makes a bond as tight as it says; of tightness 0, it is no more afterwards.
+/// Gives a bond its tightness; at tightness 0 the bond is removed.
 pub(crate) fn bring_about(world: &mut World, bond: &Bond) -> Result<(), String> {
     let missing = || {
         format!(
@@ -167,7 +167,7 @@ fn remove_joint_of(world: &mut World, guest_point: &str) {
     }
 }
 
-/// Hands the tightness of a bond on to the controls downstream of its host point.
+/// Passes the tightness of a bond on to the controls downstream of its host point.
 pub(crate) fn have_effect(world: &World, network: &mut Network, bond: &Bond) {
     let hosts = hosts(world);
     let host = hosts.iter().find(|(point, _)| point.id == bond.host_point);
@@ -178,7 +178,7 @@ pub(crate) fn have_effect(world: &World, network: &mut Network, bond: &Bond) {
     }
 }
 
-/// Forgets the bonds of an object that has gone: what it was fastened to is loose.
+/// Forgets the bonds of an object that is gone, whose partners are then loose.
 pub(crate) fn forget(world: &mut World, object: &str) {
     let bonds = std::mem::take(&mut world.resource_mut::<Bonds>().0);
     let (gone, left): (Vec<_>, Vec<_>) = bonds

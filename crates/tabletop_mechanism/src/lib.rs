@@ -1,9 +1,8 @@
-//! What objects do when they are operated and fastened: switches, lights and other controls, and the networks between them; screws,
-//! nuts and valves.
+//! Mechanisms: switches, lights and other controls, and the networks between them; screws, nuts and valves.
 //!
-//! The state of a [`Control`](tabletop_core::Control) is a part of its object's [`ObjectSpec`](tabletop_core::ObjectSpec), so physics,
-//! pictures and saved files follow it. A control whose state changes hands its number on to those downstream. What is fastened to what
-//! stands in [`Bonds`], and a fixed joint holds it.
+//! The state of a [`Control`](tabletop_core::Control) is part of its object's [`ObjectSpec`](tabletop_core::ObjectSpec), so physics,
+//! pictures and saved files follow it. A control whose state changes passes its number on to those downstream. [`Bonds`] lists the objects
+//! that are fastened to each other; a fixed joint holds each bond.
 //!
 //! ```
 //! use bevy::prelude::*;
@@ -51,8 +50,8 @@ use tabletop_core::{Bonds, CommandSystems, RestApp as _, RestingSystems};
 use tabletop_history::{RollbackApp, is_rolling_back};
 use tabletop_physics::take_in;
 
-/// Adds controls and bonds. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin); with
-/// [`HistoryPlugin`](tabletop_history::HistoryPlugin), what is done to them can be undone.
+/// Adds controls and bonds. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin). With
+/// [`HistoryPlugin`](tabletop_history::HistoryPlugin), acts on them can be undone.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MechanismPlugin;
 

@@ -1,4 +1,4 @@
-//! Controls that hand their states on.
+//! Networks of controls that pass their states on.
 
 use std::collections::BTreeMap;
 
@@ -8,13 +8,13 @@ use tabletop_physics::{remove_object, reshape};
 
 /// The controls on the table while they change.
 pub(crate) struct Network {
-    /// The objects with controls, as they become, in the order of their creation.
+    /// The objects with controls, in their new states, in the order of their creation.
     objects: Vec<(Entity, ObjectSpec)>,
-    /// The place of each control's object among them.
+    /// Index of each control's object among them.
     owners: BTreeMap<String, usize>,
-    /// The controls that were changed, in their order, with the names of their states before.
+    /// The changed controls, in order, with the names of their earlier states.
     changed: Vec<(String, String)>,
-    /// What the controls do to other objects, in this order.
+    /// Changes to other objects, in order.
     changes: Vec<Change>,
 }
 
@@ -43,7 +43,7 @@ impl Network {
         network
     }
 
-    /// The control of an id, or why there is none.
+    /// The control with this id, or the reason why there is none.
     pub fn control(&self, id: &str) -> Result<&Control, String> {
         self.owners
             .get(id)
@@ -60,13 +60,13 @@ impl Network {
         });
     }
 
-    /// Gives a control a state, and hands it on downstream. A state that a control does not have, or has already, changes nothing, so
-    /// that circles come to an end.
+    /// Gives a control a state, and passes it on downstream. A state that a control does not have, or has already, changes nothing, so
+    /// circles come to an end.
     pub fn set_state(&mut self, id: &str, state: u32) {
         let mut due = vec![id.to_owned()];
         while let Some(id) = due.pop() {
-            let is_news = |control: &Control| control.state != state && state < control.states();
-            if !self.control(&id).is_ok_and(is_news) {
+            let is_change = |control: &Control| control.state != state && state < control.states();
+            if !self.control(&id).is_ok_and(is_change) {
                 continue;
             }
             self.change(&id, |control| control.state = state);
@@ -77,12 +77,12 @@ impl Network {
         }
     }
 
-    /// Lets a control show and report another state than its own, or again its own.
+    /// Lets a control show and report a state other than its own, or its own again.
     pub fn set_override(&mut self, id: &str, state: Option<u32>) {
         self.change(id, |control| control.override_state = state);
     }
 
-    /// Hands on the state that a control has.
+    /// Passes on the present state of a control.
     pub fn hand_on(&mut self, id: &str) {
         let Ok(state) = self.control(id).map(|control| control.state) else {
             return;
@@ -115,15 +115,15 @@ impl Network {
         change(control);
     }
 
-    /// Puts what has changed into the world, and tells it if that is wanted.
-    pub fn take_effect(self, world: &mut World, is_told: bool) {
+    /// Writes the changes into the world, and reports them if `is_reported` is true.
+    pub fn take_effect(self, world: &mut World, is_reported: bool) {
         let cause = world.resource::<Cause>().0;
         for (id, before) in &self.changed {
             let Ok(control) = self.control(id) else {
                 continue;
             };
             let state = control.state_name();
-            if is_told && state != *before {
+            if is_reported && state != *before {
                 world.write_message(SimFact::ControlChanged {
                     cause,
                     control: id.clone(),
@@ -137,7 +137,7 @@ impl Network {
                 reshape(world, object, spec);
             }
         }
-        if is_told {
+        if is_reported {
             for change in self.changes {
                 make(world, change);
             }
@@ -145,7 +145,7 @@ impl Network {
     }
 }
 
-/// Makes a change to another object; what is not there is not changed.
+/// Makes a change to another object; a missing object is ignored.
 fn make(world: &mut World, change: Change) {
     let named = |world: &World, id: &str| world.resource::<ObjectIndex>().get(id);
     match change {

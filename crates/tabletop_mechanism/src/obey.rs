@@ -1,4 +1,4 @@
-//! Carrying out commands to mechanisms.
+//! Execution of the commands to mechanisms.
 
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
@@ -52,7 +52,7 @@ fn turn(
     bonds::take_turn(world, Some(cause), Operator::Hand(hand), (bond, turn))
 }
 
-/// The state to which triggering leads, or why nowhere.
+/// The state to which triggering leads, or the reason why it leads nowhere.
 fn next_state(world: &World, id: &str, part: Option<u32>) -> Result<u32, String> {
     let network = Network::of(world);
     let control = network.control(id)?;
@@ -69,7 +69,7 @@ fn next_state(world: &World, id: &str, part: Option<u32>) -> Result<u32, String>
     })
 }
 
-/// Lets somebody operate a control, which leads to a state.
+/// Operates a control, which leads to a state.
 pub(crate) fn trigger(
     world: &mut World,
     cause: Option<CommandId>,

@@ -1,4 +1,4 @@
-//! Controls that are pressed by what touches them: the robot's fingers, and what hands hold.
+//! Pressing of controls by touch: the robot's fingers and held objects press them.
 
 use bevy::prelude::*;
 use tabletop_core::{
@@ -8,14 +8,14 @@ use tabletop_physics::is_touching;
 
 use crate::{network::Network, obey::trigger};
 
-/// How near, in units, something is to what it touches: the robot's arms stop a millimetre before what they cannot push away.
+/// Largest distance, in units, of a touch: the robot's arms stop a millimetre before things that they cannot push away.
 const TOUCH: f32 = 0.03;
 
-/// What presses which controls. A control is triggered as it is touched, and not again until it was let go of.
+/// The presses at present. A control is triggered when it is touched, and not again until it is let go of.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Pressed(Vec<Press>);
 
-/// Somebody who touches a part of a control that leads to another state.
+/// A touch of a control's part that leads to another state.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Press {
     by: Operator,
@@ -28,7 +28,7 @@ pub(crate) fn is_possible(robot: Res<Robot>, hands: Res<Hands>, pressed: Res<Pre
     !robot.contacts.is_empty() || hands.hold_something() || !pressed.0.is_empty()
 }
 
-/// Triggers what is newly touched.
+/// Triggers newly touched controls.
 pub(crate) fn press(world: &mut World) {
     if world.resource::<Paused>().0 {
         return;
@@ -122,7 +122,7 @@ fn spec_and_pose(world: &World, object: Entity) -> Option<(ObjectSpec, Pose)> {
     Some((spec, pose))
 }
 
-/// Adds the controls of an object of which a part is touched that leads to another state.
+/// Adds the controls of an object whose touched part leads to another state.
 fn add(
     presses: &mut Vec<Press>,
     by: &Operator,
@@ -149,7 +149,7 @@ fn add(
     }
 }
 
-/// How far outside of a solid a point is, in the frame of the solid.
+/// Distance of a point outside a solid, in the frame of the solid.
 fn distance(solid: Solid, point: Vec3) -> f32 {
     match solid {
         Solid::Cuboid(span) => (point.abs() - span / 2.0).max(Vec3::ZERO).length(),

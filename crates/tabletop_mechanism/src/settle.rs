@@ -1,4 +1,4 @@
-//! What becomes of mechanisms when they come and go: states are handed on, initial bonds made.
+//! Settling of mechanisms when objects appear and disappear: states are passed on, initial bonds made.
 
 use bevy::prelude::*;
 use tabletop_core::{Bond, Bonds, ObjectSpec, SimFact};
@@ -6,7 +6,7 @@ use tabletop_history::Parked;
 
 use crate::{bonds, network::Network};
 
-/// The objects that have appeared in this tick.
+/// Objects that have appeared in this tick.
 #[derive(Resource, Default)]
 pub(crate) struct New(Vec<Entity>);
 
@@ -56,7 +56,7 @@ fn forget_bonds(spec: &ObjectSpec, bonds: &Bonds, mut commands: Commands) {
     }
 }
 
-/// Lets new controls hand on their states, in the order in which they appeared, and makes the bonds that new objects have at first.
+/// Passes on the states of new controls, in the order in which they appeared, and makes the initial bonds of new objects.
 pub(crate) fn settle(world: &mut World) {
     let new = std::mem::take(&mut world.resource_mut::<New>().0);
     let specs: Vec<_> = new

@@ -115,7 +115,7 @@ fn a_state_goes_downstream_and_round_a_circle_once() {
 }
 
 #[test]
-fn states_are_handed_on_when_a_scene_is_set_and_nobody_is_told() {
+fn states_are_passed_on_when_a_scene_is_set_and_nothing_is_reported() {
     let on = Control {
         state: 1,
         ..switch(&["light"])

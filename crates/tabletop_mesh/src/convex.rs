@@ -1,4 +1,4 @@
-//! Surfaces as the convex solids that fill them.
+//! Decomposition of surfaces into the convex solids that fill them.
 
 use std::{
     collections::BTreeMap,
@@ -13,23 +13,23 @@ use parry3d::transformation::{
 };
 use tabletop_core::{MeshSpec, Polyhedron};
 
-/// How far a surface may stand out of the faces of a convex one, as a share of its length.
+/// Largest distance of a surface from the faces of a convex one, as a share of its length.
 const FLATNESS: f32 = 1e-4;
 
-/// Into how many cells the longest side of what is not convex is divided.
+/// Number of cells along the longest side of a surface that is not convex.
 const CELLS: u32 = 64;
 
-/// How far a solid may fill up what is hollow, as a share of the whole.
+/// Largest concavity that a solid may fill up, as a share of the whole.
 const CONCAVITY: f32 = 0.002;
 
-/// No surface is taken apart into more solids.
+/// Largest number of solids of a surface.
 const MOST_SOLIDS: u32 = 128;
 
-/// What surfaces were taken apart into, by their numbers.
+/// Decompositions of surfaces, by their numbers.
 static KNOWN: Mutex<BTreeMap<usize, Vec<Polyhedron>>> = Mutex::new(BTreeMap::new());
 
-/// Convex solids that fill a surface, nearly if it is not convex: up to a sixtieth of its length is filled up or left out. None if it
-/// encloses nothing. The same surface is taken apart only once.
+/// Convex solids that fill a surface; for one that is not convex approximately: up to a sixtieth of its length is filled up or left out. Empty if
+/// it encloses nothing. Each surface is decomposed only once.
 pub fn convex_solids(surface: Polyhedron) -> Vec<Polyhedron> {
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     known
@@ -44,7 +44,7 @@ fn solids_of(surface: Polyhedron) -> Vec<Polyhedron> {
     {
         return vec![hull];
     }
-    // What is degenerate in a way that Parry has not foreseen is taken as a whole.
+    // A surface that is degenerate in a way that Parry has not foreseen is taken as a whole.
     let parts = catch_unwind(AssertUnwindSafe(|| decompose(surface))).unwrap_or_default();
     match parts.is_empty() || parts.len() > MeshSpec::MOST_SOLIDS {
         true => hull(surface.corners().to_vec()).into_iter().collect(),
@@ -76,7 +76,7 @@ fn hull(corners: Vec<Vec3>) -> Option<Polyhedron> {
     (hull.volume() > 1e-6 * span.max_element().powi(3)).then_some(hull)
 }
 
-/// Whether a surface is that of its hull.
+/// True if a surface is that of its hull.
 fn is_filled(surface: Polyhedron, hull: Polyhedron) -> bool {
     let span = hull.bounds().high - hull.bounds().low;
     let tolerance = FLATNESS * span.max_element();

@@ -1,6 +1,6 @@
-//! Meshes: STL files to surfaces and the convex solids that fill them.
+//! Meshes: surfaces from STL files, and the convex solids that fill them.
 //!
-//! [`read_stl`] reads a file, [`convex_solids`] takes its surface apart, once for each content, and [`mesh`] does both.
+//! [`read_stl`] reads a file, [`convex_solids`] decomposes its surface, once for each content, and [`mesh`] does both.
 //!
 //! ```
 //! let cup = std::fs::read("../../tablesetup/cup.stl")?;
@@ -18,10 +18,10 @@ pub use stl::{MAX_STL_BYTES, StlError, read_stl};
 use bevy::math::Vec3;
 use tabletop_core::MeshSpec;
 
-/// What an STL file describes, with its lengths multiplied by a scale above 0. `file` is the name by which a task file names it.
+/// The mesh of an STL file, with its lengths multiplied by a scale above 0. `file` is its name in the task file.
 ///
 /// # Errors
-/// The bytes are no STL file, or what it describes is too large, or no solid.
+/// The bytes are not an STL file, or describe something too large or without volume.
 pub fn mesh(file: &str, bytes: &[u8], scale: f32) -> Result<MeshSpec, StlError> {
     let surface = read_stl(bytes)?;
     let by = Vec3::splat(scale);

@@ -5,10 +5,10 @@ use std::{collections::HashMap, io};
 use bevy::math::Vec3;
 use tabletop_core::{MeshError, MeshSpec, Polyhedron, PolyhedronError};
 
-/// The most bytes that a file can have: 16 MiB.
+/// Largest size of a file, in bytes: 16 MiB.
 pub const MAX_STL_BYTES: usize = 16 << 20;
 
-/// Why a file is no mesh.
+/// The error of a file that is no mesh.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StlError {
@@ -18,10 +18,10 @@ pub enum StlError {
     /// It is not written as STL.
     #[error("it is no STL file: {0}")]
     Syntax(#[source] io::Error),
-    /// What it describes is no surface.
+    /// Its content is no surface.
     #[error(transparent)]
     Surface(#[from] PolyhedronError),
-    /// What it describes is too large, or no solid.
+    /// Its content is too large, or no solid.
     #[error(transparent)]
     Mesh(#[from] MeshError),
 }
@@ -30,7 +30,7 @@ pub enum StlError {
 /// the user. If it is inside out, it is turned.
 ///
 /// # Errors
-/// The bytes are no STL file, or have no triangle with an area, or more than [`MeshSpec::MOST_TRIANGLES`].
+/// The bytes are not an STL file, or have no triangle with an area, or more than [`MeshSpec::MOST_TRIANGLES`].
 pub fn read_stl(bytes: &[u8]) -> Result<Polyhedron, StlError> {
     if bytes.len() > MAX_STL_BYTES {
         return Err(StlError::TooLarge);

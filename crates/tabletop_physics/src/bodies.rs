@@ -1,4 +1,4 @@
-//! New objects, tables and joints get their bodies in the order in which they appeared.
+//! Bodies of new objects, tables and joints, made in the order in which these appeared.
 //!
 //! Rapier's plugin would take them in the order of Bevy's tables, which depends on everything else in the app, and the
 //! order of bodies decides the last bits of their motion.
@@ -24,7 +24,7 @@ use tabletop_core::{
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BodySystems;
 
-/// What has appeared and has no body yet.
+/// Entities that have appeared and have no body yet.
 #[derive(Resource, Default)]
 struct PendingBodies {
     bodies: Vec<Entity>,
@@ -69,11 +69,11 @@ fn any(pending: Res<PendingBodies>) -> bool {
     !pending.bodies.is_empty() || !pending.joints.is_empty()
 }
 
-/// Gives what has appeared its bodies and joints at once.
+/// Gives all pending entities their bodies and joints at once.
 ///
 /// # Errors
 ///
-/// A world without Rapier's context.
+/// The world has no Rapier context.
 pub fn take_in(world: &mut World) -> Result {
     let PendingBodies { bodies, joints } =
         std::mem::take(&mut *world.resource_mut::<PendingBodies>());

@@ -1,7 +1,7 @@
-//! Effort where it is needed: how finely the engine works in the next step, chosen from its state alone.
+//! Effort where it is needed: the engine's precision in the next step, chosen from its state alone.
 //!
-//! The solver is most of a tick. What stands alone needs few sub-steps; what is deep in a stack, or handled, needs many; what
-//! lands needs many sweeps.
+//! The solver is most of a tick. An object that stands alone needs few sub-steps; one deep in a stack, or handled, needs many; a
+//! landing needs many sweeps.
 
 mod depth;
 mod engine;
@@ -25,54 +25,54 @@ use landing::landing_speed;
 use substeps::{MOST_SUBSTEPS, SubstepFactors};
 use touches::{Touches, bodies_of};
 
-/// How far ahead contacts are looked for, in units.
+/// Distance at which contacts are predicted, in units.
 pub(crate) const PREDICTION: f32 = 0.2;
 
-/// How far ahead of what is fast they are looked for, in units: more than it moves in a tick after a fall of 100 units.
+/// The same for fast bodies, in units: more than a body moves in a tick after a fall of 100 units.
 pub(crate) const SOFT_CCD_PREDICTION: f32 = 3.0;
 
-/// Speed, in units/s, from which contacts are looked for so far ahead, and from which collision detection is continuous.
+/// Speed, in units/s, from which contacts are predicted that far, and from which collision detection is continuous.
 const SPEED_OF_CCD: f32 = 6.0;
 
-/// How many sub-steps fewer than in the tick before an island may have.
+/// Largest decrease of an island's sub-steps from one tick to the next.
 const DECAY: usize = 2;
 
-/// Ticks for which everything has the most sub-steps after a hand or a robot has been near something.
+/// Number of ticks for which everything has the most sub-steps after a hand or a robot was near something.
 const HANDLING_TICKS: u32 = 30;
 
-/// Ticks for which the engine sweeps as for a landing. Continuous collision detection stops what is fast a little above what it
-/// lands on, and it falls the rest of the way in the next ones.
+/// Number of ticks for which the engine sweeps as for a landing. Continuous collision detection stops a fast body a little above the surface
+/// that it lands on, and the body falls the rest of the way in the next ticks.
 const LANDING_TICKS: u32 = 4;
 
-/// How often the solver goes over the contacts in a sub-step.
+/// Numbers of the solver's sweeps over the contacts in a sub-step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Sweeps {
-    /// To correct speeds and depths, without friction.
+    /// Sweeps that correct speeds and depths, without friction.
     correcting: usize,
-    /// To correct speeds alone, with friction.
+    /// Sweeps that correct speeds only, with friction.
     plain: usize,
 }
 
-/// Of most ticks. With more plain sweeps, friction would let towers creep.
+/// Sweeps in most ticks. With more plain sweeps, friction would let towers creep.
 const SWEEPS: Sweeps = Sweeps {
     correcting: 8,
     plain: 1,
 };
 
-/// While hands or robots handle something: squeezed between them it is stiffer so.
+/// Sweeps while hands or robots handle something: an object squeezed between them is stiffer this way.
 const HANDLING_SWEEPS: Sweeps = Sweeps {
     correcting: 1,
     plain: 1,
 };
 
-/// While something lands flat. Its corners must share the impact equally before friction acts on what is left, or it turns the
+/// Sweeps while something lands flat. Its corners must share the impact equally before friction acts on the rest, otherwise friction turns the
 /// difference into a slide.
 const LANDING_SWEEPS: Sweeps = Sweeps {
     correcting: 4,
     plain: 32,
 };
 
-/// For how many ticks the engine takes more care than the state calls for.
+/// The number of ticks for which the engine takes more care than its state calls for.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Resource)]
 pub struct Care {
@@ -97,8 +97,8 @@ pub(crate) fn spend_effort(
     for (mut simulation, colliders, mut bodies, joints) in &mut contexts {
         let simulation = &mut *simulation;
         if !joints.impulse_joints.is_empty() {
-            // It keeps from step to step how joints are grouped, and what it keeps is not what it would find anew: a world that was put
-            // back, with a new pipeline, would go on differently.
+            // The pipeline keeps the grouping of joints from step to step, and a new pipeline would group them differently: a world that was
+            // restored with one would go on differently.
             simulation.pipeline = PhysicsPipeline::new();
         }
         care.spend(Engine {
@@ -115,7 +115,7 @@ pub(crate) fn spend_effort(
 }
 
 impl Care {
-    /// Chooses how finely the engine works in the next step.
+    /// Chooses the engine's precision in the next step.
     pub fn spend(&mut self, engine: Engine) {
         if engine.islands.num_active_bodies() == 0 {
             *self = Self::default();
@@ -164,7 +164,7 @@ impl Care {
         };
         let mode = Mode {
             sweeps,
-            // What is farther than this is touched in one point, whatever its shape.
+            // A body beyond this distance is touched in one point, whatever its shape.
             prediction: (landing * engine.parameters.dt).clamp(PREDICTION, SOFT_CCD_PREDICTION),
             recycles: !is_handling && !is_landing,
             clusters: is_handling,
@@ -174,7 +174,7 @@ impl Care {
     }
 }
 
-/// The ticks that are left of some, which may begin again.
+/// The ticks that are left of `ticks`, or all again.
 fn ticks_left(ticks: u32, all: u32, begin_again: bool) -> u32 {
     match begin_again {
         true => all,
@@ -182,21 +182,21 @@ fn ticks_left(ticks: u32, all: u32, begin_again: bool) -> u32 {
     }
 }
 
-/// What holds for all bodies in a step.
+/// Settings of all bodies for a step.
 struct Mode {
     sweeps: Sweeps,
-    /// How far ahead contacts are looked for, in units.
+    /// Distance at which contacts are predicted, in units.
     prediction: f32,
-    /// True if contacts of what has hardly moved are kept.
+    /// True if contacts of bodies that have hardly moved are kept.
     recycles: bool,
-    /// True if contacts of several parts that have the same normal are merged.
+    /// True if contacts of several parts with the same normal are merged.
     clusters: bool,
     /// True if collision detection is continuous.
     is_continuous: bool,
 }
 
 impl Mode {
-    /// While everything sleeps, and new bodies may appear.
+    /// Settings while everything sleeps and new bodies may appear.
     const UNKNOWN: Self = Self {
         sweeps: SWEEPS,
         prediction: PREDICTION,
@@ -215,7 +215,7 @@ impl Mode {
     }
 }
 
-/// The part of the impulses that the engine reports for a pair that acted in the last step: it counts those with which it began the
+/// The share of a pair's reported impulses that acted in the last step: the engine counts the impulses at the beginning of the
 /// step as well as those of all sub-steps.
 pub fn impulse_share(pair: &ContactPair, bodies: &RigidBodySet, colliders: &ColliderSet) -> f32 {
     let touching = bodies_of(pair, colliders).into_iter().flatten();

@@ -1,4 +1,4 @@
-//! Where solids are and how far apart, without a step of the engine.
+//! Geometry of solids without a step of the engine: nearest points and distances.
 
 mod contact;
 mod convex;

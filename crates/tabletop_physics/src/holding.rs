@@ -1,13 +1,13 @@
-//! Bodies that something holds, and that it lets go of.
+//! Holding and releasing of bodies.
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use tabletop_core::{Held, Holder, Joint, ObjectSpec, Pose, SimTick, TICK_SECONDS};
 
-/// An object that was let go of in this tick.
+/// An object that was released in this tick.
 ///
-/// Rapier finds out what a body lies on when it has moved, so an object that was let go of at rest would fall freely for a
-/// tick, into what is below it. Instead it sinks for a tick by next to nothing, and falls from then on.
+/// Rapier finds the support of a body only after the body has moved, so an object released at rest would fall freely for a
+/// tick, into the thing below it. Instead it sinks for a tick by next to nothing, and falls from then on.
 #[derive(Component, Clone, Copy, Debug, Reflect)]
 #[reflect(Component)]
 pub struct JustReleased {
@@ -15,26 +15,26 @@ pub struct JustReleased {
     pub at: SimTick,
 }
 
-/// How fast it sinks in that tick, in units/s.
+/// Speed at which it sinks in that tick, in units/s.
 const SETTLING_SPEED: f32 = 1e-3;
 
-/// Part of the way to its target that a jointed object is pulled in a tick.
+/// Part of the way to its target by which a jointed object is pulled in a tick.
 const PULLED_PER_TICK: f32 = 0.25;
 
-/// Fastest that it is pulled, in units/s, and turned, in rad/s.
+/// Greatest speeds at which it is pulled, in units/s, and turned, in rad/s.
 const FASTEST: (f32, f32) = (40.0, 10.0);
 
-/// How a held object follows who holds it.
+/// The way in which a held object follows its holder.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[reflect(Component)]
 pub enum Carry {
     /// It goes exactly where its [`Transform`] says, whatever acts on it.
     Freely,
-    /// It is pulled towards its place, as far as its joints let it.
+    /// It is pulled towards its target, as far as its joints allow.
     AgainstJoints,
 }
 
-/// Gives an object to who holds it from now on. Says how it is carried.
+/// Gives an object to a holder. Returns how it is carried.
 pub fn hold(world: &mut World, object: Entity, by: Holder) -> Carry {
     let is_jointed = world
         .query::<&Joint>()
@@ -57,7 +57,7 @@ pub fn hold(world: &mut World, object: Entity, by: Holder) -> Carry {
     carry
 }
 
-/// Leaves an object to itself, at rest. Nobody holds it from now on.
+/// Releases an object, at rest. It then has no holder.
 pub fn let_go(world: &mut World, object: Entity) {
     let at = *world.resource::<SimTick>();
     let mut object = world.entity_mut(object);
@@ -75,7 +75,7 @@ pub fn let_go(world: &mut World, object: Entity) {
     }
 }
 
-/// Lets fall what was let go of in the tick before. What undo has put back into the tick in which it was let go of waits.
+/// Lets objects fall that were released in the tick before. An object that undo has put back into the tick of its release waits.
 pub(crate) fn let_fall(
     mut released: Query<(Entity, &JustReleased, &mut GravityScale)>,
     tick: Res<SimTick>,
@@ -99,7 +99,7 @@ pub fn pull_velocity(here: Pose, target: Pose) -> Velocity {
     }
 }
 
-/// Puts an object elsewhere at once, at rest.
+/// Puts an object at another pose at once, at rest.
 pub fn put(world: &mut World, object: Entity, pose: Pose) {
     let mut object = world.entity_mut(object);
     object.insert(Transform::from(pose));

@@ -68,7 +68,7 @@ use tabletop_core::{
 };
 use tabletop_history::RollbackApp;
 
-/// What Rapier scales its tolerances to. The parameters name them in units; a greater number would only fatten the boxes
+/// Length to which Rapier scales its tolerances. The parameters are in units; a greater number would only fatten the boxes
 /// in which it looks for contacts.
 const LENGTH_UNIT: f32 = 1.0;
 
@@ -160,7 +160,7 @@ impl Plugin for PhysicsPlugin {
     }
 }
 
-/// What Rapier does before a step, with our propagation of transforms in place of its own.
+/// Rapier's systems before a step, with our propagation of transforms in place of its own.
 fn sync_backend() -> ScheduleConfigs<ScheduleSystem> {
     (
         transforms::propagate(),
@@ -185,8 +185,8 @@ fn sync_backend() -> ScheduleConfigs<ScheduleSystem> {
         .chain()
 }
 
-/// The parameters of Rapier's solver, tuned until towers of ten unit blocks stand still: at this scale, gravity is ten times what Rapier's
-/// defaults are made for, and its soft contacts let tall stacks sway and buckle (`tests/quality` of tabletop_scene holds the
+/// The parameters of Rapier's solver, tuned until towers of ten unit blocks stand still. At this scale, gravity is ten times the one that
+/// Rapier's defaults are made for, and its soft contacts let tall stacks sway and buckle (`tests/quality` of tabletop_scene sets the
 /// bar). [`Care`] changes them before every step.
 pub fn integration_parameters() -> IntegrationParameters {
     let stiff_contacts = SpringCoefficients {
@@ -201,7 +201,7 @@ pub fn integration_parameters() -> IntegrationParameters {
         static_contact_softness: stiff_contacts,
         warmstart_joints: true,
         normalized_allowed_linear_error: 0.05,
-        // What was squeezed comes apart gently.
+        // Squeezed bodies come apart gently.
         normalized_max_corrective_velocity: 3.0,
         normalized_prediction_distance: effort::PREDICTION,
         normalized_max_linear_velocity: 4000.0,

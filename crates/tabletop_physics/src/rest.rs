@@ -1,10 +1,10 @@
-//! When nothing of the physics can change.
+//! Rest of the physics: nothing in it can change.
 
 use bevy::{ecs::change_detection::Tick, ecs::system::SystemId, prelude::*};
 use bevy_rapier3d::{plugin::systems::step_simulation, prelude::*};
 use tabletop_core::{RestApp as _, RestingSystems, SimSystems};
 
-/// In one step of so many, Rapier's broad phase looks whether its tree is worth tidying up. Otherwise a step in which everything sleeps
+/// Number of steps after which Rapier's broad phase checks whether its tree is worth tidying up. Any other step in which everything sleeps
 /// only counts.
 const STEPS_OF_BROAD_PHASE: u64 = 8;
 
@@ -16,11 +16,11 @@ type Context = (
     Ref<'static, RapierContextJoints>,
 );
 
-/// When a step has changed Rapier's context last.
+/// The ticks in which a step last changed Rapier's context.
 #[derive(Resource, Default)]
 struct LastStep([Tick; 4]);
 
-/// What a tick that is passed over does in the engine.
+/// The part of a step that a tick at rest still makes in the engine.
 #[derive(Resource)]
 struct BareStep {
     step: SystemId,
@@ -136,7 +136,7 @@ fn is_any_body_removed(
     removed.iter().any(|&removed| removed > 0)
 }
 
-/// Lets the engine count the steps of the ticks that are passed over, as far as the number matters: the last bits of what comes later
+/// Lets the engine count the steps of ticks that are passed over, as far as the number matters: the last bits of later steps
 /// depend on it.
 fn count_steps(world: &mut World, ticks: u64) -> Result {
     let &BareStep { step, note } = world.resource();

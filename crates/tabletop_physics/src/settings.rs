@@ -1,4 +1,4 @@
-//! What can be chosen about the physics.
+//! Settings of the physics.
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -10,22 +10,22 @@ use serde::{Deserialize, Serialize};
 pub struct PhysicsSettings {
     /// Downward acceleration in units/s². True gravity at this scale is 98.1.
     pub gravity: f32,
-    /// Coulomb friction of every surface. Two surfaces in contact have the product of theirs.
+    /// Coulomb friction of every surface. The friction of a contact is the product of both surfaces'.
     pub friction: f32,
-    /// Bounciness of every surface, 0..=1. Two surfaces in contact have the average of theirs.
+    /// Restitution of every surface, 0..=1. That of a contact is the mean of both surfaces'.
     pub restitution: f32,
-    /// Rate in 1/s at which rotations die away. Falling is not damped.
+    /// Rate, in 1/s, at which rotations die away. Falling is not damped.
     pub angular_damping: f32,
-    /// Rate in 1/s at which the rotations of cylinders and spheres die away: their rolling resistance.
+    /// Rate, in 1/s, at which the rotations of cylinders and spheres die away: their rolling resistance.
     pub rolling_damping: f32,
-    /// Rate in 1/s at which the rotations of chain links die away, which makes a chain come to rest.
+    /// Rate, in 1/s, at which the rotations of chain links die away, so that a chain comes to rest.
     pub link_damping: f32,
     /// True if objects at rest are left out of the computation until something touches them.
     pub sleep: bool,
 }
 
 impl PhysicsSettings {
-    /// What makes no sense in them.
+    /// The fault of settings that make no sense.
     pub fn fault(&self) -> Option<String> {
         let Self {
             gravity,

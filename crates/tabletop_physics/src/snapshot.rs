@@ -1,4 +1,4 @@
-//! The state of the physics engine at a moment.
+//! Snapshots of the physics engine.
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ pub struct PhysicsSnapshot {
     simulation: Arc<EngineState>,
 }
 
-/// What of a [`RapierContextSimulation`] decides what comes next.
+/// The part of a [`RapierContextSimulation`] that decides what comes next.
 #[derive(Default)]
 struct EngineState {
     islands: IslandManager,
@@ -130,7 +130,7 @@ impl RollbackState for PhysicsSnapshot {
     }
 }
 
-/// A part of the engine, or what was saved of it if it has not changed since.
+/// A part of the engine, or the earlier snapshot of it if it has not changed since.
 fn save<C: Component, S>(
     context: EntityRef,
     earlier: Option<(&PhysicsSnapshot, Since)>,
@@ -144,7 +144,7 @@ fn save<C: Component, S>(
     }
 }
 
-/// An entry of the maps from entities to handles and back, and of poses by handle.
+/// Bytes of an entry in the maps from entities to handles and back, and in the poses by handle.
 const BYTES_PER_ENTRY: usize = 2 * size_of::<Entity>() + size_of::<GlobalTransform>();
 
 fn bytes_of_bodies(set: &RapierRigidBodySet) -> usize {
@@ -172,7 +172,7 @@ fn bytes_of_simulation(simulation: &EngineState) -> usize {
     simulation.narrow_phase.contact_pairs().map(pair).sum()
 }
 
-/// Makes the engine as new if it has no bodies: which places they had would decide the last bits of what comes next.
+/// Makes the engine as new if it has no bodies: the handles of former bodies would decide the last bits of what comes next.
 pub fn renew_if_empty(world: &mut World) {
     let mut bodies = world.query_filtered::<&RapierRigidBodySet, With<DefaultRapierContext>>();
     if bodies.single(world).is_ok_and(|set| set.bodies.is_empty()) {
@@ -181,8 +181,8 @@ pub fn renew_if_empty(world: &mut World) {
     }
 }
 
-/// Takes an object from who holds it and removes it from the world, for good or until undo brings it back. Its body goes at once, so that it makes no difference to
-/// the others whether the object is kept.
+/// Takes an object from its holder and removes it from the world, for good or until undo brings it back. Its body is removed at once, so
+/// keeping the object makes no difference to the others.
 pub fn remove_object(world: &mut World, object: Entity) {
     world.entity_mut(object).remove::<(Held, Carry)>();
     remove_body(world, object);
@@ -201,7 +201,7 @@ pub fn remove_joint(world: &mut World, joint: Entity) {
     despawn_or_park(world, joint);
 }
 
-/// Takes an entity's body, with its colliders and joints, out of the engine, and leaves the entity as it is.
+/// Takes an entity's body, with its colliders and joints, out of the engine. The entity itself stays.
 fn remove_body(world: &mut World, entity: Entity) {
     let mut contexts = world.query_filtered::<Context, With<DefaultRapierContext>>();
     let Ok((mut simulation, mut bodies, mut colliders, mut joints)) = contexts.single_mut(world)

@@ -7,9 +7,9 @@ use bevy::{
     transform::systems::{mark_dirty_trees, propagate_parent_transforms},
 };
 
-/// Brings global transforms up to date in the middle of a frame, with the same result as Bevy's own systems, which share
-/// the work among threads at a cost that is many times that of a tick; so they only run when a tree has moved, after
-/// what has moved is marked (Rapier runs them unmarked, and kinematic bodies with children lose their moves).
+/// Brings global transforms up to date in the middle of a frame, with the same result as Bevy's own systems. Those share
+/// the work among threads at a cost many times that of a tick, so they run only when a tree has moved, after
+/// the moved entities are marked (Rapier runs them unmarked, and kinematic bodies with children lose their moves).
 pub(crate) fn propagate() -> ScheduleConfigs<ScheduleSystem> {
     (
         sync_roots,

@@ -1,10 +1,10 @@
-//! The velocities of objects, for those who do not know Rapier.
+//! Twists: velocities of objects, for code that does not know Rapier.
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
 use tabletop_core::Twist;
 
-/// Notes how fast objects are whose velocity has changed, be it by a step or by an undo.
+/// Writes the twists of objects whose velocity has changed, by a step or by an undo.
 pub(crate) fn note_twists(mut objects: Query<(&Velocity, &mut Twist), Changed<Velocity>>) {
     for (&Velocity { linear, angular }, mut twist) in &mut objects {
         twist.set_if_neq(Twist { linear, angular });

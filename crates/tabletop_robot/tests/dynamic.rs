@@ -67,7 +67,7 @@ fn a_pose_is_held_with_two_kilograms_at_full_stretch() {
 }
 
 #[test]
-fn a_weight_that_nobody_told_of_is_held_too() {
+fn an_unreported_weight_is_held_too() {
     let mut stage = Stage::dynamic();
     go(&mut stage, ARM, STRAIGHT);
     let robot = stage.robot().clone();

@@ -377,7 +377,7 @@ mod tests {
     }
 
     #[test]
-    fn a_glide_goes_evenly_and_ends_where_it_is_told() {
+    fn a_glide_goes_evenly_and_ends_where_it_is_sent() {
         let mut stage = Stage::new("Glide(to: (6, 0, 0.5), seconds: 0.1)");
         stage.holders[0] = Some(Hand::Any);
         let way: Vec<_> = std::iter::from_fn(|| stage.tick())

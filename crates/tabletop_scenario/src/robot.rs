@@ -278,7 +278,7 @@ mod tests {
     use crate::test_stage::Stage;
 
     #[test]
-    fn the_robot_is_told_what_its_steps_say() {
+    fn the_robot_is_commanded_as_its_steps_say() {
         let mut stage = Stage::new(
             "Robot(Show), Robot(Move([(RightE1, 1.5)])), Robot(Close(Left)), \
              Robot(ReachTo(arm: Right, at: (3, -2, 1), degrees: (0, 0, 90)))",

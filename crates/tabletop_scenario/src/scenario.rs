@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said_with_its_place() {
+    fn what_is_wrong_is_reported_with_its_place() {
         for (text, at, words) in [
             ("(steps: [\n  Grasp(\"x\"),\n  Drop,\n])", "3:3: ", "Drop"),
             (

@@ -1,4 +1,4 @@
-//! From what a task file says to the bodies and joints it stands for.
+//! Assembly of the elements of a task file into bodies and joints.
 
 mod chain;
 mod jointed;
@@ -14,7 +14,7 @@ use crate::ids::{IdAllocator, with_unique_ids};
 pub struct Assembly {
     /// The table.
     pub table: Table,
-    /// The objects, in the order of the file; chains and lid boxes as the objects that they consist of.
+    /// The objects, in the order of the file; chains and lid boxes as their single objects.
     pub objects: Vec<ObjectSpec>,
     /// The joints, in the order of the file.
     pub joints: Vec<JointSpec>,
@@ -30,7 +30,7 @@ pub fn assemble(scene: &SceneSpec, ids: &mut IdAllocator) -> Assembly {
 }
 
 impl Assembly {
-    /// Nothing on this table.
+    /// An assembly of just this table.
     pub(crate) const fn on(table: Table) -> Self {
         Self {
             table,
@@ -39,7 +39,7 @@ impl Assembly {
         }
     }
 
-    /// Adds what an item consists of.
+    /// Adds the objects and joints of an item.
     pub(crate) fn add(&mut self, item: &SceneItem, ids: &mut IdAllocator) {
         match item {
             SceneItem::Object(spec) => self.objects.push(with_unique_ids(spec.clone(), ids)),

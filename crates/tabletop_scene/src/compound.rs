@@ -1,4 +1,4 @@
-//! Which objects came from one item of a scene.
+//! Compounds: several objects from one item of a scene.
 
 use bevy::prelude::*;
 use tabletop_core::SceneItem;
@@ -10,14 +10,14 @@ pub(crate) struct Compounds(Vec<Compound>);
 /// A chain, a lid box, or two jointed objects.
 #[derive(Clone, Debug)]
 pub(crate) struct Compound {
-    /// What the scene said.
+    /// The item as in the scene.
     pub item: SceneItem,
-    /// What it consists of, in the order of its assembly.
+    /// Its objects, in the order of assembly.
     pub members: Vec<Entity>,
 }
 
 impl Compounds {
-    /// Notes of which objects an item consists, if they are several.
+    /// Adds a compound if an item has several objects.
     pub fn note(&mut self, item: &SceneItem, members: &[Entity]) {
         if members.len() > 1 {
             self.0.push(Compound {
@@ -27,7 +27,7 @@ impl Compounds {
         }
     }
 
-    /// Forgets those of which something has gone.
+    /// Forgets compounds of which an object is gone.
     pub fn forget_broken(&mut self, is_there: impl Fn(Entity) -> bool) {
         self.0
             .retain(|compound| compound.members.iter().all(|&member| is_there(member)));

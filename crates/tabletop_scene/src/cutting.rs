@@ -5,7 +5,7 @@ use bevy_rapier3d::prelude::Collider;
 use tabletop_core::{Joint, JointKind, ObjectIndex, ObjectSpec, Pose, Shape};
 use tabletop_physics::{Convex, convex_parts, remove_object};
 
-/// What is nearer to a blade than this touches it, in units.
+/// Distance, in units, at which something touches a blade.
 const TOUCH: f32 = 0.02;
 
 /// Removes the links of chains that both blades of scissors touch.

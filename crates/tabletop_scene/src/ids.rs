@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use bevy::prelude::Resource;
 use tabletop_core::{ObjectSpec, Part, Shape};
 
-/// Hands out ids that are unique, in the way of the original program: the id that was asked for (`obj` if none) if it is
-/// free, else that id with `#` and a count that goes up with every try.
+/// Gives out unique ids in the way of the original program: the id that was asked for (`obj` if none) if it is
+/// free, otherwise that id with `#` and a count that goes up with every try.
 ///
 /// ```
 /// use tabletop_scene::IdAllocator;
@@ -16,7 +16,7 @@ use tabletop_core::{ObjectSpec, Part, Shape};
 /// assert_eq!(given, ["a", "a#0", "obj", "obj#1", "a#2"]);
 /// ```
 ///
-/// As a resource, it is the one of the present scene.
+/// As a resource, it is the allocator of the present scene.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct IdAllocator {
     taken: BTreeSet<String>,
@@ -32,12 +32,12 @@ impl IdAllocator {
         }
     }
 
-    /// Notes ids that somebody else has given.
+    /// Marks ids as taken that were given elsewhere.
     pub fn take(&mut self, taken: impl IntoIterator<Item = String>) {
         self.taken.extend(taken);
     }
 
-    /// An id that nobody has, and takes it.
+    /// Takes an unused id.
     pub fn unique(&mut self, wanted: &str) -> String {
         let base = if wanted.is_empty() { "obj" } else { wanted };
         let mut id = base.to_owned();
@@ -50,7 +50,7 @@ impl IdAllocator {
     }
 }
 
-/// The object with an id of its own, and so its controls, its bond points and what can be pointed to of it.
+/// The object with unique ids for itself, its controls, its bond points and its pointable parts.
 pub(crate) fn with_unique_ids(mut object: ObjectSpec, ids: &mut IdAllocator) -> ObjectSpec {
     object.id = ids.unique(&object.id);
     if let Shape::Composite { parts } = &mut object.shape {

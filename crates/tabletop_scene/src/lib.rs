@@ -1,6 +1,6 @@
 //! The table and the objects on it: how a scene becomes bodies and joints, and how they come and go.
 //!
-//! [`assemble`] takes what a task file says apart into single objects with unique ids and the joints between them;
+//! [`assemble`] takes the content of a task file apart into single objects with unique ids and the joints between them;
 //! [`ScenePlugin`] carries out the commands that put them on the table; [`present_scene`] is the way back.
 //!
 //! ```

@@ -1,4 +1,4 @@
-//! How objects appear on the table and go from it.
+//! Life of objects: their appearance on the table and their removal.
 
 use bevy::{
     ecs::{
@@ -71,7 +71,7 @@ pub(crate) fn note_parked(
     }
 }
 
-/// What knows of an object that has gone.
+/// The resources that know of a removed object.
 #[derive(SystemParam)]
 pub(crate) struct Forget<'w> {
     cause: Res<'w, Cause>,
@@ -89,7 +89,7 @@ impl Forget<'_> {
     }
 }
 
-/// Carries out the commands one after the other, each on what the one before has left.
+/// Carries out the commands in turn, each on the world that the previous one left.
 pub(crate) fn carry_out_commands(
     world: &mut World,
     reader: &mut SystemState<MessageReader<IssuedCommand>>,

@@ -11,23 +11,23 @@ use crate::{
     compound::{Compound, Compounds},
 };
 
-/// How far a part of a compound may be from where the next load puts it, in units, without a word about it.
+/// Distance, in units, of a compound's part from where the next load puts it, up to which nothing is reported.
 const UNNOTICED: f32 = 0.01;
 
 /// The most links that a chain of a task file can have.
 const MOST_LINKS: u32 = 1000;
 
-/// The scene that puts everything where it is now.
+/// The present state of the table as a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PresentScene {
     /// The table and everything on it.
     pub scene: SceneSpec,
-    /// What it cannot say, each in a sentence.
+    /// Parts of the state that a task file cannot express, each as a sentence.
     pub unsaid: Vec<String>,
 }
 
-/// What is on the table now, as a scene with ids that a task file can have: in the order of creation, with chains and lid
-/// boxes as such as long as they are whole.
+/// The present table as a scene with ids that a task file can have: in the order of creation, with chains and lid
+/// boxes as single elements as long as they are whole.
 pub fn present_scene(world: &World) -> PresentScene {
     let tables = world.try_query::<&Table>();
     let table = tables.and_then(|mut tables| tables.iter(world).next().copied());
@@ -49,7 +49,7 @@ pub fn present_scene(world: &World) -> PresentScene {
 
 struct Inventory<'w> {
     world: &'w World,
-    /// The ids as the next load will give them.
+    /// The ids that the next load will give.
     ids: IdAllocator,
     renamed: Vec<String>,
     present: PresentScene,
@@ -128,7 +128,7 @@ impl Inventory<'_> {
         }
     }
 
-    /// Adds an item, under the id under which its objects get their ids again. Returns what the next load makes of it.
+    /// Adds an item, under the id from which its objects get their ids again. Returns the objects that the next load makes of it.
     fn add(&mut self, item: SceneItem, objects: &[Entity]) -> Vec<ObjectSpec> {
         let ids: Vec<_> = objects
             .iter()
@@ -161,7 +161,7 @@ impl Inventory<'_> {
         loaded
     }
 
-    /// The item of a compound as it is now, unless it cannot be said so.
+    /// The item of a compound in its present state, unless a task file cannot express it.
     fn whole(&self, compound: &Compound) -> Option<SceneItem> {
         let first = self.pose(*compound.members.first()?)?;
         match &compound.item {
@@ -236,7 +236,7 @@ impl Inventory<'_> {
     }
 }
 
-/// The nearest shape that an object of a task file can have, and what is lost.
+/// The nearest shape that an object of a task file can have, and the loss.
 fn sayable(shape: &Shape) -> (Shape, Option<&'static str>) {
     match *shape {
         Shape::Link { span, color, .. } => (
@@ -387,7 +387,7 @@ mod tests {
     }
 
     #[test]
-    fn an_id_that_a_file_cannot_say_is_told_with_the_nearest() {
+    fn an_id_that_a_file_cannot_say_is_reported_with_the_nearest() {
         let mut app = app(vec![block("a", 0.0), block("a", 2.0)]);
         let first = object(&app, "a");
         app.world_mut().despawn(first);
@@ -400,7 +400,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chain_is_saved_as_one_and_how_it_hangs_is_told() {
+    fn a_chain_is_saved_as_one_and_how_it_hangs_is_reported() {
         let mut app = app(vec![SceneItem::Chain(chain())]);
         let links = ChainSpec {
             link_count: 12,
@@ -477,7 +477,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lid_box_is_saved_as_one_and_an_open_lid_is_told() {
+    fn a_lid_box_is_saved_as_one_and_an_open_lid_is_reported() {
         let mut app = app(vec![SceneItem::LidBox(lidbox())]);
         let present = present_scene(app.world());
         let [SceneItem::LidBox(saved)] = &present.scene.items[..] else {

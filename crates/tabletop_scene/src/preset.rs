@@ -1,4 +1,4 @@
-//! How presets are made.
+//! Presets: objects made without a task file.
 
 use std::f32::consts::FRAC_PI_2;
 
@@ -9,16 +9,16 @@ use tabletop_physics::{Convex, collider, convex_parts};
 
 use crate::IdAllocator;
 
-/// Least distance, in units, to anything that is there.
+/// Least distance, in units, to anything else.
 const CLEARANCE: f32 = 0.05;
 
-/// How many places are tried.
+/// Number of places that are tried.
 const TRIES: u32 = 1000;
 
-/// From where big blocks and boxes fall, in units.
+/// Height from which big blocks and boxes fall, in units.
 const DROP_HEIGHT: f32 = 10.0;
 
-/// What falls turned keeps at least this distance from the edges of the table, in units: it may tumble when it lands.
+/// Least distance of turned falling objects from the edges of the table, in units: they may tumble when they land.
 const ROOM_TO_TUMBLE: f32 = 1.5;
 
 /// Edge of a big block, in units.
@@ -47,7 +47,7 @@ const COLORS: [Rgb; 8] = [
     Rgb::ORANGE,
 ];
 
-/// Puts a preset at a random free place, or says that there is none.
+/// Puts a preset at a random free place, or reports that there is none.
 pub(crate) fn make(world: &mut World, preset: Preset, seed: u64) -> Result<(), String> {
     let mut random = Random::new(seed);
     let surroundings = Surroundings::of(world);
@@ -114,7 +114,7 @@ fn extents(preset: Preset) -> Vec3 {
     }
 }
 
-/// A random pose of a preset's [`extents`]: all of it over the table, if it is not too big for that.
+/// A random pose of a preset's [`extents`]: all of it over the table, if it fits.
 fn pose(preset: Preset, table: &Table, random: &mut Random) -> Pose {
     let turn = random.between((0.0, FRAC_PI_2));
     let (height, margin, rotation) = match preset {
@@ -134,12 +134,12 @@ fn pose(preset: Preset, table: &Table, random: &mut Random) -> Pose {
     Pose::new(Vec3::new(x, y, height), rotation)
 }
 
-/// What is where something is to be made.
+/// The surroundings of a new object.
 struct Surroundings {
     table: Table,
     /// The solids of everything but the table.
     solids: Vec<Convex>,
-    /// Of these, the solids of the robot and of what it or a hand holds.
+    /// Those of the robot and of held objects.
     held: Vec<Convex>,
 }
 
@@ -172,8 +172,8 @@ impl Surroundings {
         surroundings
     }
 
-    /// The first of many random places at which the preset touches nothing. Better one from which it does not fall onto the
-    /// robot, or onto what is held.
+    /// The first of many random places at which the preset touches nothing, preferably one from which it does not fall onto the
+    /// robot or onto a held object.
     fn free_place(&self, preset: Preset, random: &mut Random) -> Option<Pose> {
         let mut second_best = None;
         for _ in 0..TRIES {

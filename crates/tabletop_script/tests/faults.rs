@@ -37,7 +37,7 @@ fn callback_failure(line: &str) -> String {
 }
 
 #[test]
-fn errors_of_callbacks_are_told_with_file_and_line() {
+fn errors_of_callbacks_are_reported_with_file_and_line() {
     for (line, message, places) in [
         (
             "helper(1)",
@@ -65,7 +65,7 @@ fn errors_of_callbacks_are_told_with_file_and_line() {
 }
 
 #[test]
-fn what_the_motor_cannot_be_is_told() {
+fn what_the_motor_cannot_be_is_reported() {
     for (line, message) in [
         (
             "motor.jointVelocities = zeros(3, 7);",
@@ -99,7 +99,7 @@ fn what_the_motor_cannot_be_is_told() {
 }
 
 #[test]
-fn endless_loops_crashes_and_exits_are_told_apart() {
+fn endless_loops_crashes_and_exits_are_distinguished() {
     for (line, message) in [
         (
             "while true, end",
@@ -114,7 +114,7 @@ fn endless_loops_crashes_and_exits_are_told_apart() {
 }
 
 #[test]
-fn faults_before_the_first_call_are_told() {
+fn faults_before_the_first_call_are_reported() {
     let reason = |folder: &Folder| failure(folder.settings());
     let init = Folder::pair("x = 1;\ny = x + z;\n", GOOD);
     assert!(reason(&init).contains("'z' undefined"), "{}", reason(&init));

@@ -51,7 +51,7 @@ fn a_slow_script_moves_the_robot_as_if_nobody_had_waited() {
 }
 
 #[test]
-fn the_waiting_is_told_and_no_tick_passes() {
+fn the_waiting_is_reported_and_no_tick_passes() {
     let folder = Folder::pair("calls = 0;", GATED);
     let mut stage = Stage::start(framewise(&folder));
     stage.frames_until(Stage::is_online);
@@ -124,7 +124,7 @@ fn time_in_window(stage: &Stage) -> Duration {
 }
 
 #[test]
-fn nothing_that_is_told_meanwhile_gets_lost() {
+fn nothing_that_is_reported_meanwhile_gets_lost() {
     let folder = Folder::pair("calls = 0;", GATED);
     let mut stage = Stage::start(framewise(&folder));
     stage.frames_until(Stage::is_online);

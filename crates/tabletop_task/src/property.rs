@@ -175,12 +175,12 @@ mod tests {
             },
         );
         spec.descriptions.push(("use".into(), "log".into()));
-        let told: Vec<_> = properties(&spec)
+        let reported: Vec<_> = properties(&spec)
             .into_iter()
             .map(|(name, value)| format!("{name}={value}"))
             .collect();
         assert_eq!(
-            told.join(" "),
+            reported.join(" "),
             "id=a shape=cylinder color=#ff0000 size=0.5x3 radius=0.5 yspan=3 mass=1 use=log"
         );
         assert_eq!(property(&spec, "use").as_deref(), Some("log"));

@@ -47,7 +47,7 @@ impl RedrawCause {
     }
 
     /// Whether the user sees something new.
-    pub const fn is_news(self) -> bool {
+    pub const fn is_event(self) -> bool {
         self.needs_settling() || matches!(self, Self::Panels | Self::Texture)
     }
 }

@@ -141,10 +141,14 @@ fn act(world: &mut World) {
     };
     match outcome {
         None => *world.resource_mut::<RobotImitator>() = imitator,
-        Some(Ok(told)) => world.resource_mut::<Notices>().append(Tone::News, &told),
+        Some(Ok(reported)) => world
+            .resource_mut::<Notices>()
+            .append(Tone::Event, &reported),
         Some(Err(reason)) => {
-            let told = format!("the robot has stopped: {reason}");
-            world.resource_mut::<Notices>().append(Tone::Warning, &told);
+            let reported = format!("the robot has stopped: {reason}");
+            world
+                .resource_mut::<Notices>()
+                .append(Tone::Warning, &reported);
         }
     }
 }
@@ -197,7 +201,7 @@ impl RobotImitator {
                         }
                         None
                     }
-                    ExecutionTurn::Over(imitation) => Some(told(task, &imitation)),
+                    ExecutionTurn::Over(imitation) => Some(reported(task, &imitation)),
                 }
             }
         }
@@ -205,7 +209,7 @@ impl RobotImitator {
 }
 
 /// What has come of it, in a sentence.
-fn told(task: &Task, imitation: &Imitation) -> Result<String, String> {
+fn reported(task: &Task, imitation: &Imitation) -> Result<String, String> {
     match &imitation.failure {
         None => Ok("the robot has done what was shown".into()),
         Some((step, failure)) => {

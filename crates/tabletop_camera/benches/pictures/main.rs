@@ -1,8 +1,8 @@
-//! How many pictures a second one core draws.
+//! Benchmark: the pictures per second that one core draws.
 //!
-//! `cargo bench -p tabletop -p tabletop_camera --bench pictures` prints it for the two blocks of `default.xml` with ten more,
-//! for these with two arms of 2304 triangles over them, each still, with one block and with everything but the table in another
-//! place in every picture, and for balls and cylinders that move, plain and with smooth edges.
+//! `cargo bench -p tabletop -p tabletop_camera --bench pictures` prints this for the two blocks of `default.xml` with ten more, and
+//! for these with two arms of 2304 triangles over them. Each scene is drawn still, with one block moved in every picture, and with
+//! everything but the table moved. Balls and cylinders that move follow. All are drawn plain and with smooth edges.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 
 mod scenes;
@@ -55,7 +55,7 @@ fn main() {
     }
 }
 
-/// How many pictures of these scenes, one after the other.
+/// Pictures per second of these scenes, one after the other.
 fn pictures_a_second(scenes: &[Scene], camera: &Camera) -> String {
     let (mut rasterizer, mut picture) = (Rasterizer::default(), Picture::default());
     let mut rates: Vec<f64> = (0..TURNS)

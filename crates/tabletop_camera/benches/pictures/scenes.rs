@@ -1,4 +1,4 @@
-//! What the benchmark draws.
+//! Scenes that the benchmark draws.
 
 use std::{f32::consts::TAU, sync::Arc};
 

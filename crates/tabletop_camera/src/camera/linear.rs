@@ -1,10 +1,10 @@
-//! What depends linearly on the point of the picture: rays, and numbers.
+//! Linear functions of the point of the picture: rays and numbers.
 
 use std::ops::{Add, Mul};
 
 use bevy::math::{Vec3, Vec4};
 
-/// Where in its row of pixels a row of samples lies, in pixels from the pixels' centres.
+/// Offset of a row of samples from their pixels' centres, in pixels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SampleOffset {
     pub x: f32,
@@ -15,10 +15,10 @@ impl SampleOffset {
     /// The pixels' centres.
     pub const CENTER: Self = Self { x: 0.0, y: 0.0 };
 
-    /// How far the samples of a pixel are from its centre, to the right and down, at most.
+    /// Largest distance of a pixel's samples from its centre, to the right and down.
     pub const REACH: f32 = 0.375;
 
-    /// The samples of smooth edges: no two of them in a row, column or diagonal of the pixel.
+    /// The samples for smooth edges: no two of them share a row, column or diagonal of the pixel.
     pub const SMOOTH: [Self; 4] = [
         Self {
             x: -0.125,
@@ -35,7 +35,7 @@ impl SampleOffset {
         Self { x: 0.125, y: 0.375 },
     ];
 
-    /// How far to the right in their pixels the smooth samples of a row are, and how far down in the picture.
+    /// Offsets of the smooth samples of a row: to the right in their pixels, and down in the picture.
     #[inline]
     pub fn smooth_on_row(row: u32) -> (Vec4, Vec4) {
         let x = Vec4::from_array(Self::SMOOTH.map(|offset| offset.x));
@@ -53,7 +53,7 @@ pub(crate) struct Rays {
 }
 
 impl Rays {
-    /// The direction of the ray through a point of the picture.
+    /// Direction of the ray through a point of the picture.
     pub fn through(&self, x: f32, y: f32) -> Vec3 {
         self.first + self.right * x + self.down * y
     }
@@ -66,7 +66,7 @@ impl Rays {
         }
     }
 
-    /// The same rays, each mapped by something linear.
+    /// The same rays, each mapped by a linear function.
     pub fn map(&self, linear: impl Fn(Vec3) -> Vec3) -> Self {
         Self {
             first: linear(self.first),
@@ -102,7 +102,7 @@ impl Linear {
         }
     }
 
-    /// What tells it from all others.
+    /// Its bits, which identify it.
     pub fn bits(&self) -> [u32; 3] {
         [self.first, self.right, self.down].map(f32::to_bits)
     }
@@ -121,7 +121,7 @@ impl Linear {
     }
 }
 
-/// What depends linearly on the column of a sample in its row.
+/// A linear function of a sample's column in its row.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OnRow<T> {
     first: T,

@@ -5,10 +5,10 @@ use crate::{
     raster::face::RasterFace,
 };
 
-/// How far a plane is away all over the picture, if it was the same in the picture before.
+/// Depths of a plane all over the picture, if the plane was the same in the previous picture.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Backdrop {
-    /// What the depths depend on.
+    /// The key on which the depths depend.
     key: Option<Key>,
     /// The depths, row by row; empty as long as they are not known.
     depths: Vec<f32>,

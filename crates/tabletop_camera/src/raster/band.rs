@@ -1,4 +1,4 @@
-//! Drawing a band of rows of a picture.
+//! Drawing of a band of rows of a picture.
 //!
 //! Faces come first. Most pixels see one face with all their samples; these are found as spans and need no samples. Where that is
 //! not clear, and where quadrics, figures or transparent spheres may be seen, the nearest surface is found sample by sample.
@@ -19,7 +19,7 @@ use crate::{
     },
 };
 
-/// What is to be drawn.
+/// The scene and camera of a picture that is being drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame<'a> {
     pub view: &'a PinholeView,
@@ -29,7 +29,7 @@ pub(crate) struct Frame<'a> {
     pub is_smooth: bool,
 }
 
-/// The memory that it takes to draw a band.
+/// The memory for drawing a band.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Band {
     coverages: Vec<Coverage>,
@@ -45,12 +45,12 @@ pub(crate) struct Band {
 #[derive(Clone, Debug, Default)]
 struct BandRow {
     faces: SpanList,
-    /// The pixels in which more than faces may be seen.
+    /// The pixels that may see more than faces.
     dense: Range<u32>,
 }
 
 impl Band {
-    /// Draws what is seen in these whole rows, at most [`ROWS`].
+    /// Draws these whole rows, at most [`ROWS`].
     pub fn draw(&mut self, frame: &Frame, first_row: u32, pixels: Pixels) {
         let width = frame.view.width as usize;
         let count = pixels.depth.len() / width;
@@ -74,7 +74,7 @@ impl Band {
         }
     }
 
-    /// Finds which parts of the rows see which faces.
+    /// Finds the faces that parts of the rows see.
     fn find_faces(&mut self, frame: &Frame, rows: Range<u32>) {
         let Frame { view, visible, .. } = *frame;
         self.coverages.clear();
@@ -94,7 +94,7 @@ impl Band {
         }
     }
 
-    /// Finds where more than faces may be seen.
+    /// Finds the pixels that may see more than faces.
     fn find_dense(&mut self, frame: &Frame, rows: Range<u32>) {
         for row in &mut self.rows {
             row.dense = 0..0;
@@ -113,7 +113,7 @@ impl Band {
         }
     }
 
-    /// Finds which face is nearest at each of the samples that have to be known.
+    /// Finds the nearest face at each sample that has to be known.
     fn sample_faces(&mut self, frame: &Frame, row: u32, first_row: u32) {
         let i = (row - first_row) as usize;
         let dense = self.rows[i].dense.clone();
@@ -165,7 +165,7 @@ impl Band {
         }
     }
 
-    /// Finds where balls and cylinders are nearer than faces.
+    /// Draws balls and cylinders where they are nearer than faces.
     fn draw_quadrics(&mut self, frame: &Frame, rows: Range<u32>) {
         for quadric in &frame.visible.quadrics {
             let columns = quadric.window.columns();
@@ -186,7 +186,7 @@ impl Band {
         }
     }
 
-    /// Finds where figures are nearer than all else.
+    /// Draws figures where they are nearer than everything else.
     fn draw_triangles(&mut self, frame: &Frame, rows: Range<u32>) {
         for triangle in frame.visible.triangles_in_band(rows.start / ROWS as u32) {
             let first = triangle.rows.start.max(rows.start);
@@ -203,7 +203,7 @@ impl Band {
         }
     }
 
-    /// Paints what is seen in a row.
+    /// Paints a row.
     fn paint_row(&mut self, frame: &Frame, row: u32, i: usize, pixels: &mut Pixels) {
         let BandRow { faces, dense } = &self.rows[i];
         let mut row = RowResolver {
@@ -247,7 +247,7 @@ impl Band {
         row.paint_samples(sampled);
     }
 
-    /// Blends what is transparent into the colours of a row.
+    /// Blends transparent spheres into the colours of a row.
     fn blend_row(&mut self, frame: &Frame, row: u32, i: usize, rgb: &mut [u8]) {
         let Frame { view, spheres, .. } = *frame;
         if frame.is_smooth {

@@ -1,4 +1,4 @@
-//! The boxes around what is drawn.
+//! Boxes around drawn shapes.
 
 use bevy::math::{Mat3, Vec3};
 use tabletop_core::{Pose, Solid};

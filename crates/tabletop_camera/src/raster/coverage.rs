@@ -1,4 +1,4 @@
-//! Which pixels of a band of rows the faces cover.
+//! Coverage: the pixels of a band of rows that faces cover.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ use crate::{
     },
 };
 
-/// What a face covers of some rows.
+/// The coverage of some rows by a face.
 #[derive(Clone, Debug)]
 pub(crate) struct Coverage {
     pub face: u32,
@@ -60,7 +60,7 @@ impl Coverage {
         }
     }
 
-    /// What it covers of a row, if the face may be seen in it.
+    /// The coverage of a row, if the face may be seen in it.
     pub fn in_row(&self, row: u32) -> Option<FaceInRow> {
         let i = self.index(row)?;
         let columns =
@@ -85,7 +85,7 @@ impl Coverage {
         columns.start.min(columns.end)..columns.end
     }
 
-    /// From which column on, and up to which one, the smooth samples of a row are in the face, which may be seen in the row.
+    /// The first column, and the one after the last, in which the smooth samples of a row are in the face, which may be seen in the row.
     pub fn smooth_columns(&self, row: u32) -> Option<[Vec4; 2]> {
         let i = (row - self.first_row) as usize;
         let [a, b, c, d] = self.smooth.as_ref()?;

@@ -1,8 +1,8 @@
-//! Which triangles come up in which rows.
+//! The edge table: the triangles that begin in each row.
 
 use std::ops::Range;
 
-/// The triangles of each band of rows, in the order in which they come up, as a scan-line algorithm has it.
+/// The triangles of each band of rows, in the order of the rows in which they begin, as in a scan-line algorithm.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EdgeTable {
     by_row: Buckets,
@@ -13,7 +13,7 @@ pub(crate) struct EdgeTable {
 #[derive(Clone, Debug, Default)]
 struct Buckets {
     numbers: Vec<u32>,
-    /// Where those of each bucket start, and where those of the last one end.
+    /// The start of each bucket, and the end of the last one.
     starts: Vec<u32>,
 }
 
@@ -58,7 +58,7 @@ impl Buckets {
             sum += *start;
             *start = sum;
         }
-        // While they are filled, what belongs to a bucket is where that of the bucket before ends.
+        // While they are being filled, a bucket's numbers start where those of the bucket before end.
         numbers.clear();
         numbers.resize(sum as usize, 0);
         for (bucket, number) in pairs {

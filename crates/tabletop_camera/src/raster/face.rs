@@ -1,6 +1,6 @@
 //! Flat faces with straight edges.
 //!
-//! A face is a cone of rays from the eye, clamp_share by the planes through the eye and its edges, and it is cut off at the near
+//! A face is a cone of rays from the eye, bounded by the planes through the eye and its edges, and cut off at the near
 //! plane by one more. On each plane a linear function of the picture's coordinates changes its sign, so no corner is ever
 //! projected and nothing has to be clipped, wherever the corners are. One over the depth is a linear function, too.
 
@@ -13,11 +13,11 @@ use crate::{
     raster::{span::DepthPlane, surface::FlatLook},
 };
 
-/// Faces whose plane passes the eye nearer than this, in units, are seen edge-on: they are thinner than a pixel.
+/// Largest distance of the eye from the plane of a face that is seen edge-on, in units: such faces are thinner than a pixel.
 pub(crate) const EDGE_ON: f32 = 1e-4;
 
-/// The corners of each face of a cuboid, counter-clockwise as seen from outside. The corner's number has a bit for each
-/// axis, X the lowest, which says whether it is on the positive side. Faces come in pairs: negative and positive side of X,
+/// The corners of each face of a cuboid, counterclockwise as seen from outside. A corner's number has a bit for each
+/// axis, X the lowest, which is set on the positive side. Faces come in pairs: negative and positive side of X,
 /// Y and Z.
 pub(crate) const CUBOID: [[usize; 4]; 6] = [
     [0, 4, 6, 2],
@@ -38,10 +38,10 @@ pub(crate) const CUBOID_NORMALS: [Vec3; 6] = [
     Vec3::Z,
 ];
 
-/// Rows that are looked at together.
+/// Number of rows that are computed together.
 pub(crate) const ROWS: usize = 8;
 
-/// A face as it is seen.
+/// A face in the picture.
 #[derive(Clone, Debug)]
 pub(crate) struct RasterFace {
     /// The rows in which it may be seen.
@@ -52,14 +52,14 @@ pub(crate) struct RasterFace {
     edges: [Edge; 5],
 }
 
-/// From which column on, and up to which one, a face has the samples of some rows, as whole numbers.
+/// For each of some rows, the first column of a face's samples and the one after the last, as whole numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Columns {
     pub starts: [f32; ROWS],
     pub ends: [f32; ROWS],
 }
 
-/// Where the samples of a row have to be to lie on the inner side of an edge. For the two faces that share an edge these
+/// The condition for a row's samples to lie on the inner side of an edge. For the two faces that share an edge the conditions
 /// are complementary to the last bit, so every sample lies in exactly one of them.
 #[derive(Clone, Copy, Debug)]
 enum Edge {
@@ -67,12 +67,12 @@ enum Edge {
     From { slope: f32, offset: f32 },
     /// Left of `slope * y + offset`.
     Before { slope: f32, offset: f32 },
-    /// In rows of which this is true as a whole.
+    /// For a level edge: rows in which this is positive lie inside as a whole.
     Level { first: f32, down: f32 },
 }
 
 impl RasterFace {
-    /// What is behind all else.
+    /// The background, behind everything else.
     pub const NOTHING: Self = Self {
         rows: 0..0,
         surface: 0,
@@ -84,8 +84,8 @@ impl RasterFace {
         }; 5],
     };
 
-    /// The face with these corners, given relative to the eye and counter-clockwise as seen from outside, and with this
-    /// normal of unit length; none if it is not seen from outside.
+    /// The face with these corners, given relative to the eye and counterclockwise as seen from outside, and with this
+    /// unit normal; `None` if it is not seen from outside.
     pub fn seen(
         view: &PinholeView,
         corners: [Vec3; 4],
@@ -121,7 +121,7 @@ impl RasterFace {
         })
     }
 
-    /// The samples of some rows, from this one on, that lie inside all edges.
+    /// The samples of some rows, starting at `first_row`, that lie inside all edges.
     pub fn columns(&self, first_row: u32, offset: SampleOffset, width: u32) -> Columns {
         let mut columns = Columns {
             starts: [0.0; ROWS],
@@ -142,7 +142,7 @@ impl RasterFace {
 }
 
 impl Edge {
-    // Simple comparisons, so that the compiler does several rows at once; a number that is none is as 0.
+    // Simple comparisons let the compiler do several rows at once. NaN counts as 0.
     fn bound(&self, y: &[f32; ROWS], x_offset: f32, columns: &mut Columns) {
         match *self {
             Self::From { slope, offset } => {
@@ -237,7 +237,7 @@ mod tests {
         start.min(end)..end
     }
 
-    /// In how many faces of a cuboid each sample lies.
+    /// Number of a cuboid's faces that cover each sample.
     fn coverage(pose: Pose, span: Vec3, offset: SampleOffset) -> Vec<u32> {
         let corners = corners(pose, span);
         let mut coverage = vec![0; (WIDTH * HEIGHT) as usize];

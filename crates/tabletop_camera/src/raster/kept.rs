@@ -1,4 +1,4 @@
-//! What stays in a picture from one to the next: bands of rows in which nothing has changed are copied.
+//! Bands of rows that stay the same from one picture to the next: they are copied.
 
 use std::{ops::Range, sync::Arc};
 
@@ -11,17 +11,17 @@ use crate::{
     scene::{DrawnFigure, DrawnSolid, Facets, Scene},
 };
 
-/// The last picture, as far as it shows what the one before it has shown.
+/// The last picture, as far as it repeats the one before it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct KeptBands {
     shown: PictureContent,
-    /// For each band, whether it shows what it has shown in the picture before.
+    /// True for each band that repeats the previous picture.
     stays: Vec<bool>,
     is_kept: Vec<bool>,
     picture: Picture,
 }
 
-/// What a picture shows.
+/// The content of a picture.
 #[derive(Clone, Debug, Default)]
 struct PictureContent {
     view: Option<([u32; 11], bool)>,
@@ -30,7 +30,7 @@ struct PictureContent {
     markers: Vec<Vec3>,
 }
 
-/// What tells a figure from all others.
+/// The identity of a figure.
 #[derive(Clone, Debug)]
 struct FigureKey {
     facets: Arc<Facets>,
@@ -38,7 +38,7 @@ struct FigureKey {
     object: u32,
 }
 
-/// A band of what is kept.
+/// A band of the kept picture.
 pub(crate) struct KeptBand<'a> {
     stays: bool,
     is_kept: &'a mut bool,
@@ -46,7 +46,7 @@ pub(crate) struct KeptBand<'a> {
 }
 
 impl KeptBands {
-    /// Finds out in which bands a picture shows what the last one did.
+    /// Finds the bands in which a picture repeats the last one.
     pub fn compare(
         &mut self,
         scene: &Scene,
@@ -76,7 +76,7 @@ impl KeptBands {
         }
         self.stays.resize(bands, true);
         let mut change = |rows: &Range<u32>| {
-            // A row more on both sides, for what is rounded.
+            // A row more on both sides, for rounding errors.
             let first = rows.start.saturating_sub(1) as usize / ROWS;
             let end = (rows.end as usize + 1).div_ceil(ROWS).min(bands);
             if rows.start < rows.end && first < end {
@@ -101,7 +101,7 @@ impl KeptBands {
         }
     }
 
-    /// Whether the whole picture is known.
+    /// True if the whole picture is known.
     pub fn is_whole(&self) -> bool {
         let mut bands = self.stays.iter().zip(&self.is_kept);
         bands.all(|(&stays, &is_kept)| stays && is_kept)
@@ -130,7 +130,7 @@ impl KeptBands {
 }
 
 impl KeptBand<'_> {
-    /// Draws the band, or copies it where nothing has changed. It is kept when nothing has changed for the first time: what has changed
+    /// Draws the band, or copies it where nothing has changed. It is kept once it has stayed the same for the first time: a band that has changed
     /// will mostly go on changing.
     pub fn draw_into(&mut self, mut pixels: Pixels, draw: impl FnOnce(Pixels)) {
         if self.stays && *self.is_kept {

@@ -1,10 +1,10 @@
-//! Balls and cylinders, each seen as the exact solid: for every sample the ray is met with the round surface.
+//! Balls and cylinders, each as the exact solid: every sample's ray is intersected with the round surface.
 //!
-//! A point `eye + ray * depth`, relative to the centre and without its part along the axis of a cylinder, lies on the
-//! surface where its length is the radius. With inverse_depth = 1 / depth this is a quadratic equation for the inverse_depth. A
-//! cylinder is clamp_share by two more planes, for which the inverse_depth is a linear function of the picture's coordinates. What
-//! is seen is where a ray enters: at the farthest of the surfaces that it has to be behind, if that is before the nearest of
-//! those that it has to be in front of.
+//! A point `eye + ray * depth`, relative to the centre and without its component along the axis of a cylinder, lies on the
+//! surface if its length is the radius. With the inverse depth, 1 / depth, this is a quadratic equation in the inverse depth. Two more
+//! planes bound a cylinder; on them, the inverse depth is a linear function of the picture's coordinates. A ray enters
+//! at the farthest of the surfaces that it has to be behind, if that is before the nearest of
+//! those that it has to be in front of; this point is visible.
 
 use bevy::math::Vec3;
 
@@ -13,20 +13,20 @@ use crate::{
     raster::samples::CenterRow,
 };
 
-/// A number so small that it stands for 0 where something is divided by it.
+/// A small number that replaces 0 as a divisor.
 const TINY: f32 = 1e-12;
 
-/// A ball or cylinder as it is seen.
+/// A ball or cylinder in the picture.
 #[derive(Clone, Debug)]
 pub(crate) struct Quadric {
-    /// Where it may be seen.
+    /// The window in which it may be seen.
     pub window: Window,
     curve: Curve,
-    /// The eye times the rays, as a vector product; its length is the radius times the ray's length where a ray is tangential.
+    /// The cross product of the eye and the rays; its length is the radius times the ray's length where a ray is tangential.
     miss: Rays,
-    /// The eye times the rays, as a scalar product, turned round.
+    /// The negative dot product of the eye and the rays.
     middle: Linear,
-    /// Square of the eye's distance from the centre or axis, less the radius squared; below 0 inside.
+    /// Square of the eye's distance from the centre or axis, minus the radius squared; below 0 inside.
     power: f32,
     ends: Ends,
     /// The round surface.
@@ -48,9 +48,9 @@ pub(crate) struct Curve {
 /// Planes at the ends of a cylinder, as inverse depths.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ends {
-    /// Of the end that faces the eye: rays enter no nearer than this.
+    /// Plane of the end that faces the eye: rays enter no nearer than this.
     enter: Linear,
-    /// Of the other ends: rays leave no farther than this.
+    /// Planes of the other ends: rays leave no farther than this.
     leave: [Linear; 2],
 }
 
@@ -104,7 +104,7 @@ impl Ends {
     }
 }
 
-/// A number by which one can divide.
+/// The number, or a tiny one in place of 0, as a divisor.
 fn not_zero(number: f32) -> f32 {
     if number.abs() < TINY { TINY } else { number }
 }
@@ -125,7 +125,7 @@ impl Quadric {
         }
     }
 
-    /// Puts it into the samples that see it and nothing nearer; they lie so in their pixels.
+    /// Draws it into the samples of a row that see nothing nearer. `offset` is the samples' place in their pixels.
     pub fn draw(&self, row: u32, offset: SampleOffset, samples: &mut CenterRow) {
         let curve = &self.curve;
         let (ray, miss) = (

@@ -1,4 +1,4 @@
-//! From samples to the pixels of a row.
+//! Resolution of samples to the pixels of a row.
 
 use std::ops::Range;
 
@@ -53,14 +53,14 @@ impl<'a> Pixels<'a> {
         }
     }
 
-    /// Takes over what as many other pixels show.
+    /// Copies the same number of other pixels.
     pub fn copy_from(&mut self, other: &Pixels) {
         self.rgb.copy_from_slice(other.rgb);
         self.depth.copy_from_slice(other.depth);
         self.objects.copy_from_slice(other.objects);
     }
 
-    /// Parts of so many pixels, the last one with what is left.
+    /// Parts of this many pixels each; the last part has the rest.
     pub fn parts(self, pixels: usize) -> impl Iterator<Item = Self> {
         let rgb = self.rgb.chunks_mut(3 * pixels);
         let depth = self.depth.chunks_mut(pixels);
@@ -96,7 +96,7 @@ impl RowResolver<'_, '_> {
             .paint(&mut self.pixels.rgb[3 * columns.start..3 * columns.end]);
     }
 
-    /// Paints these columns as their samples say.
+    /// Paints these columns from their samples.
     pub fn paint_samples(&mut self, columns: Range<usize>) {
         if columns.is_empty() {
             return;
@@ -126,7 +126,7 @@ impl RowResolver<'_, '_> {
         self.smooth(columns);
     }
 
-    /// Mixes the colours of those of these columns in which more than one surface is seen.
+    /// Mixes the colours of pixels in these columns that see more than one surface.
     fn smooth(&mut self, columns: Range<usize>) {
         let Some(smooth) = &self.smooth else {
             return;

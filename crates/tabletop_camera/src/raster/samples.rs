@@ -9,9 +9,9 @@ use crate::camera::{Linear, OnRow, SampleOffset};
 /// Nearest surface in the middle of each pixel of a row.
 #[derive(Debug)]
 pub(crate) struct CenterRow<'a> {
-    /// One over the depth; 0 where nothing is.
+    /// One over the depth; 0 for the background.
     pub inverse_depth: &'a mut [f32],
-    /// Which surface it is: an index into [`VisibleSurfaces`](super::visible::VisibleSurfaces), whose first surface is nothing.
+    /// Index of the surface in [`VisibleSurfaces`](super::visible::VisibleSurfaces), whose first surface is the background.
     pub surface: &'a mut [u32],
 }
 
@@ -30,13 +30,13 @@ pub(crate) struct Samples<Depth, RasterSurface> {
     width: usize,
 }
 
-/// So many samples are behind the last ones, so that four can be looked at wherever one is.
+/// Number of samples behind the last ones, so that four can be read wherever one is.
 const PADDING: usize = 3;
 
 pub(crate) type CenterSamples = Samples<f32, u32>;
 pub(crate) type SmoothSamples = Samples<[f32; 4], [u32; 4]>;
 
-/// Something that depends linearly on the point of the picture, along a row of pixels at the smooth samples of each.
+/// A linear function of the point of the picture, along a row of pixels at the smooth samples of each.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SmoothOnRow {
     first: Vec4,
@@ -44,7 +44,7 @@ pub(crate) struct SmoothOnRow {
 }
 
 impl<Depth: Clone + Default, RasterSurface: Clone + Default> Samples<Depth, RasterSurface> {
-    /// Makes it so large, without saying what the samples see.
+    /// Sets its size; the samples are arbitrary afterwards.
     pub fn resize(&mut self, width: usize, rows: usize) {
         self.width = width;
         let samples = width * rows + PADDING;
@@ -54,7 +54,7 @@ impl<Depth: Clone + Default, RasterSurface: Clone + Default> Samples<Depth, Rast
         }
     }
 
-    /// How many pixels are in a row.
+    /// Number of pixels in a row.
     pub fn width(&self) -> Vec4 {
         Vec4::splat(self.width as f32)
     }
@@ -77,7 +77,7 @@ impl CenterSamples {
         }
     }
 
-    /// Puts a surface into those of a few columns of a row, from the start to before the end, that see nothing nearer.
+    /// Puts a surface into a few columns of a row, from the start to before the end, where they see nothing nearer.
     #[inline]
     pub fn put_few(
         &mut self,
@@ -140,7 +140,7 @@ impl SmoothOnRow {
 }
 
 impl CenterRow<'_> {
-    /// Lets these columns see nothing.
+    /// Clears these columns.
     pub fn clear(&mut self, columns: Range<usize>) {
         self.inverse_depth[columns.clone()].fill(0.0);
         self.surface[columns].fill(0);
@@ -155,7 +155,7 @@ impl CenterRow<'_> {
         self.surface[columns].fill(surface);
     }
 
-    /// Puts surfaces into those of these columns that see nothing nearer. `seen_at` says for a column how near which surface is.
+    /// Puts surfaces into these columns where they see nothing nearer. `seen_at` gives the inverse depth and the surface at a column.
     #[inline]
     pub fn put(&mut self, columns: Range<usize>, seen_at: impl Fn(f32) -> (f32, u32)) {
         let first = columns.start as i32;
@@ -177,7 +177,7 @@ impl CenterRow<'_> {
 }
 
 impl SmoothRow<'_> {
-    /// Lets these columns see nothing.
+    /// Clears these columns.
     pub fn clear(&mut self, columns: Range<usize>) {
         self.inverse_depth[columns.clone()].fill([0.0; 4]);
         self.surface[columns].fill([0; 4]);
@@ -192,7 +192,7 @@ impl SmoothRow<'_> {
         self.surface[columns].fill([surface; 4]);
     }
 
-    /// Puts a surface into those samples that lie from their start to before their end and see nothing nearer.
+    /// Puts a surface into the samples from `start` to before `end` that see nothing nearer.
     #[inline]
     pub fn put(
         &mut self,
@@ -213,7 +213,7 @@ impl SmoothRow<'_> {
         }
     }
 
-    /// Puts what another row found at one of the samples of these columns into those that see nothing nearer.
+    /// Puts another row's findings at one of the samples of these columns where they are nearer.
     pub fn merge(&mut self, sample: usize, columns: Range<usize>, other: &CenterRow) {
         let own = other.inverse_depth[columns.clone()]
             .iter()

@@ -1,4 +1,4 @@
-//! Which parts of a row of pixels see one face in all their samples.
+//! Spans: parts of a row of pixels that see one face with all their samples.
 
 use std::ops::Range;
 
@@ -12,12 +12,12 @@ pub(crate) struct Span {
     pub sees: Sees,
 }
 
-/// What pixels see of the faces.
+/// The faces that pixels see.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sees {
-    /// This one, with all samples.
+    /// One face, with all samples.
     Face(u32),
-    /// Perhaps several.
+    /// Perhaps several faces.
     Several,
 }
 
@@ -25,7 +25,7 @@ pub(crate) enum Sees {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DepthPlane {
     pub inverse_depth: Linear,
-    /// By how much a number that is computed from it may be wrong anywhere in the picture.
+    /// Largest error, anywhere in the picture, of a number computed from it.
     pub rounding: f32,
 }
 
@@ -39,7 +39,7 @@ pub(crate) struct FaceInRow {
     pub outer: Range<u32>,
 }
 
-/// Which of two faces is nearer in some pixels.
+/// The order of two faces in some pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Order {
     Nearer,
@@ -63,7 +63,7 @@ impl DepthPlane {
 
     /// The plane in a picture of this size.
     pub fn new(inverse_depth: Linear, width: u32, height: u32) -> Self {
-        /// Some eight times what a rounding error is.
+        /// About eight times a rounding error.
         const ROUNDING: f32 = 1e-6;
         let Linear { first, right, down } = inverse_depth;
         let largest = first.abs() + right.abs() * width as f32 + down.abs() * height as f32;
@@ -73,7 +73,7 @@ impl DepthPlane {
         }
     }
 
-    /// How it lies to another one in all samples of some pixels of a row, which are at most so far from the pixels' centres.
+    /// Its order to another plane in all samples of some pixels of a row. The samples are at most `reach` from the pixels' centres.
     fn order(&self, other: &Self, row: f32, columns: Range<u32>, reach: f32) -> Order {
         let (one, two) = (&self.inverse_depth, &other.inverse_depth);
         let (right, down) = (one.right - two.right, one.down - two.down);
@@ -91,7 +91,7 @@ impl DepthPlane {
 }
 
 impl SpanList {
-    /// Makes it a row that sees nothing.
+    /// Clears the row, which then sees nothing.
     pub fn clear(&mut self, width: u32) {
         self.spans.clear();
         self.spans.push(Span {
@@ -130,7 +130,7 @@ impl SpanList {
         ];
         let first = self.spans.iter().take_while(|span| span.end <= start);
         let first = first.count();
-        // Mostly all of it is before or behind one face.
+        // Usually all of it is before or behind one face.
         let around = self.spans[first];
         if let Sees::Face(seen) = around.sees
             && around.end >= end
@@ -218,7 +218,7 @@ fn push(spans: &mut Vec<Span>, columns: Range<u32>, sees: Sees) {
 mod tests {
     use super::*;
 
-    /// Planes that lie parallel to the picture, so near.
+    /// Planes parallel to the picture at these inverse depths.
     fn planes(inverse_depths: &[f32]) -> Vec<DepthPlane> {
         let plane = |&near| DepthPlane::new(Linear::constant(near), 20, 1);
         inverse_depths.iter().map(plane).collect()

@@ -1,4 +1,4 @@
-//! Surfaces and what they look like.
+//! Surfaces and their looks.
 
 use bevy::math::Vec3;
 use tabletop_core::LIGHT;
@@ -20,32 +20,32 @@ pub(crate) struct RasterSurface {
     shading: Shading,
 }
 
-/// What a surface shows that is the same everywhere.
+/// The part of a surface's look that is the same everywhere.
 #[derive(Clone, Debug)]
 pub(crate) struct FlatLook {
     /// The number of its object.
     pub object: u32,
-    /// So many pixels as are copied at once.
+    /// As many pixels as are copied at once.
     rgb: [u8; 48],
 }
 
 #[derive(Clone, Copy, Debug)]
 enum Shading {
-    /// What it shows of its colour.
+    /// A surface that shows this share of its colour.
     Flat(f32),
     Curved(Curve),
-    /// What the corners of a triangle show of its colour, divided by the depth, and linear in between.
+    /// The shares that the corners of a triangle show, divided by the depth, and linear in between.
     Gouraud(Linear),
 }
 
 impl FlatLook {
-    /// What is seen where nothing is.
+    /// The look of the background.
     pub const NOTHING: Self = Self {
         object: 0,
         rgb: [0; 48],
     };
 
-    /// Of a surface that shows this share of its colour.
+    /// The look of a surface that shows this share of its colour.
     fn new(object: u32, color: Vec3, share: f32) -> Self {
         let shown = nearest_bytes(color * share);
         Self {
@@ -54,7 +54,7 @@ impl FlatLook {
         }
     }
 
-    /// A plane that faces this way.
+    /// The look of a plane that faces this way.
     pub fn of(drawn: &DrawnSolid, normal: Vec3) -> Self {
         let color = scaled_to_bytes(drawn.color);
         Self::new(drawn.object, color, LIGHT.share(normal))
@@ -72,7 +72,7 @@ impl FlatLook {
 }
 
 impl RasterSurface {
-    /// What is seen where nothing is.
+    /// The background.
     pub const NOTHING: Self = Self {
         object: 0,
         color: Vec3::ZERO,
@@ -106,7 +106,7 @@ impl RasterSurface {
         }
     }
 
-    /// Red, green, blue in 0..=255 where it is met at this depth behind this point of the picture.
+    /// Red, green, blue in 0..=255 at this depth behind this point of the picture.
     pub fn shown(&self, x: f32, y: f32, depth: f32) -> Vec3 {
         self.color
             * match self.shading {
@@ -118,7 +118,7 @@ impl RasterSurface {
             }
     }
 
-    /// Colours a part of a row, from this column on, in which it is seen at these depths.
+    /// Colours a part of a row, from this column on, where the surface is seen at these depths.
     pub fn paint(&self, row: u32, column: usize, depths: &[f32], rgb: &mut [u8]) {
         match self.shading {
             Shading::Flat(share) => {
@@ -146,7 +146,7 @@ impl RasterSurface {
         }
     }
 
-    /// Works on so many pixels at a time, in steps that are so simple that the compiler does several at once.
+    /// Works on `STEP` pixels at a time, in steps so simple that the compiler does several at once.
     #[inline]
     fn paint_shares<const STEP: usize>(
         &self,
@@ -175,7 +175,7 @@ impl RasterSurface {
     }
 }
 
-/// A share between those at the corners of a triangle, which rounding may bring a little beyond them.
+/// A share clamped to 0..=1: rounding may bring shares a little beyond those at a triangle's corners.
 pub(crate) fn clamp_share(share: f32) -> f32 {
     share.max(LIGHT.least()).min(1.0)
 }

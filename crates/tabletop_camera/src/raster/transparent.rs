@@ -1,4 +1,4 @@
-//! Balls that one can see through: they are blended into a picture of all that one cannot see through.
+//! Transparent spheres: they are blended into the picture of everything opaque.
 
 use bevy::math::{Vec3, Vec4};
 use tabletop_core::{Markers, Pose, Solid};
@@ -22,11 +22,11 @@ pub(crate) struct TransparentSpheres {
     spheres: Vec<Sphere>,
 }
 
-/// The memory that it takes to blend them into a row.
+/// The memory for blending them into a row.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blend {
     samples: CenterSamples,
-    /// Sum of the colours of the samples in each pixel of a row, and how many these are.
+    /// Sum of the samples' colours in each pixel of a row, and the number of samples.
     sums: Vec<Vec4>,
 }
 
@@ -38,7 +38,7 @@ struct Sphere {
 }
 
 impl TransparentSpheres {
-    /// Forgets everything and looks at spheres around these points.
+    /// Replaces the spheres by those around these points.
     pub fn project(&mut self, markers: &[Vec3], view: &PinholeView) {
         self.spheres.clear();
         self.spheres.extend(
@@ -55,8 +55,8 @@ impl TransparentSpheres {
         self.spheres.iter().map(|sphere| &sphere.quadric.window)
     }
 
-    /// Blends the spheres into the colours of a row: where they are nearer than all else in these samples. `nearest` says for a sample
-    /// and a column one over the depth of what is nearest there.
+    /// Blends the spheres into the colours of a row, where they are nearer than everything else in these samples. `nearest` gives the inverse
+    /// depth of the nearest surface at a sample and a column.
     pub fn blend(
         &self,
         view: &PinholeView,

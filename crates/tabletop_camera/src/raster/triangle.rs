@@ -1,6 +1,6 @@
-//! Triangles of figures, of which there are many and small ones.
+//! Triangles of figures: many and small.
 //!
-//! They are bounded like [`RasterFace`](super::face::RasterFace)s, by planes through the eye and their edges, but several rows of samples
+//! As for [`RasterFace`](super::face::RasterFace)s, planes through the eye and their edges bound them, but several rows of samples
 //! are found at once and without branches. The near plane does not cut them.
 
 use std::ops::Range;
@@ -12,7 +12,7 @@ use crate::{
     raster::samples::{CenterSamples, SmoothOnRow, SmoothSamples, column},
 };
 
-/// A triangle as it is seen.
+/// A triangle in the picture.
 #[derive(Clone, Debug)]
 pub(crate) struct Triangle {
     /// The rows in which it may be seen.
@@ -22,8 +22,8 @@ pub(crate) struct Triangle {
     edges: Edges,
 }
 
-/// Where the samples of a row have to be to lie on the inner sides of three edges: not left of `slope * y + offset`, or left of
-/// it. For the two triangles that share an edge these numbers are the same to the last bit. The fourth lanes mean nothing.
+/// The conditions for a row's samples to lie on the inner sides of three edges: not left of `slope * y + offset`, or left of
+/// it. For the two triangles that share an edge these numbers are the same to the last bit. The fourth lanes are unused.
 #[derive(Clone, Copy, Debug)]
 struct Edges {
     slope: Vec4,
@@ -35,8 +35,8 @@ struct Edges {
 }
 
 impl Triangle {
-    /// The triangle with these corners, given relative to the eye and counter-clockwise as seen from outside, and with this
-    /// normal of unit length. It has to be seen from outside.
+    /// The triangle with these corners, given relative to the eye and counterclockwise as seen from outside, and with this
+    /// unit normal. It has to be seen from outside.
     pub fn seen(
         view: &PinholeView,
         corners: [Vec3; 3],
@@ -52,7 +52,7 @@ impl Triangle {
         }
     }
 
-    /// Puts it into the samples in the middle of the pixels that see it and nothing nearer, in up to four rows.
+    /// Draws it into the centre samples that see nothing nearer, in up to four rows.
     pub fn draw_centers(&self, rows: Range<u32>, first_row: u32, samples: &mut CenterSamples) {
         const LANES: Vec4 = Vec4::new(0.0, 1.0, 2.0, 3.0);
         let width = samples.width();
@@ -66,7 +66,7 @@ impl Triangle {
         }
     }
 
-    /// Puts it into the smooth samples of a row of pixels that see it and nothing nearer.
+    /// Draws it into the smooth samples of a row of pixels that see nothing nearer.
     pub fn draw_smooth(&self, row: u32, first_row: u32, samples: &mut SmoothSamples) {
         let (x, y) = SampleOffset::smooth_on_row(row);
         let width = samples.width();
@@ -82,7 +82,7 @@ impl Triangle {
         }
     }
 
-    /// From which column on, and up to which one, it has samples that are so far down, and so far to the right in their pixels.
+    /// The first column of its samples, and the one after the last, for samples at these offsets down and to the right in their pixels.
     fn columns(&self, down: Vec4, right: Vec4, width: Vec4) -> [Vec4; 2] {
         let (mut starts, mut ends) = (Vec4::ZERO, width);
         let Edges {
@@ -102,10 +102,10 @@ impl Triangle {
 }
 
 impl Edges {
-    /// Those from each corner to the next one: where the ray's product with the normal of the plane through the eye and the edge
-    /// is positive. As many at once as the processor can do.
+    /// The edges from each corner to the next: a sample is inside where the ray's product with the normal of the plane through the eye and the
+    /// edge is positive. As many are computed at once as the processor can.
     fn of(view: &PinholeView, [a, b, c]: [Vec3; 3]) -> Self {
-        /// Where an edge is level, this stands for 0: it meets rows very far out, on the one or on the other side.
+        /// Replaces the 0 of a level edge, which then meets rows very far out, on one side or the other.
         const LEVEL: Vec4 = Vec4::splat(1e-30);
         let lanes = |part: fn(Vec3) -> f32| {
             let [a, b, c] = [a, b, c].map(part);

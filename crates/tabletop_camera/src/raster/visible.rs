@@ -1,4 +1,4 @@
-//! What of a scene a camera can see.
+//! The visible part of a scene.
 
 use std::{ops::Range, sync::Arc};
 
@@ -18,60 +18,60 @@ use crate::{
     scene::{DrawnFigure, DrawnSolid, Facets, Scene},
 };
 
-/// The surfaces that face a camera, and what they bound.
+/// The surfaces that face a camera, with their faces and triangles.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct VisibleSurfaces {
-    /// What the surfaces look like; the first stands for nothing.
+    /// Looks of the surfaces; the first is the background.
     pub surfaces: Vec<RasterSurface>,
-    /// The patches of the surfaces. Surfaces of the same one are parts of a smooth surface, and between them is no edge.
+    /// The patches of the surfaces. Surfaces of one patch form a smooth surface without edges between them.
     patches: Vec<u32>,
-    /// Flat faces; the first stands for nothing.
+    /// Flat faces; the first is the background.
     pub faces: Vec<RasterFace>,
-    /// The face that is most likely the same in the next picture: the upper one of the first solid.
+    /// The face that most likely stays the same in the next picture: the upper one of the first solid.
     pub backdrop: Option<u32>,
     pub quadrics: Vec<Quadric>,
     /// The rows in which each solid of the scene may be seen.
     solid_rows: Vec<Range<u32>>,
     /// The figures in the order of the scene. As long as they and the view stay the same, so do their triangles and surfaces, which
-    /// are therefore the first ones.
+    /// therefore come first.
     figures: Vec<ProjectedFigure>,
-    /// The bits of the view that they are seen in.
+    /// The bits of the view in which they are seen.
     view: Option<[u32; 11]>,
     triangles: Vec<Triangle>,
     edge_table: EdgeTable,
-    /// So many patches there are.
+    /// Number of patches.
     patch_count: u32,
     /// The vertices of a figure.
     vertices: Vec<VisibleCorner>,
 }
 
-/// A figure as it is seen.
+/// A figure in the picture.
 #[derive(Clone, Debug)]
 struct ProjectedFigure {
     facets: Arc<Facets>,
     pose: [u32; 7],
     object: u32,
-    /// Where it may be seen.
+    /// The window in which it may be seen.
     window: Option<Window>,
-    /// So many surfaces, triangles and patches there are with it.
+    /// Number of surfaces, triangles and patches up to and including it.
     surfaces: usize,
     triangles: usize,
     patches: u32,
 }
 
-/// A corner of a triangle as it is seen.
+/// A corner of a triangle in the picture.
 #[derive(Clone, Copy, Debug)]
 struct VisibleCorner {
-    /// Where it is seen.
+    /// Its pixel.
     pixel: Option<Vec2>,
-    /// Where it is relative to the eye.
+    /// Its location relative to the eye.
     place: Vec3,
-    /// What it shows of the triangle's colour.
+    /// The share of the triangle's colour that it shows.
     share: f32,
 }
 
 impl VisibleSurfaces {
-    /// Looks at this scene, whose polyhedra are these figures, and forgets what was before.
+    /// Replaces everything by this scene; `polyhedra` are its polyhedra as figures.
     pub fn project(&mut self, scene: &Scene, polyhedra: &[DrawnFigure], view: &PinholeView) {
         self.project_figures(scene.figures.iter().chain(polyhedra), view);
         self.faces.clear();
@@ -99,7 +99,7 @@ impl VisibleSurfaces {
         }
     }
 
-    /// Looks at figures, but not at the first ones that are as they were in the picture before.
+    /// Projects the figures, except the first ones that are as in the previous picture.
     fn project_figures<'f>(
         &mut self,
         figures: impl Iterator<Item = &'f DrawnFigure> + Clone,
@@ -150,7 +150,7 @@ impl VisibleSurfaces {
         }
     }
 
-    /// Where figures may be seen.
+    /// The windows in which figures may be seen.
     pub fn figure_windows(&self) -> impl Iterator<Item = &Window> {
         self.figures
             .iter()
@@ -299,7 +299,7 @@ fn rows_of(
     view: &PinholeView,
     window: &Window,
 ) -> Option<Range<u32>> {
-    /// The outermost samples of a pixel, and a bit for rounding.
+    /// Reach of a pixel's outermost samples, with a bit for rounding.
     const REACH: f32 = 0.375 + 0.01;
     let [a, b, c] = corners;
     let (Some(a), Some(b), Some(c)) = (a.pixel, b.pixel, c.pixel) else {
@@ -315,7 +315,7 @@ fn rows_of(
     between(least.y, most.y, view.height)
 }
 
-/// What a triangle shows of its colour, divided by the depth: as it is at the corners, and linear in between.
+/// The share of its colour that a triangle shows, divided by the depth: given at the corners, and linear in between.
 fn share_by_depth(view: &PinholeView, corners: &[VisibleCorner; 3], normal: Vec3) -> Linear {
     let [
         VisibleCorner {

@@ -1,18 +1,18 @@
-//! Surfaces of triangles, made ready for being drawn.
+//! Facets: surfaces of triangles, prepared for drawing.
 
 use bevy::math::{Vec3, Vec3A};
 use tabletop_core::Triangles;
 
 use crate::color::scaled_to_bytes;
 
-/// A surface of triangles, made ready for being drawn. Each triangle has the colour of its first corner.
+/// A surface of triangles, prepared for drawing. Each triangle has the colour of its first corner.
 #[derive(Clone, Debug, Default)]
 pub struct Facets {
     pub(crate) vertices: Vec<Vertex>,
     pub(crate) triangles: Vec<Facet>,
     /// The least and the largest coordinates.
     pub(crate) bounds: [Vec3; 2],
-    /// So many patches it has.
+    /// Number of its patches.
     pub(crate) patches: u32,
 }
 
@@ -27,18 +27,18 @@ pub(crate) struct Vertex {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Facet {
     pub corners: [u32; 3],
-    /// Of unit length.
+    /// Unit normal.
     pub normal: Vec3,
-    /// How far its plane is from the origin, along the normal.
+    /// Distance of its plane from the origin, along the normal.
     pub height: f32,
     /// Red, green, blue in 0..=255.
     pub color: Vec3,
-    /// The smooth part of the surface that it belongs to: triangles that have vertices in common are in the same one.
+    /// The smooth part of the surface that it belongs to: triangles with a common vertex are in the same one.
     pub patch: u32,
 }
 
 impl Facets {
-    /// How many triangles there are.
+    /// Number of triangles.
     pub const fn len(&self) -> usize {
         self.triangles.len()
     }
@@ -50,7 +50,7 @@ impl Facets {
 }
 
 impl From<&Triangles> for Facets {
-    /// Leaves out what cannot be drawn: triangles without area, without corners, or too far away.
+    /// Leaves out triangles that cannot be drawn: those without area, without corners, or too far away.
     fn from(surface: &Triangles) -> Self {
         let vertices: Vec<_> = surface
             .positions
@@ -99,7 +99,7 @@ impl From<&Triangles> for Facets {
     }
 }
 
-/// Vertices that belong together.
+/// A partition of vertices into groups.
 struct Patches(Vec<u32>);
 
 impl Patches {
@@ -107,7 +107,7 @@ impl Patches {
         Self((0..vertices as u32).collect())
     }
 
-    /// The least of the vertices that belong to this one.
+    /// The least vertex of this one's group.
     fn root(&mut self, mut vertex: u32) -> u32 {
         loop {
             let parent = self.0[vertex as usize];

@@ -1,6 +1,6 @@
-//! Pictures of many random scenes are the same bytes as they were when their hashes were written down.
+//! Golden test: pictures of many random scenes keep the bytes whose hashes were recorded.
 //!
-//! A change that makes them differ changes what scripts see and what recordings hold: it is made on purpose or not at all.
+//! A change that makes them differ changes what scripts see and what recordings hold. Make it on purpose or not at all.
 
 mod random_scene;
 

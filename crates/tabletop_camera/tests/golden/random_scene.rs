@@ -1,4 +1,4 @@
-//! Scenes of all that can be drawn, from a number.
+//! Random scenes of everything that can be drawn.
 
 use std::sync::Arc;
 
@@ -46,7 +46,7 @@ pub fn random_scene(seed: u64, antialiasing: bool) -> (Scene, Camera) {
     (scene, camera)
 }
 
-/// A number that two different pictures hardly have in common (FNV).
+/// A hash that two different pictures hardly share (FNV).
 pub fn hash_of(picture: &Picture) -> u64 {
     let rgb = picture.rgb.iter().copied();
     let depth = picture

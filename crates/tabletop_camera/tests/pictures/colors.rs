@@ -1,4 +1,4 @@
-//! Colours: what faces up shows its own colour, what faces elsewhere a share of it (original program, rendering, without the lamp
+//! Colours: a surface that faces up shows its full colour, any other a share of it (as in the original program, but without the lamp
 //! that made dark colours brighter than the task file says).
 
 use bevy::math::{DVec3, Vec3};
@@ -7,7 +7,7 @@ use tabletop_core::{NAMED_COLORS, Picture, Pose, Rgb, Solid, Table};
 
 use crate::scenes::{default_scene, draw, head, level, smooth, solid, turned};
 
-/// What a surface with this normal shows of its colour: the mean of the shares of the directions along the axes, weighted by the
+/// The share of its colour that a surface with this normal shows: the mean of the shares along the axes, weighted by the
 /// squares of the normal's components.
 fn share(normal: DVec3) -> f64 {
     let along = |component: f64, positive: f64, negative: f64| {
@@ -16,7 +16,7 @@ fn share(normal: DVec3) -> f64 {
     along(normal.x, 0.9, 0.7) + along(normal.y, 0.85, 0.8) + along(normal.z, 1.0, 0.6)
 }
 
-/// Every pixel that shows the solid has the colour of the formula, at the point that its depth tells.
+/// Asserts that every pixel of the solid has the colour of the formula, at the point that its depth gives.
 fn assert_lit(drawn: DrawnSolid, camera: Camera, normal_at: impl Fn(DVec3) -> DVec3) {
     let picture = draw(&[drawn], &camera);
     let mut shown = std::collections::BTreeSet::new();
@@ -43,7 +43,7 @@ fn assert_lit(drawn: DrawnSolid, camera: Camera, normal_at: impl Fn(DVec3) -> DV
     assert!(shown.len() > 10, "only {shown:?} are shown");
 }
 
-/// The point that is seen, worked out from the pose and the angles of the camera.
+/// The visible point, computed from the pose and the angles of the camera.
 fn point_at(picture: &Picture, camera: &Camera, column: u32, row: u32) -> DVec3 {
     let depth = f64::from(picture.depth[picture.index(column, row).expect("a pixel")]);
     let pixel = 2.0 * (f64::from(camera.vertical_fov) / 2.0).tan() / f64::from(camera.height);
@@ -170,8 +170,8 @@ fn the_blocks_of_the_default_table_show_their_colours() {
     assert_eq!(picture.color(100, 0), Some([0, 0, 0]));
 }
 
-/// The bytes of these pictures must not change unnoticed: people train on them. Where they are meant to change, put in the
-/// numbers that the failing test prints, after looking at the pictures.
+/// The bytes of these pictures must not change unnoticed: people train on them. To change them on purpose, look at the pictures
+/// and enter the numbers that the failing test prints.
 #[test]
 fn the_picture_of_the_default_table_is_known_to_the_last_bit() {
     let sums = [head(), smooth(head())].map(|camera| fnv(&draw(&default_scene(), &camera).rgb));

@@ -1,4 +1,4 @@
-//! Figures, against rays that are met with their triangles one by one, and against solids of the same shape.
+//! Figures, compared with rays that are intersected with their triangles one by one, and with solids of the same shape.
 
 use bevy::{math::Vec3, prelude::*};
 use proptest::prelude::*;
@@ -33,7 +33,7 @@ fn cuboid(span: Vec3, color: Rgb) -> Triangles {
     surface
 }
 
-/// A ball of radius 1 with so many rings of twice as many corners, all of it one smooth surface.
+/// A ball of radius 1 with this many rings of twice as many corners, all one smooth surface.
 fn ball(rings: u32, color: Rgb) -> Triangles {
     let mut surface = Triangles::default();
     let around = 2 * rings;
@@ -72,7 +72,7 @@ fn of_figures(figures: Vec<DrawnFigure>) -> Scene {
     }
 }
 
-/// Depth and number of what is seen through a point of the picture.
+/// Depth and number of the surface at a point of the picture.
 fn met(figures: &[(Triangles, Pose)], camera: &Camera, x: f32, y: f32) -> Option<(f32, u32)> {
     let pixel = 2.0 * (camera.vertical_fov / 2.0).tan() / camera.height as f32;
     let local = Vec3::new(
@@ -92,7 +92,7 @@ fn met(figures: &[(Triangles, Pose)], camera: &Camera, x: f32, y: f32) -> Option
         .min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// Compares every pixel of which it is sure what is seen there, and returns how many those are.
+/// Compares every pixel whose surface is certain, and returns the number of these pixels.
 fn assert_seen(figures: &[(Triangles, Pose)], camera: &Camera) -> usize {
     let scene = (1..)
         .zip(figures)
@@ -106,7 +106,7 @@ fn assert_seen(figures: &[(Triangles, Pose)], camera: &Camera) -> usize {
                 [(0.03, 0.0), (-0.03, 0.0), (0.0, 0.03), (0.0, -0.03)].map(|(x, y)| at(x, y));
             let center = at(0.0, 0.0);
             let is_like_center = |other: &Option<(f32, u32)>| match (center, other) {
-                // What is nearer than the near plane is not seen.
+                // A surface nearer than the near plane is not seen.
                 (Some((near, one)), Some((far, other))) => {
                     one == *other && (near - far).abs() < 0.05 * near && near > 0.02
                 }

@@ -1,4 +1,4 @@
-//! Depths and object numbers, against rays that are met with the solids one by one.
+//! Depths and object numbers, compared with rays that are intersected with the solids one by one.
 
 use bevy::{math::Vec3, prelude::*};
 use proptest::prelude::*;
@@ -10,7 +10,7 @@ use crate::scenes::{draw, head, level, mixed_scene, smooth, solid};
 /// Nearest visible depth.
 const NEAR: f32 = 0.01;
 
-/// Depth and number of what is seen through a point of the picture.
+/// Depth and number of the surface at a point of the picture.
 fn met(scene: &[DrawnSolid], camera: &Camera, x: f32, y: f32) -> Option<(f32, u32)> {
     let (width, height) = (camera.width as f32, camera.height as f32);
     let pixel = 2.0 * (camera.vertical_fov / 2.0).tan() / height;
@@ -42,7 +42,7 @@ fn met(scene: &[DrawnSolid], camera: &Camera, x: f32, y: f32) -> Option<(f32, u3
         .min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// What is seen through the centre of a pixel, if the same is seen a little beside it and at a similar depth.
+/// The surface at the centre of a pixel, if the same one is seen a little beside it at a similar depth.
 fn met_for_sure(
     scene: &[DrawnSolid],
     camera: &Camera,
@@ -63,7 +63,7 @@ fn met_for_sure(
         .then_some(center)
 }
 
-/// Compares every pixel of which it is sure what is seen there, and returns how many those are.
+/// Compares every pixel whose surface is certain, and returns the number of these pixels.
 fn assert_seen(scene: &[DrawnSolid], camera: &Camera, picture: &Picture) -> usize {
     let mut sure = 0;
     for row in 0..camera.height {

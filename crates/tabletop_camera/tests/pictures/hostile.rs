@@ -1,4 +1,4 @@
-//! Whatever the numbers are, a picture is drawn.
+//! Hostile numbers: a picture is always drawn.
 
 use bevy::math::{Quat, Vec3};
 use proptest::prelude::*;

@@ -1,4 +1,4 @@
-//! What pictures show, against the formulas they are made by and against rays that are met with solids one by one.
+//! Pictures, compared with the formulas behind them and with rays that are intersected with solids one by one.
 
 mod colors;
 mod edges;

@@ -1,4 +1,4 @@
-//! Scenes and cameras to look at them.
+//! Scenes, and cameras that look at them.
 
 use bevy::math::{Quat, Vec3};
 use tabletop_camera::{Camera, DrawnSolid, Rasterizer, Scene};

@@ -1,4 +1,4 @@
-//! A table to try hands at.
+//! A table for testing hands.
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
@@ -8,7 +8,7 @@ use tabletop_history::HistoryPlugin;
 use tabletop_physics::PhysicsPlugin;
 use tabletop_scene::ScenePlugin;
 
-/// A table with objects at rest, and what was told.
+/// A table with objects at rest, and the facts so far.
 pub struct Desk(pub App);
 
 #[derive(Resource, Default)]

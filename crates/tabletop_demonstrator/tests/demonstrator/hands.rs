@@ -1,4 +1,4 @@
-//! What hands do to a world.
+//! Effects of hands on a world.
 
 use bevy::prelude::*;
 use tabletop_core::{ChainSpec, LidBoxSpec, prelude::*, quat_from_degrees};
@@ -64,7 +64,7 @@ fn what_is_let_go_of_where_it_was_grasped_stays_there() {
 }
 
 #[test]
-fn a_held_object_does_not_fall_and_goes_exactly_where_it_is_told() {
+fn a_held_object_does_not_fall_and_goes_exactly_where_it_is_sent() {
     let mut desk = Desk::new(two_blocks());
     let location = Vec3::new(1.234, -2.5, 6.789);
     desk.grasp(Hand::Left, "red").move_to(Hand::Left, location);

@@ -1,4 +1,4 @@
-//! What undo keeps. (That it is exact is tested with recordings, at the root.)
+//! State that undo keeps. (Recordings test its exactness, at the root.)
 
 use bevy::{ecs::entity_disabling::Disabled, prelude::*};
 use tabletop_core::{History, Recording, prelude::*};

@@ -327,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_is_said_with_a_remedy() {
+    fn what_is_missing_is_reported_with_a_remedy() {
         let disk = Disk::new("missing", &[]);
         let fault = disk.find(Platform::Linux, "auto").unwrap_err();
         assert!(

@@ -188,7 +188,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_function_is_told_from_a_script() {
+    fn a_function_is_distinguished_from_a_script() {
         assert!(is_function("% a\n%{\nx = 1;\n%}\n\n  function f\n"));
         assert!(is_function("function[a]=f"));
         assert!(!is_function("x = 1;\nfunction f"));

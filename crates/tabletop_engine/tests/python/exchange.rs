@@ -144,7 +144,7 @@ fn a_misused_aux_names_the_script_and_a_typo_is_noted() {
 }
 
 #[test]
-fn what_is_too_large_is_told_by_its_size() {
+fn what_is_too_large_is_reported_by_its_size() {
     let (folder, session) = start("def init(aux): pass\ndef callback(sensor, motor, aux): pass\n");
     let reported = |line: &str| {
         let script =

@@ -34,7 +34,7 @@ fn a_file_that_python_cannot_read_is_named_once() {
 }
 
 #[test]
-fn what_led_to_an_error_is_told() {
+fn what_led_to_an_error_is_reported() {
     let (folder, session) = start(
         "def init(aux): pass\n\
          def callback(sensor, motor, aux):\n\
@@ -62,7 +62,7 @@ fn what_led_to_an_error_is_told() {
 }
 
 #[test]
-fn the_errors_of_a_group_are_told() {
+fn the_errors_of_a_group_are_reported() {
     let (folder, session) = start(
         "class Group(Exception):\n\
          \x20   exceptions = (ValueError('no ball'), 7, KeyError('hand'))\n\
@@ -79,7 +79,7 @@ fn the_errors_of_a_group_are_told() {
 }
 
 #[test]
-fn faults_are_told_with_their_place() {
+fn faults_are_reported_with_their_place() {
     let (folder, session) = start(
         "def init(aux): pass\ndef callback(sensor, motor, aux):\n    helper()\ndef helper():\n    1 / 0\n",
     );
@@ -167,7 +167,7 @@ fn faults_are_told_with_their_place() {
 }
 
 #[test]
-fn hangs_exits_and_missing_files_are_told() {
+fn hangs_exits_and_missing_files_are_reported() {
     let script = |init: &str| {
         format!("import os\ndef init(aux):\n    {init}\ndef callback(sensor, motor, aux): pass\n")
     };
@@ -197,7 +197,7 @@ fn hangs_exits_and_missing_files_are_told() {
 }
 
 #[test]
-fn what_is_no_script_is_told() {
+fn what_is_no_script_is_reported() {
     let callback = "def callback(sensor, motor, aux): pass\n";
     for (name, text, message) in [
         (

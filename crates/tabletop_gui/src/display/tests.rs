@@ -46,7 +46,7 @@ fn what_the_display_offers_stays() {
 }
 
 #[test]
-fn what_it_does_not_offer_becomes_the_nearest_and_is_told() {
+fn what_it_does_not_offer_becomes_the_nearest_and_is_reported() {
     let with = |change: fn(&mut DisplaySettings)| {
         let mut settings = settings();
         change(&mut settings);

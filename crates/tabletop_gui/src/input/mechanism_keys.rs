@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_done_is_said() {
+    fn what_cannot_be_done_is_reported() {
         let mut test = TestWorld::new(plugin);
         test.hold("red", Vec3::Z);
         test.point_at(Vec3::Z);

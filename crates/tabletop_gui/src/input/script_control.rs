@@ -30,15 +30,19 @@ fn note_events(mut events: MessageReader<ScriptEvent>, mut notices: ResMut<Notic
     for event in events.read() {
         match event {
             ScriptEvent::Started { engine } => {
-                notices.append(Tone::News, &format!("{engine} is online"));
+                notices.append(Tone::Event, &format!("{engine} is online"));
             }
             ScriptEvent::Printed { line, is_error } => {
-                let tone = if *is_error { Tone::Warning } else { Tone::News };
+                let tone = if *is_error {
+                    Tone::Warning
+                } else {
+                    Tone::Event
+                };
                 notices.log(tone, line);
             }
             ScriptEvent::Noted { line } => notices.append(Tone::Warning, line),
             ScriptEvent::Failed { reason } => notices.append(Tone::Fault, reason),
-            ScriptEvent::Stopped => notices.append(Tone::News, "the script has ended"),
+            ScriptEvent::Stopped => notices.append(Tone::Event, "the script has ended"),
         }
     }
 }
@@ -79,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_script_prints_is_told_as_often_as_it_prints_it() {
+    fn what_a_script_prints_is_reported_as_often_as_it_prints_it() {
         let mut app = app();
         let line = ScriptEvent::Printed {
             line: "once more".into(),

@@ -83,12 +83,12 @@ fn begin_writing(tick: Res<SimTick>, image: Res<SensorImage>, mut snapshots: Res
     let task = pool.spawn(async move {
         match save(&picture, &folder, now) {
             Ok(path) => {
-                let told = format!("the head view was saved as {}", path.display());
-                (Tone::News, told)
+                let reported = format!("the head view was saved as {}", path.display());
+                (Tone::Event, reported)
             }
             Err(error) => {
-                let told = format!("the head view could not be saved: {error}");
-                (Tone::Fault, told)
+                let reported = format!("the head view could not be saved: {error}");
+                (Tone::Fault, reported)
             }
         }
     });
@@ -130,19 +130,19 @@ fn write_new(path: &Path, bytes: &[u8]) -> io::Result<PathBuf> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let numbered = (2..).map(|number: u32| path.with_file_name(format!("{stem}-{number}.png")));
     for path in iter::once(path.to_owned()).chain(numbered) {
-        let told =
+        let reported =
             |error: io::Error| io::Error::new(error.kind(), format!("{}: {error}", path.display()));
         match File::create_new(&path) {
             Ok(mut file) => {
                 file.write_all(bytes).map_err(|error| {
                     // Half a picture is none.
                     let _removed = fs::remove_file(&path);
-                    told(error)
+                    reported(error)
                 })?;
                 return Ok(path);
             }
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-            Err(error) => return Err(told(error)),
+            Err(error) => return Err(reported(error)),
         }
     }
     Err(io::ErrorKind::AlreadyExists.into())
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_written_is_told_with_its_path() {
+    fn what_cannot_be_written_is_reported_with_its_path() {
         let error = save(&picture(), Path::new("/no such folder"), at(0)).unwrap_err();
         let words = error.to_string();
         assert!(words.contains("/no such folder/headcam1970"), "{words}");
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn the_picture_of_the_next_tick_is_saved_once_and_told() {
+    fn the_picture_of_the_next_tick_is_saved_once_and_reported() {
         let folder = folder("next_tick");
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
@@ -266,9 +266,9 @@ mod tests {
         assert_eq!(files.len(), 1);
         let path = files.into_iter().next().unwrap().unwrap().path();
         assert_eq!(pixels_of(&path), picture().rgb);
-        let told = format!("the head view was saved as {}", path.display());
+        let reported = format!("the head view was saved as {}", path.display());
         let notices = app.world().resource::<Notices>();
-        assert_eq!(notices.iter().collect::<Vec<_>>(), [told]);
+        assert_eq!(notices.iter().collect::<Vec<_>>(), [reported]);
         fs::remove_dir_all(folder).unwrap();
     }
 }

@@ -241,8 +241,8 @@ mod tests {
             let mut harness = harness();
             harness.get_by_label(panel.label()).hover();
             harness.run_steps(8);
-            let told = harness.query_by_label(panel.tooltip());
-            assert!(told.is_some(), "{panel:?}");
+            let reported = harness.query_by_label(panel.tooltip());
+            assert!(reported.is_some(), "{panel:?}");
         }
     }
 

@@ -279,11 +279,11 @@ mod tests {
         ] {
             let mut harness = harness();
             harness.get_by_label(label).hover();
-            let told = (0..100).any(|_| {
+            let reported = (0..100).any(|_| {
                 harness.step();
                 harness.query_by_label_contains(keys).is_some()
             });
-            assert!(told, "{label} does not tell {keys}");
+            assert!(reported, "{label} does not tell {keys}");
         }
     }
 

@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn the_present_step_is_said_and_how_it_gets_on() {
+    fn the_present_step_is_reported_and_how_it_gets_on() {
         let step = |tries, is_planning| Imitating::Step {
             number: 2,
             tries,
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn the_robot_is_stopped_and_nothing_is_said_of_an_idle_one() {
+    fn the_robot_is_stopped_and_nothing_is_reported_of_an_idle_one() {
         let mut harness = harness(Imitating::Preparing);
         harness.get_by_label("Stop the robot").click();
         harness.run();

@@ -105,15 +105,15 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_file_is_told_and_panels_begin_as_at_first() {
+    fn a_damaged_file_is_reported_and_panels_begin_as_at_first() {
         let folder = folder("damaged");
         fs::create_dir_all(&folder).unwrap();
         fs::write(folder.join("windows.ron"), "(open: [Staus])").unwrap();
         let app = app(&folder);
         assert_eq!(*app.world().resource::<Panels>(), Panels::default());
         let notices = app.world().resource::<Notices>();
-        let told = notices.iter().next().unwrap();
-        assert!(told.contains("windows.ron:1:"), "{told}");
+        let reported = notices.iter().next().unwrap();
+        assert!(reported.contains("windows.ron:1:"), "{reported}");
         fs::remove_dir_all(folder).unwrap();
     }
 }

@@ -277,7 +277,7 @@ mod tests {
     }
 
     const THREE: [(Tone, &str); 3] = [
-        (Tone::News, "all is well"),
+        (Tone::Event, "all is well"),
         (Tone::Warning, "take care"),
         (Tone::Fault, "a.xml:1:2: broken"),
     ];
@@ -304,7 +304,7 @@ mod tests {
 
     #[test]
     fn each_tone_can_be_left_out() {
-        for (name, (tone, left_out)) in ["News (1)", "Warnings (1)", "Faults (1)"]
+        for (name, (tone, left_out)) in ["Events (1)", "Warnings (1)", "Faults (1)"]
             .into_iter()
             .zip(THREE)
         {
@@ -328,7 +328,7 @@ mod tests {
 
     #[test]
     fn only_rows_that_are_seen_are_laid_out() {
-        let many = vec![(Tone::News, "x"); 1000];
+        let many = vec![(Tone::Event, "x"); 1000];
         let harness = harness(&many);
         assert!((5..100).contains(&labels(&harness)), "{}", labels(&harness));
     }
@@ -336,7 +336,7 @@ mod tests {
     #[test]
     fn the_newest_is_seen_and_what_is_sought() {
         let texts: Vec<_> = (0..500).map(|number| format!("number {number}.")).collect();
-        let notices: Vec<_> = texts.iter().map(|text| (Tone::News, &**text)).collect();
+        let notices: Vec<_> = texts.iter().map(|text| (Tone::Event, &**text)).collect();
         let mut harness = harness(&notices);
         assert!(harness.query_by_label("number 499.").is_some());
         assert!(harness.query_by_label("number 7.").is_none());
@@ -351,7 +351,7 @@ mod tests {
 
     #[test]
     fn the_beginning_of_the_newest_unseen_fault_is_seen() {
-        let mut notices = vec![(Tone::News, "x"); 100];
+        let mut notices = vec![(Tone::Event, "x"); 100];
         let long = format!("the beginning\n{}", "at\n".repeat(100));
         notices.push((Tone::Fault, &long));
         let harness = harness(&notices);

@@ -72,7 +72,7 @@ impl Panel {
                 "Hands, what they hold, how it turns; record, undo and redo"
             }
             Self::Objects => "Load and save task files; make objects, and clear the table",
-            Self::Messages => "Everything that you have been told, with its place",
+            Self::Messages => "All messages so far, each with its place",
             Self::Timeline => "The recording along its time; step, play slowly or fast",
         }
     }

@@ -77,8 +77,8 @@ mod tests {
 
     #[test]
     fn the_text_names_the_keys() {
-        let told = "Simulation Paused\n\nPress SPACE to resume\nPress ESC to quit";
-        assert_eq!(text(&Keymap::default()), told);
+        let reported = "Simulation Paused\n\nPress SPACE to resume\nPress ESC to quit";
+        assert_eq!(text(&Keymap::default()), reported);
     }
 
     /// How often a button in a panel of this order is clicked while the simulation is paused.

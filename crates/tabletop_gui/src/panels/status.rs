@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn the_memory_of_undo_is_told_and_what_did_not_fit() {
+    fn the_memory_of_undo_is_reported_and_what_did_not_fit() {
         let mut history = History {
             undoable: 12,
             bytes: 3_500_000,
@@ -339,8 +339,8 @@ mod tests {
         };
         assert_eq!(undo(&history), "12 segments, 4 of 512 MB");
         history.dropped = 5;
-        let told = "12 segments, 4 of 512 MB; the first 5 are kept no longer";
-        assert_eq!(undo(&history), told);
+        let reported = "12 segments, 4 of 512 MB; the first 5 are kept no longer";
+        assert_eq!(undo(&history), reported);
     }
 
     fn app() -> App {
@@ -384,12 +384,12 @@ mod tests {
         let mut app = app();
         for (is_still, different) in [(false, 30), (true, 3)] {
             app.world_mut().resource_mut::<PictureStatus>().is_still = is_still;
-            let mut told = std::collections::BTreeSet::new();
+            let mut reported = std::collections::BTreeSet::new();
             for _ in 0..30 {
                 frame(&mut app, true);
-                told.insert(app.world().resource::<Clock>().tick.0);
+                reported.insert(app.world().resource::<Clock>().tick.0);
             }
-            let distinct = told.len();
+            let distinct = reported.len();
             assert!(distinct.abs_diff(different) <= 1, "{distinct}");
         }
     }

@@ -30,7 +30,7 @@ const LINES: usize = 3;
 /// The time for which a notice is shown, in seconds.
 const fn seconds(tone: Tone) -> f64 {
     match tone {
-        Tone::News => 4.0,
+        Tone::Event => 4.0,
         Tone::Warning => 7.0,
         Tone::Fault => 10.0,
     }
@@ -151,10 +151,10 @@ mod tests {
     }
 
     #[test]
-    fn faults_stay_longer_than_news() {
+    fn faults_stay_longer_than_remarks() {
         let mut notices = Notices::default();
         let mut toasts = Toasts::default();
-        notices.append(Tone::News, "news");
+        notices.append(Tone::Event, "news");
         notices.append(Tone::Fault, "fault");
         toasts.update(&notices, 100.0);
         assert_eq!(texts(&toasts), ["news", "fault"]);
@@ -169,7 +169,7 @@ mod tests {
         let mut notices = Notices::default();
         let mut toasts = Toasts::default();
         for text in ["0", "1", "2", "3", "4", "5", "5"] {
-            notices.append(Tone::News, text);
+            notices.append(Tone::Event, text);
         }
         toasts.update(&notices, 0.0);
         assert_eq!(texts(&toasts), ["2", "3", "4", "5"]);
@@ -178,9 +178,9 @@ mod tests {
     }
 
     #[test]
-    fn a_notice_that_is_clicked_is_told() {
+    fn a_notice_that_is_clicked_is_reported() {
         let mut notices = Notices::default();
-        notices.append(Tone::News, "first");
+        notices.append(Tone::Event, "first");
         notices.append(Tone::Fault, "second");
         let mut toasts = Toasts::default();
         toasts.update(&notices, 0.0);
@@ -199,7 +199,7 @@ mod tests {
     fn notices_are_in_the_upper_right_corner_one_below_the_other() {
         let mut notices = Notices::default();
         for text in ["first", "second"] {
-            notices.append(Tone::News, text);
+            notices.append(Tone::Event, text);
         }
         let mut toasts = Toasts::default();
         toasts.update(&notices, 0.0);
@@ -232,7 +232,7 @@ mod tests {
     #[test]
     fn what_a_script_prints_is_only_listed() {
         let mut notices = Notices::default();
-        notices.log(Tone::News, "printed");
+        notices.log(Tone::Event, "printed");
         let mut toasts = Toasts::default();
         toasts.update(&notices, 0.0);
         assert_eq!(texts(&toasts), [""; 0]);

@@ -33,7 +33,7 @@ const STRONG: Color32 = Color32::from_rgb(245, 247, 250);
 const WEAK: Color32 = Color32::from_rgb(150, 157, 168);
 
 /// What has happened, what warns, and what is wrong.
-pub(crate) const NEWS: Color32 = TEXT;
+pub(crate) const EVENT: Color32 = TEXT;
 pub(crate) const WARNING: Color32 = Color32::from_rgb(255, 200, 90);
 pub(crate) const FAULT: Color32 = Color32::from_rgb(255, 125, 115);
 

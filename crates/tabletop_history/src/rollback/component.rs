@@ -6,7 +6,7 @@ use bevy::prelude::*;
 
 use super::saved::{Earlier, Saved};
 
-/// The number of entities that share a saved chunk.
+/// Number of entities that share a saved chunk.
 const CHUNK: usize = 16;
 
 /// A component of entities, in their order.

@@ -6,7 +6,7 @@ use bevy::prelude::*;
 
 use super::saved::{Earlier, Saved};
 
-/// A resource; none if there was none.
+/// A resource; `None` if it was absent.
 struct SavedResource<R>(Option<Arc<R>>);
 
 pub(crate) fn save<R: Resource + Clone>(

@@ -1,4 +1,4 @@
-//! A part of the world as it was.
+//! A saved part of the world.
 
 use std::any::Any;
 
@@ -7,16 +7,16 @@ use bevy::{
     prelude::*,
 };
 
-/// A part of the world as it was.
+/// A saved part of the world.
 pub(crate) trait Saved: Any + Send + Sync {
-    /// Puts it back. `entities` are those that there were.
+    /// Restores it. `entities` are those of the snapshot.
     fn restore(&self, world: &mut World, entities: &[Entity]);
 
-    /// The memory, in bytes, that it does not share with another one.
+    /// Memory, in bytes, that it does not share with another one.
     fn bytes(&self, besides: Option<&dyn Saved>) -> usize;
 }
 
-/// An earlier snapshot, for what has not changed since.
+/// An earlier snapshot, for sharing unchanged state.
 #[derive(Clone, Copy)]
 pub(crate) struct Earlier<'a> {
     pub entities: &'a [Entity],
@@ -30,14 +30,14 @@ impl<'a> Earlier<'a> {
     }
 }
 
-/// A moment, to ask what has changed since.
+/// A moment after which changes are detected.
 #[derive(Clone, Copy, Debug)]
 pub struct Since {
     then: Tick,
     now: Tick,
 }
 
-/// Bevy forgets when a change was that is older than some three of these.
+/// Largest age of a known change: Bevy forgets changes older than about three of these.
 const OLDEST: u32 = 1 << 30;
 
 impl Since {

@@ -6,16 +6,16 @@ use bevy::prelude::*;
 
 use super::saved::{Earlier, Saved, Since};
 
-/// State that decides what comes next and is neither a component of an entity that rolls back nor a resource, such as that of a
+/// State that decides what comes next and is neither a resource nor a component of an entity that rolls back, such as that of a
 /// physics engine.
 pub trait RollbackState: Send + Sync + Sized + 'static {
-    /// The present state, sharing with an earlier one what has not changed since; `None` in a world that has none.
+    /// The present state, sharing unchanged parts with an earlier one; `None` in a world that has none.
     fn save(world: &mut World, earlier: Option<(&Self, Since)>) -> Option<Self>;
 
-    /// Puts the world back into this state.
+    /// Restores this state.
     fn restore(&self, world: &mut World);
 
-    /// The memory, in bytes, that it does not share with another one.
+    /// Memory, in bytes, that it does not share with another one.
     fn bytes(&self, besides: Option<&Self>) -> usize;
 }
 

@@ -1,4 +1,4 @@
-//! Rigid bodies: what physics makes of an object and of the table.
+//! Rigid bodies of objects and of the table.
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -19,7 +19,7 @@ const SLEEP_THRESHOLDS: Sleeping = Sleeping {
     sleeping: false,
 };
 
-/// Radius, in units, of what has no solids.
+/// Radius, in units, of a body without solids.
 const POINT: f32 = 0.01;
 
 /// The components of an object's body.
@@ -112,7 +112,7 @@ fn solid_collider(solid: Solid) -> Collider {
     }
 }
 
-/// The share of its rotation that a body of this shape loses in a second.
+/// Share of its rotation that a body of this shape loses in a second.
 #[expect(
     clippy::wildcard_enum_match_arm,
     reason = "few shapes roll or hang in chains"
@@ -125,7 +125,7 @@ const fn angular_damping(shape: &Shape, settings: &PhysicsSettings) -> f32 {
     }
 }
 
-/// A cuboid about the origin that holds what is too thin for a polytope.
+/// A cuboid about the origin that encloses a polyhedron too thin for a polytope.
 fn cuboid_around(polyhedron: Polyhedron) -> Collider {
     let Bounds { low, high } = polyhedron.bounds();
     let half = low.abs().max(high.abs()).max(Vec3::splat(1e-4));

@@ -1,4 +1,4 @@
-//! Joints: what physics makes of the connections between objects.
+//! Joints: constraints between the bodies of objects.
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -7,10 +7,10 @@ use tabletop_core::{Joint, JointKind, ObjectSpec, Pose, TICK_SECONDS};
 use super::mass::mass_properties;
 use crate::settings::PhysicsSettings;
 
-/// How fast dry friction takes up speed, in 1/s: within a tick.
+/// Rate at which dry friction takes up speed, in 1/s: within a tick.
 const FRICTION_RATE: f32 = 60.0;
 
-/// How fast the spring of shears opens them, in rad/s.
+/// Speed at which the spring of shears opens them, in rad/s.
 const SPRING_RATE: f32 = 5.0;
 
 /// The component of a joint's constraint.
@@ -29,7 +29,7 @@ pub(crate) fn add_joint(world: &mut World, entity: Entity, joint: &Joint) {
         .insert_if_new(ImpulseJoint::new(first, constraint));
 }
 
-/// What the second object is to a joint.
+/// The load of the second object on a joint.
 #[derive(Clone, Copy, Default)]
 struct JointLoad {
     /// Its weight, in kg units/s².
@@ -46,7 +46,7 @@ fn inertia_about_x(spec: &ObjectSpec, frame: Pose) -> f32 {
     own + spec.mass * frame.location.reject_from(axis).length_squared()
 }
 
-/// How fast a damper takes up speed, in 1/s, that takes away a share of it in a tick.
+/// Rate, in 1/s, of a damper that takes away this share of the speed in a tick.
 fn rate(damping: f32) -> f32 {
     let left = (1.0 - damping).max(1e-4);
     damping / (left * TICK_SECONDS)

@@ -71,7 +71,7 @@ fn inertia_per_kg(primitive: &Primitive) -> DMat3 {
 fn inertia_of_faces(faces: impl Iterator<Item = [DVec3; 3]>) -> DMat3 {
     let (mut volume, mut moment) = (0.0, DMat3::ZERO);
     for [a, b, c] in faces {
-        // The tetrahedron from the origin to the triangle; its products of coordinates on the average.
+        // The tetrahedron from the origin to the triangle: means of its products of coordinates.
         let part = a.dot(b.cross(c)) / 6.0;
         let sum = a + b + c;
         let corners = [a, b, c, sum].map(outer_product);

@@ -23,26 +23,26 @@ const QUARTER: u32 = SIDES / 4;
 
 /// A convex solid with flat faces.
 ///
-/// A face of many corners touches with four of them around it. A convex polyhedron of Rapier touches with the first four that a face has,
-/// and would stand on one side of the face and stagger.
+/// A face with many corners touches with four of them, spread around it. Rapier's own convex polyhedron touches with the first four corners of a
+/// face, and would stand on one side of the face and stagger.
 #[derive(Clone)]
 pub(crate) struct Polytope {
     hull: ConvexPolyhedron,
     touch: Touch,
 }
 
-/// With which faces a polytope touches.
+/// The faces with which a polytope touches.
 #[derive(Clone, Copy)]
 enum Touch {
-    /// Those of a prism of [`SIDES`] along Y.
+    /// The faces of a prism of [`SIDES`] along Y.
     Prism,
-    /// Any.
+    /// Any faces.
     Face,
 }
 
 impl Polytope {
-    /// A prism with its facets on a cylinder's surface, so that a lying cylinder's centre is at its radius; none if there are no numbers
-    /// small and great enough for it. Rapier's own cylinder never comes to rest on its side: inexact contact normals drive it on at some
+    /// A prism with its facets on a cylinder's surface, so that a lying cylinder's centre is at its radius. `None` if its numbers are too
+    /// small or too great. Rapier's own cylinder never comes to rest on its side: inexact contact normals drive it on at some
     /// 0.2 units/s.
     pub fn of_cylinder(radius: f32, yspan: f32) -> Option<SharedShape> {
         let half_yspan = yspan / 2.0;
@@ -67,7 +67,7 @@ impl Polytope {
         Some(SharedShape::new(Self { hull, touch }))
     }
 
-    /// A convex polyhedron; none if it is too flat or too thin for numbers.
+    /// A convex polyhedron; `None` if it is too flat or too thin to compute with.
     pub fn of_polyhedron(polyhedron: Polyhedron) -> Option<SharedShape> {
         let corners = polyhedron.corners().to_vec();
         let hull = ConvexPolyhedron::from_convex_mesh(corners, polyhedron.triangles())
@@ -76,7 +76,7 @@ impl Polytope {
         Some(SharedShape::new(Self { hull, touch }))
     }
 
-    /// Of the face in a direction, four corners around it, one of them next to a point; all if it has no more.
+    /// Four corners around the face in a direction, one of them next to a point; all corners if there are no more.
     fn face(&self, direction: Vector, near: Vector) -> PolygonalFeature {
         let mut feature = PolygonalFeature::default();
         let facing = |face: usize| self.hull.faces()[face].normal.dot(direction);
@@ -315,7 +315,7 @@ mod tests {
             assert_eq!(end.num_vertices, sides.min(4) as usize);
             let corners = &end.vertices[..end.num_vertices];
             assert!(corners.iter().all(|corner| (corner.z + 1.0).abs() < 1e-6));
-            // The middle is well inside of them.
+            // The middle is well inside them.
             let next = corners.iter().cycle().skip(1);
             for (a, b) in corners.iter().zip(next) {
                 let along = (*b - *a).normalize();

@@ -1,4 +1,4 @@
-//! Objects that become others: a control in another state.
+//! Reshaping of objects: a control enters another state.
 
 use bevy::prelude::*;
 use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*};
@@ -7,11 +7,11 @@ use tabletop_core::{ObjectSpec, Primitive};
 use super::{body::collider, mass::mass_properties};
 use crate::geometry::nearby;
 
-/// How much larger than an object that changes is the room in which everything wakes.
+/// Size of the space in which everything wakes, relative to the changed object.
 const WOKEN: f32 = 1.05;
 
-/// Makes an object on the table into another one of the same id, where it is: it looks and collides as this says from now on, and
-/// what is near it wakes.
+/// Replaces the description of an object on the table by another of the same id, in place: from now on it looks and collides so, and
+/// its neighbours wake.
 pub fn reshape(world: &mut World, object: Entity, spec: ObjectSpec) {
     let is_other_body = world.get::<ObjectSpec>(object).is_none_or(|before| {
         let solids = |spec: &ObjectSpec| {
@@ -31,7 +31,7 @@ pub fn reshape(world: &mut World, object: Entity, spec: ObjectSpec) {
     world.entity_mut(object).insert(spec);
 }
 
-/// Changes the collider in the engine alone: undo brings it back there, and the component is only for what is new.
+/// Changes the collider in the engine alone: undo restores it there, and the component matters only for new objects.
 fn set_collider(world: &mut World, object: Entity, spec: &ObjectSpec) {
     let mut contexts =
         world.query_filtered::<&mut RapierContextColliders, With<DefaultRapierContext>>();

@@ -1,13 +1,13 @@
-//! How deep bodies are in stacks.
+//! Depths of bodies in stacks.
 
-/// The number of bodies between each body and what it stands on in the end, itself included.
+/// The number of bodies from each body down to its final support, itself included.
 #[derive(Debug, Default)]
 pub(crate) struct Depths(Vec<u32>);
 
 const UNSUPPORTED: u32 = u32::MAX;
 
 impl Depths {
-    /// The depths of bodies, by their numbers, of which some touch what does not move by itself and pairs touch each other.
+    /// Depths of bodies, by their numbers. `supported` touch something that does not move by itself; `touching` pairs touch each other.
     pub fn new(supported: &[u32], touching: &[(u32, u32)]) -> Self {
         let pairs = touching.iter().flat_map(|&(a, b)| [a, b]);
         let count = pairs.chain(supported.iter().copied()).max();
@@ -21,13 +21,13 @@ impl Depths {
         depths
     }
 
-    /// The depth of a body, if there is anything that it stands on.
+    /// The depth of a body, if it has a support.
     pub fn of(&self, body: u32) -> Option<u32> {
         let depth = self.0.get(body as usize).copied();
         depth.filter(|depth| *depth != UNSUPPORTED)
     }
 
-    /// True if a body is less deep than it was known to be, because it touches this other one.
+    /// True if a body is less deep than known before, because it touches this other one.
     fn lower(&mut self, body: u32, other: u32) -> bool {
         let by_other = self.0[other as usize].saturating_add(1);
         let depth = &mut self.0[body as usize];

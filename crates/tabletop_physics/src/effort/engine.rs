@@ -1,32 +1,32 @@
-//! The engine as effort sees it.
+//! The engine, as far as effort depends on it.
 
 use bevy_rapier3d::rapier::prelude::{
     ColliderSet, DefaultBroadPhase, ImpulseJointSet, IntegrationParameters, IslandManager,
     NarrowPhase, RigidBody, RigidBodySet,
 };
 
-/// What effort depends on, and where it is set.
+/// The parts of the engine on which effort depends, and its settings.
 pub struct Engine<'a> {
-    /// What holds for all bodies.
+    /// Settings of all bodies.
     pub parameters: &'a mut IntegrationParameters,
-    /// Which bodies are awake.
+    /// The awake bodies.
     pub islands: &'a IslandManager,
-    /// Which shapes are near each other.
+    /// Pairs of shapes near each other.
     pub broad_phase: &'a DefaultBroadPhase,
-    /// Which shapes touch each other.
+    /// Pairs of shapes that touch.
     pub narrow_phase: &'a NarrowPhase,
     /// The bodies.
     pub bodies: &'a mut RigidBodySet,
     /// Their shapes.
     pub colliders: &'a ColliderSet,
-    /// What holds them together.
+    /// The joints.
     pub joints: &'a ImpulseJointSet,
     /// Downward acceleration in units/s².
     pub gravity: f32,
 }
 
 impl Engine<'_> {
-    /// An upper bound of the speed, in units/s, that a point of a body has at the end of a tick in which nothing stops it.
+    /// An upper bound on the speed, in units/s, of any point of a body at the end of a tick in which nothing stops it.
     pub(crate) fn fastest_point(&self, body: &RigidBody) -> f32 {
         const REACH: f32 = 2.0;
         let falling = self.gravity * self.parameters.dt;

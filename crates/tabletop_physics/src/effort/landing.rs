@@ -1,4 +1,4 @@
-//! What lands flat on something.
+//! Flat landings.
 
 use bevy::prelude::*;
 use bevy_rapier3d::{
@@ -8,16 +8,16 @@ use bevy_rapier3d::{
 
 use super::{engine::Engine, substeps::speed};
 
-/// What is slower than this when it lands, in units/s and rad/s together, does not slide.
+/// Speed, in units/s and rad/s together, below which a landing body does not slide.
 const LANDING_SPEED: f32 = 1.0;
 
-/// What is this near to the way of a body may be hit, in units.
+/// Distance from the way of a body, in units, within which something may be hit.
 const MARGIN: f32 = 0.02;
 
 /// Cosine of the angle, some 2.5°, within which faces are parallel.
 const PARALLEL: f32 = 0.999;
 
-/// How fast a body may hit something flat in the next step, in units/s; 0 if it does not.
+/// Speed, in units/s, at which a body may hit something flat in the next step; 0 if it does not.
 pub(crate) fn landing_speed(engine: &Engine, handle: RigidBodyHandle) -> f32 {
     let body = &engine.bodies[handle];
     if speed(body) < LANDING_SPEED {

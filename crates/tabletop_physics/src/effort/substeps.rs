@@ -1,40 +1,40 @@
-//! How many sub-steps a body needs.
+//! Numbers of sub-steps that bodies need.
 
 use bevy_rapier3d::rapier::prelude::{RigidBody, RigidBodyHandle};
 
 use super::{engine::Engine, touches::Touches};
 
-/// Sub-steps of every island, at least.
+/// Least number of sub-steps of an island.
 pub(crate) const FEWEST_SUBSTEPS: usize = 4;
 
-/// Sub-steps of what is handled.
+/// Number of sub-steps of handled bodies.
 pub(crate) const MOST_SUBSTEPS: usize = 36;
 
-/// Sub-steps of what touches nothing yet, so that it lands well.
+/// Number of sub-steps of a body that touches nothing yet, so that it lands well.
 pub(crate) const SUBSTEPS_OF_FREE: usize = 20;
 
-/// Sub-steps by the greatest depth of a body in its stack, from 1 on; the last number holds for all that are deeper.
+/// Number of sub-steps by the greatest depth of a body in its stack, from 1 on; the last one holds for all greater depths.
 const SUBSTEPS_BY_DEPTH: [usize; 16] = [4, 4, 4, 4, 6, 11, 12, 12, 13, 13, 13, 13, 14, 14, 14, 16];
 
-/// Sub-steps of other shapes than blocks, at least: they touch with fewer points.
+/// Least number of sub-steps of shapes other than blocks: they touch with fewer points.
 const SUBSTEPS_OF_OTHER_SHAPES: usize = 9;
 
-/// Sub-steps of what joints hold, at least.
+/// Least number of sub-steps of bodies held by joints.
 const SUBSTEPS_OF_JOINTED: usize = 7;
 
-/// Sub-steps of bodies that touch one of a much different mass, at least.
+/// Least number of sub-steps of bodies that touch one of a much different mass.
 const SUBSTEPS_OF_UNEVEN: usize = 16;
 
-/// Sub-steps of what is fast, at least.
+/// Least number of sub-steps of fast bodies.
 const SUBSTEPS_OF_FAST: usize = 20;
 
-/// What is faster than this, in units/s and rad/s together, is fast.
+/// Speed, in units/s and rad/s together, from which a body is fast.
 const FAST: f32 = 20.0;
 
-/// What the number of a body's sub-steps depends on.
+/// The factors that decide a body's number of sub-steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SubstepFactors {
-    /// How deep it is in its stack, if it is supported.
+    /// Its depth in its stack, if it is supported.
     depth: Option<u32>,
     is_block: bool,
     is_uneven: bool,
@@ -78,7 +78,7 @@ impl SubstepFactors {
     }
 }
 
-/// How fast a body is, in units/s and rad/s together.
+/// Speed of a body, in units/s and rad/s together.
 pub(crate) fn speed(body: &RigidBody) -> f32 {
     body.linvel().length() + body.angvel().length()
 }

@@ -1,4 +1,4 @@
-//! What bodies touch.
+//! Touches between bodies.
 
 use std::collections::BTreeSet;
 
@@ -8,17 +8,17 @@ use bevy_rapier3d::rapier::prelude::{
 
 use super::{depth::Depths, engine::Engine};
 
-/// Masses of which one is more than this many times the other are uneven.
+/// Ratio of masses above which they count as uneven.
 const UNEVEN: f32 = 1.5;
 
-/// What bodies, by their numbers, touch.
+/// Touches of bodies, by their numbers.
 pub(crate) struct Touches {
     pub depths: Depths,
-    /// Those that touch one of a much different mass.
+    /// Bodies that touch one of a much different mass.
     pub uneven: BTreeSet<u32>,
-    /// Those that touch what hands or robots move.
+    /// Bodies that touch something moved by a hand or a robot.
     pub handled: BTreeSet<u32>,
-    /// True if any is near to what hands or robots move.
+    /// True if any body is near something moved by a hand or a robot.
     pub is_handling: bool,
 }
 
@@ -70,9 +70,9 @@ fn sorted(a: f32, b: f32) -> [f32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// What moves a body.
+/// The mover of a body.
 enum Mover<'a> {
-    /// Forces; with its number.
+    /// Forces. With the body's number.
     Forces(u32, &'a RigidBody),
     /// A hand or a robot.
     Hand(&'a RigidBody),

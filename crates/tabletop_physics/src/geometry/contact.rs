@@ -1,4 +1,4 @@
-//! Where two solids are nearest to each other.
+//! Contacts: the nearest points of two solids.
 
 use std::iter;
 
@@ -13,7 +13,7 @@ use bevy_rapier3d::{
     rapier::prelude as rapier,
 };
 
-/// Directions in which solids are looked at once more.
+/// Directions in which the search is repeated.
 const DIRECTIONS: [Vec3; 6] = [
     Vec3::X,
     Vec3::Y,
@@ -23,7 +23,7 @@ const DIRECTIONS: [Vec3; 6] = [
     Vec3::NEG_Z,
 ];
 
-/// Where two solids at these poses are nearest to each other, if that is no farther than `most`, in units.
+/// The nearest points of two solids at these poses, if they are no farther apart than `most`, in units.
 ///
 /// This is what Parry's `contact` finds. But its search, from one direction, gives up on about one in ten thousand solids
 /// that touch a slab near its edge, and takes them for far apart. Where it has not found a plane between them, other
@@ -48,7 +48,7 @@ pub fn contact(
     }
 }
 
-/// Where two solids, the second one at a pose in the frame of the first, are nearest; each point in its solid's frame.
+/// The nearest points of two solids, each in its solid's frame. The second one's pose is given in the frame of the first.
 fn search(
     other_at: &rapier::Pose,
     solid: &dyn SupportMap,

@@ -1,4 +1,4 @@
-//! How near convex solids are to each other: for bodies that are moved without the physics engine.
+//! Distances of convex solids, for bodies that move without the physics engine.
 
 use bevy::prelude::*;
 use bevy_rapier3d::{parry::bounding_volume::BoundingVolume as _, rapier::prelude as rapier};
@@ -6,7 +6,7 @@ use tabletop_core::Pose;
 
 use super::contact::contact;
 
-/// A convex solid with its pose in the frame of what it is a part of.
+/// A convex solid, with its pose in the frame of the whole that it belongs to.
 #[derive(Clone, Debug)]
 pub struct Convex {
     /// Pose of its own frame.
@@ -16,7 +16,7 @@ pub struct Convex {
 }
 
 impl Convex {
-    /// True if it is within a distance, in units, of another solid that stands in the same frame.
+    /// True if it is within a distance, in units, of another solid in the same frame.
     pub fn is_near(&self, other: &Self, within: f32) -> bool {
         let [at, other_at] = [self, other].map(|solid| to_rapier(solid.pose));
         let bounds = self.shape.compute_aabb(&at).loosened(within);
@@ -45,13 +45,13 @@ pub fn convex_parts(pose: Pose, shape: &rapier::SharedShape) -> Vec<Convex> {
 
 /// The nearest points of a part of a moving body and an obstacle.
 pub struct Nearest {
-    /// How far they are apart; negative inside.
+    /// Their distance; negative inside.
     pub distance: f32,
-    /// From the obstacle towards the moving body.
+    /// Direction from the obstacle towards the moving body.
     pub away: Vec3,
 }
 
-/// Where each part of a moving body at a pose is within a distance, in units, of each obstacle.
+/// The nearest points of each part of a moving body at a pose and each obstacle within a distance, in units.
 pub fn nearest<'a>(
     body: &'a [Convex],
     at: Pose,

@@ -1,4 +1,4 @@
-//! What is near bodies that are moved without the physics engine.
+//! Surroundings of bodies that move without the physics engine.
 
 use bevy::prelude::*;
 use bevy_rapier3d::{
@@ -12,7 +12,7 @@ use super::convex::{Convex, convex_parts};
 
 /// A body that reaches into a box.
 pub struct Nearby<'a> {
-    /// What the body is of.
+    /// The body's entity.
     pub entity: Entity,
     /// The body.
     pub body: &'a rapier::RigidBody,
@@ -33,7 +33,7 @@ impl Nearby<'_> {
     }
 }
 
-/// The bodies that reach into a box, in Rapier's order, of those that can be met at all. Disabled ones are nowhere.
+/// The bodies that reach into a box and can collide, in Rapier's order. Disabled ones are nowhere.
 pub fn nearby<'a>(
     colliders: &'a RapierContextColliders,
     bodies: &'a RapierRigidBodySet,

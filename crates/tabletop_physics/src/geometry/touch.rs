@@ -1,4 +1,4 @@
-//! What a body touches.
+//! Touches of a body.
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
@@ -7,7 +7,7 @@ use tabletop_core::{Pose, Shape};
 use super::convex::{Convex, convex_parts};
 use crate::bodies::collider;
 
-/// True if an object is within a distance, in units, of a shape that stands at a pose.
+/// True if an object is within a distance, in units, of a shape at a pose.
 pub fn is_touching(
     world: &mut World,
     object: Entity,

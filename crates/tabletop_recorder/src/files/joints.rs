@@ -49,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn joints_are_told_once_and_then_when_they_change() {
+    fn joints_are_reported_once_and_then_when_they_change() {
         let baxter = RobotLayout::baxter();
         let rows = |tick, before: Option<&[JointState]>, now: &[JointState]| {
             rows(tick, baxter, before, now)

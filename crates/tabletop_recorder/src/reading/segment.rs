@@ -139,7 +139,7 @@ pub(super) fn begin_of<'c>(
         let mut all = commands.iter();
         all.position(|command| is_here(command) && is_cause(act, &command.command))
     };
-    if let Some(at) = of(is_told) {
+    if let Some(at) = of(is_of) {
         (SimTick(commands[at].tick), &commands[at + 1..])
     } else if let Some(at) = of(is_forced) {
         (SimTick(commands[at].tick), &commands[at..])
@@ -149,10 +149,10 @@ pub(super) fn begin_of<'c>(
 }
 
 /// True if a command is to do just this.
-fn is_told(act: &Act, command: &SimCommand) -> bool {
+fn is_of(act: &Act, command: &SimCommand) -> bool {
     match command {
-        SimCommand::Hand(command) => is_told_hand(act, command),
-        SimCommand::Mechanism(command) => is_told_mechanism(act, command),
+        SimCommand::Hand(command) => is_of_hand(act, command),
+        SimCommand::Mechanism(command) => is_of_mechanism(act, command),
         SimCommand::Recording(_)
         | SimCommand::Clock(_)
         | SimCommand::Scene(_)
@@ -161,7 +161,7 @@ fn is_told(act: &Act, command: &SimCommand) -> bool {
     }
 }
 
-fn is_told_mechanism(act: &Act, command: &MechanismCommand) -> bool {
+fn is_of_mechanism(act: &Act, command: &MechanismCommand) -> bool {
     let (verb, hand) = match command {
         MechanismCommand::Trigger { hand, .. } => (Verb::Trigger, hand),
         MechanismCommand::PointTo { hand, .. } => (Verb::PointTo, hand),
@@ -171,7 +171,7 @@ fn is_told_mechanism(act: &Act, command: &MechanismCommand) -> bool {
     act.verb == verb && act.manipulator == Manipulator::Hand(*hand)
 }
 
-fn is_told_hand(act: &Act, command: &HandCommand) -> bool {
+fn is_of_hand(act: &Act, command: &HandCommand) -> bool {
     let is = |verb, hand: &Hand| act.verb == verb && act.manipulator == Manipulator::Hand(*hand);
     match command {
         HandCommand::Grasp { hand, object } => {

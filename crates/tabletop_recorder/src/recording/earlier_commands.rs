@@ -170,11 +170,11 @@ mod tests {
         }
     }
 
-    fn told(earlier: &EarlierCommands) -> Vec<String> {
+    fn lines_of(earlier: &EarlierCommands) -> Vec<String> {
         let lines = std::str::from_utf8(earlier.lines()).unwrap();
-        let told: Vec<_> = lines.lines().map(str::to_owned).collect();
-        assert_eq!(told.len(), earlier.count());
-        told
+        let reported: Vec<_> = lines.lines().map(str::to_owned).collect();
+        assert_eq!(reported.len(), earlier.count());
+        reported
     }
 
     #[test]
@@ -187,8 +187,8 @@ mod tests {
             true,
         );
         assert_eq!(earlier.begin(), Some(SimTick(3)));
-        let told_first = told(&earlier);
-        assert!(told_first[0].contains("Scene") && told_first[1].contains("Release"));
+        let first = lines_of(&earlier);
+        assert!(first[0].contains("Scene") && first[1].contains("Release"));
         earlier.note(SimTick(5), &[scene()], false);
         assert_eq!(earlier.begin(), Some(SimTick(3)));
         assert_eq!(earlier.count(), 3);
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_told_again_is_what_was_noted() {
+    fn what_is_reported_again_is_what_was_noted() {
         let commands = [
             (3, scene()),
             (4, issued(RobotCommand::Show(true))),
@@ -213,11 +213,11 @@ mod tests {
             noted.note(SimTick(*tick), std::slice::from_ref(command), true);
         }
         let commands = commands.map(|(tick, command)| SessionCommand::of(SimTick(tick), &command));
-        let told_again = EarlierCommands::since(SimTick(3), &commands);
-        assert_eq!(told_again.begin(), noted.begin());
-        assert_eq!(told(&told_again), told(&noted));
-        assert_eq!(told_again.is_paused(), noted.is_paused());
-        assert_eq!(told_again.has_used_robot, noted.has_used_robot);
+        let again = EarlierCommands::since(SimTick(3), &commands);
+        assert_eq!(again.begin(), noted.begin());
+        assert_eq!(lines_of(&again), lines_of(&noted));
+        assert_eq!(again.is_paused(), noted.is_paused());
+        assert_eq!(again.has_used_robot, noted.has_used_robot);
     }
 
     #[test]
@@ -225,7 +225,7 @@ mod tests {
         let mut earlier = EarlierCommands::default();
         earlier.note(SimTick(1), &[issued(ClockCommand::SetPaused(true))], true);
         earlier.note(SimTick(1), &[scene()], true);
-        assert!(told(&earlier)[0].contains("SetPaused"));
+        assert!(lines_of(&earlier)[0].contains("SetPaused"));
         earlier.note(SimTick(2), &[issued(RobotCommand::Show(true))], true);
         earlier.note(SimTick(3), &[scene()], true);
         assert_eq!((earlier.begin(), earlier.count()), (Some(SimTick(1)), 4));

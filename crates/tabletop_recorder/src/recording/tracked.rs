@@ -35,7 +35,7 @@ impl Tracked {
 
     /// True if a frame at which it is here needs a `move` line: it was never reported; or has come to rest (it is, to the
     /// bit, where it was a tick ago) somewhere else than last reported; or is farther from there than the thresholds.
-    pub(crate) fn is_news(&self, pose: Pose) -> bool {
+    pub(crate) fn is_report_due(&self, pose: Pose) -> bool {
         self.reported.is_none_or(|reported| {
             let rests = self.last.is_some_and(|last| is_same(last.pose, pose));
             rests && self.is_elsewhere(pose) || is_far(reported, pose)
@@ -102,59 +102,59 @@ mod tests {
     }
 
     #[test]
-    fn an_object_that_was_never_reported_is_news() {
-        assert!(Tracked::new("it", 1).is_news(Pose::IDENTITY));
-        assert!(!reported_at(Pose::IDENTITY).is_news(Pose::IDENTITY));
+    fn an_object_that_was_never_reported_is_reported() {
+        assert!(Tracked::new("it", 1).is_report_due(Pose::IDENTITY));
+        assert!(!reported_at(Pose::IDENTITY).is_report_due(Pose::IDENTITY));
     }
 
     #[test]
-    fn moves_are_news_beyond_the_square_root_of_a_thousandth() {
+    fn moves_are_reported_beyond_the_square_root_of_a_thousandth() {
         let tracked = reported_at(Pose::IDENTITY);
-        assert!(!tracked.is_news(Pose::at(Vec3::X * 0.0316)));
-        assert!(tracked.is_news(Pose::at(Vec3::X * 0.0317)));
-        assert!(!tracked.is_news(Pose::at(Vec3::splat(0.0182))));
-        assert!(tracked.is_news(Pose::at(Vec3::splat(0.0183))));
+        assert!(!tracked.is_report_due(Pose::at(Vec3::X * 0.0316)));
+        assert!(tracked.is_report_due(Pose::at(Vec3::X * 0.0317)));
+        assert!(!tracked.is_report_due(Pose::at(Vec3::splat(0.0182))));
+        assert!(tracked.is_report_due(Pose::at(Vec3::splat(0.0183))));
     }
 
     #[test]
-    fn turns_are_news_beyond_half_a_degree_about_any_axis() {
+    fn turns_are_reported_beyond_half_a_degree_about_any_axis() {
         for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
             let tracked = reported_at(Pose::IDENTITY);
             let turned = |degrees: f32| Pose::from_degrees(Vec3::ZERO, axis * degrees);
-            assert!(!tracked.is_news(turned(0.49)));
-            assert!(tracked.is_news(turned(0.51)));
-            assert!(tracked.is_news(turned(-0.51)));
+            assert!(!tracked.is_report_due(turned(0.49)));
+            assert!(tracked.is_report_due(turned(0.51)));
+            assert!(tracked.is_report_due(turned(-0.51)));
         }
     }
 
     #[test]
     fn a_turn_past_180_degrees_is_small() {
         let tracked = reported_at(turned(179.8));
-        assert!(!tracked.is_news(turned(-179.9)));
-        assert!(tracked.is_news(turned(-179.6)));
+        assert!(!tracked.is_report_due(turned(-179.9)));
+        assert!(tracked.is_report_due(turned(-179.6)));
     }
 
     #[test]
-    fn a_change_of_velocity_alone_is_noted_and_no_news() {
+    fn a_change_of_velocity_alone_is_noted_and_no_event() {
         let mut tracked = reported_at(Pose::IDENTITY);
         let mut state = still(Pose::IDENTITY);
         assert!(!tracked.note(state));
         state.twist.angular.z = 1e-9;
-        assert!(!tracked.is_news(state.pose));
+        assert!(!tracked.is_report_due(state.pose));
         assert!(tracked.note(state));
     }
 
     #[test]
-    fn an_object_that_comes_to_rest_is_news_once() {
+    fn an_object_that_comes_to_rest_is_reported_once() {
         let mut tracked = reported_at(Pose::IDENTITY);
         let rest = Pose::at(Vec3::X * 1e-6);
-        assert!(!tracked.is_news(rest), "it still moves");
+        assert!(!tracked.is_report_due(rest), "it still moves");
         assert!(tracked.is_elsewhere(rest));
         assert!(tracked.note(still(rest)));
-        assert!(tracked.is_news(rest), "it has come to rest");
+        assert!(tracked.is_report_due(rest), "it has come to rest");
         tracked.report(rest);
         assert!(!tracked.note(still(rest)));
-        assert!(!tracked.is_news(rest), "it is where it was reported");
+        assert!(!tracked.is_report_due(rest), "it is where it was reported");
         assert!(!tracked.is_elsewhere(rest));
     }
 }

@@ -279,20 +279,22 @@ fn the_session_log_holds_the_scene_and_every_command() {
     };
     assert_eq!(object.spec, block("a"));
     assert_eq!(object.pose.location, location("a", SimTick(2)));
-    let told = |commands: Vec<SessionCommand>| -> Vec<_> {
-        let told = commands.into_iter();
-        told.map(|told| (told.tick, told.command)).collect()
+    let reported = |commands: Vec<SessionCommand>| -> Vec<_> {
+        let reported = commands.into_iter();
+        reported
+            .map(|reported| (reported.tick, reported.command))
+            .collect()
     };
     assert_eq!(session.header.begin_tick, Some(0));
     assert_eq!(
-        told(session.earlier),
+        reported(session.earlier),
         [
             (0, scene(&["a"])),
             (3, SimCommand::Clock(ClockCommand::SetPaused(true)))
         ]
     );
     assert_eq!(
-        told(session.commands),
+        reported(session.commands),
         [
             (3, grasp(Hand::Left, "a")),
             (3, SimCommand::Clock(ClockCommand::SetPaused(false))),
@@ -328,7 +330,7 @@ fn an_earlier_recording_is_part_of_what_came_before_without_what_was_undone() {
     let earlier: Vec<_> = session
         .earlier
         .into_iter()
-        .map(|told| told.command)
+        .map(|reported| reported.command)
         .collect();
     assert_eq!(
         earlier,

@@ -106,13 +106,13 @@ fn check(mode: RobotMode, joint: &JointLayout, drive: Drive) -> Result<(), Strin
     };
     if !value.is_finite() {
         return Err(format!(
-            "joint {} cannot be told {drive:?}: not a number",
+            "joint {} cannot obey {drive:?}: not a number",
             joint.name
         ));
     }
     match drive {
         Drive::Torque(_) if !has_motor(mode, joint) => Err(format!(
-            "joint {} cannot be told a torque: only the joints of arms can, in dynamic mode",
+            "joint {} cannot take a torque: only joints of arms can, in dynamic mode",
             joint.name
         )),
         Drive::Velocity(_) | Drive::Position(_) | Drive::Toward(_) | Drive::Torque(_) => Ok(()),

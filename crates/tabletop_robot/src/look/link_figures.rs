@@ -68,14 +68,14 @@ pub(crate) fn show_figures(
 
 /// The figures of the bodies. A mesh that cannot be read is reported once, however many visuals use it.
 fn figures_of(description: &Description, articulation: &Articulation) -> Vec<Option<Figure>> {
-    let mut told = BTreeSet::new();
+    let mut reported = BTreeSet::new();
     let bodies = articulation.bodies.iter();
     bodies
         .map(|body| match body.carrier {
             Carrier::Link(link) => {
                 let link = description.model.link(link);
                 figure_of_link(description, link).unwrap_or_else(|error| {
-                    if told.insert(error.to_string()) {
+                    if reported.insert(error.to_string()) {
                         warn!(
                             "link {} is shown by what it is touched by: {error}",
                             link.name
@@ -87,7 +87,7 @@ fn figures_of(description: &Description, articulation: &Articulation) -> Vec<Opt
             Carrier::Gripper(limb, _) => {
                 let gripper = &articulation.layout.limb(limb).gripper;
                 finger(gripper, description).unwrap_or_else(|error| {
-                    if told.insert(error.to_string()) {
+                    if reported.insert(error.to_string()) {
                         warn!("fingers are shown by what they are touched by: {error}");
                     }
                     stand_in(&[finger_solid(gripper)])

@@ -46,8 +46,8 @@ pub(crate) fn advance(
 ) -> Result {
     let layout = &known.articulation.layout;
     let is_dynamic = robot.mode == RobotMode::Dynamic;
-    let is_told = targets.are_given();
-    if !is_dynamic && !is_told {
+    let is_commanded = targets.are_given();
+    if !is_dynamic && !is_commanded {
         stand_still(&mut robot);
         return let_sleep(&known.parts, &mut moved.rapier);
     }
@@ -100,7 +100,7 @@ pub(crate) fn advance(
         let mut joints = layout.limb(limb).joints.iter();
         let has_moved =
             joints.any(|joint| motion.positions[joint.index()] != before[joint.index()]);
-        if (is_told && has_moved) || blocked_by.is_some() {
+        if (is_commanded && has_moved) || blocked_by.is_some() {
             robot.limbs[limb.index()].blocked_by = blocked_by;
         }
     }

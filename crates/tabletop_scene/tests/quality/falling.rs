@@ -1,4 +1,4 @@
-//! What falls.
+//! Falling objects.
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
@@ -36,7 +36,7 @@ fn a_falling_ball_is_where_the_formula_says() {
     );
 }
 
-/// Things that are easily lost, dropped from a height of 100 units along the line of this `y`.
+/// Small things, dropped from a height of 100 units along the line of this `y`.
 fn dropped(y: f32, z: f32, turn: usize) -> Vec<SceneItem> {
     let turn = turn as f32;
     let degrees = Vec3::new(10.0 * turn, 13.0 * turn + 20.0, 30.0 * turn);
@@ -63,7 +63,7 @@ fn dropped(y: f32, z: f32, turn: usize) -> Vec<SceneItem> {
     .collect()
 }
 
-/// Asserts that none of the objects passes through this height within the table's edges in so many seconds; what is
+/// Asserts that no object passes through this height within the table's edges during these seconds; objects
 /// thrown over the edge may fall.
 fn nothing_passes(world: &mut TestWorld, height: f32, seconds: f32) {
     let mut over_the_edge = std::collections::BTreeSet::new();
@@ -138,7 +138,7 @@ fn a_block_slides_as_far_as_friction_lets_it() {
     );
 }
 
-/// How far aside of where it was dropped an object comes to rest, in units.
+/// Distance, in units, between where an object was dropped and where it comes to rest, seen from above.
 fn lands_aside(shape: Shape, degrees: Vec3, bottom: f32, height: f32) -> f32 {
     let dropped = turned("it", Vec3::Z * (bottom + height), degrees, 1.0, shape);
     let mut world = TestWorld::new([dropped]);

@@ -1,4 +1,4 @@
-//! The quality bar of the physics: what must stand still stands still, what falls falls as it should, nothing tunnels.
+//! The quality bar of the physics: towers stand still, objects fall as they should, and nothing tunnels.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod world;

@@ -1,4 +1,4 @@
-//! What must stand still.
+//! Objects that must stand still.
 
 use bevy::prelude::*;
 use tabletop_core::{Part, Pose, SceneItem, Shape};
@@ -6,7 +6,7 @@ use tabletop_physics::PhysicsSettings;
 
 use crate::world::*;
 
-/// How far the objects are from where they were put, in units, and how much they have turned, in degrees.
+/// Largest displacement of the objects, in units, and their largest turn, in degrees.
 fn drift(world: &TestWorld, put: &[SceneItem]) -> (f32, f32) {
     put.iter().fold((0.0f32, 0.0f32), |(far, turn), item| {
         let SceneItem::Object(spec) = item else {

@@ -1,4 +1,4 @@
-//! What slides, bounces and begins to move as its file says, and shapes with holes and many faces.
+//! Sliding, bouncing and initial velocities as the file gives them, and shapes with holes and many faces.
 
 use bevy::prelude::*;
 use tabletop_core::{Dynamics, Rgb, SceneItem, Shape, StepApp as _};

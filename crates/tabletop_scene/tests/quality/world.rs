@@ -1,4 +1,4 @@
-//! A headless world to put objects into and to look at.
+//! A headless world for tests.
 
 use bevy::prelude::*;
 use tabletop_core::{ChainSpec, LidBoxSpec, prelude::*, quat_from_degrees};
@@ -65,7 +65,7 @@ impl TestWorld {
             .collect()
     }
 
-    /// The greatest distance and turn, in units and degrees, that any object makes in so many seconds.
+    /// The greatest displacement and turn of any object in these seconds, in units and degrees.
     pub fn motion_in(&mut self, seconds: f32) -> (f32, f32) {
         let before = self.poses();
         self.seconds(seconds);

@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rotation_and_its_negative_are_told_apart() {
+    fn a_rotation_and_its_negative_are_distinguished() {
         let rotation = quat_from_degrees(Vec3::new(10.0, 20.0, 30.0));
         assert_eq!(quat_from_degrees(angles_of(rotation)), rotation);
         assert_eq!(quat_from_degrees(angles_of(-rotation)), -rotation);

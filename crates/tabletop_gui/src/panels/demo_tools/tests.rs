@@ -214,6 +214,6 @@ fn tooltips_name_the_keys() {
     let mut harness = Stage::recording(1, 0).harness();
     harness.get_by_label("Undo").hover();
     harness.run_steps(8);
-    let told = harness.query_by_label_contains("(Ctrl+Z)");
-    assert!(told.is_some());
+    let reported = harness.query_by_label_contains("(Ctrl+Z)");
+    assert!(reported.is_some());
 }

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use bevy::prelude::*;
 use bevy_egui::egui::Color32;
 
-use crate::widgets::style::{FAULT, NEWS, WARNING};
+use crate::widgets::style::{EVENT, FAULT, WARNING};
 
 /// Older notices are forgotten, so that a script that is refused a million times does not fill the memory.
 const MAX_NOTICES: usize = 1000;
@@ -14,7 +14,7 @@ const MAX_NOTICES: usize = 1000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tone {
     /// Something has happened.
-    News,
+    Event,
     /// Somebody warns.
     Warning,
     /// Something is wrong.
@@ -22,12 +22,12 @@ pub enum Tone {
 }
 
 impl Tone {
-    pub(crate) const ALL: [Self; 3] = [Self::News, Self::Warning, Self::Fault];
+    pub(crate) const ALL: [Self; 3] = [Self::Event, Self::Warning, Self::Fault];
 
     /// The plural of notices of this tone.
     pub(crate) const fn plural(self) -> &'static str {
         match self {
-            Self::News => "News",
+            Self::Event => "Events",
             Self::Warning => "Warnings",
             Self::Fault => "Faults",
         }
@@ -36,7 +36,7 @@ impl Tone {
     /// The name of the filter that leaves them out or not.
     pub(crate) const fn filter(self) -> &'static str {
         match self {
-            Self::News => "List what has happened",
+            Self::Event => "List what has happened",
             Self::Warning => "List warnings",
             Self::Fault => "List what is wrong",
         }
@@ -44,14 +44,14 @@ impl Tone {
 
     pub(crate) const fn color(self) -> Color32 {
         match self {
-            Self::News => NEWS,
+            Self::Event => EVENT,
             Self::Warning => WARNING,
             Self::Fault => FAULT,
         }
     }
 }
 
-/// One thing that the user has been told.
+/// One message to the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Notice {
     /// The number of notices before it, counting those that are forgotten.
@@ -117,7 +117,7 @@ impl Notices {
         self.notices.iter().map(|notice| notice.text.as_str())
     }
 
-    /// True if there is nothing to be said.
+    /// True if there are no notices.
     pub fn is_empty(&self) -> bool {
         self.notices.is_empty()
     }
@@ -186,7 +186,7 @@ mod tests {
     fn the_oldest_notices_are_forgotten() {
         let mut notices = Notices::default();
         for number in 0..=MAX_NOTICES {
-            notices.add(Tone::News, &number.to_string());
+            notices.add(Tone::Event, &number.to_string());
         }
         assert_eq!(notices.iter().len(), MAX_NOTICES);
         assert_eq!(notices.iter().next(), Some("1"));
@@ -198,12 +198,12 @@ mod tests {
         let mut notices = Notices::default();
         let texts = |notices: &Notices| notices.iter().collect::<Vec<_>>().join(" ");
         for text in ["a", "b", "a"] {
-            notices.add(Tone::News, text);
+            notices.add(Tone::Event, text);
         }
         assert_eq!(texts(&notices), "a b");
-        notices.renew(Tone::News, "a");
+        notices.renew(Tone::Event, "a");
         assert_eq!(texts(&notices), "b a");
-        notices.append(Tone::News, "b");
+        notices.append(Tone::Event, "b");
         assert_eq!(texts(&notices), "b a b");
     }
 
@@ -212,7 +212,7 @@ mod tests {
         let mut notices = Notices::default();
         for (tone, text) in [
             (Tone::Fault, "one"),
-            (Tone::News, "two"),
+            (Tone::Event, "two"),
             (Tone::Fault, "three"),
         ] {
             notices.add(tone, text);
@@ -231,10 +231,10 @@ mod tests {
     #[test]
     fn numbers_go_on_after_notices_are_forgotten() {
         let mut notices = Notices::default();
-        notices.add(Tone::News, "a");
+        notices.add(Tone::Event, "a");
         notices.clear();
         assert!(notices.is_empty());
-        notices.add(Tone::News, "b");
+        notices.add(Tone::Event, "b");
         let since: Vec<_> = notices.since(1).map(|notice| &*notice.text).collect();
         assert_eq!(since, ["b"]);
         assert_eq!(notices.next(), 2);

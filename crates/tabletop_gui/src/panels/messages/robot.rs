@@ -11,7 +11,7 @@ pub(crate) fn plugin(app: &mut App) {
 
 fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
     for words in facts.read().filter_map(SimFact::robot_event) {
-        notices.renew(Tone::News, &words);
+        notices.renew(Tone::Event, &words);
     }
 }
 
@@ -29,7 +29,7 @@ mod tests {
     }
 
     #[test]
-    fn what_happens_again_is_told_last() {
+    fn what_happens_again_is_reported_last() {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))

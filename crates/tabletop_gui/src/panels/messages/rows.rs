@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn rows_are_made_anew_when_what_they_show_changes() {
         let mut notices = Notices::default();
-        notices.append(Tone::News, "news");
+        notices.append(Tone::Event, "news");
         notices.append(Tone::Fault, "a fault");
         let mut rows = Rows::default();
         let all = [true; 3];

@@ -200,7 +200,7 @@ fn the_slider_sends_the_joint_where_it_is_clicked_and_nothing_otherwise() {
 }
 
 #[test]
-fn a_wide_open_gripper_is_told_to_open_by_its_slider() {
+fn a_wide_open_gripper_is_commanded_to_open_by_its_slider() {
     let joint = JointId::from(RobotJoint::LeftGripper);
     let stage = || Stage {
         selection: JointSelection { joint, goal: None },

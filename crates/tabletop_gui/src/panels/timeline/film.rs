@@ -64,7 +64,7 @@ fn show_small(
         let kind = bevy_egui::egui::StrokeKind::Inside;
         ui.painter().rect_stroke(rect, 0.0, stroke, kind);
     }
-    let response = response.on_hover_text(track::told_at(model, picture.tick));
+    let response = response.on_hover_text(track::caption_at(model, picture.tick));
     response.clicked().then_some(Moment::Chosen(picture.tick))
 }
 
@@ -101,7 +101,7 @@ pub(super) fn show_large_at_pointer(
             Frame::popup(ui.style()).show(ui, |ui| {
                 ui.set_max_width(LARGE.x);
                 show_large(ui, model, tick, pictures);
-                ui.label(track::told_at(model, tick));
+                ui.label(track::caption_at(model, tick));
             });
         });
 }

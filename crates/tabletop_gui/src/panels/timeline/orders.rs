@@ -162,9 +162,11 @@ mod tests {
             .add_systems(Update, carry_out)
             .add_systems(
                 FixedLast,
-                |mut commands: MessageReader<IssuedCommand>, mut told: ResMut<SentCommands>| {
+                |mut commands: MessageReader<IssuedCommand>, mut reported: ResMut<SentCommands>| {
                     let issued = commands.read();
-                    told.0.extend(issued.map(|issued| issued.command.clone()));
+                    reported
+                        .0
+                        .extend(issued.map(|issued| issued.command.clone()));
                 },
             );
         app.finish();

@@ -457,7 +457,7 @@ fn each_property_of_each_object_can_be_required_or_not() {
 }
 
 #[test]
-fn what_could_not_be_understood_is_said() {
+fn what_could_not_be_understood_is_reported() {
     let mut harness = taught(TimelineStage::Finished);
     harness.state_mut().task = ShownTask {
         fault: Some("demo/states.csv:3: expected 14 values".into()),

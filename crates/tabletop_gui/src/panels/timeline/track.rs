@@ -64,7 +64,7 @@ fn show_ruler(ui: &mut Ui, model: &Model, axis: TimeAxis, rect: Rect) -> Vec<Mom
     let chosen = moment(&response, axis, model.timeline.start);
     let hover = response.hover_pos().map(|at| axis.tick_at(at.x));
     if let Some(tick) = hover {
-        response.on_hover_text_at_pointer(told_at(model, tick));
+        response.on_hover_text_at_pointer(caption_at(model, tick));
     }
     chosen
 }
@@ -92,7 +92,7 @@ fn show_segment(
     paint_segment(ui, segment, &response, rect, is_present);
     let moments = moment(&response, axis, segment.start);
     if let Some(at) = response.hover_pos() {
-        response.on_hover_text_at_pointer(told_at(model, axis.tick_at(at.x)));
+        response.on_hover_text_at_pointer(caption_at(model, axis.tick_at(at.x)));
     }
     moments
 }
@@ -189,7 +189,7 @@ pub(super) fn moment(response: &Response, axis: TimeAxis, first: SimTick) -> Vec
 }
 
 /// The time of a moment and what goes on then.
-pub(super) fn told_at(model: &Model, tick: SimTick) -> String {
+pub(super) fn caption_at(model: &Model, tick: SimTick) -> String {
     let time = model.time(tick);
     match model.timeline.segment_at(tick) {
         Some(number) => format!("{time}\n{}", model.sentence(number)),

@@ -25,7 +25,7 @@ impl Episode {
     ) -> Result<(), RecorderError> {
         timeline.end = tick;
         if self.clock.is_frame(tick) {
-            self.write_frame(tick, Tracked::is_news, stage, image, timeline)?;
+            self.write_frame(tick, Tracked::is_report_due, stage, image, timeline)?;
         }
         let rows = self.objects.moved_rows(tick, stage);
         self.files.states.append_records(&rows)?;
@@ -45,7 +45,7 @@ impl Episode {
     pub(super) fn write_frame(
         &mut self,
         tick: SimTick,
-        is_told: impl Fn(&Tracked, Pose) -> bool,
+        is_due: impl Fn(&Tracked, Pose) -> bool,
         stage: &RecordedWorld,
         image: Option<&SensorImage>,
         timeline: &mut Timeline,
@@ -54,7 +54,7 @@ impl Episode {
         let mut moves = Vec::new();
         for object in self.objects.tracked_mut() {
             if let Some(state) = stage.state(&object.id)
-                && is_told(object, state.pose)
+                && is_due(object, state.pose)
             {
                 object.report(state.pose);
                 let (id, pose) = (&object.id, state.pose);
