@@ -7,10 +7,11 @@ use tabletop::{
     core::LayoutFile,
     headless_app_with,
     kinematics::RobotModel,
+    mesh::{read_obj, read_stl},
     prelude::*,
     recorder::Session,
     replay::Replay,
-    robot::look::{read_obj, read_shape, read_stl},
+    robot::look::read_shape,
     scenario::Scenario,
     script::engine::protocol::Arrays,
 };
@@ -147,11 +148,11 @@ fn layout(bytes: &[u8]) {
 }
 
 fn stl(bytes: &[u8]) {
-    let _triangles = read_stl(bytes);
+    let _triangles = read_stl(bytes, 1_000_000);
 }
 
 fn obj(bytes: &[u8]) {
-    let _triangles = read_obj(bytes);
+    let _triangles = read_obj(bytes, 1_000_000);
 }
 
 fn shape(bytes: &[u8]) {

@@ -45,6 +45,7 @@ pub use tabletop_gui as gui;
 pub use tabletop_history as history;
 pub use tabletop_kinematics as kinematics;
 pub use tabletop_mechanism as mechanism;
+pub use tabletop_mesh as mesh;
 pub use tabletop_physics as physics;
 pub use tabletop_planner as planner;
 pub use tabletop_recorder as recorder;

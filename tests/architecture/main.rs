@@ -37,6 +37,7 @@ const RULES: [Rule; 20] = [
             "tabletop_core",
             "tabletop_history",
             "tabletop_kinematics",
+            "tabletop_mesh",
             "tabletop_physics",
         ],
     )
@@ -64,6 +65,7 @@ const RULES: [Rule; 20] = [
             "tabletop_mechanism",
             "tabletop_history",
             "tabletop_kinematics",
+            "tabletop_mesh",
             "tabletop_robot",
             "tabletop_script",
             "tabletop_camera",

@@ -1,6 +1,7 @@
-//! Meshes: surfaces from STL files, and the convex solids that fill them.
+//! Meshes: triangles and surfaces from STL and OBJ files, and the convex solids that fill them.
 //!
-//! [`read_stl`] reads a file, [`convex_solids`] decomposes its surface, once for each content, and [`mesh`] does both.
+//! [`read_stl`] and [`read_obj`] read triangles; [`surface`] makes a surface of those of an STL file, [`convex_solids`] decomposes one, once
+//! for each content, and [`mesh`] does both.
 //!
 //! ```
 //! let cup = std::fs::read("../../tablesetup/cup.stl")?;
@@ -10,20 +11,32 @@
 //! ```
 
 mod convex;
+mod error;
+mod limits;
+mod obj;
 mod stl;
+mod surface;
+mod text;
 
 pub use convex::convex_solids;
-pub use stl::{MAX_STL_BYTES, StlError, read_stl};
+pub use error::MeshFileError;
+pub use limits::MAX_STL_BYTES;
+pub use obj::read_obj;
+pub use stl::read_stl;
+pub use surface::surface;
 
 use bevy::math::Vec3;
 use tabletop_core::MeshSpec;
+
+/// The corners of a triangle, in the units of its file.
+pub type Triangle = [Vec3; 3];
 
 /// The mesh of an STL file, with its lengths multiplied by a scale above 0. `file` is its name in the task file.
 ///
 /// # Errors
 /// The bytes are not an STL file, or describe something too large or without volume.
-pub fn mesh(file: &str, bytes: &[u8], scale: f32) -> Result<MeshSpec, StlError> {
-    let surface = read_stl(bytes)?;
+pub fn mesh(file: &str, bytes: &[u8], scale: f32) -> Result<MeshSpec, MeshFileError> {
+    let surface = surface(bytes)?;
     let by = Vec3::splat(scale);
     let solids = convex_solids(surface);
     let solids = solids.iter().map(|solid| solid.scaled(by)).collect();

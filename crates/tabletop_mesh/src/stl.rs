@@ -1,152 +1,168 @@
 //! STL files, ASCII and binary.
 
-use std::{collections::HashMap, io};
-
 use bevy::math::Vec3;
-use tabletop_core::{MeshError, MeshSpec, Polyhedron, PolyhedronError};
 
-/// Largest size of a file, in bytes: 16 MiB.
-pub const MAX_STL_BYTES: usize = 16 << 20;
+use crate::{
+    Triangle,
+    error::MeshFileError,
+    text::{lines, point},
+};
 
-/// The error of a file that is no mesh.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum StlError {
-    /// It has more than [`MAX_STL_BYTES`].
-    #[error("it is larger than {MAX_STL_BYTES} bytes")]
-    TooLarge,
-    /// It is not written as STL.
-    #[error("it is no STL file: {0}")]
-    Syntax(#[source] io::Error),
-    /// Its content is no surface.
-    #[error(transparent)]
-    Surface(#[from] PolyhedronError),
-    /// Its content is too large, or no solid.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
-}
+/// What a binary file has before its triangles: a title, and how many there are.
+const HEAD: usize = 84;
 
-/// The surface in a file: its first solid. Its axes become those of an object as in the later program: the file's Y is up, its Z towards
-/// the user. If it is inside out, it is turned.
+/// What it has for each: a normal, three corners, and two bytes without meaning.
+const TRIANGLE: usize = 50;
+
+/// The solids of an STL file, each as its triangles, in the file's axes and units. A binary file has one.
 ///
 /// # Errors
-/// The bytes are not an STL file, or have no triangle with an area, or more than [`MeshSpec::MOST_TRIANGLES`].
-pub fn read_stl(bytes: &[u8]) -> Result<Polyhedron, StlError> {
-    if bytes.len() > MAX_STL_BYTES {
-        return Err(StlError::TooLarge);
+/// It is none, or has more than `most` triangles.
+pub fn read_stl(bytes: &[u8], most: usize) -> Result<Vec<Vec<Triangle>>, MeshFileError> {
+    let count = bytes.get(80..HEAD).and_then(|count| count.try_into().ok());
+    let count = count.map(|count| u32::from_le_bytes(count) as usize);
+    let is_binary = count
+        .and_then(|count| count.checked_mul(TRIANGLE)?.checked_add(HEAD))
+        .is_some_and(|length| length == bytes.len());
+    match (is_binary, bytes.trim_ascii_start().starts_with(b"solid")) {
+        (true, _) => read_binary(bytes, most).map(|solid| vec![solid]),
+        (false, true) => read_text(bytes, most),
+        (false, false) => Err(MeshFileError::Stl(
+            "its length is not that of the triangles that it announces".into(),
+        )),
     }
-    let scene = mesh_loader::stl::from_slice(bytes).map_err(StlError::Syntax)?;
-    let Some(mesh) = scene.meshes.first() else {
-        return Err(PolyhedronError::Empty.into());
-    };
-    if mesh.faces.len() > MeshSpec::MOST_TRIANGLES {
-        return Err(MeshError::TooManyTriangles.into());
+}
+
+fn read_binary(bytes: &[u8], most: usize) -> Result<Vec<Triangle>, MeshFileError> {
+    let triangles = bytes[HEAD..].chunks_exact(TRIANGLE);
+    if triangles.len() > most {
+        return Err(MeshFileError::TooManyTriangles(most));
     }
+    let triangles = triangles.map(|triangle| {
+        let (numbers, _) = triangle[12..48].as_chunks();
+        let numbers: Vec<f32> = numbers
+            .iter()
+            .map(|&bytes| f32::from_le_bytes(bytes))
+            .collect();
+        [0, 3, 6].map(|first| Vec3::from_slice(&numbers[first..]))
+    });
+    Ok(triangles.collect())
+}
+
+fn read_text(bytes: &[u8], most: usize) -> Result<Vec<Vec<Triangle>>, MeshFileError> {
+    let mut solids: Vec<Vec<Triangle>> = Vec::new();
     let mut corners = Vec::new();
-    let mut known = HashMap::new();
-    let mut triangles = Vec::new();
-    for face in &mesh.faces {
-        let mut triangle = [0; 3];
-        for (corner, &index) in triangle.iter_mut().zip(face) {
-            let vertex = mesh.vertices.get(index as usize);
-            let [x, y, z] = *vertex.ok_or(PolyhedronError::NoCorner)?;
-            // Zeros of both signs are the same place.
-            let place = Vec3::new(x, -z, y) + Vec3::ZERO;
-            *corner = *known
-                .entry(place.to_array().map(f32::to_bits))
-                .or_insert_with(|| {
-                    corners.push(place);
-                    corners.len() as u32 - 1
-                });
+    let mut left = most;
+    for (line, words) in lines(bytes).map_err(MeshFileError::Stl)? {
+        let [first, rest @ ..] = &words[..] else {
+            continue;
+        };
+        let fault = |what: String| Err(MeshFileError::Stl(format!("line {line}: {what}")));
+        match first.to_ascii_lowercase().as_str() {
+            "solid" => solids.push(Vec::new()),
+            "vertex" => corners.push(point(line, rest).map_err(MeshFileError::Stl)?),
+            "endloop" => {
+                let [a, b, c] = corners[..] else {
+                    return fault(format!("a triangle has {} corners", corners.len()));
+                };
+                if left == 0 {
+                    return Err(MeshFileError::TooManyTriangles(most));
+                }
+                left -= 1;
+                solids
+                    .last_mut()
+                    .into_iter()
+                    .for_each(|solid| solid.push([a, b, c]));
+                corners.clear();
+            }
+            "facet" | "outer" | "endfacet" | "endsolid" => {}
+            _ => return fault(format!("STL has no `{first}`")),
         }
-        let [a, b, c] = triangle;
-        if a != b && b != c && c != a {
-            triangles.push(triangle);
-        }
     }
-    let surface = Polyhedron::new(corners.clone(), triangles.clone())?;
-    if surface.volume() >= 0.0 {
-        return Ok(surface);
+    match corners.is_empty() {
+        true => Ok(solids),
+        false => Err(MeshFileError::Stl("its last triangle does not end".into())),
     }
-    for triangle in &mut triangles {
-        triangle.swap(1, 2);
-    }
-    Ok(Polyhedron::new(corners, triangles)?)
 }
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
+    use crate::read_obj;
 
-    /// A pyramid whose tip is at the file's Y 1.
-    const FACETS: [[[f32; 3]; 3]; 4] = [
-        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]],
-        [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]],
-        [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]],
-        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-    ];
-
-    fn ascii(facets: &[[[f32; 3]; 3]]) -> Vec<u8> {
-        let mut text = "solid pyramid\n".to_owned();
-        for facet in facets {
-            text += "facet normal 0 0 0\nouter loop\n";
-            for [x, y, z] in facet {
-                text += &format!("vertex {x} {y} {z}\n");
-            }
-            text += "endloop\nendfacet\n";
-        }
-        (text + "endsolid pyramid\n").into_bytes()
-    }
-
-    fn binary(facets: &[[[f32; 3]; 3]]) -> Vec<u8> {
-        let mut bytes = vec![0; 80];
-        bytes.extend((facets.len() as u32).to_le_bytes());
-        for facet in facets {
+    fn binary(triangles: &[Triangle]) -> Vec<u8> {
+        let mut bytes = b"solid, but binary".to_vec();
+        bytes.resize(80, b' ');
+        bytes.extend((triangles.len() as u32).to_le_bytes());
+        for corners in triangles {
             bytes.extend([0; 12]);
-            let numbers = facet.iter().flatten();
-            bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
+            bytes.extend(
+                corners
+                    .iter()
+                    .flat_map(|corner| corner.to_array())
+                    .flat_map(f32::to_le_bytes),
+            );
             bytes.extend([0; 2]);
         }
         bytes
     }
 
     #[test]
-    fn both_kinds_of_file_are_the_same_surface() -> Result<(), StlError> {
-        let surface = read_stl(&ascii(&FACETS))?;
-        assert_eq!(read_stl(&binary(&FACETS))?, surface);
-        assert_eq!(surface.corners().len(), 4);
-        assert!((surface.volume() - 1.0 / 6.0).abs() < 1e-6);
-        // Its tip is up, and the file's Z is towards the user.
-        assert_eq!(surface.farthest(Vec3::Z), Vec3::Z);
-        assert_eq!(surface.farthest(Vec3::NEG_Y), Vec3::NEG_Y);
-        Ok(())
+    fn binary_triangles_come_back() {
+        let triangles = [
+            [Vec3::ZERO, Vec3::X, Vec3::Y],
+            [Vec3::Z, Vec3::ONE, Vec3::NEG_X],
+        ];
+        let bytes = binary(&triangles);
+        assert_eq!(read_stl(&bytes, 2), Ok(vec![triangles.to_vec()]));
+        assert_eq!(read_stl(&bytes, 1), Err(MeshFileError::TooManyTriangles(1)));
+        assert!(read_stl(&bytes[..bytes.len() - 1], 2).is_err());
     }
 
     #[test]
-    fn a_surface_that_is_inside_out_is_turned() -> Result<(), StlError> {
-        let turned = FACETS.map(|[a, b, c]| [a, c, b]);
-        assert!(read_stl(&ascii(&turned))?.volume() > 0.0);
-        Ok(())
+    fn solids_of_a_text_are_kept_apart() {
+        let facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+        let text = format!("solid a\n{facet}endsolid a\nsolid b\n{facet}{facet}endsolid b\n");
+        let triangle = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let solids = vec![vec![triangle], vec![triangle; 2]];
+        assert_eq!(read_stl(text.as_bytes(), 3), Ok(solids));
+        assert!(read_stl(text.as_bytes(), 2).is_err());
     }
 
     #[test]
-    fn what_is_no_mesh_is_refused_with_the_reason() {
-        let reason = |bytes: &[u8]| match read_stl(bytes) {
-            Ok(surface) => panic!("{surface:?}"),
-            Err(error) => error.to_string(),
-        };
-        let cut = ascii(&FACETS);
-        let cut = reason(&cut[..cut.len() / 2]);
-        assert!(cut.starts_with("it is no STL file: "), "{cut}");
-        let short = binary(&FACETS);
-        assert!(reason(&short[..100]).starts_with("it is no STL file: "));
-        assert_eq!(reason(&ascii(&[])), "it has no triangles");
-        assert_eq!(reason(&ascii(&[[[0.0; 3]; 3]])), "it has no triangles");
-        let far = [[[0.0; 3], [1e9, 0.0, 0.0], [0.0, 1.0, 0.0]]];
-        assert_eq!(reason(&binary(&far)), "a corner is not a place");
-        assert_eq!(
-            reason(&vec![0; MAX_STL_BYTES + 1]),
-            "it is larger than 16777216 bytes"
-        );
+    fn what_is_no_stl_file_is_refused() {
+        for (text, fault) in [
+            ("", "its length"),
+            ("solid\nvertex 1 2\n", "line 2: a corner"),
+            (
+                "solid\nouter loop\nvertex 1 2 3\nendloop\n",
+                "line 4: a triangle has 1",
+            ),
+            ("solid\nvertex 1 2 3\n", "its last triangle"),
+            ("solid\nwhat\n", "line 2: STL has no `what`"),
+        ] {
+            let found = read_stl(text.as_bytes(), 9).map_err(|error| error.to_string());
+            let expected = format!("it is no STL file: {fault}");
+            assert!(
+                found
+                    .as_ref()
+                    .is_err_and(|found| found.starts_with(&expected)),
+                "{found:?}"
+            );
+        }
+        let mut bytes = binary(&[]);
+        bytes[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
+        assert!(read_stl(&bytes, 9).is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn no_bytes_panic(bytes in prop::collection::vec(any::<u8>(), 0..300), is_text: bool) {
+            let head: &[u8] = if is_text { b"solid\n" } else { b"v 0 0 0\nf 1 1 1\n" };
+            let bytes = [head, &bytes].concat();
+            let _read = (read_stl(&bytes, 9), read_obj(&bytes, 9));
+        }
     }
 }

@@ -14,7 +14,6 @@ mod hull;
 mod lathe;
 pub(crate) mod link_figures;
 mod loft;
-mod mesh_file;
 mod meshes;
 mod palette;
 
@@ -26,5 +25,4 @@ mod tube;
 pub use error::LookError;
 pub use faces::face;
 pub use figure::{figure_of, merged, screen_with, stand_in};
-pub use mesh_file::{Corners, read_obj, read_stl};
 pub use shape_file::read_shape;

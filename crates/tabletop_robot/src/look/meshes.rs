@@ -8,20 +8,18 @@ use std::{
 
 use bevy::math::Vec3;
 use tabletop_core::{Figure, Rgb, read_regular_file, read_regular_text};
+use tabletop_mesh::{MeshFileError, Triangle, read_obj, read_stl};
 
-use super::{
-    error::LookError,
-    hull::Hull,
-    mesh_file::{Corners, read_obj, read_stl},
-    shape_file::read_shape,
-    shipped::PARTS,
-};
+use super::{error::LookError, hull::Hull, shape_file::read_shape, shipped::PARTS};
 
 /// Prefix of the names of the program's own shapes.
 const OUR_PACKAGE: &str = "package://tabletop/";
 
 /// Size of the largest file that is read.
 const MOST_BYTES: u64 = 64 << 20;
+
+/// Most triangles of a mesh.
+const MOST_TRIANGLES: usize = 1_000_000;
 
 /// Number of triangles beyond which a mesh is simplified for the head camera.
 const COARSE_TRIANGLES: usize = 400;
@@ -57,7 +55,7 @@ pub(super) fn figure(
     }
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     let read = match extension.to_str() {
-        Some("stl") => read_stl,
+        Some("stl") => read_solids,
         Some("obj") => read_obj,
         _ => {
             let kinds =
@@ -66,7 +64,7 @@ pub(super) fn figure(
         }
     };
     let triangles = read_regular_file(&path, MOST_BYTES)
-        .and_then(|bytes| read(&bytes).map_err(io::Error::other))
+        .and_then(|bytes| read(&bytes, MOST_TRIANGLES).map_err(io::Error::other))
         .map_err(failed)?;
     let hull = welded(&triangles, scale);
     if hull.triangles.is_empty() {
@@ -88,8 +86,13 @@ fn shape(file: &str, text: &str) -> Result<Figure, LookError> {
     })
 }
 
+/// The triangles of all solids of an STL file.
+fn read_solids(bytes: &[u8], most: usize) -> Result<Vec<Triangle>, MeshFileError> {
+    Ok(read_stl(bytes, most)?.concat())
+}
+
 /// The surface of these triangles, in m.
-fn welded(triangles: &[Corners], scale: Vec3) -> Hull {
+fn welded(triangles: &[Triangle], scale: Vec3) -> Hull {
     let is_mirrored = scale.x * scale.y * scale.z < 0.0;
     let can_be_drawn = |point: &Vec3| point.abs().cmple(Vec3::splat(FARTHEST)).all();
     let scaled = triangles.iter().map(|corners| {
