@@ -84,7 +84,7 @@ mod tests {
         };
         let session = Session {
             header: SessionHeader {
-                format: 3,
+                format: 4,
                 program: String::new(),
                 ticks_per_second: 60,
                 ticks_per_frame: 15,
@@ -105,6 +105,7 @@ mod tests {
                 command: SceneCommand::Set(Box::new(set)).into(),
             }],
             commands: Vec::new(),
+            segments: Vec::new(),
         };
         let scene = scene_at_beginning(&session).unwrap();
         let found: Vec<_> = scene

@@ -16,6 +16,7 @@ pub(crate) mod log_file;
 pub(crate) mod picture;
 pub(crate) mod properties;
 pub(crate) mod recording_files;
+pub(crate) mod segment_mark;
 pub(crate) mod session;
 pub(crate) mod states;
 pub(crate) mod storage;

@@ -1,4 +1,4 @@
 //! The version of the files.
 
 /// Version of the format that is written here.
-pub(crate) const FORMAT: u32 = 3;
+pub(crate) const FORMAT: u32 = 4;

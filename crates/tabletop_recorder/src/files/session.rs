@@ -20,6 +20,7 @@ use crate::{
         json::{from_json, reads_back, to_json_line},
         limits::MOST_SESSION_BYTES,
         log_file::read_whole_lines,
+        segment_mark::SegmentMark,
     },
 };
 
@@ -93,6 +94,8 @@ pub struct Session {
     pub earlier: Vec<SessionCommand>,
     /// The commands of the recording, in their order.
     pub commands: Vec<SessionCommand>,
+    /// When its segments began, but for the first, which began with the recording.
+    pub segments: Vec<SimTick>,
 }
 
 impl SessionCommand {
@@ -160,8 +163,15 @@ impl Session {
         let scene: SessionScene = parse(&path, line(2))?;
         scene.check().map_err(fault(2))?;
         let mut earlier = Vec::new();
+        let mut segments = Vec::new();
         let mut course = Course::of(&header);
         for line in lines {
+            if SegmentMark::is_in(line.1) {
+                let mark = parse(&path, line)?;
+                course.pass(&mark, segments.len()).map_err(fault(line.0))?;
+                segments.push(SimTick(mark.tick));
+                continue;
+            }
             let entry: SessionCommand = parse(&path, line)?;
             course
                 .follow(&entry)
@@ -175,6 +185,7 @@ impl Session {
             scene,
             earlier,
             commands,
+            segments,
         })
     }
 }
@@ -213,9 +224,27 @@ impl Course {
         }
     }
 
+    /// Goes on to the mark of a segment after so many others, or says why no recording comes to it.
+    fn pass(&mut self, mark: &SegmentMark, others: usize) -> Result<(), String> {
+        let SegmentMark { segment, tick } = *mark;
+        if segment as usize != others + 1 {
+            return Err(format!("segment {segment} follows segment {others}"));
+        }
+        self.come_to(tick)
+    }
+
     /// Goes on to the next command, or says why no simulation comes to it.
     fn follow(&mut self, next: &SessionCommand) -> Result<(), String> {
-        let (tick, next_tick) = (self.tick, next.tick);
+        self.come_to(next.tick)?;
+        self.is_finished = next.command == RecordingCommand::Finish.into();
+        if let SimCommand::Clock(ClockCommand::SetPaused(paused)) = next.command {
+            self.is_paused = paused;
+        }
+        Ok(())
+    }
+
+    fn come_to(&mut self, next_tick: u64) -> Result<(), String> {
+        let tick = self.tick;
         if next_tick < tick {
             return Err(format!("tick {next_tick} comes after tick {tick}"));
         }
@@ -225,14 +254,10 @@ impl Course {
             ));
         }
         if self.is_finished {
-            return Err("a command comes after the end of the recording".into());
+            return Err("something comes after the end of the recording".into());
         }
         check_ticks(self.begin, next_tick)?;
         self.tick = next_tick;
-        self.is_finished = next.command == RecordingCommand::Finish.into();
-        if let SimCommand::Clock(ClockCommand::SetPaused(paused)) = next.command {
-            self.is_paused = paused;
-        }
         Ok(())
     }
 }

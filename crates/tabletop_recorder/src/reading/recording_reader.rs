@@ -13,15 +13,16 @@ use crate::{
         bounds::check_ticks,
         folder::Folder,
         intent::fulfil_what_was_left,
-        limits::MOST_EVENT_BYTES,
+        limits::{MOST_EVENT_BYTES, MOST_SESSION_BYTES},
         log_file::read_whole_lines,
+        segment_mark::SegmentMark,
         session::{Session, SessionHeader},
         storage::is_taken,
     },
     reading::{
         event::{self, RecordedEvent},
         rows::{self, JointRow, StateRow},
-        segment::{self, HandContents, RecordedFrame, RecordedSegment, begin_of},
+        segment::{self, HandContents, RecordedFrame, RecordedSegment},
     },
 };
 
@@ -135,24 +136,22 @@ impl RecordingReader {
     pub fn segments(&self) -> Result<Vec<RecordedSegment>, RecorderError> {
         let mut segments = Vec::new();
         let mut hands = HandContents::default();
-        let mut commands = &self.session.commands[..];
         for number in 0.. {
             let Some(events) = read_events(&self.folder, number)? else {
                 break;
             };
-            let act = hands.follow(&events).filter(|_| number > 0);
-            let begun = act.as_ref().map(|(act, frame)| {
-                let before = frame
-                    .checked_sub(1)
-                    .map(|before| self.tick_of_frame(before));
-                let (tick, rest) = begin_of(act, before, self.tick_of_frame(*frame), commands);
-                commands = rest;
-                tick
-            });
+            let act = hands.follow(&events);
+            let start = match number.checked_sub(1) {
+                None => self.first_tick(),
+                // The mark of the last one may be lost with the power.
+                Some(mark) => {
+                    *(self.session.segments.get(mark as usize)).unwrap_or(&self.last_tick)
+                }
+            };
             segments.push(RecordedSegment {
                 number,
-                start: begun.unwrap_or(self.first_tick()),
-                act: act.map(|(act, _)| act),
+                start,
+                act: act.filter(|_| number > 0),
                 frames: self.frames(&self.folder, number)?,
                 events,
             });
@@ -178,12 +177,11 @@ impl RecordingReader {
             let Some(events) = read_events(&folder, number)? else {
                 break;
             };
-            let act = hands.follow(&events);
-            let frame = act.as_ref().map_or(0, |(_, frame)| *frame);
+            let log = read_whole_lines(&folder.session(), MOST_SESSION_BYTES)?;
             segments.push(RecordedSegment {
                 number,
-                start: self.tick_of_frame(frame),
-                act: act.map(|(act, _)| act),
+                start: SegmentMark::find(&log, number).unwrap_or(self.last_tick),
+                act: hands.follow(&events),
                 frames: self.frames(&folder, number)?,
                 events,
             });

@@ -2,15 +2,9 @@
 
 use std::{collections::BTreeMap, path::PathBuf};
 
-use tabletop_core::{
-    Act, Hand, HandCommand, Manipulator, MechanismCommand, Operator, Rgb, SimCommand, SimTick,
-    TimelineSegment, Verb,
-};
+use tabletop_core::{Act, Hand, Manipulator, Operator, Rgb, SimTick, TimelineSegment, Verb};
 
-use crate::{
-    files::session::SessionCommand,
-    reading::event::{Occurrence, RecordedEvent},
-};
+use crate::reading::event::{Occurrence, RecordedEvent};
 
 /// A segment of a recording.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,11 +48,9 @@ impl RecordedSegment {
 pub(super) struct HandContents(BTreeMap<Hand, String>);
 
 impl HandContents {
-    /// Follows the events of a segment. Returns the first thing that a hand did, and its frame.
-    pub(super) fn follow(&mut self, events: &[RecordedEvent]) -> Option<(Act, u64)> {
-        let acts = events
-            .iter()
-            .filter_map(|event| Some((self.act(&event.what)?, event.frame)));
+    /// Follows the events of a segment. Returns the first thing that a hand did.
+    pub(super) fn follow(&mut self, events: &[RecordedEvent]) -> Option<Act> {
+        let acts = events.iter().filter_map(|event| self.act(&event.what));
         acts.collect::<Vec<_>>().into_iter().next()
     }
 
@@ -121,73 +113,4 @@ pub(super) fn colors(segments: &[RecordedSegment]) -> BTreeMap<String, Rgb> {
         | Occurrence::Loosen { .. } => None,
     });
     created.collect()
-}
-
-/// The tick in which a segment began with an act that came after one tick and not after another, and the commands after the one that
-/// it came of. In the first frame, `after` is `None`.
-pub(super) fn begin_of<'c>(
-    act: &Act,
-    after: Option<SimTick>,
-    last: SimTick,
-    commands: &'c [SessionCommand],
-) -> (SimTick, &'c [SessionCommand]) {
-    let is_here = |command: &SessionCommand| {
-        let tick = SimTick(command.tick);
-        after.is_none_or(|after| tick > after) && tick <= last
-    };
-    let of = |is_cause: fn(&Act, &SimCommand) -> bool| {
-        let mut all = commands.iter();
-        all.position(|command| is_here(command) && is_cause(act, &command.command))
-    };
-    if let Some(at) = of(is_of) {
-        (SimTick(commands[at].tick), &commands[at + 1..])
-    } else if let Some(at) = of(is_forced) {
-        (SimTick(commands[at].tick), &commands[at..])
-    } else {
-        (last, commands)
-    }
-}
-
-/// True if a command is to do just this.
-fn is_of(act: &Act, command: &SimCommand) -> bool {
-    match command {
-        SimCommand::Hand(command) => is_of_hand(act, command),
-        SimCommand::Mechanism(command) => is_of_mechanism(act, command),
-        SimCommand::Recording(_)
-        | SimCommand::Clock(_)
-        | SimCommand::Scene(_)
-        | SimCommand::History(_)
-        | SimCommand::Robot(_) => false,
-    }
-}
-
-fn is_of_mechanism(act: &Act, command: &MechanismCommand) -> bool {
-    let (verb, hand) = match command {
-        MechanismCommand::Trigger { hand, .. } => (Verb::Trigger, hand),
-        MechanismCommand::PointTo { hand, .. } => (Verb::PointTo, hand),
-        MechanismCommand::Fasten { hand, .. } => (Verb::Fasten, hand),
-        MechanismCommand::Loosen { hand, .. } => (Verb::Loosen, hand),
-    };
-    act.verb == verb && act.manipulator == Manipulator::Hand(*hand)
-}
-
-fn is_of_hand(act: &Act, command: &HandCommand) -> bool {
-    let is = |verb, hand: &Hand| act.verb == verb && act.manipulator == Manipulator::Hand(*hand);
-    match command {
-        HandCommand::Grasp { hand, object } => {
-            is(Verb::Grasp, hand) && act.object.as_ref() == Some(object)
-        }
-        HandCommand::Release(hand) => is(Verb::Release, hand),
-        HandCommand::Destroy(hand) => is(Verb::Destroy, hand),
-        HandCommand::Select(_)
-        | HandCommand::MoveTo { .. }
-        | HandCommand::MoveBy { .. }
-        | HandCommand::Cut(_)
-        | HandCommand::Turn { .. } => false,
-    }
-}
-
-/// True if a command makes a hand let go, because another one takes what it holds, or needs it.
-fn is_forced(act: &Act, command: &SimCommand) -> bool {
-    act.verb == Verb::Release && matches!(command, SimCommand::Hand(HandCommand::Grasp { .. }))
 }

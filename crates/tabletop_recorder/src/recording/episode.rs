@@ -45,6 +45,8 @@ pub(crate) struct Episode {
     tick: SimTick,
     /// The commands of this tick that are in the session log.
     logged: Vec<LoggedCommand>,
+    /// The marks of this tick's segments, which follow them there.
+    marks: Vec<u8>,
     /// Length of the session log before the first recorded command.
     head: u64,
     /// The commands of this tick that are carried out after the clock was turned.
@@ -86,6 +88,7 @@ impl Episode {
             channels: destination.channels,
             tick: start,
             logged: Vec::new(),
+            marks: Vec::new(),
             unlogged: Vec::new(),
             undoable: Vec::new(),
             redoable: Vec::new(),

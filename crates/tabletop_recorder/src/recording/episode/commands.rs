@@ -21,6 +21,7 @@ impl Episode {
         let (first, then) = commands.split_at(begins);
         self.tick = tick;
         self.logged.clear();
+        self.marks.clear();
         self.log(first)?;
         if then
             .iter()

@@ -9,6 +9,7 @@ use crate::{
     error::RecorderError,
     files::{
         event::Event,
+        segment_mark::SegmentMark,
         session::{SessionCommand, command_line},
     },
     recording::{
@@ -44,6 +45,7 @@ impl Episode {
             }
             self.tick = tick;
             self.logged.clear();
+            self.marks.clear();
         }
         if self.is_paused != paused.0 {
             // A pause is not turned back with the clock.
@@ -168,6 +170,7 @@ impl Episode {
         self.undoable.push(SegmentStart {
             before,
             released: released.collect(),
+            marks: self.marks.clone(),
             tick: self.tick,
             timeline: TimelineMark::of(timeline),
         });
@@ -180,6 +183,9 @@ impl Episode {
             self.redoable.clear();
             self.files.drop_undone()?;
         }
+        let mark = SegmentMark::line(self.files.segment + 1, self.tick)?;
+        self.files.session.append(&mark)?;
+        self.marks.extend(mark);
         self.files.begin_segment()
     }
 }

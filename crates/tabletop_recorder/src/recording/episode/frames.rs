@@ -9,6 +9,7 @@ use crate::{
         event::Event,
         joints,
         picture::{color_png, depth_png, ids_png},
+        segment_mark::SegmentMark,
         session::{SessionCommand, command_line},
     },
     recording::{episode::Episode, stage::RecordedWorld, tracked::Tracked},
@@ -115,7 +116,7 @@ impl Episode {
         timeline: &mut Timeline,
     ) -> Result<Vec<u8>, RecorderError> {
         timeline.end = tick;
-        let commands = self.files.session.read_from(self.head)?;
+        let log = self.files.session.read_from(self.head)?;
         let frame = self.clock.frame(tick);
         // The picture of a frame that is at its tick anyway stays.
         let first_frame = frame + u64::from(self.clock.is_frame(tick));
@@ -126,6 +127,6 @@ impl Episode {
         if let Err(error) = self.files.drop_undone() {
             warn!("what was undone is still there: {error}");
         }
-        Ok(commands)
+        Ok(SegmentMark::without_marks(&log))
     }
 }

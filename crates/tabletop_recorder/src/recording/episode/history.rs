@@ -49,11 +49,12 @@ impl Episode {
             return Ok(());
         };
         let end = self.progress();
-        let mut released = Vec::new();
+        let mut then = Vec::new();
         for command in &start.released {
-            released.extend(command_line(command)?);
+            then.extend(command_line(command)?);
         }
-        self.files.put_away(start.before.files, &released)?;
+        then.extend(&start.marks);
+        self.files.put_away(start.before.files, &then)?;
         self.resume(start.before.clone());
         let timeline = start.timeline.cut(timeline);
         self.redoable.push(UndoneSegment {
