@@ -4,8 +4,7 @@ use std::f32::consts::TAU;
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{
-    HeadCamera, NAMED_COLORS, ObjectSpec, Part, Pose, Random, Rgb, SceneItem, SceneSpec, Shape,
-    Table,
+    HeadCamera, NAMED_COLORS, ObjectSpec, Pose, Random, Rgb, SceneItem, SceneSpec, Shape, Table,
 };
 use tabletop_planner::RobotBody;
 use tabletop_scene::{IdAllocator, assemble};
@@ -252,39 +251,9 @@ fn paint(shape: &mut Shape, color: Rgb) {
     let Some(old) = shape.drawn().first().map(|solid| solid.color) else {
         return;
     };
-    replace(shape, old, color);
-}
-
-fn replace(shape: &mut Shape, old: Rgb, new: Rgb) {
-    let put = |color: &mut Rgb| {
-        if *color == old {
-            *color = new;
+    for own in shape.colors_mut() {
+        if *own == old {
+            *own = color;
         }
-    };
-    match shape {
-        Shape::Block { color, .. }
-        | Shape::Cylinder { color, .. }
-        | Shape::Sphere { color, .. }
-        | Shape::Box { color, .. }
-        | Shape::Prism { color, .. }
-        | Shape::Frustum { color, .. }
-        | Shape::Ring { color, .. }
-        | Shape::Mesh { color, .. }
-        | Shape::Link { color, .. } => put(color),
-        Shape::Lid {
-            color,
-            handle_color,
-            ..
-        } => {
-            put(color);
-            put(handle_color);
-        }
-        Shape::Composite { parts } => {
-            for Part { shape, .. } in parts {
-                replace(shape, old, new);
-            }
-        }
-        // What the colours of a control say is its state.
-        Shape::Control(_) | Shape::BondPoint(_) => {}
     }
 }

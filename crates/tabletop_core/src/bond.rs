@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::Pose;
 
 /// A point of a composite at which it can be fastened to another object.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 pub struct BondPoint {
     /// The type of the point. Only points of the same type fit each other.
     pub fit: String,
@@ -15,7 +15,7 @@ pub struct BondPoint {
 }
 
 /// The two ends of a bond.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 pub enum BondEnd {
     /// The end that is fastened: a screw.
     Guest(GuestPoint),
@@ -24,7 +24,7 @@ pub enum BondEnd {
 }
 
 /// The end of a bond that is fastened.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, Reflect)]
 pub struct GuestPoint {
     /// Id of the host point to which it is bonded at first; empty for none.
     pub host: String,
@@ -33,7 +33,7 @@ pub struct GuestPoint {
 }
 
 /// The end of a bond to which another is fastened. Each step of tightness can act on other parts.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, Reflect)]
 pub struct HostPoint {
     /// Id of the control whose state is the tightness; empty for none.
     pub downstream: String,
@@ -54,7 +54,7 @@ impl HostPoint {
 }
 
 /// A step of a host point's tightness.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, Reflect)]
 pub struct TightnessStep {
     /// Pose of the guest point in the frame of the host point.
     pub pose: Pose,

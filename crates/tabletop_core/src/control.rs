@@ -262,7 +262,7 @@ mod tests {
         }));
         assert_eq!(control.next_state(None), Some(1));
         assert_eq!(control.next_state(Some(0)), None);
-        let mut object = ObjectSpec::new("d", Pose::IDENTITY, 1.0, Shape::Control(control.into()));
+        let mut object = ObjectSpec::new("d", Pose::IDENTITY, 1.0, Shape::Control(control));
         assert_eq!(object.shape.colliding()[0].solid, crate::Solid::Ball(1.0));
         let control = object.control_mut("d").unwrap();
         control.state = 1;

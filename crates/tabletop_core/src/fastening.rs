@@ -216,7 +216,7 @@ mod tests {
     fn object(id: &str, at: Vec3, points: &[(&str, BondEnd)]) -> ObjectSpec {
         let part = |(id, end): &(&str, BondEnd)| {
             let (fit, end) = ("screw".to_owned(), end.clone());
-            let point = Shape::BondPoint(BondPoint { fit, end }.into());
+            let point = Shape::BondPoint(BondPoint { fit, end });
             Part::new(*id, Pose::IDENTITY, point)
         };
         let parts = points.iter().map(part).collect();

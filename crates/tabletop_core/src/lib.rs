@@ -129,6 +129,7 @@ pub use robot::{
 pub use rollback::Rollback;
 pub use scene::{ChainSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
 pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage};
+pub use shape::{Composition, attributes::AttributeValue};
 pub use shipped::{ShippedFile, ShippedFiles, is_shipped, seen_from};
 pub use shown_task::{
     Ghost, Ghosts, Imitating, Required, ShownProperty, ShownRole, ShownStep, ShownTask, TaskOrder,

@@ -89,7 +89,7 @@ impl ObjectSpec {
                 controls.push(PlacedPart {
                     id,
                     pose,
-                    what: &**control,
+                    what: control,
                 });
             }
         });
@@ -139,7 +139,7 @@ impl ObjectSpec {
                 points.push(PlacedPart {
                     id,
                     pose,
-                    what: &**point,
+                    what: point,
                 });
             }
         });
@@ -178,23 +178,15 @@ impl ObjectSpec {
 
 /// The control with this id in a shape whose own id is `own`.
 fn control_of<'a>(shape: &'a mut Shape, own: &str, id: &str) -> Option<&'a mut Control> {
-    match shape {
-        Shape::Control(control) => (own == id).then_some(&mut **control),
-        Shape::Composite { parts } => parts
-            .iter_mut()
-            .find_map(|part| control_of(&mut part.shape, &part.id, id)),
-        Shape::Block { .. }
-        | Shape::Cylinder { .. }
-        | Shape::Sphere { .. }
-        | Shape::Box { .. }
-        | Shape::Prism { .. }
-        | Shape::Frustum { .. }
-        | Shape::Ring { .. }
-        | Shape::Mesh { .. }
-        | Shape::Link { .. }
-        | Shape::Lid { .. }
-        | Shape::BondPoint(_) => None,
+    if let Shape::Control(control) = shape {
+        return (own == id).then_some(control);
     }
+    let Shape::Composite { parts } = shape else {
+        return None;
+    };
+    parts
+        .iter_mut()
+        .find_map(|part| control_of(&mut part.shape, &part.id, id))
 }
 
 #[cfg(test)]
@@ -221,7 +213,7 @@ mod tests {
                 pointable: true,
                 ..Part::new("board", Pose::at(Vec3::NEG_Z * 0.5), block)
             },
-            Part::new("power", Pose::IDENTITY, Shape::Control(switch.into())),
+            Part::new("power", Pose::IDENTITY, Shape::Control(switch)),
         ];
         let spec = ObjectSpec::new("panel", Pose::IDENTITY, 0.0, Shape::Composite { parts });
         let pose = Pose::from_degrees(Vec3::new(5.0, 0.0, 1.0), Vec3::Z * 180.0);

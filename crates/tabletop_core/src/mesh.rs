@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 use crate::{Polyhedron, PolyhedronError};
 
 /// A mesh, already scaled: a surface of triangles and the convex solids that fill it. Lengths in units, in the shape's frame.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
+#[reflect(opaque)]
 #[serde(try_from = "MeshRecord", into = "MeshRecord")]
 pub struct MeshSpec(Arc<MeshContent>);
 

@@ -12,7 +12,7 @@ use crate::{BondPoint, IndicatorLights, MeshSpec, Pose, Rgb, Rollback, ToggleSwi
 #[derive(Component, Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 #[component(immutable)]
 #[require(Transform, Rollback)]
-#[reflect(Component)]
+#[reflect(Component, no_field_bounds)]
 pub struct ObjectSpec {
     /// Its id. In a [`SceneSpec`](crate::SceneSpec) it is the id that the file asks for (empty: any); on the table it is unique.
     pub id: String,
@@ -45,7 +45,7 @@ pub struct Dynamics {
 /// The shape of an object or a part (report section 6.2). Sizes are full extents in units of 10 cm. The shape's origin is its
 /// centre, or the reference point of a composite.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
-#[reflect(opaque)]
+#[reflect(no_field_bounds)]
 pub enum Shape {
     /// A solid cuboid.
     Block {
@@ -151,13 +151,14 @@ pub enum Shape {
         handle_color: Rgb,
     },
     /// A switch, lights, or shapes with states.
-    Control(Box<Control>),
+    Control(Control),
     /// A point at which a composite is fastened to another one. It has no extents.
-    BondPoint(Box<BondPoint>),
+    BondPoint(BondPoint),
 }
 
 /// A shape as a part of a composite.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
+#[reflect(no_field_bounds)]
 pub struct Part {
     /// The part's id as in the task file; empty if it has none. It need not be unique.
     pub id: String,
@@ -171,7 +172,8 @@ pub struct Part {
 }
 
 /// A shape with states, numbered from 0. It is an object or a part of a composite, whose id is the control's.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
+#[reflect(no_field_bounds)]
 pub struct Control {
     /// Its kind.
     pub kind: ControlKind,
@@ -184,7 +186,8 @@ pub struct Control {
 }
 
 /// The kinds of controls.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
+#[reflect(no_field_bounds)]
 pub enum ControlKind {
     /// Two blocks that meet at an angle: pressing the raised one lifts the other and changes the state.
     ToggleSwitch(ToggleSwitch),
@@ -195,7 +198,8 @@ pub enum ControlKind {
 }
 
 /// A control with shapes of its own.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
+#[reflect(no_field_bounds)]
 pub struct CustomControl {
     /// The kind of control, as recordings name it.
     pub name: String,
@@ -204,7 +208,8 @@ pub struct CustomControl {
 }
 
 /// A state of a custom control.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, Reflect)]
+#[reflect(no_field_bounds)]
 pub struct CustomState {
     /// Its name in recordings; empty for its number.
     pub name: String,
@@ -218,7 +223,12 @@ pub struct CustomState {
 }
 
 /// A change that a control makes to another object.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
+#[reflect(no_field_bounds)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a file is read once and has few changes; a box would only hide the object from reflection"
+)]
 pub enum Change {
     /// Remove an object.
     Remove {
@@ -233,7 +243,7 @@ pub enum Change {
         color: Rgb,
     },
     /// Make an object at a pose on the table.
-    Spawn(Box<ObjectSpec>),
+    Spawn(ObjectSpec),
 }
 
 impl Dynamics {

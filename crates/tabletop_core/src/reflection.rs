@@ -40,7 +40,9 @@ pub(crate) fn register(app: &mut App) {
 mod tests {
     use bevy::{prelude::*, reflect::TypeRegistry};
 
-    use crate::{CorePlugin, Hands, ObjectSpec, Pose, Shape};
+    use crate::{
+        BondPoint, CorePlugin, Hands, MeshSpec, ObjectSpec, Pose, Rgb, Shape, ToggleSwitch,
+    };
 
     #[test]
     fn objects_and_what_they_consist_of_are_registered() {
@@ -61,8 +63,21 @@ mod tests {
         for part in [
             std::any::TypeId::of::<Shape>(),
             std::any::TypeId::of::<Pose>(),
+            std::any::TypeId::of::<ToggleSwitch>(),
+            std::any::TypeId::of::<BondPoint>(),
+            std::any::TypeId::of::<MeshSpec>(),
         ] {
             assert!(registry.contains(part));
         }
+    }
+
+    #[test]
+    fn an_inspector_can_change_the_sizes_of_a_shape() {
+        let color = Rgb::GRAY;
+        let ball = Shape::Sphere { radius: 1.0, color };
+        let mut object = ObjectSpec::new("it", Pose::IDENTITY, 1.0, ball);
+        let radius = object.path_mut::<f32>("shape.radius");
+        *radius.unwrap_or_else(|error| panic!("{error}")) = 2.0;
+        assert_eq!(object.shape, Shape::Sphere { radius: 2.0, color });
     }
 }

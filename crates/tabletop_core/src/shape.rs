@@ -1,9 +1,14 @@
 //! The shapes of objects.
 
+pub(crate) mod attributes;
 mod simple;
 mod solids;
 
-use crate::{BondEnd, ControlKind, Rgb, Shape};
+use std::borrow::Cow;
+
+use bevy::prelude::*;
+
+use crate::{BondEnd, BondPoint, Control, ControlKind, Part, Pose, Rgb, Shape};
 
 impl Shape {
     /// The name of this shape's element in a task file, or its name in recordings.
@@ -30,8 +35,67 @@ impl Shape {
         }
     }
 
+    /// How it is put together.
+    pub fn composition(&self) -> Composition<'_> {
+        match *self {
+            Self::Block { .. }
+            | Self::Cylinder { .. }
+            | Self::Sphere { .. }
+            | Self::Box { .. }
+            | Self::Prism { .. }
+            | Self::Frustum { .. }
+            | Self::Ring { .. }
+            | Self::Mesh { .. }
+            | Self::Link { .. } => Composition::Simple,
+            Self::Composite { ref parts } => Composition::Parts(parts),
+            Self::Lid {
+                span,
+                color,
+                handle_span,
+                handle_thickness,
+                handle_color,
+            } => {
+                let on_top = Pose::at(Vec3::Z * (span.z + handle_span.z) / 2.0);
+                let handle = Self::Box {
+                    span: handle_span,
+                    thickness: handle_thickness,
+                    color: handle_color,
+                };
+                let plate = Self::Block { span, color };
+                Composition::Lid([
+                    Part::new("", Pose::IDENTITY, plate),
+                    Part::new("", on_top, handle),
+                ])
+            }
+            Self::Control(ref control) => Composition::Control(control),
+            Self::BondPoint(ref point) => Composition::BondPoint(point),
+        }
+    }
+
+    /// As it is drawn: a link as the block that covers the gaps at its joints.
+    pub fn as_drawn(&self) -> Cow<'_, Self> {
+        if let Self::Link {
+            span,
+            padding,
+            color,
+        } = *self
+        {
+            let span = span + Vec3::Y * 2.0 * padding;
+            Cow::Owned(Self::Block { span, color })
+        } else {
+            Cow::Borrowed(self)
+        }
+    }
+
     /// Paints everything but controls in this colour.
     pub fn paint(&mut self, new: Rgb) {
+        for color in self.colors_mut() {
+            *color = new;
+        }
+    }
+
+    /// The colours of everything but controls, whose colours tell their states.
+    pub fn colors_mut(&mut self) -> Vec<&mut Rgb> {
         match self {
             Self::Block { color, .. }
             | Self::Cylinder { color, .. }
@@ -41,17 +105,32 @@ impl Shape {
             | Self::Frustum { color, .. }
             | Self::Ring { color, .. }
             | Self::Mesh { color, .. }
-            | Self::Link { color, .. } => *color = new,
+            | Self::Link { color, .. } => vec![color],
             Self::Lid {
                 color,
                 handle_color,
                 ..
-            } => {
-                *color = new;
-                *handle_color = new;
-            }
-            Self::Composite { parts } => parts.iter_mut().for_each(|part| part.shape.paint(new)),
-            Self::Control(_) | Self::BondPoint(_) => {}
+            } => vec![color, handle_color],
+            Self::Composite { parts } => parts
+                .iter_mut()
+                .flat_map(|part| part.shape.colors_mut())
+                .collect(),
+            Self::Control(_) | Self::BondPoint(_) => Vec::new(),
         }
     }
+}
+
+/// How a shape is put together.
+#[derive(Clone, Debug)]
+pub enum Composition<'a> {
+    /// It is a simple shape.
+    Simple,
+    /// A composite's parts.
+    Parts(&'a [Part]),
+    /// The plate of a lid and the handle on it.
+    Lid([Part; 2]),
+    /// A shape with states.
+    Control(&'a Control),
+    /// A point without extents.
+    BondPoint(&'a BondPoint),
 }

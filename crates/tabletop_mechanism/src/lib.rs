@@ -22,7 +22,7 @@
 //!     pressed: Side::Left,
 //!     states: 2,
 //! }));
-//! let switch = ObjectSpec::new("power", Pose::IDENTITY, 0.0, Shape::Control(switch.into()));
+//! let switch = ObjectSpec::new("power", Pose::IDENTITY, 0.0, Shape::Control(switch));
 //! let scene = SceneSpec { items: vec![SceneItem::Object(switch)], ..default() };
 //! app.world_mut().write_command(SceneCommand::Set(Box::new(scene)));
 //! app.world_mut().write_command(MechanismCommand::Trigger {

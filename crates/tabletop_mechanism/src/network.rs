@@ -168,7 +168,7 @@ fn make(world: &mut World, change: Change) {
             let mut ids = std::iter::once(wanted.to_owned()).chain(tries);
             if let Some(id) = ids.find(|id| named(world, id).is_none()) {
                 spec.id = id;
-                world.spawn((Transform::from(spec.pose), *spec));
+                world.spawn((Transform::from(spec.pose), spec));
             }
         }
     }

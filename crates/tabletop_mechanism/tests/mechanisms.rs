@@ -32,7 +32,7 @@ fn app(objects: Vec<ObjectSpec>) -> App {
 }
 
 fn control(id: &str, at: Vec3, control: Control) -> ObjectSpec {
-    ObjectSpec::new(id, Pose::at(at), 0.0, Shape::Control(control.into()))
+    ObjectSpec::new(id, Pose::at(at), 0.0, Shape::Control(control))
 }
 
 fn switch(downstream: &[&str]) -> Control {
@@ -155,7 +155,7 @@ fn a_custom_control_collides_as_its_state_shows_and_wakes_what_lies_on_it() {
         span: Vec3::ONE,
         color: Rgb::RED,
     };
-    let part = Part::new("lift", Pose::IDENTITY, Shape::Control(lift.into()));
+    let part = Part::new("lift", Pose::IDENTITY, Shape::Control(lift));
     let tower = Shape::Composite { parts: vec![part] };
     let mut app = app(vec![
         ObjectSpec::new("tower", Pose::IDENTITY, 0.0, tower),
@@ -217,7 +217,7 @@ fn a_state_spawns_recolors_and_removes() {
     let states = vec![
         state(&[]),
         state(&[
-            Change::Spawn(spawned.into()),
+            Change::Spawn(spawned),
             Change::Recolor {
                 object: object(),
                 color,
@@ -253,11 +253,7 @@ fn screw(id: &str, at: Vec3) -> ObjectSpec {
     };
     let parts = vec![
         Part::new("", Pose::at(Vec3::Z * 0.5), rod),
-        Part::new(
-            format!("{id}Tip"),
-            Pose::IDENTITY,
-            Shape::BondPoint(tip.into()),
-        ),
+        Part::new(format!("{id}Tip"), Pose::IDENTITY, Shape::BondPoint(tip)),
     ];
     ObjectSpec::new(id, Pose::at(at), 1.0, Shape::Composite { parts })
 }
@@ -282,11 +278,7 @@ fn nut(at: Vec3, mass: f32) -> ObjectSpec {
     };
     let parts = vec![
         Part::new("", Pose::IDENTITY, block),
-        Part::new(
-            "hole",
-            Pose::at(Vec3::Z * 0.5),
-            Shape::BondPoint(hole.into()),
-        ),
+        Part::new("hole", Pose::at(Vec3::Z * 0.5), Shape::BondPoint(hole)),
     ];
     ObjectSpec::new("nut", Pose::at(at), mass, Shape::Composite { parts })
 }

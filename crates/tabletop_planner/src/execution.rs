@@ -22,7 +22,7 @@ use crate::{
 /// its own thread, and stops when it is dropped.
 pub struct Execution {
     sights: Sender<Sight>,
-    events: SyncCell<Receiver<Event>>,
+    events: SyncCell<Receiver<ExecutionEvent>>,
     doing: Option<Doing>,
     over: Option<Imitation>,
 }
@@ -39,7 +39,7 @@ pub enum ExecutionTurn {
 }
 
 /// An event of the planning thread.
-enum Event {
+enum ExecutionEvent {
     Doing(Doing),
     Orders(Vec<LimbOrder>),
     Over(Imitation),
@@ -49,7 +49,7 @@ enum Event {
 struct Correspondence {
     sight: Sight,
     sights: Receiver<Sight>,
-    events: Sender<Event>,
+    events: Sender<ExecutionEvent>,
 }
 
 impl PlanningStage for Correspondence {
@@ -58,7 +58,7 @@ impl PlanningStage for Correspondence {
     }
 
     fn tick(&mut self, orders: &[LimbOrder]) -> Result<(), Stopped> {
-        let orders = Event::Orders(orders.to_vec());
+        let orders = ExecutionEvent::Orders(orders.to_vec());
         self.events.send(orders).map_err(|_| Stopped)?;
         self.sight = self.sights.recv().map_err(|_| Stopped)?;
         Ok(())
@@ -87,9 +87,9 @@ impl Execution {
                 events,
             };
             // Nobody listens any more if it is dropped.
-            let report = |doing| drop(sender.send(Event::Doing(doing)));
+            let report = |doing| drop(sender.send(ExecutionEvent::Doing(doing)));
             let imitation = imitate(&mut stage, &body, &task, &binding, seed, report);
-            drop(sender.send(Event::Over(imitation)));
+            drop(sender.send(ExecutionEvent::Over(imitation)));
         };
         thread::Builder::new().name("planner".into()).spawn(plan)?;
         Ok(Self {
@@ -107,9 +107,9 @@ impl Execution {
         }
         loop {
             match self.events.get().recv_timeout(within) {
-                Ok(Event::Doing(doing)) => self.doing = Some(doing),
-                Ok(Event::Orders(orders)) => return ExecutionTurn::Orders(orders),
-                Ok(Event::Over(imitation)) => return self.end(imitation),
+                Ok(ExecutionEvent::Doing(doing)) => self.doing = Some(doing),
+                Ok(ExecutionEvent::Orders(orders)) => return ExecutionTurn::Orders(orders),
+                Ok(ExecutionEvent::Over(imitation)) => return self.end(imitation),
                 Err(RecvTimeoutError::Timeout) => return ExecutionTurn::Planning,
                 Err(RecvTimeoutError::Disconnected) => {
                     let step = self.doing.map_or(1, |doing| doing.step);

@@ -2,8 +2,8 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    ChainSpec, Held, Holder, LidBoxSpec, ObjectIndex, ObjectSpec, Pose, SceneItem, SceneSpec,
-    Shape, Table,
+    ChainSpec, Composition, Held, Holder, LidBoxSpec, ObjectIndex, ObjectSpec, Pose, SceneItem,
+    SceneSpec, Shape, Table,
 };
 
 use crate::{
@@ -238,28 +238,21 @@ impl Inventory<'_> {
 
 /// The nearest shape that an object of a task file can have, and the loss.
 fn sayable(shape: &Shape) -> (Shape, Option<&'static str>) {
-    match *shape {
-        Shape::Link { span, color, .. } => (
-            Shape::Block { span, color },
-            Some("a task file cannot say that a chain is broken: its links are saved as blocks"),
-        ),
-        Shape::Lid { .. } => (
+    if let Shape::Link { span, color, .. } = *shape {
+        let unsaid = "a task file cannot say that a chain is broken: its links are saved as blocks";
+        return (Shape::Block { span, color }, Some(unsaid));
+    }
+    match shape.composition() {
+        Composition::Lid(parts) => (
             Shape::Composite {
-                parts: shape.simple_parts(),
+                parts: parts.into(),
             },
             Some("a task file has no lid without its box: it is saved as a composite"),
         ),
-        Shape::Block { .. }
-        | Shape::Cylinder { .. }
-        | Shape::Sphere { .. }
-        | Shape::Box { .. }
-        | Shape::Prism { .. }
-        | Shape::Frustum { .. }
-        | Shape::Ring { .. }
-        | Shape::Mesh { .. }
-        | Shape::Composite { .. }
-        | Shape::Control(_)
-        | Shape::BondPoint(_) => (shape.clone(), None),
+        Composition::Simple
+        | Composition::Parts(_)
+        | Composition::Control(_)
+        | Composition::BondPoint(_) => (shape.clone(), None),
     }
 }
 

@@ -9,8 +9,8 @@ mod text;
 
 use bevy::math::Vec3;
 use tabletop_core::{
-    ChainSpec, Dynamics, JointMotion, JointedSpec, LidBoxSpec, ObjectSpec, Part, SceneItem,
-    SceneSpec, Shape,
+    AttributeValue, ChainSpec, Composition, Dynamics, JointMotion, JointedSpec, LidBoxSpec,
+    ObjectSpec, Part, SceneItem, SceneSpec, Shape,
 };
 
 use crate::{
@@ -126,100 +126,32 @@ impl Writer {
     }
 
     fn parts_of(&mut self, shape: &Shape) {
-        match shape {
-            Shape::Composite { parts } => parts.iter().for_each(|part| self.part(part)),
-            Shape::Lid { .. } => {
-                for part in shape.simple_parts() {
-                    self.part(&part);
-                }
-            }
-            Shape::Control(control) => self.content_of_control(control),
-            Shape::BondPoint(point) => self.steps_of(point),
-            Shape::Block { .. }
-            | Shape::Cylinder { .. }
-            | Shape::Sphere { .. }
-            | Shape::Box { .. }
-            | Shape::Prism { .. }
-            | Shape::Frustum { .. }
-            | Shape::Ring { .. }
-            | Shape::Mesh { .. }
-            | Shape::Link { .. } => {}
+        match shape.composition() {
+            Composition::Simple => {}
+            Composition::Parts(parts) => parts.iter().for_each(|part| self.part(part)),
+            Composition::Lid(parts) => parts.iter().for_each(|part| self.part(part)),
+            Composition::Control(control) => self.content_of_control(control),
+            Composition::BondPoint(point) => self.steps_of(point),
         }
     }
 
     fn attributes_of(&mut self, shape: &Shape) {
-        match *shape {
-            Shape::Block { span, color } | Shape::Link { span, color, .. } => {
-                self.spans(["xspan", "yspan", "zspan"], span);
-                self.color("color", color);
+        match shape.composition() {
+            Composition::Simple => {
+                for (name, value) in shape.attributes() {
+                    match value {
+                        AttributeValue::Number(number) => self.number(name, number),
+                        AttributeValue::Count(count) => self.attribute(name, &count.to_string()),
+                        AttributeValue::Text(text) => {
+                            self.attribute(name, &as_attribute(&as_literal(text)));
+                        }
+                        AttributeValue::Color(color) => self.color(name, color),
+                    }
+                }
             }
-            Shape::Cylinder {
-                radius,
-                yspan,
-                color,
-            } => {
-                self.number("radius", radius);
-                self.number("yspan", yspan);
-                self.color("color", color);
-            }
-            Shape::Prism {
-                radius,
-                yspan,
-                sides,
-                color,
-            } => {
-                self.number("radius", radius);
-                self.number("yspan", yspan);
-                self.attribute("sides", &sides.to_string());
-                self.color("color", color);
-            }
-            Shape::Frustum {
-                radius_top,
-                radius_bottom,
-                zspan,
-                sides,
-                color,
-            } => {
-                self.number("radiusTop", radius_top);
-                self.number("radiusBottom", radius_bottom);
-                self.number("zspan", zspan);
-                self.attribute("sides", &sides.to_string());
-                self.color("color", color);
-            }
-            Shape::Ring {
-                radius_outer,
-                radius_inner,
-                zspan,
-                sides,
-                color,
-            } => {
-                self.number("radiusOuter", radius_outer);
-                self.number("radiusInner", radius_inner);
-                self.number("zspan", zspan);
-                self.attribute("sides", &sides.to_string());
-                self.color("color", color);
-            }
-            Shape::Mesh { ref mesh, color } => {
-                self.attribute("file", &as_attribute(&as_literal(mesh.file())));
-                self.number("scale", mesh.scale());
-                self.color("color", color);
-            }
-            Shape::Sphere { radius, color } => {
-                self.number("radius", radius);
-                self.color("color", color);
-            }
-            Shape::Box {
-                span,
-                thickness,
-                color,
-            } => {
-                self.spans(["xspan", "yspan", "zspan"], span);
-                self.number("thickness", thickness);
-                self.color("color", color);
-            }
-            Shape::Control(ref control) => self.attributes_of_control(control),
-            Shape::BondPoint(ref point) => self.attributes_of_bond_point(point),
-            Shape::Composite { .. } | Shape::Lid { .. } => {}
+            Composition::Control(control) => self.attributes_of_control(control),
+            Composition::BondPoint(point) => self.attributes_of_bond_point(point),
+            Composition::Parts(_) | Composition::Lid(_) => {}
         }
     }
 

@@ -1,11 +1,12 @@
 //! Indicator lights.
 
+use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::Rgb;
 
 /// A row of lights along X.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 pub struct IndicatorLights {
     /// Radius of a light, in units.
     pub radius: f32,
@@ -20,7 +21,7 @@ pub struct IndicatorLights {
 }
 
 /// A state of indicator lights: the lights that it turns on.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, Reflect)]
 pub struct LightState {
     /// Its name in recordings; empty for its number.
     pub name: String,

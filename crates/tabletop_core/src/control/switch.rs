@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::Rgb;
 
 /// A toggle switch. Its origin is the bottom edge at which its two blocks meet, along Y.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
 pub struct ToggleSwitch {
     /// Extents of both blocks together, in units.
     pub span: Vec3,
@@ -21,7 +21,7 @@ pub struct ToggleSwitch {
 }
 
 /// A side of a toggle switch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Reflect)]
 pub enum Side {
     /// Towards -X.
     Left,

@@ -1,8 +1,6 @@
 //! The simple shapes of which a shape consists.
 
-use bevy::prelude::*;
-
-use crate::{Control, Part, Pose, Shape};
+use crate::{Control, Part, Pose, Shape, shape::Composition};
 
 impl Shape {
     /// The simple shapes that can be seen of it: all but composites and lids. They come in the order of the task file, each with its pose in
@@ -24,46 +22,23 @@ impl Shape {
             of_control: fn(&Control) -> Vec<Part>,
             simple: &mut Vec<Part>,
         ) {
-            let mut add = |pose, shape| simple.push(Part::new(id, pose, shape));
-            match *shape {
-                Shape::Composite { ref parts } => {
-                    for part in parts {
-                        let pose = pose * part.pose;
-                        collect(&part.id, pose, &part.shape, of_control, simple);
-                    }
+            let mut collect_all = |parts: &[Part]| {
+                for part in parts {
+                    let pose = pose * part.pose;
+                    collect(&part.id, pose, &part.shape, of_control, simple);
                 }
-                Shape::Control(ref control) => {
-                    for part in of_control(control) {
-                        let pose = pose * part.pose;
-                        collect(&part.id, pose, &part.shape, of_control, simple);
-                    }
+            };
+            match shape.composition() {
+                Composition::Simple => simple.push(Part::new(id, pose, shape.clone())),
+                Composition::Parts(parts) => collect_all(parts),
+                Composition::Lid(parts) => {
+                    collect_all(&parts.map(|part| Part {
+                        id: id.to_owned(),
+                        ..part
+                    }));
                 }
-                Shape::BondPoint(_) => {}
-                Shape::Lid {
-                    span,
-                    color,
-                    handle_span,
-                    handle_thickness,
-                    handle_color,
-                } => {
-                    let on_top = Pose::at(Vec3::Z * (span.z + handle_span.z) / 2.0);
-                    let handle = Shape::Box {
-                        span: handle_span,
-                        thickness: handle_thickness,
-                        color: handle_color,
-                    };
-                    add(pose, Shape::Block { span, color });
-                    add(pose * on_top, handle);
-                }
-                Shape::Block { .. }
-                | Shape::Cylinder { .. }
-                | Shape::Sphere { .. }
-                | Shape::Box { .. }
-                | Shape::Prism { .. }
-                | Shape::Frustum { .. }
-                | Shape::Ring { .. }
-                | Shape::Mesh { .. }
-                | Shape::Link { .. } => add(pose, shape.clone()),
+                Composition::Control(control) => collect_all(&of_control(control)),
+                Composition::BondPoint(_) => {}
             }
         }
         let mut simple = Vec::new();
@@ -74,6 +49,8 @@ impl Shape {
 
 #[cfg(test)]
 mod tests {
+    use bevy::prelude::*;
+
     use super::*;
     use crate::Rgb;
 

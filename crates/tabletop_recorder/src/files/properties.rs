@@ -1,194 +1,70 @@
 //! The properties of an object that a recording lists.
 
-use bevy::math::Vec3;
-use tabletop_core::{Decimal, Dynamics, ObjectSpec, Rgb, Shape};
+use tabletop_core::{AttributeValue, Decimal, Dynamics, ObjectSpec};
+
+/// The keys that the program of 2014 knows, in its order.
+const KEYS: [&str; 10] = [
+    "xspan",
+    "zspan",
+    "yspan",
+    "radius",
+    "color",
+    "thickness",
+    "handleXspan",
+    "handleZspan",
+    "handleYspan",
+    "handleThickness",
+];
 
 /// The properties as key and value: those that the task file describes, `shape` first; then those of its geometry that
-/// are known and not described, by the keys and in the order of the program of 2014.
+/// are known and not described, by the keys and in the order of the program of 2014, and what else is known.
 pub(crate) fn properties(spec: &ObjectSpec) -> Vec<(String, String)> {
     let owned = |(key, value): (&str, &str)| (key.to_owned(), value.to_owned());
     let mut all: Vec<_> = spec.all_descriptions().into_iter().map(owned).collect();
-    for (key, value) in Known::of(spec).by_key() {
-        if let Some(value) = value
-            && !all.iter().any(|(described, _)| described == key)
-        {
+    for (key, value) in known(spec) {
+        if !all.iter().any(|(described, _)| described == key) {
             all.push((key.to_owned(), value));
         }
     }
     all
 }
 
-#[derive(Default)]
-struct Known {
-    span: [Option<f32>; 3],
-    radius: Option<f32>,
-    color: Option<Rgb>,
-    thickness: Option<f32>,
-    handle_span: Option<Vec3>,
-    handle_thickness: Option<f32>,
-    /// What the program of 2014 does not know.
-    further: Vec<(&'static str, String)>,
-    mass: f32,
+fn known(spec: &ObjectSpec) -> Vec<(&'static str, String)> {
+    let shape = spec.shape.as_drawn();
+    let attributes = shape.attributes().into_iter();
+    // No recording lists the colour of a handle.
+    let attributes = attributes.filter(|(key, _)| *key != "handleColor");
+    let mut known: Vec<_> = attributes.map(|(key, value)| (key, text(value))).collect();
+    let place = |key: &str| KEYS.iter().position(|known| *known == key);
+    known.sort_by_key(|(key, _)| place(key).unwrap_or(KEYS.len()));
+    let Dynamics {
+        friction,
+        restitution,
+        velocity: _,
+    } = spec.dynamics;
+    for (key, value) in [
+        ("friction", friction),
+        ("restitution", restitution),
+        ("mass", Some(spec.mass)),
+    ] {
+        known.extend(value.map(|value| (key, Decimal(value).to_string())));
+    }
+    known
 }
 
-impl Known {
-    fn of(spec: &ObjectSpec) -> Self {
-        let extents = |span: Vec3| span.to_array().map(Some);
-        let lengths = |lengths: &[(&'static str, f32)]| {
-            let text = |&(key, length): &(&'static str, f32)| (key, Decimal(length).to_string());
-            lengths.iter().map(text).collect()
-        };
-        let with_sides = |mut further: Vec<(&'static str, String)>, sides: u32| {
-            further.push(("sides", sides.to_string()));
-            further
-        };
-        let known = match spec.shape {
-            Shape::Block { span, color } => Self {
-                span: extents(span),
-                color: Some(color),
-                ..Self::default()
-            },
-            Shape::Cylinder {
-                radius,
-                yspan,
-                color,
-            } => Self {
-                span: [None, Some(yspan), None],
-                radius: Some(radius),
-                color: Some(color),
-                ..Self::default()
-            },
-            Shape::Sphere { radius, color } => Self {
-                radius: Some(radius),
-                color: Some(color),
-                ..Self::default()
-            },
-            Shape::Prism {
-                radius,
-                yspan,
-                sides,
-                color,
-            } => Self {
-                span: [None, Some(yspan), None],
-                radius: Some(radius),
-                color: Some(color),
-                further: with_sides(Vec::new(), sides),
-                ..Self::default()
-            },
-            Shape::Frustum {
-                radius_top,
-                radius_bottom,
-                zspan,
-                sides,
-                color,
-            } => Self {
-                span: [None, None, Some(zspan)],
-                color: Some(color),
-                further: with_sides(
-                    lengths(&[("radiusTop", radius_top), ("radiusBottom", radius_bottom)]),
-                    sides,
-                ),
-                ..Self::default()
-            },
-            Shape::Ring {
-                radius_outer,
-                radius_inner,
-                zspan,
-                sides,
-                color,
-            } => Self {
-                span: [None, None, Some(zspan)],
-                color: Some(color),
-                further: with_sides(
-                    lengths(&[("radiusOuter", radius_outer), ("radiusInner", radius_inner)]),
-                    sides,
-                ),
-                ..Self::default()
-            },
-            Shape::Mesh { ref mesh, color } => Self {
-                color: Some(color),
-                further: vec![
-                    ("file", mesh.file().to_owned()),
-                    ("scale", Decimal(mesh.scale()).to_string()),
-                ],
-                ..Self::default()
-            },
-            Shape::Box {
-                span,
-                thickness,
-                color,
-            } => Self {
-                span: extents(span),
-                color: Some(color),
-                thickness: Some(thickness),
-                ..Self::default()
-            },
-            Shape::Link {
-                span,
-                padding,
-                color,
-            } => Self {
-                span: extents(span + Vec3::Y * 2.0 * padding),
-                color: Some(color),
-                ..Self::default()
-            },
-            Shape::Lid {
-                span,
-                color,
-                handle_span,
-                handle_thickness,
-                ..
-            } => Self {
-                span: extents(span),
-                color: Some(color),
-                handle_span: Some(handle_span),
-                handle_thickness: Some(handle_thickness),
-                ..Self::default()
-            },
-            Shape::Composite { .. } | Shape::Control(_) | Shape::BondPoint(_) => Self::default(),
-        };
-        let mut further = known.further;
-        let Dynamics {
-            friction,
-            restitution,
-            velocity: _,
-        } = spec.dynamics;
-        for (key, value) in [("friction", friction), ("restitution", restitution)] {
-            further.extend(value.map(|value| (key, Decimal(value).to_string())));
-        }
-        Self {
-            mass: spec.mass,
-            further,
-            ..known
-        }
-    }
-
-    fn by_key(self) -> impl Iterator<Item = (&'static str, Option<String>)> {
-        let number = |value: Option<f32>| value.map(|value| Decimal(value).to_string());
-        let [xspan, yspan, zspan] = self.span.map(number);
-        let handle = |axis: fn(Vec3) -> f32| number(self.handle_span.map(axis));
-        let known = [
-            ("xspan", xspan),
-            ("zspan", zspan),
-            ("yspan", yspan),
-            ("radius", number(self.radius)),
-            ("color", self.color.map(|color| color.to_string())),
-            ("thickness", number(self.thickness)),
-            ("handleXspan", handle(|span| span.x)),
-            ("handleZspan", handle(|span| span.z)),
-            ("handleYspan", handle(|span| span.y)),
-            ("handleThickness", number(self.handle_thickness)),
-        ];
-        let mass = [("mass", number(Some(self.mass)))];
-        let further = self.further.into_iter();
-        let further = further.map(|(key, value)| (key, Some(value)));
-        known.into_iter().chain(further).chain(mass)
+fn text(value: AttributeValue) -> String {
+    match value {
+        AttributeValue::Number(number) => Decimal(number).to_string(),
+        AttributeValue::Count(count) => count.to_string(),
+        AttributeValue::Text(text) => text.to_owned(),
+        AttributeValue::Color(color) => color.to_string(),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::Pose;
+    use bevy::math::Vec3;
+    use tabletop_core::{Pose, Rgb, Shape};
 
     use super::*;
 

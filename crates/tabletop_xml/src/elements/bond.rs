@@ -81,5 +81,5 @@ pub(super) fn bond_point(
             })
         }
     };
-    Shape::BondPoint(BondPoint { fit, end }.into())
+    Shape::BondPoint(BondPoint { fit, end })
 }

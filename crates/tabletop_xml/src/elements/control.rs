@@ -156,7 +156,7 @@ impl ElementReader<'_, '_> {
         };
         let mut attributes = AttributeReader::of(element, self.faults);
         let change = match (element.name, spawned) {
-            (_, Some(spawned)) => Change::Spawn(Box::new(spawned)),
+            (_, Some(spawned)) => Change::Spawn(spawned),
             (RECOLOR, None) => Change::Recolor {
                 object: attributes.require("id", String::new(), "id", value::name),
                 color: attributes.require("color", Rgb::GRAY, "color", value::color),
@@ -240,7 +240,7 @@ pub(super) fn control(
         let problem = format_args!("there is no state {state}");
         attributes.fault("initState", problem, format_args!("at most {}", states - 1));
     }
-    Shape::Control(control.into())
+    Shape::Control(control)
 }
 
 #[cfg(test)]
@@ -257,7 +257,7 @@ mod tests {
                     shape: Shape::Control(control),
                     ..
                 }),
-            ] => (**control).clone(),
+            ] => control.clone(),
             other => panic!("{other:?}"),
         }
     }

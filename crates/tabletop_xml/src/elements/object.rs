@@ -1,6 +1,6 @@
 //! The elements of objects: shapes, composites and their parts, descriptions.
 
-use tabletop_core::{ObjectSpec, Part, Shape, TightnessStep};
+use tabletop_core::{Composition, ObjectSpec, Part, Shape, TightnessStep};
 
 use crate::{
     document::tree::Element,
@@ -88,20 +88,12 @@ impl ElementReader<'_, '_> {
             shape,
             pointable,
         }))?;
-        let next = match part.shape {
-            Shape::Composite { .. } => of_parts.into_iter().map(|own| own.or(next)).collect(),
-            Shape::Block { .. }
-            | Shape::Cylinder { .. }
-            | Shape::Sphere { .. }
-            | Shape::Box { .. }
-            | Shape::Prism { .. }
-            | Shape::Frustum { .. }
-            | Shape::Ring { .. }
-            | Shape::Mesh { .. }
-            | Shape::Link { .. }
-            | Shape::Lid { .. }
-            | Shape::Control(_)
-            | Shape::BondPoint(_) => vec![next],
+        let next = match part.shape.composition() {
+            Composition::Parts(_) => of_parts.into_iter().map(|own| own.or(next)).collect(),
+            Composition::Simple
+            | Composition::Lid(_)
+            | Composition::Control(_)
+            | Composition::BondPoint(_) => vec![next],
         };
         Some((part, next))
     }
