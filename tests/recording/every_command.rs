@@ -266,7 +266,9 @@ const KINDS: usize = 25;
 fn difference(seed: u64, drawn: &mut BTreeMap<&'static str, usize>) -> Option<String> {
     let mut random = Random(seed);
     let mode = random.of(&[RobotMode::Kinematic, RobotMode::Dynamic]);
-    let mut demonstration = Demonstration::with_robot("every_command", mode);
+    // Several processes may look for more at the same time.
+    let name = format!("every_command_{}", std::process::id());
+    let mut demonstration = Demonstration::with_robot(&name, mode);
     let mut tick = |commands: Vec<SimCommand>| {
         for command in &commands {
             *drawn.entry(kind(command)).or_default() += 1;

@@ -65,6 +65,33 @@ pub(crate) fn spawn(world: &mut World) -> Result {
     Ok(())
 }
 
+/// Lets the bodies meet others, or not. The engine does as they are marked only in ticks that are not paused, and forgets marks that were
+/// taken away during longer pauses, so it is told at once.
+pub(crate) fn enable(world: &mut World, enabled: bool) -> Result {
+    let links = world.resource::<LinkEntities>().clone();
+    for &link in &links.0 {
+        let mut link = world.entity_mut(link);
+        if !link.contains::<Collider>() {
+            continue;
+        }
+        if enabled {
+            link.remove::<RigidBodyDisabled>();
+        } else {
+            link.insert(RigidBodyDisabled);
+        }
+    }
+    let mut contexts =
+        world.query_filtered::<&mut RapierRigidBodySet, With<DefaultRapierContext>>();
+    let mut set = contexts.single_mut(world)?;
+    for link in &links.0 {
+        let handle = set.entity2body().get(link).copied();
+        if let Some(body) = handle.and_then(|handle| set.bodies.get_mut(handle)) {
+            body.set_enabled(enabled);
+        }
+    }
+    Ok(())
+}
+
 fn collider(body: &Body) -> Option<Collider> {
     let parts: Vec<_> = body
         .parts

@@ -1,11 +1,10 @@
 //! The robot's presence at the table.
 
 use bevy::prelude::*;
-use bevy_rapier3d::prelude::*;
 use tabletop_core::{CommandId, Robot, RobotLayout, SimFact};
 
 use crate::{
-    articulation::link_entities::{LinkEntities, spawn},
+    articulation::link_entities::{LinkEntities, enable, spawn},
     gripper::grips,
     motion::placement::{leave_obstacles, stand_at_table},
 };
@@ -26,19 +25,7 @@ pub(crate) fn show(world: &mut World, cause: CommandId, show: bool) {
     {
         error!("the robot has no bodies: {error}");
     }
-    let parts = world.resource::<LinkEntities>().clone();
-    for part in parts.0 {
-        let mut part = world.entity_mut(part);
-        if !part.contains::<Collider>() {
-            continue;
-        }
-        if show {
-            part.remove::<RigidBodyDisabled>();
-        } else {
-            part.insert(RigidBodyDisabled);
-        }
-    }
-    if let Err(error) = place(world, show) {
+    if let Err(error) = enable(world, show).and_then(|()| place(world, show)) {
         error!("cannot place the robot: {error}");
     }
     world.write_message(SimFact::RobotShown { cause, shown: show });
