@@ -58,7 +58,7 @@ pub struct Multiplication {
 /// What became of the demonstration of a number.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Made {
-    /// Whether it is there.
+    /// True if it is there.
     pub is_kept: bool,
     /// What was wrong with those that were dropped before.
     pub dropped: Vec<Dropped>,

@@ -38,7 +38,7 @@ pub fn task_files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Whether a file is one to be loaded, by its name and what it holds.
+/// True if a file is one to be loaded, by its name and what it holds.
 #[cfg(feature = "window")]
 pub(crate) fn is_task_file(path: &Path, text: &[u8]) -> bool {
     is_task_name(path) && is_task(text)

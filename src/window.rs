@@ -42,7 +42,7 @@ pub struct WindowOptions {
     pub show: Show,
     /// The robot at the table; a replay has that of its recording.
     pub robot: RobotPlugin,
-    /// Whether the robot stands at the table from the start.
+    /// True if the robot stands at the table from the start.
     pub show_robot: bool,
     /// The scripts that can drive the robot, and their engine.
     pub scripts: ScriptSettings,

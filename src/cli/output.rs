@@ -25,7 +25,7 @@ impl From<std::ffi::OsString> for Output {
 }
 
 impl Output {
-    /// Whether it can be written. This leaves no trace.
+    /// True if it can be written. This leaves no trace.
     pub fn check(&self) -> Result<(), Failure> {
         let Self::File(path) = self else {
             return Ok(());

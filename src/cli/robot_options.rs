@@ -99,7 +99,7 @@ pub(super) fn describe(path: &Path) -> Result<Description, Failure> {
     Description::read(source).map_err(|error| at(path, &error))
 }
 
-/// Whether a path stays in the folder that it begins in.
+/// True if a path stays in the folder that it begins in.
 fn is_beside(path: &Path) -> bool {
     let mut components = path.components();
     components.all(|component| matches!(component, Component::Normal(_) | Component::CurDir))
@@ -231,7 +231,7 @@ impl EngineOptions {
     }
 }
 
-/// Whether scripts in this language run in this kind of engine.
+/// True if scripts in this language run in this kind of engine.
 fn runs(kind: EngineKind, language: &str) -> bool {
     match language {
         "python" => kind == EngineKind::Python,
@@ -240,7 +240,7 @@ fn runs(kind: EngineKind, language: &str) -> bool {
     }
 }
 
-/// Whether there are scripts where these settings say, as far as that can be seen before the engine starts.
+/// True if there are scripts where these settings say, as far as that can be seen before the engine starts.
 pub(super) fn check_scripts(settings: &ScriptSettings) -> Result<(), Failure> {
     let config = settings.engine_config().map_err(Failure::input)?;
     match config.fault() {

@@ -336,7 +336,7 @@ impl RunArgs {
         Ok(())
     }
 
-    /// Whether what is asked for at the end of a run can be written then.
+    /// True if what is asked for at the end of a run can be written then.
     fn check_ends(&self) -> Result<(), Failure> {
         if let Some(path) = self.save.as_deref().filter(|path| path.exists()) {
             let path = path.display();

@@ -102,7 +102,7 @@ impl Script {
         Ok(())
     }
 
-    /// Whether it acts, or will.
+    /// True if it acts, or will.
     pub const fn is_running(&self) -> bool {
         self.is_wanted && self.end.is_none()
     }

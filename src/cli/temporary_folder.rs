@@ -76,7 +76,7 @@ fn remove_what_killed_programs_left(parent: &Path, kind: &str) {
     }
 }
 
-/// Whether a folder's lock is there and nobody holds it.
+/// True if a folder's lock is there and nobody holds it.
 fn is_abandoned(folder: &Path) -> bool {
     let lock = File::open(folder.join(LOCK)).map(|lock| lock.try_lock());
     matches!(lock, Ok(Ok(())))

@@ -12,7 +12,7 @@ use bevy::{
     prelude::*,
 };
 
-/// Whether the other end of standard error was closed, as `head` does.
+/// True if the other end of standard error was closed, as `head` does.
 static IS_CLOSED: AtomicBool = AtomicBool::new(false);
 
 /// Says a line on standard error.
@@ -23,7 +23,7 @@ pub(super) fn say(line: impl fmt::Display) {
     }
 }
 
-/// Whether nobody hears any more what is said.
+/// True if nobody hears any more what is said.
 pub(super) fn is_unheard() -> bool {
     IS_CLOSED.load(Ordering::Relaxed)
 }

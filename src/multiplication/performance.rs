@@ -126,7 +126,7 @@ impl Performance<'_> {
         *self.app.world().resource::<SimTick>()
     }
 
-    /// Whether those that were grasped before are as far as they were when this one was grasped.
+    /// True if those that were grasped before are as far as they were when this one was grasped.
     fn is_due(&self, i: usize) -> bool {
         let (now, own) = (self.now().0, self.acts[i].step);
         self.acts[..i].iter().all(|earlier| {
@@ -318,7 +318,7 @@ impl Performance<'_> {
         Ok(())
     }
 
-    /// Whether all relations hold; else the step of one that does not.
+    /// True if all relations hold; else the step of one that does not.
     fn judge(mut self, task: &Task) -> Result<(), (usize, PlanFailure)> {
         let sight = sight(self.app.world_mut());
         if let Some(undone) = undone(task, self.binding, &sight, &self.before) {

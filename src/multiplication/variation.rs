@@ -15,7 +15,7 @@ use crate::imitation::scattered;
 /// What differs besides the places of things.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Variation {
-    /// Whether objects have other colours, as far as what is required of them allows.
+    /// True if objects have other colours, as far as what is required of them allows.
     pub colors: bool,
     /// By which part of it, at most, sizes differ, as far as what is required allows; 0 for not at all.
     pub sizes: f32,
@@ -108,7 +108,7 @@ impl Varying<'_> {
         solids.collect()
     }
 
-    /// Whether all goals of the task are on the table, if things are where this scene puts them.
+    /// True if all goals of the task are on the table, if things are where this scene puts them.
     fn is_on_table(&self, scene: &SceneSpec) -> bool {
         let objects = assemble(scene, &mut IdAllocator::default()).objects;
         let Ok(binding) = self.task.bind(self.requirements, &objects) else {
@@ -174,7 +174,7 @@ impl Varying<'_> {
         }
     }
 
-    /// Whether an object still has what is required of the role that it takes by its id.
+    /// True if an object still has what is required of the role that it takes by its id.
     fn may_be(&self, spec: &ObjectSpec) -> bool {
         let lacks = self.requirements.lacks(&spec.id, spec);
         lacks.is_none_or(|lacks| lacks.is_empty())

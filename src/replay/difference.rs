@@ -64,7 +64,7 @@ fn first_that_differs(
     Ok(None)
 }
 
-/// Whether it is a file that was not finished, or is hidden, as what was undone is.
+/// True if it is a file that was not finished, or is hidden, as what was undone is.
 fn is_for_the_program_alone(file: &Path) -> bool {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     name.starts_with('.') || name.ends_with(".part")

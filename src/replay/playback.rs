@@ -92,7 +92,7 @@ struct Keyframe {
 struct PlayheadTarget {
     /// The tick that comes next there.
     tick: SimTick,
-    /// Whether the simulation then stands still.
+    /// True if the simulation then stands still.
     stops: bool,
 }
 
@@ -239,14 +239,14 @@ impl Opened {
         });
     }
 
-    /// Whether the recording has been played to its end, which may be in a pause.
+    /// True if the recording has been played to its end, which may be in a pause.
     fn is_over(&self, player: &Player, next: SimTick) -> bool {
         let last = self.replay.recording().last_tick();
         player.is_over() && (next > last || player.has_paused())
     }
 }
 
-/// Whether the open recording has been played to its end.
+/// True if the open recording has been played to its end.
 fn is_over(world: &World) -> bool {
     let opened = world.get_resource::<Opened>();
     let player = world.get_resource::<Player>();

@@ -21,13 +21,13 @@ pub struct Player {
     given: usize,
     /// The first tick of the recording.
     start: SimTick,
-    /// Whether the recording has paused the simulation.
+    /// True if the recording has paused the simulation.
     has_paused: bool,
-    /// Whether a pause begins in this tick after its commands were carried out.
+    /// True if a pause begins in this tick after its commands were carried out.
     pauses_late: bool,
-    /// Whether a recording is to be made of it.
+    /// True if a recording is to be made of it.
     records: bool,
-    /// Whether it has been said that a script watches.
+    /// True if it has been said that a script watches.
     is_watched: bool,
 }
 
@@ -81,12 +81,12 @@ impl Player {
         &self.commands[..self.given]
     }
 
-    /// Whether the simulation is paused because the recording says so.
+    /// True if the simulation is paused because the recording says so.
     pub(crate) fn has_paused(&self) -> bool {
         self.has_paused
     }
 
-    /// Whether all its commands were given.
+    /// True if all its commands were given.
     pub fn is_over(&self) -> bool {
         self.given == self.commands.len()
     }
@@ -137,7 +137,7 @@ impl Player {
     }
 }
 
-/// Whether a command that comes after another one in a pause was given at another moment of it: it would be carried out before.
+/// True if a command that comes after another one in a pause was given at another moment of it: it would be carried out before.
 fn begins_moment(command: &SimCommand, last: &SimCommand) -> bool {
     match command {
         SimCommand::Recording(RecordingCommand::Start)
@@ -152,7 +152,7 @@ fn begins_moment(command: &SimCommand, last: &SimCommand) -> bool {
     }
 }
 
-/// Whether a command begins a pause and comes after one that could not be carried out in it.
+/// True if a command begins a pause and comes after one that could not be carried out in it.
 fn is_late_pause(command: &SimCommand, last: &SimCommand) -> bool {
     *command == ClockCommand::SetPaused(true).into() && command.phase() < last.phase()
 }

@@ -30,9 +30,9 @@ use super::frame_rate::FrameRate;
 pub struct DisplayOptions {
     /// The size of the window, or of the screen if the window fills it.
     pub resolution: Option<Resolution>,
-    /// Whether the window fills the screen.
+    /// True if the window fills the screen.
     pub fullscreen: Option<bool>,
-    /// Whether pictures wait for the screen.
+    /// True if pictures wait for the screen.
     pub vsync: Option<bool>,
     /// Pictures a second, at most.
     pub refresh_rate: Option<NonZeroU32>,
@@ -40,7 +40,7 @@ pub struct DisplayOptions {
     pub color_depth: Option<u16>,
     /// How edges are smoothed.
     pub antialiasing: Option<Antialiasing>,
-    /// Whether the user is asked for all of this; if nothing is said, he is unless there is an answer above or from the last run.
+    /// True if the user is asked for all of this; if nothing is said, he is unless there is an answer above or from the last run.
     pub ask: Option<bool>,
 }
 
@@ -58,7 +58,7 @@ impl DisplayOptions {
         }
     }
 
-    /// Whether the user is asked.
+    /// True if the user is asked.
     pub(super) fn asks(&self, remembered: Option<DisplaySettings>) -> bool {
         let says_nothing = Self { ask: None, ..*self } == Self::default();
         self.ask
@@ -257,7 +257,7 @@ fn hertz(millihertz: u32) -> NonZeroU32 {
         .unwrap_or(SIXTY)
 }
 
-/// Whether the graphics driver draws pictures of a window, and their depth, with so many points a pixel.
+/// True if the graphics driver draws pictures of a window, and their depth, with so many points a pixel.
 fn can_draw(samples: u32, adapter: &RenderAdapter, device: &RenderDevice) -> bool {
     // What all drivers can. For more, the device has to be asked for what the adapter can.
     const ALWAYS: [u32; 2] = [1, 4];

@@ -36,7 +36,7 @@ const REFRESH: Duration = Duration::from_secs(5);
 /// For how long nothing may have moved in a picture that is still.
 const STILL: Duration = Duration::from_millis(500);
 
-/// Whether the present frame is drawn.
+/// True if the present frame is drawn.
 #[derive(Resource, Debug, Default)]
 pub(super) struct Redraw {
     cause: Option<RedrawCause>,
@@ -50,7 +50,7 @@ pub(super) struct Redraw {
 }
 
 impl Redraw {
-    /// Whether the present frame is drawn.
+    /// True if the present frame is drawn.
     fn is_due(&self) -> bool {
         self.cause.is_some()
     }
@@ -151,7 +151,7 @@ fn decide(
     }
 }
 
-/// Whether the window may show something else afterwards than what was drawn in it.
+/// True if the window may show something else afterwards than what was drawn in it.
 fn may_uncover(event: &WindowEvent) -> bool {
     matches!(
         event,

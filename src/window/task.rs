@@ -28,7 +28,7 @@ pub(super) fn plugin(app: &mut App) {
         );
 }
 
-/// Whether everything is to be put to where it was in the beginning, and what then.
+/// True if everything is to be put to where it was in the beginning, and what then.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct PuttingBack(Option<Afterwards>);
 

@@ -60,7 +60,7 @@ fn read(folder: &Path) -> Note {
     }
 }
 
-/// Whether a process is there and no zombie.
+/// True if a process is there and no zombie.
 fn lives(pid: Pid) -> bool {
     let state = fs::read_to_string(format!("/proc/{pid}/stat")).unwrap_or_default();
     signal::kill(pid, None).is_ok()

@@ -1,8 +1,8 @@
-//! How long inverse kinematics takes, on one core.
+//! Benchmark of inverse kinematics on one core.
 //!
-//! `cargo bench -p tabletop_kinematics` asks for the poses of the hand at random angles, beginning at the robot's start
-//! posture (a jump anywhere) and at angles close by (following a hand), and for poses out of reach. It prints how long an
-//! answer takes, in µs, and how long all frames of the robot take.
+//! `cargo bench -p tabletop_kinematics` asks for the poses of the hand at random angles, starting at the robot's first
+//! posture (a jump anywhere) and at angles close by (following a hand), and for poses out of reach. It prints the time of an
+//! answer, in µs, and that of all frames of the robot.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 
 use std::{error::Error, hint::black_box, time::Instant};
@@ -11,7 +11,7 @@ use tabletop_kinematics::{ArmChain, Target, baxter};
 
 const POSES: usize = 1000;
 const START: [f64; 7] = [0.25, 0.0, -1.527, 2.618, 1.529, 1.5, 0.0];
-/// How far the angles of a seed that is close by are from those of the pose, in rad.
+/// Distance of a seed that is close by from the angles of the pose, in rad.
 const NEAR: f64 = 0.05;
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -12,13 +12,13 @@ pub const MOST_ARM_JOINTS: usize = 16;
 /// The motion of a body: the velocity of one of its points and its angular velocity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DTwist {
-    /// Of the point, in m/s, or in m per rad of a joint.
+    /// Velocity of the point, in m/s, or in m per rad of a joint.
     pub linear: DVec3,
     /// In rad/s, or in rad per rad of a joint.
     pub angular: DVec3,
 }
 
-/// The turning joints from a base link to a tip link, compiled for speed: what is fixed between them is merged.
+/// The turning joints from a base link to a tip link, compiled for speed: the fixed parts between them are merged.
 ///
 /// Everything is in the base link's frame, in m and rad; angles are in the order from the base to the tip.
 #[derive(Clone, Debug)]
@@ -52,7 +52,7 @@ impl ArmChain {
     ///
     /// # Errors
     ///
-    /// There are no such links, or between them are not one to sixteen turning joints that follow no other one.
+    /// A link does not exist, or the joints between the links are not one to sixteen turning joints that follow no other joint.
     pub fn between(model: &RobotModel, base: &str, tip: &str) -> Result<Self, ModelError> {
         Self::new(model, model.find_link(base)?, model.find_link(tip)?)
     }
@@ -61,7 +61,7 @@ impl ArmChain {
     ///
     /// # Errors
     ///
-    /// Between them are not one to sixteen turning joints that follow no other one.
+    /// The joints between them are not one to sixteen turning joints that follow no other joint.
     pub fn new(model: &RobotModel, base: LinkId, tip: LinkId) -> Result<Self, ModelError> {
         let no_arm = |reason: String| ModelError::NoArm {
             base: model.link(base).name.clone(),
@@ -115,7 +115,7 @@ impl ArmChain {
         })
     }
 
-    /// The same arm with other limits: least and largest angle of each joint, in rad. Joints for which there are none keep theirs.
+    /// The same arm with other limits: least and largest angle of each joint, in rad. Joints without new limits keep theirs.
     #[must_use]
     pub fn with_limits(mut self, limits: impl IntoIterator<Item = [f64; 2]>) -> Self {
         for (own, limits) in self.limits.iter_mut().zip(limits) {
@@ -164,7 +164,7 @@ impl ArmChain {
         frame * self.end
     }
 
-    /// The frames behind each joint, from the base to the tip: those of what the joints turn.
+    /// The frames behind each joint, from the base to the tip: those that the joints turn.
     pub fn frames(&self, angles: &[f64]) -> impl Iterator<Item = DAffine3> {
         let segments = self.segments.iter().zip(angles);
         segments.scan(DAffine3::IDENTITY, |frame, (segment, &angle)| {

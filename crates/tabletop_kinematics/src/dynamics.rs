@@ -1,4 +1,4 @@
-//! Dynamics: what the weight and the motion of a robot take from its joints.
+//! Dynamics: the forces that weight and motion of a robot exert on its joints.
 //!
 //! All vectors are in the root's frame. The robot's root does not move.
 
@@ -135,7 +135,7 @@ impl RobotModel {
             if joint.kind == JointType::Fixed {
                 continue;
             }
-            // What it takes to accelerate all that the joint carries by 1.
+            // The force that accelerates everything that the joint carries by 1.
             let body = &bodies[joint.child.index()];
             let axis = self.axis_in_root(frames, i);
             let origin = frames[joint.child].translation;
@@ -211,7 +211,7 @@ impl RobotModel {
         rotation * self.link(link).inertial.inertia * rotation.transpose()
     }
 
-    /// Each link with all that hangs on it, as one rigid body.
+    /// Each link with everything that hangs on it, as one rigid body.
     fn composite_bodies(&self, frames: &Frames, loads: &[Load]) -> Vec<CompositeBody> {
         let mut bodies: Vec<CompositeBody> = (0..self.links.len())
             .map(|i| {

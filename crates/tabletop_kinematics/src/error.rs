@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// Why a text is not a robot, or a robot has not what was asked for. Lines count from 1.
+/// The error of a text that is no robot, or of a robot that lacks a link or joint. Lines count from 1.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ModelError {

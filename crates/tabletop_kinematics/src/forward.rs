@@ -1,4 +1,4 @@
-//! Forward kinematics: where the links are, and how their points move.
+//! Forward kinematics: the poses of links, and the motions of their points.
 
 use std::ops::Index;
 
@@ -50,12 +50,12 @@ impl MovingFrames {
         self.configuration.clone_from(configuration);
     }
 
-    /// Where the links are.
+    /// The frames.
     pub const fn frames(&self) -> &Frames {
         &self.frames
     }
 
-    /// Whether the last motion has moved a link.
+    /// True if the last motion has moved a link.
     pub fn has_moved(&self, link: LinkId) -> bool {
         self.moved[link.index()]
     }

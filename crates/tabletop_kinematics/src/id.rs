@@ -1,4 +1,4 @@
-//! Names of links and joints that are found at once.
+//! Ids of links and joints.
 
 /// A link of a [`RobotModel`](crate::RobotModel), by its place in [`RobotModel::links`](crate::RobotModel::links). It belongs to the model that it is from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

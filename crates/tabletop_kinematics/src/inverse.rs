@@ -1,15 +1,15 @@
-//! Inverse kinematics: which angles bring an arm's tip somewhere.
+//! Inverse kinematics: the angles that bring an arm's tip to a target.
 //!
 //! Damped least squares: each step moves the joints so that the tip comes as close to its target as a linear model of the
-//! arm says, at the price of the joints' motion. The price falls with the distance (Sugihara 2011), so steps are careful
+//! arm allows, at the price of the joints' motion. The price falls with the distance (Sugihara 2011), so steps are careful
 //! far away and exact in the end. A joint that would leave its limits goes to the limit and stays out of that step. The
-//! freedom that a tip's six coordinates leave to seven joints pulls them to where the search began, so that small motions
+//! freedom that a tip's six coordinates leave to seven joints pulls these back to where the search began, so that small motions
 //! of a target are small motions of the joints.
 //!
-//! A search that gets stuck begins anew, from a fixed sequence of postures: same question, same answer.
+//! A search that gets stuck begins anew, from a fixed sequence of postures: the same question has the same answer.
 //!
-//! The crate `k` solves the same problem, but has its own linear algebra (another version than ours), no limits inside the
-//! step and no say in what becomes of the seventh joint.
+//! The crate `k` solves the same problem, but it has its own linear algebra (another version than ours), no limits inside the
+//! step and no control of the seventh joint.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use thiserror::Error;
@@ -19,13 +19,13 @@ use crate::{ArmChain, DTwist, MOST_ARM_JOINTS};
 /// The goal of the tip of an arm, in the frame of the arm's base, in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// There, turned like this: from the tip's frame to the base's. A rigid motion.
+    /// This location and rotation: a rigid motion from the tip's frame to the base's.
     Pose(DAffine3),
-    /// There, turned as it may.
+    /// This location, with any rotation.
     Point(DVec3),
 }
 
-/// By how much the tip misses a target.
+/// The error of a tip against a target.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Miss {
     /// Distance in m.
@@ -44,11 +44,11 @@ pub struct Miss {
 pub struct Unreachable {
     /// The angles that come nearest, in rad, a rad counting as much as 0.3 m.
     pub best: Vec<f64>,
-    /// By how much they miss the target.
+    /// Their error against the target.
     pub miss: Miss,
 }
 
-/// Solved is what misses its target by less, in m and rad.
+/// The error, in m and rad, below which a target counts as reached.
 const TOLERANCE: Miss = Miss {
     position: 1e-6,
     rotation: 1e-6,
@@ -60,7 +60,7 @@ const METERS_PER_RAD: f64 = 0.3;
 const LEAST_DAMPING: f64 = 1e-7;
 /// Squared damping per squared miss.
 const DAMPING: f64 = 0.1;
-/// A joint turns by no more in a step, in rad.
+/// Largest turn of a joint in a step, in rad.
 const LONGEST_STEP: f64 = 0.7;
 /// The part of the way back to the start that the free motion goes in a step.
 const PULL: f64 = 0.5;
@@ -68,26 +68,26 @@ const PULL: f64 = 0.5;
 const PULLED_STEPS: usize = 12;
 /// Steps of a search.
 const STEPS: usize = 100;
-/// A search may come no nearer for so many steps, except the one from the seed, whose answer is wanted most.
+/// Number of steps in which a search may come no nearer. The search from the seed has no such limit, because its answer is wanted most.
 const PATIENCE: usize = 10;
 /// Postures that the search begins from.
 const STARTS: usize = 256;
 
 impl ArmChain {
-    /// Angles within the limits that bring the tip to the target, to 1 µm and 1 µrad; near the seed where there is a choice.
+    /// Angles within the limits that bring the tip to the target, to 1 µm and 1 µrad; of several solutions, one near the seed.
     ///
     /// # Errors
     ///
-    /// None were found: the target is out of reach, or not a number.
+    /// No angles were found: the target is out of reach, or not a number.
     pub fn solve(&self, target: &Target, seed: &[f64]) -> Result<Vec<f64>, Unreachable> {
         self.solve_from(target, seed, STARTS)
     }
 
-    /// The same, but the search begins from the seed and so many postures at most, one after the other. What is out of reach is found
-    /// so the sooner the fewer they are.
+    /// The same, but the search begins from the seed and at most `starts` postures, one after the other. With fewer postures, a target out of
+    /// reach is refused sooner.
     ///
     /// # Errors
-    /// None were found.
+    /// No angles were found.
     pub fn solve_from(
         &self,
         target: &Target,
@@ -113,13 +113,13 @@ impl ArmChain {
         })
     }
 
-    /// By how much the tip misses the target with these angles.
+    /// The error of the tip against the target at these angles.
     pub fn miss(&self, target: &Target, angles: &[f64]) -> Miss {
         Miss::of(&target.residual(&self.tip(angles)))
     }
 
-    /// Gauss–Newton steps downhill from a posture: the nearest one on the way, and its cost in m². Ends when the cost has not
-    /// fallen by a fifth in as many steps as its patience is.
+    /// Gauss–Newton steps downhill from a posture: returns the nearest one on the way, and its cost in m². The search ends when the cost has not
+    /// fallen by a fifth in `patience` steps.
     fn search(&self, target: &Target, start: Vec<f64>, patience: usize) -> (f64, Vec<f64>) {
         let mut angles = start.clone();
         let mut nearest = (f64::INFINITY, start.clone());
@@ -279,8 +279,8 @@ impl NormalEquations {
         }
     }
 
-    /// The step of the joints: those that are not free move by their bias, the others so that the residual vanishes, and by their
-    /// bias as far as that leaves them free.
+    /// The step of the joints. Joints that are not free move by their bias. The others move so that the residual vanishes, and by their
+    /// bias as far as this leaves them free.
     fn solve(&self, bias: &[f64], is_free: &[bool]) -> Vec<f64> {
         let mut matrix = [[0.0; ROWS]; ROWS];
         let mut rest = self.residual;

@@ -1,4 +1,4 @@
-//! Robots as URDF describes them: where their links are, how to bring a hand somewhere, and what their weight does to the
+//! Robots from URDF: the poses of their links, inverse kinematics of their arms, and the forces that their weight exerts on the
 //! joints.
 //!
 //! Everything here is in URDF's units: **metres, radians, kilograms, seconds**, in the frame of the model's root link
@@ -17,7 +17,7 @@
 //! let arm = ArmChain::between(&robot, "torso", "left_end_effector")?;
 //! let start = [0.25, 0.0, -1.527, 2.618, 1.529, 1.5, 0.0];
 //!
-//! // 5 cm up from where the hand is.
+//! // 5 cm above the hand.
 //! let mut hand = arm.tip(&start);
 //! hand.translation.z += 0.05;
 //! let angles = arm.solve(&Target::Pose(hand), &start)?;

@@ -11,15 +11,15 @@ pub struct Link {
     pub name: String,
     /// The joint that carries it; `None` for the root.
     pub joint: Option<ModelJointId>,
-    /// Its mass and how that is spread.
+    /// Its mass and inertia.
     pub inertial: Inertial,
-    /// Its shapes to be seen.
+    /// Its visible shapes.
     pub visuals: Vec<LinkShape>,
-    /// Its shapes to be touched.
+    /// Its collision shapes.
     pub collisions: Vec<LinkShape>,
 }
 
-/// A mass and how it is spread, in the frame of its link. Without mass for links that are mere frames.
+/// A mass and its distribution, in the frame of its link. A link that is a mere frame has no mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inertial {
     /// Mass in kg.
@@ -35,7 +35,7 @@ pub struct Inertial {
 pub struct LinkShape {
     /// From the body's own frame to the link's, in m.
     pub origin: DAffine3,
-    /// The value.
+    /// The body's geometry.
     pub geometry: Geometry,
     /// Red, green, blue and opacity, 0 to 1; `None` where the description names no colour, as for collisions.
     pub color: Option<[f64; 4]>,

@@ -144,7 +144,7 @@ impl RobotModel {
             })
     }
 
-    /// The joints that can be told where to be: neither fixed nor following another one.
+    /// The joints that move independently: neither fixed nor following another one.
     pub fn movable(&self) -> impl Iterator<Item = ModelJointId> {
         let joints = self.joints.iter().enumerate();
         joints
@@ -162,7 +162,7 @@ impl RobotModel {
         JointValues(vec![0.0; self.joints.len()])
     }
 
-    /// The position of a joint, in rad or m: its own number, or what the joint that it follows makes of it.
+    /// The position of a joint, in rad or m: its own number, or the one that follows from its leader's.
     pub fn position(&self, joint: ModelJointId, configuration: &JointValues) -> f64 {
         match self.joint(joint).mimic {
             Some(mimic) => mimic.multiplier * configuration[mimic.leader] + mimic.offset,

@@ -43,7 +43,7 @@ pub(crate) struct Outline<'a> {
     pub unbalanced: Option<(&'a str, usize, String)>,
 }
 
-/// Finds where elements begin and end. What is no XML is passed over: the reader will say so.
+/// Finds the beginnings and ends of elements. Anything that is not XML is passed over: the reader will report it.
 pub(crate) fn outline(text: &str) -> Result<Outline<'_>, ModelError> {
     let mut outline = Outline::default();
     // Elements that have not ended yet: tag, line, place.

@@ -1,6 +1,6 @@
-//! A description as plain XML: elements, attributes and text, and nothing else that XML knows.
+//! A description as plain XML: elements, attributes and text, without XML's other features.
 //!
-//! The URDF reader descends by recursion, believes what a DOCTYPE declares and panics at namespaces that nobody bound. It only ever sees
+//! The URDF reader descends by recursion, trusts the declarations of a DOCTYPE and panics at unbound namespaces. It only ever sees
 //! plain texts.
 
 use quick_xml::{
@@ -17,13 +17,13 @@ const MOST_BYTES: usize = 16 << 20;
 /// Most attributes of an element.
 const MOST_ATTRIBUTES: usize = 100;
 
-/// What is wrong with a text, and up to which byte it was read.
+/// The fault of a text, and the number of bytes read.
 pub(crate) struct ReadFault {
     pub offset: usize,
     pub what: String,
 }
 
-/// Writes a text anew without comments, processing instructions, namespaces, and what is of other languages: elements and attributes
+/// Rewrites a text without comments, processing instructions, namespaces, and parts in other languages: elements and attributes
 /// with a prefix.
 pub(crate) fn plain(text: &str) -> Result<String, ReadFault> {
     if text.len() > MOST_BYTES {
@@ -53,7 +53,7 @@ struct Plain {
     text: String,
     /// The names of the elements that have not ended.
     open: Vec<String>,
-    /// How many elements around this one, with itself, are of another language or in one that is.
+    /// Number of enclosing elements, including this one, that belong to another language or to such an element.
     foreign: usize,
 }
 

@@ -1,5 +1,5 @@
-//! Rotations, the same on every processor. Those of glam ask the C library for sine and cosine, which chooses by the processor how
-//! it computes them.
+//! Rotations that are the same on every processor. Those of glam use sine and cosine of the C library, which chooses its algorithm by the
+//! processor.
 
 use glam::{DMat3, DQuat, DVec3};
 

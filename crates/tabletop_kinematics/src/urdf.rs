@@ -39,7 +39,7 @@ impl RobotModel {
     }
 }
 
-/// Why a text cannot be read.
+/// The reason why a text cannot be read.
 enum Unread {
     Xml(plain::ReadFault),
     Urdf(urdf_rs::UrdfError),
@@ -50,7 +50,7 @@ fn read(text: &str) -> Result<urdf_rs::Robot, Unread> {
     urdf_rs::read_from_string(&plain).map_err(Unread::Urdf)
 }
 
-/// Finds what the reader could not read: an element that does not end, or one of the links and joints, each read alone.
+/// Finds the part that the reader could not read: an element that does not end, or one of the links and joints, each read alone.
 fn locate(error: Unread, text: &str, outline: &Outline) -> ModelError {
     if let Some((tag, line, fault)) = &outline.unbalanced {
         return ModelError::Syntax {

@@ -1,4 +1,4 @@
-//! What Baxter's own file says beyond the frames: limits, gripper, bodies.
+//! Baxter's own file beyond the frames: limits, gripper, bodies.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -199,7 +199,7 @@ fn torso_and_head_meet_no_arm_in_the_usual_postures() {
     }
 }
 
-/// What is touched of the robot, by link, and where it is.
+/// The collision shapes of the robot by link, with their poses.
 fn placed<'a>(robot: &'a RobotModel, frames: &Frames) -> Vec<(&'a str, &'a LinkShape, DAffine3)> {
     let mut placed = Vec::new();
     for link in robot.links() {

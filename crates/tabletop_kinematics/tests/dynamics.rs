@@ -1,4 +1,4 @@
-//! Dynamics against what does not need it: energies and their derivatives.
+//! Dynamics, compared with energies and their derivatives, which do not need it.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use glam::DVec3;

@@ -248,7 +248,7 @@ fn what_xml_knows_and_urdf_does_not_is_refused_or_left_out() {
         "<robot xmlns:a='' name='r'><a:b xmlns:a='c'/><link xmlns:c='a' c:d='e' name='a'/></robot>",
         "<a:robot xmlns:a='b' name='r'><link name='a'/></a:robot>",
     ] {
-        // Whether it is a robot or not: there is no panic.
+        // Robot or not, there is no panic.
         let _read = RobotModel::from_urdf(robot);
     }
 }

@@ -1,4 +1,4 @@
-//! The report's simulator: its file, and the numbers that it gives.
+//! The report's simulator: its file, and its numbers.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use glam::{DAffine3, DVec3};

@@ -14,16 +14,16 @@ use crate::{
     seen::Seen,
 };
 
-/// The step that is due, on its way.
+/// The state of the step that is due.
 #[derive(Clone, Debug)]
 pub(crate) struct StepState {
     random: Random,
-    /// For how many ticks the step has been due.
+    /// Number of ticks for which the step has been due.
     ticks: u64,
-    /// From where what is held glides in this step.
+    /// Start of the held object's glide in this step.
     glides_from: Vec3,
     stillness: Stillness,
-    /// For how many ticks nothing of the robot has moved.
+    /// Number of ticks in which nothing of the robot has moved.
     robot_still: u64,
 }
 
@@ -38,7 +38,7 @@ pub(crate) enum StepProgress {
 }
 
 impl StepState {
-    /// The state at the beginning of a scenario, with what is random in it.
+    /// The state at the beginning of a scenario, with this source of random numbers.
     pub fn new(random: Random) -> Self {
         Self {
             random,
@@ -49,7 +49,7 @@ impl StepState {
         }
     }
 
-    /// Notes what a tick shows.
+    /// Takes in the result of a tick.
     pub fn observe(&mut self, seen: &Seen) {
         self.stillness.observe(seen);
         self.robot_still = match is_still(seen.robot) {
@@ -58,18 +58,18 @@ impl StepState {
         };
     }
 
-    /// The same step is due in the next tick, too.
+    /// Keeps the step due for the next tick.
     pub const fn go_on(&mut self) {
         self.ticks += 1;
     }
 
-    /// The next step is due.
+    /// Makes the next step due.
     pub const fn begin_next(&mut self) {
         self.robot_still = 0;
         self.ticks = 0;
     }
 
-    /// Takes the step that is due.
+    /// Acts on the step that is due.
     pub fn act(&mut self, action: &ProgramAction, seen: &Seen) -> Result<StepProgress, String> {
         match action {
             ProgramAction::SetScene(scene) => Ok(StepProgress::Command(SimCommand::Scene(
@@ -172,7 +172,7 @@ impl StepState {
         }
     }
 
-    /// Lets so many ticks of a step go by in which nothing changes.
+    /// Passes over this many ticks of a step in which nothing changes.
     pub(crate) fn pass_over(&mut self, ticks: u64) {
         self.stillness.pass_over(ticks);
         if self.robot_still > 0 {
@@ -181,7 +181,7 @@ impl StepState {
         self.ticks += ticks;
     }
 
-    /// How many ticks are left of a step that does nothing but wait.
+    /// Number of ticks left of a step that does nothing but wait.
     pub(crate) fn left_of_wait(&self, step: &Step) -> u64 {
         match step {
             Step::With(_, step) => self.left_of_wait(step),
@@ -289,7 +289,7 @@ mod tests {
         "Robot(Face(Asleep))",
     ];
 
-    /// Which of the [`STEPS`] gives such a command; none gives what only the program and scripts do.
+    /// The one of [`STEPS`] that gives such a command; `None` for commands that only the program and scripts give.
     fn step_of(command: &SimCommand) -> Option<&'static str> {
         let place = match command {
             SimCommand::Recording(RecordingCommand::Start) => 0,

@@ -11,7 +11,7 @@ use crate::{
     seen::{ScenarioObject, Seen},
 };
 
-/// Something that is to be true. Lengths are in units of 10 cm, angles in degrees.
+/// A condition that is to hold. Lengths are in units of 10 cm, angles in degrees.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Check {
@@ -21,7 +21,7 @@ pub enum Check {
         object: String,
         /// The location.
         at: Vec3,
-        /// The distance that is near enough.
+        /// The tolerance.
         #[serde(default = "close")]
         within: f32,
     },
@@ -31,7 +31,7 @@ pub enum Check {
         object: String,
         /// The rotation about the fixed X, then Y, then Z axis.
         degrees: Vec3,
-        /// The angle that is near enough.
+        /// The tolerance.
         #[serde(default = "nearly_parallel")]
         within: f32,
     },
@@ -41,7 +41,7 @@ pub enum Check {
         object: String,
         /// The lower object's id.
         of: String,
-        /// The difference in height that is near enough.
+        /// The tolerance in height.
         #[serde(default = "close")]
         within: f32,
     },
@@ -49,7 +49,7 @@ pub enum Check {
     OnTable {
         /// Its id.
         object: String,
-        /// The difference in height that is near enough.
+        /// The tolerance in height.
         #[serde(default = "close")]
         within: f32,
     },
@@ -59,7 +59,7 @@ pub enum Check {
         object: String,
         /// The outer object's id.
         of: String,
-        /// The length that it may stand out.
+        /// Largest length by which it may stand out.
         #[serde(default = "close")]
         within: f32,
     },
@@ -91,10 +91,10 @@ pub enum Check {
     Fastened {
         /// Id of the object, or of its guest point.
         guest: String,
-        /// How tight; 0 for not at all.
+        /// The tightness; 0 if it is not fastened.
         tightness: u32,
     },
-    /// The robot is as this says.
+    /// A check of the robot.
     Robot(RobotCheck),
 }
 
@@ -133,7 +133,7 @@ impl Check {
         }
     }
 
-    /// Compares with what is seen; an error says what was expected and what was found.
+    /// Compares with the world; an error names the expectation and the finding.
     pub(crate) fn judge(&self, seen: &Seen, stillness: &Stillness) -> Result<(), String> {
         match self {
             Self::Location { object, at, within } => is_at(seen.object(object)?, *at, *within),
@@ -229,7 +229,7 @@ fn is_on_table(object: &ScenarioObject, seen: &Seen, within: f32) -> Result<(), 
     })
 }
 
-/// The place of something that is not on its support, from which its lowest point is this far.
+/// Checks that an object lies on its support; `gap` is the distance of its lowest point from the support's top.
 fn lies_on(gap: f32, within: f32, is_over: bool) -> Result<(), String> {
     match (gap.abs() <= within, is_over) {
         (true, true) => Ok(()),

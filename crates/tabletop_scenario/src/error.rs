@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::SourceLocation;
 
-/// Why a scenario cannot be run, or has failed.
+/// The error of a scenario that cannot be run, or has failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ScenarioError {
     /// The file cannot be read.
@@ -18,7 +18,7 @@ pub enum ScenarioError {
     /// The text is not that of a scenario.
     #[error("{at}: {what}")]
     Syntax {
-        /// Where.
+        /// The place of the fault.
         at: SourceLocation,
         /// The fault.
         what: String,
@@ -33,7 +33,7 @@ pub enum ScenarioError {
         /// The fault.
         what: String,
     },
-    /// A task file cannot be loaded, or not be set up as the step asks for.
+    /// A task file cannot be loaded, or cannot be set up as the step asks.
     #[error("{at}: {step}: {what}")]
     Setup {
         /// The place in which the step begins.
@@ -50,7 +50,7 @@ pub enum ScenarioError {
         at: SourceLocation,
         /// Its text.
         step: String,
-        /// The expected and what was found.
+        /// The expectation and the finding.
         what: String,
     },
 }

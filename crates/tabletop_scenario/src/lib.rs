@@ -1,7 +1,7 @@
 //! Scripted demonstrations: files of steps and checks.
 //!
-//! A [`Scenario`] is a file that does with the hands what a person does with the mouse, waits, and says what it expects
-//! to have come of it; `docs/scenarios.md` is its reference. A [`Program`] is a scenario with everything in it that the file names, and
+//! A [`Scenario`] is a file that does with the hands what a person does with the mouse, waits, and checks
+//! the result; `docs/scenarios.md` is its reference. A [`Program`] is a scenario together with all files that it names, and
 //! [`ScenarioPlugin`] runs it: it writes the [commands](tabletop_core::SimCommand) of the steps as they are due.
 //!
 //! ```
@@ -64,9 +64,9 @@ use tabletop_core::{
 
 use crate::seen::{ScenarioObject, Seen};
 
-/// Runs the [`ScenarioRun`] that is in the world, if there is one. Needs [`CorePlugin`](tabletop_core::CorePlugin).
+/// Runs the [`ScenarioRun`] in the world, if there is one. Needs [`CorePlugin`](tabletop_core::CorePlugin).
 ///
-/// A tick's command is written before [`SimSystems::Load`](tabletop_core::SimSystems::Load), from the state in which the tick before has left the world.
+/// A tick's command is written before [`SimSystems::Load`](tabletop_core::SimSystems::Load), from the state after the previous tick.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ScenarioPlugin;
 
@@ -148,7 +148,7 @@ mod tests {
 
     use super::*;
 
-    /// True if a scenario goes on after a command of its own or of somebody else was refused.
+    /// True if a scenario continues after a refusal of its own command or of another actor's.
     fn goes_on_after(refuses_own: bool) -> bool {
         let scenario = Scenario::parse("s.ron", "(steps: [Select(Left), Wait(9)])").unwrap();
         let program = Program::new(&scenario, |_| Ok(SceneSpec::default()), 0).unwrap();

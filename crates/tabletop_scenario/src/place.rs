@@ -4,13 +4,13 @@ use bevy::prelude::*;
 use serde::Deserialize;
 use tabletop_core::{Bounds, Pose, Random, SceneItem, SceneSpec, turn_about};
 
-/// Least distance, in units, of an object that is placed to any other.
+/// Least distance, in units, of a placed object from any other.
 const CLEARANCE: f32 = 0.05;
 
 /// The number of places that are tried for an object.
 const TRIES: u32 = 1000;
 
-/// A random place for an object of a task file. It keeps its height, and a distance to everything else.
+/// A random place for an object of a task file. The object keeps its height, and a distance from everything else.
 /// Lengths are in units of 10 cm, angles in degrees.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -21,7 +21,7 @@ pub struct RandomPlace {
     pub x: (f32, f32),
     /// Its origin's least and greatest Y.
     pub y: (f32, f32),
-    /// By how much, at least and at most, it is turned about the vertical from how the file has it.
+    /// Least and greatest angle by which it is turned about the vertical from the orientation in the file.
     #[serde(default)]
     pub turn: (f32, f32),
 }
@@ -36,7 +36,7 @@ impl RandomPlace {
     }
 }
 
-/// Puts objects of a scene elsewhere, one after the other.
+/// Moves objects of a scene, one after the other.
 pub(crate) fn place_all(
     scene: &mut SceneSpec,
     places: &[RandomPlace],

@@ -1,4 +1,4 @@
-//! Scenarios with everything in them that their files name.
+//! Programs: scenarios together with the files that they name.
 
 use std::path::Path;
 
@@ -8,13 +8,13 @@ use crate::{
     LocatedStep, Scenario, ScenarioError, SourceLocation, Step, place::place_all, reach::Reach,
 };
 
-/// Longest time that a scenario takes if nothing else is said, in seconds.
+/// Time limit of a scenario unless another is given, in seconds.
 const DEFAULT_LIMIT_SECONDS: u64 = 600;
 
-/// A scenario that is ready to run: its task files are read, and what is placed at random has its place.
+/// A scenario that is ready to run: its task files are read, and its random places are chosen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
-    /// After how many ticks it fails if it is not done.
+    /// Number of ticks after which it fails if it is not done.
     pub limit: u64,
     pub(crate) steps: Vec<ProgramStep>,
     /// The random numbers of its run.
@@ -31,18 +31,18 @@ pub(crate) struct ProgramStep {
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ProgramAction {
-    /// Put this on the table.
+    /// Put this scene on the table.
     SetScene(Box<SceneSpec>),
-    /// Do what any other step says.
+    /// Do any other step.
     Do(Step),
 }
 
 impl Program {
-    /// Prepares a scenario: `load` reads a task file, and the seed decides where objects are placed, and what presets look like.
+    /// Prepares a scenario: `load` reads a task file, and the seed decides the places of objects, and the look of presets.
     ///
     /// # Errors
     ///
-    /// What `load` reports, or an object that cannot be placed, with the place of the step.
+    /// An error of `load`, or an object that cannot be placed, with the place of the step.
     pub fn new(
         scenario: &Scenario,
         mut load: impl FnMut(&Path) -> Result<SceneSpec, String>,
@@ -84,7 +84,7 @@ impl Program {
         })
     }
 
-    /// True if it only prepares: none of its steps lets time pass for something to happen, as `Wait` and `Glide` do.
+    /// True if it only prepares: no step lets time pass for something to happen, as `Wait` and `Glide` do.
     pub fn only_prepares(&self) -> bool {
         self.steps.iter().all(|step| match &step.action {
             ProgramAction::SetScene(_) => true,

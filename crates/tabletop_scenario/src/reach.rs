@@ -1,19 +1,19 @@
-//! Which task files a scenario may name: those around it, and where the user allows more.
+//! The reach of a scenario: the task files that it may name, around it and in folders that the user allows.
 
 use std::path::{Path, PathBuf};
 
 use tabletop_core::is_shipped;
 
-/// In the working folder, scenarios are in a folder of this name, beside that of the task files.
+/// Name of the folder of scenarios in a working folder, beside the folder of the task files.
 const SCENARIOS: &str = "scenarios";
 
-/// The folders in which, and below, a scenario may name task files.
+/// The folders in which, including their subfolders, a scenario may name task files.
 pub(crate) struct Reach {
     folders: Vec<PathBuf>,
 }
 
 impl Reach {
-    /// That of a scenario in this folder. In a folder `scenarios`, it reaches what is beside that, too.
+    /// The reach of a scenario in this folder. In a folder `scenarios`, it includes the folders beside that.
     pub fn of(folder: &Path, allowed: &[PathBuf]) -> Self {
         let folder = match folder == Path::new("") {
             true => Path::new("."),
@@ -32,10 +32,10 @@ impl Reach {
         }
     }
 
-    /// Whether it may name this file. A file that is not there is left to whoever reads it.
+    /// Checks that the scenario may name this file. A missing file is left to its reader.
     ///
     /// # Errors
-    /// It leads out; says what the user can do.
+    /// The path leads out of the reach; the error says what the user can do.
     pub fn check(&self, file: &Path) -> Result<(), String> {
         let Ok(found) = file.canonicalize() else {
             return Ok(());

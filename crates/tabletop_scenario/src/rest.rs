@@ -1,4 +1,4 @@
-//! Rest: an object is at rest if it has stayed where it is for a while.
+//! Rest: an object is at rest if it has stayed in place for a while.
 
 use std::collections::BTreeMap;
 
@@ -7,16 +7,16 @@ use tabletop_core::{Pose, TICKS_PER_SECOND};
 
 use crate::seen::{ScenarioObject, Seen};
 
-/// The most that an object at rest may move, in units, and turn, in radians.
+/// Largest motion of an object at rest, in units, and in radians for turns.
 const TREMBLE: (f32, f32) = (0.005, 0.005);
 
-/// An object is at rest when it has stayed where it is for so many ticks.
+/// Number of ticks without motion after which an object is at rest.
 const TICKS_TO_REST: u32 = TICKS_PER_SECOND / 2;
 
-/// An object in a hand has arrived when it has stayed where it is for so many ticks.
+/// Number of ticks without motion after which a held object has arrived.
 const TICKS_TO_ARRIVE: u32 = TICKS_PER_SECOND / 5;
 
-/// The time for which every object has stayed where it is.
+/// The time for which every object has stayed in place.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stillness(BTreeMap<Entity, Stay>);
 
@@ -27,7 +27,7 @@ struct Stay {
 }
 
 impl Stillness {
-    /// Takes in what a tick has brought.
+    /// Takes in the result of a tick.
     pub fn observe(&mut self, seen: &Seen) {
         if seen.paused {
             return;
@@ -52,7 +52,7 @@ impl Stillness {
             .collect();
     }
 
-    /// Lets so many ticks go by in which nothing moves.
+    /// Passes over this many ticks in which nothing moves.
     pub fn pass_over(&mut self, ticks: u64) {
         let ticks = u32::try_from(ticks).unwrap_or(u32::MAX);
         for stay in self.0.values_mut() {

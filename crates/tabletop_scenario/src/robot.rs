@@ -12,26 +12,26 @@ use crate::{
     seen::Seen,
 };
 
-/// Ticks without any motion after which the robot is still: more than an arm waits for what it squeezes.
+/// Number of ticks without motion after which the robot is still: more than an arm waits for an object that it squeezes.
 pub(crate) const TICKS_TO_STILL: u64 = 15;
 
-/// Speed in rad/s, or units/s of a gripper, below which a joint is still: a motor that leans on something creeps for long.
+/// Speed in rad/s, or units/s of a gripper, below which a joint is still: a motor that presses on something creeps for a long time.
 const STILL: f64 = 1e-4;
 
-/// One thing that the robot does. Positions of joints are in rad, openings of grippers in units, other angles in degrees.
+/// A step of the robot. Positions of joints are in rad, openings of grippers in units, other angles in degrees.
 /// All motions but [`Set`](Self::Set) take their time; [`WaitUntilStill`](Self::WaitUntilStill) waits for their end.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum RobotStep {
-    /// Put the robot to the table.
+    /// Put the robot at the table.
     Show,
     /// Take it away.
     Hide,
     /// Move joints to these positions at the speed of manual control.
     Move(Vec<(JointName, f64)>),
-    /// Put joints to these positions at once.
+    /// Put joints at these positions at once.
     Set(Vec<(JointName, f64)>),
-    /// Move all joints to where they are in the beginning.
+    /// Move all joints to their home positions.
     Home,
     /// Bring an end effector to a pose: with `degrees` 0 its fingers point down and open along X.
     ReachTo {
@@ -45,15 +45,15 @@ pub enum RobotStep {
     },
     /// Close a gripper until it holds or meets something.
     Close(LimbName),
-    /// Open a gripper, and let go of what it holds.
+    /// Open a gripper, which releases its objects.
     Open(LimbName),
     /// Show this face.
     Face(Face),
-    /// Wait until nothing of the robot moves, at most so many seconds.
+    /// Wait until nothing of the robot moves, at most this many seconds.
     WaitUntilStill(f32),
 }
 
-/// Something that is to be true of the robot.
+/// A condition of the robot that is to hold.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum RobotCheck {
@@ -63,7 +63,7 @@ pub enum RobotCheck {
         joint: JointName,
         /// The position.
         at: f64,
-        /// The distance that is near enough.
+        /// The tolerance.
         #[serde(default = "precise")]
         within: f64,
     },
@@ -73,7 +73,7 @@ pub enum RobotCheck {
         arm: LimbName,
         /// The location.
         at: Vec3,
-        /// The distance that is near enough.
+        /// The tolerance.
         #[serde(default = "close")]
         within: f32,
     },
@@ -86,7 +86,7 @@ pub enum RobotCheck {
     },
     /// A gripper holds nothing.
     HoldsNothing(LimbName),
-    /// An arm is stopped by something: an object's id, `table` or a part of the robot.
+    /// An arm is stopped by an obstacle: an object's id, `table` or a part of the robot.
     BlockedBy {
         /// The arm.
         arm: LimbName,
@@ -191,7 +191,7 @@ pub(crate) fn is_still(robot: &Robot) -> bool {
 }
 
 impl RobotCheck {
-    /// Compares with what is seen; an error says what was expected and what was found.
+    /// Compares with the world; an error names the expectation and the finding.
     pub(crate) fn judge(&self, seen: &Seen) -> Result<(), String> {
         let robot = seen.robot;
         match self {
@@ -253,7 +253,7 @@ impl RobotCheck {
     }
 }
 
-/// The ids of what a gripper holds.
+/// Ids of the objects in a gripper.
 fn held<'a>(seen: &'a Seen, arm: LimbName) -> Result<Vec<&'a str>, String> {
     let holds = &seen.robot.limb(limb_of(seen.layout, arm)?).holds;
     let held = seen

@@ -10,7 +10,7 @@ use crate::{
     seen::Seen,
 };
 
-/// A scenario on its way. [`ScenarioPlugin`](crate::ScenarioPlugin) runs the one that is in the world.
+/// A scenario in progress. [`ScenarioPlugin`](crate::ScenarioPlugin) runs the one in the world.
 #[derive(Resource, Clone, Debug)]
 pub struct ScenarioRun {
     program: Program,
@@ -29,7 +29,7 @@ pub enum Outcome {
     /// It goes on.
     #[default]
     Running,
-    /// All steps are done, all that was expected was found.
+    /// All steps are done, all checks have passed.
     Done,
     /// It has stopped at a step.
     Failed(ScenarioError),
@@ -53,7 +53,7 @@ impl ScenarioRun {
         &self.outcome
     }
 
-    /// The number of steps that are done, with the one that loads the `setup`.
+    /// Number of steps done, including the one that loads the `setup`.
     pub const fn steps_done(&self) -> usize {
         self.next
     }
@@ -65,8 +65,8 @@ impl ScenarioRun {
             .count()
     }
 
-    /// Takes the steps that are due in a tick: at most one of them gives a command. `refusal` is what the last tick's
-    /// command was refused for.
+    /// Takes the steps that are due in a tick: at most one of them gives a command. `refusal` is the reason why the last tick's
+    /// command was refused.
     pub(crate) fn tick(&mut self, seen: &Seen, refusal: Option<&str>) -> Option<SimCommand> {
         if self.outcome != Outcome::Running {
             return None;
@@ -107,7 +107,7 @@ impl ScenarioRun {
         }
     }
 
-    /// Fails for what concerns all its steps.
+    /// Fails for a reason that concerns all steps.
     pub(crate) fn give_up(&mut self, reason: String) {
         if let (Outcome::Running, Some(last)) =
             (&self.outcome, self.program.steps.len().checked_sub(1))
@@ -117,7 +117,7 @@ impl ScenarioRun {
         }
     }
 
-    /// For how many ticks it waits, whatever comes of them; `None` if it has ended.
+    /// Number of ticks for which it waits, whatever happens in them; `None` if it has ended.
     pub(crate) fn waits_for(&self) -> Option<u64> {
         if self.outcome != Outcome::Running {
             return None;
@@ -134,7 +134,7 @@ impl ScenarioRun {
         })
     }
 
-    /// Lets so many ticks go by of those that it [waits for](Self::waits_for), in which nothing changes.
+    /// Passes over this many of the ticks that it [waits for](Self::waits_for), in which nothing changes.
     pub(crate) fn pass_over(&mut self, ticks: u64) {
         if self.outcome != Outcome::Running {
             return;

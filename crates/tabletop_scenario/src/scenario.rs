@@ -31,18 +31,18 @@ const MOST_STEPS: usize = 100_000;
 pub struct Scenario {
     /// Its file.
     pub path: PathBuf,
-    /// Loads the task file that it begins with.
+    /// The step that loads its first task file.
     pub setup: Option<LocatedStep>,
     /// The steps after that.
     pub steps: Vec<LocatedStep>,
-    /// Folders in which, and below, task files are that it may name, besides those around it.
+    /// Folders in which, including their subfolders, it may name task files, besides those around it.
     pub allowed: Vec<PathBuf>,
 }
 
-/// A step and where it stands.
+/// A step and its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocatedStep {
-    /// The place in which it begins.
+    /// The place where it begins.
     pub at: SourceLocation,
     /// Its text, on one line.
     pub text: String,
@@ -64,7 +64,7 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// If it cannot be read, or its [text](Self::parse) is wrong.
+    /// It cannot be read, or its [text](Self::parse) has a fault.
     pub fn read(path: impl Into<PathBuf>) -> Result<Self, ScenarioError> {
         let path = path.into();
         match read_regular_text(&path, MOST_BYTES) {
@@ -80,7 +80,7 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// The first thing that is wrong, with its place.
+    /// The first fault, with its place.
     pub fn parse(path: impl Into<PathBuf>, text: &str) -> Result<Self, ScenarioError> {
         let path = path.into();
         let file: ScenarioFile = from_ron(text, &SourceLocation::start_of(&path))?;
@@ -109,7 +109,7 @@ impl Scenario {
         })
     }
 
-    /// Checks that this robot has the joints and limbs that the steps name, and can go where they send it.
+    /// Checks that this robot has the joints and limbs that the steps name, and can reach the positions that they ask for.
     ///
     /// # Errors
     ///
@@ -129,7 +129,7 @@ impl Scenario {
         Ok(())
     }
 
-    /// Lets it begin with this task file, which is relative to the working directory, in place of its own.
+    /// Replaces its first task file by this one, which is relative to the working directory.
     pub fn begin_with(&mut self, task: &Path) {
         let at = SourceLocation::start_of(&self.path);
         let task = match is_shipped(task) {

@@ -12,9 +12,9 @@ pub(crate) struct Seen<'a> {
     pub table: Option<Table>,
     /// The selected hand.
     pub selected: Hand,
-    /// True if the simulation stands still.
+    /// True if the simulation is paused.
     pub paused: bool,
-    /// What is fastened to what.
+    /// The bonds on the table.
     pub bonds: &'a Bonds,
     /// The robot.
     pub robot: &'a Robot,
@@ -27,11 +27,11 @@ pub(crate) struct Seen<'a> {
 pub(crate) struct ScenarioObject<'a> {
     /// Its entity.
     pub entity: Entity,
-    /// The value.
+    /// Its description.
     pub spec: &'a ObjectSpec,
     /// Its place.
     pub pose: Pose,
-    /// Who holds it.
+    /// The hand that holds it.
     pub holder: Option<Hand>,
 }
 
@@ -43,7 +43,7 @@ impl ScenarioObject<'_> {
 }
 
 impl<'a> Seen<'a> {
-    /// The object of this id, or why there is none.
+    /// The object with this id, or the reason why there is none.
     pub fn object(&self, id: &str) -> Result<&ScenarioObject<'a>, String> {
         self.objects
             .iter()

@@ -52,7 +52,7 @@ impl fmt::Display for SourceLocation {
 pub(crate) struct Places<'a> {
     text: &'a str,
     offset: usize,
-    /// Where that is.
+    /// The place of that offset.
     at: SourceLocation,
 }
 

@@ -1,4 +1,4 @@
-//! The steps of a scenario, as its file has them.
+//! The steps of a scenario, as in its file.
 
 use std::path::PathBuf;
 
@@ -11,18 +11,18 @@ use crate::{
     fault::{fault_of_time, fault_of_vector},
 };
 
-/// One thing that the demonstrator of a scenario does, waits for or checks.
+/// A step of a scenario: something that the demonstrator does, waits for or checks.
 ///
-/// Lengths are in units of 10 cm, angles in degrees, times in seconds of simulated time. Where nothing else is said, the
+/// Lengths are in units of 10 cm, angles in degrees, times in seconds of simulated time. Unless a step says otherwise, the
 /// selected hand acts.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Step {
-    /// Clear the table and put on it what a task file says.
+    /// Clear the table and load a task file.
     Load {
         /// The task file, relative to the scenario's folder.
         file: PathBuf,
-        /// The objects that are put elsewhere, at random.
+        /// Objects that are moved to random places.
         #[serde(default)]
         place: Vec<RandomPlace>,
     },
@@ -36,29 +36,29 @@ pub enum Step {
     With(Hand, Box<Step>),
     /// Take the object of this id.
     Grasp(String),
-    /// Move what is held to this location at a hand's full speed.
+    /// Move the held object to this location at a hand's full speed.
     MoveTo(Vec3),
-    /// Move what is held by this much at a hand's full speed.
+    /// Move the held object by this vector at a hand's full speed.
     MoveBy(Vec3),
-    /// Move what is held to a location evenly in a given time, and wait until it is over.
+    /// Move the held object evenly to a location in a given time, and wait until the time is over.
     Glide {
         /// The location.
         to: Vec3,
         /// The time.
         seconds: f32,
     },
-    /// Turn what is held about an axis of the world through its origin.
+    /// Turn the held object about an axis of the world through its origin.
     Turn {
         /// The axis.
         axis: Axis,
         /// The angle.
         degrees: f32,
     },
-    /// Let go of what is held.
+    /// Release the held object.
     Release,
-    /// Remove what is held from the world.
+    /// Remove the held object from the world.
     Destroy,
-    /// Press the switch of this id, or what leads to another state of a control.
+    /// Press the switch with this id, or trigger the first part of a control that leads to another state.
     Trigger(String),
     /// Trigger the simple shape of this number, from 0, in the present state of a control.
     TriggerPart(String, u32),
@@ -68,13 +68,13 @@ pub enum Step {
     Fasten(String),
     /// Loosen the guest point or object of this id by a step.
     Loosen(String),
-    /// Close the scissors that are held by one of their blades.
+    /// Close the scissors that are held by a blade.
     Cut,
-    /// Wait so many seconds.
+    /// Wait this many seconds.
     Wait(f32),
-    /// Wait until everything is at rest, at most so many seconds.
+    /// Wait until everything is at rest, at most this many seconds.
     WaitUntilRest(f32),
-    /// Wait until what is held has arrived or is held up, at most so many seconds.
+    /// Wait until the held object has arrived or is stopped, at most this many seconds.
     WaitUntilThere(f32),
     /// Start a recording.
     Start,
@@ -84,11 +84,11 @@ pub enum Step {
     Undo,
     /// Bring back the segment that was undone last.
     Redo,
-    /// Stop the simulation, or let it run on. Waiting goes on while it stands still, but hands cannot act.
+    /// Pause or resume the simulation. Waiting continues during a pause, but hands cannot act.
     Pause(bool),
-    /// Let the robot do something.
+    /// Command the robot.
     Robot(RobotStep),
-    /// Fail if the world is not as this says.
+    /// Fail unless this check holds.
     Expect(Check),
 }
 

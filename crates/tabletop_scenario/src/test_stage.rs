@@ -79,7 +79,7 @@ impl Stage {
         self.tick_refused(None)
     }
 
-    /// Ticks until it is over, and how many that were.
+    /// Ticks until it is over; returns their number.
     pub fn finish(&mut self) -> u64 {
         (0..10_000)
             .find(|_| {

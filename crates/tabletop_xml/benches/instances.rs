@@ -1,4 +1,4 @@
-//! How long a task of 10,000 instances takes to read: `cargo bench -p tabletop_xml`.
+//! Benchmark of reading a task with 10,000 instances: `cargo bench -p tabletop_xml`.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 
 use std::{fmt::Write as _, path::Path, time::Instant};

@@ -19,8 +19,8 @@ use crate::{
 /// The root of task files.
 pub(crate) const ROOT: &str = "tabletop";
 
-/// Reads the root element of a task file, with all that is complete before the first error. `source` is the index of the file.
-/// There is none if the file is about something else.
+/// Reads the root element of a task file, with everything complete before the first error. `source` is the index of the file.
+/// `None` if the file is about something else.
 pub(crate) fn root<'a>(
     decoded: &Decoded<'a>,
     source: usize,
@@ -44,7 +44,7 @@ pub(crate) fn root<'a>(
     Some(root)
 }
 
-/// Takes the elements of a namespace for those of task files.
+/// Treats the elements of a namespace as those of task files.
 fn adopt(element: &mut Element, namespace: Namespace) {
     if element.namespace == namespace {
         element.namespace = Namespace::Task;

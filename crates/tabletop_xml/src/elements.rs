@@ -1,4 +1,4 @@
-//! Elements of the task file language as what they stand for (report section 6.2): the table, and what may stand where.
+//! Elements of the task file language and their meaning (report section 6.2): the table, and the places of elements.
 
 pub(crate) mod attributes;
 mod blades;
@@ -32,7 +32,7 @@ use crate::{
     suggestion::nearest,
 };
 
-/// Reads what the root element stands for.
+/// Reads the scene of the root element.
 pub(crate) fn scene(root: &Element, meshes: &mut MeshFiles, faults: &mut Faults) -> SceneSpec {
     let mut reader = ElementReader { meshes, faults };
     SceneSpec {
@@ -41,7 +41,7 @@ pub(crate) fn scene(root: &Element, meshes: &mut MeshFiles, faults: &mut Faults)
     }
 }
 
-/// Reads elements, and notes what is wrong with them.
+/// Reads elements, and notes their faults.
 pub(crate) struct ElementReader<'f, 'm> {
     pub meshes: &'f mut MeshFiles<'m>,
     pub faults: &'f mut Faults,
@@ -98,7 +98,7 @@ impl ElementReader<'_, '_> {
         }
     }
 
-    /// Whether an element may stand in its parent; a fault says why not.
+    /// True if an element may stand in its parent; otherwise a fault has the reason.
     pub fn is_allowed(&mut self, element: &Element, parent: &str, allowed: &[&str]) -> bool {
         if !element.is_of_the_language() {
             let expected = format_args!("the namespace {NAMESPACE}");

@@ -1,4 +1,4 @@
-//! Templates: a task of files, definitions and instances as one tree that has none of them, in which every element knows its
+//! Expansion of templates: a task of files, definitions and instances becomes one tree without these, in which every element knows its
 //! [`Origin`](crate::origin::Origin).
 
 mod arithmetic;
@@ -17,7 +17,7 @@ use crate::{
     fault::Faults, origin::Sources,
 };
 
-/// Puts everything in: the root without definitions, instances and variables.
+/// Expands everything: returns the root without definitions, instances and variables.
 pub(crate) fn expand<'a>(
     mut root: Element<'a>,
     sources: &mut Sources<'a>,

@@ -1,4 +1,4 @@
-//! What is wrong with a task file, and where.
+//! Faults of task files, with their places.
 
 mod position;
 
@@ -9,10 +9,10 @@ use std::{fmt, path::PathBuf};
 
 use crate::origin::{Origin, Sources};
 
-/// The most faults of a file that are reported; one more fault then says that there are others.
+/// Largest number of faults of a file that are reported; one more fault then mentions that there are others.
 pub const MAX_FAULTS: usize = 200;
 
-/// One thing that is wrong with a task file.
+/// A fault of a task file.
 ///
 /// ```
 /// use tabletop_xml::Fault;
@@ -41,22 +41,22 @@ pub struct Fault {
     pub line: usize,
     /// The column in characters, from 1.
     pub column: usize,
-    /// Name of the element at fault; absent where the fault is in none.
+    /// Name of the faulty element; absent if the fault is in none.
     pub element: Option<String>,
-    /// Name of the attribute at fault; absent where the fault is in none.
+    /// Name of the faulty attribute; absent if the fault is in none.
     pub attribute: Option<String>,
-    /// What is wrong.
+    /// The problem.
     pub problem: String,
-    /// What should be there instead.
+    /// The expectation.
     pub expected: String,
     /// The instances of templates that brought the element, the innermost first.
     pub instances: Vec<Position>,
-    /// How many other instances have the same fault at the same place.
+    /// Number of other instances with the same fault at the same place.
     pub repeats: usize,
 }
 
 impl fmt::Display for Fault {
-    /// Writes `file:line:column: element, attribute: what is wrong, expected what should be there`, on one line; then
+    /// Writes `file:line:column: element, attribute: problem, expected expectation` on one line; then
     /// ` (in the instance at file:line:column)` if it is in one.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
@@ -147,7 +147,7 @@ struct UnplacedFault {
 }
 
 impl UnplacedFault {
-    /// Whether it is the same fault, brought by another instance.
+    /// True if it is the same fault, from another instance.
     fn is_repeated_by(&self, other: &Self) -> bool {
         let (mine, others) = (self.origin, other.origin);
         mine.instance.is_some()
@@ -159,7 +159,7 @@ impl UnplacedFault {
 }
 
 impl Faults {
-    /// Whether no more faults are noted.
+    /// True if no more faults are kept.
     pub fn is_full(&self) -> bool {
         self.found.len() >= MAX_FAULTS
     }

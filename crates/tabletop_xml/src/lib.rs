@@ -1,7 +1,7 @@
-//! Task files: what stands on the table, as XML (report section 6.2).
+//! Task files: the table and its objects as XML (report section 6.2).
 //!
 //! [`parse()`] reads a file, [`write()`] writes one, and [`XmlPlugin`] loads files into the simulation. Reading never fails:
-//! every [`Fault`] is reported with its place, only the element that has it is skipped, and there is always a table.
+//! every [`Fault`] is reported with its place, only faulty elements are skipped, and there is always a table.
 //! `docs/task-files.md` describes the language, `tablesetup/tabletop.xsd` is its schema.
 //!
 //! ```

@@ -1,4 +1,4 @@
-//! Where an element comes from: a place in a file, and the instances that brought it.
+//! The origin of an element: a place in a file, and the instances that inserted it.
 
 use std::{
     collections::BTreeMap,
@@ -7,14 +7,14 @@ use std::{
 
 use crate::fault::{Position, PositionCursor};
 
-/// Where something comes from.
+/// The origin of something.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Origin {
     /// The file, as an index into [`Sources`].
     pub source: usize,
     /// The byte in its text.
     pub offset: usize,
-    /// The instance that brought it; absent for what stands in the file itself.
+    /// The instance that inserted it; absent for an element of the file itself.
     pub instance: Option<InstanceId>,
 }
 
@@ -26,7 +26,7 @@ pub(crate) struct InstanceId(usize);
 #[derive(Debug, Default)]
 pub(crate) struct Sources<'a> {
     texts: Vec<(PathBuf, &'a str)>,
-    /// Where each `<instance>` is written, which may itself be brought by another.
+    /// The place of each `<instance>`, which another instance may have inserted.
     instances: Vec<Origin>,
 }
 
@@ -48,7 +48,7 @@ impl<'a> Sources<'a> {
         self.texts.iter().map(|(file, _)| file.clone()).collect()
     }
 
-    /// The instances that brought what comes from there, the innermost first.
+    /// The instances that inserted it, the innermost first.
     pub fn instances_of(&self, origin: Origin) -> impl Iterator<Item = Origin> + '_ {
         let above = |origin: &Origin| {
             let instance = origin.instance?;

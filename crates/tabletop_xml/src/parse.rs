@@ -14,27 +14,27 @@ use crate::{
     write::expanded::write_expanded,
 };
 
-/// What a task file says, and what is wrong with it.
+/// A parsed task file: its scene and its faults.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParsedTask {
-    /// The table and what stands on it, without the elements that have a fault.
+    /// The table and the elements without faults.
     pub scene: SceneSpec,
     /// The faults, in the order of the files.
     pub faults: Vec<Fault>,
-    /// The files that were read: the task file, then what it includes, then the meshes that it names. A change of any of them can change the scene.
+    /// The files that were read: the task file, then its includes, then its meshes. A change of any of them can change the scene.
     pub files: Vec<PathBuf>,
 }
 
-/// A task file with everything put in: without `<include>`, `<def>`, `<instance>`, `<var>` and expressions.
+/// An expanded task file: without `<include>`, `<def>`, `<instance>`, `<var>` and expressions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExpandedTask {
-    /// The text, which [reads](parse) as the same scene. What is broken, so that nothing comes of it, is left out.
+    /// The text, which [reads](parse) as the same scene. Broken parts that have no effect are left out.
     pub text: String,
     /// The faults of the task file.
     pub faults: Vec<Fault>,
 }
 
-/// Reads the content of a task file (report section 6.2). It never fails: what has a fault is skipped, and there is
+/// Reads the content of a task file (report section 6.2). It never fails: faulty parts are skipped, and there is
 /// always a table. `file` only names the file in the faults.
 ///
 /// ```
@@ -56,7 +56,7 @@ pub fn parse(file: &Path, text: &[u8]) -> ParsedTask {
     TaskReading::read(&tree, &tree.task(file), text.to_vec(), &Arena::default()).parsed()
 }
 
-/// Puts everything into the content of a task file. It includes nothing: a text has no folder.
+/// Expands the content of a task file. It includes nothing: a text has no folder.
 ///
 /// ```
 /// use std::path::Path;
@@ -77,7 +77,7 @@ pub fn expand(file: &Path, text: &[u8]) -> ExpandedTask {
     TaskReading::read(&tree, &tree.task(file), text.to_vec(), &Arena::default()).expanded()
 }
 
-/// A task with everything put in.
+/// An expanded task.
 pub(crate) struct TaskReading<'a, 't> {
     tree: &'t FileTree<'t>,
     path: &'t TaskPath,
@@ -147,8 +147,8 @@ impl<'a, 't> TaskReading<'a, 't> {
     }
 }
 
-/// Whether a file is meant to be loaded, whatever is wrong with it: its root is `<tabletop>`, and it is more than a file of `<def>`s,
-/// which others include.
+/// True if a file is meant to be loaded, whatever its faults: its root is `<tabletop>`, and it is more than a file of `<def>`s
+/// for others to include.
 ///
 /// ```
 /// use tabletop_xml::is_task;

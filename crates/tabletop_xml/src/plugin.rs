@@ -11,12 +11,12 @@ use tabletop_core::{
 use crate::{ParsedTask, ReadError, TaskReader};
 
 /// Carries out [`SceneCommand::Load`]: in [`SimSystems::Load`] the command becomes a [`SceneCommand::Set`] with
-/// what the file says, in the same place of the order, and a [`SimFact::TaskLoaded`] tells its faults, which are
-/// logged, too. A file that cannot be read gives an empty table; one that is not there may be among the [`ShippedFiles`].
+/// the content of the file, at the same place of the order, and a [`SimFact::TaskLoaded`] reports its faults, which are
+/// also logged. A file that cannot be read gives an empty table; a missing one may be among the [`ShippedFiles`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct XmlPlugin;
 
-/// Folders in which, and below, task files may include files, besides their own.
+/// Folders in which, including their subfolders, task files may include files, besides their own.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct AllowedFolders(pub Vec<PathBuf>);
 

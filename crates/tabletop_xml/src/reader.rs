@@ -13,7 +13,7 @@ use crate::{
     parse::TaskReading,
 };
 
-/// Where task files come from: the disk, and the inside of the program.
+/// A reader of task files on disk and inside the program.
 ///
 /// A task file can include others in its folder and below, and in folders that the user allows; nothing else is read.
 #[derive(Clone, Copy, Debug, Default)]
@@ -23,7 +23,7 @@ pub struct TaskReader<'s> {
 }
 
 impl<'s> TaskReader<'s> {
-    /// Reads what is inside of the program where there is nothing on the disk.
+    /// Reads files inside the program where there is nothing on disk.
     pub const fn with_shipped(shipped: &'s ShippedFiles) -> Self {
         Self {
             shipped: Some(shipped),
@@ -50,7 +50,7 @@ impl<'s> TaskReader<'s> {
         Ok(TaskReading::read(&file.tree, &file.path, file.bytes, &Arena::default()).parsed())
     }
 
-    /// Reads a task file, and puts everything in.
+    /// Reads and expands a task file.
     ///
     /// # Errors
     ///
@@ -82,23 +82,23 @@ impl<'s> TaskReader<'s> {
     }
 }
 
-/// A task file and what is around it.
+/// A task file and its surroundings.
 struct OpenFile<'s> {
     tree: FileTree<'s>,
     path: TaskPath,
     bytes: Vec<u8>,
 }
 
-/// Why a task file cannot be read at all.
+/// The error of a task file that cannot be read at all.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
-    /// The operating system does not give it, because it is not there for instance.
+    /// The operating system does not give it, for example because it does not exist.
     #[error("{path}: it cannot be read: {source}, expected a task file", path = path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the operating system says.
+        /// The operating system's error.
         source: io::Error,
     },
     /// It is a folder, a device or a pipe.

@@ -1,4 +1,4 @@
-//! What a misspelt name was probably meant to be.
+//! Suggestions for misspelt names.
 
 /// The name that is at most two typing errors away from the misspelt one, the nearest if there are several.
 pub(crate) fn nearest<'n>(misspelt: &str, names: &[&'n str]) -> Option<&'n str> {
@@ -10,7 +10,7 @@ pub(crate) fn nearest<'n>(misspelt: &str, names: &[&'n str]) -> Option<&'n str> 
         .map(|(_, name)| name)
 }
 
-/// How many letters must be added, removed or replaced to make one name of the other, in upper or lower case.
+/// Number of letters to add, remove or replace to turn one name into the other, in upper or lower case.
 fn distance(left: &str, right: &str) -> usize {
     if left.len() > 3 * right.len() {
         return left.len();

@@ -19,12 +19,12 @@ use crate::{
 };
 
 /// Writes a scene as a task file, which [reads](crate::parse()) back as the same scene: numbers exactly, colours to
-/// within their 8 bits a part, rotations exactly or, if they are no [rotation of a file](tabletop_core::quat_from_degrees), as the nearest
+/// within their 8 bits a channel, rotations exactly or, if they are no [rotation of a file](tabletop_core::quat_from_degrees), as the nearest
 /// of those: nowhere off by more than 2e-7.
 ///
-/// What a file cannot say is written as the nearest that it can: characters that ids cannot have become underscores, a
+/// Parts that a file cannot express are written as the nearest that it can: characters that ids cannot have become underscores, a
 /// link that is no longer in a chain becomes a block, a lid without its box a composite of plate and handle.
-/// Numbers that are not finite or out of the language's ranges are written as they are, and do not read back.
+/// Numbers that are not finite or out of the language's ranges are written unchanged, and do not read back.
 ///
 /// ```
 /// use std::path::Path;
@@ -62,7 +62,7 @@ pub fn write(scene: &SceneSpec) -> String {
 struct Writer {
     text: String,
     open: Vec<&'static str>,
-    /// The innermost element has nothing in it so far.
+    /// True if the innermost element is empty so far.
     is_empty: bool,
 }
 
@@ -99,7 +99,7 @@ impl Writer {
         self.part_in_state(part, &mut std::iter::empty());
     }
 
-    /// Writes a part, and to which states triggering its simple parts leads.
+    /// Writes a part, and the states to which triggering its simple parts leads.
     pub(super) fn part_in_state(
         &mut self,
         part: &Part,

@@ -1,4 +1,4 @@
-//! The scenarios in `tablesetup/`: they hold what they are to hold, and nothing overlaps at the start.
+//! The scenarios in `tablesetup/`: they have the right content, and nothing overlaps at the start.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on panics")]
 
@@ -188,7 +188,7 @@ fn placed(shape: &Shape, pose: Pose) -> Vec<Primitive> {
     solids
 }
 
-/// How far a solid reaches from the origin along a direction.
+/// Extent of a solid from the origin along a direction.
 fn reach(solid: &Primitive, direction: Vec3) -> f32 {
     let local = solid.pose.rotation.inverse() * direction;
     let reach = match solid.solid {
@@ -205,7 +205,7 @@ fn reach(solid: &Primitive, direction: Vec3) -> f32 {
     reach + solid.pose.location.dot(direction)
 }
 
-/// Whether one of many directions shows a gap between two solids. If none does they may still be apart.
+/// True if one of many directions shows a gap between two solids. If none does they may still be apart.
 fn are_apart(left: &Primitive, right: &Primitive) -> bool {
     let axes = |solid: &Primitive| Vec3::AXES.map(|axis| solid.pose.rotation * axis);
     let (of_left, of_right) = (axes(left), axes(right));

@@ -44,7 +44,7 @@ fn has_validator() -> bool {
     is_there
 }
 
-/// What the validator says against a text; nothing if it is valid.
+/// The validator's complaint about a text; `Ok` if it is valid.
 fn validate(text: &str) -> Result<(), String> {
     let mut validator = Command::new("xmllint")
         .args(["--noout", "--nonet", "--schema"])

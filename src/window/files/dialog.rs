@@ -108,7 +108,7 @@ fn first_folder() -> PathBuf {
     std::path::absolute(folder).unwrap_or(folder.to_owned())
 }
 
-/// Whether there is a desktop that has dialogs: on Linux, a session with a portal, or Zenity.
+/// True if there is a desktop that has dialogs: on Linux, a session with a portal, or Zenity.
 fn has_dialogs(variable: impl Fn(&str) -> Option<OsString>) -> bool {
     if !cfg!(target_os = "linux") {
         return true;

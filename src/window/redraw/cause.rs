@@ -28,7 +28,7 @@ pub(super) enum RedrawCause {
 }
 
 impl RedrawCause {
-    /// Whether something in the picture moves.
+    /// True if something in the picture moves.
     pub const fn is_motion(self) -> bool {
         match self {
             Self::Start
@@ -41,12 +41,12 @@ impl RedrawCause {
         }
     }
 
-    /// Whether what is drawn does not all reach the graphics card at once.
+    /// True if what is drawn does not all reach the graphics card at once.
     pub const fn needs_settling(self) -> bool {
         self.is_motion() || matches!(self, Self::Asset)
     }
 
-    /// Whether the user sees something new.
+    /// True if the user sees something new.
     pub const fn is_event(self) -> bool {
         self.needs_settling() || matches!(self, Self::Panels | Self::Texture)
     }

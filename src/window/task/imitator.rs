@@ -38,7 +38,7 @@ enum ImitatorState {
         task: Box<Task>,
         /// Where objects are going to be put, and by which step.
         ghosts: Vec<(usize, Ghost)>,
-        /// Whether it waits for what the tick has brought.
+        /// True if it waits for what the tick has brought.
         is_expecting: bool,
         is_planning: bool,
     },

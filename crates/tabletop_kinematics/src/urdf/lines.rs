@@ -1,4 +1,4 @@
-//! The lines of a description that its links and joints begin in.
+//! The lines in which a description's links and joints begin.
 
 use crate::outline::Child;
 

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::{ModelError, urdf::lines::Lines};
 
-/// Who hangs on whom, by places in the text.
+/// The parents of links, by places in the text.
 pub(super) struct LinkTree {
     /// The joint that carries each link.
     pub carrier: Vec<Option<usize>>,

@@ -17,7 +17,7 @@ impl Lines {
 
         let mut links = Vec::with_capacity(robot.links.len());
         let mut joints = Vec::with_capacity(robot.joints.len());
-        // Where the links and joints of the text end up.
+        // The new places of the text's links and joints.
         let mut place = vec![0; robot.links.len()];
         let mut joint_place = vec![0; robot.joints.len()];
         for &index in &tree.order {
@@ -159,7 +159,7 @@ impl Lines {
         })
     }
 
-    /// Whom a joint follows in the end, by its place in the text.
+    /// The joint that a joint follows in the end, by its place in the text.
     fn follow(
         &self,
         index: usize,

@@ -139,7 +139,7 @@ impl Numbers {
     }
 }
 
-/// Whether no principal moment is negative, but for what rounding does.
+/// True if no principal moment is negative, apart from rounding errors.
 fn is_of_a_body(moments: DVec3, products: DVec3) -> bool {
     let scale = moments.max_element();
     if scale > MOST_INERTIA {

@@ -29,7 +29,7 @@ pub(crate) fn to_json_line(value: &impl Serialize) -> Result<Vec<u8>, Error> {
     Ok(line)
 }
 
-/// Whether a value that was written reads back: it has no number that is none, which is written as `null`, and is not too deep.
+/// True if a value that was written reads back: it has no number that is none, which is written as `null`, and is not too deep.
 pub(crate) fn reads_back(json: &[u8]) -> bool {
     let JsonOutline { depth, has_null } = JsonOutline::of(json);
     !has_null && depth <= MOST_LEVELS

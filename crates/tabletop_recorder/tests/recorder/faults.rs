@@ -128,7 +128,7 @@ fn run_again(recording: &RecordingReader, again: &Place) {
     app.step(1);
 }
 
-/// Whether the files of a recording, or their beginnings if it was cut off, are those of another.
+/// True if the files of a recording, or their beginnings if it was cut off, are those of another.
 fn compare(found: &Path, expected: &Path, recording: &RecordingReader) -> Result<(), String> {
     let is_whole = recording.cut_off_at().is_none();
     let is_hidden = |name: &str| name.starts_with('.') || name.ends_with(".part");

@@ -14,16 +14,16 @@ use crate::{
     fault::{Excerpt, Faults, Place},
 };
 
-/// How deep elements can be nested, also those of a task with everything put in.
+/// Largest depth of nested elements, before and after expansion.
 pub(crate) const MAX_DEPTH: usize = 100;
-/// How many elements a file can have, also a task with everything put in.
+/// Largest number of elements of a file, before and after expansion.
 pub(crate) const MAX_ELEMENTS: usize = 100_000;
-/// How many attributes an element can have.
+/// Largest number of attributes of an element.
 const MAX_ATTRIBUTES: usize = 100;
 
 const INSTANCE_NAMESPACE: &str = "http://www.w3.org/2001/XMLSchema-instance";
 
-/// Reads the root element, with everything that is complete before the first error.
+/// Reads the root element, with everything complete before the first error.
 /// `source` is the index of the file.
 pub(crate) fn read<'a>(
     decoded: &Decoded<'a>,
@@ -58,7 +58,7 @@ pub(crate) fn read<'a>(
     root
 }
 
-/// Why reading ended.
+/// The reason why reading ended.
 #[derive(PartialEq, Eq)]
 enum End {
     OfFile,
@@ -72,7 +72,7 @@ pub(crate) struct Builder<'a, 'f> {
     namespaces: NamespaceResolver,
     /// The elements that are not closed yet, outermost first.
     pub open: Vec<Element<'a>>,
-    /// How many of the open tags are not in the tree.
+    /// Number of open tags that are not in the tree.
     left_out: usize,
     elements: usize,
     pub root: Option<Element<'a>>,
@@ -116,7 +116,7 @@ impl<'a> Builder<'a, '_> {
         }
     }
 
-    /// Opens an element, and says whether there can be more.
+    /// Opens an element; true if there may be more.
     fn open_element(&mut self, offset: usize, tag: &BytesStart) -> bool {
         if self.left_out > 0 {
             self.left_out += 1;
@@ -266,7 +266,7 @@ impl<'a> Builder<'a, '_> {
         }
     }
 
-    /// Whether an attribute declares a namespace or tells a validator where the schema is.
+    /// True if an attribute declares a namespace or points a validator to the schema.
     fn is_for_xml_itself(&self, attribute: &quick_xml::events::attributes::Attribute<'a>) -> bool {
         let name = attribute.key;
         let namespace = self.namespaces.resolve_attribute(name).0;
@@ -290,7 +290,7 @@ impl<'a> Builder<'a, '_> {
         }
     }
 
-    /// Closes what the text leaves open.
+    /// Closes the elements that the text leaves open.
     fn close_all(&mut self) {
         self.left_out = 0;
         while let Some(element) = self.open.last_mut() {

@@ -1,15 +1,15 @@
 //! Bytes of a task file as text.
 
-/// The text of a file, as far as it is one.
+/// The text of a file, as far as it is text.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Decoded<'a> {
     /// The text without a byte order mark, up to the first byte that cannot be read.
     pub text: &'a str,
-    /// Why the text ends before the file does.
+    /// The reason why the text ends before the file does.
     pub cut: Option<Cut>,
 }
 
-/// A reason why a text ends before its file does.
+/// The reason why a text ends before its file does.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Cut {
     pub problem: String,
@@ -18,7 +18,7 @@ pub(crate) struct Cut {
 
 const UTF_8: &str = "a file in UTF-8";
 
-/// Reads bytes as UTF-8, up to the first that is none or that XML does not allow.
+/// Reads bytes as UTF-8, up to the first that is invalid or not allowed in XML.
 pub(crate) fn decode(bytes: &[u8]) -> Decoded<'_> {
     if let Some(encoding) = other_encoding(bytes) {
         return Decoded {
@@ -55,7 +55,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Decoded<'_> {
     Decoded { text, cut }
 }
 
-/// Whether XML 1.0 allows the character.
+/// True if XML 1.0 allows the character.
 pub(crate) fn is_xml_character(character: char) -> bool {
     match character {
         '\t' | '\n' | '\r' => true,
@@ -64,7 +64,7 @@ pub(crate) fn is_xml_character(character: char) -> bool {
     }
 }
 
-/// The encoding that the first bytes give away, if it is not a superset of ASCII.
+/// The encoding that the first bytes reveal, if it is not a superset of ASCII.
 fn other_encoding(bytes: &[u8]) -> Option<&'static str> {
     match bytes {
         [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => Some("UTF-32"),

@@ -1,4 +1,4 @@
-//! What a file has beside its elements: declaration, document type, processing instructions.
+//! The prolog of a file: declaration, document type, processing instructions.
 
 use quick_xml::events::BytesDecl;
 

@@ -1,4 +1,4 @@
-//! The rules of XML that its reader leaves to us, and what to say where a file breaks one.
+//! The rules of XML that its reader leaves to us, with messages for files that break them.
 
 use quick_xml::{
     Error,
@@ -9,7 +9,7 @@ use quick_xml::{
 
 use crate::fault::Excerpt;
 
-/// Whether a text is the name of an element or an attribute, with or without a prefix.
+/// True if a text is the name of an element or an attribute, with or without a prefix.
 pub(crate) fn is_name(text: &str) -> bool {
     let mut parts = text.split(':');
     let is_plain_name = |part: &str| {
@@ -19,7 +19,7 @@ pub(crate) fn is_name(text: &str) -> bool {
     parts.by_ref().take(2).all(is_plain_name) && parts.next().is_none()
 }
 
-/// Whether the content of an XML declaration is as XML has it: `version`, then perhaps `encoding` and `standalone`.
+/// True if the content of an XML declaration is correct: `version`, then perhaps `encoding` and `standalone`.
 pub(crate) fn is_declaration(content: &str) -> bool {
     let mut allowed = ["version", "encoding", "standalone"].iter();
     Attributes::new(content, "xml".len()).all(|attribute| {
@@ -30,12 +30,12 @@ pub(crate) fn is_declaration(content: &str) -> bool {
     })
 }
 
-/// Whether XML takes the character for a blank.
+/// True if XML treats the character as a blank.
 pub(crate) const fn is_blank(character: char) -> bool {
     matches!(character, ' ' | '\t' | '\r' | '\n')
 }
 
-/// What is wrong where a file is not well formed, and what should be there.
+/// The problem of a file that is not well formed, and the expectation.
 pub(crate) fn explain(error: &Error) -> (String, String) {
     #[expect(
         clippy::wildcard_enum_match_arm,
@@ -76,7 +76,7 @@ pub(crate) fn explain(error: &Error) -> (String, String) {
     (problem.into(), expected.into())
 }
 
-/// Where in the tag its attributes are not well formed, what is wrong, and what should be there.
+/// The place of a malformed attribute in its tag, its problem, and the expectation.
 pub(crate) fn explain_attribute(error: &AttrError) -> (usize, &'static str, &'static str) {
     match *error {
         AttrError::UnquotedValue(offset) => (offset, "the value has no quotes", "name=\"value\""),
@@ -89,7 +89,7 @@ pub(crate) fn explain_attribute(error: &AttrError) -> (usize, &'static str, &'st
     }
 }
 
-/// What is wrong with a reference in an attribute, and what should be there.
+/// The problem of a reference in an attribute, and the expectation.
 pub(crate) fn explain_reference(error: &EscapeError) -> (String, &'static str) {
     match error {
         EscapeError::UnrecognizedEntity(_, name) => (

@@ -7,28 +7,28 @@ use crate::{fault::Place, origin::Origin};
 /// An element of a file.
 #[derive(Clone, Debug)]
 pub(crate) struct Element<'a> {
-    /// Where its tag begins.
+    /// The place of its tag.
     pub origin: Origin,
     /// Its name without prefix.
     pub name: &'a str,
     /// The namespace of its name.
     pub namespace: Namespace,
-    /// Its attributes, but for those that XML itself and XML Schema have a use for.
+    /// Its attributes, except those for XML itself and XML Schema.
     pub attributes: Vec<Attribute<'a>>,
     /// The elements in it.
     pub children: Vec<Element<'a>>,
-    /// It is not all there, and a fault says why.
+    /// True if a part of it is missing, and a fault has the reason.
     pub is_broken: bool,
 }
 
 /// An attribute of an element.
 #[derive(Clone, Debug)]
 pub(crate) struct Attribute<'a> {
-    /// Where its name begins.
+    /// The place of its name.
     pub offset: usize,
     /// Its name.
     pub name: &'a str,
-    /// Its value; absent if it cannot be read, and a fault says why.
+    /// Its value; absent if it cannot be read, and a fault has the reason.
     pub value: Option<Cow<'a, str>>,
 }
 
@@ -46,7 +46,7 @@ pub(crate) enum Namespace {
 }
 
 impl Namespace {
-    /// What is wrong with it, if it is not that of task files.
+    /// Its problem, if it is not the namespace of task files.
     pub const fn problem(self) -> &'static str {
         match self {
             Self::Undeclared => "its prefix is not declared",
@@ -89,12 +89,12 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// Whether it belongs to the language of task files.
+    /// True if it belongs to the language of task files.
     pub fn is_of_the_language(&self) -> bool {
         self.namespace == Namespace::Task
     }
 
-    /// How many elements it is, with those in it.
+    /// Number of elements in it, including itself.
     pub fn count(&self) -> usize {
         1 + self.children.iter().map(Element::count).sum::<usize>()
     }

@@ -92,7 +92,7 @@ impl<'e, 'a, 'f> AttributeReader<'e, 'a, 'f> {
         self.number(name, default, &MASSES)
     }
 
-    /// How an object slides, bounces and begins to move.
+    /// Friction, restitution and initial velocity of an object.
     pub fn dynamics(&mut self) -> Dynamics {
         let some = |range| move |text: &str| value::number(text, range).map(Some);
         Dynamics {
@@ -104,7 +104,7 @@ impl<'e, 'a, 'f> AttributeReader<'e, 'a, 'f> {
         }
     }
 
-    /// How many sides something has around it.
+    /// Number of sides.
     pub fn sides(&mut self, default: u32) -> u32 {
         self.read("sides", default, |text| value::count(text, &SIDES))
     }
@@ -127,7 +127,7 @@ impl<'e, 'a, 'f> AttributeReader<'e, 'a, 'f> {
         Pose::from_degrees(location, rotation)
     }
 
-    /// A pose that is at the origin where nothing is said.
+    /// A pose, at the origin by default.
     pub fn pose_or_origin(&mut self) -> Pose {
         match self.has("location") {
             true => self.pose(),
@@ -151,7 +151,7 @@ impl<'e, 'a, 'f> AttributeReader<'e, 'a, 'f> {
         self.read(name, default, parse);
     }
 
-    /// Notes a fault if an attribute is there.
+    /// Notes a fault if an attribute exists.
     pub fn forbid(&mut self, name: &'static str, problem: &str, expected: &str) {
         if self.find(name).is_some() {
             self.fault(name, problem, expected);
@@ -159,12 +159,12 @@ impl<'e, 'a, 'f> AttributeReader<'e, 'a, 'f> {
         }
     }
 
-    /// Whether the attribute is there.
+    /// True if the attribute exists.
     pub fn has(&self, name: &str) -> bool {
         self.find(name).is_some()
     }
 
-    /// Whether there is no fault so far, so that values can be checked against each other.
+    /// True if there is no fault so far, so that values can be checked against each other.
     pub fn is_sound(&self) -> bool {
         !self.is_faulty
     }
@@ -176,13 +176,13 @@ impl<'e, 'a, 'f> AttributeReader<'e, 'a, 'f> {
         self.faults.report(place, problem, expected);
     }
 
-    /// Notes the attributes that nobody asked for, and gives the value if the element has no fault at all.
+    /// Notes the attributes that were not read, and gives the value if the element has no fault at all.
     pub fn finish<T>(mut self, value: Option<T>) -> Option<T> {
         self.report_unknown();
         value.filter(|_| self.is_sound())
     }
 
-    /// Notes the attributes that nobody asked for.
+    /// Notes the attributes that were not read.
     pub fn report_unknown(&mut self) {
         let element = self.element;
         for attribute in &element.attributes {

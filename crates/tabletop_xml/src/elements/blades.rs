@@ -1,4 +1,4 @@
-//! The blades that scissors have if the file does not say others.
+//! The default blades of scissors.
 
 use bevy::math::Vec3;
 use tabletop_core::{ObjectSpec, Part, Pose, Rgb, Shape};
@@ -8,8 +8,8 @@ const HEIGHT: f32 = 0.14;
 const THICKNESS: f32 = 0.12;
 const HANDLE: f32 = 0.9;
 
-/// The lower and the upper blade, of this length from the hinge to the tip and of this mass together, as they are when they are shut:
-/// along Y of the joint, cutting edge to cutting edge. Each goes over to a handle on the other side of the hinge.
+/// The lower and the upper blade when shut, of this length from the hinge to the tip and of this mass together:
+/// along Y of the joint, cutting edge to cutting edge. Each continues as a handle on the other side of the hinge.
 pub(crate) fn blades(id: &str, length: f32, mass: f32, color: Rgb) -> [ObjectSpec; 2] {
     [("lower", -1.0), ("upper", 1.0)].map(|(name, side)| {
         let id = match id.is_empty() {

@@ -13,7 +13,7 @@ use crate::{
 };
 
 impl ElementReader<'_, '_> {
-    /// Reads the steps in a host point; nothing if one of them is faulty. A guest point has none.
+    /// Reads the steps in a host point; `None` if one of them is faulty. A guest point has none.
     pub(super) fn tightness_steps(&mut self, element: &Element) -> Option<Vec<TightnessStep>> {
         let allowed: &[&str] = match element.name {
             "hostBondPoint" => &[TIGHTNESS],

@@ -20,16 +20,16 @@ use crate::{
 
 const RECOLOR: &str = "recolor";
 const SPAWN: &str = "spawn";
-/// What a state does to other objects.
+/// Changes to other objects by a state.
 const CHANGES: [&str; 3] = ["remove", RECOLOR, SPAWN];
 
-/// What stands in the element of a control.
+/// The content of a control's element.
 pub(super) struct ControlContent {
     downstream: Vec<String>,
     states: States,
 }
 
-/// The states of a control, with what they show.
+/// The states of a control.
 enum States {
     /// They are only numbers.
     Numbers,
@@ -38,7 +38,7 @@ enum States {
 }
 
 impl ElementReader<'_, '_> {
-    /// Reads what stands in the element of a control; nothing if a state is faulty.
+    /// Reads the content of a control's element; `None` if a state is faulty.
     pub(super) fn control_content(
         &mut self,
         element: &Element,
@@ -145,7 +145,7 @@ impl ElementReader<'_, '_> {
 }
 
 impl ElementReader<'_, '_> {
-    /// Reads what a state does to another object.
+    /// Reads a change to another object.
     fn change(&mut self, element: &Element) -> Option<Change> {
         let spawned = match element.name {
             SPAWN => self.spawned(element)?.into(),

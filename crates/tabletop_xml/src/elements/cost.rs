@@ -1,17 +1,17 @@
-//! What a scene costs to simulate: how many solids it has, and how many of them overlap.
+//! The cost of simulating a scene: the number of its solids, and of their overlaps.
 
 use tabletop_core::{Bounds, ChainSpec, LidBoxSpec, Pose, SceneItem, Shape};
 
 use crate::elements::overlap::Overlaps;
 
-/// How many convex solids a task can have: a container has five, a link is one.
+/// Largest number of convex solids of a task: a container has five, a link is one.
 pub(crate) const MAX_SOLIDS: usize = 20_000;
-/// How many links the chains of a task can have together.
+/// Largest number of links of all chains of a task.
 const MAX_LINKS: usize = 5_000;
-/// How many pairs of solids of different objects can overlap at the start.
+/// Largest number of overlapping pairs of solids of different objects at the start.
 const MAX_OVERLAPS: usize = 20_000;
 
-/// What a part of a scene costs.
+/// The cost of a part of a scene.
 #[derive(Debug, Default)]
 pub(crate) struct Cost {
     solids: usize,
@@ -19,7 +19,7 @@ pub(crate) struct Cost {
     overlaps: Overlaps,
 }
 
-/// Why something costs too much: what is wrong, what is expected.
+/// The reason why a cost is too high: the problem and the expectation.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Excess {
     pub problem: &'static str,
@@ -27,7 +27,7 @@ pub(crate) struct Excess {
 }
 
 impl Cost {
-    /// Accounts for an element of a scene. What costs too much with all before it does not count for what follows.
+    /// Adds an element of a scene. An element that exceeds the limits does not count for those after it.
     pub fn add(&mut self, item: &SceneItem) -> Result<(), Excess> {
         let bodies = bodies(item);
         let solids = self.solids + bodies.iter().map(Vec::len).sum::<usize>();

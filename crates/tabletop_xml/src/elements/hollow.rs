@@ -1,4 +1,4 @@
-//! Containers, which must have room inside.
+//! Containers, which must have a hollow.
 
 use bevy::math::Vec3;
 

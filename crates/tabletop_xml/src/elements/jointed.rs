@@ -46,7 +46,7 @@ impl ElementReader<'_, '_> {
         }))
     }
 
-    /// Reads a pair of scissors: two blades on a hinge, or two objects that are to be some.
+    /// Reads a pair of scissors: two blades on a hinge, or two objects that replace them.
     pub fn scissors(&mut self, element: &Element) -> Option<JointedSpec> {
         let objects = match element.children.is_empty() {
             true => None,
@@ -78,7 +78,7 @@ impl ElementReader<'_, '_> {
         }))
     }
 
-    /// The two objects in a joint; none if there are not two without a fault.
+    /// The two objects in a joint; `None` unless there are two without a fault.
     fn jointed_objects(&mut self, element: &Element) -> Option<[ObjectSpec; 2]> {
         let mut objects = Vec::new();
         let mut is_faulty = false;

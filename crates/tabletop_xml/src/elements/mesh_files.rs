@@ -13,7 +13,7 @@ use crate::{
     files::{FileTree, TaskPath},
 };
 
-/// The most bytes that all STL files of a task can have: 64 MiB.
+/// Largest size of all STL files of a task, in bytes: 64 MiB.
 const MAX_ALL_BYTES: usize = 64 << 20;
 
 /// The STL files of a task, each read once.
@@ -22,7 +22,7 @@ pub(crate) struct MeshFiles<'f> {
     task: &'f TaskPath,
     /// The files of the task, by the numbers of their sources.
     sources: Vec<TaskPath>,
-    /// What was read, by the true path.
+    /// The contents, by the true path.
     read: BTreeMap<PathBuf, Result<Vec<u8>, ValueError>>,
     /// The files that were read, as faults name them.
     files: Vec<PathBuf>,
@@ -30,7 +30,7 @@ pub(crate) struct MeshFiles<'f> {
 }
 
 impl<'f> MeshFiles<'f> {
-    /// Of a task that is made of these files.
+    /// The STL files of a task that is made of these files.
     pub fn new(tree: &'f FileTree<'f>, task: &'f TaskPath, sources: &[PathBuf]) -> Self {
         Self {
             tree,
@@ -47,7 +47,7 @@ impl<'f> MeshFiles<'f> {
         self.files
     }
 
-    /// What a file describes that is named in a source.
+    /// The mesh of a file that a source names.
     pub fn mesh(
         &mut self,
         source: usize,

@@ -1,4 +1,4 @@
-//! The names of the elements of the language, by where they may stand.
+//! Names of the language's elements, by the places where they may stand.
 
 pub(crate) const SHAPES: [&str; 8] = [
     "block",
@@ -62,7 +62,7 @@ pub(crate) const INNER: [&str; 9] = [
     "light",
 ];
 
-/// Elements that are replaced before the others are read.
+/// Elements that are expanded before the others are read.
 pub(crate) const TEMPLATES: [&str; 3] = ["include", "def", "instance"];
 
 pub(crate) const DESCRIPTION: &str = "description";

@@ -17,7 +17,7 @@ use crate::{
     },
 };
 
-/// What stands in the element of a shape.
+/// The content of a shape's element.
 enum ShapeContent {
     Nothing,
     Parts(Vec<Part>),
@@ -25,7 +25,7 @@ enum ShapeContent {
     Steps(Vec<TightnessStep>),
 }
 
-/// To which state triggering leads, for each of the simple parts of a shape.
+/// For each simple part of a shape, the state to which triggering it leads.
 pub(super) type NextStates = Vec<Option<u32>>;
 
 impl ElementReader<'_, '_> {
@@ -50,7 +50,7 @@ impl ElementReader<'_, '_> {
         }))
     }
 
-    /// Reads a part, and to which states triggering it leads.
+    /// Reads a part, and the states to which triggering it leads.
     pub(super) fn part(
         &mut self,
         element: &Element,
@@ -98,8 +98,8 @@ impl ElementReader<'_, '_> {
         Some((part, next))
     }
 
-    /// What stands in the element of a shape; nothing if that is faulty as a whole. Of the parts of a composite, also to which states
-    /// triggering them leads.
+    /// The content of a shape's element; `None` if it is faulty as a whole. For parts of a composite, with the states to which triggering
+    /// them leads.
     fn content(
         &mut self,
         element: &Element,
@@ -160,7 +160,7 @@ impl ElementReader<'_, '_> {
         (parts, states)
     }
 
-    /// Reads what describes an object.
+    /// Reads the descriptions of an object.
     pub fn descriptions(&mut self, element: &Element) -> Vec<(String, String)> {
         let mut descriptions = Vec::new();
         for child in &element.children {
@@ -178,7 +178,7 @@ impl ElementReader<'_, '_> {
     }
 }
 
-/// The shape of an element; absent for a composite of no parts, and for a mesh that cannot be read.
+/// The shape of an element; `None` for a composite without parts, and for a mesh that cannot be read.
 fn shape(
     element: &Element,
     content: ShapeContent,

@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 
 use tabletop_core::Bounds;
 
-/// How far solids may be inside of each other without overlapping: what stands on something may be in it by a rounding error.
+/// Largest depth of solids inside each other that is not an overlap: a standing object may enter its support by a rounding error.
 const TOUCHING: f32 = 0.01;
 /// Edge of a cell of the grid over the table, in units.
 const CELL: f32 = 4.0;
-/// How many cells the solids in the grid may be in; larger ones are in no cell.
+/// Largest number of cells of a solid in the grid; larger solids are in no cell.
 const MAX_CELLS: i32 = 9;
 
-/// The solids of a scene, and how many pairs of different bodies overlap: as far as their bounds tell.
+/// The solids of a scene, and the number of overlapping pairs of different bodies, judged by their bounds.
 #[derive(Debug, Default)]
 pub(crate) struct Overlaps {
     pairs: usize,
@@ -35,7 +35,7 @@ struct Cells {
 }
 
 impl Overlaps {
-    /// Adds bodies and says so, unless more than `most` pairs overlap with them.
+    /// Adds bodies; false, and nothing is added, if more than `most` pairs would overlap.
     pub fn add(&mut self, bodies: &[Vec<Bounds>], most: usize) -> bool {
         let (solids_before, pairs_before) = (self.solids.len(), self.pairs);
         let first_body = self.solids.last().map_or(0, |solid| solid.body + 1);
@@ -54,7 +54,7 @@ impl Overlaps {
         true
     }
 
-    /// How many solids of other bodies overlap with this one, at most one more than `most`.
+    /// Number of solids of other bodies that overlap with this one, at most one more than `most`.
     fn count(&self, solid: BodySolid, most: usize) -> usize {
         let is_overlapping = |&&other: &&usize| {
             let other = self.solids[other];
@@ -101,7 +101,7 @@ impl Overlaps {
         }
     }
 
-    /// Takes back the solids from this one on.
+    /// Removes the solids from this one on.
     fn remove_from(&mut self, first: usize) {
         for solid in self.solids.split_off(first) {
             match Cells::of(solid.bounds) {
@@ -119,7 +119,7 @@ impl Overlaps {
 }
 
 impl Cells {
-    /// The cells of a solid; none if it is large.
+    /// The cells of a solid; `None` if it is large.
     fn of(bounds: Bounds) -> Option<Self> {
         let cell = |at: bevy::math::Vec3| [at.x, at.y].map(|at| (at / CELL).floor() as i32);
         let (low, high) = (cell(bounds.low), cell(bounds.high));
@@ -153,7 +153,7 @@ mod tests {
         (at, reach).prop_map(|(at, reach)| Bounds::around(at, Vec3::splat(reach)))
     }
 
-    /// How many pairs of different bodies overlap, counted one by one.
+    /// Number of overlapping pairs of different bodies, counted one by one.
     fn pairs(bodies: &[Vec<Bounds>]) -> usize {
         let mut pairs = 0;
         for (index, body) in bodies.iter().enumerate() {

@@ -1,6 +1,6 @@
-//! Where a shape stands.
+//! Roles of shapes.
 
-/// Where a shape stands.
+/// The role of a shape.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum ObjectRole {
     /// It is an object of its own.

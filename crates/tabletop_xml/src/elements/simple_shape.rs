@@ -13,10 +13,10 @@ use crate::{
 /// The attributes of a cuboid's extents.
 pub(crate) const SPANS: [&str; 3] = ["xspan", "yspan", "zspan"];
 
-/// A cylinder of so many sides is round; so it is without any.
+/// Number of sides from which a cylinder is round, as it is by default.
 const ROUND: u32 = 32;
 
-/// The shape of an element that is one of [`SHAPES`](super::names::SHAPES) but no composite.
+/// The shape of an element of [`SHAPES`](super::names::SHAPES) other than a composite.
 pub(super) fn simple_shape(
     element: &Element,
     meshes: &mut MeshFiles,

@@ -1,4 +1,4 @@
-//! Texts of attributes as values.
+//! Values of attributes, read from their texts.
 
 use std::{fmt, ops::RangeInclusive, str::FromStr};
 
@@ -17,9 +17,9 @@ pub(crate) const LOCATIONS: RangeInclusive<f32> = -10_000.0..=10_000.0;
 pub(crate) const ROTATIONS: RangeInclusive<f64> = -1e6..=1e6;
 /// Numbers of links.
 pub(crate) const LINK_COUNTS: RangeInclusive<u32> = 0..=MOST_LINKS;
-/// How long an id can be.
+/// Largest length of an id.
 const MAX_ID: usize = 200;
-/// How far joints turn, in degrees.
+/// Angles of joints, in degrees.
 pub(crate) const ANGLES: RangeInclusive<f32> = -180.0..=180.0;
 /// Numbers of lights.
 pub(crate) const LIGHTS: RangeInclusive<u32> = 0..=999;
@@ -30,7 +30,7 @@ pub(crate) const FRICTIONS: RangeInclusive<f32> = 0.0..=1000.0;
 pub(crate) const VELOCITIES: RangeInclusive<f32> = -1000.0..=1000.0;
 pub(crate) const SIDES: RangeInclusive<u32> = 3..=1_000_000;
 
-/// Why a text is not a value.
+/// The error of a text that is not a value.
 #[derive(Debug, PartialEq)]
 pub(crate) struct ValueError {
     pub problem: String,
@@ -63,7 +63,7 @@ pub(crate) fn vector(text: &str, range: &RangeInclusive<f32>) -> Result<Vec3, Va
     triple(text, range).map(Vec3::from)
 }
 
-/// Reads angles `(x,y,z)`. They need all digits of theirs, so that the rotation of a saved object reads back to the bit.
+/// Reads angles `(x,y,z)`. All their digits count, so that the rotation of a saved object reads back to the bit.
 pub(crate) fn angles(text: &str, range: &RangeInclusive<f64>) -> Result<DVec3, ValueError> {
     triple(text, range).map(DVec3::from)
 }
@@ -101,7 +101,7 @@ pub(crate) fn count(text: &str, range: &RangeInclusive<u32>) -> Result<u32, Valu
         .ok_or_else(|| ValueError::new(text, "is out of range", expected()))
 }
 
-/// Reads the number of a state; none of -1.
+/// Reads the number of a state; `None` for -1.
 pub(crate) fn next_state(text: &str) -> Result<Option<u32>, ValueError> {
     match trim(text) {
         "-1" => Ok(None),
@@ -150,7 +150,7 @@ pub(crate) fn name(text: &str) -> Result<String, ValueError> {
     }
 }
 
-/// Whether ids may hold the character.
+/// True if ids may hold the character.
 pub(crate) fn is_id_character(character: char) -> bool {
     character == '_' || character.is_ascii_alphanumeric()
 }
@@ -168,7 +168,7 @@ pub(crate) fn boolean(text: &str) -> Result<bool, ValueError> {
     }
 }
 
-/// Removes what XML takes for blanks from both ends.
+/// Removes XML's blanks from both ends.
 pub(crate) fn trim(text: &str) -> &str {
     text.trim_matches(is_blank)
 }

@@ -4,13 +4,13 @@ use std::{fmt, rc::Rc};
 
 use crate::elements::value::finite_or_huge;
 
-/// How deep parentheses can be nested.
+/// Largest depth of nested parentheses.
 const MAX_DEPTH: usize = 100;
 
-/// Why a text is no arithmetic.
+/// The error of a text that is no arithmetic.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ArithmeticError {
-    /// It is not written as arithmetic.
+    /// Its syntax is wrong.
     Malformed,
     /// There is no variable of this name.
     Unknown(String),
@@ -18,15 +18,15 @@ pub(crate) enum ArithmeticError {
     NotANumber {
         /// The variable.
         name: String,
-        /// What it holds.
+        /// Its text.
         text: Rc<str>,
     },
-    /// The result is beyond every number, or there is none.
+    /// The result is not a finite number.
     Infinite,
 }
 
-/// The result of an expression, in which names stand for the texts that `variable` has for them. What follows a complete expression is
-/// not looked at, as in the later program.
+/// The result of an expression, in which names stand for the texts that `variable` gives for them. Text after a complete expression is
+/// ignored, as in the later program.
 pub(crate) fn evaluate(
     expression: &str,
     variable: impl FnMut(&str) -> Option<Rc<str>>,
@@ -118,7 +118,7 @@ impl<V: FnMut(&str) -> Option<Rc<str>>> Parser<'_, V> {
         finite_or_huge(&text).ok_or_else(|| ArithmeticError::NotANumber { name: name(), text })
     }
 
-    /// Takes one of these marks, if it is what comes next.
+    /// Takes one of these marks, if it comes next.
     fn next_of(&mut self, marks: &[char]) -> Option<char> {
         let rest = self.rest.trim_start_matches([' ', '\t']);
         let next = rest.chars().next().filter(|next| marks.contains(next))?;

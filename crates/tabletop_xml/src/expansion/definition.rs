@@ -1,4 +1,4 @@
-//! Definitions: what instances are copies of.
+//! Definitions: the templates of instances.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ pub(crate) const DEF: &str = "def";
 pub(crate) struct Definition<'a> {
     /// Its variables, with their defaults.
     pub defaults: Variables<'a>,
-    /// What an instance puts in.
+    /// The content that an instance inserts.
     pub content: Vec<Element<'a>>,
 }
 

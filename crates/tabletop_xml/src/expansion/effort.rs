@@ -1,11 +1,11 @@
-//! How much work templates may make: a file of a few lines can ask for 2^30 elements.
+//! The budget of an expansion: a file of a few lines can ask for 2^30 elements.
 
 use crate::document::build::MAX_ELEMENTS;
 
-/// How many bytes of attributes the elements of a task can have with everything put in: 64 MiB.
+/// Largest size of the elements' attributes after expansion: 64 MiB.
 pub(crate) const MAX_TEXT: usize = 64 << 20;
 
-/// What is left of the work that a task may make.
+/// The remaining budget of an expansion.
 #[derive(Debug)]
 pub(crate) struct ExpansionBudget {
     elements: usize,
@@ -22,18 +22,18 @@ impl Default for ExpansionBudget {
 }
 
 impl ExpansionBudget {
-    /// Accounts for an element, and says whether there may be one.
+    /// Accounts for an element; true if the budget allows it.
     pub fn is_left_for_element(&mut self) -> bool {
         take(&mut self.elements, 1)
     }
 
-    /// Accounts for bytes that are read or written, and says whether there may be so many.
+    /// Accounts for bytes that are read or written; true if the budget allows them.
     pub fn is_left_for_text(&mut self, bytes: usize) -> bool {
         take(&mut self.text, bytes)
     }
 }
 
-/// Takes from what is left; if it is too little, nothing is left.
+/// Takes from the remainder; if it is too small, nothing is left.
 fn take(left: &mut usize, amount: usize) -> bool {
     let rest = left.checked_sub(amount);
     *left = rest.unwrap_or(0);

@@ -1,4 +1,4 @@
-//! Expressions between dollar signs, and texts that hold some.
+//! Expressions between dollar signs, and texts that contain them.
 
 use std::{borrow::Cow, rc::Rc};
 
@@ -8,24 +8,24 @@ use crate::{
     fault::Excerpt,
 };
 
-/// What a variable holds.
+/// The value of a variable.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
     Text(Rc<str>),
-    /// It cannot be told, and a fault says why.
+    /// It is unknown, and a fault has the reason.
     Faulty,
 }
 
-/// Why an expression has no value.
+/// The reason why an expression has no value.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ExpressionError {
-    /// One of its variables has none, and a fault says why.
+    /// One of its variables has none, and a fault has the reason.
     Faulty,
-    /// What is wrong with it, and what is expected.
+    /// Its problem, and the expectation.
     Wrong { problem: String, expected: String },
 }
 
-/// The text that an expression stands for: the result of its arithmetic or, if it has none, the text of the variable that it names.
+/// The value of an expression: the result of its arithmetic or, if it is not arithmetic, the text of the variable that it names.
 pub(crate) fn value_of(
     expression: &str,
     mut variable: impl FnMut(&str) -> Option<Value>,
@@ -99,7 +99,7 @@ pub(crate) fn substitute<'a>(
     Ok(Cow::Owned(substituted))
 }
 
-/// What is before, in and after the first expression of a text.
+/// The parts of a text before, in and after its first expression.
 fn next_expression(text: &str) -> Option<(&str, &str, &str)> {
     let (before, rest) = text.split_once('$')?;
     let (expression, after) = rest.split_once('$')?;

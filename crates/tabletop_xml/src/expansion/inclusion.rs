@@ -12,10 +12,10 @@ use crate::{
 
 /// The element that includes a file.
 pub(crate) const INCLUDE: &str = "include";
-/// How many files a task can be made of.
+/// Largest number of files of a task.
 const MAX_FILES: usize = 100;
 
-/// Reads the files of a task, and puts the content of those that are included in the place where they are.
+/// Reads the files of a task, and inserts the content of included files in place.
 pub(crate) struct Inclusion<'a, 'f> {
     pub arena: &'a Arena,
     pub tree: &'f FileTree<'f>,
@@ -81,7 +81,7 @@ impl<'a, 'f> Inclusion<'a, 'f> {
         Some(root)
     }
 
-    /// What is in an included file; nothing if it has already been included, or if it cannot be, and a fault says why.
+    /// The content of an included file; `None` if it is already included, or cannot be, and a fault has the reason.
     fn include(&mut self, element: &Element, naming: &TaskPath) -> Option<Vec<Element<'a>>> {
         for child in &element.children {
             let problem = "it cannot stand in <include>";

@@ -20,12 +20,12 @@ use crate::{
 /// The element of an instance.
 const INSTANCE: &str = "instance";
 
-/// Copies a tree and puts the content of definitions in the place of their instances.
+/// Copies a tree and inserts the content of definitions in place of their instances.
 pub(crate) struct Expander<'d, 'a, 'f> {
     definitions: &'d Definitions<'a>,
     sources: &'f mut Sources<'a>,
     context: Context<'f>,
-    /// The names of the definitions that are being put in, the outermost first.
+    /// Names of the definitions that are being inserted, the outermost first.
     open: Vec<&'d str>,
 }
 
@@ -59,7 +59,7 @@ impl<'d, 'a, 'f> Expander<'d, 'a, 'f> {
         element
     }
 
-    /// A copy without what is in it.
+    /// A copy without its content.
     fn tag(&mut self, template: &Element<'a>, scope: &Scope<'_, 'a>) -> Element<'a> {
         let mut element = Element {
             origin: Origin {
@@ -86,7 +86,7 @@ impl<'d, 'a, 'f> Expander<'d, 'a, 'f> {
         element
     }
 
-    /// Copies what is in an element of a name, at a depth.
+    /// Copies the content of an element of a name, at a depth.
     fn content(
         &mut self,
         children: &[Element<'a>],
@@ -131,7 +131,7 @@ impl<'d, 'a, 'f> Expander<'d, 'a, 'f> {
         copies
     }
 
-    /// What an instance puts in its place.
+    /// The content that replaces an instance.
     fn instance(
         &mut self,
         template: &Element<'a>,
@@ -153,7 +153,7 @@ impl<'d, 'a, 'f> Expander<'d, 'a, 'f> {
         copies
     }
 
-    /// Gives an instance its variables as they are written; nothing else may stand in it.
+    /// Gives an instance its variables as written; nothing else may stand in it.
     fn copy_variables(&mut self, template: &Element<'a>, instance: &mut Element<'a>) {
         for child in &template.children {
             let mut child = child.clone();
@@ -167,7 +167,7 @@ impl<'d, 'a, 'f> Expander<'d, 'a, 'f> {
         }
     }
 
-    /// The definition that an instance is of, if it can be put in.
+    /// The definition of an instance, if it can be inserted.
     fn definition_of(&mut self, element: &Element) -> Option<(&'d str, &'d Definition<'a>)> {
         let mut attributes = AttributeReader::of(element, self.context.faults);
         let name = attributes.require(DEF, String::new(), "name", word);

@@ -1,4 +1,4 @@
-//! What variables hold in an instance.
+//! Scopes: the values of variables in an instance.
 
 use std::{borrow::Cow, cell::RefCell, collections::BTreeMap, rc::Rc};
 
@@ -12,7 +12,7 @@ use crate::{
     origin::InstanceId,
 };
 
-/// How many variables can need each other in a row.
+/// Largest number of variables that need each other in a row.
 const MAX_NEEDS: usize = 100;
 
 /// The variables that an element can name. Those of an instance hide those of the instances around it: first its arguments, then its
@@ -21,7 +21,7 @@ pub(crate) struct Scope<'s, 'a> {
     enclosing: Option<&'s Scope<'s, 'a>>,
     /// The instance; absent for the file itself.
     pub instance: Option<InstanceId>,
-    /// Arguments that are about the instance's own variables.
+    /// Arguments whose expressions use the instance's own variables.
     derived: Variables<'a>,
     defaults: Option<&'s Variables<'a>>,
     values: RefCell<BTreeMap<String, VariableProgress>>,
@@ -33,7 +33,7 @@ enum VariableProgress {
     Done(Value),
 }
 
-/// What evaluating needs: where faults go, and what is left of the effort.
+/// The context of an evaluation: the faults, and the remaining budget.
 pub(crate) struct Context<'f> {
     pub faults: &'f mut Faults,
     effort: ExpansionBudget,
@@ -51,7 +51,7 @@ impl<'f> Context<'f> {
         }
     }
 
-    /// Whether there was too much of something, so that nothing more is put in.
+    /// True if a limit was exceeded, so that nothing more is inserted.
     pub fn is_exhausted(&self) -> bool {
         self.is_exhausted
     }
@@ -90,7 +90,7 @@ impl<'f> Context<'f> {
 }
 
 impl<'s, 'a> Scope<'s, 'a> {
-    /// That of the file itself, which has no variables.
+    /// The scope of the file itself, which has no variables.
     pub fn of_file() -> Self {
         Self {
             enclosing: None,
@@ -101,7 +101,7 @@ impl<'s, 'a> Scope<'s, 'a> {
         }
     }
 
-    /// That of an instance with these arguments, in the scope that it is written in.
+    /// The scope of an instance with these arguments, written in the scope `enclosing`.
     pub fn of_instance(
         enclosing: &'s Scope<'s, 'a>,
         instance: InstanceId,
@@ -127,7 +127,7 @@ impl<'s, 'a> Scope<'s, 'a> {
         }
     }
 
-    /// A text with its expressions replaced; none if that cannot be done, and a fault says why.
+    /// A text with its expressions replaced; `None` if that is impossible, and a fault has the reason.
     pub fn substitute(
         &self,
         text: &Cow<'a, str>,
@@ -137,7 +137,7 @@ impl<'s, 'a> Scope<'s, 'a> {
         self.substitute_for(None, text, place, context)
     }
 
-    /// The same for the text of this scope's own variable. Its own name then means the variable of the scope around.
+    /// The same for the text of this scope's own variable. Its own name then means the variable of the surrounding scope.
     fn substitute_for(
         &self,
         own: Option<&str>,
@@ -170,7 +170,7 @@ impl<'s, 'a> Scope<'s, 'a> {
         }
     }
 
-    /// What a variable holds; none if there is none of this name.
+    /// The value of a variable; `None` if there is no variable of this name.
     fn value(&self, name: &str, context: &mut Context) -> Option<Value> {
         let progress = self.values.borrow().get(name).cloned();
         let variable = || {

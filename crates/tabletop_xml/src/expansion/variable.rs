@@ -1,4 +1,4 @@
-//! Variables as they are written: the defaults of a definition, the arguments of an instance.
+//! Variables as written: the defaults of a definition, the arguments of an instance.
 
 use std::{borrow::Cow, collections::BTreeMap};
 
@@ -18,11 +18,11 @@ pub(crate) const VAR: &str = "var";
 /// A `<var>`.
 #[derive(Clone, Debug)]
 pub(crate) struct Variable<'a> {
-    /// What it holds, before its own expressions are replaced.
+    /// Its text before its own expressions are replaced.
     pub text: Cow<'a, str>,
-    /// Whether its expressions are about the instance's own variables.
+    /// True if its expressions use the instance's own variables.
     pub is_derived: bool,
-    /// Where its value is written.
+    /// The place of its value.
     origin: Origin,
 }
 
@@ -58,7 +58,7 @@ pub(crate) fn read_variables<'a>(parent: &Element<'a>, faults: &mut Faults) -> V
     variables
 }
 
-/// Whether an element is a variable.
+/// True if an element is a variable.
 pub(crate) fn is_variable(element: &Element) -> bool {
     element.name == VAR && element.is_of_the_language()
 }

@@ -1,4 +1,4 @@
-//! Which files a task file may name: those in its folder and below.
+//! The files that a task file may name: those in its folder and below.
 
 use std::{
     fs::{self, File},
@@ -13,23 +13,23 @@ use crate::elements::value::ValueError;
 /// The files that a task file may name.
 #[derive(Debug)]
 pub(crate) enum FileTree<'s> {
-    /// None: its text is from memory, so there is no folder.
+    /// None: its text is in memory, so there is no folder.
     Absent,
-    /// Those on the disk, in its folder and below.
+    /// Files on disk, in its folder and below.
     Disk {
         /// The folder, without links.
         root: PathBuf,
         /// Further folders, which the user allows.
         allowed: Vec<PathBuf>,
     },
-    /// Those inside of the program, in its folder and below.
+    /// Files inside the program, in its folder and below.
     Shipped(&'s ShippedFiles),
 }
 
-/// The place of a file that a task is made of.
+/// The path of a file of a task.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct TaskPath {
-    /// The path by which faults name it.
+    /// The path as faults show it.
     pub shown: PathBuf,
     /// The one path of the file, without links.
     pub true_path: PathBuf,
@@ -59,8 +59,8 @@ impl<'s> FileTree<'s> {
         }
     }
 
-    /// The file that another one names. The path is seen from the folder of the file that names it, then from the folder of the
-    /// task file. Folders at its beginning that are not there are left out: paths of the later program begin at its working
+    /// The file that another one names. The path starts from the folder of the naming file, then from the folder of the
+    /// task file. Missing folders at its beginning are left out: paths of the later program begin at its working
     /// folder (`tablesetup/def-lid.xml`).
     pub fn find(
         &self,
@@ -113,7 +113,7 @@ impl<'s> FileTree<'s> {
         }
     }
 
-    /// Whether a path leads out by what is written, so that nothing needs to be looked at.
+    /// True if a path leads out by its text alone, so that nothing needs to be looked up.
     fn leads_out(&self, naming: &TaskPath, written: &Path) -> bool {
         let depth = match self {
             Self::Absent => 0,
@@ -161,17 +161,17 @@ impl<'s> FileTree<'s> {
     }
 }
 
-/// What is at a path.
+/// The thing at a path.
 enum Look {
     File(PathBuf),
-    /// A folder, a device, a pipe.
+    /// Something that is no file: a folder, a device, a pipe.
     NoFile,
     /// Something that the task file may not name.
     Outside,
     Nothing,
 }
 
-/// The paths that a written one can mean, the likeliest first.
+/// The paths that a written path can mean, the likeliest first.
 fn candidates(task: &TaskPath, naming: &TaskPath, written: &Path) -> Vec<PathBuf> {
     let folders = [folder_of(&naming.shown), folder_of(&task.shown)];
     let mut paths = Vec::new();
@@ -203,7 +203,7 @@ fn folder_of(file: &Path) -> &Path {
 
 /// The bytes of a file on the disk, at most one more than `most`.
 pub(crate) fn read_file(path: &Path, most: usize) -> io::Result<Vec<u8>> {
-    // Opening a pipe waits for somebody who writes to it.
+    // Opening a pipe would wait for a writer.
     if !fs::metadata(path)?.is_file() {
         return Err(io::Error::other("it is not a file"));
     }

@@ -1,14 +1,14 @@
-//! Rotations as the angles that read back as them.
+//! Rotations as angles that read back exactly.
 
 use bevy::math::{DMat3, DQuat, DVec3, Quat};
 use tabletop_core::{quat_from_degrees, turn_about_x, turn_about_y};
 
-/// How many of the numbers next to a component of a rotation are tried.
+/// Number of neighbouring numbers of a rotation's component that are tried.
 const NEIGHBOURS: i32 = 2;
 
-/// The angles in degrees, with as few digits as will do, that [`quat_from_degrees`] takes to this rotation. If none are taken
-/// there to the bit, because the rotation's length is not 1 to the bit, they are taken to the nearest that some are. Of 330,000
-/// rotations that are the angles of a file, one was not found, and was off by the last bit of its smallest part.
+/// The angles in degrees, with as few digits as possible, for which [`quat_from_degrees`] gives this rotation. If there are none
+/// to the bit, because the rotation's length is not 1 to the bit, the nearest rotation that has some is used. Of 330,000
+/// rotations that are the angles of a file, one was not found, and was off by the last bit of its smallest component.
 pub(crate) fn angles_of(rotation: Quat) -> DVec3 {
     let all_digits = units_that_round_to_neighbours(rotation)
         .map(euler_angles)
@@ -21,7 +21,7 @@ pub(crate) fn angles_of(rotation: Quat) -> DVec3 {
         .unwrap_or(all_digits)
 }
 
-/// The angles in degrees about X, then Y, then Z, that give this rotation and not its negative, which turns to the same.
+/// The angles in degrees about X, then Y, then Z, that give this rotation and not its negative.
 fn euler_angles(rotation: DQuat) -> DVec3 {
     let m = DMat3::from_quat(rotation);
     let cos_y = libm::hypot(m.x_axis.x, m.x_axis.y);
@@ -30,7 +30,7 @@ fn euler_angles(rotation: DQuat) -> DVec3 {
         false => 0.0,
     };
     let y = libm::atan2(-m.x_axis.z, cos_y).to_degrees();
-    // What is left, so that it makes up for what rounding has done to the others where they nearly coincide.
+    // The remaining rotation, so that it makes up for the rounding of the others where they nearly coincide.
     let about_z =
         rotation * (turn_about_y(y.to_radians()) * turn_about_x(x.to_radians())).inverse();
     let z = (2.0 * libm::atan2(about_z.z, about_z.w)).to_degrees();
@@ -52,7 +52,7 @@ fn units_that_round_to_neighbours(rotation: Quat) -> impl Iterator<Item = DQuat>
     })
 }
 
-/// The number so many numbers away from this one; 0 has none beside it that a rotation would have.
+/// The number this many steps away from this one; 0 has no neighbours that a rotation would have.
 fn beside(number: f32, steps: i32) -> f32 {
     match number == 0.0 {
         true => number,
@@ -63,7 +63,7 @@ fn beside(number: f32, steps: i32) -> f32 {
 /// A vector of length 1 that rounds to this one.
 fn unit_that_rounds_to(rounded: [f32; 4]) -> Option<DQuat> {
     let center = rounded.map(f64::from);
-    // To the corner of what rounds to it that is farthest from 0.
+    // To the corner, farthest from 0, of the numbers that round to it.
     let outward = rounded
         .map(|part| f64::from(beside(part, 1)) - f64::from(part))
         .map(|gap| gap / 2.0);

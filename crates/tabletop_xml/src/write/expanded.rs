@@ -1,4 +1,4 @@
-//! A task with everything put in, as text.
+//! An expanded task as text.
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
@@ -10,8 +10,8 @@ use crate::{
     write::{as_attribute, as_literal},
 };
 
-/// Writes elements as they are read, without those of which nothing comes because they are broken. Comments say where what instances
-/// bring is written.
+/// Writes elements as they were read, without broken ones that have no effect. Comments give the places of elements that instances
+/// inserted.
 pub(crate) fn write_expanded(root: Option<&Element>, sources: &Sources) -> String {
     let mut origins = Vec::new();
     root.inspect(|root| collect_origins(root, sources, &mut origins));
@@ -78,7 +78,7 @@ impl ExpandedWriter<'_, '_> {
         self.line(depth, &format!("</{name}>"));
     }
 
-    /// Says where an element is written, and what brought it.
+    /// Writes the place of an element and the instances that inserted it.
     fn comment(&mut self, element: &Element, depth: usize) {
         let place = |origin: Origin| {
             let position = self.positions.get(&(origin.source, origin.offset));

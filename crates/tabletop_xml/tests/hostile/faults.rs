@@ -1,4 +1,4 @@
-//! Files that are wrong in ways that come to mind.
+//! Files with faults that come to mind.
 
 use std::time::{Duration, Instant};
 

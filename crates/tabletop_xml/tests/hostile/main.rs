@@ -1,4 +1,4 @@
-//! Files that are wrong in every way: each gives faults, never a panic or a hang, and the table is always there.
+//! Faulty files of every kind: each gives faults, never a panic or a hang, and the table always exists.
 
 mod faults;
 mod random;

@@ -1,4 +1,4 @@
-//! Files that are wrong at random, and scenes that are written and read again.
+//! Files with random faults, and scenes that are written and read again.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use tabletop_xml::{NAMESPACE, expand, write};
 
 use crate::{SAMPLE, read, scenes::scenes};
 
-/// What holds for every text: its scene can be written and read again, and its faults are in the file.
+/// Asserts what holds for every text: its scene can be written and read again, and its faults are in the file.
 fn check(text: &[u8]) {
     let task = read(text);
     let Table { xspan, yspan } = task.scene.table;

@@ -1,4 +1,4 @@
-//! Tasks with everything put in, as text.
+//! Expanded tasks as text.
 
 use std::{fs, path::Path};
 
@@ -6,7 +6,7 @@ use tabletop_xml::{TaskReader, expand, parse, read_task};
 
 use crate::{file, folder::Folder};
 
-/// Asserts that the text with everything put in says the same, and returns it.
+/// Asserts that the expanded text has the same meaning, and returns it.
 fn assert_same(content: &str) -> String {
     let text = file(content);
     let task = parse(Path::new("f"), text.as_bytes());

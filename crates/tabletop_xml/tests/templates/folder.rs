@@ -7,7 +7,7 @@ use std::{
     process,
 };
 
-/// A folder that is removed in the end.
+/// A folder that is removed at the end.
 pub struct Folder(PathBuf);
 
 impl Folder {

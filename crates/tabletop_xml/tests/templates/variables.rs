@@ -1,8 +1,8 @@
-//! Variables: what they hold, and which of them an element sees.
+//! Variables: their values, and the scopes of elements.
 
 use crate::{faults, ids, only_object, read, span};
 
-/// What three variables of an instance hold, as extents of its block.
+/// Values of three variables of an instance, as extents of its block.
 fn held(defaults: &str, arguments: &str) -> [f32; 3] {
     span(&format!(
         "<def name='d'>{defaults}<block location='(0,0,1)' xspan='$a$' yspan='$b$' zspan='$c$'/></def>\
