@@ -1,4 +1,4 @@
-//! What the program is told on the command line, and its exit codes: 0 done, 1 the run failed, 2 wrong usage or input.
+//! The command line and its exit codes: 0 done, 1 the run failed, 2 wrong usage or input.
 
 mod check;
 mod completions;
@@ -53,26 +53,26 @@ enum Command {
     Run(run::RunArgs),
     /// Run a recording again: watch it, verify it, or make its pictures anew
     Replay(replay::ReplayArgs),
-    /// Say what a recording shows, step by step
+    /// Print the task that a recording shows, step by step
     Explain(explain::ExplainArgs),
-    /// Say what the objects of a recording's task must be, so that others can take their places
+    /// Set requirements on the objects of a recording's task, so that others can take their places
     Require(require::RequireArgs),
-    /// Let the robot do what a recording shows
+    /// Let the robot imitate the task that a recording shows
     Imitate(imitate::ImitateArgs),
-    /// Make many demonstrations of one: with everything elsewhere, for those who train networks
+    /// Make many demonstrations from one, with everything elsewhere: for training networks
     Multiply(multiply::MultiplyArgs),
-    /// Check task files and name every fault with its place
+    /// Check task files and report every fault with its place
     Check(check::CheckArgs),
     /// Answer questions about the robot's joints and frames for other programs
     Robot(robot::RobotArgs),
     /// List the keys of the window and what they do
     #[cfg(feature = "window")]
     Keys(keys::KeysArgs),
-    /// Write the task files, scenarios and scripts that come with the program to a folder, for you to change
+    /// Write the task files, scenarios and scripts that ship with the program to a folder, for you to change
     ///
-    /// Files that are there already and differ are never overwritten: then nothing is written, and they are named.
+    /// Existing files that differ are never overwritten: then nothing is written, and they are named.
     Init(init::InitArgs),
-    /// Do at random, for hours, what a user could do, and look after every tick whether all is as it must be
+    /// Act at random, for hours, as a user could, and check the world after every tick
     Soak(soak::SoakArgs),
     /// Print what your shell needs to complete commands and options
     ///
@@ -80,7 +80,7 @@ enum Command {
     Completions(completions::CompletionsArgs),
 }
 
-/// What the long help says at its end.
+/// The end of the long help.
 const MANUAL: &str = "\
 Examples:
   tabletop                                      open the window
@@ -103,7 +103,7 @@ Exit codes:
   1  the run failed: a step or check of a scenario, a script, a replay that differs, a file that cannot be written
   2  wrong usage or input: an unknown option, a file that is missing or wrong";
 
-/// Reads the command line and does what it says.
+/// Reads the command line and carries it out.
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match cli.command {

@@ -1,4 +1,4 @@
-//! What the command line writes about a world at the end of a run.
+//! Final states that the command line writes.
 
 use std::io::Write;
 
@@ -6,12 +6,12 @@ use bevy::prelude::*;
 use serde_json::json;
 use tabletop_core::{Decimal, ObjectIndex, ObjectSpec, Pose, Robot, RobotLayout};
 
-/// Writes where every object is as CSV, in the order of creation: `id,x,y,z,rx,ry,rz` in units and degrees, the numbers as
+/// Writes the poses of all objects as CSV, in the order of creation: `id,x,y,z,rx,ry,rz` in units and degrees, the numbers as
 /// recordings write them.
 ///
 /// # Errors
 ///
-/// What the writer reports.
+/// An error of the writer.
 pub fn write_state(world: &World, out: impl Write) -> csv::Result<()> {
     let mut csv = csv::Writer::from_writer(out);
     for object in world.resource::<ObjectIndex>().iter() {
@@ -32,12 +32,12 @@ pub fn write_state(world: &World, out: impl Write) -> csv::Result<()> {
     Ok(())
 }
 
-/// Writes the robot as JSON: positions of its joints in rad, end effectors and openings of the grippers in units, ids of what
-/// they hold.
+/// Writes the robot as JSON: positions of its joints in rad, end effectors and openings of the grippers in units, ids of the objects
+/// in them.
 ///
 /// # Errors
 ///
-/// What the writer reports.
+/// An error of the writer.
 pub fn write_robot(world: &World, mut out: impl Write) -> std::io::Result<()> {
     let robot = world.resource::<Robot>();
     let id = |&object: &Entity| Some(&*world.get::<ObjectSpec>(object)?.id);

@@ -1,4 +1,4 @@
-//! The simulator as a stage on which the robot does what was shown.
+//! The simulator as a stage on which the robot imitates.
 
 use bevy::prelude::*;
 use tabletop_core::{
@@ -13,7 +13,7 @@ use tabletop_planner::{
 use tabletop_scene::{IdAllocator, assemble};
 use tabletop_task::{Arrangement, PlacedSolid};
 
-/// What there is to see in a world, with the robot at the table.
+/// The sight of a world, with the robot at the table.
 pub fn sight(world: &mut World) -> Sight {
     let table = world.query::<&Table>().iter(world).next().copied();
     let joints: Vec<_> = world.query::<&Joint>().iter(world).copied().collect();
@@ -58,7 +58,7 @@ fn limbs(world: &World) -> Vec<LimbSight> {
     limbs.collect()
 }
 
-/// The command that carries out orders for the limbs; none if nothing is to move.
+/// The command that carries out orders for the limbs; `None` if nothing is to move.
 pub fn command(layout: &RobotLayout, orders: &[LimbOrder]) -> Option<RobotCommand> {
     let mut drives = Vec::new();
     for (limb, order) in layout.limbs.iter().zip(orders) {
@@ -80,7 +80,7 @@ pub struct AppStage<'a> {
 }
 
 impl<'a> AppStage<'a> {
-    /// The app, with what is on its table.
+    /// The app, with the objects on its table.
     pub fn new(app: &'a mut App) -> Self {
         let mut stage = Self {
             app,
@@ -91,7 +91,7 @@ impl<'a> AppStage<'a> {
         stage
     }
 
-    /// Sees what is there now. Of the same objects, only the poses are new.
+    /// Updates the sight. If the objects are the same, only their poses are read.
     fn look(&mut self) {
         let world = self.app.world();
         let index = world.resource::<ObjectIndex>();
@@ -137,8 +137,8 @@ pub fn baxter_body(table: &Table) -> Result<RobotBody, ModelError> {
     RobotBody::new(RobotLayout::baxter(), baxter()?, table)
 }
 
-/// A scene with everything at random places, decided by the seed, and within reach of the robot if there is one; what stands on, in or around
-/// something stays with it, and nothing is put near what is `kept` free. None if there is no room.
+/// A scene with everything at random places, decided by the seed, and within reach of the robot if there is one. Objects that stand on, in or
+/// around others stay with them, and nothing is put near the solids `kept` free. `None` if there is no room.
 pub fn scattered(
     scene: &SceneSpec,
     kept: &[PlacedSolid],
@@ -157,7 +157,7 @@ pub fn scattered(
             };
             let assembly = assemble(&alone, &mut ids);
             let parts = assembly.objects;
-            // What slides is somewhere else when it is open.
+            // A sliding object is somewhere else when it is open.
             let opened = assembly.joints.iter().filter_map(|joint| {
                 let JointKind::Slider { max, .. } = joint.kind else {
                     return None;

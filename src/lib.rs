@@ -1,22 +1,22 @@
 //! A virtual demonstrator environment for robot imitation learning: a table with objects on it, simulated with or without
 //! a window.
 //!
-//! | crate | what it holds |
+//! | crate | content |
 //! |---|---|
-//! | [`core`] | what the others share: objects, scenes, commands, facts, the clock |
+//! | [`core`] | the shared vocabulary: objects, scenes, commands, facts, the clock |
 //! | [`xml`] | task files |
 //! | [`physics`] | Rapier, configured |
-//! | [`scene`] | the table and what comes and goes on it |
+//! | [`scene`] | the table, and the objects that come and go on it |
 //! | [`history`] | undo and redo |
 //! | [`demonstrator`] | the invisible hands |
-//! | [`mechanism`] | controls and bonds: what objects do |
-//! | [`robot`] | the robot: how it looks, moves and grips |
-//! | [`kinematics`] | robots as URDF describes them |
-//! | [`camera`] | what the robot's head camera sees |
+//! | [`mechanism`] | controls and bonds |
+//! | [`robot`] | the robot: its look, motion and grips |
+//! | [`kinematics`] | robots from URDF |
+//! | [`camera`] | the view of the robot's head camera |
 //! | [`recorder`] | recordings on disk |
-//! | [`script`] | users' Matlab, Octave and Python scripts drive the robot |
-//! | [`task`] | what a recording shows, as a task |
-//! | [`planner`] | how the robot does such a task |
+//! | [`script`] | users' Matlab, Octave and Python scripts that drive the robot |
+//! | [`task`] | the task that a recording shows |
+//! | [`planner`] | the robot's plan for such a task |
 //! | [`scenario`] | scripted demonstrations, for tests and datasets |
 //!
 //! [`TabletopSimPlugins`] is the simulator without a window. It runs on Bevy's `MinimalPlugins`:
@@ -92,7 +92,7 @@ pub mod prelude {
     pub use tabletop_core::prelude::*;
 }
 
-/// Everything that simulates, nothing that shows: [`CorePlugin`](core::CorePlugin), [`HistoryPlugin`](history::HistoryPlugin), [`XmlPlugin`](xml::XmlPlugin),
+/// The simulator without display: [`CorePlugin`](core::CorePlugin), [`HistoryPlugin`](history::HistoryPlugin), [`XmlPlugin`](xml::XmlPlugin),
 /// [`PhysicsPlugin`](physics::PhysicsPlugin), [`ScenePlugin`](scene::ScenePlugin),
 /// [`DemonstratorPlugin`](demonstrator::DemonstratorPlugin), [`MechanismPlugin`](mechanism::MechanismPlugin),
 /// [`RobotPlugin`](robot::RobotPlugin), [`CameraPlugin`](camera::CameraPlugin),
@@ -123,7 +123,7 @@ impl PluginGroup for TabletopSimPlugins {
 }
 
 /// The window on a simulation, beside Bevy's `DefaultPlugins`: [`ViewPlugin`](view::ViewPlugin) shows the world,
-/// [`GuiPlugin`](gui::GuiPlugin) has keys, mouse and panels, and [`PacePlugin`](core::PacePlugin) lets users choose how fast time passes.
+/// [`GuiPlugin`](gui::GuiPlugin) has keys, mouse and panels, and [`PacePlugin`](core::PacePlugin) lets users choose the pace of time.
 #[cfg(feature = "window")]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TabletopWindowPlugins;

@@ -1,7 +1,7 @@
-//! One demonstration, many: the same task with everything elsewhere, shown again by the hand or by the robot (MimicGen's idea: Mandlekar
-//! et al., MimicGen: A Data Generation System for Scalable Robot Learning using Human Demonstrations, 2023).
+//! Multiplication of demonstrations: the same task with everything elsewhere, demonstrated again by the hand or by the robot (MimicGen's idea:
+//! Mandlekar et al., MimicGen: A Data Generation System for Scalable Robot Learning using Human Demonstrations, 2023).
 //!
-//! A demonstration of a number is decided by the seed and that number alone, so it does not matter which others were made, or where.
+//! The seed and the number of a demonstration alone decide it, so it does not matter which others were made, or where.
 
 mod beginning;
 mod performance;
@@ -32,10 +32,10 @@ use crate::{
 use performance::perform;
 use variation::Varying;
 
-/// Who shows it again.
+/// The demonstrator of the new demonstrations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Demonstrator {
-    /// The hand that has shown it.
+    /// The hand of the demonstration.
     #[default]
     Hand,
     /// The robot.
@@ -49,22 +49,22 @@ pub struct Multiplication {
     task: Task,
     requirements: Requirements,
     scene: SceneSpec,
-    /// The robot, if it shows it again.
+    /// The robot, if it demonstrates.
     body: Option<RobotBody>,
     variation: Variation,
     seed: u64,
 }
 
-/// What became of the demonstration of a number.
+/// The result of making one demonstration.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Made {
-    /// True if it is there.
+    /// True if it was kept.
     pub is_kept: bool,
-    /// What was wrong with those that were dropped before.
+    /// The faults of the attempts that were dropped before.
     pub dropped: Vec<Dropped>,
 }
 
-/// Why a demonstration was not kept.
+/// The reason why a demonstration was dropped.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Dropped {
     /// There was no room for everything.
@@ -73,7 +73,7 @@ pub enum Dropped {
     Step(usize, PlanFailure),
 }
 
-/// Why a demonstration cannot be multiplied.
+/// The error of a demonstration that cannot be multiplied.
 #[derive(Debug, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum MultiplyError {
@@ -98,13 +98,13 @@ pub enum MultiplyError {
     },
 }
 
-/// How often a demonstration is tried with other places before it is given up.
+/// Number of attempts, each with other places, to make a demonstration.
 const TRIES: u64 = 20;
-/// Ticks after which what was put on the table is at rest.
+/// Number of ticks after which objects on the table are at rest.
 const SETTLING: u64 = 30;
 
 impl Multiplication {
-    /// Reads a recording, to show its task again.
+    /// Reads a recording whose task is to be demonstrated again.
     ///
     /// # Errors
     /// It cannot be read, or shows no task.
@@ -137,7 +137,7 @@ impl Multiplication {
         })
     }
 
-    /// Records the demonstration of a number in a new folder. It is tried with other places until the relations of the task hold in the end.
+    /// Records the demonstration of this number in a new folder. It tries other places until the relations of the task hold at the end.
     ///
     /// # Errors
     /// It cannot be recorded there.
@@ -186,7 +186,7 @@ impl Multiplication {
         mixed
     }
 
-    /// Shows it once, and records that.
+    /// Demonstrates it once, and records that.
     fn show(
         &self,
         scene: SceneSpec,
@@ -207,7 +207,7 @@ impl Multiplication {
         let mut app = headless_app_with(TabletopSimPlugins.build().set(RecorderPlugin {
             folder: folder.to_owned(),
             header,
-            // What a loss of power takes is made again.
+            // Demonstrations lost with the power are made again.
             durability: Durability::None,
             ..default()
         }));

@@ -1,4 +1,4 @@
-//! Running a recording again.
+//! Replays of recordings.
 
 mod difference;
 mod error;
@@ -29,11 +29,11 @@ use crate::{
     settings::{PHYSICS, ROBOT, RobotSettings, Settings},
 };
 
-/// A recording that can be run again: it goes through the same states, to the bit.
+/// A recording that can be replayed through the same states, to the bit.
 #[derive(Clone, Debug)]
 pub struct Replay {
     recording: RecordingReader,
-    /// Its session, with an end if it was cut off.
+    /// Its session, with an end added if it was cut off.
     session: Session,
     begin: SimTick,
     settings: Settings,
@@ -41,7 +41,7 @@ pub struct Replay {
 }
 
 impl Replay {
-    /// Reads what a replay needs of the recording in a folder.
+    /// Reads the parts of a recording that a replay needs.
     ///
     /// # Errors
     ///
@@ -113,18 +113,18 @@ impl Replay {
         self.recording.folder()
     }
 
-    /// The recording, to be read.
+    /// The reader of the recording.
     pub fn recording(&self) -> &RecordingReader {
         &self.recording
     }
 
-    /// The tick in which the recording was cut off, if it was: the program was killed, or its disk was full. It is replayed
-    /// that far.
+    /// The tick in which the recording was cut off, if it was: the program was killed, or its disk was full. The replay goes up to
+    /// there.
     pub fn cut_off_at(&self) -> Option<SimTick> {
         self.recording.cut_off_at()
     }
 
-    /// The first file in which the recording of a replay differs from this one, and how. Of what was cut off, nothing is
+    /// The first file in which the recording of a replay differs from this one, and the difference. Parts that were cut off are not
     /// compared.
     ///
     /// # Errors
@@ -167,7 +167,7 @@ impl Replay {
         player.play_in(app);
     }
 
-    /// Replays it without a window and records that, with its own settings in the header and pictures as this camera sees it.
+    /// Replays it without a window and records that, with its own settings in the header and pictures from this camera.
     ///
     /// # Errors
     /// [`ReplayError::Record`], as with a full disk.

@@ -1,4 +1,4 @@
-//! What the command line writes about the scene of a task file.
+//! Scenes of task files, as the command line writes them.
 
 use std::io::Write;
 
@@ -12,7 +12,7 @@ use tabletop_scene::{Assembly, IdAllocator, assemble};
 ///
 /// # Errors
 ///
-/// What the writer reports.
+/// An error of the writer.
 pub fn write_dump(scene: &SceneSpec, mut out: impl Write) -> std::io::Result<()> {
     let assembly = assemble(scene, &mut IdAllocator::default());
     serde_json::to_writer_pretty(&mut out, &SceneDump::from(&assembly))?;

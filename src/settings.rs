@@ -1,4 +1,4 @@
-//! The settings that a recording needs to be replayed.
+//! Settings that a recording needs to be replayed.
 
 use std::path::absolute;
 
@@ -17,7 +17,7 @@ pub(crate) const PHYSICS: &str = "physics";
 pub(crate) const ROBOT: &str = "robot";
 const TASK_FILE: &str = "task_file";
 
-/// What a world must have been made with to go through the same states.
+/// The settings with which a world must be made to go through the same states.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Settings {
     pub(crate) physics: PhysicsSettings,
@@ -25,7 +25,7 @@ pub(crate) struct Settings {
 }
 
 impl Settings {
-    /// Those of a world.
+    /// The settings of a world.
     pub(crate) fn of(world: &World) -> Self {
         let robot = world.get_resource::<Robot>();
         let description = world.get_resource::<Description>();
@@ -43,14 +43,14 @@ impl Settings {
         }
     }
 
-    /// The first setting in which these differ from others, with both values.
+    /// The first setting that differs from another world's, with both values.
     pub(crate) fn first_difference(&self, here: &Self) -> Option<String> {
         let [recorded, here] = [self, here].map(|settings| value(settings).ok());
         first_difference("settings", &recorded?, &here?)
     }
 }
 
-/// Longer values are not shown.
+/// Length beyond which values are not shown.
 const LONGEST_VALUE: usize = 60;
 
 fn first_difference(name: &str, recorded: &Value, here: &Value) -> Option<String> {
@@ -70,11 +70,11 @@ fn first_difference(name: &str, recorded: &Value, here: &Value) -> Option<String
     })
 }
 
-/// Which robot stood at the table.
+/// The robot at the table.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct RobotSettings {
     mode: RobotMode,
-    /// Its description, if it is not the one that comes with the program.
+    /// Its description, if it is not the robot inside the program.
     description: Option<DescriptionSource>,
 }
 
@@ -129,7 +129,7 @@ fn note_task_file(mut facts: MessageReader<SimFact>, mut settings: ResMut<Sessio
     }
 }
 
-/// The same, wherever the program runs that replays it: its meshes are beside the file.
+/// The same for a replay in any working folder: its meshes are beside the file.
 fn from_everywhere(source: DescriptionSource) -> DescriptionSource {
     let path = match is_shipped(&source.path) {
         true => source.path,

@@ -1,7 +1,7 @@
-//! What is inside the program, so that it can be started in any folder: task files, scenarios, scripts and robots.
+//! Files inside the program, so that it can be started in any folder: task files, scenarios, scripts and robots.
 //!
-//! Where a path of the command line, a scenario or [`SceneCommand::Load`](tabletop_core::SceneCommand::Load) leads to nothing,
-//! the file of the same path is taken from here. Its own name, `shipped:tablesetup/default.xml`, means it in any case.
+//! If a path of the command line, a scenario or [`SceneCommand::Load`](tabletop_core::SceneCommand::Load) leads to nothing,
+//! the file of the same path is taken from here. Its name, such as `shipped:tablesetup/default.xml`, always means it.
 
 use std::{
     io,
@@ -18,7 +18,7 @@ use tabletop_xml::{ParsedTask, ReadError, TaskReader};
 /// The folders of a working folder.
 pub const WORKING_FOLDERS: [&str; 5] = ["tablesetup", "matlab", "scenarios", "python", "learners"];
 
-/// What is in them.
+/// Their contents.
 static CONTENTS: [Dir; WORKING_FOLDERS.len()] = [
     include_dir!("$CARGO_MANIFEST_DIR/tablesetup"),
     include_dir!("$CARGO_MANIFEST_DIR/matlab"),
@@ -27,7 +27,7 @@ static CONTENTS: [Dir; WORKING_FOLDERS.len()] = [
     include_dir!("$CARGO_MANIFEST_DIR/learners"),
 ];
 
-/// The endings of their files; what else a script may have left there is not shipped.
+/// The endings of their files; other files that a script may have left there are not shipped.
 const ENDINGS: [&str; 6] = ["xml", "xsd", "stl", "m", "ron", "py"];
 
 macro_rules! asset {
@@ -39,7 +39,7 @@ macro_rules! asset {
     };
 }
 
-/// The descriptions of robots; what they name is known to the program.
+/// The descriptions of robots; the program knows the files that they name.
 const ROBOTS: [ShippedFile; 5] = [
     asset!("baxter/baxter.urdf"),
     asset!("baxter/robot.ron"),
@@ -68,7 +68,7 @@ pub fn shipped_files() -> &'static ShippedFiles {
     &FILES
 }
 
-/// Lets [`SceneCommand::Load`](tabletop_core::SceneCommand::Load) find what is inside the program.
+/// Lets [`SceneCommand::Load`](tabletop_core::SceneCommand::Load) find the files inside the program.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShippedFilesPlugin;
 
@@ -96,7 +96,7 @@ pub fn task_reader() -> TaskReader<'static> {
 ///
 /// # Errors
 ///
-/// It is in neither, cannot be read, or is wrong.
+/// It is in neither, cannot be read, or has a fault.
 pub fn read_scenario(path: &Path) -> Result<Scenario, ScenarioError> {
     match shipped_files().find(path) {
         Some(file) => Scenario::parse(file.name(), file.text),
@@ -104,7 +104,7 @@ pub fn read_scenario(path: &Path) -> Result<Scenario, ScenarioError> {
     }
 }
 
-/// The largest text that is read from the disk.
+/// Size of the largest text that is read from disk.
 const MOST_BYTES: u64 = 16 << 20;
 
 /// Reads any text, from the folder or the program.
@@ -119,7 +119,7 @@ pub fn read_text(path: &Path) -> io::Result<String> {
     }
 }
 
-/// The path that means the same file whatever is in the folder.
+/// The path that means the same file whatever the folder holds.
 pub fn true_path(path: &Path) -> PathBuf {
     match shipped_files().find(path) {
         Some(file) => file.name(),

@@ -1,4 +1,4 @@
-//! A task in the words that panels and scripts know it by.
+//! Tasks in words, for panels and scripts.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use tabletop_task::{
     Binding, Reference, Requirements, Role, Task, TaskStep, has_value, properties, property,
 };
 
-/// A task, with what is required in its sentences. The objects are those that take its roles, if that is known, else those with which it was shown.
+/// A task, with its requirements in its sentences. Its objects are those that take its roles, if known, otherwise the demonstrated ones.
 pub fn shown_task(
     folder: &Path,
     task: &Task,
@@ -70,7 +70,7 @@ fn shown_role(role: &Role, requirements: &Requirements) -> ShownRole {
             name,
         })
         .collect();
-    // What is required in the file and is no property of the object, such as to be that of another step.
+    // Requirements in the file that are no property of the object, such as being the object of another step.
     let others = required.into_iter().flatten();
     let others = others.filter(|(name, _)| !known.iter().any(|property| property.name == **name));
     let others: Vec<_> = others
@@ -93,7 +93,7 @@ fn shown_role(role: &Role, requirements: &Requirements) -> ShownRole {
     }
 }
 
-/// What the object of a role has: a colour by its name.
+/// The value of a role's property: a colour by its name.
 pub(crate) fn value(role: &Role, name: &str) -> String {
     let value = property(&role.shown, name).unwrap_or_default();
     if name == "color" {

@@ -1,4 +1,4 @@
-//! Hours of whatever a user could do, in one process, with what must always be so looked at after every tick.
+//! Soak test: hours of random acts of a user in one process, with checks after every tick.
 
 use std::path::{Path, PathBuf};
 
@@ -14,35 +14,35 @@ use tabletop_recorder::{Durability, RecorderPlugin};
 
 use crate::{TabletopSimPlugins, headless_app_with, replay::Replay};
 
-/// Ticks of a round before its recording begins.
+/// Number of ticks of a round before its recording begins.
 const BEFORE: u64 = 30 * TICKS_PER_SECOND as u64;
 
-/// Ticks of a round's recording.
+/// Number of ticks of a round's recording.
 const RECORDED: u64 = 30 * TICKS_PER_SECOND as u64;
 
-/// How deep a body may be in the table, or in an immovable object, in units.
+/// Largest depth of a body in the table, or in an immovable object, in units.
 const DEEPEST: f32 = 0.05;
 
-/// Most objects of a scene.
+/// Largest number of objects of a scene.
 const OBJECTS: usize = 10;
 
 /// A round: random commands in a new simulator, a recording of the second half, and its replay.
 #[derive(Clone, Debug)]
 pub struct Round {
-    /// What decides all that is random in it.
+    /// Seed of all randomness in it.
     pub seed: u64,
-    /// Where its recording is made, and that of its replay; the folder must be there.
+    /// Folder of its recording, and of that of its replay; it must exist.
     pub folder: PathBuf,
 }
 
 impl Round {
-    /// Simulated ticks of a round, without its replay.
+    /// Number of simulated ticks of a round, without its replay.
     pub const TICKS: u64 = BEFORE + RECORDED;
 
-    /// Goes through the round.
+    /// Runs the round.
     ///
     /// # Errors
-    /// What was not as it must be, and in which tick.
+    /// A failed check, with its tick.
     pub fn run(&self) -> Result<(), String> {
         let mut random = Random::new(self.seed);
         let recorded = self.folder.join("recorded");
@@ -99,7 +99,7 @@ fn give(app: &mut App, command: impl Into<SimCommand>) {
     app.world_mut().write_command_of(Actor::App, command);
 }
 
-/// Looks at every object: it is somewhere, and in nothing that does not move.
+/// Checks every object: its pose is finite, and it is in nothing immovable.
 fn look(app: &mut App) -> Result<(), String> {
     let table = app
         .world_mut()
@@ -158,7 +158,7 @@ fn solids(shape: &Shape, at: Pose) -> Vec<Convex> {
     convex_parts(at, &collider(shape).raw)
 }
 
-/// Towers and whatever else lies about, nothing in anything else.
+/// A random scene of towers and single objects, none in another.
 fn scene(random: &mut Random) -> SceneSpec {
     let color = Rgb::GRAY;
     let count = 2 + below(random, OBJECTS - 1);

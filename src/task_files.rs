@@ -38,7 +38,7 @@ pub fn task_files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// True if a file is one to be loaded, by its name and what it holds.
+/// True if a file is a task file to be listed, by its name and its content.
 #[cfg(feature = "window")]
 pub(crate) fn is_task_file(path: &Path, text: &[u8]) -> bool {
     is_task_name(path) && is_task(text)
@@ -59,20 +59,20 @@ fn is_listed(path: &Path) -> bool {
     is_task_name(path) && is_file(path) && fs::read(path).is_ok_and(|text| is_task(&text))
 }
 
-/// Saves what is on the table as a task file, which is replaced if it is there. Returns what a task file cannot say of it.
+/// Saves the table as a task file, replacing an existing one. Returns what a task file cannot express of it.
 ///
 /// # Errors
 ///
-/// The file cannot be written; what was there is as before.
+/// The file cannot be written; an existing one is unchanged.
 pub fn save_task(world: &World, path: &Path) -> io::Result<Vec<String>> {
     let PresentScene { scene, unsaid } = present_scene(world);
     replace(path, write(&scene).as_bytes())?;
     Ok(unsaid)
 }
 
-/// Puts a whole file in the place of another, or nothing.
+/// Replaces a file by another as a whole, or not at all.
 fn replace(path: &Path, text: &[u8]) -> io::Result<()> {
-    // Not the link to the file.
+    // Replaces the file, not the link to it.
     let path = path.canonicalize().unwrap_or(path.to_owned());
     let mut new = path.clone().into_os_string();
     new.push(".new");

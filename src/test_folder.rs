@@ -7,7 +7,7 @@ use std::{
     process,
 };
 
-/// A new folder, which goes with the test.
+/// A new folder, which is removed with the test.
 pub(crate) struct TestFolder(PathBuf);
 
 impl TestFolder {

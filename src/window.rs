@@ -35,10 +35,10 @@ use crate::{
     script::{ScriptPlugin, ScriptSettings, Waiting},
 };
 
-/// What to show in a window.
+/// The options of a window.
 #[derive(Clone, Debug)]
 pub struct WindowOptions {
-    /// What is on the table.
+    /// The content of the table.
     pub show: Show,
     /// The robot at the table; a replay has that of its recording.
     pub robot: RobotPlugin,
@@ -46,11 +46,11 @@ pub struct WindowOptions {
     pub show_robot: bool,
     /// The scripts that can drive the robot, and their engine.
     pub scripts: ScriptSettings,
-    /// How it is shown.
+    /// The display settings.
     pub display: DisplayOptions,
     /// The file that binds keys; else it is the user's own, if there is one.
     pub keys: Option<PathBuf>,
-    /// Decides the colours and places of presets.
+    /// Seed of the colours and places of presets.
     pub seed: u64,
     /// A picture to take, after which the program ends.
     pub screenshot: Option<ScreenshotAt>,
@@ -58,17 +58,17 @@ pub struct WindowOptions {
     pub widgets: Option<PathBuf>,
 }
 
-/// What is on the table of a window.
+/// The content of a window's table.
 #[derive(Clone, Debug)]
 pub enum Show {
-    /// What a task file says, for the user to act on.
+    /// A task file, for the user to act on.
     Task(PathBuf),
-    /// What was recorded. When it is over, the user can go on from there.
+    /// A recording. After its end, the user can continue from there.
     Replay(Box<Replay>),
 }
 
 impl Show {
-    /// The task to begin with when a recording is put away.
+    /// The task to load when a recording is closed.
     fn task(&self) -> PathBuf {
         match self {
             Self::Task(task) => task.clone(),
@@ -83,7 +83,7 @@ const DEFAULT_TASK: &str = "tablesetup/default.xml";
 /// The seed of a window for which none is named.
 pub const DEFAULT_SEED: u64 = PresetSeeds::DEFAULT;
 
-/// How long a frame waits for a script.
+/// Time for which a frame waits for a script.
 const LONGEST_WAIT: Duration = Duration::from_millis(50);
 
 /// Runs the simulation in a window until the user or a screenshot ends it.
@@ -98,7 +98,7 @@ pub fn run(options: WindowOptions) -> Result<AppExit, NoWindow> {
     Ok(app.run())
 }
 
-/// The app without what belongs to the whole process, so that giving up leaves no trace.
+/// The app without its process-wide parts, so that giving up leaves no trace.
 fn build(options: WindowOptions) -> App {
     let mut app = App::new();
     let preferences = Preferences::default();

@@ -15,13 +15,13 @@ use super::{Failure, Output, WRONG_INPUT, terminal::say};
 
 #[derive(Args)]
 pub(super) struct CheckArgs {
-    /// The task files; exit code 2 if there is a fault in one of them
+    /// The task files; exit code 2 if one of them has a fault
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Print what each file puts on the table as JSON
+    /// Print the scene of each file as JSON
     #[arg(long)]
     dump: bool,
-    /// Print each file with everything put in: without <include>, <def>, <instance>, <var> and expressions
+    /// Print each file expanded: without <include>, <def>, <instance>, <var> and expressions
     #[arg(long, conflicts_with = "dump")]
     expand: bool,
 }
@@ -59,7 +59,7 @@ pub(super) fn check(args: &CheckArgs) -> Result<ExitCode, Failure> {
     })
 }
 
-/// Prints a task file with everything put in, and says whether it has no faults.
+/// Prints an expanded task file; true if it has no faults.
 fn expand(file: &Path) -> Result<bool, Failure> {
     let task = match task_reader().expand(file) {
         Ok(task) => task,

@@ -1,11 +1,11 @@
-//! How the window is shown.
+//! Options for the display of the window.
 
 use std::num::NonZeroU32;
 
 use clap::{ArgAction, Args};
 use tabletop::window::{Antialiasing, DisplayOptions, Resolution};
 
-/// What is not said is as it was chosen in the display settings of the last run.
+/// Missing options are as chosen in the display settings of the last run.
 #[derive(Args)]
 #[command(next_help_heading = "Display")]
 pub(super) struct DisplayArgs {

@@ -1,4 +1,4 @@
-//! How long a simulation without a window goes on.
+//! Durations of simulations without a window.
 
 use bevy::prelude::*;
 use tabletop::core::{ClockCommand, StepApp as _, TICKS_PER_SECOND, WriteCommand as _};
@@ -12,12 +12,12 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
         .ok_or_else(|| format!("expected a number of seconds from 0 to {YEAR}"))
 }
 
-/// The ticks of so many seconds.
+/// The ticks in a number of seconds.
 pub(super) fn ticks(seconds: f64) -> u64 {
     (seconds * f64::from(TICKS_PER_SECOND)).round() as u64
 }
 
-/// Simulates so many ticks. If there are none, all is put on the table nevertheless.
+/// Simulates this many ticks. With none, everything is still put on the table.
 pub(super) fn pass(app: &mut App, ticks: u64) {
     if ticks == 0 {
         app.world_mut().write_command(ClockCommand::SetPaused(true));

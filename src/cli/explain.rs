@@ -1,4 +1,4 @@
-//! `tabletop explain`: what a recording shows.
+//! `tabletop explain`: the task that a recording shows.
 
 use std::{
     path::{Path, PathBuf},
@@ -20,15 +20,15 @@ pub(super) struct ExplainArgs {
     /// The recording's folder
     #[arg(value_name = "DIR")]
     recording: PathBuf,
-    /// Print all that is known of the task as JSON
+    /// Print everything that is known of the task as JSON
     #[arg(long)]
     json: bool,
-    /// Say which objects of this task file take the roles; exit code 1 if none fit
+    /// Print which objects of this task file take the roles; exit code 1 if none fit
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
 }
 
-/// Says what a recording shows.
+/// Prints the task of a recording.
 pub(super) fn explain(args: &ExplainArgs) -> Result<ExitCode, Failure> {
     show_warnings();
     let (task, requirements) = read(&args.recording)?;
@@ -79,7 +79,7 @@ pub(super) fn explain(args: &ExplainArgs) -> Result<ExitCode, Failure> {
     print(&(lines.join("\n") + "\n"))
 }
 
-/// The steps with their numbers, and what was operated between them.
+/// The steps with their numbers, and the operations between them.
 fn reported(task: &Task) -> Vec<String> {
     let steps = task.steps.iter().map(|step| (step.grasp, numbered(step)));
     let operations = task.operations.iter();
@@ -89,7 +89,7 @@ fn reported(task: &Task) -> Vec<String> {
     reported.into_iter().map(|(_, line)| line).collect()
 }
 
-/// The task of a recording, with what is required in its sentences.
+/// The task of a recording, with its requirements in its sentences.
 pub(super) fn read(recording: &Path) -> Result<(Task, Requirements), Failure> {
     let mut task = Task::read(recording).map_err(Failure::input)?;
     let requirements = Requirements::read(recording).map_err(Failure::input)?;
@@ -97,7 +97,7 @@ pub(super) fn read(recording: &Path) -> Result<(Task, Requirements), Failure> {
     Ok((task, requirements))
 }
 
-/// A step with its number, and what must come before it if that is not just the step before.
+/// A step with its number, and the steps that must come before it unless that is just the previous one.
 fn numbered(step: &TaskStep) -> String {
     let TaskStep {
         number,

@@ -1,14 +1,14 @@
-//! Why the program ends before it is done.
+//! Failures that end the program early.
 
 use std::fmt;
 
 /// Wrong usage or input.
 pub(super) const WRONG_INPUT: u8 = 2;
 
-/// Why the program ends before it is done.
+/// The reason why the program ends early.
 #[derive(Debug)]
 pub(super) struct Failure {
-    /// What is wrong, if nobody has said it yet.
+    /// The message, unless it was already reported.
     pub message: Option<String>,
     pub code: u8,
 }
@@ -30,7 +30,7 @@ impl Failure {
         }
     }
 
-    /// The run failed, and there is nothing more to say.
+    /// The run failed, and the reason was already reported.
     pub fn silent() -> Self {
         Self {
             message: None,

@@ -1,4 +1,4 @@
-//! `tabletop imitate`: the robot does what a recording shows.
+//! `tabletop imitate`: the robot imitates a recording.
 
 use std::{
     collections::BTreeMap,
@@ -40,10 +40,10 @@ pub(super) struct ImitateArgs {
     /// The task file to do it with [default: the scene of the recording]
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
-    /// Put everything to random places within reach, which this decides
+    /// Put everything at random places within reach, which this number decides
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Do it so often, with random places by the seeds from `--seed` (or 0) on, and print what became of it
+    /// Do this many trials, with random places by the seeds from `--seed` (or 0) on, and print their results
     #[arg(long, value_name = "N")]
     trials: Option<u64>,
     /// Exchange the colours of objects, as the seed decides
@@ -51,12 +51,12 @@ pub(super) struct ImitateArgs {
     exchange_colors: bool,
     #[command(flatten)]
     robot: RobotChoice,
-    /// Record what the robot does; of several trials, each to a folder of its own below
+    /// Record the robot; several trials get a folder each below this one
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
 }
 
-/// What became of a trial.
+/// The result of a trial.
 struct Trial {
     seed: Option<u64>,
     imitation: Option<Imitation>,
@@ -64,7 +64,7 @@ struct Trial {
     real: f64,
 }
 
-/// Lets the robot do it, once or several times. Exit code 1 if it has failed.
+/// Lets the robot do the task, once or several times. Exit code 1 if it has failed.
 pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
     show_warnings();
     let (task, requirements) = read(&args.recording)?;
@@ -252,7 +252,7 @@ fn single(task: &Task, trial: &Trial) -> String {
     }
 }
 
-/// What became of several trials.
+/// The results of several trials.
 fn table(trials: &[Trial]) -> String {
     let made: Vec<_> = trials
         .iter()

@@ -1,4 +1,4 @@
-//! `tabletop init`: a working folder with what is inside the program, to be changed.
+//! `tabletop init`: a working folder with the files inside the program, for changing them.
 
 use std::{
     fs,
@@ -17,19 +17,19 @@ use super::{Failure, Output};
 
 #[derive(Args)]
 pub(super) struct InitArgs {
-    /// The folder, which is made if it is not there; `.` for the current one
+    /// The folder, which is made if it does not exist; `.` for the current one
     #[arg(value_name = "DIR")]
     folder: PathBuf,
 }
 
-/// What is at the place of a file.
+/// The thing that exists at the place of a file.
 enum Existing {
     Nothing,
     TheSame,
     SomethingElse,
 }
 
-/// Writes the files that are not there, unless one is there and differs.
+/// Writes the missing files, unless an existing one differs.
 pub(super) fn init(args: &InitArgs) -> Result<ExitCode, Failure> {
     let mut missing = Vec::new();
     let mut differing = Vec::new();

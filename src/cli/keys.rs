@@ -21,7 +21,7 @@ pub(super) struct KeysArgs {
     robot: Option<PathBuf>,
 }
 
-/// Lists the keys, after what is wrong with the file that binds them.
+/// Lists the keys, after the faults of the file that binds them.
 pub(super) fn list(args: &KeysArgs) -> Result<ExitCode, Failure> {
     let preferences = Preferences::default();
     let layout = match &args.robot {

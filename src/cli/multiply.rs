@@ -29,28 +29,28 @@ pub(super) struct MultiplyArgs {
     /// The recording's folder
     #[arg(value_name = "DIR")]
     recording: PathBuf,
-    /// How many demonstrations to make
+    /// Number of demonstrations to make
     #[arg(long, value_name = "N", default_value_t = 100)]
     count: u64,
-    /// The folder for them, each in a folder of its number; those that are there are kept
+    /// The folder for them, each in a folder of its number; existing ones are kept
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// What decides places and everything else that differs [default: 0]
+    /// The seed of places and all other differences [default: 0]
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     seed: u64,
-    /// Let the robot show it, instead of the hand
+    /// Let the robot demonstrate instead of the hand
     #[arg(long)]
     robot: bool,
-    /// Give the objects other colours, as far as what is required of them allows
+    /// Give the objects other colours, as far as the requirements allow
     #[arg(long)]
     colors: bool,
-    /// Put up to so many other objects around
+    /// Add up to this many other objects
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     distractors: u32,
-    /// Move the head camera by up to so many units, and turn it by up to 2° for each
+    /// Move the head camera by up to this many units, and turn it by up to 2° per unit
     #[arg(long, value_name = "UNITS", value_parser = length, default_value_t = 0.0, hide_default_value = true)]
     camera: f32,
-    /// How many to make at a time [default: as many as the processor can]
+    /// Number of demonstrations made at a time [default: the number of cores]
     #[arg(long, value_name = "N")]
     jobs: Option<usize>,
 }
@@ -63,9 +63,9 @@ fn length(text: &str) -> Result<f32, String> {
         .ok_or_else(|| "expected 0 to 10 units".into())
 }
 
-/// What a folder of demonstrations was made with, so that others are not mixed with them.
+/// File of the options of a folder of demonstrations, so that others are not mixed in.
 const MANIFEST: &str = "multiply.json";
-/// What the folders of demonstrations begin with that are being made.
+/// Prefix of the folders of unfinished demonstrations.
 const PART: &str = ".part-";
 
 /// Makes the demonstrations. Exit code 1 if some could not be made.
@@ -95,7 +95,7 @@ pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::from(u8::from(!outcome.given_up.is_empty())))
 }
 
-/// Makes the folder ready: it holds only demonstrations that were made with the same options, and none that is half made.
+/// Prepares the folder: it holds only demonstrations made with the same options, and no unfinished ones.
 fn prepare(args: &MultiplyArgs) -> Result<(), Failure> {
     let failed = |path: &Path| {
         let path = path.display().to_string();
@@ -143,7 +143,7 @@ fn is_empty(folder: &Path) -> bool {
     fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none())
 }
 
-/// What became of all of them.
+/// The results of all demonstrations.
 #[derive(Default)]
 struct Tally {
     made: u64,
@@ -250,7 +250,7 @@ impl MultiplyArgs {
         self.out.join(format!("{number:04}"))
     }
 
-    /// Makes one, which is there when it is whole.
+    /// Makes one, which appears when it is complete.
     fn make(&self, multiplication: &Multiplication, number: u64) -> Result<Made, Failure> {
         let part = self.out.join(format!("{PART}{number:04}"));
         let made = multiplication.make(number, &part);
@@ -263,7 +263,7 @@ impl MultiplyArgs {
         Ok(made)
     }
 
-    /// What decides what the demonstrations are; not how many there are.
+    /// The options that decide the demonstrations, but not their number.
     fn manifest(&self) -> Value {
         json!({
             "demonstration": self.recording,

@@ -1,4 +1,4 @@
-//! Where results are written.
+//! Destinations of results.
 
 use std::{
     fs,
@@ -25,12 +25,12 @@ impl From<std::ffi::OsString> for Output {
 }
 
 impl Output {
-    /// True if it can be written. This leaves no trace.
+    /// Checks that it can be written, without leaving a trace.
     pub fn check(&self) -> Result<(), Failure> {
         let Self::File(path) = self else {
             return Ok(());
         };
-        // A pipe that is opened and closed has told its reader that all has come.
+        // Opening and closing a pipe would signal its end to the reader.
         if path.exists() && !path.is_file() && !path.is_dir() {
             return Ok(());
         }
@@ -45,7 +45,7 @@ impl Output {
             .map_err(|error| Failure::run(format!("{}: {error}", path.display())))
     }
 
-    /// Writes all of it, or says where it could not be written.
+    /// Writes everything, or reports the place that could not be written.
     pub fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         match self {
             Self::Stdout => {

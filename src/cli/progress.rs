@@ -1,11 +1,11 @@
-//! How far a long command is.
+//! Progress of long commands.
 
 use std::{
     io::{self, IsTerminal as _, Write as _},
     time::{Duration, Instant},
 };
 
-/// A line on standard error that says how far it is, if that is a terminal.
+/// A progress line on standard error, if that is a terminal.
 pub(super) struct ProgressLine {
     all: u64,
     done: u64,
@@ -14,9 +14,9 @@ pub(super) struct ProgressLine {
     is_visible: bool,
 }
 
-/// How often the line changes.
+/// Time between changes of the line.
 const PERIOD: Duration = Duration::from_millis(100);
-/// How many characters the bar has.
+/// Number of characters of the bar.
 const WIDTH: usize = 24;
 
 impl ProgressLine {
@@ -30,7 +30,7 @@ impl ProgressLine {
         }
     }
 
-    /// One more is done; so many were dropped so far.
+    /// Counts one more done; `dropped` is the number of dropped ones so far.
     pub fn advance(&mut self, dropped: u64) {
         self.done += 1;
         let is_recent = self.shown.is_some_and(|shown| shown.elapsed() < PERIOD);
@@ -43,7 +43,7 @@ impl ProgressLine {
         let _unheard = write!(stderr, "\r{line}\x1b[K").and_then(|()| stderr.flush());
     }
 
-    /// Leaves the line empty for what is said next.
+    /// Clears the line for the next message.
     pub fn end(&self) {
         if self.is_visible && self.shown.is_some() {
             let _unheard = write!(io::stderr(), "\r\x1b[K");

@@ -1,4 +1,4 @@
-//! `tabletop replay`: a recording, run again.
+//! `tabletop replay`: replays a recording.
 
 use std::{path::PathBuf, process::ExitCode};
 
@@ -42,14 +42,14 @@ pub(super) struct ReplayArgs {
     /// Let a script watch, as `tabletop run --script` lets it act; in the window the key M starts it
     #[arg(long, value_name = "LANGUAGE[:PATH]", value_parser = script, conflicts_with_all = ["verify", "out"])]
     script: Option<String>,
-    /// How long the script then acts, in seconds of simulated time [default: 0]
+    /// Time for which the script then acts, in seconds of simulated time [default: 0]
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true, requires = "script", conflicts_with = "window")]
     seconds: Option<f64>,
     #[command(flatten)]
     engine: EngineOptions,
 }
 
-/// What the pictures of a replay are to be instead of the recorded ones.
+/// Properties of a replay's pictures, in place of the recorded ones.
 #[derive(Args)]
 #[group(multiple = true, conflicts_with_all = ["verify", "window"], requires = "out")]
 struct PictureArgs {
@@ -59,7 +59,7 @@ struct PictureArgs {
     /// Make the pictures again from another place, in units of 10 cm
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     camera: Option<Vec3>,
-    /// What that camera looks at [default: the centre of the table]
+    /// The point that this camera looks at [default: the centre of the table]
     #[arg(long, value_name = "X,Y,Z", value_parser = point, requires = "camera", allow_hyphen_values = true)]
     look_at: Option<Vec3>,
     /// Make the pictures again with this angle of view from top to bottom

@@ -1,4 +1,4 @@
-//! `tabletop require`: which objects may take the roles of a recording's task.
+//! `tabletop require`: requirements on the objects of a recording's task.
 
 use std::{path::PathBuf, process::ExitCode};
 
@@ -16,21 +16,21 @@ pub(super) struct RequireArgs {
     /// The recording's folder
     #[arg(value_name = "DIR")]
     recording: PathBuf,
-    /// The step whose object is meant; without it, everything that is required is listed
+    /// The step whose object is meant; without it, all requirements are listed
     #[arg(long, value_name = "N")]
     step: Option<usize>,
-    /// The object that the step's object is put to, instead of the one that is moved
+    /// The reference to which the step's object is put, instead of the object itself
     #[arg(long, requires = "step")]
     other: bool,
-    /// What the object must be: `color=red`, `xspan=1..2`, `shape` (as it was shown), `same=1` (the object of step 1), or `any`
+    /// Requirements: `color=red`, `xspan=1..2`, `shape` (as demonstrated), `same=1` (the object of step 1), or `any`
     #[arg(value_name = "PROPERTY[=VALUE]", requires = "step")]
     requirements: Vec<String>,
-    /// Take these away instead; without any, all that is required of the object
+    /// Remove these requirements instead; without any, all requirements on the object
     #[arg(long, requires = "step")]
     remove: bool,
 }
 
-/// Says, or changes, what is required of the objects of a recording.
+/// Prints or changes the requirements on the objects of a recording.
 pub(super) fn require(args: &RequireArgs) -> Result<ExitCode, Failure> {
     show_warnings();
     let (task, mut requirements) = read(&args.recording)?;

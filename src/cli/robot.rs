@@ -18,16 +18,16 @@ use super::{Failure, Output, WRONG_INPUT, robot_options::describe};
 pub(super) struct RobotArgs {
     #[command(subcommand)]
     question: Question,
-    /// Another robot than the Baxter that comes with the program: a robot.ron (docs/robot.md), or a URDF with the same joints
+    /// A robot other than the Baxter inside the program: a robot.ron (docs/robot.md), or a URDF with the same joints
     #[arg(long, value_name = "FILE", global = true)]
     robot: Option<PathBuf>,
 }
 
 #[derive(Subcommand)]
 enum Question {
-    /// Say where the robot's frames are, for joint angles from standard input
+    /// Print the robot's frames, for joint angles from standard input
     Fk,
-    /// Say which joint angles bring a hand somewhere, for poses from standard input
+    /// Print the joint angles that bring a hand to a pose, for poses from standard input
     Ik,
 }
 
@@ -63,11 +63,11 @@ pub(super) fn robot(args: &RobotArgs) -> Result<ExitCode, Failure> {
     })
 }
 
-/// Why a line has no answer.
+/// The reason why a line has no answer.
 enum NoAnswer {
     /// The line is wrong.
     Input(String),
-    /// No angles do what it asks for.
+    /// No angles reach the pose.
     Unreachable(Unreachable),
 }
 
@@ -77,7 +77,7 @@ impl NoAnswer {
     }
 }
 
-/// Angles in rad: seven of Baxter's `left` arm, one of `head_pan`. What is left out is as in the robot's start posture.
+/// Angles in rad: seven of Baxter's `left` arm, one of `head_pan`. Missing ones are as in the robot's home posture.
 type Posture = BTreeMap<String, Angles>;
 
 #[derive(Deserialize)]
@@ -93,11 +93,11 @@ struct ReachGoal {
     arm: LimbName,
     /// In m in the torso's frame, in units in the table's.
     position: [f64; 3],
-    /// Any rotation does if it is left out.
+    /// Any rotation if it is left out.
     quaternion_xyzw: Option<[f64; 4]>,
     #[serde(default)]
     frame: BaseFrame,
-    /// What shall get there, in place of the end effector.
+    /// The link that is to get there, in place of the end effector.
     link: Option<String>,
     /// Angles to stay near to, in rad.
     seed: Option<Vec<f64>>,
@@ -120,7 +120,7 @@ struct PlacedFrame {
 struct Answerer {
     robot: RobotModel,
     layout: RobotLayout,
-    /// From the torso's frame (m) to the table's, in m as well.
+    /// From the torso's frame (m) to the table's, also in m.
     table_from_torso: DAffine3,
 }
 

@@ -1,4 +1,4 @@
-//! Which robot stands at the table, and which script drives it.
+//! Options for the robot and its script.
 
 use std::{
     path::{Component, Path, PathBuf},
@@ -18,13 +18,13 @@ use tabletop::{
 
 use super::Failure;
 
-/// Which robot it is, and how it moves.
+/// The choice of the robot and its mode.
 #[derive(Args, Clone)]
 pub(super) struct RobotChoice {
-    /// Another robot than the Baxter that comes with the program: a robot.ron (docs/robot.md), or a URDF with the same joints
+    /// A robot other than the Baxter inside the program: a robot.ron (docs/robot.md), or a URDF with the same joints
     #[arg(long, value_name = "FILE")]
     robot: Option<PathBuf>,
-    /// Move the arms by motors with limited torque instead of exactly as told
+    /// Move the arms by motors with limited torque instead of exactly as commanded
     #[arg(long)]
     dynamic: bool,
 }
@@ -33,7 +33,7 @@ pub(super) struct RobotChoice {
 pub(super) struct RobotOptions {
     #[command(flatten)]
     choice: RobotChoice,
-    /// Put the robot to the table from the start
+    /// Put the robot at the table from the start
     #[arg(long)]
     pub show_robot: bool,
 }
@@ -61,7 +61,7 @@ impl RobotOptions {
         self.choice.plugin()
     }
 
-    /// Puts the robot to the table, if it is to be there from the start.
+    /// Puts the robot at the table, if it is to be there from the start.
     pub fn show(&self, app: &mut App) {
         if self.show_robot {
             app.world_mut().write_command(RobotCommand::Show(true));
@@ -110,26 +110,26 @@ const OTHER: &str = "other";
 
 #[derive(Args, Clone)]
 pub(super) struct EngineOptions {
-    /// What runs the script: `matlab`, `octave`, `python`, `auto`, or the path of a program; with `--script other`, of its driver
+    /// The engine of the script: `matlab`, `octave`, `python`, `auto`, or the path of a program; with `--script other`, of its driver
     /// [default: TABLETOP_ENGINE, or auto]
     #[arg(long, value_name = "ENGINE")]
     engine: Option<String>,
-    /// How many ticks pass between two pictures for the script, 60 a second [default: 15]
+    /// Number of ticks, 60 a second, from one picture for the script to the next [default: 15]
     #[arg(long, value_name = "N", value_parser = ticks, allow_negative_numbers = true)]
     picture_every: Option<u64>,
-    /// How many seconds init and each call of the callback may take before the engine is ended [default: 120 and 30]
+    /// Number of seconds that init and each call of the callback may take before the engine is ended [default: 120 and 30]
     #[arg(long, value_name = "S", value_parser = patience, allow_negative_numbers = true)]
     script_timeout: Option<Duration>,
-    /// Let the script sense with the head camera and the joints alone, without `sensor.objects`, `contacts` and `held`
+    /// Give the script only the head camera and the joints, without `sensor.objects`, `contacts` and `held`
     #[arg(long)]
     no_objects: bool,
 }
 
 impl EngineOptions {
-    /// The settings of the script bridge. `script` is what `--script` says: a language, and after a colon where the scripts are.
+    /// The settings of the script bridge. `script` is the value of `--script`: a language, and after a colon the place of the scripts.
     ///
     /// # Errors
-    /// The engine that is wanted is not there, or does not run this language.
+    /// The engine does not exist, or does not run this language.
     pub fn settings(&self, script: Option<&str>) -> Result<ScriptSettings, Failure> {
         let mut settings = ScriptSettings {
             shipped: shipped_files().clone(),
@@ -171,7 +171,7 @@ impl EngineOptions {
         Ok(settings)
     }
 
-    /// The engine that is named, if it runs scripts in this language; else any that does.
+    /// The named engine, if it runs scripts in this language; otherwise any that does.
     fn engine_for(&self, language: &str, there: &EngineLocator) -> Result<EngineChoice, Failure> {
         if language == OTHER {
             return match self.engine.as_deref() {
@@ -198,7 +198,7 @@ impl EngineOptions {
                 "--script {language} cannot run in {kind}, which {by} names; say --engine {advice}"
             ))
         };
-        // One that is not there does not fit either: to install it would be no help.
+        // A missing engine of the wrong kind: installing it would not help.
         if let EngineChoice::Kind(kind) = choice
             && !runs(kind, language)
         {
@@ -214,7 +214,7 @@ impl EngineOptions {
         }
     }
 
-    /// The engine that is named, and what names it.
+    /// The named engine, and the option or variable that names it.
     fn named_engine(&self, there: &EngineLocator) -> Option<(EngineChoice, &'static str)> {
         let names = [
             (&self.engine, "--engine"),
@@ -240,7 +240,7 @@ fn runs(kind: EngineKind, language: &str) -> bool {
     }
 }
 
-/// True if there are scripts where these settings say, as far as that can be seen before the engine starts.
+/// Checks that there are scripts in the place of these settings, as far as that is known before the engine starts.
 pub(super) fn check_scripts(settings: &ScriptSettings) -> Result<(), Failure> {
     let config = settings.engine_config().map_err(Failure::input)?;
     match config.fault() {
@@ -270,12 +270,12 @@ fn patience(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| format!("expected a number of seconds from 0.01 to {DAY}"))
 }
 
-/// What `--script` says.
+/// The value of `--script`.
 struct ScriptName<'a> {
     language: &'a str,
     /// The folder of the scripts, or the file.
     agent: Option<&'a str>,
-    /// What the names of a pair of Matlab scripts begin with.
+    /// Prefix of the names of a pair of Matlab scripts.
     pair: Option<&'a str>,
 }
 
@@ -297,7 +297,7 @@ impl<'a> ScriptName<'a> {
     }
 }
 
-/// Reads what `--script` says.
+/// Checks the value of `--script`.
 pub(super) fn script(text: &str) -> Result<String, String> {
     let name = ScriptName::parse(text);
     match (name.language, name.agent, name.pair) {

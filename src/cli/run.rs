@@ -37,7 +37,7 @@ use super::{
     terminal::{say, show_warnings},
 };
 
-/// The task file that is loaded when none is named.
+/// The task file that is loaded unless one is named.
 pub(super) const DEFAULT_SETUP: &str = "tablesetup/default.xml";
 
 #[derive(Args)]
@@ -49,13 +49,13 @@ pub(super) struct RunArgs {
     /// The task file to begin with [default: tablesetup/default.xml, or the one that the scenario names]
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
-    /// Let the scenario and task files name files in this folder and below, too; without it, those around them. Can be given again
+    /// Let the scenario and task files name files in this folder and below, too; without it, only those around them. Can be given again
     #[arg(long, value_name = "DIR")]
     allow_path: Vec<PathBuf>,
-    /// How many seconds to simulate [default: 10]; a scenario fails if it takes longer [default: 600]
+    /// Number of seconds to simulate [default: 10]; a scenario fails if it takes longer [default: 600]
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
-    /// What decides where a scenario places objects at random [default: 0]
+    /// The seed of a scenario's random places [default: 0]
     #[arg(
         long,
         value_name = "N",
@@ -81,14 +81,14 @@ pub(super) struct RunArgs {
     /// The run ends with the script if there is no scenario, or one that waits for nothing
     #[arg(long, value_name = "LANGUAGE[:PATH][#PAIR]", value_parser = script)]
     script: Option<String>,
-    /// The recording whose task the script is told, as `sensor.task`
+    /// The recording whose task the script gets as `sensor.task`
     #[arg(long, value_name = "DIR", requires = "script")]
     task: Option<PathBuf>,
     #[command(flatten)]
     engine: EngineOptions,
     #[command(flatten)]
     robot: RobotOptions,
-    /// Leave out the last line, which says what was done
+    /// Leave out the last line, which sums up the run
     #[arg(long, short)]
     quiet: bool,
 }
@@ -119,7 +119,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
     }
 }
 
-/// Simulates a task file for so many seconds, and writes where every object is in the end. Its faults are reported and do
+/// Simulates a task file for this many seconds, and writes the final poses of all objects. Its faults are reported and do
 /// not stop the run, but give exit code 2.
 pub(super) fn simulate(
     setup: &Path,
@@ -239,7 +239,7 @@ fn finish_recording(app: &mut App) {
     }
 }
 
-/// Reports once of each thing that it stops an arm, or cannot be gripped.
+/// Reports every obstacle of an arm, and every object that cannot be gripped, once.
 fn report_what_stops_the_robot(
     mut facts: MessageReader<SimFact>,
     mut reported: Local<BTreeSet<String>>,
@@ -288,7 +288,7 @@ fn plugins(args: &RunArgs) -> Result<PluginGroupBuilder, Failure> {
         .set(ScriptPlugin { settings }))
 }
 
-/// The same with a recorder, if one is wanted.
+/// The same with a recorder, if one is asked for.
 fn recording(plugins: PluginGroupBuilder, args: &RunArgs) -> PluginGroupBuilder {
     let Some(folder) = args.record.clone() else {
         return plugins.disable::<RecorderPlugin>().add(UnrecordedPlugin);
@@ -308,12 +308,12 @@ fn recording(plugins: PluginGroupBuilder, args: &RunArgs) -> PluginGroupBuilder 
 }
 
 impl RunArgs {
-    /// The scene of a task file, which may include files in the folders that are allowed, or everything that is wrong with it.
+    /// The scene of a task file, which may include files in the allowed folders, or all its faults.
     fn read_faultless(&self, file: &Path) -> Result<SceneSpec, String> {
         faultless(task_reader().allowing(&self.allow_path).read(file))
     }
 
-    /// Lets scripts know the task of a recording, about the objects of a task file if there is one.
+    /// Gives scripts the task of a recording, with the objects of a task file if there is one.
     fn tell_task(&self, app: &mut App, setup: Option<&Path>) -> Result<(), Failure> {
         let Some(recording) = &self.task else {
             return Ok(());
@@ -336,7 +336,7 @@ impl RunArgs {
         Ok(())
     }
 
-    /// True if what is asked for at the end of a run can be written then.
+    /// Checks that the results of the end of a run can be written.
     fn check_ends(&self) -> Result<(), Failure> {
         if let Some(path) = self.save.as_deref().filter(|path| path.exists()) {
             let path = path.display();
@@ -347,7 +347,7 @@ impl RunArgs {
         outputs.try_for_each(Output::check)
     }
 
-    /// Says what was done, since when, and with which file.
+    /// Sums up the run: its work, its duration, and its file.
     fn sum_up(&self, file: &Path, done: &str, app: &App, start: Instant) {
         if self.quiet {
             return;
@@ -361,7 +361,7 @@ impl RunArgs {
         ));
     }
 
-    /// Writes what was asked for at the end of a run.
+    /// Writes the results of the end of a run.
     fn write_ends(&self, app: &App) -> Result<(), Failure> {
         if let Some(output) = &self.final_state {
             write_final_state(app, output)?;
@@ -378,7 +378,7 @@ impl RunArgs {
     }
 }
 
-/// Saves where everything is as a task file, and says what that cannot say.
+/// Saves the final state as a task file, and reports what that cannot express.
 fn save(app: &App, path: &Path) -> Result<(), Failure> {
     let name = path.display();
     let unsaid = save_task(app.world(), path)
@@ -389,7 +389,7 @@ fn save(app: &App, path: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// So many of something, in words.
+/// A number of things, in words.
 fn counted(count: usize, of_what: &str) -> String {
     match count {
         1 => format!("1 {of_what}"),

@@ -13,7 +13,7 @@ use super::{
     terminal::{is_unheard, say},
 };
 
-/// The settings of the script bridge, if the script that is wanted is there. What becomes of it is said.
+/// The settings of the script bridge, if the requested script exists. Events of the script are printed.
 pub(super) fn headless_settings(
     options: &EngineOptions,
     script: Option<&str>,
@@ -30,7 +30,7 @@ pub(super) fn headless_settings(
 pub(super) struct Script {
     is_wanted: bool,
     events: MessageCursor<ScriptEvent>,
-    /// How it has ended, if it has.
+    /// Its end, if it has ended.
     end: Option<Result<(), Failure>>,
 }
 
@@ -46,7 +46,7 @@ impl Script {
         }
     }
 
-    /// Notes its end. The run ends if nobody reads its output.
+    /// Notes its end. The run ends if nobody reads its output any more.
     pub fn listen(&mut self, app: &App) -> Result<(), Failure> {
         for event in self
             .events
@@ -66,7 +66,7 @@ impl Script {
         }
     }
 
-    /// Simulates so many ticks, or until the script has ended.
+    /// Simulates this many ticks, or until the script has ended.
     pub fn run(self, app: &mut App, ticks: u64) -> Result<(), Failure> {
         if !self.is_wanted {
             pass(app, ticks);
@@ -76,20 +76,20 @@ impl Script {
         self.act(app, ticks + 1)
     }
 
-    /// Lets the script act for so many ticks, or until it has ended.
+    /// Lets the script act for this many ticks, or until it has ended.
     pub fn act(mut self, app: &mut App, ticks: u64) -> Result<(), Failure> {
         self.run_for(app, ticks)?;
         shut_down(app.world_mut());
         self.result()
     }
 
-    /// Simulates so many ticks, or until the script has ended.
+    /// Simulates this many ticks, or until the script has ended.
     pub fn run_for(&mut self, app: &mut App, ticks: u64) -> Result<(), Failure> {
         let mut left = 0..ticks;
         self.run_while(app, |_| left.next().is_some())
     }
 
-    /// Simulates as long as this is so, or until the script has ended.
+    /// Simulates while this condition holds, or until the script has ended.
     pub fn run_while(
         &mut self,
         app: &mut App,
@@ -102,7 +102,7 @@ impl Script {
         Ok(())
     }
 
-    /// True if it acts, or will.
+    /// True while it acts, or will act.
     pub const fn is_running(&self) -> bool {
         self.is_wanted && self.end.is_none()
     }
@@ -112,7 +112,7 @@ impl Script {
     }
 }
 
-/// Says what becomes of the script when it does.
+/// Prints an event of the script.
 fn report(event: &ScriptEvent) {
     match event {
         ScriptEvent::Started { engine } => say(format_args!("tabletop: {engine}")),

@@ -1,4 +1,4 @@
-//! `tabletop soak`: hours of whatever a user could do, and whether all stays as it must be.
+//! `tabletop soak`: hours of random acts of a user, with checks of the world.
 
 use std::{fs, path::Path, process::ExitCode, time::Instant};
 
@@ -11,15 +11,15 @@ use super::{
     terminal::{say, show_warnings},
 };
 
-/// By so many bytes more than in the first half of the rounds may be used in the last quarter.
+/// Largest growth of memory, in bytes, from the first half of the rounds to the last quarter.
 const MOST_GROWTH: u64 = 64 << 20;
 
 #[derive(Args)]
 pub(super) struct SoakArgs {
-    /// What decides what is done
+    /// The seed of the random acts
     #[arg(long, value_name = "N", default_value = "0")]
     seed: u64,
-    /// How many hours to simulate, replays not counted
+    /// Number of hours to simulate, not counting replays
     #[arg(long, value_name = "H", default_value = "1", value_parser = hours)]
     hours: f64,
 }
@@ -73,7 +73,7 @@ pub(super) fn soak(args: &SoakArgs) -> Result<ExitCode, Failure> {
     }
 }
 
-/// By how much the largest of the last quarter is above the largest of the first half, in which all of it is filled once.
+/// The difference between the largest value of the last quarter and that of the first half, in which all memory is filled once.
 fn growth(memory: &[u64]) -> u64 {
     let (half, quarter) = (memory.len() / 2, memory.len() / 4);
     let largest = |part: &[u64]| part.iter().copied().max().unwrap_or_default();
@@ -82,7 +82,7 @@ fn growth(memory: &[u64]) -> u64 {
     last.saturating_sub(first)
 }
 
-/// The memory of this process in bytes, where that can be known.
+/// The memory of this process in bytes, where it can be measured.
 fn memory_now() -> u64 {
     let text = fs::read_to_string(Path::new("/proc/self/statm")).unwrap_or_default();
     let pages = text.split(' ').nth(1).and_then(|pages| pages.parse().ok());

@@ -1,4 +1,4 @@
-//! Folders that go with the program that made them, or with the next one if it was killed.
+//! Temporary folders: they are removed with the program that made them, or by the next one if it was killed.
 
 use std::{
     fs::{self, File},
@@ -10,7 +10,7 @@ use std::{
 /// The file in a temporary folder that is locked as long as its program runs.
 const LOCK: &str = "lock";
 
-/// A folder that goes when it is dropped. What programs that were killed left of the same kind goes when one is made.
+/// A folder that is removed when it is dropped. Making one also removes the folders of the same kind that killed programs left.
 pub(super) struct TemporaryFolder {
     path: PathBuf,
     _lock: File,
@@ -30,7 +30,7 @@ impl TemporaryFolder {
             io::Error::new(source.kind(), reason)
         };
         let made = fs::create_dir(&path).or_else(|error| {
-            // Of a program that had this number.
+            // Left by an earlier program with this process id.
             if error.kind() == io::ErrorKind::AlreadyExists {
                 fs::remove_dir_all(&path).and_then(|()| fs::create_dir(&path))
             } else {
@@ -39,7 +39,7 @@ impl TemporaryFolder {
         });
         made.map_err(in_its_place)?;
         let lock = File::create(path.join(LOCK)).map_err(in_its_place)?;
-        // Where a file system knows no locks, all goes on without.
+        // A file system without locks is no obstacle.
         let _ = lock.try_lock();
         Ok(Self { path, _lock: lock })
     }
@@ -51,7 +51,7 @@ impl TemporaryFolder {
 
 impl Drop for TemporaryFolder {
     fn drop(&mut self) {
-        // The next one removes it, then.
+        // Then the next one removes it.
         let _ = fs::remove_dir_all(&self.path);
     }
 }
@@ -76,7 +76,7 @@ fn remove_what_killed_programs_left(parent: &Path, kind: &str) {
     }
 }
 
-/// True if a folder's lock is there and nobody holds it.
+/// True if a folder's lock exists and nobody holds it.
 fn is_abandoned(folder: &Path) -> bool {
     let lock = File::open(folder.join(LOCK)).map(|lock| lock.try_lock());
     matches!(lock, Ok(Ok(())))

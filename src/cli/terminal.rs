@@ -1,4 +1,4 @@
-//! What the program says to whoever runs it.
+//! Output of the program to its user.
 
 use std::{
     borrow::Cow,
@@ -15,7 +15,7 @@ use bevy::{
 /// True if the other end of standard error was closed, as `head` does.
 static IS_CLOSED: AtomicBool = AtomicBool::new(false);
 
-/// Says a line on standard error.
+/// Prints a line on standard error.
 pub(super) fn say(line: impl fmt::Display) {
     let said = writeln!(io::stderr(), "{}", printable(&line.to_string()));
     if said.is_err_and(|error| error.kind() == ErrorKind::BrokenPipe) {
@@ -23,16 +23,16 @@ pub(super) fn say(line: impl fmt::Display) {
     }
 }
 
-/// True if nobody hears any more what is said.
+/// True if nobody reads the output any more.
 pub(super) fn is_unheard() -> bool {
     IS_CLOSED.load(Ordering::Relaxed)
 }
 
-/// Has the warnings of a simulation without a window said on standard error.
+/// Prints the warnings of a simulation without a window on standard error.
 pub(super) fn show_warnings() {
     App::empty().add_plugins(LogPlugin {
         level: Level::WARN,
-        // The command that wanted a recording says that it has failed, and the one that names a task file its faults.
+        // The command that records reports its own failure, and the one that loads a task file its faults.
         filter: "tabletop_recorder::recording::recorder=off,tabletop_xml::plugin=off".into(),
         fmt_layer: |_| {
             Some(Box::new(
@@ -48,7 +48,7 @@ pub(super) fn show_warnings() {
     });
 }
 
-/// A text in which characters that a terminal obeys, as those of ids in a stranger's file may be, are written out.
+/// A text with characters escaped that a terminal would obey, such as those of ids in a stranger's file.
 pub(super) fn printable(text: &str) -> Cow<'_, str> {
     let obeyed = |letter: char| letter.is_control() && !matches!(letter, '\n' | '\t');
     if !text.contains(obeyed) {
@@ -64,7 +64,7 @@ pub(super) fn printable(text: &str) -> Cow<'_, str> {
     printable.into()
 }
 
-/// Standard error, which gets each text as it is printable.
+/// Standard error that receives texts in printable form.
 #[derive(Default)]
 struct PrintableStderr(Vec<u8>);
 
@@ -81,7 +81,7 @@ impl Write for PrintableStderr {
 
 impl Drop for PrintableStderr {
     fn drop(&mut self) {
-        // Nobody hears it, then.
+        // Then nobody reads it.
         let _ = self.flush();
     }
 }

@@ -1,4 +1,4 @@
-//! The window, and what is done where none can be opened.
+//! The window, and the run that replaces it where none can be opened.
 
 use std::{path::PathBuf, process::ExitCode};
 
@@ -22,7 +22,7 @@ pub(super) struct WindowArgs {
     #[cfg(feature = "window")]
     #[arg(long, value_name = "FILE")]
     keys: Option<PathBuf>,
-    /// What decides the colours and places of presets
+    /// The seed of the colours and places of presets
     #[arg(long, value_name = "N", default_value = "5566")]
     seed: u64,
     /// Save a picture of the window to this PNG file, and quit
@@ -123,7 +123,7 @@ pub(super) fn play(_: Replay, _: ScriptSettings) -> Result<ExitCode, Failure> {
     Err(Failure::run(NO_WINDOW))
 }
 
-/// What the window would have shown after ten seconds, as a table.
+/// The state that the window would have shown after ten seconds, as a table.
 fn run_instead(setup: PathBuf) -> Result<ExitCode, Failure> {
     say(format_args!(
         "tabletop: running {} for 10 s without a window",

@@ -1,4 +1,4 @@
-//! What was on the table when a recording began.
+//! The scene at the beginning of a recording.
 
 use tabletop_core::{ObjectSpec, SceneCommand, SceneItem, SceneSpec, SimCommand};
 use tabletop_recorder::Session;
@@ -6,8 +6,8 @@ use tabletop_scene::{IdAllocator, assemble};
 
 use crate::imitation::moved;
 
-/// The scene with which a recording began: the last one that was set before, with everything where it was in the first tick, what has gone
-/// left out, and what has come added. None if no scene was set.
+/// The scene at the beginning of a recording: the last one that was set before, with every object at its pose in the first tick, without
+/// removed objects and with added ones. `None` if no scene was set.
 pub fn scene_at_beginning(session: &Session) -> Option<SceneSpec> {
     let mut set = session.earlier.iter().rev().filter_map(|command| {
         let SimCommand::Scene(SceneCommand::Set(scene)) = &command.command else {

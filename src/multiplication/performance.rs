@@ -1,4 +1,4 @@
-//! A task, shown again by the hand that has shown it.
+//! A task, performed again by the hand of the demonstration.
 
 use std::f32::consts::{PI, TAU};
 
@@ -15,22 +15,22 @@ use tabletop_task::{
 use super::way::{CarriedWay, WayPoint};
 use crate::imitation::sight;
 
-/// Ticks between a release and the next grasp: as many as were shown, within these.
+/// Limits on the number of ticks between a release and the next grasp, which is otherwise as demonstrated.
 const PAUSE: (u64, u64) = (15, 60);
-/// Ticks in which a held object does not move when it has arrived.
+/// Number of ticks without motion after which a held object has arrived.
 const STILL: u32 = 4;
-/// The most ticks that a hand waits for that.
+/// Largest number of ticks that a hand waits for that.
 const MOST_WAITING: u32 = 90;
-/// Ticks after the last step.
+/// Number of ticks after the last step.
 const END: u64 = 60;
-/// How far, seen from above, what is put aside stays from everything, in units.
+/// Distance from everything, seen from above, of an object that is put aside, in units.
 const ASIDE: f32 = 0.4;
-/// The least angle that a hand is told to turn by, in rad.
+/// Least angle by which a hand is commanded to turn, in rad.
 const LEAST_TURN: f32 = 1e-4;
-/// How far an object moves in a tick that stays where it is, in units.
+/// Largest motion in a tick, in units, of an object that stays in place.
 const SAME: f32 = 1e-3;
 
-/// Lets the hand do the task with the objects that take its roles, and looks whether its relations hold in the end. If not, it says of which step.
+/// Lets the hand do the task with the objects that take its roles, and checks its relations at the end. An error names the failed step.
 pub(super) fn perform(
     app: &mut App,
     shown: &Demonstration,
@@ -69,12 +69,12 @@ struct Performance<'a> {
     acts: Vec<StepPerformance<'a>>,
 }
 
-/// A step, as it is shown again.
+/// A step in its new performance.
 struct StepPerformance<'a> {
     step: &'a TaskStep,
     carried: CarriedWay,
     progress: CarryProgress,
-    /// Where its object was before.
+    /// Pose of its object before.
     from: Pose,
 }
 
@@ -85,11 +85,11 @@ enum CarryProgress {
         hand: Hand,
         way: Vec<WayPoint>,
         next: usize,
-        /// Where the object is to be.
+        /// Target of the object.
         target: Pose,
-        /// Where it was a tick ago.
+        /// Pose of the object a tick ago.
         last: Pose,
-        /// Since when it has been there, and since when it is expected there.
+        /// The ticks since which it has been still, and since which it is expected to have arrived.
         still: u32,
         waited: u32,
     },
@@ -126,7 +126,7 @@ impl Performance<'_> {
         *self.app.world().resource::<SimTick>()
     }
 
-    /// True if those that were grasped before are as far as they were when this one was grasped.
+    /// True if the steps grasped earlier are as far along as they were when this one's object was grasped.
     fn is_due(&self, i: usize) -> bool {
         let (now, own) = (self.now().0, self.acts[i].step);
         self.acts[..i].iter().all(|earlier| {
@@ -194,7 +194,7 @@ impl Performance<'_> {
         bound.ok_or_else(|| PlanFailure::Gone(role.to_owned()))
     }
 
-    /// Where that is now to which the goal of a step is relative. Without a goal, nothing is.
+    /// The present pose of the reference of a step's goal; `None` without a goal.
     fn reference(
         &self,
         step: &TaskStep,
@@ -292,7 +292,7 @@ impl Performance<'_> {
         }
     }
 
-    /// Looks where what is held has come to.
+    /// Reads the present poses of held objects.
     fn look(&mut self) -> Result<(), (usize, PlanFailure)> {
         let world = self.app.world();
         for act in &mut self.acts {
@@ -318,7 +318,7 @@ impl Performance<'_> {
         Ok(())
     }
 
-    /// True if all relations hold; else the step of one that does not.
+    /// Checks all relations; an error names the step of one that does not hold.
     fn judge(mut self, task: &Task) -> Result<(), (usize, PlanFailure)> {
         let sight = sight(self.app.world_mut());
         if let Some(undone) = undone(task, self.binding, &sight, &self.before) {
@@ -354,7 +354,7 @@ impl Performance<'_> {
     }
 }
 
-/// What a hand has to keep clear of on its way with an object: not what it carries along, nor what the object slides on.
+/// The obstacles of a hand on its way with an object: neither things that it carries along, nor the object's slide.
 fn obstacles(step: &TaskStep, sight: &Sight, id: &str) -> Vec<PlacedSolid> {
     if matches!(step.relations.first(), Some(Relation::Slid { .. })) {
         return Vec::new();
@@ -372,7 +372,7 @@ fn obstacles(step: &TaskStep, sight: &Sight, id: &str) -> Vec<PlacedSolid> {
     others.flat_map(|(_, other)| other.solids()).collect()
 }
 
-/// Where the frame of the table would be for an object to be put aside at a free place: as far from where it stands as was shown, or near there.
+/// The table's frame for an object that is put aside at a free place: as far from its present place as demonstrated, or near there.
 fn free_place(sight: &Sight, id: &str, carried: &CarriedWay, from: Pose) -> Option<Pose> {
     const AROUND: u16 = 12;
     const RINGS: u16 = 12;

@@ -1,4 +1,4 @@
-//! What differs from one demonstration to the next.
+//! Variation from one demonstration to the next.
 
 use std::f32::consts::TAU;
 
@@ -12,32 +12,32 @@ use tabletop_task::{PlaceRange, PlacedSolid, Reference, Requirements, Task};
 
 use crate::imitation::scattered;
 
-/// What differs besides the places of things.
+/// The variation besides the places of objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Variation {
-    /// True if objects have other colours, as far as what is required of them allows.
+    /// True if objects get other colours, as far as the requirements allow.
     pub colors: bool,
-    /// By which part of it, at most, sizes differ, as far as what is required allows; 0 for not at all.
+    /// Largest change of sizes, as a share, as far as the requirements allow; 0 for none.
     pub sizes: f32,
-    /// How many objects that have nothing to do with the task stand around, at most.
+    /// Largest number of distractors: objects that have nothing to do with the task.
     pub distractors: u32,
-    /// How far the head camera is from where it was, at most, in units; it looks away by as many times 2°.
+    /// Largest displacement of the head camera, in units; it also turns by up to 2° per unit.
     pub camera: f32,
 }
 
-/// Of how many arrangements one is taken in which everything is put on the table.
+/// Number of arrangements among which one with all goals on the table is searched for.
 const DRAWS: u32 = 50;
-/// How often a colour is drawn.
+/// Number of colours that are drawn.
 const COLORS: u32 = 100;
-/// By how much a colour is lighter or darker than its name says.
+/// Largest difference in lightness between a colour and its name.
 const SHADE: f32 = 0.12;
 /// The extents of distractors, in units.
 const DISTRACTOR: (f32, f32) = (0.6, 1.6);
-/// By which angle the camera is turned for each unit that it is moved, in rad.
+/// Angle by which the camera is turned per unit of its displacement, in rad.
 const TURN: f32 = 0.035;
 
 impl Variation {
-    /// The head camera, moved, if it is to be.
+    /// The displaced head camera, if it is to be displaced.
     pub(super) fn camera(&self, table: &Table, random: &mut Random) -> Option<HeadCamera> {
         let mut camera = HeadCamera::default();
         let mut any = |most: f32| random.between((-most, most));
@@ -57,18 +57,18 @@ impl Variation {
     }
 }
 
-/// A demonstration, to be varied.
+/// A demonstration that is to be varied.
 pub(super) struct Varying<'a> {
     pub task: &'a Task,
     pub requirements: &'a Requirements,
     pub scene: &'a SceneSpec,
-    /// The robot that has to reach everything, if there is one.
+    /// The robot, if one has to reach everything.
     pub body: Option<&'a RobotBody>,
     pub variation: Variation,
 }
 
 impl Varying<'_> {
-    /// The scene, varied. None if there is no room for it.
+    /// The varied scene. `None` if there is no room for it.
     pub(super) fn varied(&self, random: &mut Random) -> Option<SceneSpec> {
         let mut scene = self.scene.clone();
         let distractors = match self.variation.distractors {
@@ -91,7 +91,7 @@ impl Varying<'_> {
         })
     }
 
-    /// Where objects are put at places of the table.
+    /// Solids at the places of the table where objects are put.
     fn kept(&self) -> Vec<PlacedSolid> {
         let goals = self.task.steps.iter().filter_map(|step| {
             let goal = step.goal.as_ref()?;
@@ -108,7 +108,7 @@ impl Varying<'_> {
         solids.collect()
     }
 
-    /// True if all goals of the task are on the table, if things are where this scene puts them.
+    /// True if all goals of the task are on the table when objects are where this scene puts them.
     fn is_on_table(&self, scene: &SceneSpec) -> bool {
         let objects = assemble(scene, &mut IdAllocator::default()).objects;
         let Ok(binding) = self.task.bind(self.requirements, &objects) else {
@@ -174,13 +174,13 @@ impl Varying<'_> {
         }
     }
 
-    /// True if an object still has what is required of the role that it takes by its id.
+    /// True if an object still meets the requirements of the role that it takes by its id.
     fn may_be(&self, spec: &ObjectSpec) -> bool {
         let lacks = self.requirements.lacks(&spec.id, spec);
         lacks.is_none_or(|lacks| lacks.is_empty())
     }
 
-    /// An object that cannot take any role of which something is required.
+    /// A distractor: an object that cannot take any role with requirements.
     fn distractor(&self, number: u32, random: &mut Random) -> Option<ObjectSpec> {
         (0..COLORS).find_map(|_| {
             let color = any_color(random);
@@ -199,7 +199,7 @@ impl Varying<'_> {
                     (shape, Quat::from_rotation_x(TAU / 4.0), z)
                 }
             };
-            // Apart from everything, so that it is put somewhere by itself.
+            // Apart from everything, so that it is moved by itself.
             let at = Vec3::new(1000.0 + 10.0 * number as f32, 0.0, height / 2.0);
             let id = format!("Distractor{}", number + 1);
             let spec = ObjectSpec::new(&id, Pose::new(at, rotation), 1.0, shape);
@@ -214,7 +214,7 @@ impl Varying<'_> {
     }
 }
 
-/// A scene of which the objects have each other's colours, as this seed decides.
+/// A scene whose objects have exchanged their colours, as this seed decides.
 pub fn with_colors_exchanged(mut scene: SceneSpec, seed: u64) -> SceneSpec {
     let mut random = Random::new(seed);
     let mut shapes: Vec<_> = scene
@@ -246,7 +246,7 @@ fn any_color(random: &mut Random) -> Rgb {
     Rgb::new(part(named.red), part(named.green), part(named.blue))
 }
 
-/// Gives a shape this colour; of a composite, to those parts that have the colour of the first.
+/// Paints a shape; of a composite, only the parts with the colour of the first.
 fn paint(shape: &mut Shape, color: Rgb) {
     let Some(old) = shape.drawn().first().map(|solid| solid.color) else {
         return;

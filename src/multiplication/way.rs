@@ -1,40 +1,40 @@
-//! The way of a hand, for objects that are elsewhere.
+//! The way of a hand, adapted to objects that are elsewhere.
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{Hand, Pose, Primitive, Shape, SimTick};
 use tabletop_task::{Demonstration, HandDeed, PlacedSolid, Reference, TaskStep, angle_between};
 
-/// How the object of a step was carried.
+/// The way on which the object of a step was carried.
 #[derive(Clone, Debug)]
 pub(super) struct CarriedWay {
-    /// Where it was, tick by tick, from before it was grasped until it was let go of.
+    /// Poses of the object, tick by tick, from before its grasp until its release.
     poses: Vec<Pose>,
-    /// The hands that took it, and after which of its poses.
+    /// The hands that took it, each with the index of the pose after which it did.
     hands: Vec<(usize, Hand)>,
-    /// Where that was to which its goal is relative.
+    /// Pose of the goal's reference.
     frame: Pose,
 }
 
-/// What a hand does in a tick.
+/// A point of a hand's way, reached in one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct WayPoint {
-    /// Where the object is to be.
+    /// Pose of the object.
     pub pose: Pose,
     /// The hand that takes it.
     pub taken_by: Option<Hand>,
 }
 
-/// Up to how far from where it stood, seen from above, an object is lifted or lowered, in units.
+/// Distance from the first place, seen from above, within which an object counts as being lifted or lowered, in units.
 const UPRIGHT: f32 = 0.3;
-/// The part of the way that is bent when nothing tells where lifting ends and lowering begins.
+/// The part of the way that is blended if it is unclear where lifting ends and lowering begins.
 const MIDDLE: (f32, f32) = (0.25, 0.75);
-/// How near what is carried comes to anything on its way, in units.
+/// Least distance of a carried object from obstacles on its way, in units.
 const GAP: f32 = 0.1;
-/// The farthest, in units, and the largest angle, in rad, that a hand goes in a tick where it had not gone farther when it was shown.
+/// Limits, in units and rad, on a hand's motion in a tick, unless the demonstration was faster.
 const STEP: (f32, f32) = (0.15, 0.08);
 
 impl CarriedWay {
-    /// How the object of a step was carried in a demonstration. None if the demonstration does not say.
+    /// The way of a step's object in a demonstration. `None` if the demonstration does not contain it.
     pub fn of(shown: &Demonstration, step: &TaskStep) -> Option<Self> {
         let track = &shown.named(&step.object)?.track;
         let first = step.grasp.0.saturating_sub(1);
@@ -62,12 +62,12 @@ impl CarriedWay {
         })
     }
 
-    /// Where it was before it was grasped.
+    /// Pose before the grasp.
     pub fn first(&self) -> Pose {
         self.poses[0]
     }
 
-    /// Where it was when it was let go of.
+    /// Pose at the release.
     pub fn last(&self) -> Pose {
         self.poses[self.poses.len() - 1]
     }
@@ -77,8 +77,8 @@ impl CarriedWay {
         self.hands.first().map(|(_, hand)| *hand)
     }
 
-    /// The way from where the object is now, to where its goal's reference is now: with the object in the beginning, with the reference in the
-    /// end, bent between. Without a reference, with the object all along. The middle is lifted over obstacles.
+    /// The way from the object's present pose to that of its goal's reference: it follows the object at the beginning and the reference at
+    /// the end, and is blended in between. Without a reference, it follows the object all along. The middle is raised over obstacles.
     pub fn retargeted(
         &self,
         shape: &Shape,
@@ -132,7 +132,7 @@ impl CarriedWay {
         moments
     }
 
-    /// How long the way is up to each pose, with a little for every tick, so that it always ascends.
+    /// Length of the way up to each pose, with a little added for every tick, so that it always ascends.
     fn lengths(&self) -> Vec<f32> {
         const OF_A_TICK: f32 = 1e-4;
         let mut length = 0.0;
@@ -144,7 +144,7 @@ impl CarriedWay {
         lengths
     }
 
-    /// The pose after which it is lifted, and that from which on it is lowered.
+    /// Indices of the pose at the end of lifting, and of that at the beginning of lowering.
     fn middle(&self, lengths: &[f32]) -> [usize; 2] {
         let last = self.poses.len() - 1;
         let across =
@@ -187,7 +187,7 @@ fn slerp(a: Quat, b: Quat, part: f32) -> Quat {
     }
 }
 
-/// The poses between two, without them, such that no step is longer.
+/// The poses between two, without these, such that no step exceeds the limits.
 fn between(from: Pose, to: Pose, (length, angle): (f32, f32)) -> impl Iterator<Item = Pose> {
     let lengths = distance(from, to) / length;
     let angles = angle_between(from.rotation, to.rotation) / angle;
@@ -195,7 +195,7 @@ fn between(from: Pose, to: Pose, (length, angle): (f32, f32)) -> impl Iterator<I
     (1..steps).map(move |step| blended(from, to, step as f32 / steps as f32))
 }
 
-/// By how much a way must be lifted for what goes along it to meet nothing; 0 if that does not help.
+/// Height by which a way must be raised so that the carried solids meet nothing; 0 if that does not help.
 fn lift_over(solids: &[Primitive], way: &[Pose], obstacles: &[PlacedSolid]) -> f32 {
     const STEP: f32 = 0.25;
     const MOST: u16 = 40;

@@ -1,4 +1,4 @@
-//! Where two recordings differ.
+//! Differences between recordings.
 
 use std::{
     collections::BTreeSet,
@@ -11,7 +11,7 @@ use tabletop_task::Requirements;
 
 use super::ReplayError;
 
-/// The first file in which two recordings differ, and how.
+/// The first file in which two recordings differ, and the difference.
 ///
 /// # Errors
 ///
@@ -24,7 +24,7 @@ pub fn first_difference(recorded: &Path, replayed: &Path) -> Result<Option<Strin
     })
 }
 
-/// [`first_difference`] for a recording that was cut off: its files are beginnings, and the last ones are not there.
+/// [`first_difference`] for a recording that was cut off: its files are beginnings, and the last ones are missing.
 pub(super) fn first_before_cut(
     recorded: &Path,
     replayed: &Path,
@@ -39,7 +39,7 @@ pub(super) fn first_before_cut(
     })
 }
 
-/// The first of these files that is in one of two folders only, or is not the same in both, and how it differs.
+/// The first of these files that exists in only one of two folders, or differs between them, and the difference.
 fn first_that_differs(
     files: BTreeSet<PathBuf>,
     [recorded, replayed]: [&Path; 2],
@@ -64,13 +64,13 @@ fn first_that_differs(
     Ok(None)
 }
 
-/// True if it is a file that was not finished, or is hidden, as what was undone is.
+/// True if it is unfinished, or hidden as undone segments are.
 fn is_for_the_program_alone(file: &Path) -> bool {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     name.starts_with('.') || name.ends_with(".part")
 }
 
-/// Where two files differ: line and texts, or for pictures that they do.
+/// The difference between two files: line and texts, or for pictures just that they differ.
 fn first_difference_of(before: &[u8], after: &[u8]) -> String {
     let (Ok(before), Ok(after)) = (std::str::from_utf8(before), std::str::from_utf8(after)) else {
         return "the pictures differ".into();
@@ -112,7 +112,7 @@ fn files_in(folder: &Path) -> Result<BTreeSet<PathBuf>, ReplayError> {
             }
             match entry.file_type().map_err(failed)?.is_dir() {
                 true => folders.push(name),
-                // What the user requires of its objects is not recorded.
+                // Requirements on objects are not recorded.
                 false if name == Path::new(Requirements::FILE) => {}
                 false => {
                     files.insert(name);

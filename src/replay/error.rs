@@ -1,10 +1,10 @@
-//! Why a recording cannot be run again.
+//! Errors of recordings that cannot be replayed.
 
 use std::{io, path::PathBuf};
 
 use tabletop_recorder::RecorderError;
 
-/// Why a recording cannot be run again.
+/// The error of a recording that cannot be replayed.
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
     /// Its session log cannot be read.
@@ -27,7 +27,7 @@ pub enum ReplayError {
         path: PathBuf,
         /// The setting.
         name: &'static str,
-        /// What is wrong with it.
+        /// Its fault.
         problem: String,
         /// The version of the program that made the recording.
         program: String,
@@ -40,7 +40,7 @@ pub enum ReplayError {
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// Why.
+        /// The operating system's error.
         source: io::Error,
     },
 }

@@ -1,4 +1,4 @@
-//! Opening recordings while the simulator runs, and going to any of their moments.
+//! Playback of recordings while the simulator runs, up to any of their moments.
 
 use std::{
     path::PathBuf,
@@ -18,21 +18,21 @@ use tabletop_recorder::set_earlier_commands;
 use super::{Player, Replay, player};
 use crate::settings::Settings;
 
-/// How much of a frame is spent on going to a moment, so that pictures keep coming.
+/// Time of a frame that is spent on going to a moment, so that pictures keep coming.
 const BUDGET: Duration = Duration::from_millis(40);
 
 /// Ticks from one keyframe to the next, at first.
 const SPACING: u64 = 2 * TICKS_PER_SECOND as u64;
 
-/// If there are more keyframes, every other one is dropped.
+/// Largest number of keyframes; beyond it, every other one is dropped.
 const MOST_KEYFRAMES: usize = 64;
 
-/// Opens recordings when it is told by [`OpenRecording`], and plays them as [`PlaybackOrder`]s say. The world is brought to a moment
-/// by simulating the recording up to there, from the last keyframe before it, so it is the world as it was, to the bit.
+/// Opens recordings on [`OpenRecording`], and plays them as [`PlaybackOrder`]s ask. The world is brought to a moment
+/// by simulating the recording from the last keyframe before it, so it is the world as it was, to the bit.
 /// Needs the [simulator](crate::TabletopSimPlugins); it works between the frames of a window.
 #[derive(Clone, Debug)]
 pub struct PlaybackPlugin {
-    /// The task with which to begin again when a recording is put away, unless another was loaded before it was opened.
+    /// The task file to load when a recording is closed, unless another was loaded before it was opened.
     pub task: PathBuf,
 }
 
@@ -57,7 +57,7 @@ impl Plugin for PlaybackPlugin {
     }
 }
 
-/// The task with which to begin again.
+/// The task file to load when a recording is closed.
 #[derive(Resource)]
 struct FreshTask(PathBuf);
 
@@ -75,13 +75,13 @@ struct Opened {
     keyframes: Vec<Keyframe>,
     /// Ticks from one keyframe to the next.
     spacing: u64,
-    /// Where the world is being brought.
+    /// The moment that the world is being brought to.
     goal: Option<PlayheadTarget>,
 }
 
-/// A moment that can be gone back to.
+/// A keyframe: a moment to which the world can be restored.
 struct Keyframe {
-    /// The tick that comes next.
+    /// Its next tick.
     tick: SimTick,
     world: WorldSnapshot,
     player: Player,
@@ -90,7 +90,7 @@ struct Keyframe {
 /// A moment that the world is being brought to.
 #[derive(Clone, Copy, Debug)]
 struct PlayheadTarget {
-    /// The tick that comes next there.
+    /// Its next tick.
     tick: SimTick,
     /// True if the simulation then stands still.
     stops: bool,
@@ -112,7 +112,7 @@ fn note_task(mut facts: MessageReader<SimFact>, mut fresh: ResMut<FreshTask>) {
     }
 }
 
-/// Opens the last recording that it is told to, or says why it cannot.
+/// Opens the last requested recording, or reports why it cannot.
 fn open(world: &mut World, reader: &mut SystemState<MessageReader<OpenRecording>>) -> Result {
     let Some(OpenRecording(folder)) = reader.get_mut(world)?.read().last().cloned() else {
         return Ok(());
@@ -165,7 +165,7 @@ fn try_open(world: &mut World, folder: PathBuf) -> Result<(), String> {
     Ok(())
 }
 
-/// Puts the world back to before its first tick. What was open is put away.
+/// Restores the world to before its first tick, and closes the open recording.
 fn begin_anew(world: &mut World) {
     put_away(world);
     world.resource_mut::<Messages<IssuedCommand>>().clear();
@@ -182,7 +182,7 @@ fn begin_anew(world: &mut World) {
     drop_removed(world);
 }
 
-/// Forgets the open recording, and leaves the world as it is.
+/// Forgets the open recording, and leaves the world unchanged.
 fn put_away(world: &mut World) {
     if world.remove_resource::<Opened>().is_none() {
         return;
@@ -195,14 +195,14 @@ fn put_away(world: &mut World) {
     drop_removed(world);
 }
 
-/// A recording that is made takes the place of the open one.
+/// Closes the open recording when another one is being made.
 fn make_way(world: &mut World) {
     if world.resource::<Recording>().0 {
         put_away(world);
     }
 }
 
-/// Does what the user orders of the open recording.
+/// Carries out the user's requests about the open recording.
 fn obey(world: &mut World, reader: &mut SystemState<MessageReader<PlaybackOrder>>) -> Result {
     let orders: Vec<_> = reader.get_mut(world)?.read().copied().collect();
     for order in orders {
@@ -256,7 +256,7 @@ fn is_over(world: &World) -> bool {
         .is_some_and(|(opened, player)| opened.is_over(player, next))
 }
 
-/// Brings the world towards its goal, as far as a frame lets it, and begins again at the end of what loops.
+/// Brings the world towards its goal, as far as a frame allows, and begins again at the end of a looping recording.
 fn go_on(world: &mut World) {
     let begins_again = is_over(world) && world.resource::<Playback>().loops;
     let Some(mut opened) = world.get_resource_mut::<Opened>() else {
@@ -354,7 +354,7 @@ fn keep_keyframe(world: &mut World) {
     }
 }
 
-/// Puts what the grippers do on the timeline when it is seen for the first time.
+/// Adds grips to the timeline when they are seen for the first time.
 fn note_grips(
     mut facts: MessageReader<SimFact>,
     opened: Res<Opened>,
@@ -383,7 +383,7 @@ fn is_of_hand(act: &Act) -> bool {
     }
 }
 
-/// Lets everybody know how it plays.
+/// Publishes the state of the playback.
 fn publish(world: &mut World) {
     let Some(opened) = world.get_resource::<Opened>() else {
         return;

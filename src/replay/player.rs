@@ -1,4 +1,4 @@
-//! Giving the commands of a recording again.
+//! Repetition of a recording's commands.
 
 use std::sync::Arc;
 
@@ -12,12 +12,12 @@ use tabletop_recorder::{Session, SessionCommand};
 
 /// Gives the commands of a recording at their ticks, and stays in the world as a resource.
 ///
-/// Until it [is over](Self::is_over), only the recording acts: of all other commands only pauses are carried out, for whose
-/// end the recording waits, and markers are shown. A script can watch meanwhile.
+/// Until it [is over](Self::is_over), only the recording acts. Of all other commands, only pauses are carried out (the recording waits for
+/// their end), and markers are shown. A script can watch meanwhile.
 #[derive(Resource, Clone, Debug)]
 pub struct Player {
     commands: Arc<[SessionCommand]>,
-    /// How many of them were given.
+    /// Number of its commands that were given.
     given: usize,
     /// The first tick of the recording.
     start: SimTick,
@@ -27,7 +27,7 @@ pub struct Player {
     pauses_late: bool,
     /// True if a recording is to be made of it.
     records: bool,
-    /// True if it has been said that a script watches.
+    /// True if it was reported that a script watches.
     is_watched: bool,
 }
 
@@ -81,7 +81,7 @@ impl Player {
         &self.commands[..self.given]
     }
 
-    /// True if the simulation is paused because the recording says so.
+    /// True if the recording has paused the simulation.
     pub(crate) fn has_paused(&self) -> bool {
         self.has_paused
     }
@@ -96,7 +96,7 @@ impl Player {
         self.start
     }
 
-    /// How many ticks come before the next one in which it acts; `None` if it is over.
+    /// Number of ticks before the next one in which it acts; `None` if it is over.
     fn waits_for(&self, tick: SimTick) -> Option<u64> {
         if self.pauses_late {
             return Some(0);
@@ -107,8 +107,8 @@ impl Player {
         Some(due.saturating_sub(tick.0))
     }
 
-    /// The commands that are due. What was given in one tick at several moments of a pause is given at several moments. A pause that
-    /// undo has brought into a tick whose commands were carried out before begins after them.
+    /// The commands that are due. Commands given in one tick at several moments of a pause are given again at several moments. A pause that
+    /// undo has brought into a tick whose commands were already carried out begins after them.
     fn due(&mut self, tick: SimTick) -> Vec<SessionCommand> {
         let mut due = Vec::new();
         while let Some(next) = self.commands.get(self.given) {
@@ -137,7 +137,7 @@ impl Player {
     }
 }
 
-/// True if a command that comes after another one in a pause was given at another moment of it: it would be carried out before.
+/// True if a command that follows another one in a pause was given at another moment of it: otherwise it would be carried out first.
 fn begins_moment(command: &SimCommand, last: &SimCommand) -> bool {
     match command {
         SimCommand::Recording(RecordingCommand::Start)
@@ -152,7 +152,7 @@ fn begins_moment(command: &SimCommand, last: &SimCommand) -> bool {
     }
 }
 
-/// True if a command begins a pause and comes after one that could not be carried out in it.
+/// True if a command begins a pause and follows one that could not be carried out in it.
 fn is_late_pause(command: &SimCommand, last: &SimCommand) -> bool {
     *command == ClockCommand::SetPaused(true).into() && command.phase() < last.phase()
 }
@@ -274,7 +274,7 @@ mod tests {
         assert!(player.is_over());
     }
 
-    /// Simulates a tick in which the user gives commands, and says what was carried out.
+    /// Simulates a tick in which the user gives commands, and returns those that were carried out.
     fn tick(app: &mut App, given: &[SimCommand]) -> Vec<SimCommand> {
         for command in given {
             app.world_mut().write_command(command.clone());

@@ -1,4 +1,4 @@
-//! How the window is shown: what the display offers, and what the user has chosen of it, on the command line, in the display settings
+//! The display of the window: the choices that the display offers, and the user's choice on the command line, in the display settings
 //! (report 2.3) or in an earlier run.
 
 use std::num::NonZeroU32;
@@ -25,7 +25,7 @@ use wgpu_types::DeviceType;
 
 use super::frame_rate::FrameRate;
 
-/// What the command line says about the display. What it says nothing about is as it was in the last run.
+/// Display options of the command line. Missing ones are as in the last run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DisplayOptions {
     /// The size of the window, or of the screen if the window fills it.
@@ -34,18 +34,18 @@ pub struct DisplayOptions {
     pub fullscreen: Option<bool>,
     /// True if pictures wait for the screen.
     pub vsync: Option<bool>,
-    /// Pictures a second, at most.
+    /// Largest number of pictures a second.
     pub refresh_rate: Option<NonZeroU32>,
     /// Bits of a pixel's colour.
     pub color_depth: Option<u16>,
-    /// How edges are smoothed.
+    /// The smoothing of edges.
     pub antialiasing: Option<Antialiasing>,
-    /// True if the user is asked for all of this; if nothing is said, he is unless there is an answer above or from the last run.
+    /// True if the user is asked for all of this. By default he is asked unless there is an option above or a choice from the last run.
     pub ask: Option<bool>,
 }
 
 impl DisplayOptions {
-    /// These settings, but what the command line says.
+    /// These settings, replaced by those of the command line.
     pub(super) fn over(&self, settings: DisplaySettings) -> DisplaySettings {
         DisplaySettings {
             resolution: self.resolution.unwrap_or(settings.resolution),
@@ -66,7 +66,7 @@ impl DisplayOptions {
     }
 }
 
-/// Makes the window what the settings say, whenever they change.
+/// Applies the settings to the window whenever they change.
 pub(super) fn plugin(app: &mut App) {
     app.add_systems(
         Update,
@@ -83,7 +83,7 @@ pub(super) fn plugin(app: &mut App) {
     );
 }
 
-/// The window fills the screen as the screen is, or no longer.
+/// Makes the window fill the screen in its present mode, or no longer.
 fn fill_screen(window: Single<&mut Window, With<PrimaryWindow>>) {
     let mut window = window.into_inner();
     window.mode = match window.mode {
@@ -105,7 +105,7 @@ fn shape_window(
         true => PresentMode::AutoVsync,
         false => PresentMode::AutoNoVsync,
     };
-    // What the user himself has made of the window stays until he chooses another size.
+    // The user's own size of the window stays until he chooses another in the settings.
     let shape = (
         settings.resolution,
         settings.fullscreen.then(|| settings.mode()),
@@ -151,7 +151,7 @@ fn smooth_edges(settings: Res<DisplaySettings>, mut cameras: Query<&mut Msaa, Wi
     }
 }
 
-/// What the screens and the graphics driver offer.
+/// The choices that the screens and the graphics driver offer.
 pub(super) fn offer(
     monitors: Query<(Entity, &Monitor, Has<PrimaryMonitor>)>,
     adapter: Res<RenderAdapter>,
@@ -173,7 +173,7 @@ pub(super) fn offer(
     }
 }
 
-/// Who draws.
+/// The renderer: a graphics card or the processor.
 pub(super) fn renderer(info: Res<RenderAdapterInfo>) -> Renderer {
     Renderer {
         name: info.name.clone(),
@@ -181,7 +181,7 @@ pub(super) fn renderer(info: Res<RenderAdapterInfo>) -> Renderer {
     }
 }
 
-/// A screen that does not say what it is: nothing is too large for it.
+/// A screen of unknown modes: nothing is too large for it.
 const UNKNOWN_SCREEN: ScreenMode = ScreenMode {
     resolution: Resolution::new(u32::MAX, u32::MAX),
     refresh_rate: SIXTY,
@@ -198,7 +198,7 @@ fn present_monitor<'a>(
     monitor.map(|(entity, monitor, _)| (entity, monitor))
 }
 
-/// Where the left upper corner of a window is, in pixels, if the window is in the middle of the screen.
+/// Upper left corner, in pixels, of a window in the middle of the screen.
 pub(super) fn centered(
     window: In<Resolution>,
     monitors: Query<(Entity, &Monitor, Has<PrimaryMonitor>)>,
@@ -224,7 +224,7 @@ fn scale(monitor: &Monitor) -> f64 {
     }
 }
 
-/// How a screen is set now.
+/// The present mode of a screen.
 fn present_mode(monitor: &Monitor) -> ScreenMode {
     let size = monitor.physical_size();
     let resolution = Resolution::new(size.x, size.y);
@@ -257,9 +257,9 @@ fn hertz(millihertz: u32) -> NonZeroU32 {
         .unwrap_or(SIXTY)
 }
 
-/// True if the graphics driver draws pictures of a window, and their depth, with so many points a pixel.
+/// True if the graphics driver can draw the window and its depth with this many samples per pixel.
 fn can_draw(samples: u32, adapter: &RenderAdapter, device: &RenderDevice) -> bool {
-    // What all drivers can. For more, the device has to be asked for what the adapter can.
+    // Numbers of samples that all drivers can. For more, the device has to be asked for the adapter's abilities.
     const ALWAYS: [u32; 2] = [1, 4];
     let drawn = [
         TextureFormat::Rgba8UnormSrgb,

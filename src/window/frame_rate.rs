@@ -1,4 +1,4 @@
-//! How often frames come.
+//! Frame rate.
 
 use std::{
     num::NonZeroU32,
@@ -9,7 +9,7 @@ use std::{
 use bevy::prelude::*;
 use tabletop_gui::display::DisplaySettings;
 
-/// When the next frame may begin.
+/// The time at which the next frame may begin.
 #[derive(Resource, Clone, Copy, Debug)]
 pub(super) struct FrameRate {
     period: Duration,
@@ -23,7 +23,7 @@ impl Default for FrameRate {
 }
 
 impl FrameRate {
-    /// At most so many frames a second.
+    /// A limit of this many frames a second.
     pub fn of(rate: NonZeroU32) -> Self {
         Self {
             period: Duration::from_secs(1) / rate.get(),
@@ -39,7 +39,7 @@ impl FrameRate {
         }
     }
 
-    /// For how long to wait. A frame that is late by less than a period is made up for.
+    /// Time to wait. A delay of less than a period is made up for.
     fn pause(&mut self, now: Instant) -> Duration {
         let due = self
             .due

@@ -1,4 +1,4 @@
-//! A window that waits for the user costs next to nothing.
+//! Idle windows, which cost next to nothing while they wait for the user.
 
 use std::time::Duration;
 
@@ -11,10 +11,10 @@ use tabletop_core::{Idle, Paused};
 
 use super::{opening::Opening, redraw::Redraw};
 
-/// How often a window in which nothing happens looks after what comes neither from mouse nor keys, such as a file that has changed.
+/// Time between checks of an idle window for events that come neither from mouse nor keys, such as a changed file.
 const IDLE: Duration = Duration::from_millis(250);
 
-/// For how long a window in which nothing happens goes on as before after the last news.
+/// Time after the last event for which an idle window goes on as before.
 const LINGER: Duration = Duration::from_millis(500);
 
 pub(super) fn plugin(app: &mut App) {
@@ -23,7 +23,7 @@ pub(super) fn plugin(app: &mut App) {
         .add_systems(Last, (note_acts, rest_while_waiting).chain());
 }
 
-/// When the user has done something last, or something has moved.
+/// The time of the user's last act, or of the last motion.
 #[derive(Resource, Default)]
 struct LastAct(Duration);
 
@@ -42,8 +42,8 @@ fn note_acts(
     };
 }
 
-/// A window that waits for the user costs next to nothing; keys and mouse still act at once. While everything rests, panels may tell
-/// the time, which is no news.
+/// Lets a window rest while it waits for the user; keys and mouse still act at once. Meanwhile panels may show
+/// the time, which does not count as an event.
 fn rest_while_waiting(
     paused: Res<Paused>,
     opening: Res<Opening>,

@@ -1,4 +1,4 @@
-//! Why no window can be opened, and what to do about it.
+//! Reasons why no window can be opened, and remedies.
 
 use std::{
     any::Any,
@@ -7,7 +7,7 @@ use std::{
 
 use thiserror::Error;
 
-/// What a window needs and did not find.
+/// The reason why no window can be opened.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum NoWindow {
     /// No X server answers.
@@ -33,7 +33,7 @@ pub enum NoWindow {
 }
 
 impl NoWindow {
-    /// Bevy reports what is missing only in the texts of its panics.
+    /// Bevy reports a missing display or driver only in the texts of its panics.
     fn from_panic(message: &str) -> Self {
         if message.contains("Unable to find a GPU") {
             Self::Graphics
@@ -47,7 +47,7 @@ impl NoWindow {
     }
 }
 
-/// Does some work that may find out by a panic that there can be no window.
+/// Runs code that may panic because there can be no window.
 pub(super) fn catch<T>(work: impl FnOnce() -> T) -> Result<T, NoWindow> {
     let hook = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));
@@ -72,7 +72,7 @@ fn library_in(text: &str) -> Option<&str> {
 mod tests {
     use super::*;
 
-    /// What Bevy says with winit 0.30 and wgpu 29.
+    /// Bevy's messages with winit 0.30 and wgpu 29.
     const NO_DISPLAY: &str = r#"Failed to build event loop: Os(OsError { line: 765, file: "/src/platform_impl/linux/mod.rs", error: Misc("neither WAYLAND_DISPLAY nor WAYLAND_SOCKET nor DISPLAY is set.") })"#;
     const DEAD_DISPLAY: &str = r#"Failed to build event loop: Os(OsError { line: 788, file: "/src/platform_impl/linux/mod.rs", error: XNotSupported(XOpenDisplayFailed) })"#;
     const NO_LIBRARY: &str = r#"Failed to build event loop: Os(OsError { line: 788, file: "/src/platform_impl/linux/mod.rs", error: XNotSupported(LibraryOpenError(OpenError { kind: Library, detail: "opening library failed (/lib/x86_64-linux-gnu/libXi.so.6: file too short)" })) })"#;

@@ -1,5 +1,5 @@
-//! How the window opens: first with the display settings alone, if the user is asked, and then with the simulation. While he is asked, the
-//! simulation has not begun: of Bevy's schedules only those run that windows and panels need.
+//! Opening of the window: first with the display settings alone, if the user is asked, and then with the simulation. While he is asked, the
+//! simulation has not begun: only those of Bevy's schedules run that windows and panels need.
 
 use bevy::{
     app::Main,
@@ -19,7 +19,7 @@ use tabletop_gui::{
 
 use super::display::{self, DisplayOptions};
 
-/// How far the window is.
+/// The stage of opening the window.
 #[derive(Resource, Clone, Debug, PartialEq, Eq)]
 pub(super) enum Opening {
     /// Nothing is in it.
@@ -30,18 +30,18 @@ pub(super) enum Opening {
     Done,
 }
 
-/// What is known before there is a window.
+/// The settings that are known before there is a window.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Beginning {
     options: DisplayOptions,
     /// The settings of the last run.
     remembered: Option<DisplaySettings>,
-    /// Why they cannot be read.
+    /// The reason why they cannot be read.
     fault: Option<String>,
 }
 
 impl Beginning {
-    /// With what the command line says and what was chosen in the last run.
+    /// Uses the command line, and the choice of the last run.
     pub fn new(options: DisplayOptions, preferences: &Preferences) -> Self {
         let (remembered, fault) = match preferences.read(CONCERN) {
             Ok(remembered) => (remembered, None),
@@ -76,7 +76,7 @@ impl Beginning {
         }
     }
 
-    /// What the command line says, else what was chosen in the last run, else this.
+    /// The settings of the command line, then those of the last run, then these.
     fn chosen(&self, recommended: DisplaySettings) -> DisplaySettings {
         self.options.over(self.remembered.unwrap_or(recommended))
     }
@@ -110,9 +110,9 @@ fn show_frame(world: &mut World) -> Result {
     Ok(())
 }
 
-/// What runs while the user is asked.
+/// Runs the schedules that the settings need.
 fn show_settings(world: &mut World) -> Result {
-    // Else messages would be kept for the first tick, and what was typed here would be read there.
+    // Otherwise messages would be kept for the first tick, and keys typed here would be read there.
     world.run_system_cached(signal_message_update_system)?;
     world.run_schedule(First);
     world.run_schedule(PreUpdate);
@@ -140,7 +140,7 @@ fn begin(world: &mut World, beginning: &Beginning) -> Result {
     Ok(())
 }
 
-/// Does what the user has decided, if he has.
+/// Carries out the user's decision, if there is one.
 fn ask(world: &mut World) -> Result {
     let is_closed = !world
         .resource::<Messages<WindowCloseRequested>>()

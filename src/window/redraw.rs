@@ -1,6 +1,6 @@
-//! The window is drawn when there is something new to see.
+//! Redrawing of the window, only when there is something new to see.
 //!
-//! After each frame of the main world, what there is to see is summed up ([`Appearance`]). If it looks as in the last picture, that
+//! After each frame of the main world, the visible state is summed up ([`Appearance`]). If it looks as in the last picture, that
 //! picture stays: nothing is extracted, rendered or presented.
 
 mod cause;
@@ -24,16 +24,16 @@ use self::{
 };
 use super::frame_rate::FrameRate;
 
-/// How many frames are drawn at the start, whatever there is to see.
+/// Number of frames that are always drawn at the start.
 const STARTING: u32 = 5;
 
-/// How many more frames are drawn when what is drawn has changed: some of it reaches the graphics card a frame late.
+/// Number of further frames after a change: some of it reaches the graphics card a frame late.
 const SETTLING: u32 = 3;
 
-/// When a picture that stays is drawn again: without a compositor, other windows wipe what they cover.
+/// Time after which an unchanged picture is drawn again: without a compositor, other windows wipe the parts that they cover.
 const REFRESH: Duration = Duration::from_secs(5);
 
-/// For how long nothing may have moved in a picture that is still.
+/// Time without motion after which a picture is still.
 const STILL: Duration = Duration::from_millis(500);
 
 /// True if the present frame is drawn.
@@ -41,7 +41,7 @@ const STILL: Duration = Duration::from_millis(500);
 pub(super) struct Redraw {
     cause: Option<RedrawCause>,
     sight: Appearance,
-    /// Frames that are to be drawn whatever there is to see.
+    /// Number of frames to be drawn in any case.
     left: u32,
     drawn_at: Duration,
     moved_at: Duration,
@@ -55,17 +55,17 @@ impl Redraw {
         self.cause.is_some()
     }
 
-    /// For how long the user has seen nothing new.
+    /// Time for which the user has seen nothing new.
     pub fn idle_for(&self, now: Duration) -> Duration {
         now.saturating_sub(self.news_at)
     }
 
-    /// When something in the picture has moved last.
+    /// The time of the last motion in the picture.
     pub const fn moved_at(&self) -> Duration {
         self.moved_at
     }
 
-    /// Decides about a frame: what there is to see, what has happened that cannot be seen in that, and when (since the start).
+    /// Decides about a frame by the visible state, by events that it does not show, and by the time since the start.
     fn decide(&mut self, sight: Appearance, events: [Option<RedrawCause>; 2], now: Duration) {
         self.frames = self.frames.saturating_add(1);
         let start = (self.frames <= STARTING).then_some(RedrawCause::Start);
@@ -95,7 +95,7 @@ impl Redraw {
     }
 }
 
-/// What has happened to assets since the last frame.
+/// The change of assets since the last frame.
 #[derive(Resource, Default)]
 struct AssetChange(Option<RedrawCause>);
 
@@ -151,7 +151,7 @@ fn decide(
     }
 }
 
-/// True if the window may show something else afterwards than what was drawn in it.
+/// True if the window may afterwards show something other than its own picture.
 fn may_uncover(event: &WindowEvent) -> bool {
     matches!(
         event,
@@ -177,10 +177,10 @@ fn draw_when_due(app: &mut App) {
             draw(main, renderer);
             main.resource_mut::<PictureStatus>().drawn += 1;
         }
-        // Here, and not at the end of a frame: the picture is being drawn meanwhile, and what the user does next is still read in time.
+        // Here, and not at the end of a frame: the picture is being drawn meanwhile, and the user's next act is still read in time.
         main.resource_mut::<FrameRate>().wait();
     });
-    // The renderer says when it has drawn a frame, and without frames Bevy's clock would complain every frame that it does not.
+    // The renderer reports the time of each frame it has drawn; without frames, Bevy's clock would complain in every frame.
     app.world_mut().remove_resource::<TimeReceiver>();
 }
 
@@ -237,7 +237,7 @@ mod tests {
         (0..frames).map(|_| frame()).collect()
     }
 
-    /// Frames that follow a change of what is drawn.
+    /// Frames after a change of the drawn shapes.
     const MOTION: [Option<RedrawCause>; 4] = [
         Some(RedrawCause::Settling),
         Some(RedrawCause::Settling),

@@ -8,7 +8,7 @@ pub(super) fn plugin(app: &mut App) {
     app.add_systems(Update, announce_end.run_if(resource_changed::<Playback>));
 }
 
-/// Says that the user can act when an open recording has come to its end.
+/// Reports that the user can act at the end of an open recording.
 fn announce_end(
     playback: Res<Playback>,
     timeline: Res<Timeline>,

@@ -12,15 +12,15 @@ use bevy::{
 };
 use tabletop_core::{SimTick, TICKS_PER_SECOND};
 
-/// Frames until everything that is on the table is surely drawn.
+/// Number of frames after which everything on the table is certainly drawn.
 const WARM_UP_FRAMES: u32 = 5;
 
-/// A picture of the window at a time of the simulation. When it is written, the program ends.
+/// A picture of the window at a simulated time. When it is written, the program ends.
 #[derive(Resource, Clone, Debug, PartialEq)]
 pub struct ScreenshotAt {
-    /// Where to write it. The name's ending says how: `.png`.
+    /// The file. The name's ending gives the format: `.png`.
     pub path: PathBuf,
-    /// After how many seconds of simulated time.
+    /// Number of seconds of simulated time.
     pub seconds: f32,
 }
 
@@ -58,7 +58,7 @@ fn save_and_exit(path: PathBuf) -> impl FnMut(On<ScreenshotCaptured>, MessageWri
 }
 
 fn save(picture: &Image, path: &Path) -> Result<(), Box<dyn Error>> {
-    // The window has no transparency that would mean anything.
+    // The window's transparency has no meaning.
     picture.clone().try_into_dynamic()?.to_rgb8().save(path)?;
     Ok(())
 }

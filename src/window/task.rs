@@ -1,4 +1,4 @@
-//! The task that the recording shows, understood, and done by the robot.
+//! The task of the recording, and its imitation by the robot.
 
 mod imitator;
 mod understood;
@@ -28,7 +28,7 @@ pub(super) fn plugin(app: &mut App) {
         );
 }
 
-/// True if everything is to be put to where it was in the beginning, and what then.
+/// The act that follows once everything is put back; `None` if nothing is to be put back.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct PuttingBack(Option<Afterwards>);
 
@@ -38,7 +38,7 @@ enum Afterwards {
     Imitate,
 }
 
-/// Does what the user wants with the task.
+/// Carries out the user's requests about the task.
 fn obey(
     mut orders: MessageReader<TaskOrder>,
     mut understood: ResMut<Understood>,
@@ -85,7 +85,7 @@ fn obey(
     }
 }
 
-/// Puts everything to where it was in the beginning of the recording, after the recording is put away if it is open.
+/// Puts every object back where the recording began, after closing the recording if it is open.
 fn put_back(
     mut putting: ResMut<PuttingBack>,
     mut commands: CommandWriter,

@@ -1,4 +1,4 @@
-//! Asking for a file: by a dialog of the desktop, or by the program's own list where the desktop has none.
+//! File dialogs: those of the desktop, or the program's own list where the desktop has none.
 
 use std::{
     env,
@@ -16,7 +16,7 @@ use tabletop_gui::{Browser, FileRequest, Purpose};
 
 use crate::task_files::TASK_FOLDER;
 
-/// A dialog that ends sooner without a choice has not been seen: the desktop could not show it.
+/// Duration below which a dialog without a choice was never seen: the desktop could not show it.
 const SHORTEST: Duration = Duration::from_millis(300);
 
 /// The dialog that is open.
@@ -48,7 +48,7 @@ pub(super) fn ask(world: &mut World, purpose: Purpose) {
     }
 }
 
-/// Takes what the user has chosen in the desktop's dialog.
+/// Takes the user's choice in the desktop's dialog.
 pub(super) fn take_answer(
     mut dialog: ResMut<Dialog>,
     mut browser: ResMut<Browser>,

@@ -1,4 +1,4 @@
-//! What a path names.
+//! Kinds of files that a path can name.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ pub(super) enum FileKind {
 }
 
 impl FileKind {
-    /// What a path names, or why it cannot be opened. Every file of a recording names the recording.
+    /// The kind of file that a path names, or the reason why it cannot be opened. Every file of a recording names the recording.
     pub fn of(path: &Path) -> Result<Self, String> {
         let is_task = path
             .extension()
@@ -22,7 +22,7 @@ impl FileKind {
         if is_task && path.is_file() {
             return Ok(Self::Task);
         }
-        // A picture stands in a folder of its own in that of the recording.
+        // A picture is in a subfolder of the recording's folder.
         let folders = path.ancestors().take(3);
         let mut recordings = folders.filter(|folder| folder.join("session.jsonl").is_file());
         match recordings.next() {

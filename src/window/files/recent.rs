@@ -1,14 +1,14 @@
-//! The files that were opened last, also in earlier runs.
+//! Recent files, also of earlier runs.
 
 use std::path::PathBuf;
 
 use bevy::prelude::*;
 use tabletop_gui::{Files, Notices, Preferences, Tone};
 
-/// How many are remembered.
+/// Number of remembered files.
 const MOST: usize = 10;
 
-/// What [`Preferences`] call them.
+/// Their name in the [`Preferences`].
 const CONCERN: &str = "recent";
 
 pub(super) fn plugin(app: &mut App) {

@@ -1,4 +1,4 @@
-//! Loading the task file on the table anew when another program has changed it.
+//! Reloading of the task file on the table when another program has changed it.
 
 use std::{
     path::{Path, PathBuf},
@@ -13,10 +13,10 @@ use tabletop_gui::{Files, Notices, Preferences, Tone};
 
 use crate::shipped::task_reader;
 
-/// How often the file is looked at.
+/// Time between checks of the file.
 const PERIOD: Duration = Duration::from_millis(700);
 
-/// What [`Preferences`] call the setting.
+/// Its name in the [`Preferences`].
 const CONCERN: &str = "reload";
 
 /// The task file on the table and the files that it includes, as they were when they were loaded or saved.
@@ -26,7 +26,7 @@ pub(super) struct Watch {
     files: Vec<(PathBuf, Option<Stamp>)>,
 }
 
-/// What changes when a file is written.
+/// The properties that change when a file is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Stamp {
     length: u64,
@@ -53,7 +53,7 @@ impl Stamp {
 }
 
 impl Watch {
-    /// A task of these files is on the table.
+    /// Begins to watch these files of the task on the table.
     fn begin(&mut self, task: &Path, files: Vec<PathBuf>) {
         self.task = Some(task.to_owned());
         let stamped = |file: PathBuf| {
@@ -63,7 +63,7 @@ impl Watch {
         self.files = files.into_iter().map(stamped).collect();
     }
 
-    /// The program itself has written this file.
+    /// Notes that the program itself has written this file.
     pub fn note_saved(&mut self, path: &Path) {
         for (watched, stamp) in &mut self.files {
             if is_same(watched, path) {
@@ -72,7 +72,7 @@ impl Watch {
         }
     }
 
-    /// The task file, if a file of it has changed since the last time, and is there.
+    /// The task file, if one of its files has changed since the last check, and it exists.
     fn take_change(&mut self) -> Option<PathBuf> {
         let mut has_changed = false;
         for (file, stamp) in &mut self.files {
@@ -101,7 +101,7 @@ fn recall_setting(
     }
 }
 
-/// Keeps what the user has chosen.
+/// Keeps the user's choice.
 pub(super) fn keep_setting(world: &mut World, reloads: bool) {
     world.resource_mut::<Files>().reloads = reloads;
     if let Err(error) = world.resource::<Preferences>().keep(CONCERN, &reloads) {
@@ -129,7 +129,7 @@ fn note_loaded(
     }
 }
 
-/// Loads the file anew if it has changed. Half of a file, as an editor may have written so far, has a fault: then the world stays.
+/// Loads the file again if it has changed. An editor may have written only half of it, which then has a fault: the world stays.
 pub(super) fn reload(
     files: Res<Files>,
     recording: Res<Recording>,

@@ -1,6 +1,6 @@
-//! Why a frame is drawn.
+//! Causes of frames.
 
-/// Why a frame is drawn.
+/// The cause of drawing a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RedrawCause {
     /// The program has just started.
@@ -11,7 +11,7 @@ pub(super) enum RedrawCause {
     Camera,
     /// Something drawn has moved, come, gone, or become visible or invisible.
     Scene,
-    /// The lines around what is held.
+    /// The lines around held objects.
     Lines,
     /// The windows inside the window.
     Panels,
@@ -21,7 +21,7 @@ pub(super) enum RedrawCause {
     Texture,
     /// Someone waits for a picture.
     Screenshot,
-    /// What was drawn last has not all reached the graphics card.
+    /// The last changes have not all reached the graphics card.
     Settling,
     /// The last picture is old.
     Refresh,
@@ -41,7 +41,7 @@ impl RedrawCause {
         }
     }
 
-    /// True if what is drawn does not all reach the graphics card at once.
+    /// True if the change does not reach the graphics card at once.
     pub const fn needs_settling(self) -> bool {
         self.is_motion() || matches!(self, Self::Asset)
     }

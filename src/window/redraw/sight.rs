@@ -1,4 +1,4 @@
-//! What there is to see, summed up.
+//! The visible state, summed up.
 
 use std::{
     hash::{BuildHasher as _, Hash, Hasher as _},
@@ -21,11 +21,11 @@ use tabletop_view::Surface;
 
 use super::cause::RedrawCause;
 
-/// How far (units) a thing, or how much (of its size) a side of it, moves unseen: about a hundredth of a pixel. Bodies at rest
+/// Distance (in units) by which a thing, or part of its size by which a side of it, moves unseen: about a hundredth of a pixel. Bodies at rest
 /// tremble by less than that.
 const UNSEEN: f32 = 1e-4;
 
-/// What there is to see: the things, and a number for each other part, which is another one when the part looks different.
+/// The visible state: the things, and a number for each other part, which changes when the part looks different.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Appearance {
     window: u64,
@@ -54,7 +54,7 @@ impl VisibleMesh {
 }
 
 impl Appearance {
-    /// What is different in another sight.
+    /// The cause of a difference from another state.
     pub fn difference(&self, other: &Self) -> Option<RedrawCause> {
         [
             (self.window != other.window, RedrawCause::Window),

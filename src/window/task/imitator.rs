@@ -1,4 +1,4 @@
-//! The robot, doing what was shown while the window lets time pass.
+//! The robot that imitates while time passes in the window.
 
 use std::time::Duration;
 
@@ -16,12 +16,12 @@ use tabletop_task::Task;
 use super::understood::{Lesson, Understood};
 use crate::imitation::{command, sight};
 
-/// For how long a tick waits for what is to be done in it.
+/// Time for which a tick waits for its orders.
 const LONGEST_WAIT: Duration = Duration::from_millis(4);
-/// Ticks until the robot is at the table, and what was put on it at rest.
+/// Number of ticks until the robot is at the table, and objects on it are at rest.
 const PREPARATION: u32 = 30;
 
-/// The robot that does what was shown.
+/// The robot that imitates.
 #[derive(Resource, Default)]
 pub(super) struct RobotImitator(ImitatorState);
 
@@ -36,9 +36,9 @@ enum ImitatorState {
     Acting {
         execution: Box<Execution>,
         task: Box<Task>,
-        /// Where objects are going to be put, and by which step.
+        /// Ghosts of objects at their goals, with their steps.
         ghosts: Vec<(usize, Ghost)>,
-        /// True if it waits for what the tick has brought.
+        /// True while it waits for the result of the tick.
         is_expecting: bool,
         is_planning: bool,
     },
@@ -62,7 +62,7 @@ fn is_busy(imitator: Res<RobotImitator>) -> bool {
 }
 
 impl RobotImitator {
-    /// Gets ready to do what was shown.
+    /// Prepares the imitation.
     pub fn prepare(&mut self, understood: &Understood) -> Result<(), String> {
         let lesson = understood.lesson();
         let lesson = lesson.ok_or("nothing was shown yet: record a demonstration first")?;
@@ -77,7 +77,7 @@ impl RobotImitator {
         self.0 = ImitatorState::Idle;
     }
 
-    /// How it gets on.
+    /// Its progress.
     fn progress(&self) -> Imitating {
         match &self.0 {
             ImitatorState::Idle => Imitating::Idle,
@@ -97,7 +97,7 @@ impl RobotImitator {
         }
     }
 
-    /// Where the steps that are not done yet are going to put their objects.
+    /// Ghosts of the steps that are not done yet.
     fn ghosts(&self) -> Vec<Ghost> {
         let ImitatorState::Acting {
             execution, ghosts, ..
@@ -115,7 +115,7 @@ impl RobotImitator {
     }
 }
 
-/// Tells panels and view how the robot gets on.
+/// Publishes the robot's progress for panels and view.
 fn publish(
     imitator: Res<RobotImitator>,
     mut imitating: ResMut<Imitating>,
@@ -125,7 +125,7 @@ fn publish(
     ghosts.set_if_neq(Ghosts(imitator.ghosts()));
 }
 
-/// Once a tick: what the robot is to do in it.
+/// Gives the robot its orders, once a tick.
 fn act(world: &mut World) {
     if world.resource::<Paused>().0 {
         return;
@@ -158,7 +158,7 @@ fn is_there(world: &World) -> bool {
 }
 
 impl RobotImitator {
-    /// Goes on by a tick. What it returns is the end.
+    /// Continues by a tick. Returns the end.
     fn go_on(&mut self, world: &mut World) -> Option<Result<String, String>> {
         match &mut self.0 {
             ImitatorState::Idle => None,
@@ -208,7 +208,7 @@ impl RobotImitator {
     }
 }
 
-/// What has come of it, in a sentence.
+/// The result in a sentence.
 fn reported(task: &Task, imitation: &Imitation) -> Result<String, String> {
     match &imitation.failure {
         None => Ok("the robot has done what was shown".into()),
@@ -219,7 +219,7 @@ fn reported(task: &Task, imitation: &Imitation) -> Result<String, String> {
     }
 }
 
-/// Begins with what is on the table now.
+/// Begins with the present objects on the table.
 fn begin(world: &mut World, lesson: &Lesson) -> Result<ImitatorState, String> {
     let index = world.resource::<ObjectIndex>();
     let objects: Vec<_> = index
@@ -264,5 +264,5 @@ fn begin(world: &mut World, lesson: &Lesson) -> Result<ImitatorState, String> {
     })
 }
 
-/// Decides what is tried by chance.
+/// Seed of random choices.
 const SEED: u64 = 0;

@@ -1,4 +1,4 @@
-//! What the recording shows.
+//! The lesson of a recording.
 
 use std::{
     path::{Path, PathBuf},
@@ -16,19 +16,19 @@ use crate::{
     shown_task::{shown_task, value},
 };
 
-/// The task of the recording that was made or opened last, as far as one was shown.
+/// The task of the recording that was made or opened last, if it shows one.
 #[derive(Resource, Default)]
 pub(super) struct Understood {
     lesson: Option<Lesson>,
-    /// The recording that is being read, and what comes of it.
+    /// The recording that is being read, with the channel of its result.
     reading: Option<(PathBuf, SyncCell<Receiver<Result<Lesson, String>>>)>,
-    /// The recording that was read last, and what it was then.
+    /// The recording that was read last, and its stage then.
     last: (PathBuf, TimelineStage),
     has_changed: bool,
     fault: Option<String>,
 }
 
-/// What a recording teaches.
+/// The lesson of a recording.
 #[derive(Clone, Debug)]
 pub(super) struct Lesson {
     pub folder: PathBuf,
@@ -57,7 +57,7 @@ impl Lesson {
     }
 }
 
-/// Begins to read a recording when it is finished or opened. It is done beside the frames: a long one takes its time.
+/// Begins to read a recording when it is finished or opened, beside the frames: a long one takes time.
 pub(super) fn read_recording(timeline: Res<Timeline>, mut understood: ResMut<Understood>) {
     let is_there = match timeline.stage {
         TimelineStage::Finished | TimelineStage::Open => true,
@@ -83,7 +83,7 @@ pub(super) fn read_recording(timeline: Res<Timeline>, mut understood: ResMut<Und
     }
 }
 
-/// Takes over what was read. A recording in which no hand does anything takes nothing from what was shown before.
+/// Takes over the result of reading. A recording in which no hand acts does not replace the earlier task.
 pub(super) fn take_what_was_read(mut understood: ResMut<Understood>) {
     let Some((folder, receiver)) = &mut understood.bypass_change_detection().reading else {
         return;
@@ -111,18 +111,18 @@ pub(super) fn take_what_was_read(mut understood: ResMut<Understood>) {
 }
 
 impl Understood {
-    /// What the recording teaches, if it shows a task.
+    /// The lesson of the recording, if it shows a task.
     pub fn lesson(&self) -> Option<&Lesson> {
         let lesson = self.lesson.as_ref();
         lesson.filter(|lesson| !lesson.task.steps.is_empty())
     }
 
-    /// What was on the table in the beginning.
+    /// The scene at the beginning.
     pub fn scene(&self) -> Option<&SceneSpec> {
         self.lesson.as_ref()?.scene.as_ref()
     }
 
-    /// Requires a property of the object of a role, or no longer, and keeps that with the recording.
+    /// Requires a property of a role's object, or no longer, and keeps this with the recording.
     pub fn require(&mut self, role: &str, property: &str, is_required: bool) -> Result<(), String> {
         self.change(|lesson| {
             let role = lesson.role(role)?.clone();
@@ -136,7 +136,7 @@ impl Understood {
         })
     }
 
-    /// Lets any object take a role, or again what is most like it.
+    /// Lets any object take a role, or again only the one most like the demonstrated object.
     pub fn free(&mut self, role: &str, is_free: bool) -> Result<(), String> {
         self.change(|lesson| {
             let role = lesson.role(role)?.clone();
@@ -163,7 +163,7 @@ impl Understood {
         written.map_err(|error| error.to_string())
     }
 
-    /// It in words, if they are new.
+    /// The task in words, if they have changed.
     pub fn shown_if_changed(&mut self) -> Option<ShownTask> {
         std::mem::take(&mut self.has_changed).then(|| self.shown())
     }
