@@ -1,8 +1,8 @@
-//! What a scene costs, against the number of its objects.
+//! Benchmark of cost against size: what a scene costs by the number of its objects.
 //!
 //! `cargo bench --bench cost_against_size` times towers of five unit blocks, 10 to 10,000 blocks in all: setting the scene, a
 //! tick while all are awake, a tick at rest, a tick with a picture of the head camera, and a tick in which a hand grasps in a
-//! recording, which is when the world is copied for undo. It prints the medians and draws them in
+//! recording, which is when the world is copied for undo. It prints the medians and plots them in
 //! `cost_against_size.svg` in Cargo's folder for temporary files.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 #![expect(clippy::unwrap_used, reason = "a benchmark may panic")]
@@ -135,7 +135,7 @@ fn milliseconds(time: Duration) -> f64 {
     time.as_secs_f64() * 1e3
 }
 
-/// Where a point of the plot is, in pixels; both axes are logarithmic.
+/// Location of a point in the plot, in pixels; both axes are logarithmic.
 fn place(objects: f64, milliseconds: f64) -> (f64, f64) {
     let x = LEFT + (objects / OBJECTS[0].0).log10() * DECADES.0;
     let least = COSTS[0].0;
@@ -143,7 +143,7 @@ fn place(objects: f64, milliseconds: f64) -> (f64, f64) {
     (x, y)
 }
 
-/// What the axes are marked with.
+/// Marks of the axes.
 const OBJECTS: [(f64, &str); 4] = [
     (10.0, "10"),
     (100.0, "100"),
@@ -210,7 +210,7 @@ fn plot(rows: &[(usize, [Duration; 5])]) -> String {
     svg + "</svg>\n"
 }
 
-/// How high the name of each series is: beside its last point, and not over another name.
+/// Height of the name of each series: beside its last point, and not over another name.
 fn labels(rows: &[(usize, [Duration; 5])]) -> [f64; 5] {
     let last = rows.last().unwrap().1;
     let mut heights = last.map(|cost| place(1.0, milliseconds(cost)).1 + 5.0);

@@ -1,9 +1,9 @@
-//! How much a headless tick costs beside one step of bare Rapier for the same scene, on one core.
+//! Benchmark of a headless tick beside one step of bare Rapier for the same scene, on one core.
 //!
 //! `cargo bench --bench headless_speed` prints, for unit blocks in towers of five that may not sleep, the median time of a
 //! tick of the whole simulator, of a step of Rapier alone with the same bodies, settings and effort, and their ratio. Both run in
-//! turns in one process, so that what else the machine does touches both. Then it prints what a tick costs when the blocks
-//! sleep: made like any other (another system is in the app), passed over by itself, and passed over with 59 others.
+//! turns in one process, so that other loads on the machine affect both. Then it prints the cost of a tick when the blocks
+//! sleep: run in full (another system is in the app), passed over by itself, and passed over with 59 others.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 
 #[path = "shared/towers.rs"]

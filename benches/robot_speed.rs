@@ -1,9 +1,9 @@
-//! What the robot costs in a tick without a window, on one core.
+//! Benchmark of the robot: its cost in a tick without a window, on one core.
 //!
 //! `cargo bench --bench robot_speed` prints the median time of a tick of the whole simulator with ten blocks on the table:
-//! with the robot hidden, shown and still, and with all fourteen joints of its arms moving, in both modes; and how much
-//! more that is than with the robot hidden. All run in turns in one process, so that what else the machine does touches
-//! all of them. `-- moving` runs the cases with this in their names alone, for a profiler.
+//! with the robot hidden, shown and still, and with all fourteen joints of its arms moving, in both modes; and the
+//! difference from the hidden robot. All run in turns in one process, so that other loads on the machine affect
+//! all of them. `-- moving` runs only the cases with this in their names, for a profiler.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 
 use std::time::{Duration, Instant};

@@ -1,10 +1,10 @@
-//! What a script costs in a tick without a window, beside its own time. Needs GNU Octave.
+//! Benchmark of scripts: their cost in a tick without a window, beside their own time. Needs GNU Octave.
 //!
 //! `cargo bench --bench script_bridge` prints the median and the 99th percentile of the time of a tick of the whole simulator
 //! with the default task, without and with the robot at the table: without a script; the same with a picture of the head
 //! camera in every tick; with a script that does nothing; and with one that does nothing and gets a fresh picture in every
-//! tick. And how much more the medians are than without a script. All run in turns in one process, so that what else the
-//! machine does touches all of them.
+//! tick. It also prints the differences of the medians from those without a script. All run in turns in one process, so that
+//! other loads on the machine affect all of them.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 
 use std::{
@@ -110,7 +110,7 @@ impl Case {
         })
     }
 
-    /// Has the head camera take a picture in every tick, for nobody.
+    /// Lets the head camera take a picture in every tick, for nobody.
     fn with_pictures(mut self) -> Self {
         let ask = |demand: Res<PictureDemand>| demand.ask();
         self.app.add_systems(FixedFirst, ask);
@@ -127,7 +127,7 @@ impl Case {
         }
     }
 
-    /// So many percent of the ticks took no longer, in ms.
+    /// The time, in ms, that this percentage of the ticks did not exceed.
     fn percentile(&mut self, percent: usize) -> f64 {
         self.times.sort();
         let place = (self.times.len() - 1) * percent / 100;

@@ -12,7 +12,7 @@ use tabletop_scene::{IdAllocator, assemble};
 const TASK: &str = "tablesetup/elements.xml";
 const FOLDER: &str = "docs/elements";
 
-/// Where the pictures are taken from, as seen from the middle of what they show, in its radii.
+/// Direction of the camera from the middle of its subject, in radii of the subject.
 const FROM: Vec3 = Vec3::new(-1.0, -3.2, 2.2);
 
 /// Columns and rows of the pictures.

@@ -1,6 +1,6 @@
 //! A demonstration without a window, checked as a test would check it: `cargo run --release --example headless_ci`.
 //!
-//! The simulator runs on Bevy's `MinimalPlugins`. What the demonstrator does is written as commands, what came of it is
+//! The simulator runs on Bevy's `MinimalPlugins`. The demonstrator's acts are written as commands, and the results are
 //! read from facts.
 #![expect(clippy::print_stdout, reason = "an example shows what it does")]
 

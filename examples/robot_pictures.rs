@@ -1,6 +1,6 @@
 //! Pictures of the robot from four sides, drawn as the head camera draws: `cargo run --release --example robot_pictures`.
 //!
-//! Nothing is simulated: the description of the robot says where its links are, and `tabletop_robot` what they look like.
+//! Nothing is simulated: the robot's description gives the poses of its links, and `tabletop_robot` their looks.
 #![expect(clippy::print_stdout, reason = "an example shows what it does")]
 
 use std::{error::Error, fs::File, io::BufWriter, path::Path, sync::Arc};
@@ -14,7 +14,7 @@ use tabletop_robot::look::{figure_of, merged, screen_with};
 /// Units in a metre.
 const UNITS: f64 = 10.0;
 
-/// Where the pictures go, and where they are taken from, as seen from [`MIDDLE`], in units.
+/// The files of the pictures, and their directions of view from [`MIDDLE`], in units.
 const VIEWS: [(&str, Vec3); 4] = [
     ("docs/robot-front.png", Vec3::new(3.0, 30.0, 9.0)),
     ("docs/robot-left.png", Vec3::new(-28.0, 9.0, 8.0)),
@@ -22,7 +22,7 @@ const VIEWS: [(&str, Vec3); 4] = [
     ("docs/robot-right.png", Vec3::new(26.0, 8.0, 15.0)),
 ];
 
-/// What they show in their middle.
+/// The middle of the pictures.
 const MIDDLE: Vec3 = Vec3::new(0.0, -7.0, 2.0);
 
 /// Columns and rows of the pictures.

@@ -10,13 +10,13 @@ use crate::{
     target::Target,
 };
 
-/// Longer files are no good beginning: most of the time would go into reading them.
+/// Largest size of a seed: most of the time would go into reading longer ones.
 const LONGEST_SEED: usize = 20_000;
 
 /// The inputs of a target with a seed.
 pub struct Inputs {
     seed: u64,
-    /// What inputs begin as, in the order of their lengths.
+    /// The seeds of inputs, in the order of their lengths.
     corpus: Vec<Vec<u8>>,
     /// Words of the language.
     words: Vec<Vec<u8>>,

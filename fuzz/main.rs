@@ -1,5 +1,5 @@
-//! Gives the readers of files, and the simulator, inputs that nobody would write, and keeps those that harm them. `fuzz/README.md`
-//! says how it is used and what was tried.
+//! Feeds the readers of files, and the simulator, with inputs that nobody would write, and keeps the harmful ones. `fuzz/README.md`
+//! describes its use and its results.
 //!
 //! An input follows from its target, a seed and its number alone, so nothing but these need be kept.
 
@@ -19,7 +19,7 @@ use std::{env, process::ExitCode, time::Duration};
 
 use crate::{input::Inputs, supervisor::Supervisor, target::Target};
 
-/// Of a process that tries inputs: which ones.
+/// The option of a process that tries inputs.
 const WORK: &str = "--work";
 
 fn main() -> ExitCode {
@@ -45,7 +45,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Tries inputs for so many minutes, and keeps those that harm.
+/// Tries inputs for this many minutes, and keeps the harmful ones.
 fn search(target: &str, seed: &str, minutes: &str) -> Result<ExitCode, String> {
     let target = Target::named(target)?;
     let minutes: f64 = number(minutes)?;
@@ -67,7 +67,7 @@ fn show(target: &str, seed: &str, input: &str) -> Result<ExitCode, String> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Tries what is in a file.
+/// Tries the content of a file.
 fn try_file(target: &str, file: &str) -> Result<ExitCode, String> {
     let bytes = std::fs::read(file).map_err(|error| format!("{file}: {error}"))?;
     (Target::named(target)?.start)()(&bytes);

@@ -13,10 +13,10 @@ use crate::mutation::Random;
 
 const TICKS: u64 = 120;
 
-/// Most objects of a scene.
+/// Largest number of objects of a scene.
 const OBJECTS: usize = 12;
 
-/// An app is made anew after so many scenes.
+/// Number of scenes after which a new app is made.
 const SCENES_PER_APP: u32 = 200;
 
 pub fn start() -> Box<dyn FnMut(&[u8])> {
@@ -27,7 +27,7 @@ pub fn start() -> Box<dyn FnMut(&[u8])> {
         if scenes % SCENES_PER_APP == 0 {
             app = self::app();
         }
-        // The bytes are only where chance begins.
+        // The bytes are only the seed of randomness.
         let seed = bytes.iter().fold(0_u64, |seed, &byte| {
             (seed ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
         });

@@ -1,4 +1,4 @@
-//! A process that has another one try inputs, so that nothing that an input does to it ends the search.
+//! A process that lets another one try inputs, so that no effect of an input ends the search.
 
 use std::{
     env, fs,
@@ -11,22 +11,22 @@ use std::{
 
 use crate::{WORK, input::Inputs, number, target::Target};
 
-/// No input takes longer.
+/// Longest time of an input.
 const LONGEST: Duration = Duration::from_secs(5);
 
-/// No process takes more memory, in bytes.
+/// Largest memory of a process, in bytes.
 const MOST_MEMORY: u64 = 1 << 30;
 
-/// A process is ended after so many inputs, so that memory that inputs leave behind is seen as that of one.
+/// Number of inputs after which a process is ended, so that memory that inputs leave behind is seen as that of one.
 const INPUTS_PER_PROCESS: u64 = 1 << 40;
 
 pub struct Supervisor {
     target: &'static Target,
     seed: u64,
     inputs: Inputs,
-    /// Where the process writes which input it has come to.
+    /// The file in which the process writes the number of its input.
     progress: PathBuf,
-    /// Where inputs that harm are kept.
+    /// The folder of harmful inputs.
     found: PathBuf,
 }
 
@@ -44,7 +44,7 @@ impl Supervisor {
         })
     }
 
-    /// Tries inputs until the time is over, and says how many there were. Returns how many of them harmed.
+    /// Tries inputs until the time is over, and prints their number. Returns the number of harmful ones.
     pub fn run(&self, limit: Duration) -> Result<usize, String> {
         let end = Instant::now() + limit;
         let (mut first, mut found) = (0, 0);
@@ -80,7 +80,7 @@ impl Supervisor {
             .map_err(|error| error.to_string())
     }
 
-    /// Waits until an input has harmed, and says how; or until the time is over.
+    /// Waits until an input does harm, and returns how, or until the time is over.
     fn watch(&self, child: &mut Child, first: u64, end: Instant) -> Option<String> {
         let mut at = (first, Instant::now());
         let harm = loop {
@@ -127,7 +127,7 @@ impl Supervisor {
     }
 }
 
-/// Tries inputs, and writes before each which one it is.
+/// Tries inputs, and writes the number of each before it.
 pub fn work(target: &str, numbers: [&str; 3], progress: &str) -> Result<ExitCode, String> {
     let target = Target::named(target)?;
     let [seed, first, count] = numbers;
@@ -156,7 +156,7 @@ fn write_at_start(mut file: &File, number: u64) -> std::io::Result<()> {
     file.write_all(&number.to_le_bytes())
 }
 
-/// The memory of a process, in bytes, where that can be known.
+/// The memory of a process, in bytes, where it can be measured.
 fn memory(process: u32) -> u64 {
     let text = fs::read_to_string(format!("/proc/{process}/statm")).unwrap_or_default();
     let pages = text.split(' ').nth(1).and_then(|pages| pages.parse().ok());

@@ -1,4 +1,4 @@
-//! What is given inputs.
+//! Targets of inputs.
 
 use std::{fs, path::Path};
 
@@ -18,14 +18,14 @@ use tabletop::{
 
 use crate::scenes;
 
-/// Something that reads what a stranger may have written.
+/// A target: a reader of something that a stranger may have written.
 pub struct Target {
     pub name: &'static str,
-    /// Begins to be given inputs.
+    /// Starts the target; the returned function takes inputs.
     pub start: fn() -> Box<dyn FnMut(&[u8])>,
-    /// Folders of the repository with files to begin with, besides its corpus.
+    /// Folders of the repository with seeds, besides its corpus.
     pub shipped: &'static [&'static str],
-    /// How the names of files to begin with end.
+    /// Ending of the names of seeds.
     pub ending: &'static str,
     pub dictionary: &'static str,
 }

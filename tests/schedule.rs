@@ -1,4 +1,4 @@
-//! The systems of a tick: no two may run in either order, and none at a standstill.
+//! The systems of a tick: no two may run in either order, and none while the simulation is blocked.
 
 use std::collections::HashSet;
 

@@ -1,8 +1,8 @@
-//! How fast the simulator is beside MuJoCo, and how still its towers stand.
+//! Comparison with MuJoCo: the speed of the simulator, and how still its towers stand.
 //!
 //! `cargo bench --bench peers` makes a Python environment of its own in the target folder, installs `mujoco==3.9.0` there with
 //! pip, and prints ratios of times: medians over turns in which both simulate the same towers one after the other, each
-//! on one core, so that what else the machine does touches both.
+//! on one core, so that other loads on the machine affect both.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 #![expect(clippy::unwrap_used, reason = "a benchmark may panic")]
 
@@ -74,14 +74,14 @@ fn main() {
     }
 }
 
-/// How long the simulator takes for a second, in seconds.
+/// Time that the simulator takes for a second, in seconds.
 fn time(simulator: &mut App) -> f64 {
     let start = Instant::now();
     simulator.step(60);
     start.elapsed().as_secs_f64()
 }
 
-/// How long it takes when each tick is asked for alone.
+/// Time that it takes when each tick is asked for alone.
 fn time_one_by_one(simulator: &mut App) -> f64 {
     let start = Instant::now();
     for _ in 0..60 {

@@ -6,7 +6,7 @@ use tabletop::{
     prelude::*,
 };
 
-/// Where the blocks stand: towers of five on a grid.
+/// Places of the blocks: towers of five on a grid.
 pub fn towers_of_five(blocks: usize) -> impl Iterator<Item = Vec3> {
     (0..blocks).map(|block| {
         let (tower, storey) = (block / 5, block % 5);

@@ -92,7 +92,7 @@ impl Modules {
         circles
     }
 
-    /// Which other files each file needs.
+    /// The other files that each file needs.
     fn arrows(&self) -> Arrows<'_> {
         let arrows = self.0.iter().map(|(module, source)| {
             let uses = source.uses.iter().filter(|it| !it.is_public);

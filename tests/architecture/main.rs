@@ -9,7 +9,7 @@ use std::{collections::BTreeSet, process::Command};
 
 use serde_json::Value;
 
-/// What each of our crates may depend on of ours, and whether it may name Rapier and enable what draws or opens windows.
+/// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
 const RULES: [Rule; 20] = [
     Rule::new("tabletop_core", &[]),
     Rule::new("tabletop_mesh", &["tabletop_core"]),

@@ -8,7 +8,7 @@ use std::{
 
 use crate::source::Source;
 
-/// Names that every panel has: its model, what it asks for, and where its model comes from.
+/// Names that every panel has: its model, its request, and the sources of its model.
 const OF_PANELS: [&str; 3] = ["Model", "Request", "Sources"];
 
 #[test]

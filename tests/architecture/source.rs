@@ -20,10 +20,10 @@ pub struct Use {
     pub name: String,
 }
 
-/// What stands before the name of a type.
+/// Words before the name of a type.
 const TYPES: [&str; 3] = ["struct", "enum", "trait"];
 
-/// What stands before the name of an item.
+/// Words before the name of an item.
 const ITEMS: [&str; 9] = [
     "struct", "enum", "union", "trait", "type", "fn", "const", "static", "mod",
 ];
@@ -80,7 +80,7 @@ impl Source {
         source
     }
 
-    /// Adds what a module within the file needs. Its `super` is the file.
+    /// Adds the needs of a module within the file. Its `super` is the file.
     fn add_inline_module(&mut self, module: Self) {
         self.types.extend(module.types);
         let uses = module.uses.into_iter().filter(|it| !it.is_public);
@@ -138,7 +138,7 @@ fn branches(tree: &[String]) -> Vec<&[String]> {
     parts.filter(|part| !part.is_empty()).collect()
 }
 
-/// How many tokens of a path stand here: names with `::` between them.
+/// Number of tokens of a path at this place: names with `::` between them.
 fn path_length(tokens: &[String]) -> usize {
     let is_name = |place: usize| {
         let first = tokens.get(place).and_then(|token| token.chars().next());
@@ -166,7 +166,7 @@ fn after_visibility(tokens: &[String]) -> &[String] {
     }
 }
 
-/// What follows an item that ends with a semicolon or a block.
+/// The tokens after an item that ends with a semicolon or a block.
 fn after_item(tokens: &[String]) -> &[String] {
     let mut depth = 0;
     for (place, token) in tokens.iter().enumerate() {

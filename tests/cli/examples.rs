@@ -1,4 +1,4 @@
-//! The examples of scripts do what they are for, in a real Octave.
+//! The examples of scripts serve their purpose in a real Octave.
 
 use std::{
     fs,
@@ -59,7 +59,7 @@ impl Stage {
         stage
     }
 
-    /// Where its scripts are.
+    /// The folder of its scripts.
     fn scripts(&self) -> PathBuf {
         let settings = self.app.world().resource::<ScriptSettings>();
         settings.agent.clone().unwrap()
@@ -87,7 +87,7 @@ impl Stage {
             .location
     }
 
-    /// How near the right hand gets to each marker until the script has exited.
+    /// Least distance of the right hand to each marker until the script has exited.
     fn nearest(&mut self, mut begin: impl FnMut(&Self) -> bool) -> Vec<f32> {
         let markers = self.app.world().resource::<Markers>().0.clone();
         assert!(!markers.is_empty());

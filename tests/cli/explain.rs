@@ -1,4 +1,4 @@
-//! `tabletop explain` and `tabletop require`: what is understood of demonstrations.
+//! `tabletop explain` and `tabletop require`: tasks of demonstrations.
 
 use std::{
     fs,
@@ -32,7 +32,7 @@ fn shown(name: &str, steps: &str) -> String {
     record(file.to_str().unwrap(), &format!("explain_{name}"))
 }
 
-/// What `explain` prints, line by line.
+/// Output of `explain`, line by line.
 fn explained(demo: &str) -> Vec<String> {
     let output = tabletop(&["explain", demo]);
     assert_eq!(stderr(&output), "");
@@ -162,7 +162,7 @@ fn what_comes_back_was_a_detour() {
         "{lines:?}"
     );
 
-    // A stack that was taken apart to turn what is below, and built again.
+    // A stack that was taken apart to turn the object below, and built again.
     let onto_green = "Grasp(\"RedBlock\"), Glide(to: (2, 0, 5), seconds: 0.3), Glide(to: (-2, 0, 5), seconds: 0.3), \
         Glide(to: (-2, 0, 3), seconds: 0.3), Release, WaitUntilRest(3),\n";
     let turn = "Grasp(\"GreenBlock\"), Turn(axis: Z, degrees: 30), Wait(0.5), Release, WaitUntilRest(3),\n";
@@ -318,7 +318,7 @@ fn requirements_are_kept_and_reported() {
             "2. Put the red block on the green block.",
         ],
     );
-    // What is required does not disturb a replay.
+    // Requirements do not disturb a replay.
     let output = tabletop(&["replay", &demo, "--verify"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
 
@@ -377,7 +377,7 @@ fn objects_of_another_table_take_the_roles() {
     ];
     assert_eq!(bound(&demo, &other).unwrap(), by_color);
 
-    // What is required decides, whatever the ids are.
+    // Requirements decide, whatever the ids are.
     require(&demo, &["--step", "2", "color=pink"]).unwrap();
     assert_eq!(bound(&demo, &other).unwrap()[2], "The pink object is b.");
     let error = bound(&demo, &same).unwrap_err();

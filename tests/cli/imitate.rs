@@ -1,4 +1,4 @@
-//! `tabletop imitate`: the robot does what was shown.
+//! `tabletop imitate`: the robot imitates demonstrations.
 
 use crate::support::{place, stderr, stdout, tabletop};
 

@@ -1,4 +1,4 @@
-//! A robot of one arm, end to end: what is 2×7 for Baxter is 1×7 for the Panda.
+//! A robot of one arm, end to end: 1×7 for the Panda where Baxter has 2×7.
 
 use std::fs;
 

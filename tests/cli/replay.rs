@@ -289,7 +289,7 @@ fn pixels(path: &Path) -> (u32, u32, Vec<u8>) {
     (info.width, info.height, bytes)
 }
 
-/// A recording of which the header says something else.
+/// A recording with a changed header.
 fn with_header(name: &str, old: &str, new: &str) -> PathBuf {
     let folder = recording("stack_two_blocks", name);
     let session = folder.join("session.jsonl");

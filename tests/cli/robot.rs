@@ -9,7 +9,7 @@ use crate::support::{place, scenario, shipped, stderr, stdout, tabletop};
 const MOVE: &str =
     "Robot(Show), Robot(Move([(LeftS1, -0.5), (HeadPan, -0.2)])), Robot(WaitUntilStill(5)),";
 
-/// How the robot is after these steps.
+/// State of the robot after these steps.
 fn robot_after(name: &str, steps: &str, options: &[&str]) -> Value {
     let scenario = scenario(name, steps);
     let arguments = [

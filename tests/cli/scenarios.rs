@@ -1,4 +1,4 @@
-//! Scenario files: those that are shipped, and what the command line says of others.
+//! Scenario files: the shipped ones, and messages of the command line about others.
 
 use std::{fs, path::Path, process::Output};
 
@@ -431,7 +431,7 @@ fn two_programs_do_not_record_into_one_folder() {
     let said = stderr(&output);
     let words = format!("a recording is being made in {into}");
     assert!(said.contains(&words) && said.lines().count() == 1, "{said}");
-    // What is in the way is no recording that is being made any more.
+    // The folder in the way is a recording that is no longer being made.
     let output = run(&short, &["--record", into]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     fs::remove_dir_all(format!("{into}-1")).unwrap();

@@ -20,7 +20,7 @@ fn succeeded(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
 }
 
-/// An empty folder for scripts and what comes of them.
+/// An empty folder for scripts and their results.
 fn folder(name: &str) -> PathBuf {
     let folder = place(&format!("scripts-{name}"));
     fs::create_dir(&folder).unwrap();
@@ -66,7 +66,7 @@ fn angles(robot: &Value, arm: &str) -> Vec<f64> {
     angles.iter().map(|angle| angle.as_f64().unwrap()).collect()
 }
 
-/// What five seconds at 0.5 rad/s make of the angles of the init script. The tick of the init script comes before.
+/// Angles of the init script after five seconds at 0.5 rad/s. The tick of the init script comes before.
 fn turned(joint: RobotJoint) -> f64 {
     let begin = if joint == RobotJoint::RightE0 {
         FRAC_PI_2
@@ -188,7 +188,7 @@ fn a_block_is_gripped_carried_and_put_on_another_the_same_every_time_and_without
     for (first, second) in first.iter().zip(&second) {
         assert_eq!(fs::read(first).unwrap(), fs::read(second).unwrap());
     }
-    // What was recorded runs again where there is no engine.
+    // The recording replays without any engine.
     let output = command(&["replay", recording.to_str().unwrap(), "--verify"])
         .env("PATH", "")
         .output()
@@ -222,7 +222,7 @@ fn with_motors_scripts_sense_and_order_torques() {
         (left[6] - RobotJoint::LeftW2.home()).abs() < 0.1,
         "{left:?}"
     );
-    // Where nothing is moved by forces, there are none to sense.
+    // If no forces move anything, there are none to sense.
     let output = command(&run).output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     assert!(stderr(&output).contains("torquesCallback.m:1"));

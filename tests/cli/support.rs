@@ -42,7 +42,7 @@ pub fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// Where a test writes something; what an earlier run has left there is gone.
+/// The place where a test writes; remains of an earlier run are removed.
 pub fn place(name: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     match path.is_dir() {

@@ -27,7 +27,7 @@ const TEXTS: [&str; 16] = [
     "/dev/zero",
 ];
 
-/// Takes out so many bytes somewhere, and puts a text there.
+/// A change: removes this many bytes at a place, and puts a text there.
 #[derive(Clone, Debug)]
 struct Change {
     at: prop::sample::Index,

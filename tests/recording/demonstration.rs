@@ -30,7 +30,7 @@ pub fn fresh_folder_in_memory(name: &str) -> PathBuf {
     }
 }
 
-/// Where a test records; what an earlier run has left there is gone.
+/// The folder in which a test records; remains of an earlier run are removed.
 pub fn fresh_folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _not_there = fs::remove_dir_all(&folder);
@@ -42,7 +42,7 @@ pub fn assert_replays(folder: &Path) {
     assert_eq!(difference_of_replay(folder), None);
 }
 
-/// In which file the replay of a whole recording differs, and how.
+/// The file in which the replay of a whole recording differs, and the difference.
 pub fn difference_of_replay(folder: &Path) -> Option<String> {
     let replay = Replay::read(folder).unwrap();
     assert_eq!(replay.cut_off_at(), None);
@@ -97,7 +97,7 @@ impl Demonstration {
         self.act(&[(commands.to_vec(), 1)]);
     }
 
-    /// Gives commands, and simulates so many ticks after each of these acts.
+    /// Gives commands, and simulates a number of ticks after each of these acts.
     pub fn act(&mut self, acts: &[(Vec<SimCommand>, u64)]) {
         for (commands, ticks) in acts {
             for command in commands {

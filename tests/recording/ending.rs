@@ -1,4 +1,4 @@
-//! A recording ends with where everything is.
+//! A recording ends with the poses of all objects.
 
 use std::fs;
 

@@ -1,5 +1,5 @@
-//! Random demonstrations of every command there is, with undo and redo anywhere: what is recorded in the end replays to the same
-//! bytes, so nothing of what was undone is left.
+//! Random demonstrations of every command, with undo and redo anywhere: the final recording replays to the same
+//! bytes, so nothing that was undone is left.
 
 use std::{collections::BTreeMap, env, ops::Range, panic};
 
@@ -17,10 +17,10 @@ use crate::{
 
 const TICKS: usize = 240;
 
-/// How many blocks, balls, logs and walls there are at most.
+/// Largest number of blocks, balls, logs and walls.
 const MOST_OBJECTS: usize = 8;
 
-/// Where a gripper finds a block, by arm.
+/// Places where a gripper finds a block, by arm.
 const WITHIN_REACH: [(Arm, Vec3); 2] = [
     (Arm::Left, Vec3::new(-3.0, -3.0, 0.45)),
     (Arm::Right, Vec3::new(3.0, -3.0, 0.45)),
@@ -259,10 +259,10 @@ fn kind(command: &SimCommand) -> &'static str {
     }
 }
 
-/// How many kinds of commands there are.
+/// Number of kinds of commands.
 const KINDS: usize = 25;
 
-/// Records a random demonstration, and says in which file its replay differs, and how.
+/// Records a random demonstration; returns the file in which its replay differs, and the difference.
 fn difference(seed: u64, drawn: &mut BTreeMap<&'static str, usize>) -> Option<String> {
     let mut random = Random(seed);
     let mode = random.of(&[RobotMode::Kinematic, RobotMode::Dynamic]);

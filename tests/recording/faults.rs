@@ -1,4 +1,4 @@
-//! Whatever call to the file system fails, and if the program is killed at any of them, what is left of a recording replays.
+//! Whichever call to the file system fails, and if the program is killed at any of them, the remains of a recording replay.
 
 use std::{
     collections::BTreeSet,
@@ -26,10 +26,10 @@ fn small_camera() -> HeadCamera {
     }
 }
 
-/// Commands, and how many ticks to simulate with them.
+/// Commands, and the number of ticks to simulate with them.
 type Act = (Vec<SimCommand>, u64);
 
-/// Which of the calls are made to fail: every so many, from this one on.
+/// The calls that are made to fail: every n-th from this one on.
 #[derive(Clone, Copy)]
 struct Calls {
     first: usize,
@@ -59,7 +59,7 @@ fn record(acts: &[Act], recorder: RecorderPlugin) {
     }
 }
 
-/// Has calls fail in every way in turn, each in a recording that is made anew, and checks what is left of it.
+/// Makes calls fail in every way in turn, each in a new recording, and checks the remains.
 fn try_faults(name: &str, calls: Calls, record: impl Fn(RecorderPlugin)) {
     let folder = fresh_folder_in_memory(name);
     let counted = Storage::default();
@@ -85,7 +85,7 @@ fn try_faults(name: &str, calls: Calls, record: impl Fn(RecorderPlugin)) {
     fs::remove_dir_all(folder).unwrap();
 }
 
-/// Checks what is left in a folder. Returns where the recording ends.
+/// Checks the remains in a folder. Returns the end of the recording.
 fn check(folder: &Path) -> Result<Option<u64>, String> {
     let mut names: Vec<_> = fs::read_dir(folder)
         .map_err(|error| error.to_string())?
@@ -191,7 +191,7 @@ fn with_another_scene(calls: Calls) {
     try_faults("fault_scene", calls, |recorder| record(&acts, recorder));
 }
 
-/// What a script has done once is done again by its replay, with the same calls.
+/// A script's acts are repeated by the replay, with the same calls.
 fn with_a_script(calls: Calls) {
     let place = fresh_folder_in_memory("fault_script_once");
     fs::create_dir_all(&place).unwrap();

@@ -19,7 +19,7 @@ use crate::{
 
 const FILES: [&str; 4] = ["default", "lidbox-and-block", "cylinders", "hammer"];
 
-/// What happens between two ticks.
+/// An event between two ticks.
 #[derive(Debug)]
 enum Event {
     Command(SimCommand),
@@ -181,7 +181,7 @@ fn what_is_passed_over_leaves_no_trace() {
     );
 }
 
-/// The facts, without where recordings are.
+/// The facts without the folders of recordings.
 fn without_folders(facts: &[SimFact]) -> Vec<String> {
     let facts = facts.iter().map(|fact| {
         if let SimFact::RecordingStarted { cause, .. } = fact {
@@ -216,7 +216,7 @@ fn a_demonstration_after_ticks_that_were_passed_over_replays() {
     assert_replays(&demonstration.folder);
 }
 
-/// A world that passes over ticks and one that makes them all.
+/// A world that passes over ticks and one that runs them all.
 fn pair(name: &str) -> [Demonstration; 2] {
     [false, true].map(|every_tick| demonstration(&format!("{name}_{every_tick}"), every_tick))
 }

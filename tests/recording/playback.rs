@@ -85,7 +85,7 @@ impl Window {
         self.frames(3);
     }
 
-    /// Where every object is, as the recording has it.
+    /// Pose of every object, as the recording has it.
     fn poses(&self) -> Vec<(String, Pose)> {
         let world = self.app.world();
         let index = world.resource::<ObjectIndex>();
@@ -104,7 +104,7 @@ impl Window {
     }
 }
 
-/// Where the objects were that had not yet fallen off the world.
+/// Poses of the objects that had not yet fallen off the world.
 fn recorded_poses(recording: &RecordingReader, tick: u64) -> Vec<(String, Pose)> {
     let states = recording.states_at(SimTick(tick)).unwrap();
     let poses = states.into_iter().map(|(id, row)| (id, row.pose));

@@ -189,7 +189,7 @@ pub fn scene_command(random: &mut Random) -> SimCommand {
     }
 }
 
-/// What is told at which tick.
+/// Commands for each tick.
 pub fn script(random: &mut Random, ticks: u64) -> Vec<Vec<SimCommand>> {
     (0..ticks)
         .map(|_| match random.below(6) {

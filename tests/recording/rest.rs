@@ -1,4 +1,4 @@
-//! What nobody touches comes to rest, to the bit, and stays there.
+//! Objects that nobody touches come to rest, to the bit, and stay there.
 
 use std::{collections::BTreeSet, fs, path::PathBuf};
 
@@ -73,7 +73,7 @@ fn bits(app: &App) -> Vec<(String, Vec<u32>)> {
     objects.collect()
 }
 
-/// Asserts that what is in a scene is at rest from 15 to 60 s.
+/// Asserts that a scene is at rest from 15 to 60 s.
 fn assert_rests(name: &str, app: &mut App) {
     app.step(15 * 60);
     let rest = bits(app);

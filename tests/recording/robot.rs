@@ -1,4 +1,4 @@
-//! Recordings of what the robot does.
+//! Recordings of the robot's acts.
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;

@@ -1,4 +1,4 @@
-//! What changes in a tick on an entity that rolls back is put back by undo, or derived from what is.
+//! Everything that changes in a tick on an entity that rolls back is restored by undo, or derived from what is.
 
 use std::{
     collections::{BTreeMap, BTreeSet},

@@ -1,4 +1,4 @@
-//! Recordings of what is done while the simulation waits for a script, as it does in the window.
+//! Recordings of acts while the simulation waits for a script, as in the window.
 
 use std::{fs, time::Duration};
 
@@ -31,7 +31,7 @@ fn is_online(world: &World) -> bool {
 }
 
 impl Window {
-    /// Gives a command while a call of the script is waited for, and lets so many frames go by.
+    /// Gives a command while a call of the script is waited for, and lets this many frames pass.
     fn give_while_waiting(&mut self, command: impl Into<SimCommand>, frames: usize) {
         self.frames_until(is_waiting);
         self.give(command);

@@ -24,7 +24,7 @@ fn assert_same_files(expected: &Demonstration, found: &Demonstration, seed: u64)
     assert_eq!(difference, None, "seed {seed}");
 }
 
-/// What comes and goes in the tick of an undo does so before it, and is undone with the rest.
+/// Objects that appear or disappear in the tick of an undo do so before it, and are undone with the rest.
 fn is_carried_out_before_undo(command: &SimCommand) -> bool {
     matches!(
         command,
@@ -158,7 +158,7 @@ fn redo_brings_back_what_was_undone() {
 
 #[test]
 fn a_recording_changes_nothing() {
-    // In 7022 the scene changes while the robot is shown, and the robot then touches what is new.
+    // In 7022 the scene changes while the robot is shown, and the robot then touches new objects.
     for seed in (2000..2010).chain([7022]) {
         let script = script(&mut Random(seed), 2 * TICKS);
         let mut recorded = begun("recorded");
@@ -177,7 +177,7 @@ fn a_recording_changes_nothing() {
     }
 }
 
-/// Commands, and how many ticks to simulate with them.
+/// Commands, and the number of ticks to simulate with them.
 type Act = (Vec<SimCommand>, u64);
 
 fn grasp(hand: Hand, object: &str) -> SimCommand {
@@ -194,7 +194,7 @@ fn move_to(hand: Hand, location: (f32, f32, f32)) -> SimCommand {
     })
 }
 
-/// What is done before and after the detour, which begins in the middle of a fall.
+/// The acts before and after the detour, which begins in the middle of a fall.
 fn way() -> [Vec<Act>; 2] {
     use Hand::{Left, Right};
     [

@@ -14,7 +14,7 @@ use crate::demonstration::fresh_folder;
 /// A window without a picture: every frame has a tick, unless the simulation waits.
 pub struct Window {
     pub app: App,
-    /// Where it records.
+    /// The folder of its recording.
     pub folder: PathBuf,
 }
 
@@ -54,7 +54,7 @@ impl Window {
         (0..frames).for_each(|_| self.app.update());
     }
 
-    /// Lets frames go by until this is so.
+    /// Lets frames pass until this condition holds.
     pub fn frames_until(&mut self, is_so: impl Fn(&World) -> bool) {
         for _ in 0..10_000 {
             if is_so(self.app.world()) {

@@ -35,7 +35,7 @@ impl Shape {
         }
     }
 
-    /// How it is put together.
+    /// Its composition.
     pub fn composition(&self) -> Composition<'_> {
         match *self {
             Self::Block { .. }
@@ -120,7 +120,7 @@ impl Shape {
     }
 }
 
-/// How a shape is put together.
+/// The composition of a shape.
 #[derive(Clone, Debug)]
 pub enum Composition<'a> {
     /// It is a simple shape.

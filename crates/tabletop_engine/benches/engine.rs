@@ -1,6 +1,4 @@
-//! How long a call of a callback script takes beside the script's own time.
-//!
-//! `cargo bench -p tabletop_engine` prints the median, the 99th percentile and the worst of back-to-back calls.
+//! Benchmark of a callback's call, beside the script's own time.
 
 #![expect(clippy::print_stdout, reason = "a benchmark reports")]
 

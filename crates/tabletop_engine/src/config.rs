@@ -60,7 +60,7 @@ pub struct EngineConfig {
     pub timeouts: Timeouts,
     /// True if there is a display that figures can appear on.
     pub display: bool,
-    /// The limit of what is kept of the script's output.
+    /// The limit on the kept output of the script.
     pub console_limit: ConsoleLimit,
     /// The agent's folder if its files come from the program; it goes with the last of those that need it.
     written: Option<Arc<PrivateFolder>>,
@@ -121,7 +121,7 @@ impl EngineConfig {
         absolute(&agent).unwrap_or(agent)
     }
 
-    /// Why the scripts cannot be run, as far as that can be seen without the engine.
+    /// The reason why the scripts cannot be run, as far as it is known without the engine.
     pub fn fault(&self) -> Option<String> {
         let kind = self.engine.kind;
         if self.agent.as_os_str().is_empty() {

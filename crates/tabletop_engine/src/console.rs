@@ -11,7 +11,7 @@ const LAST_ERRORS: usize = 20;
 /// Time until the next note that lines were left out.
 const NOTE_INTERVAL: Duration = Duration::from_secs(1);
 
-/// The limit of what is kept of a script's output.
+/// The limit on the kept output of a script.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ConsoleLimit {
     /// As much as a person can look at: 200 lines a second.
@@ -66,7 +66,7 @@ pub enum Stream {
     Note,
 }
 
-/// LineQueue on their way from an engine to whoever shows them.
+/// Lines on their way from an engine to the code that shows them.
 #[derive(Clone, Debug)]
 pub(crate) struct Console {
     limit: ConsoleLimit,

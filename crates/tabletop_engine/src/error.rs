@@ -57,10 +57,10 @@ pub enum EngineError {
     Died {
         /// Its exit status.
         status: String,
-        /// The last lines that it wrote to its standard error, as far as nobody has fetched them from the console.
+        /// The last lines of its standard error, unless they were already fetched from the console.
         stderr: String,
     },
-    /// The engine answered what is no answer.
+    /// The engine's answer breaks the protocol.
     #[error("the engine's answer cannot be read: {0}")]
     Protocol(#[from] ProtocolError),
     /// The engine was stopped.
@@ -119,7 +119,7 @@ pub struct ScriptError {
     pub id: String,
     /// The engine's message.
     pub message: String,
-    /// Where, innermost first.
+    /// The places of the error, innermost first.
     pub stack: Vec<ScriptLocation>,
 }
 

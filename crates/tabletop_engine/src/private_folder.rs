@@ -17,7 +17,7 @@ pub(crate) struct PrivateFolder {
 }
 
 impl PrivateFolder {
-    /// Makes the folder in the first place that lets `fill` put into it what is to be there.
+    /// Makes the folder in the first place where `fill` can fill it.
     pub(crate) fn filled(
         fill: impl Fn(&Self) -> Result<(), EngineError>,
     ) -> Result<Self, EngineError> {

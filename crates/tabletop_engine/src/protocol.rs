@@ -26,7 +26,7 @@ const PREAMBLE: usize = 16;
 /// Words that describe an array: class, length of the name and of the payload, number of dimensions, dimensions.
 const RECORD_WORDS: usize = 4 + MAX_DIMS;
 
-/// Why bytes are not arrays, or arrays cannot be written.
+/// The error of bytes that are not arrays, or of arrays that cannot be written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ProtocolError {
     /// The file does not begin as the format says.

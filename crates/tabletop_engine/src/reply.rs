@@ -12,7 +12,7 @@ use crate::{
 pub enum Reply {
     /// The engine is there.
     Started {
-        /// Which one, with its version and program.
+        /// The engine's version and program.
         description: String,
     },
     /// The init script has run.

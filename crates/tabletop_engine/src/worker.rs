@@ -320,7 +320,7 @@ impl Running {
         self.open_outputs = self.open_outputs.saturating_sub(1);
     }
 
-    /// Has the engine do something and reads its answer.
+    /// Gives the engine a request and reads its answer.
     fn call(&mut self, op: Op, what: &'static str, limit: Duration) -> Result<Arrays, EngineError> {
         self.next_request();
         self.trigger(op)?;

@@ -1,4 +1,4 @@
-//! What scripts print.
+//! Output of scripts.
 
 mod common;
 

@@ -42,7 +42,7 @@ fn session(folder: &Folder, name: &str, trigger: Trigger) -> Session {
     Session::start(config).unwrap()
 }
 
-/// Runs a pair until it exits; `see` changes what is sensed.
+/// Runs a pair until it exits; `see` changes the sensor.
 fn run(
     session: &Session,
     ticks: usize,

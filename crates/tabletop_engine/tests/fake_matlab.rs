@@ -1,4 +1,4 @@
-//! How MATLAB would be started: with a stand-in of that name, which runs the text after "-r" in Octave.
+//! The start of MATLAB, with a stand-in of that name that runs the text after "-r" in Octave.
 
 #![cfg(unix)]
 mod common;

@@ -25,7 +25,7 @@ fn called(callback: &str, trigger: Trigger) -> (Folder, Session) {
     (folder, session)
 }
 
-/// What an engine prints until it has ended.
+/// Output of an engine until it has ended.
 fn last_lines(session: &Session) -> Vec<ConsoleLine> {
     while session.engine.is_alive() {
         std::thread::sleep(Duration::from_millis(5));

@@ -1,4 +1,4 @@
-//! The folder of the scripts: what is in it, and what is not.
+//! The folder of the scripts, and files in it and beside it.
 
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 

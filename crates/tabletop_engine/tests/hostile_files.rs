@@ -1,4 +1,4 @@
-//! What an engine leaves in the place of its files can neither hang the program nor fill its memory nor reach other files.
+//! Files that an engine leaves in place of its own: they can neither hang the program nor fill its memory nor reach other files.
 
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "a test may panic")]

@@ -1,4 +1,4 @@
-//! Scripts that do with their variables what they should not: they run on, or are reported what is wrong.
+//! Scripts that misuse their variables: they run on, or the fault is reported.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! What is said about faults, so that they can be mended.
+//! Messages about faults, with remedies.
 
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 

@@ -1,4 +1,4 @@
-//! Scripts of a robot with one arm of seven joints: what is 2×7 for Baxter is 1×7.
+//! Scripts of a robot with one arm of seven joints: 1×7 where Baxter has 2×7.
 
 mod common;
 
@@ -17,7 +17,7 @@ fn aux() -> Aux {
     }
 }
 
-/// What the callback script makes of a sensor whose numbers are all different from 0.
+/// The answer of the callback script to a sensor whose numbers are all different from 0.
 fn step(session: &Session) -> Result<StepReply, EngineError> {
     session.engine.init(aux());
     match session.engine.recv_timeout(common::PATIENCE) {

@@ -1,4 +1,4 @@
-//! The files that the user can open and save. Whoever knows the disk keeps [`Files`] and carries out [`FileRequest`]s.
+//! The files that the user can open and save. The owner of the disk keeps [`Files`] and carries out [`FileRequest`]s.
 
 use std::path::{Path, PathBuf};
 

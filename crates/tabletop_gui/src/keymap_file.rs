@@ -50,8 +50,8 @@ fn load(
     }
 }
 
-/// Reads the keymap of a file, or that of the preferences, for a robot, with what is wrong with it. Without a file, keys are as they are
-/// shipped.
+/// Reads the keymap of a file, or that of the preferences, for a robot, with its faults. Without a file, keys have their
+/// defaults.
 pub fn read(
     path: Option<&Path>,
     preferences: &Preferences,
@@ -95,7 +95,7 @@ struct KeymapEntry<'a> {
     bindings: Vec<(&'a str, KeyBinding)>,
 }
 
-/// Reads a keymap. What is wrong with it is told with line and column, and left out. An empty text binds nothing anew, as a shell leaves it that
+/// Reads a keymap. Faulty entries are reported with line and column, and left out. An empty text binds nothing: a shell leaves it empty when it
 /// is about to write the file.
 pub fn parse(text: &str, layout: &RobotLayout) -> (Keymap, Vec<String>) {
     let (mut keymap, mut faults) = shipped(layout);
@@ -342,7 +342,7 @@ mod tests {
         assert_eq!(keymap.bindings(Action::ShowRobot), [binding("Space")]);
     }
 
-    /// What the program binds and tells when it starts with these preferences.
+    /// The bindings and messages when the program starts with these preferences.
     fn started(text: Option<&str>, name: &str) -> (Keymap, Vec<String>) {
         let folder = format!("tabletop-keys-{name}-{}", std::process::id());
         let folder = std::env::temp_dir().join(folder);

@@ -1,7 +1,7 @@
-//! Keys, mouse and panels of the window. Everything that the user does becomes a [`SimCommand`](tabletop_core::SimCommand); what came
-//! of it is read from [`SimFact`](tabletop_core::SimFact)s.
+//! Keys, mouse and panels of the window. Every act of the user becomes a [`SimCommand`](tabletop_core::SimCommand); the results
+//! are read from [`SimFact`](tabletop_core::SimFact)s.
 //!
-//! Which keys there are stands in one table, [`Action`](tabletop_core::Action); users bind others in [`keymap_file`]s. A click on an
+//! The keys are in one table, [`Action`](tabletop_core::Action); users bind others in [`keymap_file`]s. A click on an
 //! object puts it into the selected hand, a drag moves it in the drag plane, a press anywhere else lets it go. Right drags, middle drags
 //! and the wheel move the camera.
 //!
@@ -67,7 +67,7 @@ impl Plugin for GuiPlugin {
                 // The few textures of the panels do not need it, and not every graphics driver has it.
                 bindless_mode_array_size: None,
             })
-            // Else a texture that has changed, such as new letters, is seen a frame late, and what is new is not seen until then.
+            // Otherwise a texture that has changed, such as new letters, is seen a frame late, and new ones are not seen until then.
             .configure_sets(
                 PostUpdate,
                 EguiPostUpdateSet::PostProcessOutput.before(AssetEventSystems),

@@ -21,7 +21,7 @@ pub(crate) fn plugin(app: &mut App) {
     );
 }
 
-/// `bevy_egui` tells egui in every frame which modifiers are held, and egui wants another frame after each event.
+/// `bevy_egui` reports the held modifiers to egui in every frame, and egui wants another frame after each event.
 fn drop_repeated_modifiers(
     mut reported: Local<EntityHashMap<egui::Modifiers>>,
     mut inputs: Query<(Entity, &mut EguiInput)>,

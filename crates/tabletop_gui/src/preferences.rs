@@ -20,7 +20,7 @@ pub struct Preferences {
     folder: Option<PathBuf>,
 }
 
-/// Why preferences could not be read or kept.
+/// The error of preferences that could not be read or kept.
 #[derive(Debug, Error)]
 pub enum PreferencesError {
     /// The file could not be read or written.
@@ -44,7 +44,7 @@ pub enum PreferencesError {
     Form {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The error of RON.
         error: ron::Error,
     },
 }

@@ -8,7 +8,7 @@ use tabletop_core::{
 
 use crate::input::pointer::Pointer;
 
-/// Where the user's camera stands; it looks along Y.
+/// Location of the user's camera, which looks along Y.
 pub(crate) const EYE: Vec3 = Vec3::new(0.0, -12.0, 8.0);
 
 /// The line of sight to a point.
@@ -74,7 +74,7 @@ impl TestWorld {
         self.look_along(towards(point));
     }
 
-    /// There is a panel before what is pointed at.
+    /// Puts a panel in front of the thing under the cursor.
     pub fn point_at_panel(&mut self) {
         self.app.world_mut().resource_mut::<Pointer>().is_panels = true;
     }
@@ -83,7 +83,7 @@ impl TestWorld {
         self.app.insert_resource(Pointer::default());
     }
 
-    /// A frame in which the button goes down, and what is asked for in it.
+    /// A frame in which the button goes down; returns its commands.
     pub fn press(&mut self) -> Vec<SimCommand> {
         self.buttons().press(MouseButton::Left);
         self.frame()

@@ -8,10 +8,10 @@ use crate::{
     text::{lines, point},
 };
 
-/// What a binary file has before its triangles: a title, and how many there are.
+/// Length of the head of a binary file: a title, and the number of triangles.
 const HEAD: usize = 84;
 
-/// What it has for each: a normal, three corners, and two bytes without meaning.
+/// Length of a triangle: a normal, three corners, and two bytes without meaning.
 const TRIANGLE: usize = 50;
 
 /// The solids of an STL file, each as its triangles, in the file's axes and units. A binary file has one.

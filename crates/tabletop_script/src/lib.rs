@@ -88,7 +88,7 @@ pub fn shut_down(world: &mut World) {
 /// Adds the script bridge. Needs [`CorePlugin`](tabletop_core::CorePlugin).
 #[derive(Clone, Debug, Default)]
 pub struct ScriptPlugin {
-    /// Which scripts run in which engine, and how; they stay as a resource.
+    /// The scripts, their engine and its settings, which stay as a resource.
     pub settings: ScriptSettings,
 }
 

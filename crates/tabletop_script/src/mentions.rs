@@ -11,9 +11,9 @@ const DRIVER: &str = "tabletop.py";
 const LARGEST_SCRIPT: u64 = 1 << 20;
 /// Folders in folders are looked into this far down.
 const DEEPEST: usize = 3;
-/// So many entries of the folders at each depth are looked at, at most.
+/// Largest number of entries that are looked at, of all folders at each depth.
 const MOST_ENTRIES: usize = 10_000;
-/// So many scripts are read, at most, the outermost first.
+/// Largest number of scripts that are read, the outermost first.
 const MOST_SCRIPTS: usize = 1000;
 
 /// True if one of the scripts around an agent (a folder of `agentBehavior.m`, or a Python file) contains one of these words.
@@ -39,7 +39,7 @@ fn scripts_in(folder: &Path, extension: &str) -> Vec<PathBuf> {
             .filter(|entry| !entry.file_name().as_encoded_bytes().starts_with(b"."))
             .map(|entry| entry.path())
             .collect();
-        // Which ones are looked at must not depend on the file system.
+        // The choice must not depend on the file system.
         entries.sort();
         entries.truncate(MOST_ENTRIES);
         let (below, mut files): (Vec<_>, Vec<_>) =
@@ -68,7 +68,7 @@ fn contains(script: &Path, words: &[&str]) -> bool {
     found.any(|word| words.iter().any(|wanted| wanted.as_bytes() == word))
 }
 
-/// A line without its comment, as far as it is clear that it is one: what follows an open quote may be text.
+/// A line without its comment, if it is clear that it is one: text after an open quote may belong to a string.
 fn code(line: &[u8], comment: u8) -> &[u8] {
     let is_outside = |before: &[u8]| {
         let quotes = |quote: u8| before.iter().filter(|byte| **byte == quote).count();

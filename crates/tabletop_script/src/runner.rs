@@ -92,7 +92,7 @@ pub(crate) fn shut_down(mut runner: ResMut<ScriptRunner>, mut events: ScriptEven
     }
 }
 
-/// True if there is a script, or what is left of one.
+/// True if there is a script, or the remains of one.
 pub(crate) fn is_running(runner: Res<ScriptRunner>) -> bool {
     runner.session.is_some() || !runner.ending.is_empty()
 }

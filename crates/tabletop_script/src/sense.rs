@@ -50,7 +50,7 @@ pub(crate) struct Senses<'w, 's> {
 }
 
 impl Senses<'_, '_> {
-    /// Which limbs and joints the robot has.
+    /// The limbs and joints of the robot.
     pub fn layout(&self) -> &RobotLayout {
         &self.layout
     }

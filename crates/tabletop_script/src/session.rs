@@ -1,4 +1,4 @@
-//! A script with its engine: what is asked of it, and what comes of its answers.
+//! A script with its engine: the requests to it, and the results of its answers.
 
 use std::time::{Duration, Instant};
 
@@ -21,7 +21,7 @@ const ONE_LOOK: Duration = Duration::from_millis(100);
 pub(crate) struct ScriptSession {
     pub engine: EngineHandle,
     phase: Phase,
-    /// When the engine was asked for what it has not answered yet.
+    /// The time of the request that the engine has not answered yet.
     asked: Instant,
     /// The tick of the last call, or of the init script.
     called_at: SimTick,
@@ -77,8 +77,8 @@ impl ScriptSession {
         })
     }
 
-    /// Has the engine do what is due for the tick that begins, and waits for the answer. Returns what came of it; `None` if nothing
-    /// is due, or the answer has to be waited for longer.
+    /// Gives the engine its request for the tick that is beginning, and waits for the answer. Returns the result; `None` if nothing
+    /// is due, or the answer takes longer.
     pub fn attend(
         &mut self,
         will_be_paused: bool,

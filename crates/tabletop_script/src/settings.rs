@@ -14,7 +14,7 @@ use tabletop_engine::{
 
 use crate::mentions::mention;
 
-/// Which scripts run in which engine, and how.
+/// The scripts, their engine, and the settings of both.
 #[derive(Resource, Clone, Debug)]
 pub struct ScriptSettings {
     /// The engine.

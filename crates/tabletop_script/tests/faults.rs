@@ -25,7 +25,7 @@ fn failure(settings: ScriptSettings) -> String {
     stage.failure().unwrap().to_owned()
 }
 
-/// What comes of a callback with this fourth line.
+/// The failure of a callback with this fourth line.
 fn callback_failure(line: &str) -> String {
     let folder = Folder::pair(INIT, &format!("{GOOD}{line}\n"));
     folder.write("helper.m", "function helper(x)\nundefined_thing(x);\nend\n");

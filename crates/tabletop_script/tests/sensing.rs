@@ -1,4 +1,4 @@
-//! What scripts sense, and what they are spared.
+//! Sensing of scripts, and what they are spared.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod kit;

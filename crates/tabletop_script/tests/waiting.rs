@@ -72,7 +72,7 @@ fn the_waiting_is_reported_and_no_tick_passes() {
     }
 }
 
-/// How often it was tried to begin a tick.
+/// Number of tries to begin a tick.
 #[derive(Resource, Default)]
 struct Tries(u32);
 
@@ -118,7 +118,7 @@ fn each_frame_looks_for_the_answer_once_and_no_waiting_is_made_up_for() {
     }
 }
 
-/// What moves in the window by itself, like its camera, goes by this time.
+/// The time by which things move in the window by themselves, like its camera.
 fn time_in_window(stage: &Stage) -> Duration {
     stage.app.world().resource::<Time<Virtual>>().elapsed()
 }

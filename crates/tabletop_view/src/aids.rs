@@ -23,7 +23,7 @@ const BOND_POINT: f32 = 0.1;
 /// Length of the arms of the cross at the foot of the shadow line, in units.
 const FOOT: f32 = 0.3;
 
-/// How much nearer thin and thick lines are taken to be than they are, to be seen whole on the surfaces along which they
+/// Bias of thin and thick lines towards the viewer, so that they are wholly visible on the surfaces along which they
 /// run: a twentieth and a seventh of a unit at the distance of the table.
 const THIN_IN_FRONT: f32 = -0.0004;
 const THICK_IN_FRONT: f32 = -0.001;
@@ -32,7 +32,7 @@ const THICK_IN_FRONT: f32 = -0.001;
 #[derive(Default, Reflect, GizmoConfigGroup)]
 struct ThinLines;
 
-/// The outline of what is held.
+/// The outline of the held object.
 #[derive(Default, Reflect, GizmoConfigGroup)]
 struct ThickLines;
 
@@ -77,7 +77,7 @@ fn draw_outline(
     }
 }
 
-/// Yellow cubes at the points at which what is held can be fastened, and at those at which others can be fastened to it.
+/// Draws yellow cubes at the bond points of the held object, and at those where others can be fastened to it.
 fn draw_bond_points(
     mut gizmos: Gizmos<ThinLines>,
     held: HeldVisual,

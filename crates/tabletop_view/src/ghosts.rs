@@ -1,4 +1,4 @@
-//! Where objects are going to be put, as if seen through a veil; a line leads to the next one.
+//! Ghosts of objects at their goals, translucent; a line leads to the next one.
 
 use bevy::prelude::*;
 use tabletop_core::{Ghost, Ghosts, ObjectIndex};
@@ -13,11 +13,11 @@ struct GhostSolid;
 #[derive(Default, Reflect, GizmoConfigGroup)]
 struct GhostLines;
 
-/// How high a line rises above its higher end, in units.
+/// Height of a line above its higher end, in units.
 const RISE: f32 = 1.5;
 /// Of how many pieces a line is.
 const PIECES: u16 = 24;
-/// How wide a line is, in pixels.
+/// Width of a line, in pixels.
 const WIDTH: f32 = 2.0;
 const LINE: Color = Color::srgb(0.25, 0.77, 0.71);
 

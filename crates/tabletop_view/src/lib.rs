@@ -1,23 +1,5 @@
-//! What the window shows: the table, the objects on it and what else has a figure, in the light of the original program, through the user's
+//! The view of the window: the table, the objects on it and all figures, in the light of the original program, through the user's
 //! camera.
-//!
-//! An outline shows the object in the selected hand, with the plane in which the mouse drags it, its axes and its shadow line.
-//!
-//! The view only reads. For each object and figure it makes a picture of its own, a [`Visual`], which follows the object smoothly
-//! at any frame rate; no entity of the simulation is touched.
-//!
-//! ```no_run
-//! use bevy::prelude::*;
-//! use tabletop_core::prelude::*;
-//! use tabletop_view::ViewPlugin;
-//!
-//! App::new()
-//!     .add_plugins((DefaultPlugins, CorePlugin::default(), ViewPlugin))
-//!     .add_systems(Startup, |mut commands: Commands| {
-//!         commands.spawn(Table::default());
-//!     })
-//!     .run();
-//! ```
 
 mod aids;
 mod camera;
@@ -87,7 +69,7 @@ mod tests {
 
     fn app() -> App {
         let mut app = App::new();
-        // Frames are shorter than ticks, so that what is between two ticks is drawn, too.
+        // Frames are shorter than ticks, so that moments between two ticks are drawn, too.
         let frame = Duration::from_millis(7);
         app.add_plugins((MinimalPlugins, CorePlugin::default()))
             .insert_resource(TimeUpdateStrategy::ManualDuration(frame))

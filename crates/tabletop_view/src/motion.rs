@@ -1,4 +1,4 @@
-//! Smooth pictures between ticks: what is drawn lies between the last two ticks, at any frame rate.
+//! Smooth pictures between ticks: drawn shapes lie between the last two ticks, at any frame rate.
 
 use bevy::prelude::*;
 use tabletop_core::Pose;

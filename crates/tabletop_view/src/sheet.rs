@@ -18,7 +18,7 @@ use crate::{held::HeldVisual, visual::Filled};
 /// outshine the black around the table: the graphics card blends linear values.
 const COLOR: LinearRgba = LinearRgba::new(0.12, 0.12, 0.8, 0.25);
 
-/// The border in which the sheet fades: so far within the table's edges, and so far above what is held, in units.
+/// The border in which the sheet fades: its width within the table's edges, and above the held object, in units.
 const RIM: f32 = 2.0;
 const HEADROOM: f32 = 1.0;
 
@@ -41,7 +41,7 @@ pub(crate) struct Translucent {
 }
 
 impl Translucent {
-    /// Over a table, up to a little above what is held here.
+    /// A sheet over a table, up to a little above the held object.
     fn over(table: &Table, held: Vec3) -> Self {
         let corner = (Vec2::new(table.xspan, table.yspan) / 2.0 - RIM).max(Vec2::ZERO);
         Self {

@@ -11,7 +11,7 @@ pub struct Surface {
     /// Red, green, blue as displayed, 0..=1, by which the colours of vertices are multiplied, and the opacity.
     #[uniform(0)]
     color: Vec4,
-    /// What faces along and against the axes show of it.
+    /// The shares of its colour that it shows along and against the axes.
     #[uniform(0)]
     along: Vec3,
     #[uniform(0)]
@@ -25,7 +25,7 @@ impl From<Rgb> for Surface {
 }
 
 impl Surface {
-    /// A surface that covers this part (0..=1) of what is behind it.
+    /// A surface that covers this part (0..=1) of the picture behind it.
     pub(crate) fn translucent(color: Rgb, opacity: f32) -> Self {
         Self {
             color: Vec4::new(color.red, color.green, color.blue, opacity),

@@ -14,7 +14,7 @@ pub struct Visual {
     pub of: Entity,
 }
 
-/// Convex solids that fill what is drawn, in the frame of its body.
+/// Convex solids that fill the drawn shape, in the frame of its body.
 #[derive(Component, Clone, Debug)]
 pub(crate) struct Filled(pub Vec<Primitive>);
 

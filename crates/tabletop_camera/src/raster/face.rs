@@ -187,7 +187,7 @@ pub(crate) fn first_column(x: f32, width: usize) -> usize {
 }
 
 impl From<Linear> for Edge {
-    /// Where this is positive.
+    /// The edge of the side on which this is positive.
     fn from(Linear { first, right, down }: Linear) -> Self {
         if right == 0.0 {
             return Self::Level { first, down };

@@ -9,7 +9,7 @@ use crate::{Rgb, Shape};
 pub enum AttributeValue<'a> {
     /// A length in units, or a factor.
     Number(f32),
-    /// How many there are.
+    /// A number of things.
     Count(u32),
     /// The name of a file.
     Text(&'a str),
@@ -18,7 +18,7 @@ pub enum AttributeValue<'a> {
 }
 
 impl Shape {
-    /// What describes it besides its parts and states: names and values, in the order in which task files have them.
+    /// Its attributes besides parts and states: names and values, in the order of task files.
     pub fn attributes(&self) -> Vec<(&'static str, AttributeValue<'_>)> {
         use AttributeValue::{Color, Count, Number, Text};
         let spans = |names: [&'static str; 3], spans: Vec3| {

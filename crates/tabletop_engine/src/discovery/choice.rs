@@ -1,4 +1,4 @@
-//! Which engine runs the scripts.
+//! The choice of the engine that runs the scripts.
 
 use std::{convert::Infallible, path::PathBuf, str::FromStr};
 

@@ -15,7 +15,7 @@ use crate::{
 /// An engine that is there.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FoundEngine {
-    /// The value.
+    /// Its kind.
     pub kind: EngineKind,
     /// Its program.
     pub program: PathBuf,

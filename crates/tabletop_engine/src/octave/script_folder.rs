@@ -1,4 +1,4 @@
-//! The folder of scripts for MATLAB and Octave: what is wrong with it, before an engine looks at it.
+//! The folder of scripts for MATLAB and Octave: its faults, before an engine reads it.
 
 use std::{
     fs, io,
@@ -13,7 +13,7 @@ const LARGEST_SCRIPT: usize = 16 << 20;
 /// The variables of the base workspace that the scripts share with the simulator.
 pub(crate) const SHARED: [&str; 3] = ["sensor", "motor", "aux"];
 
-/// Why the scripts of a folder cannot be run, or would not be: this pair, or the one that agentBehavior.m names.
+/// The reason why the scripts of a folder cannot be run, or others would run in their place: this pair, or the one of agentBehavior.m.
 pub(crate) fn fault(
     folder: &Path,
     pair: Option<&[String; 2]>,

@@ -24,7 +24,7 @@ const UNDRAWN: &str = "ancestor annotation area axes bar3 bar3h box camlight cam
     uipanel uipushtool uitable uitoggletool uitoolbar view waitbar waitforbuttonpress waterfall whitebg xlabel xtickangle \
     xticklabels xticks ylabel ytickangle yticklabels yticks zlabel zoom ztickangle zticklabels zticks";
 
-/// The limits of what is not drawn.
+/// The limits of axes that are not drawn.
 const LIMITS: &str = "caxis clim xlim ylim zlim";
 
 /// Functions that look for drawings.
@@ -84,7 +84,7 @@ fn undebuggable(name: &str) -> String {
     )
 }
 
-/// A function that takes anything and gives 1, a figure or what is in it, for all that it is asked for.
+/// A function that takes anything and returns 1, a figure or a part of one, for every output.
 fn undrawn(name: &str) -> String {
     format!("function varargout = {name}(varargin)\nvarargout = num2cell(ones(1, nargout));\nend\n")
 }

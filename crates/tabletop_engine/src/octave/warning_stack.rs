@@ -11,7 +11,7 @@ pub(crate) struct WarningStack {
 }
 
 impl WarningStack {
-    /// Takes a line and calls `each` for what is left of it.
+    /// Takes a line and calls `each` with the rest of it.
     pub(crate) fn feed(&mut self, line: &[u8], mut each: impl FnMut(&[u8])) {
         if line.ends_with(b": called from") {
             self.title = Some(line.to_owned());

@@ -7,7 +7,7 @@ use crate::kind::EngineKind;
 /// The largest coordinate that a marker may have, in units.
 pub(crate) const FARTHEST: f64 = 1e6;
 
-/// Why a variable that a script has set cannot be used.
+/// The error of a variable that a script has set.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum InvalidField {
     /// A variable is missing or is no struct.
@@ -15,7 +15,7 @@ pub enum InvalidField {
     NoStruct {
         /// The variable.
         name: String,
-        /// Size and class of what is there.
+        /// Size and class of the value.
         found: String,
         /// The content that was expected.
         expected: &'static str,
@@ -25,7 +25,7 @@ pub enum InvalidField {
     Size {
         /// The field, with its variable.
         field: String,
-        /// Size and class of what is there.
+        /// Size and class of the value.
         found: String,
         /// The content that was expected.
         expected: String,
@@ -33,7 +33,7 @@ pub enum InvalidField {
     /// A number is not one.
     #[error("{element} is {found}; it must be a finite number")]
     NotFinite {
-        /// Which one.
+        /// The faulty element.
         element: MatrixElement,
         /// NaN, Inf or -Inf.
         found: &'static str,
@@ -41,9 +41,9 @@ pub enum InvalidField {
     /// A marker is too far away to be drawn anywhere.
     #[error("{element} is {found:e}; it must be between -{FARTHEST:e} and {FARTHEST:e}")]
     TooFar {
-        /// Which coordinate of which marker.
+        /// The faulty coordinate of a marker.
         element: MatrixElement,
-        /// The value.
+        /// Its value.
         found: f64,
     },
     /// There is a field that nobody knows.

@@ -63,7 +63,7 @@ impl JointMatrix {
         }
     }
 
-    /// From numbers column by column, as scripts write them. What is missing is 0.
+    /// A matrix from numbers column by column, as scripts write them. Missing numbers are 0.
     pub(crate) fn from_columns([limbs, joints]: [usize; 2], numbers: &[f64]) -> Self {
         let mut matrix = Self::zeros([limbs, joints]);
         for (place, number) in numbers.iter().enumerate().take(limbs * joints) {

@@ -42,10 +42,7 @@ impl MotorCommand {
         }
     }
 
-    /// Reads the fields "motor.…" of an engine's reply for so many limbs with so many joints each. What is missing is at rest.
-    ///
-    /// # Errors
-    /// A field is unknown, has another size or class than it must, or holds what is no number.
+    /// Reads the fields "motor.…" of an engine's reply for this many limbs and joints of each. Missing joints are at rest.
     pub fn read(arrays: &Arrays, size: [usize; 2]) -> Result<Self, InvalidField> {
         let mut motor = Self::at_rest(size);
         for (name, array) in arrays.iter() {
@@ -125,7 +122,7 @@ fn matrix<'a>(
     numbers(field, array, &dims, &format!("{rows}x{columns} double"))
 }
 
-/// Most points that a script can mark.
+/// Largest number of markers of a script.
 const MOST_POINTS: u32 = 100_000;
 
 /// Points in space, one in each row.

@@ -115,16 +115,16 @@ pub struct SensedControl {
 /// A step of a task.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SensedStep {
-    /// What it does.
+    /// The step as a sentence.
     pub sentence: String,
     /// The object that it moves.
     pub object: String,
-    /// What is so afterwards.
+    /// The relation that the step achieves.
     pub relation: String,
     /// To what that is a relation.
     pub reference: String,
-    /// Where the object is to be in the frame of the reference: a place in units, and a rotation about the fixed axes X, then Y, then Z, in
-    /// rad. Not a number if it is to be nowhere.
+    /// Goal of the object in the frame of the reference: a location in units, and a rotation about the fixed axes X, then Y, then Z, in
+    /// rad. Not a number if there is no goal.
     pub goal: [[f64; 3]; 2],
 }
 

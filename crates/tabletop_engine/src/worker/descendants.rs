@@ -59,7 +59,7 @@ mod linux {
     impl Descendants {
         /// Those of an engine that has just been started with this folder in its environment.
         pub(crate) fn of(engine: u32, folder: &Path) -> Self {
-            // Where this is refused, orphans are found by their environment alone.
+            // Without this, orphans are found by their environment alone.
             let _ = set_child_subreaper(true);
             let engine = engine.cast_signed();
             with_engines(|engines| engines.push(engine));
@@ -98,7 +98,7 @@ mod linux {
             let Some(own) = Status::of(process::id().cast_signed()) else {
                 return Vec::new();
             };
-            // Whose an orphan without that environment is can be told only if there is one engine.
+            // The engine of an orphan without that environment is known only if there is one engine.
             let is_only = with_engines(|engines| engines.iter().all(|other| *other == self.engine));
             let adopted: Vec<_> = match is_only {
                 true => adopted(&own, self.engine).map(|it| it.pid).collect(),

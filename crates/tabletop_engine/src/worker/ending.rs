@@ -1,4 +1,4 @@
-//! The ends of engines: by themselves, when they are told to, or because they did not answer in time.
+//! The ends of engines: by themselves, on command, or because they did not answer in time.
 
 use std::{
     process::ExitStatus,

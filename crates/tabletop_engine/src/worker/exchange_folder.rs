@@ -29,7 +29,7 @@ impl ExchangeFolder {
             for (name, text) in driver {
                 folder.write(&format!("driver/{name}"), text.as_bytes())?;
             }
-            // What a call needs, at least.
+            // The least room that a call needs.
             folder.write("request.bin", &[0; LEAST_ROOM])
         })?;
         Ok(Self { folder })

@@ -132,7 +132,7 @@ impl Process {
         let mut target = self.killer.0.lock().unwrap_or_else(PoisonError::into_inner);
         let status = self.child.try_wait().ok().flatten()?;
         if let Some(pid) = target.pid.take() {
-            // What it has started and left behind.
+            // The processes that it started and left behind.
             kill_group(pid);
             drop(target);
             self.descendants.kill();
@@ -186,7 +186,7 @@ fn interrupt_group(pid: u32) {
 fn signal_group(pid: u32, signal: nix::sys::signal::Signal) {
     use nix::{sys::signal::killpg, unistd::Pid};
     if let Ok(group) = i32::try_from(pid) {
-        // It fails if nothing of the group is left, which is what is wanted.
+        // It fails if nothing of the group is left, which is the goal.
         let _ = killpg(Pid::from_raw(group), signal);
     }
 }
@@ -232,7 +232,7 @@ fn kill_group(pid: u32) {
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(Stdio::null());
-    // It fails if the process is gone, which is what is wanted.
+    // It fails if the process is gone, which is the goal.
     drop(command.status());
 }
 

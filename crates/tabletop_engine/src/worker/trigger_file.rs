@@ -33,7 +33,7 @@ impl Op {
     }
 }
 
-/// The files by which an engine that polls and this program exchange what is to do and what is done.
+/// The files by which this program and a polling engine exchange requests and their ends.
 #[derive(Debug)]
 pub(crate) struct TriggerFile {
     path: PathBuf,

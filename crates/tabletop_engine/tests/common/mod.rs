@@ -1,4 +1,4 @@
-//! What the tests share: engines that run scripts written on the spot, and a robot to move.
+//! Shared helpers of the tests: engines that run scripts written on the spot, and a robot to move.
 
 #![allow(dead_code, clippy::allow_attributes, reason = "each test uses a part")]
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
@@ -121,7 +121,7 @@ impl Session {
         Ok(*reply)
     }
 
-    /// What has been printed, waiting for a line that holds `text`.
+    /// The printed lines, after waiting for one that holds `text`.
     pub fn printed(&self, text: &str) -> String {
         let mut all = String::new();
         for _ in 0..2000 {
@@ -154,7 +154,7 @@ pub fn script_error<T: std::fmt::Debug>(result: Result<T, EngineError>) -> Scrip
     }
 }
 
-/// What a robot that does not move senses.
+/// The sensor of a robot at rest.
 pub fn at_rest() -> Sensor {
     Sensor::at_rest([2, 7])
 }

@@ -1,4 +1,4 @@
-//! A robot that turns its joints as it is told and knows where its hands are.
+//! A robot that turns its joints as commanded and knows the places of its hands.
 
 use tabletop_engine::{Aux, InitReply, MotorCommand, Sensor};
 use tabletop_kinematics::{ArmChain, baxter};

@@ -1,4 +1,4 @@
-//! What goes to a script and comes from it.
+//! Exchange with a script in both directions.
 
 use std::{fs, path};
 

@@ -1,4 +1,4 @@
-//! Faults of scripts are told with their places.
+//! Faults of scripts are reported with their places.
 
 use std::{fs, time::Duration};
 

@@ -49,7 +49,7 @@ fn in_order<T: Ord>(mut choices: Vec<T>) -> Vec<T> {
 }
 
 impl DisplayOffer {
-    /// The settings of a user who has not chosen any: the report's recommendations, or what is fluent where the
+    /// The settings of a user who has not chosen any: the report's recommendations, or settings that run smoothly where the
     /// processor draws.
     pub fn default_settings(&self) -> DisplaySettings {
         let recommended = DisplaySettings::default();

@@ -14,7 +14,7 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// So many pixels.
+    /// A resolution in pixels.
     pub const fn new(width: u32, height: u32) -> Self {
         Self { width, height }
     }

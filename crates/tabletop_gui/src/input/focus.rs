@@ -1,5 +1,5 @@
-//! Who has the keyboard. egui takes it as soon as anything has been clicked or reached with Tab; here only text that is being typed
-//! does, and what is open over the window takes Esc, so that keys work anytime (report section 2.4).
+//! The keyboard's focus. egui takes the keyboard as soon as anything has been clicked or reached with Tab; here only a text field in use
+//! takes it, and an overlay takes Esc, so that keys work anytime (report section 2.4).
 
 use bevy::{
     input::{InputSystems, keyboard::KeyboardInput},
@@ -93,7 +93,7 @@ mod tests {
     use KeyCode::{ArrowRight, Digit1, Digit2, Enter, Escape, F1, KeyR, Space, Tab};
     use tabletop_core::{Action, CorePlugin, KeySystems, Keymap};
 
-    /// What there is to have the focus, and what came of it.
+    /// A form with things that can have the focus, and the results.
     #[derive(Resource, Default)]
     struct Form {
         focus: Option<Widget>,
@@ -191,7 +191,7 @@ mod tests {
             panels.single_mut(world).unwrap().events.push(event);
         }
 
-        /// What is asked for when a key goes down and up, as the window tells it.
+        /// The actions that follow when a key goes down and up, as the window reports it.
         fn strike(&mut self, key: KeyCode, text: &str) -> Vec<Action> {
             for pressed in [true, false] {
                 if let Some(key) = bevy_to_egui_physical_key(&key) {

@@ -35,7 +35,7 @@ impl Directions {
     }
 }
 
-/// Joints of which nothing is said are to stay.
+/// Joints without an entry stay in place.
 impl PartialEq for Directions {
     fn eq(&self, other: &Self) -> bool {
         let joints = self.0.len().max(other.0.len()) as u16;
@@ -55,7 +55,7 @@ pub(crate) struct Controls {
 }
 
 impl Controls {
-    /// Takes what is held down now, and what has gone down since the last time.
+    /// Takes the directions that are held down now, and those that have gone down since the last time.
     pub fn update(&mut self, held: Directions, struck: Directions) {
         self.held = held;
         for (joint, &struck) in (0..).map(JointId).zip(&struck.0) {

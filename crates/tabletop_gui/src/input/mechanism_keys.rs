@@ -1,4 +1,4 @@
-//! Keys that trigger, point, fasten and loosen, where the cursor is or what is held.
+//! Keys that trigger, point, fasten and loosen, with the held object or the one under the cursor.
 
 use bevy::prelude::*;
 use tabletop_core::{Actor, CommandWriter, KeySystems, Keys, Paused};

@@ -243,7 +243,7 @@ mod tests {
         buttons.press(button);
     }
 
-    /// What is asked of the camera in a frame.
+    /// The camera's motions in a frame.
     fn frame(test: &mut TestWorld) -> Vec<CameraMotion> {
         let world = test.app.world_mut();
         world.resource_mut::<Messages<CameraMotion>>().clear();

@@ -1,4 +1,4 @@
-//! What can be done to what the cursor is on, besides taking it: trigger, point to, fasten, loosen.
+//! Choices for the thing under the cursor, besides taking it: trigger, point to, fasten, loosen.
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
@@ -35,7 +35,7 @@ impl Deed {
 /// A deed with the command for it, or why it cannot be done.
 pub(crate) type Choice = (Deed, Result<MechanismCommand, String>);
 
-/// What the selected hand can do.
+/// The abilities of the selected hand.
 #[derive(SystemParam)]
 pub(crate) struct Operable<'w, 's> {
     pickable: Pickable<'w, 's>,
@@ -46,7 +46,7 @@ pub(crate) struct Operable<'w, 's> {
 }
 
 impl Operable<'_, '_> {
-    /// What can be done to the object along a line of sight, and its id; nothing to what is no object, nor beside what the selected
+    /// The choices for the object along a line of sight, with its id; `None` if it is not an object, or another one than the selected
     /// hand holds.
     pub fn choices_along(&self, ray: Ray3d) -> Option<(&str, [Choice; 4])> {
         let object = self.pickable.object_along(ray)?;
@@ -76,7 +76,7 @@ impl Operable<'_, '_> {
         Some((&spec.id, Deed::ALL.map(choice)))
     }
 
-    /// The command for a deed to what the selected hand holds or, if it holds nothing, to what is along a line of sight.
+    /// The command for a deed to the held object or, if nothing is held, to the one along a line of sight.
     pub fn command(&self, deed: Deed, ray: Option<Ray3d>) -> Result<MechanismCommand, String> {
         let hand = self.hands.selected;
         let held = self.hands.held_by(hand);

@@ -1,4 +1,4 @@
-//! Picking: the nearest visible surface under the mouse cursor counts. The table and figures hide what is behind them,
+//! Picking: the nearest visible surface under the mouse cursor counts. The table and figures hide objects behind them,
 //! but are no objects.
 
 use bevy::{ecs::system::SystemParam, prelude::*};

@@ -8,7 +8,7 @@ use crate::input::{mouse::MousePress, pointer::MouseSystems};
 /// Speed of the plane in radians a second.
 const SPEED: f32 = 0.3;
 
-/// Which of the panel's buttons for the plane are held down at the moment.
+/// The panel's buttons for the plane that are held down.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct PlaneButtons {
     pub counter_clockwise: bool,
@@ -26,7 +26,7 @@ pub(crate) fn plugin(app: &mut App) {
     );
 }
 
-/// Whenever the selected hand has something else than before, the plane faces the camera.
+/// Turns the plane towards the camera when the selected hand holds something else than before.
 fn face_camera(
     mut before: Local<Option<(Hand, Entity)>>,
     hands: Res<Hands>,
@@ -41,7 +41,7 @@ fn face_camera(
     *before = now;
 }
 
-/// The plane turns about the vertical through what is held, and the camera goes along, so that the view of the plane
+/// Turns the plane about the vertical through the held object, and the camera with it, so that the view of the plane
 /// stays the same.
 fn turn(
     keys: Keys,
@@ -109,7 +109,7 @@ mod tests {
         *test.app.world().resource()
     }
 
-    /// How far the camera is asked to go in a second.
+    /// Angle of the camera's orbit in a second.
     fn orbited_in_a_second(test: &mut TestWorld) -> f32 {
         let mut angle = 0.0;
         for _ in 0..100 {

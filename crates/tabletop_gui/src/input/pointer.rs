@@ -36,7 +36,7 @@ pub(crate) fn aim(
     pointer.ray = cursor
         .zip(cameras.iter().next())
         .and_then(|(cursor, (camera, place))| camera.viewport_to_world(place, cursor).ok());
-    // What egui wants is a frame old, and the cursor may have come to a panel since.
+    // egui's answer is a frame old, and the cursor may have come to a panel since.
     let is_over_panel = cursor
         .zip(panels.iter_mut().next())
         .is_some_and(|(cursor, mut panels)| {

@@ -100,7 +100,7 @@ mod tests {
         SimCommand::Robot(RobotCommand::drive([(joint, Drive::Velocity(velocity))]))
     }
 
-    /// What is asked for in a frame in which these keys are held down.
+    /// The commands of a frame in which these keys are held down.
     fn held(test: &mut TestWorld, keys: &[KeyCode]) -> Vec<SimCommand> {
         keys.iter().for_each(|&key| test.keys().press(key));
         let commands = test.hold_still();

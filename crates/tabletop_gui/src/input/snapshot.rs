@@ -108,7 +108,7 @@ fn tell(mut snapshots: ResMut<Snapshots>, mut notices: ResMut<Notices>) {
     });
 }
 
-/// Writes a picture to a new file, and tells which one it is.
+/// Writes a picture to a new file, and returns its path.
 fn save(picture: &Picture, folder: &Path, now: Timestamp) -> io::Result<PathBuf> {
     let png = encode(picture).map_err(io::Error::other)?;
     let path = write_new(&std::path::absolute(folder.join(name(now)))?, &png)?;

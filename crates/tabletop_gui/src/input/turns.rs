@@ -20,7 +20,7 @@ impl TurnSums {
         self.0[hand as usize]
     }
 
-    /// Brings one sum as near to these degrees as it goes, and tells what turn that is.
+    /// Brings one sum as near to these degrees as possible, and returns the turn.
     pub fn turn_to(&mut self, hand: Hand, axis: usize, degrees: i32) -> Option<HandCommand> {
         let sum = &mut self.0[hand as usize][axis];
         let before = *sum;

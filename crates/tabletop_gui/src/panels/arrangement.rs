@@ -1,4 +1,4 @@
-//! Which panels are open, and where they stand (report section 2.4).
+//! The arrangement of panels: which are open, and their places (report section 2.4).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{panels::panel::Panel, widgets::style::GAP};
 
-/// Which panels are open, and where they stand. At first only Status is open, and all are aligned at the left.
+/// The open panels, and their places. At first only Status is open, and all are aligned at the left.
 #[derive(Resource, Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Panels {

@@ -51,7 +51,7 @@ struct FileSearch {
 struct FolderContent {
     path: PathBuf,
     entries: Vec<FileEntry>,
-    /// Why there are no entries.
+    /// The reason why there are no entries.
     problem: Option<String>,
 }
 
@@ -98,7 +98,7 @@ impl Browser {
         });
     }
 
-    /// Does what the user wants, and says what is to be done with which file.
+    /// Carries out a request of the user, and returns one about a file.
     fn carry_out(&mut self, request: Request) -> Option<FileRequest> {
         let search = self.search.as_mut()?;
         match (request, search.purpose) {
@@ -243,7 +243,7 @@ fn entries(ui: &mut Ui, search: &mut FileSearch) -> Option<Request> {
 }
 
 impl FileSearch {
-    /// Takes what is selected or typed.
+    /// Takes the selected or typed name.
     fn choose(&self) -> Request {
         let mut path = self.folder.path.join(self.name.trim());
         if self.purpose == Purpose::Save && path.extension().is_none() {
@@ -271,7 +271,7 @@ impl FolderContent {
     }
 }
 
-/// Folders, then recordings, then task files, each by name; without what is hidden.
+/// Folders, then recordings, then task files, each by name; without hidden ones.
 fn list(folder: &Path) -> io::Result<Vec<FileEntry>> {
     let found = fs::read_dir(folder)?;
     let mut entries: Vec<_> = found

@@ -93,7 +93,7 @@ fn steering(ui: &mut Ui, keymap: &Keymap) -> Steering {
                 (PAD - ui.spacing().item_spacing.y) / 2.0,
             );
             let mut is_down = |text: &str, action| {
-                // What can only be clicked is let go of after a second.
+                // A widget that can only be clicked would be let go of after a second.
                 let button = Button::new(text).sense(Sense::click_and_drag());
                 let button = ui.add_sized(size, button);
                 let button = button.on_hover_text(keymap.tooltip(action));

@@ -16,7 +16,7 @@ use crate::{
 const SIZE: f32 = 18.0;
 const ABOVE: f32 = 12.0;
 
-/// What is shown.
+/// The content of the caption.
 struct Model<'a> {
     imitating: &'a Imitating,
     task: &'a ShownTask,
@@ -75,7 +75,7 @@ fn show(context: &Context, model: &Model) -> Option<TaskOrder> {
         .inner
 }
 
-/// What is said of the present step, and how it gets on. Nothing if the robot is not busy.
+/// The texts about the present step and its progress; `None` if the robot is not busy.
 fn texts(imitating: &Imitating, task: &ShownTask) -> Option<(String, &'static str)> {
     match imitating {
         Imitating::Idle => None,

@@ -25,7 +25,7 @@ pub(crate) struct ContextMenu(Option<OpenMenu>);
 
 #[derive(Clone, Debug)]
 struct OpenMenu {
-    /// Where the cursor was, in pixels.
+    /// Location of the cursor, in pixels.
     at: Vec2,
     /// Id of the object.
     object: String,
@@ -64,7 +64,7 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(EguiPrimaryContextPass, show_menu);
 }
 
-/// Who lets the simulation run on has closed the menu.
+/// Closes the menu when the simulation runs on.
 fn close_when_running(mut menu: ResMut<ContextMenu>, paused: Res<Paused>) {
     let Some(open) = &menu.0 else {
         return;
@@ -117,7 +117,7 @@ fn open(
     commands.write(Actor::Mouse, ClockCommand::SetPaused(true));
 }
 
-/// What the user does with the menu.
+/// A request of the user to the menu.
 #[derive(Clone, Debug, PartialEq)]
 enum Request {
     Close,
@@ -213,7 +213,7 @@ mod tests {
         }
     }
 
-    /// What a click on an item of the menu asks for.
+    /// The request of a click on an item of the menu.
     fn clicked(label: &str) -> Option<Request> {
         let frame = |ui: &mut Ui, asked: &mut Option<Request>| {
             let request = show(ui.ctx(), &open_menu(), &Keymap::default());

@@ -1,4 +1,4 @@
-//! The Demonstration Tools (report section 4, figure 8): hands, what is held, rotations, recording.
+//! The Demonstration Tools (report section 4, figure 8): hands, held object, rotations, recording.
 
 #[cfg(test)]
 mod tests;
@@ -32,7 +32,7 @@ const SLIDERS: [(&str, Color32); 3] = [
 /// The content of an empty hand (report figure 8b).
 const EMPTY: &str = "<empty>";
 
-/// Why the plane cannot be turned.
+/// The reason why the plane cannot be turned.
 const NOTHING_HELD: &str = "the selected hand holds nothing";
 
 pub(crate) fn plugin(app: &mut App) {
@@ -82,7 +82,7 @@ enum Request {
     Select(Hand),
     Release,
     Destroy,
-    /// Turn what is held about an axis until this is the sum of its turns.
+    /// Turn the held object about an axis until the sum of its turns is this.
     TurnTo {
         axis: usize,
         degrees: i32,
@@ -140,7 +140,7 @@ fn show_panel(
     }
 }
 
-/// The command that carries out what is asked of the panel while a hand is selected.
+/// The command for a request to the panel while a hand is selected.
 fn command(request: Request, hand: Hand, turns: &mut TurnSums) -> Option<SimCommand> {
     Some(match request {
         Request::Select(hand) => SimCommand::Hand(HandCommand::Select(hand)),

@@ -27,7 +27,7 @@ pub const TITLE: &str = "Display Settings for tabletop";
 /// The size of each of the buttons below the settings, in points.
 const BUTTON: (f32, f32) = (120.0, 28.0);
 
-/// Why there is nothing to choose.
+/// The reason why there is no choice.
 const NO_OTHER_SIZE: &str = "The screen has no other";
 const NO_OTHER_RATE: &str = "The screen has no other at this resolution";
 const NO_OTHER_DEPTH: &str = "The screen has no other at this resolution and refresh rate";
@@ -69,7 +69,7 @@ impl DisplayDialog {
     pub const SIZE: (u32, u32) = (400, 340);
 }
 
-/// When the panel of a [`DisplayDialog`] is shown.
+/// The pass in which the panel of a [`DisplayDialog`] is shown.
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
 struct DisplayDialogPass;
 
@@ -242,7 +242,7 @@ fn choices(ui: &mut Ui, offer: &DisplayOffer, settings: &mut DisplaySettings) {
 struct Choice<T> {
     name: &'static str,
     offered: Vec<T>,
-    /// Why there is at most one.
+    /// The reason why there is at most one.
     why_none: &'static str,
 }
 

@@ -29,7 +29,7 @@ const LIST_HEIGHT: f32 = 180.0;
 /// The notices that the list shows.
 #[derive(Resource, Clone, Debug)]
 pub(crate) struct MessageList {
-    /// Which tones, in their order.
+    /// The listed tones, in order.
     tones: [bool; Tone::ALL.len()],
     /// The notice to be shown at the top of the list.
     sought: Option<u64>,
@@ -148,7 +148,7 @@ fn text(notices: &Notices, list: &MessageList) -> String {
 
 fn show(ui: &mut Ui, notices: &Notices, list: &mut MessageList) -> Option<Request> {
     let request = ui.horizontal(|ui| tools(ui, notices, list)).inner;
-    // Of a long fault, what is said first is to be seen.
+    // The beginning of a long fault is to be visible.
     let newest_fault = notices.unseen_faults().last().map(|fault| fault.number);
     let sought = list.sought.take().or(newest_fault);
     ui.separator();
@@ -163,7 +163,7 @@ fn show(ui: &mut Ui, notices: &Notices, list: &mut MessageList) -> Option<Reques
     request
 }
 
-/// Which notices to show, and what to do with them.
+/// The tools that filter notices and act on them.
 fn tools(ui: &mut Ui, notices: &Notices, list: &mut MessageList) -> Option<Request> {
     ui.spacing_mut().item_spacing.x = 4.0;
     for (tone, is_shown) in Tone::ALL.into_iter().zip(&mut list.tones) {

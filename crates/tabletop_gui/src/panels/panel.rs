@@ -1,4 +1,4 @@
-//! Which panels there are.
+//! The panels of the window.
 
 use bevy::reflect::Reflect;
 use serde::{Deserialize, Serialize};
@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Reflect, Serialize, Deserialize,
 )]
 pub enum Panel {
-    /// Speeds, what the script does, and what is recorded.
+    /// Speeds, the script and the recording.
     Status,
     /// Moves the user's camera.
     Camera,
-    /// The robot's joints, and what is known of it.
+    /// The robot's joints and state.
     Robot,
     /// Hands, rotations and recording.
     DemonstrationTools,

@@ -1,5 +1,5 @@
-//! The pause overlay, which covers view, panels and bar (report section 2.4); with the Timeline open, the view alone. What is open in
-//! the foreground stays before it.
+//! The pause overlay, which covers view, panels and bar (report section 2.4); with the Timeline open, the view alone. Foreground windows
+//! stay in front of it.
 
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
@@ -10,7 +10,7 @@ use crate::panels::{Panel, Panels, context_menu::ContextMenu};
 /// Size of the text in points.
 const TEXT_SIZE: f32 = 36.0;
 
-/// What is below the overlay keeps a third of its display values. The graphics card blends linear values, of which that
+/// Everything below the overlay keeps a third of its display values. The graphics card blends linear values, of which that
 /// is about a third to the power of 2.2.
 const DIMMING: egui::Color32 = egui::Color32::from_black_alpha(232);
 
@@ -81,7 +81,7 @@ mod tests {
         assert_eq!(text(&Keymap::default()), reported);
     }
 
-    /// How often a button in a panel of this order is clicked while the simulation is paused.
+    /// Number of clicks that a button in a panel of this order receives while the simulation is paused.
     fn clicks_through(order: egui::Order, panels: Panels) -> u32 {
         let frame = move |ui: &mut egui::Ui, clicks: &mut u32| {
             let panel = egui::Area::new(egui::Id::new("panel")).order(order);

@@ -1,4 +1,4 @@
-//! The Robot window (report sections 5 and 5.1, figure 9c): the robot's joints by hand, and what is known of it.
+//! The Robot window (report sections 5 and 5.1, figure 9c): the robot's joints by hand, and its state.
 
 mod joint;
 mod model;

@@ -1,4 +1,4 @@
-//! The Status window (report figure 4): how fast the picture and the simulation are, what the script does, what is recorded.
+//! The Status window (report figure 4): speeds of the picture and the simulation, the script, the recording.
 
 use std::{path::PathBuf, time::Duration};
 
@@ -20,7 +20,7 @@ use crate::{
 /// The time over which speeds are averaged.
 const SPAN: Duration = Duration::from_secs(2);
 
-/// The simulated time is told so often while nothing else changes in the picture.
+/// Time between updates of the simulated time while nothing else changes in the picture.
 const STILL_SPAN: Duration = Duration::from_secs(1);
 
 /// Height of a row, and width of the names of the values, in points.
@@ -30,7 +30,7 @@ const NAME_WIDTH: f32 = 84.0;
 /// Ticks between two frames of a recording (report section 4.1: four images a second).
 const TICKS_PER_FRAME: u64 = TICKS_PER_SECOND as u64 / 4;
 
-/// The renderer of the window. Whoever opens the window sets it.
+/// The renderer of the window. The code that opens the window sets it.
 #[derive(Resource, Clone, Debug, PartialEq, Eq)]
 pub struct Renderer {
     /// The name that it gives itself.
@@ -58,7 +58,7 @@ struct Speed {
     mean: Means,
 }
 
-/// What is shown of them.
+/// The shown means.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Means {
     /// Pictures a second.

@@ -47,7 +47,7 @@ struct Toasts {
 #[derive(Clone, Debug, PartialEq)]
 struct Toast {
     notice: Notice,
-    /// When it goes away, in seconds.
+    /// The time at which it disappears, in seconds.
     until: f64,
 }
 

@@ -23,7 +23,7 @@ const TITLE_HEIGHT: f32 = 26.0;
 /// Height of a panel that has not been seen yet.
 const UNKNOWN_HEIGHT: f32 = 160.0;
 
-/// For how long, in seconds, and how thickly, in points, the border of a panel flashes.
+/// Duration, in seconds, and thickness, in points, of a panel's flashing border.
 const FLASH_SECONDS: f64 = 0.4;
 const FLASH_WIDTH: f32 = 2.0;
 

@@ -34,7 +34,7 @@ pub(crate) fn hold_button(
 ) -> Hold {
     let button = Button::new(text.into())
         .min_size(vec2(32.0, 0.0))
-        // What can only be clicked is let go of after a second.
+        // A widget that can only be clicked would be let go of after a second.
         .sense(Sense::click_and_drag());
     let button = ui
         .add_enabled(is_enabled, button)

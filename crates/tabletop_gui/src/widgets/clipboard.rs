@@ -37,7 +37,7 @@ impl Clipboard {
         }
     }
 
-    /// Why a text could not be put there, told once.
+    /// The reason why a text could not be put there, reported once.
     pub fn take_problem(&self) -> Option<String> {
         self.problem().take()
     }

@@ -199,7 +199,7 @@ mod tests {
         }
     }
 
-    /// What a click so far from the left makes of the angle.
+    /// The angle after a click this far from the left.
     fn clicked_at(x: f32, degrees: i32) -> i32 {
         let context = Context::default();
         let mut degrees = degrees;

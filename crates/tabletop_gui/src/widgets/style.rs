@@ -9,7 +9,7 @@ use bevy_egui::{
 /// The colour of what is on or worked at.
 pub(crate) const ACCENT: Color32 = Color32::from_rgb(64, 196, 180);
 
-/// Behind what is selected.
+/// Background of selected things.
 const SELECTED: Color32 = Color32::from_rgb(26, 78, 73);
 
 /// Behind the contents of panels, and behind their titles.
@@ -32,7 +32,7 @@ const TEXT: Color32 = Color32::from_rgb(212, 216, 222);
 const STRONG: Color32 = Color32::from_rgb(245, 247, 250);
 const WEAK: Color32 = Color32::from_rgb(150, 157, 168);
 
-/// What has happened, what warns, and what is wrong.
+/// Colours of events, warnings and faults.
 pub(crate) const EVENT: Color32 = TEXT;
 pub(crate) const WARNING: Color32 = Color32::from_rgb(255, 200, 90);
 pub(crate) const FAULT: Color32 = Color32::from_rgb(255, 125, 115);
@@ -43,7 +43,7 @@ pub(crate) const GAP: f32 = 6.0;
 /// Around the contents of a panel, in points.
 pub(crate) const MARGIN: i8 = 8;
 
-/// Radius of the corners of panels and of what is in them, in points.
+/// Radius of the corners of panels and their parts, in points.
 pub(crate) const CORNER: u8 = 5;
 const SMALL_CORNER: u8 = 3;
 

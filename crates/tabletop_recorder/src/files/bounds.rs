@@ -1,4 +1,4 @@
-//! What a session log may hold: what task files may, and of everything else what makes sense. A stranger's log is checked when it is
+//! Bounds on the content of a session log: those of task files, and sensible ones for everything else. A stranger's log is checked when it is
 //! read.
 
 mod command;

@@ -3,7 +3,7 @@
 /// The durability of recordings over a loss of power. A crash or a kill of the program costs at most a tick in any case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Durability {
-    /// What the operating system has written by then: for recordings that are thrown away.
+    /// As much as the operating system has written by then: for recordings that are thrown away.
     None,
     /// All of it, once it is finished.
     #[default]

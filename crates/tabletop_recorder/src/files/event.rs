@@ -55,7 +55,7 @@ pub enum Event<'a> {
     InitializeControl {
         /// Its id.
         control: &'a str,
-        /// What kind of control it is.
+        /// The kind of control.
         kind: &'a str,
         /// Id of the object.
         object: &'a str,
@@ -71,7 +71,7 @@ pub enum Event<'a> {
     },
     /// Somebody has operated a control.
     Trigger {
-        /// Who.
+        /// The operator.
         by: &'a Operator,
         /// Id of the control.
         control: &'a str,
@@ -87,14 +87,14 @@ pub enum Event<'a> {
     },
     /// A bond was made, or is tighter.
     Fasten {
-        /// Who.
+        /// The operator.
         by: &'a Operator,
         /// The bond.
         bond: &'a Bond,
     },
     /// A bond is looser, or no more.
     Loosen {
-        /// Who.
+        /// The operator.
         by: &'a Operator,
         /// The bond.
         bond: &'a Bond,

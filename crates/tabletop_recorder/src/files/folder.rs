@@ -22,8 +22,8 @@ pub(crate) struct Folder {
 }
 
 impl Folder {
-    /// Has a folder filled under a hidden name, gives it its own, and opens it. One that is there already is moved aside to the same
-    /// name with the first free number appended, unless a program is recording into it. If anything fails, all is as before.
+    /// Fills a folder under a hidden name, gives it its own name, and opens it. An existing folder is moved aside to the same
+    /// name with the first free number appended, unless a program is recording into it. If anything fails, nothing has changed.
     pub(crate) fn create<F, T>(
         path: &Path,
         storage: &Storage,
@@ -49,7 +49,7 @@ impl Folder {
         let opened =
             filled.and_then(|filled| folder.take_the_place(&hidden, |folder| open(folder, filled)));
         if opened.is_err() {
-            // What has failed is reported; more cannot be done.
+            // The failure is reported; more cannot be done.
             let _ = hidden.remove();
         }
         opened
@@ -71,7 +71,7 @@ impl Folder {
             .map_err(RecorderError::create(&self.path))
             .and_then(|()| open(self.clone()));
         if opened.is_err() {
-            // What has failed is reported; more cannot be done.
+            // The failure is reported; more cannot be done.
             if is_placed {
                 let _ = self.storage.rename(&self.path, &hidden.path);
             }
@@ -118,7 +118,7 @@ impl Folder {
         }
     }
 
-    /// Moves what is there to a name that is free, which is returned.
+    /// Moves the existing folder to a free name, which is returned.
     fn move_aside(&self) -> Result<PathBuf, RecorderError> {
         let aside = first_free_name(&self.path);
         match self.storage.rename(&self.path, &aside) {
@@ -179,7 +179,7 @@ impl Folder {
         self.pictures(segment).join(format!("{frame}.{name}.png"))
     }
 
-    /// The file that says what is about to be done to its files.
+    /// The file of the intention to change its files.
     pub(crate) fn intent(&self) -> PathBuf {
         self.path.join(".intent.json")
     }
@@ -199,7 +199,7 @@ impl Folder {
         Self::at(&self.undone().pictures(segment), &self.storage)
     }
 
-    /// Moves text and pictures of a segment to another folder, as far as they are not there yet.
+    /// Moves text and pictures of a segment to another folder, unless they are already there.
     pub(crate) fn move_segment(&self, segment: u32, to: &Self) -> Result<(), RecorderError> {
         for (from, to) in [
             (self.pictures(segment), to.pictures(segment)),
@@ -255,13 +255,13 @@ impl Folder {
         }
     }
 
-    /// Has its files outlive a loss of power.
+    /// Makes its files outlive a loss of power.
     pub(crate) fn sync(&self) -> Result<(), RecorderError> {
         let synced = self.storage.sync_tree(&self.path);
         synced.map_err(RecorderError::write(&self.path))
     }
 
-    /// Has its name outlive a loss of power.
+    /// Makes its name outlive a loss of power.
     pub(crate) fn sync_name(&self) -> Result<(), RecorderError> {
         let synced = self.storage.sync_folder(parent_of(&self.path));
         synced.map_err(RecorderError::write(&self.path))

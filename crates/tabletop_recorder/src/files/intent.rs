@@ -139,7 +139,7 @@ pub(crate) fn fulfil_what_was_left(folder: &Folder) -> Result<(), RecorderError>
     let session = folder.session();
     let lock = folder.storage().open_to_read(&session);
     let lock = lock.map_err(|error| interrupted(RecorderError::read(&session)(error)))?;
-    // Who makes the recording, or reads it at the same time, does it. A process that is being started has the locks of the program
+    // Only the maker or another reader of the recording does it now. A process that is being started has the locks of the program
     // that starts it for a moment, and does nothing.
     let is_ours = lock.lock_unless(|| !is_taken(&path));
     if !is_taken(&path) {

@@ -35,10 +35,10 @@ pub(crate) fn reads_back(json: &[u8]) -> bool {
     !has_null && depth <= MOST_LEVELS
 }
 
-/// What is seen of JSON without reading it.
+/// The outline of a JSON text that has not been read.
 #[derive(Debug, Default, PartialEq)]
 struct JsonOutline {
-    /// How deep brackets are nested, at most.
+    /// Largest depth of nested brackets.
     depth: usize,
     has_null: bool,
 }

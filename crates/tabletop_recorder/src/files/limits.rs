@@ -1,4 +1,4 @@
-//! Limits of what is read.
+//! Limits on files that are read.
 
 /// Bytes of a session log.
 pub(crate) const MOST_SESSION_BYTES: u64 = 256 << 20;

@@ -87,7 +87,7 @@ impl LogFile {
         rest.map_err(RecorderError::read(&self.path))
     }
 
-    /// Has what was appended outlive a loss of power.
+    /// Makes the appended bytes outlive a loss of power.
     pub(crate) fn sync(&self) -> Result<(), RecorderError> {
         self.file.sync().map_err(RecorderError::write(&self.path))
     }

@@ -15,7 +15,7 @@ pub(crate) fn color_png(picture: &Picture) -> Result<Vec<u8>, png::EncodingError
     encode(picture, png::ColorType::Rgba, png::BitDepth::Eight, &rgba)
 }
 
-/// How far away is what each pixel shows, in 16 bits: tenths of a millimetre along the axis of view, 0 where nothing
+/// The depth of each pixel, in 16 bits: tenths of a millimetre along the axis of view, 0 where nothing
 /// is, 65535 for that far and beyond.
 pub(crate) fn depth_png(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
     let values = picture.depth.iter().map(|&depth| match depth {

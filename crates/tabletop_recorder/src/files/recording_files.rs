@@ -177,7 +177,7 @@ impl RecordingFiles {
         written.map_err(RecorderError::write(path))
     }
 
-    /// Has what was written in a tick outlive a loss of power, if it is to.
+    /// Makes the files of a tick outlive a loss of power, if they are to.
     pub(crate) fn end_tick(&self) -> Result<(), RecorderError> {
         match self.durability {
             Durability::EveryTick => [&self.session, &self.states, &self.joints, &self.text]
@@ -187,7 +187,7 @@ impl RecordingFiles {
         }
     }
 
-    /// Begins the end of the recording: until [`finish`](Self::finish) has succeeded, what is written is taken back.
+    /// Begins the end of the recording: until [`finish`](Self::finish) has succeeded, everything written is taken back.
     pub(crate) fn begin_end(&self, first_frame: u64, line: &[u8]) -> Result<Intent, RecorderError> {
         let before = self.lengths();
         let intent = Intent::Finish {

@@ -1,4 +1,4 @@
-//! Where segments begin, in the session log.
+//! Beginnings of segments in the session log.
 
 use serde::{Deserialize, Serialize};
 use tabletop_core::SimTick;
@@ -18,10 +18,10 @@ pub(crate) struct SegmentMark {
 }
 
 impl SegmentMark {
-    /// How its line begins; that of a command begins with a tick.
+    /// The beginning of its line; that of a command begins with a tick.
     const BEGIN: &str = "{\"segment\":";
 
-    /// Whether a line is that of a mark.
+    /// True if a line is a mark.
     pub(crate) fn is_in(line: &str) -> bool {
         line.starts_with(Self::BEGIN)
     }
@@ -42,7 +42,7 @@ impl SegmentMark {
         })
     }
 
-    /// When a segment began, by lines of a session log.
+    /// The tick in which a segment began, by the lines of a session log.
     pub(crate) fn find(log: &str, segment: u32) -> Option<SimTick> {
         let lines = log.lines().filter(|line| Self::is_in(line));
         let mut marks = lines.filter_map(|line| from_json::<Self>(line.as_bytes()).ok());

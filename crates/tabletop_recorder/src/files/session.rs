@@ -77,7 +77,7 @@ pub struct SessionObject {
 pub struct SessionCommand {
     /// The tick in which it was.
     pub tick: u64,
-    /// Who gave it.
+    /// The actor who gave it.
     pub actor: Actor,
     /// The command.
     pub command: SimCommand,
@@ -86,7 +86,7 @@ pub struct SessionCommand {
 /// The content of a session log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Session {
-    /// Who wrote it, and how.
+    /// Its header: the program that wrote it, and the settings.
     pub header: SessionHeader,
     /// The world before the first recorded tick.
     pub scene: SessionScene,
@@ -94,7 +94,7 @@ pub struct Session {
     pub earlier: Vec<SessionCommand>,
     /// The commands of the recording, in their order.
     pub commands: Vec<SessionCommand>,
-    /// When its segments began, but for the first, which began with the recording.
+    /// The first ticks of its segments, without that of the first one, which is the recording's.
     pub segments: Vec<SimTick>,
 }
 
@@ -262,7 +262,7 @@ impl Course {
     }
 }
 
-/// A header tells its format, whatever else it holds.
+/// A header has its format, whatever else it holds.
 fn parse_header(path: &Path, line: (usize, &str)) -> Result<SessionHeader, RecorderError> {
     #[derive(Deserialize)]
     struct Format {
@@ -346,7 +346,7 @@ mod tests {
         let mut bits = 0x3fcd_e5c8_0f3e_0d9b_u64;
         for _ in 0..10_000 {
             bits = bits.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
-            // Between 1/16 and 16: what joints are told.
+            // Between 1/16 and 16, as in commands to joints.
             let value = f64::from_bits(0x3fb0_0000_0000_0000 + bits % 0x0080_0000_0000_0000);
             let drive = (RobotJoint::LeftS0, Drive::Velocity(value));
             let command = given(1, RobotCommand::drive([drive]));

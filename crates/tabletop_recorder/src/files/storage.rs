@@ -12,7 +12,7 @@ use std::{
     time::Duration,
 };
 
-/// How often a lock is tried to get.
+/// Number of attempts to get a lock.
 const LOCK_ATTEMPTS: u32 = 100;
 const BETWEEN_LOCK_ATTEMPTS: Duration = Duration::from_millis(5);
 
@@ -111,7 +111,7 @@ impl Storage {
         Err(fault.error())
     }
 
-    /// Where a call is to fail, no power is lost.
+    /// If a call is to fail, no power is lost.
     fn waits_for_disk(&self) -> bool {
         self.failpoint.is_none()
     }
@@ -163,7 +163,7 @@ impl Storage {
         let part = part_of(path);
         let written = self.write_and_rename(&part, path, bytes, sync);
         if written.is_err() {
-            // What could not be written need not be there.
+            // An unwritten file need not exist.
             let _removed = self.remove_file(&part);
         }
         written
@@ -196,7 +196,7 @@ impl Storage {
         fs::create_dir(path)
     }
 
-    /// Makes a folder and those around it, as far as they are not there.
+    /// Makes a folder and its missing parents.
     pub(crate) fn create_folders(&self, path: &Path) -> io::Result<()> {
         self.may()?;
         fs::create_dir_all(path)
@@ -230,7 +230,7 @@ impl Storage {
         })
     }
 
-    /// Has what is in a folder outlive a loss of power.
+    /// Makes the content of a folder outlive a loss of power.
     pub(crate) fn sync_folder(&self, path: &Path) -> io::Result<()> {
         self.may()?;
         // Windows opens no folders.
@@ -240,7 +240,7 @@ impl Storage {
         }
     }
 
-    /// Has a folder, and all that is in it, outlive a loss of power.
+    /// Makes a folder with all its content outlive a loss of power.
     pub(crate) fn sync_tree(&self, folder: &Path) -> io::Result<()> {
         for entry in self.entries(folder)? {
             match entry.symlink_metadata()?.is_dir() {
@@ -272,7 +272,7 @@ impl StoredFile {
         self.file.write_all(bytes)
     }
 
-    /// Keeps the first `len` bytes; what is appended comes after them.
+    /// Keeps the first `len` bytes; appended bytes come after them.
     pub(crate) fn cut(&mut self, len: u64) -> io::Result<()> {
         self.storage.may()?;
         self.file.set_len(len)?;

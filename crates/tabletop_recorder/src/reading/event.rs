@@ -61,7 +61,7 @@ pub enum Occurrence {
     InitializeControl {
         /// Its id.
         control: String,
-        /// What kind of control it is.
+        /// The kind of control.
         kind: String,
         /// Id of the object.
         object: String,
@@ -77,7 +77,7 @@ pub enum Occurrence {
     },
     /// Somebody has operated a control.
     Trigger {
-        /// Who.
+        /// The operator.
         by: Operator,
         /// Id of the control.
         control: String,
@@ -93,14 +93,14 @@ pub enum Occurrence {
     },
     /// A bond was made, or is tighter.
     Fasten {
-        /// Who.
+        /// The operator.
         by: Operator,
         /// The bond.
         bond: Bond,
     },
     /// A bond is looser, or no more.
     Loosen {
-        /// Who.
+        /// The operator.
         by: Operator,
         /// The bond.
         bond: Bond,

@@ -109,7 +109,7 @@ impl RecordingReader {
         &self.session
     }
 
-    /// Who wrote the recording, and how.
+    /// The header: the program that wrote the recording, and the settings.
     pub fn header(&self) -> &SessionHeader {
         &self.session.header
     }
@@ -219,11 +219,8 @@ impl RecordingReader {
         rows::states(&self.folder.states())
     }
 
-    /// Where every object was at the end of a tick, and how fast, by id. Objects that were deleted before are there with their last
+    /// Pose and velocity of every object at the end of a tick, by id. Deleted objects are included with their last
     /// state.
-    ///
-    /// # Errors
-    /// As for [`states`](Self::states).
     pub fn states_at(&self, tick: SimTick) -> Result<BTreeMap<String, StateRow>, RecorderError> {
         let rows = self.states()?.into_iter();
         let until = rows.take_while(|row| row.tick <= tick);

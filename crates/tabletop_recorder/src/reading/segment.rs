@@ -43,7 +43,7 @@ impl RecordedSegment {
     }
 }
 
-/// The objects in the hands, as far as events tell.
+/// The objects in the hands, as known from events.
 #[derive(Debug, Default)]
 pub(super) struct HandContents(BTreeMap<Hand, String>);
 

@@ -129,7 +129,7 @@ impl Episode {
         self.clock.is_frame(tick)
     }
 
-    /// How many ticks come before a frame, from this one on.
+    /// Number of ticks before a frame, from this one on.
     pub(crate) fn ticks_to_frame(&self, tick: SimTick) -> u64 {
         self.clock.tick(self.clock.frame(tick)).0 - tick.0
     }

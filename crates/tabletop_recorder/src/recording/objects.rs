@@ -105,7 +105,7 @@ impl RecordedObjects {
         moved.collect()
     }
 
-    /// What stands for something in an image of ids.
+    /// The number of a subject in an image of ids.
     pub(crate) fn number_of(&self, shown: PixelSubject) -> u16 {
         let number = match shown {
             PixelSubject::Table => Some(1),

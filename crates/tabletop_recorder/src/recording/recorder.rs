@@ -22,7 +22,7 @@ use crate::{
 /// Why a recording cannot be started.
 pub(crate) const IS_RUNNING: &str = "a recording is running; finish it first";
 
-/// Why no recording can be finished.
+/// The reason why no recording can be finished.
 pub(crate) const NONE_IS_RUNNING: &str = "no recording is running; start one first";
 
 /// Makes the recordings.
@@ -137,7 +137,7 @@ pub(crate) fn take_commands(
     }
 }
 
-/// How many ticks come before the next frame, if something is recorded: of a world at rest, the others leave nothing in a recording.
+/// Number of ticks before the next frame, if something is recorded: in a world at rest, the other ticks leave nothing in a recording.
 pub(crate) fn ticks_to_frame(recorder: Res<Recorder>, tick: Res<SimTick>) -> Option<u64> {
     let episode = recorder.episode.as_ref()?;
     Some(match recorder.finish {

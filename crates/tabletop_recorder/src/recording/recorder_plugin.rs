@@ -28,7 +28,7 @@ use crate::{
 /// [`Finish`]: tabletop_core::RecordingCommand::Finish
 #[derive(Clone, Debug)]
 pub struct RecorderPlugin {
-    /// The folder. What is there when a recording starts is moved aside.
+    /// The folder. An existing one is moved aside when a recording starts.
     pub folder: PathBuf,
     /// The initial [settings](SessionSettings).
     pub header: Map<String, Value>,

@@ -1,4 +1,4 @@
-//! Which objects have changed enough to be reported.
+//! Tracking of objects: whether they have changed enough to be reported.
 
 use bevy::math::Vec3;
 use tabletop_core::Pose;
@@ -15,7 +15,7 @@ const REPORTED_DEGREES: f32 = 0.5;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tracked {
     pub(crate) id: String,
-    /// Which `create` line of the recording is its, from 1.
+    /// Number of its `create` line in the recording, from 1.
     pub(crate) number: usize,
     /// Its state at the end of the tick before.
     last: Option<ObjectState>,

@@ -1,4 +1,4 @@
-//! Whatever call to the file system fails, and if the program is killed at any of them, what is left of a recording runs again to the
+//! Whichever call to the file system fails, and if the program is killed at any of them, the remains of a recording replay to the
 //! same files.
 
 use std::{
@@ -66,7 +66,7 @@ fn try_every_fault(script: &Script) {
     assert!(ends.len() > 10, "the recordings end only in {ends:?}");
 }
 
-/// Checks what is left of a recording. Returns its last tick, if there is one.
+/// Checks the remains of a recording. Returns its last tick, if there is one.
 fn check(place: &Place) -> Result<Option<SimTick>, String> {
     let is_earlier = |name: &&str| place.path().join(name).join("note").exists();
     let earlier = ["demo", "demo-1"].into_iter().filter(is_earlier).count();

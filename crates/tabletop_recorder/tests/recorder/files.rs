@@ -1,4 +1,4 @@
-//! What the files of a recording say.
+//! Contents of a recording's files.
 
 use std::{collections::BTreeMap, fs};
 

@@ -52,7 +52,7 @@ fn fill(disk: &Path, bytes: usize) {
     let _full = fs::write(disk.join("filler"), vec![0; bytes]);
 }
 
-/// What is told of the one recording that failed.
+/// The report of the one recording that failed.
 fn failure(app: &mut App) -> (PathBuf, String) {
     let mut facts = heard(app);
     let place = |fact: &SimFact| matches!(fact, SimFact::RecordingFailed { .. });

@@ -39,7 +39,7 @@ fn demonstration() -> Vec<(u64, SimCommand)> {
     ]
 }
 
-/// What is the same in the timeline of a recording that is made and of one that is read.
+/// The common part of the timelines of a running recording and of one that is read.
 fn comparable(timeline: &Timeline) -> Timeline {
     let pictures = timeline.pictures.iter();
     Timeline {

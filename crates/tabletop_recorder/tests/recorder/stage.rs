@@ -352,7 +352,7 @@ fn moment(world: &World) -> Moment {
     }
 }
 
-/// Turns the world to a moment. What comes back and goes is no fact: nobody is told while the world rolls back.
+/// Turns the world to a moment. Objects that come back or go cause no facts: nothing is reported while the world rolls back.
 fn turn(world: &mut World, to: &Moment, fact: SimFact) {
     let now = objects(world);
     for spec in now.iter().filter(|spec| !to.objects.contains(spec)) {

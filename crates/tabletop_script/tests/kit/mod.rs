@@ -54,7 +54,7 @@ impl Folder {
         fs::write(self.0.join(name), text).unwrap();
     }
 
-    /// How an Octave runs its scripts.
+    /// Settings with which an Octave runs its scripts.
     pub fn settings(&self) -> ScriptSettings {
         octave(&self.0)
     }
@@ -66,7 +66,7 @@ impl Drop for Folder {
     }
 }
 
-/// How an Octave runs the scripts of a folder.
+/// Settings with which an Octave runs the scripts of a folder.
 pub fn octave(folder: &Path) -> ScriptSettings {
     let Ok(engine) = "octave".parse::<EngineChoice>();
     let mut settings = ScriptSettings {
@@ -82,12 +82,12 @@ pub fn octave(folder: &Path) -> ScriptSettings {
     settings
 }
 
-/// Where the joints of the robot are.
+/// Positions of the robot's joints.
 pub fn positions(robot: &Robot) -> Vec<f64> {
     robot.joints.iter().map(|joint| joint.position).collect()
 }
 
-/// Where all joints were at the end of each tick in which a script was called.
+/// Positions of all joints at the end of each tick in which a script was called.
 #[derive(Resource, Default)]
 pub struct Track(pub Vec<Vec<f64>>);
 
@@ -104,7 +104,7 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// An empty table, the hidden robot, and a script that has been told to start.
+    /// An empty table, the hidden robot, and a script that was commanded to start.
     pub fn start(settings: ScriptSettings) -> Self {
         let in_frames = settings.waiting != Waiting::Blocking;
         let mut app = App::new();
@@ -219,7 +219,7 @@ impl Stage {
         &self.app.world().resource::<Track>().0
     }
 
-    /// What the script has printed, and what was noted about it.
+    /// Output of the script, and remarks about it.
     pub fn printed(&self) -> String {
         let lines = self.events.iter().filter_map(|event| match event {
             ScriptEvent::Printed { line, .. } | ScriptEvent::Noted { line } => Some(line.as_str()),
@@ -228,7 +228,7 @@ impl Stage {
         lines.collect::<Vec<_>>().join("\n")
     }
 
-    /// Why the script has failed.
+    /// The reason why the script has failed.
     pub fn failure(&self) -> Option<&str> {
         self.events.iter().find_map(|event| match event {
             ScriptEvent::Failed { reason } => Some(reason.as_str()),

@@ -7,7 +7,7 @@ use super::notices::{Notices, Tone};
 /// A row: a part of a notice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Row {
-    /// Which notice, counted from the oldest one.
+    /// Number of the notice, counted from the oldest one.
     pub notice: usize,
     /// The part of its text, in bytes.
     pub part: Range<usize>,

@@ -12,7 +12,7 @@ use crate::widgets::{button::hold_button, name::name};
 /// Width of the track of the slider, in points.
 pub(super) const TRACK_WIDTH: f32 = 196.0;
 
-/// Why joints cannot be moved by hand.
+/// The reason why joints cannot be moved by hand.
 const SCRIPT_MOVES: &str = "a script moves the arms";
 
 /// So high that the list of joints needs no scroll bar, in points.
@@ -120,7 +120,7 @@ pub(super) fn goal(
         .on_hover_text("Where the joint is to go")
         .on_disabled_hover_text(SCRIPT_MOVES);
     name(&slider, WidgetType::Slider, "Goal");
-    // What is as wide as a gripper opens is released where the slider cannot go any farther.
+    // An object as wide as a gripper opens is released where the slider cannot go any farther.
     let is_wide_open = layout.is_gripper() && state.position >= largest && value >= largest;
     if value != shown || is_wide_open && is_confirmed(&slider) {
         selection.goal = Some(value);

@@ -1,4 +1,4 @@
-//! What the recording teaches: its steps, what is required of the objects, and the robot that does it.
+//! The lesson of the recording: its steps, its requirements on objects, and the robot that imitates.
 
 use bevy_egui::egui::{
     CollapsingHeader, Response, RichText, ScrollArea, Ui, WidgetInfo, WidgetType,

@@ -20,7 +20,7 @@ pub(crate) struct Model<'a> {
     pub pace: Pace,
     pub history: History,
     pub keymap: &'a Keymap,
-    /// What the recording shows.
+    /// The task of the recording.
     pub task: &'a ShownTask,
     pub imitating: &'a Imitating,
 }

@@ -13,7 +13,7 @@ use tabletop_core::{Timeline, TimelinePicture};
 /// So many pictures are kept.
 const MOST: usize = 64;
 
-/// So many pictures are read in a frame, so that it does not take long.
+/// Number of pictures that are read in a frame, so that it does not take long.
 const MOST_A_FRAME: usize = 4;
 
 /// The pictures of the present recording that were needed last.

@@ -1,4 +1,4 @@
-//! What the recording shows, step by step, below the segments.
+//! The sentences of the recording's task, step by step, below the segments.
 
 use bevy_egui::egui::{
     FontId, Rect, Sense, Ui, WidgetInfo, WidgetType, pos2, text::LayoutJob, vec2,

@@ -9,7 +9,7 @@ use tabletop_core::{
 
 use super::*;
 
-/// What a test shows, and what was asked for.
+/// The model and the requests of a test.
 struct Desk {
     timeline: Timeline,
     playback: Playback,
@@ -117,7 +117,7 @@ fn harness(desk: Desk) -> Harness<'static, Desk> {
     harness
 }
 
-/// What a click on what has this name asks for.
+/// The requests of a click on the widget of this name.
 fn click(harness: &mut Harness<Desk>, name: &str) -> Vec<Request> {
     harness.get_by_label(name).click();
     harness.run();

@@ -137,7 +137,7 @@ fn texts(act: Option<&Act>) -> [String; 3] {
     ]
 }
 
-/// What the grippers took is marked upwards, what they let go of downwards.
+/// Grips are marked upwards, releases downwards.
 fn show_grips(ui: &mut Ui, model: &Model, axis: TimeAxis, top: f32) {
     for (number, grip) in model.timeline.grips.iter().enumerate() {
         let center = pos2(axis.x_of(grip.tick), top + GRIPS / 2.0);

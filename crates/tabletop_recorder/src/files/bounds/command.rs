@@ -1,4 +1,4 @@
-//! What commands may say.
+//! Bounds on commands.
 
 use bevy::math::Vec3;
 use tabletop_core::{

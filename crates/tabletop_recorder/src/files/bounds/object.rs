@@ -1,4 +1,4 @@
-//! What objects may be.
+//! Bounds on objects.
 
 use tabletop_core::{
     BondEnd, BondPoint, Change, Control, ControlKind, Dynamics, ObjectSpec, Part, Rgb, Shape,

@@ -1,4 +1,4 @@
-//! What scenes may hold.
+//! Bounds on scenes.
 
 use tabletop_core::{
     ChainSpec, JointedSpec, LidBoxSpec, SceneItem, SceneSpec, Table,

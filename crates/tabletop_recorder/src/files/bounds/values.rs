@@ -14,7 +14,7 @@ pub(super) const MOST_PARTS: usize = 100_000;
 /// Values in a command: markers, drives, letters of an id.
 pub(super) const MOST_VALUES: usize = 1 << 20;
 
-/// How far a joint turns, in radians: half a turn to each side, and what is rounded.
+/// Angles of a joint, in radians: half a turn to each side, with room for rounding.
 pub(super) const ANGLES: RangeInclusive<f32> = -3.15..=3.15;
 
 pub(super) const FRICTIONS: RangeInclusive<f32> = 0.0..=1000.0;

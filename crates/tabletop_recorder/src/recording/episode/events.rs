@@ -145,7 +145,7 @@ impl Episode {
                 last.color = act.object.as_ref().and_then(|id| self.objects.color(id));
                 last.act = Some(act);
             }
-            // What falls off the world is lost to its hand, in the middle of a segment.
+            // An object that falls off the world is lost to its hand, in the middle of a segment.
             (Manipulator::Hand(_), _) => {}
         }
     }
