@@ -62,10 +62,10 @@ impl Shape {
                     color: handle_color,
                 };
                 let plate = Self::Block { span, color };
-                Composition::Lid([
+                Composition::Lid(Box::new([
                     Part::new("", Pose::IDENTITY, plate),
                     Part::new("", on_top, handle),
-                ])
+                ]))
             }
             Self::Control(ref control) => Composition::Control(control),
             Self::BondPoint(ref point) => Composition::BondPoint(point),
@@ -128,7 +128,7 @@ pub enum Composition<'a> {
     /// A composite's parts.
     Parts(&'a [Part]),
     /// The plate of a lid and the handle on it.
-    Lid([Part; 2]),
+    Lid(Box<[Part; 2]>),
     /// A shape with states.
     Control(&'a Control),
     /// A point without extents.

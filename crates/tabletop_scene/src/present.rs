@@ -245,7 +245,7 @@ fn sayable(shape: &Shape) -> (Shape, Option<&'static str>) {
     match shape.composition() {
         Composition::Lid(parts) => (
             Shape::Composite {
-                parts: parts.into(),
+                parts: (*parts).into(),
             },
             Some("a task file has no lid without its box: it is saved as a composite"),
         ),

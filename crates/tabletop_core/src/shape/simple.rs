@@ -32,7 +32,7 @@ impl Shape {
                 Composition::Simple => simple.push(Part::new(id, pose, shape.clone())),
                 Composition::Parts(parts) => collect_all(parts),
                 Composition::Lid(parts) => {
-                    collect_all(&parts.map(|part| Part {
+                    collect_all(&(*parts).map(|part| Part {
                         id: id.to_owned(),
                         ..part
                     }));
