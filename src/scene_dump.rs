@@ -1,5 +1,7 @@
 //! Scenes of task files, as the command line writes them.
 
+mod mechanisms;
+
 use std::io::Write;
 
 use bevy::prelude::*;
@@ -7,8 +9,10 @@ use serde::Serialize;
 use tabletop_core::{JointKind, ObjectSpec, Part, Pose, SceneSpec, Shape};
 use tabletop_scene::{Assembly, IdAllocator, assemble};
 
-/// Writes a scene as JSON: the table, every object with its parts, and the joints, with ids as they will be on the table.
-/// Lengths in units, angles in degrees, colours as `#rrggbb`.
+use mechanisms::{BondDump, BondPointDump, ControlDump, bond_points, bonds, controls};
+
+/// Writes a scene as JSON: the table, every object with its parts, controls and bond points, the joints and bonds, with ids as they will be
+/// on the table. Lengths in units, angles in degrees, colours as `#rrggbb`.
 ///
 /// # Errors
 ///
@@ -24,6 +28,7 @@ struct SceneDump<'a> {
     table: TableDump,
     objects: Vec<ObjectDump<'a>>,
     joints: Vec<JointDump<'a>>,
+    bonds: Vec<BondDump>,
 }
 
 #[derive(Serialize)]
@@ -46,6 +51,10 @@ struct ObjectDump<'a> {
     velocity: Option<[f32; 3]>,
     descriptions: Vec<DescriptionDump<'a>>,
     parts: Vec<PartDump>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    controls: Vec<ControlDump<'a>>,
+    #[serde(rename = "bondPoints", skip_serializing_if = "Vec::is_empty")]
+    bond_points: Vec<BondPointDump<'a>>,
 }
 
 #[derive(Serialize)]
@@ -162,6 +171,7 @@ impl<'a> From<&'a Assembly> for SceneDump<'a> {
                     }
                 })
                 .collect(),
+            bonds: bonds(&assembly.objects),
         }
     }
 }
@@ -187,6 +197,8 @@ impl<'a> From<&'a ObjectSpec> for ObjectDump<'a> {
                 .into_iter()
                 .filter_map(dump_part)
                 .collect(),
+            controls: controls(spec),
+            bond_points: bond_points(spec),
         }
     }
 }

@@ -8,6 +8,7 @@ mod imitate;
 #[cfg(feature = "window")]
 mod keys;
 mod kinematics;
+mod language;
 mod multiply;
 mod panda;
 mod replay;

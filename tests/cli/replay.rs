@@ -44,6 +44,8 @@ fn every_shipped_scenario_replays_to_the_same_bytes() {
         "dock",
         "lock",
         "dispenser",
+        "valve",
+        "robot_valve",
     ] {
         let folder = recording(scenario, scenario);
         assert!(folder.join("0/0.png").exists(), "{scenario} has no picture");

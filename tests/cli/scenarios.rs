@@ -44,6 +44,7 @@ fn tasks_are_demonstrated() {
         "dock",
         "lock",
         "dispenser",
+        "valve",
         "stack_three",
         "swap",
         "wall",
@@ -91,6 +92,12 @@ fn the_robot_builds_a_tower() {
 fn the_robot_puts_down_a_block_as_wide_as_its_gripper() {
     passes("robot_place.ron");
     passes_with("robot_place.ron", &["--dynamic"]);
+}
+
+#[test]
+fn the_robot_screws_a_valve_tight() {
+    passes("robot_valve.ron");
+    passes_with("robot_valve.ron", &["--dynamic"]);
 }
 
 #[test]
@@ -175,9 +182,11 @@ fn every_shipped_scenario_has_its_test() {
         "rings.ron",
         "robot_place.ron",
         "robot_stack.ron",
+        "robot_valve.ron",
         "stack_three.ron",
         "stack_two_blocks.ron",
         "swap.ron",
+        "valve.ron",
         "wall.ron",
     ];
     assert_eq!(names, tested);

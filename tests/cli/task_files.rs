@@ -177,6 +177,45 @@ fn the_dump_holds_what_the_file_says() {
 }
 
 #[test]
+fn the_dump_holds_controls_bond_points_and_bonds() {
+    let path = shipped("tablesetup", "panel.xml");
+    let output = tabletop(&["check", "--dump", path.to_str().unwrap()]);
+    let dump: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let panel = &dump["objects"][0];
+    let [power, lights] = [0, 1].map(|control| &panel["controls"][control]);
+    assert_eq!(
+        power,
+        &serde_json::json!({
+            "id": "power", "type": "toggleSwitch", "location": [-3.0, 0.0, 0.0], "rotation": [0.0, 0.0, 0.0],
+            "state": 0, "stateName": "0", "states": 3, "downstream": ["lights"],
+        })
+    );
+    assert_eq!(
+        (&lights["stateName"], &lights["states"]),
+        (&"red".into(), &3.into())
+    );
+    let hole = &panel["bondPoints"][0];
+    assert_eq!(
+        (&hole["id"], &hole["end"]),
+        (&"hole".into(), &"host".into())
+    );
+    assert_eq!(hole["downstreamOverride"], serde_json::Value::Null);
+    assert_eq!(hole["tightness"][2]["downstreamLock"], true);
+    assert_eq!(hole["tightness"][1]["rotation"][2], -90.0);
+    let tip = &dump["objects"][1]["bondPoints"][0];
+    assert_eq!(
+        (&tip["id"], &tip["end"]),
+        (&"screwTip".into(), &"guest".into())
+    );
+    assert_eq!(
+        dump["bonds"],
+        serde_json::json!([{
+            "hostPoint": "hole", "host": "panel", "guestPoint": "screwTip", "guest": "screw", "tightness": 1,
+        }])
+    );
+}
+
+#[test]
 fn what_cannot_be_read_is_one_line_and_exit_code_2() {
     for arguments in [
         &["check", "no such file.xml"][..],

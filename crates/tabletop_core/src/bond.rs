@@ -51,7 +51,27 @@ impl HostPoint {
         let number = tightness.checked_sub(1)?;
         self.steps.get(number as usize)
     }
+
+    /// Where the guest point is at a tightness, in the frame of the host point.
+    pub fn place(&self, tightness: u32) -> Pose {
+        self.step(tightness)
+            .map_or(Pose::IDENTITY, |step| step.pose)
+    }
+
+    /// How the step to a tightness turns the guest: the axis in the frame of the host point, as long as the angle in rad. It turns the
+    /// shorter way; none if there is no such step, or if it does not turn.
+    pub fn turn_to(&self, tightness: u32) -> Option<Vec3> {
+        let before = self.place(tightness.checked_sub(1)?);
+        let turn = self.step(tightness)?.pose.rotation * before.rotation.inverse();
+        // Half a turn goes the way that is written.
+        let is_longer = turn.w < -LEAST_TURN;
+        let turn = if is_longer { -turn } else { turn }.to_scaled_axis();
+        (turn.length() > LEAST_TURN).then_some(turn)
+    }
 }
+
+/// An angle, in rad, below which a step turns nothing.
+const LEAST_TURN: f32 = 1e-3;
 
 /// A step of a host point's tightness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, Reflect)]
@@ -82,3 +102,28 @@ pub struct Bond {
 /// All bonds, in the order in which they were made.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bonds(pub Vec<Bond>);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_turns_the_shorter_way_from_the_one_before() {
+        let step = |degrees: f32| TightnessStep {
+            pose: Pose::from_degrees(Vec3::Z, Vec3::Z * degrees),
+            ..default()
+        };
+        let host = HostPoint {
+            steps: [0.0, -90.0, 180.0, 0.0, 360.0].map(step).into(),
+            ..default()
+        };
+        let degrees = |tightness| {
+            host.turn_to(tightness)
+                .map(|turn| turn.z.to_degrees().round())
+        };
+        let turns = [0, 1, 2, 3, 4, 5, 6].map(degrees);
+        assert_eq!(turns[..4], [None, None, Some(-90.0), Some(-90.0)]);
+        assert_eq!(turns[4].map(f32::abs), Some(180.0));
+        assert_eq!(turns[5..], [None, None]);
+    }
+}

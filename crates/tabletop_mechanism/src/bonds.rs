@@ -62,6 +62,27 @@ fn hosts(world: &World) -> Vec<(Point<'_>, &HostPoint)> {
     points
 }
 
+/// A guest point and a host point on the table.
+pub(crate) struct Pair {
+    pub guest: Pose,
+    pub host: Pose,
+    pub what: HostPoint,
+}
+
+/// The points of a bond that there is or could be.
+pub(crate) fn pair(world: &World, bond: &Bond) -> Option<Pair> {
+    let guests = guests(world);
+    let guest = guests.iter().find(|point| point.id == bond.guest_point)?;
+    let hosts = hosts(world);
+    let mut hosts = hosts.iter();
+    let (host, what) = hosts.find(|(point, _)| point.id == bond.host_point)?;
+    Some(Pair {
+        guest: guest.pose,
+        host: host.pose,
+        what: (*what).clone(),
+    })
+}
+
 /// The bond after turning a guest point, or an object's guest point, or the reason why it cannot be turned.
 pub(crate) fn turned(world: &World, guest: &str, turn: Turn) -> Result<Bond, String> {
     let objects: Vec<_> = objects(world).map(|(_, spec, pose)| (spec, pose)).collect();
@@ -115,8 +136,7 @@ pub(crate) fn bring_about(world: &mut World, bond: &Bond) -> Result<(), String> 
         .iter()
         .find(|(point, _)| point.id == bond.host_point)
         .map(|(point, host)| {
-            let step = host.step(bond.tightness);
-            let step = step.map_or(Pose::IDENTITY, |step| step.pose);
+            let step = host.place(bond.tightness);
             (point.object, point.place * step, point.pose * step)
         })
         .ok_or_else(missing)?;

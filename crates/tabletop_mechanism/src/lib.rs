@@ -44,6 +44,7 @@ mod network;
 mod obey;
 mod press;
 mod settle;
+mod wrench;
 
 use bevy::prelude::*;
 use tabletop_core::{Bonds, CommandSystems, RestApp as _, RestingSystems};
@@ -60,6 +61,8 @@ impl Plugin for MechanismPlugin {
         app.init_resource::<settle::New>()
             .init_resource::<press::Pressed>()
             .rollback_resource::<press::Pressed>()
+            .init_resource::<wrench::Wrenches>()
+            .rollback_resource::<wrench::Wrenches>()
             .rollback_resource::<Bonds>()
             .rollback_component::<bonds::BondJoint>()
             .add_systems(
@@ -67,6 +70,7 @@ impl Plugin for MechanismPlugin {
                 (
                     settle::settle.run_if(settle::any),
                     obey::obey,
+                    wrench::turn.run_if(wrench::is_possible),
                     press::press.run_if(press::is_possible),
                     take_in,
                 )

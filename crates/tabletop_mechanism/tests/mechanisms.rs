@@ -4,8 +4,8 @@
 use bevy::prelude::*;
 use tabletop_core::{
     BondEnd, BondPoint, Bonds, Change, Control, ControlKind, CustomControl, CustomState,
-    GuestPoint, Hand, HostPoint, IndicatorLights, LightState, Part, Side, TightnessStep,
-    ToggleSwitch, prelude::*,
+    GuestPoint, Hand, HostPoint, IndicatorLights, LightState, Operator, Part, RobotLayout, Side,
+    TightnessStep, ToggleSwitch, prelude::*,
 };
 use tabletop_demonstrator::DemonstratorPlugin;
 use tabletop_mechanism::MechanismPlugin;
@@ -258,21 +258,21 @@ fn screw(id: &str, at: Vec3) -> ObjectSpec {
     ObjectSpec::new(id, Pose::at(at), 1.0, Shape::Composite { parts })
 }
 
-/// A block with a hole in which a screw sinks by 0.2 a step.
+/// A block with a hole in which a screw sinks by 0.2 and turns by a quarter a step.
 fn nut(at: Vec3, mass: f32) -> ObjectSpec {
     let block = Shape::Block {
         span: Vec3::splat(1.0),
         color: Rgb::GRAY,
     };
-    let step = |z: f32| TightnessStep {
-        pose: Pose::from_degrees(Vec3::Z * z, Vec3::Z * 90.0),
+    let step = |number: f32| TightnessStep {
+        pose: Pose::from_degrees(Vec3::Z * -0.2 * number, Vec3::Z * 90.0 * number),
         ..default()
     };
     let hole = BondPoint {
         fit: "screw".into(),
         end: BondEnd::Host(HostPoint {
             downstream: "light".into(),
-            steps: [-0.2, -0.4, -0.6].map(step).into(),
+            steps: [1.0, 2.0, 3.0].map(step).into(),
             ..default()
         }),
     };
@@ -362,4 +362,77 @@ fn the_bonds_of_what_is_destroyed_are_no_more() {
     assert_eq!(state(&app, "light"), 0);
     fasten(&mut app, "other");
     assert_eq!(app.world().resource::<Bonds>().0.len(), 1);
+}
+
+/// Lets the robot's first gripper be at a pose, with an object in it, for a tick.
+fn grip(app: &mut App, object: &str, gripper: Pose) -> Vec<SimFact> {
+    let object = app.world().resource::<ObjectIndex>().get(object).unwrap();
+    let mut robot = app.world_mut().resource_mut::<Robot>();
+    robot.limbs[0].holds = vec![object];
+    robot.limbs[0].end_effector = gripper;
+    app.world_mut().resource_mut::<Messages<SimFact>>().clear();
+    app.step(1);
+    let facts = app.world().resource::<Messages<SimFact>>();
+    facts.get_cursor().read(facts).cloned().collect()
+}
+
+/// Turns a gripper with the screw about the vertical by so many degrees, and tells how tight it was after each step.
+fn wrench(app: &mut App, from: f32, to: f32) -> Vec<u32> {
+    let mut steps = Vec::new();
+    for number in 0..=30_u8 {
+        let angle = from + (to - from) * f32::from(number) / 30.0;
+        let gripper = Pose::from_degrees(Vec3::Z, Vec3::Z * angle);
+        for fact in grip(app, "screw", gripper) {
+            if let SimFact::Fastened { cause, by, bond } | SimFact::Loosened { cause, by, bond } =
+                fact
+            {
+                assert_eq!(cause, None);
+                let limb = app.world().resource::<RobotLayout>().limbs[0].name;
+                assert_eq!(by, Operator::Limb(limb));
+                steps.push(bond.tightness);
+            }
+        }
+    }
+    steps
+}
+
+/// A screw that is held over the hole of a nut.
+fn screw_at_the_hole(hole: Vec3) -> App {
+    let mut app = app(vec![
+        nut(Vec3::Z * 0.5, 0.0),
+        screw("screw", Vec3::new(2.0, 0.0, 1.1)),
+        control("light", Vec3::X * 5.0, lights(4, &[])),
+    ]);
+    let (hand, object) = (Hand::Left, "screw".into());
+    app.world_mut()
+        .write_command(HandCommand::Grasp { hand, object });
+    let location = hole;
+    app.world_mut()
+        .write_command(HandCommand::MoveTo { hand, location });
+    app.step(60);
+    app
+}
+
+#[test]
+fn a_gripper_turns_a_screw_in_and_out_by_the_angle_of_each_step() {
+    let mut app = screw_at_the_hole(Vec3::Z * 1.1);
+    assert_eq!(wrench(&mut app, 10.0, 95.0), []);
+    assert_eq!(wrench(&mut app, 95.0, 105.0), [1]);
+    assert_eq!(wrench(&mut app, 105.0, 285.0), [2, 3]);
+    assert_eq!(state(&app, "light"), 3);
+    // It goes no further, and turning on does not have to be taken back.
+    assert_eq!(wrench(&mut app, 285.0, 600.0), []);
+    assert_eq!(wrench(&mut app, 600.0, 515.0), []);
+    assert_eq!(wrench(&mut app, 515.0, 505.0), [2]);
+    assert_eq!(wrench(&mut app, 505.0, 320.0), [1, 0]);
+    assert_eq!(state(&app, "light"), 0);
+    assert_eq!(wrench(&mut app, 320.0, 0.0), []);
+}
+
+#[test]
+fn a_gripper_away_from_the_hole_turns_nothing_in() {
+    for place in [Vec3::Z * 1.5, Vec3::new(0.4, 0.0, 1.1)] {
+        let mut app = screw_at_the_hole(place);
+        assert_eq!(wrench(&mut app, 0.0, 300.0), [], "{place}");
+    }
 }

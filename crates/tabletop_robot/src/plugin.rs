@@ -92,6 +92,7 @@ impl Plugin for RobotPlugin {
                         stand_at_table.run_if(table_has_come),
                         obey,
                         grips::give_to_hands,
+                        grips::follow_bonds,
                     )
                         .chain()
                         .in_set(CommandSystems::Robot),

@@ -1,9 +1,11 @@
 //! Grips: the objects in the grippers.
 
+use std::collections::BTreeSet;
+
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
 use tabletop_core::{
-    Held, Holder, LimbId, LimbName, ObjectSpec, Pose, Robot, RobotLayout, SimFact,
+    Bonds, Held, Holder, LimbId, LimbName, ObjectSpec, Pose, Robot, RobotLayout, SimFact,
 };
 use tabletop_physics::{Carry, hold, let_go, pull_velocity};
 
@@ -118,6 +120,38 @@ pub(crate) fn pull_jointed(
             if let Ok((transform, mut velocity)) = objects.get_mut(grip.object) {
                 let target = robot.limb(limb).end_effector * grip.pose;
                 *velocity = pull_velocity(Pose::from(transform), target);
+            }
+        }
+    }
+}
+
+/// Takes what a bond has moved, or holds from now on, as it is.
+pub(crate) fn follow_bonds(
+    mut facts: MessageReader<SimFact>,
+    robot: Res<Robot>,
+    bonds: Res<Bonds>,
+    objects: Query<(&ObjectSpec, &Transform, &Carry)>,
+    mut grips: ResMut<Grips>,
+) {
+    let mut moved = BTreeSet::new();
+    for fact in facts.read() {
+        if let SimFact::Fastened { bond, .. } | SimFact::Loosened { bond, .. } = fact {
+            moved.extend(bonds.connected(&bond.guest));
+        }
+    }
+    for limb in grips.limbs() {
+        for place in 0..grips.of(limb).len() {
+            let grip = grips.of(limb)[place];
+            let Ok((spec, here, carry)) = objects.get(grip.object) else {
+                continue;
+            };
+            let is_jointed = *carry == Carry::AgainstJoints;
+            if is_jointed != grip.is_jointed || moved.contains(&*spec.id) {
+                grips.held[limb.index()][place] = Grip {
+                    pose: robot.limb(limb).end_effector.inverse() * Pose::from(here),
+                    is_jointed,
+                    ..grip
+                };
             }
         }
     }

@@ -176,6 +176,18 @@ impl<'e, 'a, 'f> AttributeReader<'e, 'a, 'f> {
         self.faults.report(place, problem, expected);
     }
 
+    /// Notes a fault of an attribute of an element in this one, which is left out for it.
+    pub fn fault_of(
+        &mut self,
+        inner: &Element,
+        name: &str,
+        problem: impl fmt::Display,
+        expected: impl fmt::Display,
+    ) {
+        self.is_faulty = true;
+        self.faults.report(inner.place_of(name), problem, expected);
+    }
+
     /// Notes the attributes that were not read, and gives the value if the element has no fault at all.
     pub fn finish<T>(mut self, value: Option<T>) -> Option<T> {
         self.report_unknown();

@@ -13,8 +13,8 @@ use crate::{
 };
 
 impl ElementReader<'_, '_> {
-    /// Reads the steps in a host point; `None` if one of them is faulty. A guest point has none.
-    pub(super) fn tightness_steps(&mut self, element: &Element) -> Option<Vec<TightnessStep>> {
+    /// Reads the steps in a host point, and says whether none is faulty. A guest point has none.
+    pub(super) fn tightness_steps(&mut self, element: &Element) -> (Vec<TightnessStep>, bool) {
         let allowed: &[&str] = match element.name {
             "hostBondPoint" => &[TIGHTNESS],
             _ => &[DOWNSTREAM],
@@ -45,9 +45,9 @@ impl ElementReader<'_, '_> {
             let expected = "at least one <tightness>";
             self.faults
                 .report(element.place(), "it has no steps", expected);
-            return None;
+            is_sound = false;
         }
-        is_sound.then_some(steps)
+        (steps, is_sound)
     }
 }
 

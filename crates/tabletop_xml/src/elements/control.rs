@@ -33,17 +33,17 @@ pub(super) struct ControlContent {
 enum States {
     /// They are only numbers.
     Numbers,
-    Lights(Vec<(LightState, Vec<u32>)>),
+    Lights(Vec<LightState>),
     Shapes(Vec<CustomState>),
 }
 
 impl ElementReader<'_, '_> {
-    /// Reads the content of a control's element; `None` if a state is faulty.
+    /// Reads the content of a control's element, and says whether no state is faulty.
     pub(super) fn control_content(
         &mut self,
         element: &Element,
         role: ObjectRole,
-    ) -> Option<ControlContent> {
+    ) -> (ControlContent, bool) {
         let mut allowed = vec![DOWNSTREAM];
         if role == ObjectRole::Whole {
             allowed.push(DESCRIPTION);
@@ -82,9 +82,9 @@ impl ElementReader<'_, '_> {
         if needs_states && states == 0 && !element.is_broken {
             self.faults
                 .report(element.place(), "it has no states", "at least one <state>");
-            return None;
+            is_sound = false;
         }
-        is_sound.then_some(content)
+        (content, is_sound)
     }
 
     fn downstream(&mut self, element: &Element) -> Option<String> {
@@ -94,8 +94,7 @@ impl ElementReader<'_, '_> {
         attributes.finish(Some(id))
     }
 
-    /// A state of lights, with the numbers of the lights in the order of the file.
-    fn light_state(&mut self, element: &Element) -> Option<(LightState, Vec<u32>)> {
+    fn light_state(&mut self, element: &Element) -> Option<LightState> {
         let mut lights = Vec::new();
         let mut is_sound = true;
         for child in &element.children {
@@ -112,9 +111,8 @@ impl ElementReader<'_, '_> {
         }
         let mut attributes = AttributeReader::of(element, self.faults);
         let name = attributes.read("descriptionName", String::new(), value::id);
-        let numbers = lights.iter().map(|&(number, _)| number).collect();
-        let state = attributes.finish(Some(LightState { name, lights }))?;
-        is_sound.then_some((state, numbers))
+        let state = attributes.finish(Some(LightState { name, lights }));
+        state.filter(|_| is_sound)
     }
 
     fn custom_state(&mut self, element: &Element) -> Option<CustomState> {
@@ -210,17 +208,13 @@ pub(super) fn control(
         }
         States::Lights(states) => {
             let lights = attributes.read("numLights", 2, |text| value::count(text, &(1..=1000)));
-            let numbers = states.iter().flat_map(|(_, numbers)| numbers);
-            if let Some(unknown) = numbers.copied().find(|&number| number >= lights) {
-                let problem = format_args!("it has no light {unknown}");
-                attributes.fault("numLights", problem, format_args!("more than {unknown}"));
-            }
+            look_for_lights(element, lights, attributes);
             ControlKind::IndicatorLights(IndicatorLights {
                 radius: attributes.span("lightRadius", 0.03),
                 zspan: attributes.span("lightZspan", 0.005),
                 lights,
                 xspan: attributes.span("xspan", 0.15),
-                states: states.into_iter().map(|(state, _)| state).collect(),
+                states,
             })
         }
         States::Shapes(states) => ControlKind::Custom(CustomControl {
@@ -236,11 +230,23 @@ pub(super) fn control(
         ..Control::new(kind)
     };
     let states = control.states();
-    if attributes.is_sound() && state >= states {
+    if attributes.is_sound() && states > 0 && state >= states {
         let problem = format_args!("there is no state {state}");
         attributes.fault("initState", problem, format_args!("at most {}", states - 1));
     }
     Shape::Control(control)
+}
+
+/// Notes a fault of every light in a state that the row does not have.
+fn look_for_lights(element: &Element, lights: u32, attributes: &mut AttributeReader) {
+    for light in element.children.iter().flat_map(|state| &state.children) {
+        let number = light.attribute("id").and_then(|id| id.value.as_deref());
+        let number = number.and_then(|number| value::count(number, &LIGHTS).ok());
+        if let Some(unknown) = number.filter(|&number| number >= lights) {
+            let problem = format_args!("there is no light {unknown}");
+            attributes.fault_of(light, "id", problem, format_args!("at most {}", lights - 1));
+        }
+    }
 }
 
 #[cfg(test)]
@@ -321,7 +327,7 @@ mod tests {
             ),
             (
                 "<indicatorLights location='(0,0,1)'><state><light id='2'/></state></indicatorLights>",
-                "indicatorLights, numLights: it has no light 2, expected more than 2",
+                "light, id: there is no light 2, expected at most 1",
             ),
             (
                 "<customControl location='(0,0,1)' initState='1'><state/></customControl>",

@@ -17,6 +17,14 @@ use crate::{
     },
 };
 
+/// The content of a shape's element, and whether it has no fault for which the element is left out.
+struct Inside {
+    content: ShapeContent,
+    is_sound: bool,
+    /// Of the parts of a composite, to which states triggering them leads.
+    next: NextStates,
+}
+
 /// The content of a shape's element.
 enum ShapeContent {
     Nothing,
@@ -32,14 +40,14 @@ impl ElementReader<'_, '_> {
     /// Reads an object.
     pub fn object(&mut self, element: &Element) -> Option<ObjectSpec> {
         let descriptions = self.descriptions(element);
-        let (content, _) = self.content(element, ObjectRole::Whole);
+        let inside = self.inside(element, ObjectRole::Whole);
         let mut attributes = AttributeReader::of(element, self.faults);
         let (id, pose) = (attributes.id(), attributes.pose());
         let mass = attributes.mass("mass", 1.0);
         attributes.ignore("pointable", false, value::boolean);
         let dynamics = attributes.dynamics();
-        let shape =
-            content.and_then(|content| shape(element, content, self.meshes, &mut attributes));
+        let shape = shape(element, inside.content, self.meshes, &mut attributes);
+        let shape = shape.filter(|_| inside.is_sound);
         attributes.finish(shape.map(|shape| ObjectSpec {
             id,
             pose,
@@ -56,7 +64,7 @@ impl ElementReader<'_, '_> {
         element: &Element,
         role: ObjectRole,
     ) -> Option<(Part, NextStates)> {
-        let (content, of_parts) = self.content(element, role);
+        let inside = self.inside(element, role);
         let mut attributes = AttributeReader::of(element, self.faults);
         let id = attributes.id();
         let pose = match BOND_POINTS.contains(&element.name) {
@@ -80,8 +88,8 @@ impl ElementReader<'_, '_> {
             }
             ObjectRole::Whole | ObjectRole::Part => None,
         };
-        let shape =
-            content.and_then(|content| shape(element, content, self.meshes, &mut attributes));
+        let shape = shape(element, inside.content, self.meshes, &mut attributes);
+        let shape = shape.filter(|_| inside.is_sound);
         let part = attributes.finish(shape.map(|shape| Part {
             id,
             pose,
@@ -89,7 +97,7 @@ impl ElementReader<'_, '_> {
             pointable,
         }))?;
         let next = match part.shape.composition() {
-            Composition::Parts(_) => of_parts.into_iter().map(|own| own.or(next)).collect(),
+            Composition::Parts(_) => inside.next.into_iter().map(|own| own.or(next)).collect(),
             Composition::Simple
             | Composition::Lid(_)
             | Composition::Control(_)
@@ -98,27 +106,29 @@ impl ElementReader<'_, '_> {
         Some((part, next))
     }
 
-    /// The content of a shape's element; `None` if it is faulty as a whole. For parts of a composite, with the states to which triggering
-    /// them leads.
-    fn content(
-        &mut self,
-        element: &Element,
-        role: ObjectRole,
-    ) -> (Option<ShapeContent>, NextStates) {
-        if CONTROLS.contains(&element.name) {
-            let content = self.control_content(element, role);
-            return (content.map(ShapeContent::Control), Vec::new());
-        }
-        if BOND_POINTS.contains(&element.name) {
-            let steps = self.tightness_steps(element);
-            return (steps.map(ShapeContent::Steps), Vec::new());
-        }
-        let (parts, next) = self.parts(element, role);
-        let content = match element.name {
-            "composite" => ShapeContent::Parts(parts),
-            _ => ShapeContent::Nothing,
+    fn inside(&mut self, element: &Element, role: ObjectRole) -> Inside {
+        let (mut is_sound, mut next) = (true, Vec::new());
+        let content = if CONTROLS.contains(&element.name) {
+            let content;
+            (content, is_sound) = self.control_content(element, role);
+            ShapeContent::Control(content)
+        } else if BOND_POINTS.contains(&element.name) {
+            let steps;
+            (steps, is_sound) = self.tightness_steps(element);
+            ShapeContent::Steps(steps)
+        } else {
+            let parts;
+            (parts, next) = self.parts(element, role);
+            match element.name {
+                "composite" => ShapeContent::Parts(parts),
+                _ => ShapeContent::Nothing,
+            }
         };
-        (Some(content), next)
+        Inside {
+            content,
+            is_sound,
+            next,
+        }
     }
 
     /// The parts of a composite; none for a simple shape, whose content is checked.
