@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod anywhere;
+mod element_docs;
 mod examples;
 mod explain;
 mod imitate;

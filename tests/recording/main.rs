@@ -3,6 +3,7 @@
 
 mod damaged;
 mod demonstration;
+mod dock;
 mod ending;
 mod every_command;
 mod faults;
