@@ -1,7 +1,7 @@
 //! What objects of a scene can be operated, and what they are fastened to.
 
 use serde::Serialize;
-use tabletop_core::{BondEnd, BondPoint, Bonds, Control, ObjectSpec, Placed, TightnessStep};
+use tabletop_core::{BondEnd, BondPoint, Bonds, Control, ObjectSpec, PlacedPart, TightnessStep};
 
 use super::PoseDump;
 
@@ -95,8 +95,8 @@ pub(super) fn bonds(objects: &[ObjectSpec]) -> Vec<BondDump> {
     bonds.collect()
 }
 
-impl<'a> From<Placed<'a, Control>> for ControlDump<'a> {
-    fn from(Placed { id, pose, what }: Placed<'a, Control>) -> Self {
+impl<'a> From<PlacedPart<'a, Control>> for ControlDump<'a> {
+    fn from(PlacedPart { id, pose, what }: PlacedPart<'a, Control>) -> Self {
         Self {
             id,
             kind: what.type_name(),
@@ -109,8 +109,8 @@ impl<'a> From<Placed<'a, Control>> for ControlDump<'a> {
     }
 }
 
-impl<'a> From<Placed<'a, BondPoint>> for BondPointDump<'a> {
-    fn from(Placed { id, pose, what }: Placed<'a, BondPoint>) -> Self {
+impl<'a> From<PlacedPart<'a, BondPoint>> for BondPointDump<'a> {
+    fn from(PlacedPart { id, pose, what }: PlacedPart<'a, BondPoint>) -> Self {
         let id_of = |text: &'a String| (!text.is_empty()).then_some(&**text);
         let end = match &what.end {
             BondEnd::Guest(_) => EndDump::Guest,
