@@ -16,7 +16,7 @@ use tabletop::{
 };
 
 const INSTANCES: usize = 10_000;
-const CONTROLS: usize = 200;
+const CONTROLS: i32 = 200;
 const TICKS_PER_TURN: u32 = 60;
 const TURNS: usize = 40;
 
@@ -63,7 +63,7 @@ fn instances() {
 
 /// A tick of 50 blocks in towers that may not sleep: alone, with 200 composites, and with the same composites as controls.
 fn controls() {
-    let place = |n: usize| format!("({},{},0)", n % 20 * 2 - 20, n / 20 * 2 + 10);
+    let place = |n: i32| format!("({},{},0)", n % 20 * 2 - 20, n / 20 * 2 + 10);
     let (mut plain, mut operated) = (String::new(), String::new());
     for n in 0..CONTROLS {
         let (at, next) = (place(n), (n + 1) % CONTROLS);
@@ -86,7 +86,7 @@ fn controls() {
 }
 
 fn towers() -> String {
-    let block = |n: usize| {
+    let block = |n: i32| {
         let (x, y, z) = (n / 5 % 5 * 2 - 4, n / 25 * 2, n % 5);
         format!("<block location='({x},{y},{z}.5)'/>")
     };

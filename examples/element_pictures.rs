@@ -25,7 +25,7 @@ const FROM: Vec3 = Vec3::new(-1.0, -3.2, 2.2);
 const SIZE: [u32; 2] = [240, 180];
 
 /// Edge of the yellow cubes that mark bond points, in units.
-const MARK: f32 = 0.12;
+const MARK: f32 = 0.16;
 
 fn main() -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(FOLDER)?;
@@ -80,8 +80,8 @@ fn pictures(world: &World) -> BTreeMap<String, Picture> {
 /// The objects of a picture on a table, with marks at their bond points.
 fn scene(group: &[(&ObjectSpec, Pose)]) -> Scene {
     let table = Table {
-        xspan: 40.0,
-        yspan: 40.0,
+        xspan: 100.0,
+        yspan: 100.0,
     };
     let mut solids = vec![DrawnSolid::of_table(&table, 1)];
     for (spec, pose) in group {
