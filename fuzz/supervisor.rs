@@ -11,7 +11,7 @@ use std::{
 
 use crate::{WORK, input::Inputs, number, target::Target};
 
-/// Longest time of an input.
+/// Longest time of an input on the processor: on a busy machine others have it meanwhile.
 const LONGEST: Duration = Duration::from_secs(5);
 
 /// Largest memory of a process, in bytes.
@@ -157,7 +157,7 @@ fn write_at_start(mut file: &File, number: u64) -> std::io::Result<()> {
     file.write_all(&number.to_le_bytes())
 }
 
-/// The time that a process has had the processor, where that can be known.
+/// The time that a process has had the processor, where it can be measured.
 fn processor_time(process: u32) -> Duration {
     const TICKS_PER_SECOND: f64 = 100.0;
     let text = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
@@ -168,7 +168,7 @@ fn processor_time(process: u32) -> Duration {
     Duration::from_secs_f64(ticks / TICKS_PER_SECOND)
 }
 
-/// The memory of a process, in bytes, where that can be known.
+/// The memory of a process, in bytes, where it can be measured.
 fn memory(process: u32) -> u64 {
     let text = fs::read_to_string(format!("/proc/{process}/statm")).unwrap_or_default();
     let pages = text.split(' ').nth(1).and_then(|pages| pages.parse().ok());

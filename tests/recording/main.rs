@@ -9,6 +9,7 @@ mod every_command;
 mod faults;
 mod mechanisms;
 mod passed_over;
+mod pauses;
 mod playback;
 mod random;
 mod rest;
