@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop_core::{
-    Actor, Arm, ClockCommand, Drive, Hand, HandCommand, HistoryCommand, ObjectIndex, ObjectSpec,
-    Pose, Preset, Random, RecordingCommand, Rgb, RobotCommand, RobotJoint, SceneCommand, SceneItem,
-    SceneSpec, Shape, SimCommand, SimFact, StepApp as _, TICKS_PER_SECOND, Table, Twist,
-    WriteCommand as _,
+    Actor, Arm, ClockCommand, Drive, Hand, HandCommand, Held, HistoryCommand, ObjectIndex,
+    ObjectSpec, Pose, Preset, Random, RecordingCommand, Rgb, RobotCommand, RobotJoint,
+    SceneCommand, SceneItem, SceneSpec, Shape, SimCommand, SimFact, StepApp as _, TICKS_PER_SECOND,
+    Table, Twist, WriteCommand as _,
 };
 use tabletop_physics::{Convex, collider, convex_parts, nearest};
 use tabletop_recorder::{Durability, RecorderPlugin};
@@ -99,39 +99,25 @@ fn give(app: &mut App, command: impl Into<SimCommand>) {
     app.world_mut().write_command_of(Actor::App, command);
 }
 
-/// Checks every object: its pose is finite, and it is in nothing immovable.
+/// Something that nothing moves.
+struct Obstacle {
+    id: String,
+    parts: Vec<Convex>,
+}
+
+/// Looks at every object: it is somewhere, and in nothing that does not move.
 fn look(app: &mut App) -> Result<(), String> {
-    let table = app
-        .world_mut()
-        .query::<&Table>()
-        .iter(app.world())
-        .next()
-        .copied();
+    let obstacles = obstacles(app);
     let world = app.world();
-    let index = world.resource::<ObjectIndex>();
-    let objects = index.iter().filter_map(|object| {
-        let place = world.get::<Transform>(object)?;
-        Some((
-            world.get::<ObjectSpec>(object)?,
-            place,
-            world.get::<Twist>(object),
-        ))
-    });
-    let objects: Vec<_> = objects.collect();
-    let slab = Shape::Block {
-        span: table.map_or(Vec3::ZERO, |table| {
-            Vec3::new(table.xspan, table.yspan, Table::THICKNESS)
-        }),
-        color: Rgb::GRAY,
-    };
-    let mut immovable = solids(&slab, Pose::at(Vec3::NEG_Z * Table::THICKNESS / 2.0));
-    for (spec, place, _) in &objects {
-        if spec.is_fixed() {
-            immovable.extend(solids(&spec.shape, Pose::from(*place)));
-        }
-    }
-    for (spec, place, twist) in objects {
+    for object in world.resource::<ObjectIndex>().iter() {
+        let (Some(spec), Some(place)) = (
+            world.get::<ObjectSpec>(object),
+            world.get::<Transform>(object),
+        ) else {
+            continue;
+        };
         let id = &spec.id;
+        let twist = world.get::<Twist>(object);
         let is_calm =
             twist.is_none_or(|twist| twist.linear.is_finite() && twist.angular.is_finite());
         if !place.is_finite() || !is_calm {
@@ -141,17 +127,47 @@ fn look(app: &mut App) -> Result<(), String> {
             continue;
         }
         let parts = solids(&spec.shape, Pose::IDENTITY);
-        let depth = nearest(&parts, Pose::from(place), &immovable, 0.0)
-            .map(|near| -near.distance)
-            .fold(0.0, f32::max);
-        if depth > DEEPEST {
-            let at = place.translation;
-            return Err(format!(
-                "{id} is {depth} deep in what does not move, at {at}"
-            ));
+        for obstacle in &obstacles {
+            let depth = nearest(&parts, Pose::from(*place), &obstacle.parts, 0.0)
+                .map(|near| -near.distance)
+                .fold(0.0, f32::max);
+            if depth > DEEPEST {
+                let at = place.translation;
+                let other = &obstacle.id;
+                let held = world.get::<Held>(object);
+                return Err(format!(
+                    "{id} is {depth} deep in {other}, at {at}; {twist:?}, {held:?}"
+                ));
+            }
         }
     }
     Ok(())
+}
+
+/// What does not move: the table, and fixed objects that nobody holds.
+fn obstacles(app: &mut App) -> Vec<Obstacle> {
+    let mut tables = app.world_mut().query::<&Table>();
+    let table = tables.iter(app.world()).next().map(|table| {
+        let slab = Shape::Block {
+            span: Vec3::new(table.xspan, table.yspan, Table::THICKNESS),
+            color: Rgb::GRAY,
+        };
+        Obstacle {
+            id: "the table".into(),
+            parts: solids(&slab, Pose::at(Vec3::NEG_Z * Table::THICKNESS / 2.0)),
+        }
+    });
+    let world = app.world();
+    let fixed = world.resource::<ObjectIndex>().iter().filter_map(|object| {
+        let spec = world.get::<ObjectSpec>(object)?;
+        let stands = spec.is_fixed() && !world.entity(object).contains::<Held>();
+        let place = world.get::<Transform>(object)?;
+        stands.then(|| Obstacle {
+            id: spec.id.clone(),
+            parts: solids(&spec.shape, Pose::from(*place)),
+        })
+    });
+    table.into_iter().chain(fixed).collect()
 }
 
 fn solids(shape: &Shape, at: Pose) -> Vec<Convex> {
