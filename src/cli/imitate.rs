@@ -26,6 +26,7 @@ use tabletop_core::{
 
 use super::{
     Failure, Output,
+    allowed_paths::AllowedPaths,
     explain::read,
     faultless::read_faultless_task,
     robot_options::RobotChoice,
@@ -40,7 +41,13 @@ pub(super) struct ImitateArgs {
     /// The task file to do it with [default: the scene of the recording]
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
+<<<<<<< HEAD
     /// Put everything at random places within reach, which this number decides
+=======
+    #[command(flatten)]
+    allowed: AllowedPaths,
+    /// Put everything to random places within reach, which this decides
+>>>>>>> 07415a0 (Keep meshes of a recording's robot within reach of the recording)
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     /// Do this many trials, with random places by the seeds from `--seed` (or 0) on, and print their results
@@ -69,7 +76,7 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
     show_warnings();
     let (task, requirements) = read(&args.recording)?;
     let scene = match &args.setup {
-        Some(setup) => read_faultless_task(setup).map_err(Failure::input)?,
+        Some(setup) => read_faultless_task(setup, &args.allowed.folders).map_err(Failure::input)?,
         None => scene_of(&args.recording)?,
     };
     let robot = args.robot.plugin()?;
