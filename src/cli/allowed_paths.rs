@@ -6,7 +6,7 @@ use clap::Args;
 
 #[derive(Args)]
 pub(super) struct AllowedPaths {
-    /// Let files name others in this folder and below, too; without it, those around them. Can be given again
+    /// Let files name others in this folder and below, too; without it, only those around them. Can be given again
     #[arg(long = "allow-path", value_name = "DIR")]
     pub folders: Vec<PathBuf>,
 }

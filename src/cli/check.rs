@@ -59,15 +59,9 @@ pub(super) fn check(args: &CheckArgs) -> Result<ExitCode, Failure> {
     })
 }
 
-<<<<<<< HEAD
 /// Prints an expanded task file; true if it has no faults.
-fn expand(file: &Path) -> Result<bool, Failure> {
-    let task = match task_reader().expand(file) {
-=======
-/// Prints a task file with everything put in, and says whether it has no faults.
 fn expand(reader: &TaskReader, file: &Path) -> Result<bool, Failure> {
     let task = match reader.expand(file) {
->>>>>>> 07415a0 (Keep meshes of a recording's robot within reach of the recording)
         Ok(task) => task,
         Err(error) => {
             say(error);

@@ -41,13 +41,9 @@ pub(super) struct ImitateArgs {
     /// The task file to do it with [default: the scene of the recording]
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
-<<<<<<< HEAD
-    /// Put everything at random places within reach, which this number decides
-=======
     #[command(flatten)]
     allowed: AllowedPaths,
-    /// Put everything to random places within reach, which this decides
->>>>>>> 07415a0 (Keep meshes of a recording's robot within reach of the recording)
+    /// Put everything at random places within reach, which this number decides
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     /// Do this many trials, with random places by the seeds from `--seed` (or 0) on, and print their results

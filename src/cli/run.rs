@@ -50,16 +50,9 @@ pub(super) struct RunArgs {
     /// The task file to begin with [default: tablesetup/default.xml, or the one that the scenario names]
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
-<<<<<<< HEAD
-    /// Let the scenario and task files name files in this folder and below, too; without it, only those around them. Can be given again
-    #[arg(long, value_name = "DIR")]
-    allow_path: Vec<PathBuf>,
-    /// Number of seconds to simulate [default: 10]; a scenario fails if it takes longer [default: 600]
-=======
     #[command(flatten)]
     allowed: AllowedPaths,
-    /// How many seconds to simulate [default: 10]; a scenario fails if it takes longer [default: 600]
->>>>>>> 07415a0 (Keep meshes of a recording's robot within reach of the recording)
+    /// Number of seconds to simulate [default: 10]; a scenario fails if it takes longer [default: 600]
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// The seed of a scenario's random places [default: 0]

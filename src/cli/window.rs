@@ -135,13 +135,8 @@ pub(super) fn play(_: Replay, _: ScriptSettings, _: Vec<PathBuf>) -> Result<Exit
     Err(Failure::run(NO_WINDOW))
 }
 
-<<<<<<< HEAD
 /// The state that the window would have shown after ten seconds, as a table.
-fn run_instead(setup: PathBuf) -> Result<ExitCode, Failure> {
-=======
-/// What the window would have shown after ten seconds, as a table.
 fn run_instead(setup: &Path, allowed: &[PathBuf]) -> Result<ExitCode, Failure> {
->>>>>>> 07415a0 (Keep meshes of a recording's robot within reach of the recording)
     say(format_args!(
         "tabletop: running {} for 10 s without a window",
         setup.display()

@@ -14,12 +14,7 @@ mod hull;
 mod lathe;
 pub(crate) mod link_figures;
 mod loft;
-<<<<<<< HEAD
-mod meshes;
-=======
-mod mesh_file;
 pub(crate) mod meshes;
->>>>>>> 07415a0 (Keep meshes of a recording's robot within reach of the recording)
 mod palette;
 
 mod shape_file;

@@ -7,21 +7,11 @@ use tabletop_core::{Reach, is_shipped};
 /// Name of the folder of scenarios in a working folder, beside the folder of the task files.
 const SCENARIOS: &str = "scenarios";
 
-<<<<<<< HEAD
 /// The folders in which, including their subfolders, a scenario may name task files.
-pub(crate) struct Reach {
-    folders: Vec<PathBuf>,
-}
-
-impl Reach {
-    /// The reach of a scenario in this folder. In a folder `scenarios`, it includes the folders beside that.
-=======
-/// Where a scenario may name task files.
 pub(crate) struct ScenarioReach(Reach);
 
 impl ScenarioReach {
-    /// That of a scenario in this folder. In a folder `scenarios`, it reaches what is beside that, too.
->>>>>>> 07415a0 (Keep meshes of a recording's robot within reach of the recording)
+    /// The reach of a scenario in this folder. In a folder `scenarios`, it includes the folders beside that.
     pub fn of(folder: &Path, allowed: &[PathBuf]) -> Self {
         let folder = match folder == Path::new("") {
             true => Path::new("."),

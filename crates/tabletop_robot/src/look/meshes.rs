@@ -8,22 +8,11 @@ use std::{
 
 use bevy::math::Vec3;
 use tabletop_core::{Figure, Rgb, read_regular_file, read_regular_text};
-<<<<<<< HEAD
+use tabletop_kinematics::{Geometry, LinkShape};
 use tabletop_mesh::{MeshFileError, Triangle, read_obj, read_stl};
 
 use super::{error::LookError, hull::Hull, shape_file::read_shape, shipped::PARTS};
-=======
-use tabletop_kinematics::{Geometry, LinkShape};
-
-use super::{
-    error::LookError,
-    hull::Hull,
-    mesh_file::{Corners, read_obj, read_stl},
-    shape_file::read_shape,
-    shipped::PARTS,
-};
 use crate::source::DescriptionSource;
->>>>>>> 07415a0 (Keep meshes of a recording's robot within reach of the recording)
 
 /// Prefix of the names of the program's own shapes.
 const OUR_PACKAGE: &str = "package://tabletop/";
