@@ -450,7 +450,11 @@ fn play(opening: f32, widest: f64) -> f32 {
 }
 
 /// The convex hull of a mesh, in the frame of the link whose collision shape it is.
-fn hull_of(mesh: &LinkShape, file: &str, source: Option<&DescriptionSource>) -> Result<Convex, LookError> {
+fn hull_of(
+    mesh: &LinkShape,
+    file: &str,
+    source: Option<&DescriptionSource>,
+) -> Result<Convex, LookError> {
     let points = &figure_of(mesh, source)?.coarse.positions;
     let hull = SharedShape::convex_hull(points);
     let shape = hull.ok_or_else(|| LookError::Empty { path: file.into() })?;

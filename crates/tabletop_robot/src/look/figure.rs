@@ -17,7 +17,10 @@ use crate::{
 /// # Errors
 ///
 /// A mesh cannot be found or read.
-pub fn figure_of(visual: &LinkShape, source: Option<&DescriptionSource>) -> Result<Figure, LookError> {
+pub fn figure_of(
+    visual: &LinkShape,
+    source: Option<&DescriptionSource>,
+) -> Result<Figure, LookError> {
     let color = visual.color.map_or(Rgb::GRAY, |color| {
         let [red, green, blue, _] = color.map(|part| part as f32);
         Rgb::new(red, green, blue)
