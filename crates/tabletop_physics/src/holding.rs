@@ -4,7 +4,9 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use tabletop_core::{Held, Holder, Joint, ObjectSpec, Pose, SimTick, TICK_SECONDS};
 
-/// An object that was released in this tick.
+use crate::short_turn::short_turn;
+
+/// An object that was let go of in this tick.
 ///
 /// Rapier finds the support of a body only after the body has moved, so an object released at rest would fall freely for a
 /// tick, into the thing below it. Instead it sinks for a tick by next to nothing, and falls from then on.
@@ -92,7 +94,7 @@ pub(crate) fn let_fall(
 /// The velocity that pulls a jointed object to its target.
 pub fn pull_velocity(here: Pose, target: Pose) -> Velocity {
     let per_second = PULLED_PER_TICK / TICK_SECONDS;
-    let turn = (target.rotation * here.rotation.inverse()).to_scaled_axis();
+    let turn = short_turn(here.rotation, target.rotation);
     Velocity {
         linear: ((target.location - here.location) * per_second).clamp_length_max(FASTEST.0),
         angular: (turn * per_second).clamp_length_max(FASTEST.1),

@@ -37,6 +37,7 @@ mod geometry;
 mod holding;
 mod rest;
 mod settings;
+mod short_turn;
 mod snapshot;
 mod transforms;
 mod twist;
@@ -126,7 +127,8 @@ impl Plugin for PhysicsPlugin {
                 FixedUpdate,
                 (
                     sync_backend().in_set(PhysicsSet::SyncBackend),
-                    effort::spend_effort
+                    (short_turn::turn_the_short_way, effort::spend_effort)
+                        .chain()
                         .after(PhysicsSet::SyncBackend)
                         .before(PhysicsSet::StepSimulation)
                         .in_set(SimSystems::Physics),

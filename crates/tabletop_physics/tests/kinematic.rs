@@ -1,4 +1,4 @@
-//! Kinematic bodies keep all their moves, however many ticks a frame has (Rapier alone loses some).
+//! Kinematic bodies keep all their moves, however many ticks a frame has (Rapier alone loses some), and turn the short way.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::time::Duration;
@@ -61,5 +61,52 @@ fn a_kinematic_body_keeps_its_moves() {
                 "moved {moved} with {ticks_a_frame} ticks a frame, child: {with_child}"
             );
         }
+    }
+}
+
+#[derive(Component)]
+struct Turner;
+
+/// Turns past where the largest component of its quaternion is another one, which makes its sign change.
+fn turn_on(mut turners: Query<&mut Transform, With<Turner>>, tick: Res<SimTick>) {
+    for mut transform in &mut turners {
+        let angle = 1e-4 * (tick.0 as f32 - 20.0);
+        transform.rotation = Quat::from_rotation_z(-std::f32::consts::FRAC_PI_2 - angle);
+    }
+}
+
+#[test]
+fn what_lies_on_a_body_that_hardly_turns_is_not_struck() {
+    let mut app = App::new();
+    app.add_plugins((
+        MinimalPlugins,
+        CorePlugin::default(),
+        PhysicsPlugin::default(),
+    ))
+    .add_systems(FixedUpdate, turn_on.in_set(SimSystems::Actuate))
+    .start();
+    app.world_mut().spawn((
+        Turner,
+        RigidBody::KinematicPositionBased,
+        Collider::cuboid(1.0, 1.0, 0.5),
+        Transform::from_xyz(0.0, 0.0, -0.5),
+    ));
+    let shape = Shape::Block {
+        span: Vec3::ONE,
+        color: Rgb::RED,
+    };
+    let at = Pose::at(Vec3::new(0.7, 0.0, 0.5));
+    let block = app
+        .world_mut()
+        .spawn((
+            ObjectSpec::new("block", at, 1.0, shape),
+            Transform::from(at),
+        ))
+        .id();
+    for _ in 0..40 {
+        app.step(1);
+        let there = app.world().get::<Transform>(block).unwrap().translation;
+        let moved = (there - at.location).truncate().length();
+        assert!(moved < 0.01, "{there}");
     }
 }
