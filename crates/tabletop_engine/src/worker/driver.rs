@@ -29,6 +29,7 @@ const MATLAB: &[(&str, &str)] = files![
     "tabletop_relink.m",
     "octave/@struct/disp.m",
     "octave/@struct/display.m",
+    "octave/load.m",
     "octave/mfilename.m",
     "octave/pause.m",
     "octave/popen.m",
