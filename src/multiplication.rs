@@ -137,6 +137,20 @@ impl Multiplication {
         })
     }
 
+    /// The same with the objects of another scene, which take the roles of the task.
+    ///
+    /// # Errors
+    /// They do not fit.
+    pub fn with_scene(mut self, scene: SceneSpec) -> Result<Self, MultiplyError> {
+        let objects = assemble(&scene, &mut IdAllocator::default()).objects;
+        self.task.bind(&self.requirements, &objects)?;
+        if self.body.is_some() {
+            self.body = Some(baxter_body(&scene.table)?);
+        }
+        self.scene = scene;
+        Ok(self)
+    }
+
     /// Records the demonstration of this number in a new folder. It tries other places until the relations of the task hold at the end.
     ///
     /// # Errors

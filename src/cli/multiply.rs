@@ -20,6 +20,7 @@ use tabletop::multiplication::{Demonstrator, Made, Multiplication, MultiplyError
 
 use super::{
     Failure, Output,
+    faultless::read_faultless_task,
     progress::ProgressLine,
     terminal::{say, show_warnings},
 };
@@ -44,7 +45,13 @@ pub(super) struct MultiplyArgs {
     /// Give the objects other colours, as far as the requirements allow
     #[arg(long)]
     colors: bool,
-    /// Add up to this many other objects
+    /// Make blocks and cylinders narrower by up to this part of their widths, as far as what is required of them allows
+    #[arg(long, value_name = "PART", value_parser = part, default_value_t = 0.0, hide_default_value = true)]
+    sizes: f32,
+    /// The task file with the objects to do it with [default: the scene of the recording]
+    #[arg(long, value_name = "FILE")]
+    setup: Option<PathBuf>,
+    /// Put up to so many other objects around
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     distractors: u32,
     /// Move the head camera by up to this many units, and turn it by up to 2° per unit
@@ -63,7 +70,14 @@ fn length(text: &str) -> Result<f32, String> {
         .ok_or_else(|| "expected 0 to 10 units".into())
 }
 
-/// File of the options of a folder of demonstrations, so that others are not mixed in.
+/// Reads a part of 0 to 0.5.
+fn part(text: &str) -> Result<f32, String> {
+    let part = text.parse().ok();
+    part.filter(|part| (0.0..=0.5).contains(part))
+        .ok_or_else(|| "expected 0 to 0.5".into())
+}
+
+/// What a folder of demonstrations was made with, so that others are not mixed with them.
 const MANIFEST: &str = "multiply.json";
 /// Prefix of the folders of unfinished demonstrations.
 const PART: &str = ".part-";
@@ -77,12 +91,19 @@ pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
     };
     let variation = Variation {
         colors: args.colors,
-        sizes: 0.0,
+        sizes: args.sizes,
         distractors: args.distractors,
         camera: args.camera,
     };
     let multiplication = Multiplication::of(&args.recording, demonstrator, variation, args.seed)
         .map_err(Failure::input)?;
+    let multiplication = match &args.setup {
+        Some(setup) => {
+            let scene = read_faultless_task(setup).map_err(Failure::input)?;
+            multiplication.with_scene(scene).map_err(Failure::run)?
+        }
+        None => multiplication,
+    };
     prepare(args)?;
     let start = Instant::now();
     let missing: Vec<_> = (0..args.count)
@@ -265,7 +286,7 @@ impl MultiplyArgs {
 
     /// The options that decide the demonstrations, but not their number.
     fn manifest(&self) -> Value {
-        json!({
+        let mut manifest = json!({
             "demonstration": self.recording,
             "program": env!("CARGO_PKG_VERSION"),
             "seed": self.seed,
@@ -273,7 +294,15 @@ impl MultiplyArgs {
             "colors": self.colors,
             "distractors": self.distractors,
             "camera": self.camera,
-        })
+        });
+        // What was made before there were these options goes on.
+        if self.sizes > 0.0 {
+            manifest["sizes"] = json!(self.sizes);
+        }
+        if let Some(setup) = &self.setup {
+            manifest["setup"] = json!(setup);
+        }
+        manifest
     }
 }
 

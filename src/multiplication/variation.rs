@@ -17,7 +17,8 @@ use crate::imitation::scattered;
 pub struct Variation {
     /// True if objects get other colours, as far as the requirements allow.
     pub colors: bool,
-    /// Largest change of sizes, as a share, as far as the requirements allow; 0 for none.
+    /// By which part of it, at most, blocks and cylinders are narrower, as far as what is required allows; 0 for not at all. Heights stay, so that
+    /// what stands on them stands as high as it was shown.
     pub sizes: f32,
     /// Largest number of distractors: objects that have nothing to do with the task.
     pub distractors: u32,
@@ -31,6 +32,8 @@ const DRAWS: u32 = 50;
 const COLORS: u32 = 100;
 /// Largest difference in lightness between a colour and its name.
 const SHADE: f32 = 0.12;
+/// The largest height of a unit vector that counts as level, in units.
+const LEVEL: f32 = 0.02;
 /// The extents of distractors, in units.
 const DISTRACTOR: (f32, f32) = (0.6, 1.6);
 /// Angle by which the camera is turned per unit of its displacement, in rad.
@@ -78,6 +81,11 @@ impl Varying<'_> {
         if self.variation.colors {
             for item in &mut scene.items {
                 self.recolor(item, random);
+            }
+        }
+        if self.variation.sizes > 0.0 {
+            for item in &mut scene.items {
+                self.narrow(item, random);
             }
         }
         for i in 0..distractors {
@@ -174,7 +182,46 @@ impl Varying<'_> {
         }
     }
 
-    /// True if an object still meets the requirements of the role that it takes by its id.
+    fn narrow(&self, item: &mut SceneItem, random: &mut Random) {
+        let SceneItem::Object(spec) = item else {
+            return;
+        };
+        let [first, second] = [(); 2].map(|()| 1.0 - random.between((0.0, self.variation.sizes)));
+        let mut varied = spec.clone();
+        let rotation = spec.pose.rotation;
+        let is_level = |axis: Vec3| (rotation * axis).z.abs() < LEVEL;
+        match &mut varied.shape {
+            Shape::Block { span, .. } => {
+                let axes = [Vec3::X, Vec3::Y, Vec3::Z].into_iter();
+                let level: Vec<_> = axes.filter(|axis| is_level(*axis)).collect();
+                // What leans stays as it is, or it would stand otherwise.
+                let [one, other] = level[..] else {
+                    return;
+                };
+                *span *= Vec3::ONE - one * (1.0 - first) - other * (1.0 - second);
+            }
+            Shape::Cylinder { radius, .. } if (rotation * Vec3::Y).z.abs() > 1.0 - LEVEL => {
+                *radius *= first;
+            }
+            Shape::Cylinder { .. }
+            | Shape::Sphere { .. }
+            | Shape::Box { .. }
+            | Shape::Prism { .. }
+            | Shape::Frustum { .. }
+            | Shape::Ring { .. }
+            | Shape::Mesh { .. }
+            | Shape::Link { .. }
+            | Shape::Lid { .. }
+            | Shape::Composite { .. }
+            | Shape::Control(_)
+            | Shape::BondPoint(_) => return,
+        }
+        if !spec.is_fixed() && self.may_be(&varied) {
+            *spec = varied;
+        }
+    }
+
+    /// Whether an object still has what is required of the role that it takes by its id.
     fn may_be(&self, spec: &ObjectSpec) -> bool {
         let lacks = self.requirements.lacks(&spec.id, spec);
         lacks.is_none_or(|lacks| lacks.is_empty())

@@ -153,3 +153,39 @@ fn the_robot_can_show_it() {
     let replayed = tabletop(&["replay", out.join("0000").to_str().unwrap(), "--verify"]);
     assert_eq!(replayed.status.code(), Some(0), "{}", stderr(&replayed));
 }
+
+#[test]
+fn objects_are_narrower_and_as_high() {
+    let demo = recorded("multiply_sizes", "wall");
+    let out = place("multiply_sizes_out");
+    multiply(&demo, &out, &["--count", "2", "--sizes", "0.2"]);
+    for number in ["0000", "0001"] {
+        let folder = out.join(number);
+        assert_eq!(explained(&folder).lines().count(), 5, "{number}");
+        let events = fs::read_to_string(folder.join("0.txt")).unwrap();
+        let created = events.lines().filter(|line| line.contains(",create,"));
+        for line in created {
+            let span = |name: &str| {
+                let after = line.split_once(name).unwrap().1;
+                let number = after.split(',').next().unwrap();
+                number.parse::<f32>().unwrap()
+            };
+            assert_eq!(span("zspan,"), 1.0, "{line}");
+            for name in ["xspan,", "yspan,"] {
+                assert!(span(name) > 0.799 && span(name) < 1.0, "{line}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_stack_is_shown_with_the_objects_of_another_table() {
+    let demo = recorded("multiply_setup", "stack_three");
+    let out = place("multiply_setup_out");
+    let setup = "shipped:tablesetup/wall-blocks.xml";
+    multiply(&demo, &out, &["--count", "1", "--setup", setup]);
+    let told = explained(&out.join("0000"));
+    assert_eq!(told.lines().count(), 2, "{told}");
+    let events = fs::read_to_string(out.join("0000/0.txt")).unwrap();
+    assert!(events.contains(",create,Orange,"));
+}
