@@ -46,6 +46,7 @@ pub use files::{
 };
 pub use reading::{
     event::{Occurrence, RecordedEvent},
+    original::read_original,
     recording_reader::RecordingReader,
     rows::{JointRow, StateRow},
     segment::{RecordedFrame, RecordedSegment},

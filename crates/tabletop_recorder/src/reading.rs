@@ -3,6 +3,7 @@
 pub(crate) mod event;
 mod extent;
 mod fault;
+pub(crate) mod original;
 pub(crate) mod recording_reader;
 pub(crate) mod rows;
 pub(crate) mod segment;

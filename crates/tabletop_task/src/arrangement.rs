@@ -24,6 +24,8 @@ pub(crate) struct Placed {
 pub const TOUCH: f32 = 0.06;
 /// Largest overhang of an edge, in units, that does not count as support.
 const EDGE: f32 = 0.03;
+/// How far apart, as seen from above, what is not beside each other may be, in units.
+const BESIDE: f32 = 1e-3;
 
 impl Arrangement {
     /// An arrangement of objects, by their ids, shapes and poses.
@@ -145,8 +147,10 @@ impl Placed {
     /// True if it lies on top of a part of the other: if only these two were there, it would fall without the other.
     fn rests_on(&self, other: &Self) -> bool {
         const LIFT: f32 = 0.15;
-        self.pairs(other).any(|(own, other)| {
-            // A touching solid has no direction; a lifted one has.
+        let pairs = self.pairs(other);
+        let mut above = pairs.filter(|(own, other)| own.gap_from_above(other) < BESIDE);
+        above.any(|(own, other)| {
+            // A solid that touches has no direction; lifted, it has.
             let away = own.shrunk(EDGE).moved(Vec3::Z * LIFT).away_from(other);
             let gap = away.length() - LIFT;
             away.z > 0.7 * away.length() && away.z > 0.0 && (gap - EDGE).abs() < TOUCH
@@ -233,9 +237,12 @@ mod tests {
             ("b", &cube, at(1.2, 0.0, 1.0)),
             ("top", &cube, at(0.0, 0.0, 3.0)),
             ("beside", &cube, at(2.001, 0.0, 3.0)),
+            ("far", &cube, at(-6.0, 0.0, 1.0)),
+            ("past", &cube, at(-3.9, 0.0, 3.0)),
         ]);
         assert_eq!(arrangement.supports("top"), ["a", "b"]);
         assert_eq!(arrangement.supports("beside"), ["b"]);
+        assert!(arrangement.supports("past").is_empty());
         assert!(arrangement.supports("a").is_empty());
         assert!(arrangement.is_on_table("a") && !arrangement.is_on_table("top"));
     }

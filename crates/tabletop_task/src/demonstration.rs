@@ -4,10 +4,13 @@ use std::{collections::BTreeMap, path::Path};
 
 use bevy::math::Vec3;
 use tabletop_core::{Hand, JointSpec, ObjectSpec, Pose, Rgb, Shape, SimTick, Table};
-use tabletop_recorder::{Occurrence, RecordedSegment, RecorderError, RecordingReader};
+use tabletop_recorder::{
+    Occurrence, RecordedSegment, RecorderError, RecordingReader, TICKS_PER_FRAME, read_original,
+};
 
 use crate::{
     arrangement::Arrangement,
+    inference::inferred_acts,
     operation::{Operation, OperationDeed},
     track::Track,
 };
@@ -67,12 +70,15 @@ pub enum HandDeed {
 }
 
 impl Demonstration {
-    /// Reads a recording.
+    /// Reads a recording, be it one of the original program.
     ///
     /// # Errors
     /// A file cannot be read, or has a line that no recorder writes; the error names the file.
     pub fn read(folder: impl AsRef<Path>) -> Result<Self, RecorderError> {
-        Self::of(&RecordingReader::open(folder)?)
+        match read_original(&folder)? {
+            Some(segments) => Ok(Self::of_events(&segments, TICKS_PER_FRAME)),
+            None => Self::of(&RecordingReader::open(folder)?),
+        }
     }
 
     /// The demonstration of a recording.
@@ -105,13 +111,16 @@ impl Demonstration {
     }
 
     /// The demonstration of segments of events, which are all that a recording of the original program has. Objects are as the properties in their
-    /// events describe them; those of a composite do not describe its parts.
+    /// events describe them; those of a composite do not describe its parts. If the events name no hand, its acts are inferred from the poses.
     pub fn of_events(segments: &[RecordedSegment], ticks_per_frame: u64) -> Self {
         let mut shown = Self::default();
         shown.follow(segments, ticks_per_frame, true);
         let frames = segments.iter().flat_map(|segment| &segment.events);
         let last = frames.map(|event| event.frame).max().unwrap_or(0);
         shown.end = SimTick(last * ticks_per_frame);
+        if shown.acts.is_empty() {
+            shown.acts = inferred_acts(&shown);
+        }
         shown
     }
 

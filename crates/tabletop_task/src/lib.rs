@@ -21,6 +21,7 @@ mod convex;
 mod demonstration;
 mod detour;
 mod goal;
+mod inference;
 mod manipulation;
 mod noun;
 mod operation;

@@ -24,6 +24,11 @@ impl Track {
         Some(*pose)
     }
 
+    /// Its poses, and from when on it had each.
+    pub(crate) fn entries(&self) -> impl Iterator<Item = (SimTick, Pose)> {
+        self.0.iter().copied()
+    }
+
     /// The poses from one tick to another, both included.
     pub fn between(&self, from: SimTick, to: SimTick) -> impl Iterator<Item = Pose> {
         let first = self.at(from);

@@ -81,14 +81,6 @@ pub struct SessionCommand {
     pub actor: Actor,
     /// The command.
     pub command: SimCommand,
-    /// Of a scene that is set in a pause: it was in the same moment as the scene before it, or as the start of the recording.
-    #[serde(default, skip_serializing_if = "is_false")]
-    pub at_once: bool,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde wants it")]
-const fn is_false(value: &bool) -> bool {
-    !*value
 }
 
 /// The content of a session log.
@@ -113,7 +105,6 @@ impl SessionCommand {
             tick: tick.0,
             actor: issued.actor,
             command: issued.command.clone(),
-            at_once: false,
         }
     }
 
@@ -123,7 +114,6 @@ impl SessionCommand {
             tick: tick.0,
             actor: Actor::App,
             command: command.into(),
-            at_once: false,
         }
     }
 }
@@ -335,7 +325,6 @@ mod tests {
             tick,
             actor: Actor::Mouse,
             command: command.into(),
-            at_once: false,
         }
     }
 

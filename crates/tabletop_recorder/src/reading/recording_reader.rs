@@ -282,7 +282,10 @@ impl RecordingReader {
 }
 
 /// The events of a segment, if there is one of this number.
-fn read_events(folder: &Folder, segment: u32) -> Result<Option<Vec<RecordedEvent>>, RecorderError> {
+pub(super) fn read_events(
+    folder: &Folder,
+    segment: u32,
+) -> Result<Option<Vec<RecordedEvent>>, RecorderError> {
     let path = folder.text(segment);
     if !is_taken(&path) {
         return Ok(None);

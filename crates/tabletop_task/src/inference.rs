@@ -1,0 +1,156 @@
+//! What hands did, where only poses are known.
+
+use tabletop_core::{Hand, Pose, SimTick};
+use tabletop_recorder::TICKS_PER_FRAME;
+
+use crate::{
+    demonstration::{Demonstration, HandAct, HandDeed},
+    symmetry::angle_between,
+    track::Track,
+};
+
+/// For how long what is held may stand still in the air, and what was put down lies still at least, in ticks.
+const PAUSE: u64 = 45;
+/// How far something has to be moved to have been in a hand, in units, or turned, in rad.
+const MOVED: (f32, f32) = (0.3, 0.2);
+/// How far something has to be lifted to have been in a hand when other things move, in units.
+const LIFTED: f32 = 0.15;
+
+/// How near something is to where it stays when no hand moves it any more, in units and rad.
+const SETTLED: (f32, f32) = (0.05, 0.05);
+
+/// A time in which an object moves.
+#[derive(Clone, Debug)]
+struct ShownMotion {
+    object: String,
+    from: SimTick,
+    to: SimTick,
+    lift: f32,
+}
+
+/// The acts of hands by which the objects may have moved as they did: something is in a hand from where it begins to move until it stands
+/// still on something. What only moves while something else is carried was pushed.
+pub(crate) fn inferred_acts(shown: &Demonstration) -> Vec<HandAct> {
+    let mut motions: Vec<_> = shown
+        .objects
+        .iter()
+        .flat_map(|object| motions(shown, &object.spec.id))
+        .collect();
+    motions.sort_by_key(|motion| motion.from);
+    let carried: Vec<_> = (0..motions.len())
+        .filter(|&i| is_carried(shown, &motions, i))
+        .map(|i| motions[i].clone())
+        .collect();
+    let mut acts = Vec::new();
+    let mut right_until = None;
+    for motion in carried {
+        // Two things at the same time are in two hands.
+        let hand = match right_until {
+            Some(until) if motion.from < until => Hand::Left,
+            Some(_) | None => Hand::Right,
+        };
+        if hand == Hand::Right {
+            right_until = Some(motion.to);
+        }
+        let act = |tick, deed| HandAct { tick, hand, deed };
+        acts.push(act(motion.from, HandDeed::Grasp(motion.object.clone())));
+        if motion.to < shown.end || stands(shown, &motion.object, motion.to) {
+            acts.push(act(motion.to, HandDeed::Release));
+        }
+    }
+    acts.sort_by_key(|act| (act.tick, matches!(act.deed, HandDeed::Grasp(_))));
+    acts
+}
+
+/// The times in which an object moves, with its pauses in the air.
+fn motions(shown: &Demonstration, id: &str) -> Vec<ShownMotion> {
+    let Some(track) = shown.named(id).map(|object| &object.track) else {
+        return Vec::new();
+    };
+    let mut motions = Vec::<ShownMotion>::new();
+    let mut entries = track.entries();
+    let Some((mut since, _)) = entries.next() else {
+        return motions;
+    };
+    for (tick, _) in entries {
+        let gap = tick.0 - since.0;
+        // What is told for the first time after a rest began to move a frame ago at most.
+        let began = SimTick(tick.0.saturating_sub(gap.min(TICKS_PER_FRAME)) + 1);
+        let goes_on = motions
+            .last()
+            .is_some_and(|motion| gap <= PAUSE || !stands(shown, id, motion.to));
+        match motions.last_mut() {
+            Some(motion) if goes_on => motion.to = tick,
+            Some(_) | None => motions.push(ShownMotion {
+                object: id.to_owned(),
+                from: began,
+                to: tick,
+                lift: 0.0,
+            }),
+        }
+        since = tick;
+    }
+    let is_moved = |motion: &ShownMotion| {
+        let before = SimTick(motion.from.0.saturating_sub(1));
+        let (Some(start), Some(end)) = (track.at(before), track.at(motion.to)) else {
+            return false;
+        };
+        let poses = track.between(before, motion.to);
+        let farthest = poses.map(|pose| pose.location.distance(start.location));
+        farthest.fold(0.0, f32::max) > MOVED.0
+            || angle_between(start.rotation, end.rotation) > MOVED.1
+    };
+    motions.retain(is_moved);
+    for motion in &mut motions {
+        motion.to = settled(track, motion);
+        let before = SimTick(motion.from.0.saturating_sub(1));
+        let heights: Vec<_> = track
+            .between(before, motion.to)
+            .map(|pose| pose.location.z)
+            .collect();
+        let highest = heights.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        motion.lift = highest - heights.first().copied().unwrap_or(highest);
+    }
+    motions
+}
+
+/// From when on an object is where it stays at the end of a motion: what it moves by when it settles is no hand's.
+fn settled(track: &Track, motion: &ShownMotion) -> SimTick {
+    let Some(end) = track.at(motion.to) else {
+        return motion.to;
+    };
+    let within = |(tick, _): &(SimTick, Pose)| (motion.from..=motion.to).contains(tick);
+    let mut settled = motion.from;
+    let mut is_there = false;
+    for (tick, pose) in track.entries().filter(within) {
+        let is_near = pose.location.distance(end.location) < SETTLED.0
+            && angle_between(pose.rotation, end.rotation) < SETTLED.1;
+        if is_near && !is_there {
+            settled = tick;
+        }
+        is_there = is_near;
+    }
+    settled
+}
+
+/// Whether an object is in a hand while it moves, and not pushed or carried along.
+fn is_carried(shown: &Demonstration, motions: &[ShownMotion], i: usize) -> bool {
+    let own = &motions[i];
+    let meanwhile = |other: &&ShownMotion| {
+        other.object != own.object && other.from < own.to && own.from < other.to
+    };
+    let before = shown.at(SimTick(own.from.0.saturating_sub(1)));
+    let below = [before.supports(&own.object), before.containers(&own.object)].concat();
+    let mut others = motions.iter().filter(meanwhile);
+    !others.any(|other| {
+        let is_pushed = own.lift < LIFTED && other.lift >= LIFTED;
+        let is_carried_along = below.contains(&other.object.as_str());
+        is_pushed || is_carried_along
+    })
+}
+
+/// Whether an object stands on something at the end of a tick.
+fn stands(shown: &Demonstration, id: &str, tick: SimTick) -> bool {
+    let arrangement = shown.at(tick);
+    arrangement.is_on_table(id) || !arrangement.supports(id).is_empty()
+}
