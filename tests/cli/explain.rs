@@ -124,6 +124,67 @@ fn no_move_of_hanoi_is_a_detour() {
     );
 }
 
+/// The events of a recording alone, as far as they are `meant`: all that there is of a recording of the original program.
+fn original(demo: &str, name: &str, meant: impl Fn(&str) -> bool) -> String {
+    let folder = place(name);
+    fs::create_dir(&folder).unwrap();
+    for number in 0.. {
+        let file = format!("{number}.txt");
+        let Ok(text) = fs::read_to_string(Path::new(demo).join(&file)) else {
+            break;
+        };
+        let lines = text.lines().filter(|line| meant(line));
+        let kept: String = lines.map(|line| format!("{line}\n")).collect();
+        fs::write(folder.join(file), kept).unwrap();
+    }
+    folder.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn a_recording_of_the_original_program_is_understood() {
+    for scenario in ["stack_three", "swap", "wall"] {
+        let demo = record(
+            &format!("shipped:scenarios/{scenario}.ron"),
+            &format!("explain_events_{scenario}"),
+        );
+        let events = original(&demo, &format!("explain_original_{scenario}"), |_| true);
+        means_the_same(&demo, &events);
+    }
+}
+
+#[test]
+fn what_hands_did_is_seen_in_the_poses() {
+    for scenario in ["stack_three", "swap", "wall"] {
+        let demo = record(
+            &format!("shipped:scenarios/{scenario}.ron"),
+            &format!("explain_acts_{scenario}"),
+        );
+        let is_pose = |line: &str| !line.contains(",grasp,") && !line.contains(",release,");
+        let poses = original(&demo, &format!("explain_poses_{scenario}"), is_pose);
+        means_the_same(&demo, &poses);
+    }
+}
+
+fn means_the_same(demo: &str, other: &str) {
+    let steps = |demo: &str| -> Vec<_> {
+        let lines = explained(demo).into_iter();
+        lines.filter(|line| !line.starts_with("Does")).collect()
+    };
+    assert_eq!(steps(other), steps(demo), "{other}");
+}
+
+#[test]
+fn five_rings_need_thirty_one_moves() {
+    let moves = explained(&recorded("hanoi_five"));
+    assert_eq!(moves.len(), 31, "{moves:?}");
+    assert_eq!(moves[0], "1. Put the red ring around PegC.");
+    assert_eq!(moves[15], "16. Put the blue ring around PegC.");
+    assert_eq!(
+        moves[30],
+        "31. Put the red ring around PegC, on the orange ring."
+    );
+}
+
 #[test]
 fn a_hand_over_is_one_step() {
     means(
