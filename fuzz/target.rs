@@ -23,13 +23,7 @@ pub struct Target {
     pub name: &'static str,
     /// Starts the target; the returned function takes inputs.
     pub start: fn() -> Box<dyn FnMut(&[u8])>,
-    /// What inputs are made of; else they are where chance begins.
-    pub material: Option<Material>,
-}
-
-/// What inputs are made of.
-pub struct Material {
-    /// Folders of the repository with files to begin with, besides the target's corpus.
+    /// Folders of the repository with seeds, besides its corpus.
     pub shipped: &'static [&'static str],
     /// Ending of the names of seeds.
     pub ending: &'static str,
@@ -46,11 +40,9 @@ const fn target(
     Target {
         name,
         start,
-        material: Some(Material {
-            shipped,
-            ending,
-            dictionary,
-        }),
+        shipped,
+        ending,
+        dictionary,
     }
 }
 
@@ -90,11 +82,7 @@ impl Target {
             "session.txt",
         ),
         target("protocol", || each(protocol), &[], ".arrays", "mesh.txt"),
-        Self {
-            name: "scene",
-            start: scenes::start,
-            material: None,
-        },
+        target("scene", scenes::start, &[], ".bytes", "mesh.txt"),
     ];
 
     pub fn named(name: &str) -> Result<&'static Self, String> {

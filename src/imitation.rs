@@ -8,10 +8,10 @@ use tabletop_core::{
 use tabletop_kinematics::{ModelError, baxter};
 use tabletop_planner::{
     LimbOrder, LimbSight, Piece, PlanningStage, RobotBody, SeenObject, Sight, Stopped, angles,
-    scatter,
+    is_feasible, scatter,
 };
 use tabletop_scene::{IdAllocator, assemble};
-use tabletop_task::{Arrangement, PlacedSolid};
+use tabletop_task::{Arrangement, PlacedSolid, Requirements, Task};
 
 /// The sight of a world, with the robot at the table.
 pub fn sight(world: &mut World) -> Sight {
@@ -137,6 +137,49 @@ pub fn baxter_body(table: &Table) -> Result<RobotBody, ModelError> {
     RobotBody::new(RobotLayout::baxter(), baxter()?, table)
 }
 
+/// Number of arrangements that are tried until one allows the task.
+const DRAWS: u64 = 50;
+
+/// A scene with everything at random places within reach of the robot, decided by the seed, in which the task is [feasible](is_feasible). `None` if
+/// there is no room.
+pub fn scattered_for(
+    task: &Task,
+    requirements: &Requirements,
+    scene: &SceneSpec,
+    body: &RobotBody,
+    seed: u64,
+) -> Option<SceneSpec> {
+    let is_possible = |scene: &SceneSpec| {
+        let objects = assemble(scene, &mut IdAllocator::default()).objects;
+        // What does not take the roles is told by who binds them.
+        let Ok(binding) = task.bind(requirements, &objects) else {
+            return true;
+        };
+        let seen = objects.into_iter().map(|spec| {
+            let is_fixed = spec.is_fixed();
+            let (shape, pose) = (spec.shape, spec.pose);
+            let seen = SeenObject {
+                shape,
+                pose,
+                is_fixed,
+            };
+            (spec.id, seen)
+        });
+        let sight = Sight {
+            table: scene.table,
+            objects: seen.collect(),
+            ..Sight::default()
+        };
+        is_feasible(task, &binding, &sight)
+    };
+    let seeds = std::iter::once(seed).chain((1..DRAWS).map(|draw| {
+        let mixed = seed ^ draw.wrapping_mul(0xd6e8_feb8_6659_fd93);
+        Random::new(mixed).bits()
+    }));
+    let mut scenes = seeds.map_while(|seed| scattered(scene, &[], Some(body), seed));
+    scenes.find(is_possible)
+}
+
 /// A scene with everything at random places, decided by the seed, and within reach of the robot if there is one. Objects that stand on, in or
 /// around others stay with them, and nothing is put near the solids `kept` free. `None` if there is no room.
 pub fn scattered(
@@ -173,18 +216,25 @@ pub fn scattered(
             });
             let opened: Vec<_> = opened.collect();
             let places = parts.iter().map(|part| (part, part.pose));
-            let places: Vec<_> = places.chain(opened).collect();
+            let places: Vec<_> = places.chain(opened.iter().copied()).collect();
             let solids = places.iter().flat_map(|(part, pose)| {
                 let colliding = part.shape.colliding();
                 colliding
                     .into_iter()
                     .map(move |solid| PlacedSolid::of(&solid, *pose))
             });
+            // What slides is opened by one arm.
+            let reached = parts.iter().map(|part| {
+                let ways = opened.iter().filter(|(slid, _)| slid.id == part.id);
+                let ends = ways.map(|(_, pose)| pose.location);
+                std::iter::once(part.pose.location).chain(ends).collect()
+            });
+            let reached = reached.collect();
             let piece = Piece {
                 solids: solids.collect(),
                 ids: parts.iter().map(|part| part.id.clone()).collect(),
                 centre: parts.first().map_or(Vec3::ZERO, |part| part.pose.location),
-                reached: places.iter().map(|(_, pose)| pose.location).collect(),
+                reached,
             };
             objects.extend(parts);
             piece
@@ -195,9 +245,19 @@ pub fn scattered(
             .iter()
             .map(|object| (object.id.as_str(), &object.shape, object.pose)),
     );
+    let tops = pieces.iter().flat_map(|piece| &piece.solids);
+    let highest = tops.map(|solid| solid.heights()[1]).fold(0.0, f32::max);
+    // Nothing is put where the arms begin.
+    let arms = body.map(RobotBody::at_home).unwrap_or_default();
+    let low = |solid: &PlacedSolid| solid.heights()[0] < highest + 0.3;
+    let kept: Vec<_> = kept
+        .iter()
+        .copied()
+        .chain(arms.into_iter().filter(low))
+        .collect();
     let seed = Random::new(seed).bits();
-    let is_reached = |point| body.is_none_or(|body| body.reaches_from_above(point));
-    let motions = scatter(&pieces, &arrangement, &scene.table, kept, is_reached, seed)?;
+    let is_reached = |points: &[Vec3]| body.is_none_or(|body| body.reaches_from_above(points));
+    let motions = scatter(&pieces, &arrangement, &scene.table, &kept, is_reached, seed)?;
     let items = scene.items.iter().zip(motions);
     let items = items.map(|(item, motion)| moved(item, motion));
     Some(SceneSpec {

@@ -11,7 +11,7 @@ use bevy::prelude::*;
 use clap::Args;
 use tabletop::{
     TabletopSimPlugins, headless_app_with,
-    imitation::{AppStage, scattered},
+    imitation::{AppStage, scattered_for},
     multiplication::with_colors_exchanged,
     planner::{Doing, Imitation, RobotBody, imitate},
     recorder::{RecorderPlugin, RecordingReader, UnrecordedPlugin},
@@ -26,7 +26,6 @@ use tabletop_core::{
 
 use super::{
     Failure, Output,
-    allowed_paths::AllowedPaths,
     explain::read,
     faultless::read_faultless_task,
     robot_options::RobotChoice,
@@ -41,8 +40,6 @@ pub(super) struct ImitateArgs {
     /// The task file to do it with [default: the scene of the recording]
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
-    #[command(flatten)]
-    allowed: AllowedPaths,
     /// Put everything at random places within reach, which this number decides
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
@@ -72,7 +69,7 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
     show_warnings();
     let (task, requirements) = read(&args.recording)?;
     let scene = match &args.setup {
-        Some(setup) => read_faultless_task(setup, &args.allowed.folders).map_err(Failure::input)?,
+        Some(setup) => read_faultless_task(setup).map_err(Failure::input)?,
         None => scene_of(&args.recording)?,
     };
     let robot = args.robot.plugin()?;
@@ -164,7 +161,7 @@ impl Attempt<'_> {
     fn make(&self, is_reported: bool) -> Result<Trial, Failure> {
         let start = Instant::now();
         let scene = match self.seed {
-            Some(seed) => scattered(self.scene, &[], Some(self.body), seed),
+            Some(seed) => scattered_for(self.task, self.requirements, self.scene, self.body, seed),
             None => Some(self.scene.clone()),
         };
         let Some(scene) = scene else {

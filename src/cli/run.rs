@@ -29,10 +29,9 @@ use tabletop_scenario::{Outcome, Program, ScenarioRun};
 
 use super::{
     Failure, Output, WRONG_INPUT,
-    allowed_paths::AllowedPaths,
     duration::{pass, seconds, ticks},
     explain::read,
-    faultless::read_faultless_task,
+    faultless::faultless,
     robot_options::{EngineOptions, RobotOptions, script},
     script::{Script, headless_settings},
     terminal::{say, show_warnings},
@@ -50,8 +49,9 @@ pub(super) struct RunArgs {
     /// The task file to begin with [default: tablesetup/default.xml, or the one that the scenario names]
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
-    #[command(flatten)]
-    allowed: AllowedPaths,
+    /// Let the scenario and task files name files in this folder and below, too; without it, only those around them. Can be given again
+    #[arg(long, value_name = "DIR")]
+    allow_path: Vec<PathBuf>,
     /// Number of seconds to simulate [default: 10]; a scenario fails if it takes longer [default: 600]
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
@@ -102,7 +102,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
         None => {
             let setup = args.setup.as_deref();
             let setup = setup.unwrap_or(Path::new(DEFAULT_SETUP));
-            let (mut app, result) = put_on_table(setup, &args.allowed.folders, plugins(args)?)?;
+            let (mut app, result) = put_on_table(setup, &args.allow_path, plugins(args)?)?;
             app.add_systems(
                 FixedLast,
                 report_what_stops_the_robot.in_set(RestingSystems),
@@ -123,11 +123,10 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
 /// not stop the run, but give exit code 2.
 pub(super) fn simulate(
     setup: &Path,
-    allowed: &[PathBuf],
     seconds: f64,
     final_state: &Output,
 ) -> Result<ExitCode, Failure> {
-    let (mut app, result) = put_on_table(setup, allowed, TabletopSimPlugins.build())?;
+    let (mut app, result) = put_on_table(setup, &[], TabletopSimPlugins.build())?;
     pass(&mut app, ticks(seconds));
     write_final_state(&app, final_state)?;
     Ok(result)
@@ -158,7 +157,7 @@ fn put_on_table(
 /// Performs a scenario until it is done or has failed.
 fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     let mut scenario = read_scenario(scenario).map_err(Failure::input)?;
-    scenario.allowed.clone_from(&args.allowed.folders);
+    scenario.allowed.clone_from(&args.allow_path);
     if let Some(setup) = &args.setup {
         scenario.begin_with(&true_path(setup));
     }
@@ -311,7 +310,7 @@ fn recording(plugins: PluginGroupBuilder, args: &RunArgs) -> PluginGroupBuilder 
 impl RunArgs {
     /// The scene of a task file, which may include files in the allowed folders, or all its faults.
     fn read_faultless(&self, file: &Path) -> Result<SceneSpec, String> {
-        read_faultless_task(file, &self.allowed.folders)
+        faultless(task_reader().allowing(&self.allow_path).read(file))
     }
 
     /// Gives scripts the task of a recording, with the objects of a task file if there is one.
@@ -323,7 +322,7 @@ impl RunArgs {
         let binding = match setup {
             Some(setup) => {
                 let scene = task_reader()
-                    .allowing(&self.allowed.folders)
+                    .allowing(&self.allow_path)
                     .read(setup)
                     .map_err(Failure::input)?
                     .scene;

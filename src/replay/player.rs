@@ -59,7 +59,6 @@ impl Player {
             tick: session.header.start_tick,
             actor: Actor::Replay,
             command: SimCommand::Recording(RecordingCommand::Start),
-            at_once: false,
         };
         let earlier = session.earlier.iter().cloned();
         let commands = earlier
@@ -117,7 +116,7 @@ impl Player {
                 break;
             }
             let last = due.last().map(|last: &SessionCommand| &last.command);
-            if last.is_some_and(|last| self.has_paused && begins_moment(next, last)) {
+            if last.is_some_and(|last| self.has_paused && begins_moment(&next.command, last)) {
                 break;
             }
             if last.is_some_and(|last| !self.has_paused && is_late_pause(&next.command, last)) {
@@ -139,17 +138,17 @@ impl Player {
 }
 
 /// True if a command that follows another one in a pause was given at another moment of it: otherwise it would be carried out first.
-fn begins_moment(next: &SessionCommand, last: &SimCommand) -> bool {
-    match &next.command {
+fn begins_moment(command: &SimCommand, last: &SimCommand) -> bool {
+    match command {
         SimCommand::Recording(RecordingCommand::Start)
-        | SimCommand::Clock(ClockCommand::SetPaused(false)) => true,
-        SimCommand::Scene(_) => !next.at_once,
+        | SimCommand::Clock(ClockCommand::SetPaused(false))
+        | SimCommand::Scene(_) => true,
         SimCommand::Recording(RecordingCommand::Finish) => false,
         SimCommand::Clock(ClockCommand::SetPaused(true))
         | SimCommand::History(_)
         | SimCommand::Hand(_)
         | SimCommand::Mechanism(_)
-        | SimCommand::Robot(_) => next.command.phase() < last.phase(),
+        | SimCommand::Robot(_) => command.phase() < last.phase(),
     }
 }
 
@@ -254,7 +253,6 @@ mod tests {
             tick,
             actor: Actor::Mouse,
             command,
-            at_once: false,
         });
         Player::of(commands.collect(), SimTick(0))
     }

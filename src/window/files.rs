@@ -17,16 +17,12 @@ use self::{
     recent::remember,
     reload::{Watch, keep_setting},
 };
-use crate::{
-    task_files::{TASK_FOLDER, is_task_file, save_task, task_files},
-    xml::AllowedFolders,
-};
+use crate::task_files::{TASK_FOLDER, is_task_file, save_task, task_files};
 
 pub(super) fn plugin(app: &mut App) {
     app.add_plugins((recent::plugin, reload::plugin))
         .init_resource::<Dialog>()
         .init_resource::<ShippedFiles>()
-        .init_resource::<AllowedFolders>()
         .add_systems(Startup, |mut requests: MessageWriter<FileRequest>| {
             requests.write(FileRequest::ListTasks);
         })

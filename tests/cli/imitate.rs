@@ -104,7 +104,19 @@ fn what_cannot_be_done_is_reported_in_a_sentence() {
     assert_eq!(output.status.code(), Some(1));
     let reported = stdout(&output);
     assert!(
-        reported.contains("Step 1 failed (Put the red block on the green block.): RedBlock cannot be taken from above"),
+        reported.contains("Step 1 failed (Put the red block on the green block.): RedBlock cannot be taken: nothing of it fits between the fingers"),
         "{reported}"
     );
+}
+
+#[test]
+fn a_lid_that_is_too_high_to_be_taken_from_above_is_taken_from_beside() {
+    let output = tabletop(&["imitate", &recorded("lidbox")]);
+    let told = stderr(&output);
+    // The block lies where no arm reaches it.
+    assert!(
+        told.contains("2. Put the yellow block into the blue box."),
+        "{told}"
+    );
+    assert!(!told.contains("1. Open the blue box. (again)"), "{told}");
 }

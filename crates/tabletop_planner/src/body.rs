@@ -253,6 +253,17 @@ impl RobotBody {
             .collect()
     }
 
+    /// The solids of its links when it begins.
+    pub fn at_home(&self) -> Vec<PlacedSolid> {
+        let home: Vec<_> = self.limbs.iter().map(|limb| limb.home).collect();
+        let links = self.links_at(&home).into_iter().flatten();
+        let fingers = (0..self.limbs.len()).flat_map(|limb| {
+            let end_effector = self.end_effector(limb, &home[limb]);
+            self.fingers(limb, end_effector, self.limbs[limb].widest)
+        });
+        links.chain(fingers).collect()
+    }
+
     fn is_of(&self, link: usize, limb: usize) -> bool {
         self.links[link].carrier.is_some_and(|(own, _)| own == limb)
     }

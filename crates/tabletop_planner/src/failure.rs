@@ -13,7 +13,7 @@ pub enum PlanFailure {
     OutOfReach(String),
     /// No part of the object fits between the fingers as it stands.
     NoGrasp(String),
-    /// The object would have to be tipped over, and the robot grasps only from above.
+    /// The object would have to be tipped over, and the robot puts objects down as they stand.
     Tipped(String),
     /// No free path leads to the goal.
     NoWay(String),
@@ -65,11 +65,11 @@ impl fmt::Display for PlanFailure {
             Self::OutOfReach(object) => write!(f, "no arm reaches {object} and where it belongs"),
             Self::NoGrasp(object) => write!(
                 f,
-                "{object} cannot be taken from above: nothing of it fits between the fingers"
+                "{object} cannot be taken: nothing of it fits between the fingers"
             ),
             Self::Tipped(object) => write!(
                 f,
-                "{object} would have to be tipped, and it is only taken from above"
+                "{object} would have to be tipped, and it is put down as it stands"
             ),
             Self::NoWay(object) => {
                 write!(f, "there is no free way for {object} to where it belongs")

@@ -9,9 +9,9 @@ use crate::{
     sight::{Sight, heights},
 };
 
-/// Distance from other objects at which something is put, so that fingers reach it, in units.
-const ROOM: f32 = 0.9;
-/// Distance from the table's edges, in units.
+/// How far from others something is put, so that fingers reach it, in units: rather than less.
+const ROOMS: [f32; 2] = [0.9, 0.5];
+/// How far from the table's edges, in units.
 const EDGE: f32 = 0.3;
 /// Largest number of places that are found.
 const MOST: usize = 10;
@@ -55,12 +55,12 @@ pub(crate) fn free_spots(
         .collect();
     let distance = |spot: &Vec3| (*spot - near).truncate().length();
     spots.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-    let is_free = |spot: &Vec3| {
-        let placed = solids.iter().map(|solid| solid.moved(*spot));
-        placed.into_iter().all(|solid| {
+    let is_free = |spot: &Vec3, room: f32| {
+        let mut placed = solids.iter().map(|solid| solid.moved(*spot));
+        placed.all(|solid| {
             others
                 .iter()
-                .all(|other| solid.gap_from_above(other) > ROOM)
+                .all(|other| solid.gap_from_above(other) > room)
         })
     };
     let is_reached = |spot: &Vec3| {
@@ -71,8 +71,15 @@ pub(crate) fn free_spots(
                 .all(|z| body.reach(limb, Pose::at(spot.with_z(z)), &home).is_some())
         })
     };
-    let free = spots.into_iter().filter(is_free).filter(is_reached);
-    free.take(MOST)
-        .map(|spot| Pose::new(spot, object.pose.rotation))
-        .collect()
+    let found = |room: f32| -> Vec<_> {
+        let free = spots.iter().filter(|spot| is_free(spot, room));
+        let reached = free.filter(|spot| is_reached(spot)).take(MOST);
+        reached
+            .map(|spot| Pose::new(*spot, object.pose.rotation))
+            .collect()
+    };
+    let all = ROOMS.into_iter().map(found);
+    all.into_iter()
+        .find(|spots| !spots.is_empty())
+        .unwrap_or_default()
 }

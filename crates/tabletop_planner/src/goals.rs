@@ -105,7 +105,7 @@ pub(crate) fn candidates(
 }
 
 /// True if no part of a solid reaches beyond the table.
-fn is_over(table: &Table, solid: &PlacedSolid) -> bool {
+pub(crate) fn is_over(table: &Table, solid: &PlacedSolid) -> bool {
     let reach = |way: Vec3| solid.farthest(way).dot(way);
     reach(Vec3::X).max(reach(Vec3::NEG_X)) < table.xspan / 2.0
         && reach(Vec3::Y).max(reach(Vec3::NEG_Y)) < table.yspan / 2.0

@@ -1,12 +1,31 @@
 //! Grasps of objects.
 
-use std::f32::consts::{FRAC_PI_2, PI};
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{Pose, Shape, Solid};
 use tabletop_task::PlacedSolid;
 
-/// A grasp of an object from above.
+/// From where an object is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GraspSide {
+    /// From above.
+    Above,
+    /// From beside it, or from halfway up.
+    Beside,
+}
+
+impl GraspSide {
+    /// How far the way back from the object leans from the vertical, in rad.
+    const fn leans(self) -> &'static [f32] {
+        match self {
+            Self::Above => &[0.0],
+            Self::Beside => &[FRAC_PI_4, -FRAC_PI_4, FRAC_PI_2, -FRAC_PI_2],
+        }
+    }
+}
+
+/// A way to take an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grasp {
     /// Pose of the end effector, in the object's frame.
@@ -26,9 +45,15 @@ const SHALLOW: f32 = 0.2;
 /// Depth to which fingers reach down at a high object, in units.
 const DEPTH: f32 = 0.45;
 
-/// The grasps of an object that stands like this: from above, at the whole of it or at a part such as a handle, by opposite faces
-/// that fit between the fingers. `finger` is the length of a finger, `widest` the largest opening, in units.
-pub fn grasps(shape: &Shape, rotation: Quat, finger: f32, widest: f32) -> Vec<Grasp> {
+/// The ways to take an object that stands like this: at the whole of it or at a part such as a handle, by opposite faces that fit between
+/// the fingers. `finger` is the length of a finger, `widest` the largest opening, in units.
+pub fn grasps(
+    shape: &Shape,
+    rotation: Quat,
+    side: GraspSide,
+    finger: f32,
+    widest: f32,
+) -> Vec<Grasp> {
     let upright = Pose::new(Vec3::ZERO, rotation);
     let solids = |shape: &Shape, pose: Pose| -> Vec<PlacedSolid> {
         let solids = shape.colliding();
@@ -50,43 +75,47 @@ pub fn grasps(shape: &Shape, rotation: Quat, finger: f32, widest: f32) -> Vec<Gr
     let mut all = Vec::<Grasp>::new();
     for whole in wholes {
         for yaw in yaws(&whole) {
-            let frame = Quat::from_rotation_z(yaw);
-            let [x, y] = [Vec3::X, Vec3::Y].map(|axis| extent(&whole, frame * axis));
-            let z = extent(&whole, Vec3::Z);
-            let width = x[1] - x[0];
-            if width > widest - PLAY {
-                continue;
-            }
-            let lowest = ground + ABOVE_GROUND + finger / 2.0;
-            let height = lowest.max(z[1] - DEPTH);
-            if height - finger / 2.0 > z[1] - 0.1 {
-                continue;
-            }
-            let middle = [x, y].map(|[low, high]| f32::midpoint(low, high));
-            let room = (y[1] - y[0]) / 2.0 - 0.3;
-            let offsets: &[f32] = if room > 0.4 {
-                &[0.0, 0.35, -0.35, 0.7, -0.7]
-            } else {
-                &[0.0]
-            };
-            // Higher holds leave room for objects below and around.
-            let highest = z[1] + finger / 2.0 - SHALLOW;
-            for share in [0.0, 0.5, 1.0] {
-                let rise = (highest - height).max(0.0) * share;
-                if share > 0.0 && rise < 0.05 {
+            for &lean in side.leans() {
+                let frame = Quat::from_rotation_z(yaw) * Quat::from_rotation_x(lean);
+                let [x, y, z] =
+                    [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| extent(&whole, frame * axis));
+                let width = x[1] - x[0];
+                if width > widest - PLAY {
                     continue;
                 }
-                for offset in offsets {
-                    let aside = offset * room.max(0.0);
-                    let across = frame * Vec3::new(middle[0], middle[1] + aside, 0.0);
-                    let at = across + Vec3::Z * (height + rise);
-                    for turn in [0.0, PI] {
-                        let there = Pose::new(at, Quat::from_rotation_z(yaw + turn));
-                        all.push(Grasp {
-                            end_effector: upright.inverse() * there,
-                            width,
-                            off: aside.abs() + rise,
-                        });
+                let lowest = match side {
+                    GraspSide::Above => ground + ABOVE_GROUND + finger / 2.0,
+                    GraspSide::Beside => f32::NEG_INFINITY,
+                };
+                let height = lowest.max(z[1] - DEPTH);
+                if height - finger / 2.0 > z[1] - 0.1 {
+                    continue;
+                }
+                let middle = [x, y].map(|[low, high]| f32::midpoint(low, high));
+                let room = (y[1] - y[0]) / 2.0 - 0.3;
+                let offsets: &[f32] = if room > 0.4 {
+                    &[0.0, 0.35, -0.35, 0.7, -0.7]
+                } else {
+                    &[0.0]
+                };
+                // Higher holds leave room for what is below and around.
+                let highest = z[1] + finger / 2.0 - SHALLOW;
+                for share in [0.0, 0.5, 1.0] {
+                    let rise = (highest - height).max(0.0) * share;
+                    if share > 0.0 && rise < 0.05 {
+                        continue;
+                    }
+                    for offset in offsets {
+                        let aside = offset * room.max(0.0);
+                        let at = frame * Vec3::new(middle[0], middle[1] + aside, height + rise);
+                        for turn in [0.0, PI] {
+                            let there = Pose::new(at, frame * Quat::from_rotation_z(turn));
+                            all.push(Grasp {
+                                end_effector: upright.inverse() * there,
+                                width,
+                                off: aside.abs() + rise,
+                            });
+                        }
                     }
                 }
             }
@@ -163,7 +192,7 @@ mod tests {
     }
 
     fn widths(shape: &Shape) -> Vec<f32> {
-        let all = grasps(shape, Quat::IDENTITY, 1.5, 2.0);
+        let all = grasps(shape, Quat::IDENTITY, GraspSide::Above, 1.5, 2.0);
         let rounded = |width: f32| (width * 1e3).round() / 1e3;
         let mut widths: Vec<_> = all.iter().map(|grasp| rounded(grasp.width)).collect();
         widths.dedup();
@@ -186,19 +215,31 @@ mod tests {
             handle_thickness: 0.1,
             handle_color: Rgb::RED,
         };
-        for grasp in grasps(&lid, Quat::IDENTITY, 1.5, 2.0) {
+        for grasp in grasps(&lid, Quat::IDENTITY, GraspSide::Above, 1.5, 2.0) {
             assert!(
                 grasp.width < 0.81 && grasp.end_effector.location.z > 0.5,
                 "{grasp:?}"
             );
         }
-        assert!(!grasps(&lid, Quat::IDENTITY, 1.5, 2.0).is_empty());
+        assert!(!grasps(&lid, Quat::IDENTITY, GraspSide::Above, 1.5, 2.0).is_empty());
+    }
+
+    #[test]
+    fn fingers_meet_opposite_faces_from_beside_too() {
+        let block = block(1.0, 1.5, 3.0);
+        let all = grasps(&block, Quat::IDENTITY, GraspSide::Beside, 1.5, 2.0);
+        for grasp in &all {
+            let [across, back] = [Vec3::X, Vec3::Z].map(|axis| grasp.end_effector.rotation * axis);
+            assert!(across.z.abs() < 1e-4 && back.z < 0.8, "{grasp:?}");
+        }
+        assert!(!all.is_empty());
     }
 
     #[test]
     fn fingers_stay_above_the_ground() {
         for height in [0.3, 1.0, 3.0] {
-            for grasp in grasps(&block(1.0, 1.0, height), Quat::IDENTITY, 1.5, 2.0) {
+            let block = block(1.0, 1.0, height);
+            for grasp in grasps(&block, Quat::IDENTITY, GraspSide::Above, 1.5, 2.0) {
                 let ends = grasp.end_effector.location.z - 0.75;
                 assert!(ends >= -height / 2.0 + 0.029, "{grasp:?}");
             }

@@ -10,8 +10,9 @@ use crate::{
     failure::PlanFailure,
     free_spot::free_spots,
     goals::{Before, Candidate, bound, candidates, inside, is_met},
+    grasp::GraspSide,
     motion::{follow, wait},
-    sight::Sight,
+    sight::{SeenObject, Sight},
     stage::{PlanningStage, Stopped},
     transfer::Transfer,
     transit::{WaySearch, transit},
@@ -39,9 +40,11 @@ pub struct Doing {
 
 /// Number of tries of a step.
 const TRIES: usize = 3;
-/// Number of objects that are moved out of the way for a step.
+/// What is nearer than this leaves no room for fingers, in units.
+const FINGER_ROOM: f32 = 0.7;
+/// How many things are moved out of the way for a step.
 const MOST_CLEARED: usize = 4;
-/// Place where limbs wait, out of each other's way: beside the table's front corners, in units.
+/// PlaceRange where limbs wait, out of each other's way: beside the table's front corners, in units.
 const PARKED: Vec3 = Vec3::new(7.0, -6.0, 4.5);
 
 /// Does a task. Whatever is tried by chance is decided by `seed`; `tell` hears of every step before it is tried.
@@ -256,7 +259,24 @@ impl Imitator<'_> {
                     };
                     self.clear(stage, &occupant, i)?;
                 }
-                self.put(stage, step, id, i)
+                let mut outcome = self.put(stage, step, id, i);
+                for _ in 0..MOST_CLEARED {
+                    if !matches!(outcome, Err(PlanFailure::NoWay(_))) {
+                        break;
+                    }
+                    let Some(neighbour) = self.neighbour(stage.sight(), step, id)? else {
+                        break;
+                    };
+                    self.clear(stage, &neighbour, i)?;
+                    outcome = self.put(stage, step, id, i);
+                }
+                self.or_from_beside(stage, outcome, |stage| {
+                    let goals = self.goals(stage, step)?;
+                    let at = goals.first().map_or(Vec3::ZERO, |goal| goal.pose.location);
+                    self.by_some_limb_from(stage, GraspSide::Beside, id, at, |transfer, stage| {
+                        transfer.carry_out(stage, &goals)
+                    })
+                })
             }
         }
     }
@@ -275,7 +295,7 @@ impl Imitator<'_> {
             .map_or(Vec3::ZERO, |goal| goal.pose.location);
         let straight = {
             let goals = goals(stage)?;
-            self.by_some_limb(stage, id, at, |transfer, stage| {
+            self.by_some_limb_from(stage, GraspSide::Above, id, at, |transfer, stage| {
                 transfer.carry_out(stage, &goals)
             })
         };
@@ -307,11 +327,11 @@ impl Imitator<'_> {
         if spots.is_empty() {
             return Err(failure);
         }
-        self.by_some_limb(stage, id, near, |transfer, stage| {
+        self.by_some_limb_from(stage, GraspSide::Above, id, near, |transfer, stage| {
             transfer.carry_out(stage, &spots)
         })?;
         let goals = goals(stage)?;
-        self.by_some_limb(stage, id, at, |transfer, stage| {
+        self.by_some_limb_from(stage, GraspSide::Above, id, at, |transfer, stage| {
             transfer.carry_out(stage, &goals)
         })
     }
@@ -336,10 +356,52 @@ impl Imitator<'_> {
         })
     }
 
-    /// Gives the work to the limb on the side of both ends or, if it cannot do it, to the others. The remaining limbs wait.
+    /// Lets a limb do it that takes the object from above; if none can, from beside.
     fn by_some_limb(
         &self,
         stage: &mut dyn PlanningStage,
+        id: &str,
+        towards: Vec3,
+        act: impl Fn(&Transfer, &mut dyn PlanningStage) -> Result<(), PlanFailure>,
+    ) -> Result<(), PlanFailure> {
+        let from_above = self.by_some_limb_from(stage, GraspSide::Above, id, towards, &act);
+        self.or_from_beside(stage, from_above, |stage| {
+            self.by_some_limb_from(stage, GraspSide::Beside, id, towards, &act)
+        })
+    }
+
+    /// What has become of something, or, if it cannot be done from above, of the same from beside.
+    fn or_from_beside(
+        &self,
+        stage: &mut dyn PlanningStage,
+        from_above: Result<(), PlanFailure>,
+        from_beside: impl FnOnce(&mut dyn PlanningStage) -> Result<(), PlanFailure>,
+    ) -> Result<(), PlanFailure> {
+        let cannot_be_done = |outcome: &Result<(), PlanFailure>| {
+            matches!(
+                outcome,
+                Err(PlanFailure::OutOfReach(_) | PlanFailure::NoWay(_) | PlanFailure::NoGrasp(_))
+            )
+        };
+        let is_held = |stage: &dyn PlanningStage| {
+            let mut limbs = stage.sight().limbs.iter();
+            limbs.any(|limb| !limb.holds.is_empty())
+        };
+        if !cannot_be_done(&from_above) || is_held(stage) {
+            return from_above;
+        }
+        let outcome = from_beside(stage);
+        match cannot_be_done(&outcome) {
+            true => from_above,
+            false => outcome,
+        }
+    }
+
+    /// Lets the limb do it that is on the side of both ends; if it cannot, the others. They wait meanwhile.
+    fn by_some_limb_from(
+        &self,
+        stage: &mut dyn PlanningStage,
+        side: GraspSide,
         id: &str,
         towards: Vec3,
         act: impl Fn(&Transfer, &mut dyn PlanningStage) -> Result<(), PlanFailure>,
@@ -365,6 +427,7 @@ impl Imitator<'_> {
                 body: self.body,
                 limb,
                 object: id,
+                side,
                 seed: self.seed,
             };
             match act(&transfer, stage) {
@@ -396,15 +459,15 @@ impl Imitator<'_> {
         Err(failure)
     }
 
-    /// Opens and lifts a gripper that still holds something after a failure.
+    /// Opens a gripper that still holds something after a failure, and withdraws it.
     fn set_down(&self, stage: &mut dyn PlanningStage, limb: usize) -> Result<(), PlanFailure> {
         let widest = f64::from(self.body.limbs[limb].widest);
         crate::motion::grip(stage, limb, widest)?;
         let sight = stage.sight().clone();
         let clearance = Clearance::new(self.body, &sight, limb, &[]);
-        if let Some(up) = crate::path::lift(&clearance, &clearance.here(), 1.0) {
-            // After any other failure it stays where it is.
-            if let Err(PlanFailure::Stopped) = follow(stage, self.body, limb, &up, 2.5, "") {
+        if let Some(back) = crate::path::withdraw(&clearance, &clearance.here(), 1.0) {
+            // After other failures it stays where it is.
+            if let Err(PlanFailure::Stopped) = follow(stage, self.body, limb, &back, 2.5, "") {
                 return Err(PlanFailure::Stopped);
             }
         }
@@ -454,7 +517,56 @@ impl Imitator<'_> {
         })
     }
 
-    /// Moves an object out of the way, with everything that stands on it.
+    /// The nearest thing that leaves too little room for fingers beside an object or its place, and does not belong there.
+    fn neighbour(
+        &self,
+        sight: &Sight,
+        step: &TaskStep,
+        id: &str,
+    ) -> Result<Option<String>, PlanFailure> {
+        let goals = candidates(step, self.binding, sight, &self.before)?;
+        let Some(object) = sight.objects.get(id) else {
+            return Ok(None);
+        };
+        let places = goals.first().map(|goal| goal.pose);
+        let solids: Vec<_> = places
+            .into_iter()
+            .chain([object.pose])
+            .flat_map(|pose| object.solids_at(pose))
+            .collect();
+        let others = step.relations.iter().filter_map(Relation::object);
+        let done = self.task.steps.iter().take(step.number - 1);
+        let settled = done.map(|step| step.object.as_str()).chain(others);
+        let settled: Vec<_> = settled
+            .filter_map(|role| self.binding.object(role))
+            .collect();
+        let is_movable = |other: &str, seen: &SeenObject| {
+            let is_jointed = || {
+                sight
+                    .joints
+                    .iter()
+                    .any(|joint| joint.objects.iter().any(|one| one == other))
+            };
+            other != id && !seen.is_fixed && !settled.contains(&other) && !is_jointed()
+        };
+        let gap = |other: &SeenObject| {
+            let theirs = other.solids();
+            let gaps = solids
+                .iter()
+                .flat_map(|solid| theirs.iter().map(|other| solid.gap_from_above(other)));
+            gaps.fold(f32::INFINITY, f32::min)
+        };
+        let near = sight
+            .objects
+            .iter()
+            .filter(|(other, seen)| is_movable(other, seen))
+            .map(|(other, seen)| (gap(seen), other))
+            .filter(|(gap, _)| *gap < FINGER_ROOM);
+        let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(nearest.map(|(_, other)| other.clone()))
+    }
+
+    /// Moves something out of the way, with what stands on it.
     fn clear(&self, stage: &mut dyn PlanningStage, id: &str, i: usize) -> Result<(), PlanFailure> {
         for above in stage.sight().above(id) {
             self.clear(stage, &above, i)?;

@@ -69,3 +69,10 @@ pub(crate) fn lift(clearance: &Clearance, from: &Angles, by: f32) -> Option<Path
     to.location += Vec3::Z * by;
     line(clearance, from, to)
 }
+
+/// The way on which the end effector goes straight back from where its fingers point to.
+pub(crate) fn withdraw(clearance: &Clearance, from: &Angles, by: f32) -> Option<Path> {
+    let mut to = clearance.end_effector(from);
+    to.location += to.rotation * Vec3::Z * by;
+    line(clearance, from, to)
+}

@@ -17,8 +17,8 @@ pub struct Piece {
     pub solids: Vec<PlacedSolid>,
     /// Point about which it is turned.
     pub centre: Vec3,
-    /// Points of it that the robot must reach.
-    pub reached: Vec<Vec3>,
+    /// Points of it that the robot must reach: all of a group with the same limb.
+    pub reached: Vec<Vec<Vec3>>,
 }
 
 /// Least distance between pieces, seen from above, in units.
@@ -28,7 +28,7 @@ const TRIES: u32 = 3000;
 /// Distance of pieces from the table's edges, in units.
 const EDGE: f32 = 0.05;
 
-/// Motions that bring all pieces to random places, turned by random angles. `is_reached` must hold of the points that have to be reached.
+/// Motions that bring all pieces to random places, turned by random angles. `is_reached` must hold of each group of points that has to be reached.
 /// Pieces that stand on, in or around others move with them. Nothing comes near the solids `kept` free. `None` if there is
 /// no room.
 pub fn scatter(
@@ -36,7 +36,7 @@ pub fn scatter(
     arrangement: &Arrangement,
     table: &Table,
     kept: &[PlacedSolid],
-    is_reached: impl Fn(Vec3) -> bool,
+    is_reached: impl Fn(&[Vec3]) -> bool,
     seed: u64,
 ) -> Option<Vec<Pose>> {
     let groups = groups(pieces, arrangement);
@@ -76,8 +76,11 @@ pub fn scatter(
                     .all(|solid| placed.iter().all(|other| solid.gap_from_above(other) > GAP))
             };
             let all_are_reached = || {
-                let mut points = group.iter().flat_map(|&piece| &pieces[piece].reached);
-                points.all(|point| is_reached(motion * *point))
+                let mut groups = group.iter().flat_map(|&piece| &pieces[piece].reached);
+                groups.all(|points| {
+                    let points: Vec<_> = points.iter().map(|point| motion * *point).collect();
+                    is_reached(&points)
+                })
             };
             if is_on_table && is_apart() && all_are_reached() {
                 found = Some((motion, solids));
@@ -94,19 +97,26 @@ pub fn scatter(
 }
 
 impl RobotBody {
-    /// True if some limb reaches a point, and the space above it, from above, with its fingers turned in any direction.
-    pub fn reaches_from_above(&self, point: Vec3) -> bool {
-        (0..self.limbs.len()).any(|limb| {
-            let home = self.limbs[limb].home;
-            let there = |z: f32, turn: f32| {
-                let pose = Pose::new(point.with_z(z), Quat::from_rotation_z(turn));
-                self.reach(limb, pose, &home).is_some()
-            };
-            let low = point.z + 0.3;
-            [0.0, PI / 4.0, PI / 2.0, -PI / 4.0]
-                .into_iter()
-                .all(|turn| there(low, turn) && there(low + 2.5, turn))
+    /// True if one limb reaches all points, and the space above them, from above, with its fingers turned in any direction.
+    pub fn reaches_from_above(&self, points: &[Vec3]) -> bool {
+        let mut limbs = 0..self.limbs.len();
+        limbs.any(|limb| {
+            points
+                .iter()
+                .all(|&point| self.limb_reaches_from_above(limb, point))
         })
+    }
+
+    fn limb_reaches_from_above(&self, limb: usize, point: Vec3) -> bool {
+        let home = self.limbs[limb].home;
+        let there = |z: f32, turn: f32| {
+            let pose = Pose::new(point.with_z(z), Quat::from_rotation_z(turn));
+            self.reach(limb, pose, &home).is_some()
+        };
+        let low = point.z + 0.3;
+        [0.0, PI / 4.0, PI / 2.0, -PI / 4.0]
+            .into_iter()
+            .all(|turn| there(low, turn) && there(low + 2.5, turn))
     }
 }
 

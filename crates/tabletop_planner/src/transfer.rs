@@ -11,9 +11,9 @@ use crate::{
     clearance::{Clearance, Margins},
     failure::PlanFailure,
     goals::Candidate,
-    grasp::{Grasp, grasps},
+    grasp::{Grasp, GraspSide, grasps},
     motion::{follow, grip, wait},
-    path::{Path, largest_turn, lift, line},
+    path::{Path, largest_turn, lift, line, withdraw},
     sight::{SeenObject, Sight, heights},
     stage::PlanningStage,
     transit::{WaySearch, transit},
@@ -45,6 +45,7 @@ pub(crate) struct Transfer<'a> {
     pub body: &'a RobotBody,
     pub limb: usize,
     pub object: &'a str,
+    pub side: GraspSide,
     /// Seed of the search for paths.
     pub seed: u64,
 }
@@ -143,6 +144,7 @@ impl Transfer<'_> {
         let mut all = grasps(
             &object.shape,
             object.pose.rotation,
+            self.side,
             limb.finger.z,
             limb.widest,
         );
@@ -306,20 +308,23 @@ impl Transfer<'_> {
         fingers.iter().all(is_apart)
     }
 
-    /// Paths to above the object, and down to it.
+    /// Paths to where the object is taken from, and to it.
     fn approach(&self, sight: &Sight, taking: &Taking, search: WaySearch) -> Option<[Path; 2]> {
         let object = self.seen(sight).ok()?;
         let near =
             Clearance::new(self.body, sight, self.limb, &[self.object]).opened(taking.opening);
         let far = Clearance::new(self.body, sight, self.limb, &[]).opened(taking.opening);
-        let [_, top] = heights(&object.solids());
-        let ends =
-            near.end_effector(&taking.at).location.z - self.body.limbs[self.limb].finger.z / 2.0;
-        let above = top - ends + 0.15;
-        let (up, way) = [above, above + 0.5, (above - 0.4).max(0.3)]
+        let end_effector = near.end_effector(&taking.at);
+        let back = end_effector.rotation * Vec3::Z;
+        let solids = object.solids();
+        let reach = solids.iter().map(|solid| solid.farthest(back).dot(back));
+        let reach = reach.fold(f32::NEG_INFINITY, f32::max);
+        let ends = end_effector.location.dot(back) - self.body.limbs[self.limb].finger.z / 2.0;
+        let away = reach - ends + 0.15;
+        let (up, way) = [away, away + 0.5, (away - 0.4).max(0.3)]
             .into_iter()
             .find_map(|by| {
-                let up = lift(&near, &taking.at, by)?;
+                let up = withdraw(&near, &taking.at, by)?;
                 if !near.is_way_free(&up, Margins::NARROW) {
                     return None;
                 }
@@ -437,20 +442,20 @@ impl Transfer<'_> {
         Err(PlanFailure::NotHeld(self.object.to_owned()))
     }
 
-    /// Opens the gripper and goes up.
+    /// Opens the gripper and withdraws it.
     fn retreat(&self, stage: &mut dyn PlanningStage) -> Result<(), PlanFailure> {
         let limb = &self.body.limbs[self.limb];
         grip(stage, self.limb, f64::from(limb.widest))?;
-        self.go_up(stage)
+        self.withdraw(stage)
     }
 
-    fn go_up(&self, stage: &mut dyn PlanningStage) -> Result<(), PlanFailure> {
+    fn withdraw(&self, stage: &mut dyn PlanningStage) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
         let clearance = Clearance::new(self.body, &sight, self.limb, &[self.object]);
         let here = clearance.here();
         let by = [1.4, 1.0, 0.6]
             .into_iter()
-            .find_map(|by| lift(&clearance, &here, by));
+            .find_map(|by| withdraw(&clearance, &here, by));
         match by {
             Some(up) => follow(stage, self.body, self.limb, &up, SLOW, self.object),
             None => Ok(()),
@@ -460,7 +465,7 @@ impl Transfer<'_> {
     fn let_go(&self, stage: &mut dyn PlanningStage, opening: f32) -> Result<(), PlanFailure> {
         let widest = self.body.limbs[self.limb].widest;
         grip(stage, self.limb, f64::from(opening.min(widest)))?;
-        self.go_up(stage)?;
+        self.withdraw(stage)?;
         Ok(wait(stage, 15)?)
     }
 

@@ -5,8 +5,7 @@ use std::path::Path;
 use tabletop_core::{Random, SceneSpec, TICKS_PER_SECOND, seen_from};
 
 use crate::{
-    LocatedStep, Scenario, ScenarioError, SourceLocation, Step, place::place_all,
-    reach::ScenarioReach,
+    LocatedStep, Scenario, ScenarioError, SourceLocation, Step, place::place_all, reach::Reach,
 };
 
 /// Time limit of a scenario unless another is given, in seconds.
@@ -50,7 +49,7 @@ impl Program {
         seed: u64,
     ) -> Result<Self, ScenarioError> {
         let folder = scenario.path.parent().unwrap_or(Path::new(""));
-        let reach = ScenarioReach::of(folder, &scenario.allowed);
+        let reach = Reach::of(folder, &scenario.allowed);
         let mut random = Random::new(seed);
         let steps = scenario.setup.iter().chain(&scenario.steps);
         let steps = steps.map(|LocatedStep { at, text, step }| {

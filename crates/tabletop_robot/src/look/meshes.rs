@@ -8,11 +8,9 @@ use std::{
 
 use bevy::math::Vec3;
 use tabletop_core::{Figure, Rgb, read_regular_file, read_regular_text};
-use tabletop_kinematics::{Geometry, LinkShape};
 use tabletop_mesh::{MeshFileError, Triangle, read_obj, read_stl};
 
 use super::{error::LookError, hull::Hull, shape_file::read_shape, shipped::PARTS};
-use crate::source::DescriptionSource;
 
 /// Prefix of the names of the program's own shapes.
 const OUR_PACKAGE: &str = "package://tabletop/";
@@ -32,18 +30,13 @@ const COARSE_CELLS: f32 = 24.0;
 /// Largest coordinate, in m, that can be drawn.
 const FARTHEST: f32 = 1e6;
 
-/// True if a shape is one of the program's own.
-pub(crate) fn is_ours(shape: &LinkShape) -> bool {
-    matches!(&shape.geometry, Geometry::Mesh { file, .. } if file.starts_with(OUR_PACKAGE))
-}
-
-/// The figure of a mesh, in units. `source` is the description that names it, if it was read from files. A mesh without
+/// The figure of a mesh, in units. `urdf` is the file of the description that names it, if there is one. A mesh without
 /// colours has this one.
 pub(super) fn figure(
     file: &str,
     scale: Vec3,
     color: Rgb,
-    source: Option<&DescriptionSource>,
+    urdf: Option<&Path>,
 ) -> Result<Figure, LookError> {
     let ours = file.strip_prefix(OUR_PACKAGE).and_then(|name| {
         let known = PARTS.iter().find(|(known, _)| *known == name);
@@ -52,7 +45,7 @@ pub(super) fn figure(
     if let Some(text) = ours {
         return shape(file, text);
     }
-    let path = find(file, source)?;
+    let path = find(file, urdf)?;
     let failed = |source| LookError::Mesh {
         path: path.clone(),
         source,
@@ -120,8 +113,8 @@ fn simplified(hull: &Hull) -> Hull {
 
 /// The file that a description names: `package://NAME/rest` is looked for as `NAME/rest` and, where the folder is called
 /// NAME itself, as `rest`, in the folders around the description from the inside out; other names are relative to it.
-fn find(file: &str, source: Option<&DescriptionSource>) -> Result<PathBuf, LookError> {
-    let folder = source.map(DescriptionSource::folder);
+fn find(file: &str, urdf: Option<&Path>) -> Result<PathBuf, LookError> {
+    let folder = urdf.map(|urdf| urdf.parent().unwrap_or(Path::new("")));
     let mut searched = Vec::new();
     let candidates: Vec<PathBuf> = if let Some(rest) = file.strip_prefix("package://") {
         let (package, inside) = rest.split_once('/').unwrap_or((rest, ""));
@@ -143,10 +136,7 @@ fn find(file: &str, source: Option<&DescriptionSource>) -> Result<PathBuf, LookE
     };
     for path in candidates {
         if path.is_file() {
-            return match source.is_none_or(|source| source.reaches(&path)) {
-                true => Ok(path),
-                false => Err(LookError::Outside { path }),
-            };
+            return Ok(path);
         }
         searched.push(path);
     }
@@ -159,8 +149,6 @@ fn find(file: &str, source: Option<&DescriptionSource>) -> Result<PathBuf, LookE
 #[cfg(test)]
 mod tests {
     use std::fs;
-
-    use tabletop_core::Reach;
 
     use super::*;
 
@@ -180,22 +168,8 @@ mod tests {
         }
 
         fn look(&self, file: &str, urdf: &str) -> Result<Figure, LookError> {
-            self.look_within(file, urdf, None)
-        }
-
-        fn look_within(
-            &self,
-            file: &str,
-            urdf: &str,
-            reach: Option<Reach>,
-        ) -> Result<Figure, LookError> {
-            let source = DescriptionSource {
-                path: self.0.join(urdf),
-                urdf: String::new(),
-                layout: None,
-                reach,
-            };
-            figure(file, Vec3::new(1.0, 2.0, -1.0), Rgb::WHITE, Some(&source))
+            let urdf = self.0.join(urdf);
+            figure(file, Vec3::new(1.0, 2.0, -1.0), Rgb::WHITE, Some(&urdf))
         }
     }
 
@@ -251,27 +225,6 @@ mod tests {
                 .look("../meshes/a.stl", "arm_description/urdf/robot.urdf")
                 .is_ok()
         );
-    }
-
-    #[test]
-    fn a_strangers_description_names_meshes_within_reach_alone() {
-        let files = [("demo/robot/in.stl", STL), ("arm/out.stl", STL)];
-        let folder = MeshFolder::with("reach", &files);
-        let reach = |place: &str| Some(Reach::of([folder.0.join(place)]));
-        let look = |file: &str, place: &str| {
-            folder.look_within(file, "demo/robot/robot.urdf", reach(place))
-        };
-        assert!(look("in.stl", "demo").is_ok());
-        let absolute = folder.0.join("arm/out.stl");
-        for outside in [
-            "../../arm/out.stl",
-            "package://arm/out.stl",
-            absolute.to_str().unwrap(),
-        ] {
-            let error = look(outside, "demo").unwrap_err().to_string();
-            assert!(error.contains("--allow-path"), "{error}");
-            assert!(look(outside, "arm").is_ok(), "{outside}");
-        }
     }
 
     #[test]
