@@ -152,7 +152,7 @@ impl BareRapier {
     fn step(&mut self) {
         self.care.spend(Engine {
             parameters: &mut self.parameters,
-            islands: &self.islands,
+            islands: &mut self.islands,
             broad_phase: &self.broad_phase,
             narrow_phase: &self.narrow_phase,
             bodies: &mut self.bodies,

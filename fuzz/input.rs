@@ -7,54 +7,94 @@ use std::{
 
 use crate::{
     mutation::{Random, mutate},
-    target::Target,
+    target::{Material, Target},
 };
 
 /// Largest size of a seed: most of the time would go into reading longer ones.
 const LONGEST_SEED: usize = 20_000;
 
+/// Of how many inputs one begins as nothing.
+const ONE_EMPTY_OF: usize = 50;
+
 /// The inputs of a target with a seed.
 pub struct Inputs {
     seed: u64,
-    /// The seeds of inputs, in the order of their lengths.
+    material: Option<Texts>,
+}
+
+/// What inputs are made of.
+struct Texts {
+    /// What they begin as, in the order of their lengths.
     corpus: Vec<Vec<u8>>,
     /// Words of the language.
     words: Vec<Vec<u8>>,
 }
 
 impl Inputs {
-    pub fn of(target: &Target, seed: u64) -> Self {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let own = folder.join("fuzz/corpus").join(target.name);
-        let shipped = target.shipped.iter().map(|path| folder.join(path));
-        let mut corpus: Vec<Vec<u8>> = [own]
-            .into_iter()
-            .chain(shipped)
-            .flat_map(|folder| files(&folder, target.ending))
-            .filter_map(|file| fs::read(file).ok())
-            .filter(|bytes| bytes.len() <= LONGEST_SEED)
-            .collect();
-        corpus.sort_by(|a, b| (a.len(), a).cmp(&(b.len(), b)));
-        corpus.insert(0, Vec::new());
-        let words = folder.join("fuzz/dictionary").join(target.dictionary);
-        let words = fs::read_to_string(words).unwrap_or_default();
-        Self {
+    /// The inputs that are made of what is in the repository: where the program runs, or where it was built.
+    pub fn of(target: &Target, seed: u64) -> Result<Self, String> {
+        let here = Path::new("");
+        let folder = match here.join("fuzz/corpus").is_dir() {
+            true => here,
+            false => Path::new(env!("CARGO_MANIFEST_DIR")),
+        };
+        let material = target.material.as_ref();
+        let material = material.map(|material| Texts::of(target.name, material, folder));
+        Ok(Self {
             seed,
-            corpus,
-            words: words.lines().map(|word| word.as_bytes().to_vec()).collect(),
-        }
+            material: material.transpose()?,
+        })
     }
 
     pub fn input(&self, number: u64) -> Vec<u8> {
         let mut random = Random::new(self.seed, number);
+        match &self.material {
+            Some(texts) => texts.input(&mut random),
+            None => random.next().to_le_bytes().to_vec(),
+        }
+    }
+}
+
+impl Texts {
+    fn of(target: &str, material: &Material, folder: &Path) -> Result<Self, String> {
+        let own = folder.join("fuzz/corpus").join(target);
+        let shipped = material.shipped.iter().map(|path| folder.join(path));
+        let mut corpus: Vec<Vec<u8>> = [own]
+            .into_iter()
+            .chain(shipped)
+            .flat_map(|folder| files(&folder, material.ending))
+            .filter_map(|file| fs::read(file).ok())
+            .filter(|bytes| bytes.len() <= LONGEST_SEED)
+            .collect();
+        if corpus.is_empty() {
+            let folder = folder.display();
+            return Err(format!(
+                "{target}: there is nothing to begin with in {folder}; run it in the repository"
+            ));
+        }
+        corpus.sort_by(|a, b| (a.len(), a).cmp(&(b.len(), b)));
+        let words = folder.join("fuzz/dictionary").join(material.dictionary);
+        let words =
+            fs::read_to_string(&words).map_err(|error| format!("{}: {error}", words.display()))?;
+        let words = words.lines().map(|word| word.as_bytes().to_vec());
+        Ok(Self {
+            corpus,
+            words: words.collect(),
+        })
+    }
+
+    fn input(&self, random: &mut Random) -> Vec<u8> {
         // Short ones more often.
         let choice = random
             .below(self.corpus.len())
             .min(random.below(self.corpus.len()));
-        let mut bytes = self.corpus[choice].clone();
+        let mut bytes = match random.below(ONE_EMPTY_OF) {
+            0 => Vec::new(),
+            _ => self.corpus[choice].clone(),
+        };
         let changes = 1 + random.below(6) * random.below(2);
         for _ in 0..changes {
-            mutate(&mut bytes, &self.corpus, &self.words, &mut random);
+            mutate(&mut bytes, &self.corpus, &self.words, random);
         }
         bytes
     }

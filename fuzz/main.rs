@@ -60,7 +60,7 @@ fn search(target: &str, seed: &str, minutes: &str) -> Result<ExitCode, String> {
 /// Writes an input to standard output.
 fn show(target: &str, seed: &str, input: &str) -> Result<ExitCode, String> {
     use std::io::Write as _;
-    let bytes = Inputs::of(Target::named(target)?, number(seed)?).input(number(input)?);
+    let bytes = Inputs::of(Target::named(target)?, number(seed)?)?.input(number(input)?);
     std::io::stdout()
         .write_all(&bytes)
         .map_err(|error| error.to_string())?;

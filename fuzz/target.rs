@@ -23,7 +23,13 @@ pub struct Target {
     pub name: &'static str,
     /// Starts the target; the returned function takes inputs.
     pub start: fn() -> Box<dyn FnMut(&[u8])>,
-    /// Folders of the repository with seeds, besides its corpus.
+    /// What inputs are made of; else they are where chance begins.
+    pub material: Option<Material>,
+}
+
+/// What inputs are made of.
+pub struct Material {
+    /// Folders of the repository with files to begin with, besides the target's corpus.
     pub shipped: &'static [&'static str],
     /// Ending of the names of seeds.
     pub ending: &'static str,
@@ -40,9 +46,11 @@ const fn target(
     Target {
         name,
         start,
-        shipped,
-        ending,
-        dictionary,
+        material: Some(Material {
+            shipped,
+            ending,
+            dictionary,
+        }),
     }
 }
 
@@ -82,7 +90,11 @@ impl Target {
             "session.txt",
         ),
         target("protocol", || each(protocol), &[], ".arrays", "mesh.txt"),
-        target("scene", scenes::start, &[], ".bytes", "mesh.txt"),
+        Self {
+            name: "scene",
+            start: scenes::start,
+            material: None,
+        },
     ];
 
     pub fn named(name: &str) -> Result<&'static Self, String> {

@@ -1,5 +1,6 @@
 //! The command line and its exit codes: 0 done, 1 the run failed, 2 wrong usage or input.
 
+mod allowed_paths;
 mod check;
 mod completions;
 #[cfg(feature = "window")]

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use bevy::{app::PluginGroupBuilder, ecs::message::MessageCursor, prelude::*};
 use serde::Deserialize as _;
 use tabletop_core::{
-    Actor, HeadCamera, RecordingCommand, SimCommand, SimFact, SimTick, StepApp as _,
+    Actor, HeadCamera, Reach, RecordingCommand, SimCommand, SimFact, SimTick, StepApp as _,
     TICKS_PER_SECOND,
 };
 use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
@@ -45,8 +45,20 @@ impl Replay {
     ///
     /// # Errors
     ///
-    /// The session log cannot be read, does not go back far enough, or has settings that this program does not have.
+    /// The session log cannot be read, does not go back far enough, or has settings that this program does not have; or its robot has
+    /// meshes outside of the folder.
     pub fn read(folder: impl Into<PathBuf>) -> Result<Self, ReplayError> {
+        Self::read_allowing(folder, &[])
+    }
+
+    /// [`read`](Self::read) for a recording whose robot may have its meshes in these folders, too.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_allowing(
+        folder: impl Into<PathBuf>,
+        allowed: &[PathBuf],
+    ) -> Result<Self, ReplayError> {
         let folder = folder.into();
         let path = folder.join("session.jsonl");
         let recording = RecordingReader::open(&folder)?;
@@ -82,7 +94,9 @@ impl Replay {
                 .map_err(|error| fault("settings.robot", error.to_string()))?,
             None => RobotSettings::default(),
         };
-        let robot = robot_settings.clone().plugin();
+        let robot = robot_settings
+            .clone()
+            .plugin(Reach::of([&folder].into_iter().chain(allowed)));
         let robot = robot.map_err(|error| fault("settings.robot", error.to_string()))?;
         let Some(begin) = header.begin_tick.map(SimTick) else {
             return Err(ReplayError::NoBeginning { path });
@@ -95,6 +109,7 @@ impl Replay {
                 tick: tick.0,
                 actor: Actor::Replay,
                 command: SimCommand::Recording(RecordingCommand::Finish),
+                at_once: false,
             }));
         Ok(Self {
             recording,

@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tabletop_core::{
-    RestingSystems, Robot, RobotMode, SimFact, SimSystems, TickSystems, is_shipped,
+    Reach, RestingSystems, Robot, RobotMode, SimFact, SimSystems, TickSystems, is_shipped,
 };
 use tabletop_physics::PhysicsSettings;
 use tabletop_recorder::SessionSettings;
@@ -79,10 +79,14 @@ pub(crate) struct RobotSettings {
 }
 
 impl RobotSettings {
-    /// The plugin of this robot.
-    pub fn plugin(self) -> Result<RobotPlugin, DescriptionError> {
+    /// The plugin of this robot, whose meshes must be within reach.
+    pub fn plugin(self, reach: Reach) -> Result<RobotPlugin, DescriptionError> {
+        let source = self.description.map(|source| DescriptionSource {
+            reach: Some(reach),
+            ..source
+        });
         Ok(RobotPlugin {
-            description: self.description.map(Description::read).transpose()?,
+            description: source.map(Description::read).transpose()?,
             mode: self.mode,
         })
     }
@@ -174,6 +178,7 @@ mod tests {
             path: "robot.urdf".into(),
             urdf: "<robot/>".repeat(100),
             layout: None,
+            reach: None,
         });
         assert_eq!(
             difference(&other).unwrap(),

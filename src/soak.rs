@@ -1,13 +1,16 @@
 //! Soak test: hours of random acts of a user in one process, with checks after every tick.
 
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop_core::{
-    Actor, Arm, ClockCommand, Drive, Hand, HandCommand, HistoryCommand, ObjectIndex, ObjectSpec,
-    Pose, Preset, Random, RecordingCommand, Rgb, RobotCommand, RobotJoint, SceneCommand, SceneItem,
-    SceneSpec, Shape, SimCommand, SimFact, StepApp as _, TICKS_PER_SECOND, Table, Twist,
-    WriteCommand as _,
+    Actor, Arm, ClockCommand, Drive, Hand, HandCommand, Held, HistoryCommand, ObjectIndex,
+    ObjectSpec, Pose, Preset, Random, RecordingCommand, Rgb, RobotCommand, RobotJoint,
+    SceneCommand, SceneItem, SceneSpec, Shape, SimCommand, SimFact, StepApp as _, TICKS_PER_SECOND,
+    Table, Twist, WriteCommand as _,
 };
 use tabletop_physics::{Convex, collider, convex_parts, nearest};
 use tabletop_recorder::{Durability, RecorderPlugin};
@@ -22,6 +25,12 @@ const RECORDED: u64 = 30 * TICKS_PER_SECOND as u64;
 
 /// Largest depth of a body in the table, or in an immovable object, in units.
 const DEEPEST: f32 = 0.05;
+
+/// Number of ticks for which a body that is hit may be deeper: what falls onto it, or a hand or an arm that passes, presses it in.
+const HIT: u64 = 6;
+
+/// Largest depth, in units, to which a blow presses a body.
+const DEEPEST_OF_HIT: f32 = 0.5;
 
 /// Largest number of objects of a scene.
 const OBJECTS: usize = 10;
@@ -54,6 +63,7 @@ impl Round {
         let mut app = headless_app_with(TabletopSimPlugins.build().set(recorder));
         let mut facts = MessageCursor::<SimFact>::default();
         give(&mut app, SceneCommand::Set(Box::new(scene(&mut random))));
+        let mut pressed = Pressed::default();
         for tick in 0..Self::TICKS {
             if tick == BEFORE {
                 give(&mut app, RecordingCommand::Start);
@@ -62,7 +72,7 @@ impl Round {
                 give(&mut app, command(&mut random));
             }
             app.step(1);
-            look(&mut app).map_err(|fault| format!("tick {tick}: {fault}"))?;
+            look(&mut app, &mut pressed).map_err(|fault| format!("tick {tick}: {fault}"))?;
             for fact in facts.read(app.world().resource::<Messages<SimFact>>()) {
                 if let SimFact::RecordingFailed { reason, .. } = fact {
                     return Err(format!("tick {tick}: the recording ended: {reason}"));
@@ -99,39 +109,42 @@ fn give(app: &mut App, command: impl Into<SimCommand>) {
     app.world_mut().write_command_of(Actor::App, command);
 }
 
-/// Checks every object: its pose is finite, and it is in nothing immovable.
-fn look(app: &mut App) -> Result<(), String> {
-    let table = app
-        .world_mut()
-        .query::<&Table>()
-        .iter(app.world())
-        .next()
-        .copied();
-    let world = app.world();
-    let index = world.resource::<ObjectIndex>();
-    let objects = index.iter().filter_map(|object| {
-        let place = world.get::<Transform>(object)?;
-        Some((
-            world.get::<ObjectSpec>(object)?,
-            place,
-            world.get::<Twist>(object),
-        ))
-    });
-    let objects: Vec<_> = objects.collect();
-    let slab = Shape::Block {
-        span: table.map_or(Vec3::ZERO, |table| {
-            Vec3::new(table.xspan, table.yspan, Table::THICKNESS)
-        }),
-        color: Rgb::GRAY,
-    };
-    let mut immovable = solids(&slab, Pose::at(Vec3::NEG_Z * Table::THICKNESS / 2.0));
-    for (spec, place, _) in &objects {
-        if spec.is_fixed() {
-            immovable.extend(solids(&spec.shape, Pose::from(*place)));
+/// Something that nothing moves.
+struct Obstacle {
+    id: String,
+    parts: Vec<Convex>,
+}
+
+/// For how many ticks objects have been deeper in what does not move than they may be at rest.
+#[derive(Debug, Default)]
+struct Pressed(BTreeMap<String, u64>);
+
+impl Pressed {
+    /// Notes that an object is so deep in something, and says whether that is a fault.
+    fn is_fault(&mut self, id: &str, depth: f32) -> bool {
+        if depth <= DEEPEST {
+            self.0.remove(id);
+            return false;
         }
+        let ticks = self.0.entry(id.to_owned()).or_default();
+        *ticks += 1;
+        *ticks > HIT || depth > DEEPEST_OF_HIT
     }
-    for (spec, place, twist) in objects {
+}
+
+/// Looks at every object: it is somewhere, and in nothing that does not move.
+fn look(app: &mut App, pressed: &mut Pressed) -> Result<(), String> {
+    let obstacles = obstacles(app);
+    let world = app.world();
+    for object in world.resource::<ObjectIndex>().iter() {
+        let (Some(spec), Some(place)) = (
+            world.get::<ObjectSpec>(object),
+            world.get::<Transform>(object),
+        ) else {
+            continue;
+        };
         let id = &spec.id;
+        let twist = world.get::<Twist>(object);
         let is_calm =
             twist.is_none_or(|twist| twist.linear.is_finite() && twist.angular.is_finite());
         if !place.is_finite() || !is_calm {
@@ -141,17 +154,46 @@ fn look(app: &mut App) -> Result<(), String> {
             continue;
         }
         let parts = solids(&spec.shape, Pose::IDENTITY);
-        let depth = nearest(&parts, Pose::from(place), &immovable, 0.0)
-            .map(|near| -near.distance)
-            .fold(0.0, f32::max);
-        if depth > DEEPEST {
-            let at = place.translation;
+        let depths = obstacles.iter().map(|obstacle| {
+            let near = nearest(&parts, Pose::from(place), &obstacle.parts, 0.0);
+            let depth = near.map(|near| -near.distance).fold(0.0, f32::max);
+            (depth, &obstacle.id)
+        });
+        let deepest = depths.max_by(|(one, _), (other, _)| one.total_cmp(other));
+        if let Some((depth, other)) = deepest.filter(|(depth, _)| pressed.is_fault(id, *depth)) {
+            let (at, held) = (place.translation, world.get::<Held>(object));
             return Err(format!(
-                "{id} is {depth} deep in what does not move, at {at}"
+                "{id} is {depth} deep in {other}, at {at}; {twist:?}, {held:?}"
             ));
         }
     }
     Ok(())
+}
+
+/// What does not move: the table, and fixed objects that nobody holds.
+fn obstacles(app: &mut App) -> Vec<Obstacle> {
+    let mut tables = app.world_mut().query::<&Table>();
+    let table = tables.iter(app.world()).next().map(|table| {
+        let slab = Shape::Block {
+            span: Vec3::new(table.xspan, table.yspan, Table::THICKNESS),
+            color: Rgb::GRAY,
+        };
+        Obstacle {
+            id: "the table".into(),
+            parts: solids(&slab, Pose::at(Vec3::NEG_Z * Table::THICKNESS / 2.0)),
+        }
+    });
+    let world = app.world();
+    let fixed = world.resource::<ObjectIndex>().iter().filter_map(|object| {
+        let spec = world.get::<ObjectSpec>(object)?;
+        let stands = spec.is_fixed() && !world.entity(object).contains::<Held>();
+        let place = world.get::<Transform>(object)?;
+        stands.then(|| Obstacle {
+            id: spec.id.clone(),
+            parts: solids(&spec.shape, Pose::from(place)),
+        })
+    });
+    table.into_iter().chain(fixed).collect()
 }
 
 fn solids(shape: &Shape, at: Pose) -> Vec<Convex> {
@@ -274,7 +316,7 @@ mod tests {
         };
         give(&mut app, SceneCommand::Set(Box::new(scene)));
         app.step(1);
-        assert_eq!(look(&mut app), Ok(()));
+        assert_eq!(look(&mut app, &mut Pressed::default()), Ok(()));
         let ball = app.world().resource::<ObjectIndex>().get("ball").unwrap();
         let mut place = |z: f32| {
             app.world_mut()
@@ -282,9 +324,13 @@ mod tests {
                 .unwrap()
                 .translation
                 .z = z;
-            look(&mut app).unwrap_err()
+            let mut pressed = Pressed::default();
+            (0..=HIT).find_map(|ticks| Some((ticks, look(&mut app, &mut pressed).err()?)))
         };
-        assert!(place(0.5).starts_with("ball is 0.5"));
-        assert!(place(f32::NAN).starts_with("ball is nowhere"));
+        assert_eq!(place(0.96), None);
+        let fault = |(ticks, fault): (u64, String)| (ticks, fault[..11].to_owned());
+        assert_eq!(place(0.9).map(fault), Some((HIT, "ball is 0.1".into())));
+        assert_eq!(place(0.4).map(fault), Some((0, "ball is 0.6".into())));
+        assert_eq!(place(f32::NAN).map(fault), Some((0, "ball is now".into())));
     }
 }

@@ -33,6 +33,7 @@ use crate::{
     replay::{PlaybackPlugin, Replay},
     robot::RobotPlugin,
     script::{ScriptPlugin, ScriptSettings, Waiting},
+    xml::AllowedFolders,
 };
 
 /// The options of a window.
@@ -40,6 +41,8 @@ use crate::{
 pub struct WindowOptions {
     /// The content of the table.
     pub show: Show,
+    /// Folders in which, and below, files may name others, besides what is around them.
+    pub allowed: Vec<PathBuf>,
     /// The robot at the table; a replay has that of its recording.
     pub robot: RobotPlugin,
     /// True if the robot stands at the table from the start.
@@ -141,6 +144,7 @@ fn build(options: WindowOptions) -> App {
         task::plugin,
     ))
     .insert_resource(preferences)
+    .insert_resource(AllowedFolders(options.allowed))
     .insert_resource(PresetSeeds::new(options.seed))
     .insert_resource(Opening::Begun(beginning));
     match options.show {

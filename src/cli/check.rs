@@ -6,12 +6,9 @@ use std::{
 };
 
 use clap::Args;
-use tabletop::{
-    scene_dump,
-    shipped::{read_task, task_reader},
-};
+use tabletop::{scene_dump, shipped::task_reader, xml::TaskReader};
 
-use super::{Failure, Output, WRONG_INPUT, terminal::say};
+use super::{Failure, Output, WRONG_INPUT, allowed_paths::AllowedPaths, terminal::say};
 
 #[derive(Args)]
 pub(super) struct CheckArgs {
@@ -24,16 +21,19 @@ pub(super) struct CheckArgs {
     /// Print each file expanded: without <include>, <def>, <instance>, <var> and expressions
     #[arg(long, conflicts_with = "dump")]
     expand: bool,
+    #[command(flatten)]
+    allowed: AllowedPaths,
 }
 
 pub(super) fn check(args: &CheckArgs) -> Result<ExitCode, Failure> {
     let mut sound = true;
+    let reader = task_reader().allowing(&args.allowed.folders);
     for file in &args.files {
         if args.expand {
-            sound &= expand(file)?;
+            sound &= expand(&reader, file)?;
             continue;
         }
-        let task = match read_task(file) {
+        let task = match reader.read(file) {
             Ok(task) => task,
             Err(error) => {
                 say(error);
@@ -60,8 +60,8 @@ pub(super) fn check(args: &CheckArgs) -> Result<ExitCode, Failure> {
 }
 
 /// Prints an expanded task file; true if it has no faults.
-fn expand(file: &Path) -> Result<bool, Failure> {
-    let task = match task_reader().expand(file) {
+fn expand(reader: &TaskReader, file: &Path) -> Result<bool, Failure> {
+    let task = match reader.expand(file) {
         Ok(task) => task,
         Err(error) => {
             say(error);

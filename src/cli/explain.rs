@@ -13,7 +13,10 @@ use tabletop::{
 };
 use tabletop_core::TICKS_PER_SECOND;
 
-use super::{Failure, Output, faultless::read_faultless_task, terminal::show_warnings};
+use super::{
+    Failure, Output, allowed_paths::AllowedPaths, faultless::read_faultless_task,
+    terminal::show_warnings,
+};
 
 #[derive(Args)]
 pub(super) struct ExplainArgs {
@@ -26,6 +29,8 @@ pub(super) struct ExplainArgs {
     /// Print which objects of this task file take the roles; exit code 1 if none fit
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
+    #[command(flatten)]
+    allowed: AllowedPaths,
 }
 
 /// Prints the task of a recording.
@@ -34,7 +39,8 @@ pub(super) fn explain(args: &ExplainArgs) -> Result<ExitCode, Failure> {
     let (task, requirements) = read(&args.recording)?;
     let binding = match &args.setup {
         Some(setup) => {
-            let scene = read_faultless_task(setup).map_err(Failure::input)?;
+            let scene =
+                read_faultless_task(setup, &args.allowed.folders).map_err(Failure::input)?;
             let objects = assemble(&scene, &mut IdAllocator::default()).objects;
             let binding = task.bind(&requirements, &objects);
             Some(

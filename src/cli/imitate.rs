@@ -26,6 +26,7 @@ use tabletop_core::{
 
 use super::{
     Failure, Output,
+    allowed_paths::AllowedPaths,
     explain::read,
     faultless::read_faultless_task,
     robot_options::RobotChoice,
@@ -40,6 +41,8 @@ pub(super) struct ImitateArgs {
     /// The task file to do it with [default: the scene of the recording]
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
+    #[command(flatten)]
+    allowed: AllowedPaths,
     /// Put everything at random places within reach, which this number decides
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
@@ -69,7 +72,7 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
     show_warnings();
     let (task, requirements) = read(&args.recording)?;
     let scene = match &args.setup {
-        Some(setup) => read_faultless_task(setup).map_err(Failure::input)?,
+        Some(setup) => read_faultless_task(setup, &args.allowed.folders).map_err(Failure::input)?,
         None => scene_of(&args.recording)?,
     };
     let robot = args.robot.plugin()?;

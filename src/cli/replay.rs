@@ -14,6 +14,7 @@ use tabletop::{
 
 use super::{
     Failure,
+    allowed_paths::AllowedPaths,
     duration::{seconds, ticks},
     robot_options::{EngineOptions, script},
     script::{Script, headless_settings},
@@ -39,6 +40,8 @@ pub(super) struct ReplayArgs {
     out: Option<PathBuf>,
     #[command(flatten)]
     pictures: PictureArgs,
+    #[command(flatten)]
+    allowed: AllowedPaths,
     /// Let a script watch, as `tabletop run --script` lets it act; in the window the key M starts it
     #[arg(long, value_name = "LANGUAGE[:PATH]", value_parser = script, conflicts_with_all = ["verify", "out"])]
     script: Option<String>,
@@ -113,7 +116,8 @@ fn angle_of_view(text: &str) -> Result<f32, String> {
 }
 
 pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
-    let replay = Replay::read(&args.recording).map_err(Failure::input)?;
+    let replay = Replay::read_allowing(&args.recording, &args.allowed.folders);
+    let replay = replay.map_err(Failure::input)?;
     if let Some(tick) = replay.cut_off_at() {
         let folder = args.recording.display();
         say(format_args!(
@@ -123,7 +127,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     }
     if args.window {
         let settings = args.engine.settings(args.script.as_deref())?;
-        return window::play(replay, settings);
+        return window::play(replay, settings, args.allowed.folders.clone());
     }
     show_warnings();
     if let Some(script) = &args.script {

@@ -88,12 +88,14 @@ pub(super) fn describe(path: &Path) -> Result<Description, Failure> {
                 urdf: read(&urdf)?,
                 path: true_path(&urdf),
                 layout: Some(text),
+                reach: None,
             }
         }
         false => DescriptionSource {
             path: true_path(path),
             urdf: text,
             layout: None,
+            reach: None,
         },
     };
     Description::read(source).map_err(|error| at(path, &error))

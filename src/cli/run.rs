@@ -29,9 +29,10 @@ use tabletop_scenario::{Outcome, Program, ScenarioRun};
 
 use super::{
     Failure, Output, WRONG_INPUT,
+    allowed_paths::AllowedPaths,
     duration::{pass, seconds, ticks},
     explain::read,
-    faultless::faultless,
+    faultless::read_faultless_task,
     robot_options::{EngineOptions, RobotOptions, script},
     script::{Script, headless_settings},
     terminal::{say, show_warnings},
@@ -49,9 +50,8 @@ pub(super) struct RunArgs {
     /// The task file to begin with [default: tablesetup/default.xml, or the one that the scenario names]
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
-    /// Let the scenario and task files name files in this folder and below, too; without it, only those around them. Can be given again
-    #[arg(long, value_name = "DIR")]
-    allow_path: Vec<PathBuf>,
+    #[command(flatten)]
+    allowed: AllowedPaths,
     /// Number of seconds to simulate [default: 10]; a scenario fails if it takes longer [default: 600]
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
@@ -102,7 +102,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
         None => {
             let setup = args.setup.as_deref();
             let setup = setup.unwrap_or(Path::new(DEFAULT_SETUP));
-            let (mut app, result) = put_on_table(setup, &args.allow_path, plugins(args)?)?;
+            let (mut app, result) = put_on_table(setup, &args.allowed.folders, plugins(args)?)?;
             app.add_systems(
                 FixedLast,
                 report_what_stops_the_robot.in_set(RestingSystems),
@@ -123,10 +123,11 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
 /// not stop the run, but give exit code 2.
 pub(super) fn simulate(
     setup: &Path,
+    allowed: &[PathBuf],
     seconds: f64,
     final_state: &Output,
 ) -> Result<ExitCode, Failure> {
-    let (mut app, result) = put_on_table(setup, &[], TabletopSimPlugins.build())?;
+    let (mut app, result) = put_on_table(setup, allowed, TabletopSimPlugins.build())?;
     pass(&mut app, ticks(seconds));
     write_final_state(&app, final_state)?;
     Ok(result)
@@ -157,7 +158,7 @@ fn put_on_table(
 /// Performs a scenario until it is done or has failed.
 fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     let mut scenario = read_scenario(scenario).map_err(Failure::input)?;
-    scenario.allowed.clone_from(&args.allow_path);
+    scenario.allowed.clone_from(&args.allowed.folders);
     if let Some(setup) = &args.setup {
         scenario.begin_with(&true_path(setup));
     }
@@ -310,7 +311,7 @@ fn recording(plugins: PluginGroupBuilder, args: &RunArgs) -> PluginGroupBuilder 
 impl RunArgs {
     /// The scene of a task file, which may include files in the allowed folders, or all its faults.
     fn read_faultless(&self, file: &Path) -> Result<SceneSpec, String> {
-        faultless(task_reader().allowing(&self.allow_path).read(file))
+        read_faultless_task(file, &self.allowed.folders)
     }
 
     /// Gives scripts the task of a recording, with the objects of a task file if there is one.
@@ -322,7 +323,7 @@ impl RunArgs {
         let binding = match setup {
             Some(setup) => {
                 let scene = task_reader()
-                    .allowing(&self.allow_path)
+                    .allowing(&self.allowed.folders)
                     .read(setup)
                     .map_err(Failure::input)?
                     .scene;

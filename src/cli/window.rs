@@ -1,12 +1,16 @@
 //! The window, and the run that replaces it where none can be opened.
 
-use std::{path::PathBuf, process::ExitCode};
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
 use clap::Args;
 use tabletop::{replay::Replay, script::ScriptSettings};
 
 use super::{
     Failure, Output,
+    allowed_paths::AllowedPaths,
     duration::seconds,
     robot_options::{EngineOptions, RobotOptions, script},
     run,
@@ -18,6 +22,8 @@ pub(super) struct WindowArgs {
     /// The task file to begin with
     #[arg(long, value_name = "FILE", default_value = run::DEFAULT_SETUP)]
     setup: PathBuf,
+    #[command(flatten)]
+    allowed: AllowedPaths,
     /// The file that binds keys, instead of keys.ron in the folder of the preferences; see `tabletop keys`
     #[cfg(feature = "window")]
     #[arg(long, value_name = "FILE")]
@@ -58,6 +64,7 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
     }
     let options = WindowOptions {
         show: Show::Task(args.setup.clone()),
+        allowed: args.allowed.folders.clone(),
         robot: args.robot.plugin()?,
         show_robot: args.robot.show_robot,
         scripts: args.engine.settings(args.script.as_deref())?,
@@ -72,13 +79,17 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
     };
     window::run(options).map(exit_code).or_else(|no_window| {
         say(format_args!("tabletop: {no_window}"));
-        run_instead(args.setup)
+        run_instead(&args.setup, &args.allowed.folders)
     })
 }
 
 /// Plays a recording.
 #[cfg(feature = "window")]
-pub(super) fn play(replay: Replay, scripts: ScriptSettings) -> Result<ExitCode, Failure> {
+pub(super) fn play(
+    replay: Replay,
+    scripts: ScriptSettings,
+    allowed: Vec<PathBuf>,
+) -> Result<ExitCode, Failure> {
     use tabletop::{
         robot::RobotPlugin,
         window::{self, DisplayOptions, Show, WindowOptions},
@@ -86,6 +97,7 @@ pub(super) fn play(replay: Replay, scripts: ScriptSettings) -> Result<ExitCode, 
 
     let options = WindowOptions {
         show: Show::Replay(Box::new(replay)),
+        allowed,
         robot: RobotPlugin::default(),
         show_robot: false,
         scripts,
@@ -115,19 +127,19 @@ const NO_WINDOW: &str = "this program was built without a window (feature `windo
 #[cfg(not(feature = "window"))]
 pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
     say(format_args!("tabletop: {NO_WINDOW}"));
-    run_instead(args.setup)
+    run_instead(&args.setup, &args.allowed.folders)
 }
 
 #[cfg(not(feature = "window"))]
-pub(super) fn play(_: Replay, _: ScriptSettings) -> Result<ExitCode, Failure> {
+pub(super) fn play(_: Replay, _: ScriptSettings, _: Vec<PathBuf>) -> Result<ExitCode, Failure> {
     Err(Failure::run(NO_WINDOW))
 }
 
 /// The state that the window would have shown after ten seconds, as a table.
-fn run_instead(setup: PathBuf) -> Result<ExitCode, Failure> {
+fn run_instead(setup: &Path, allowed: &[PathBuf]) -> Result<ExitCode, Failure> {
     say(format_args!(
         "tabletop: running {} for 10 s without a window",
         setup.display()
     ));
-    run::simulate(&setup, 10.0, &Output::Stdout)
+    run::simulate(setup, allowed, 10.0, &Output::Stdout)
 }

@@ -103,6 +103,7 @@ mod tests {
                 tick: 0,
                 actor: Actor::App,
                 command: SceneCommand::Set(Box::new(set)).into(),
+                at_once: false,
             }],
             commands: Vec::new(),
             segments: Vec::new(),

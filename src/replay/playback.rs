@@ -1,7 +1,7 @@
 //! Playback of recordings while the simulator runs, up to any of their moments.
 
 use std::{
-    path::PathBuf,
+    path::{Path, PathBuf},
     time::{Duration, Instant},
 };
 
@@ -14,6 +14,8 @@ use tabletop_core::{
 };
 use tabletop_history::{KeepRemoved, WorldSnapshot, drop_removed};
 use tabletop_recorder::set_earlier_commands;
+use tabletop_robot::Description;
+use tabletop_xml::AllowedFolders;
 
 use super::{Player, Replay, player};
 use crate::settings::Settings;
@@ -126,6 +128,17 @@ fn open(world: &mut World, reader: &mut SystemState<MessageReader<OpenRecording>
     Ok(())
 }
 
+/// Where the meshes of a recording's robot may be: where the user allows it, and beside the description of the robot that is here,
+/// which must be the same.
+fn allowed(world: &World) -> Vec<PathBuf> {
+    let folders = world.get_resource::<AllowedFolders>();
+    let mut folders = folders.map_or_else(Vec::new, |folders| folders.0.clone());
+    let source = world.get_resource::<Description>();
+    let source = source.and_then(|description| description.source.as_ref());
+    folders.extend(source.and_then(|source| source.path.parent().map(Path::to_owned)));
+    folders
+}
+
 fn try_open(world: &mut World, folder: PathBuf) -> Result<(), String> {
     if world.resource::<Recording>().0 {
         return Err(format!(
@@ -133,7 +146,8 @@ fn try_open(world: &mut World, folder: PathBuf) -> Result<(), String> {
             folder.display()
         ));
     }
-    let replay = Replay::read(folder).map_err(|error| error.to_string())?;
+    let replay = Replay::read_allowing(folder, &allowed(world));
+    let replay = replay.map_err(|error| error.to_string())?;
     let timeline = replay.recording().timeline();
     let timeline = timeline.map_err(|error| error.to_string())?;
     if let Some(difference) = replay.settings.first_difference(&Settings::of(world)) {

@@ -59,6 +59,7 @@ impl Player {
             tick: session.header.start_tick,
             actor: Actor::Replay,
             command: SimCommand::Recording(RecordingCommand::Start),
+            at_once: false,
         };
         let earlier = session.earlier.iter().cloned();
         let commands = earlier
@@ -116,7 +117,7 @@ impl Player {
                 break;
             }
             let last = due.last().map(|last: &SessionCommand| &last.command);
-            if last.is_some_and(|last| self.has_paused && begins_moment(&next.command, last)) {
+            if last.is_some_and(|last| self.has_paused && begins_moment(next, last)) {
                 break;
             }
             if last.is_some_and(|last| !self.has_paused && is_late_pause(&next.command, last)) {
@@ -138,17 +139,17 @@ impl Player {
 }
 
 /// True if a command that follows another one in a pause was given at another moment of it: otherwise it would be carried out first.
-fn begins_moment(command: &SimCommand, last: &SimCommand) -> bool {
-    match command {
+fn begins_moment(next: &SessionCommand, last: &SimCommand) -> bool {
+    match &next.command {
         SimCommand::Recording(RecordingCommand::Start)
-        | SimCommand::Clock(ClockCommand::SetPaused(false))
-        | SimCommand::Scene(_) => true,
+        | SimCommand::Clock(ClockCommand::SetPaused(false)) => true,
+        SimCommand::Scene(_) => !next.at_once,
         SimCommand::Recording(RecordingCommand::Finish) => false,
         SimCommand::Clock(ClockCommand::SetPaused(true))
         | SimCommand::History(_)
         | SimCommand::Hand(_)
         | SimCommand::Mechanism(_)
-        | SimCommand::Robot(_) => command.phase() < last.phase(),
+        | SimCommand::Robot(_) => next.command.phase() < last.phase(),
     }
 }
 
@@ -253,6 +254,7 @@ mod tests {
             tick,
             actor: Actor::Mouse,
             command,
+            at_once: false,
         });
         Player::of(commands.collect(), SimTick(0))
     }

@@ -17,12 +17,16 @@ use self::{
     recent::remember,
     reload::{Watch, keep_setting},
 };
-use crate::task_files::{TASK_FOLDER, is_task_file, save_task, task_files};
+use crate::{
+    task_files::{TASK_FOLDER, is_task_file, save_task, task_files},
+    xml::AllowedFolders,
+};
 
 pub(super) fn plugin(app: &mut App) {
     app.add_plugins((recent::plugin, reload::plugin))
         .init_resource::<Dialog>()
         .init_resource::<ShippedFiles>()
+        .init_resource::<AllowedFolders>()
         .add_systems(Startup, |mut requests: MessageWriter<FileRequest>| {
             requests.write(FileRequest::ListTasks);
         })

@@ -1,6 +1,7 @@
 //! The program and the examples of scripts, as a user runs them.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+mod allowed_paths;
 mod anywhere;
 mod element_docs;
 mod examples;

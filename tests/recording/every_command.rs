@@ -221,7 +221,6 @@ fn commands(random: &mut Random) -> Vec<SimCommand> {
             random.below(2) == 0,
         ))],
         11 if random.below(3) == 0 => vec![SimCommand::Scene(scene_command(random))],
-        // Two scenes in one moment of a pause are recorded as two moments of it: docs/recordings.md.
         12 => [vec![hand_command(random).into()], commands(random)].concat(),
         _ => Vec::new(),
     }

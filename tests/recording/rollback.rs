@@ -127,6 +127,7 @@ fn panda() -> Description {
         path: "assets/panda/panda.urdf".into(),
         urdf: read("panda.urdf"),
         layout: Some(read("robot.ron")),
+        reach: None,
     };
     Description::read(source).unwrap()
 }

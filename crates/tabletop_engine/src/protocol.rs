@@ -79,6 +79,12 @@ fn elements(dims: &[u32]) -> usize {
     dims.fold(1, usize::saturating_mul)
 }
 
+/// Whether arrays can have this name.
+fn is_name(name: &str) -> bool {
+    let is_plain = |letter: u8| letter.is_ascii_alphanumeric() || matches!(letter, b'_' | b'.');
+    (1..=MAX_NAME).contains(&name.len()) && name.bytes().all(is_plain)
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -134,7 +140,18 @@ mod tests {
             let mut bytes = arrays.encode().unwrap();
             let place = place.index(bytes.len());
             bytes[place] = byte;
-            let _ = Arrays::decode(&bytes);
+            if let Ok(arrays) = Arrays::decode(&bytes) {
+                prop_assert!(arrays.encode().is_ok(), "{:?} cannot be written", arrays);
+            }
+        }
+
+        #[test]
+        fn names_are_read_if_they_can_be_written(name in "[a-z._]{0,2}.?") {
+            let mut bytes = Arrays(vec![("x".repeat(name.len().max(1)), Array::scalar(1.0))]).encode().unwrap();
+            let place = PREAMBLE + RECORD_WORDS * 4;
+            bytes[place..place + name.len()].copy_from_slice(name.as_bytes());
+            let read = Arrays::decode(&bytes);
+            prop_assert_eq!(read.is_ok(), is_name(&name) || name.is_empty());
         }
 
         #[test]

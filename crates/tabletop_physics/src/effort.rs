@@ -8,6 +8,7 @@ mod engine;
 mod landing;
 mod substeps;
 mod touches;
+mod waking;
 
 use bevy::prelude::*;
 use bevy_rapier3d::{
@@ -103,7 +104,7 @@ pub(crate) fn spend_effort(
         }
         care.spend(Engine {
             parameters: &mut simulation.integration_parameters,
-            islands: &simulation.islands,
+            islands: &mut simulation.islands,
             broad_phase: &simulation.broad_phase,
             narrow_phase: &simulation.narrow_phase,
             bodies: &mut bodies.bodies,
@@ -116,12 +117,13 @@ pub(crate) fn spend_effort(
 
 impl Care {
     /// Chooses the engine's precision in the next step.
-    pub fn spend(&mut self, engine: Engine) {
+    pub fn spend(&mut self, mut engine: Engine) {
         if engine.islands.num_active_bodies() == 0 {
             *self = Self::default();
             Mode::UNKNOWN.set(engine.parameters);
             return;
         }
+        engine.wake_what_is_hit();
         let touches = Touches::of(&engine);
         self.handling = ticks_left(self.handling, HANDLING_TICKS, touches.is_handling);
         let is_handling = self.handling > 0;

@@ -1,14 +1,13 @@
 //! Descriptions of robots.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use bevy::prelude::*;
-use serde::{Deserialize, Serialize};
-use tabletop_core::{LayoutError, LayoutFile, RobotLayout};
-use tabletop_kinematics::{ModelError, RobotModel};
+use tabletop_core::{LayoutError, LayoutFile, RobotLayout, is_shipped};
+use tabletop_kinematics::{Geometry, ModelError, RobotModel};
 use thiserror::Error;
 
-use crate::articulation::tree::Articulation;
+use crate::{articulation::tree::Articulation, look::meshes::is_ours, source::DescriptionSource};
 
 /// The description of the robot at the table.
 #[derive(Resource, Clone, Debug)]
@@ -21,18 +20,6 @@ pub struct Description {
     pub source: Option<DescriptionSource>,
 }
 
-/// The files that a robot was read from.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct DescriptionSource {
-    /// Path of the URDF, beside which its meshes are.
-    pub path: PathBuf,
-    /// Content of the URDF.
-    pub urdf: String,
-    /// Content of the `robot.ron`. Without it, limbs and joints are those of Baxter.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub layout: Option<String>,
-}
-
 /// The error of a robot that cannot be used.
 #[derive(Debug, Error)]
 pub enum DescriptionError {
@@ -42,6 +29,12 @@ pub enum DescriptionError {
     /// Its `robot.ron` cannot be used.
     #[error("robot.ron: {0}")]
     Layout(#[from] LayoutError),
+    /// It has meshes, in folders that it may not name.
+    #[error(
+        "the meshes of its URDF {} are outside of the recording; `--allow-path DIR` lets it name files in DIR",
+        .0.display()
+    )]
+    Outside(PathBuf),
 }
 
 impl Description {
@@ -52,6 +45,11 @@ impl Description {
     /// The texts cannot be used, or the URDF lacks joints or links that the `robot.ron` names; the error names them.
     pub fn read(source: DescriptionSource) -> Result<Self, DescriptionError> {
         let model = RobotModel::from_urdf(&source.urdf)?;
+        let folder = source.folder();
+        let is_there = !is_shipped(&source.path) && folder.is_dir();
+        if is_there && !source.reaches(folder) && names_files(&model) {
+            return Err(DescriptionError::Outside(source.path));
+        }
         let layout = match &source.layout {
             Some(text) => LayoutFile::read(text)?.layout(|joint| {
                 let joint = model.find_joint(joint).ok()?;
@@ -67,11 +65,6 @@ impl Description {
         })
     }
 
-    /// The file beside which its meshes are.
-    pub(crate) fn path(&self) -> Option<&Path> {
-        self.source.as_ref().map(|source| source.path.as_path())
-    }
-
     /// The Baxter that ships with the program.
     ///
     /// # Errors
@@ -84,4 +77,13 @@ impl Description {
             source: None,
         })
     }
+}
+
+/// Whether a robot has meshes that are not part of the program.
+fn names_files(model: &RobotModel) -> bool {
+    let mut shapes = model
+        .links()
+        .iter()
+        .flat_map(|link| link.visuals.iter().chain(&link.collisions));
+    shapes.any(|shape| matches!(shape.geometry, Geometry::Mesh { .. }) && !is_ours(shape))
 }

@@ -35,11 +35,13 @@ mod gripper;
 pub mod look;
 mod motion;
 mod plugin;
+mod source;
 
 pub use articulation::link_entities::RobotLink;
-pub use description::{Description, DescriptionError, DescriptionSource};
+pub use description::{Description, DescriptionError};
 pub use gripper::closing::STEEPEST_GRIP;
 pub use plugin::RobotPlugin;
+pub use source::DescriptionSource;
 
 /// The names that most users of this crate need.
 pub mod prelude {

@@ -14,7 +14,7 @@ mod hull;
 mod lathe;
 pub(crate) mod link_figures;
 mod loft;
-mod meshes;
+pub(crate) mod meshes;
 mod palette;
 
 mod shape_file;

@@ -55,7 +55,7 @@ impl Plugin for RobotPlugin {
                     return;
                 }
             };
-        for (link, error) in articulation.add_meshes(description.path()) {
+        for (link, error) in articulation.add_meshes(description.source.as_ref()) {
             warn!("link {link} is not touched where this mesh would be: {error}");
         }
         let layout = description.layout.clone();

@@ -60,6 +60,7 @@ fn a_link_is_touched_by_the_hulls_of_its_meshes() {
             path: folder.join("my.urdf"),
             urdf: urdf.replacen(box_of_torso, &mesh, 1),
             layout: None,
+            reach: None,
         };
         let mut stage = Stage::with(RobotPlugin {
             description: Some(Description::read(source).unwrap()),
@@ -118,6 +119,7 @@ fn what_has_no_mesh_is_shown_by_what_it_is_touched_by() {
         path: "my.urdf".into(),
         urdf,
         layout: None,
+        reach: None,
     };
     let robot = RobotPlugin {
         description: Some(Description::read(source).unwrap()),

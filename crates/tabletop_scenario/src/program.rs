@@ -5,7 +5,8 @@ use std::path::Path;
 use tabletop_core::{Random, SceneSpec, TICKS_PER_SECOND, seen_from};
 
 use crate::{
-    LocatedStep, Scenario, ScenarioError, SourceLocation, Step, place::place_all, reach::Reach,
+    LocatedStep, Scenario, ScenarioError, SourceLocation, Step, place::place_all,
+    reach::ScenarioReach,
 };
 
 /// Time limit of a scenario unless another is given, in seconds.
@@ -49,7 +50,7 @@ impl Program {
         seed: u64,
     ) -> Result<Self, ScenarioError> {
         let folder = scenario.path.parent().unwrap_or(Path::new(""));
-        let reach = Reach::of(folder, &scenario.allowed);
+        let reach = ScenarioReach::of(folder, &scenario.allowed);
         let mut random = Random::new(seed);
         let steps = scenario.setup.iter().chain(&scenario.steps);
         let steps = steps.map(|LocatedStep { at, text, step }| {

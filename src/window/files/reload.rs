@@ -11,7 +11,7 @@ use tabletop_core::{
 };
 use tabletop_gui::{Files, Notices, Preferences, Tone};
 
-use crate::shipped::task_reader;
+use crate::{shipped::task_reader, xml::AllowedFolders};
 
 /// Time between checks of the file.
 const PERIOD: Duration = Duration::from_millis(700);
@@ -113,11 +113,12 @@ pub(super) fn keep_setting(world: &mut World, reloads: bool) {
 fn note_loaded(
     mut facts: MessageReader<SimFact>,
     mut recordings: MessageReader<OpenRecording>,
+    allowed: Res<AllowedFolders>,
     mut watch: ResMut<Watch>,
 ) {
     for fact in facts.read() {
         if let SimFact::TaskLoaded { path, .. } = fact {
-            let files = match task_reader().read(path) {
+            let files = match task_reader().allowing(&allowed.0).read(path) {
                 Ok(task) => task.files,
                 Err(_) => vec![path.clone()],
             };
@@ -134,6 +135,7 @@ pub(super) fn reload(
     files: Res<Files>,
     recording: Res<Recording>,
     replaying: Res<Replaying>,
+    allowed: Res<AllowedFolders>,
     mut watch: ResMut<Watch>,
     mut notices: ResMut<Notices>,
     mut commands: CommandWriter,
@@ -144,7 +146,7 @@ pub(super) fn reload(
     let Some(path) = watch.take_change() else {
         return;
     };
-    let fault = match task_reader().read(&path) {
+    let fault = match task_reader().allowing(&allowed.0).read(&path) {
         Ok(task) => task.faults.first().map(ToString::to_string),
         Err(error) => Some(error.to_string()),
     };

@@ -2,7 +2,7 @@
 
 use super::{
     Array, Arrays, Data, MAGIC, MAX_DIMS, MAX_FILE_BYTES, MAX_ITEMS, MAX_NAME, PROTOCOL_VERSION,
-    ProtocolError, RECORD_WORDS, elements,
+    ProtocolError, RECORD_WORDS, elements, is_name,
 };
 
 impl Arrays {
@@ -39,6 +39,11 @@ impl Arrays {
         let mut arrays = Self::default();
         for item in items {
             let name = text(names.take(item.name)?);
+            if !is_name(&name) {
+                return Err(ProtocolError::Damaged(
+                    "a name has other than letters, digits, underscores and dots",
+                ));
+            }
             let data = read_payload(&item, rest.take(item.payload)?)?;
             rest.take(item.payload.next_multiple_of(8) - item.payload)?;
             let array = Array {

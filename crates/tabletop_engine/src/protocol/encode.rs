@@ -2,7 +2,7 @@
 
 use super::{
     Array, Arrays, Data, MAGIC, MAX_DIMS, MAX_FILE_BYTES, MAX_ITEMS, MAX_NAME, PREAMBLE,
-    PROTOCOL_VERSION, ProtocolError, RECORD_WORDS, elements,
+    PROTOCOL_VERSION, ProtocolError, RECORD_WORDS, elements, is_name,
 };
 
 impl Arrays {
@@ -69,8 +69,7 @@ fn pad(bytes: &mut Vec<u8>) {
 
 fn check_name(name: &str) -> Result<(), ProtocolError> {
     let reason = "a name is made of one to 256 letters, digits, underscores and dots";
-    let plain = |letter: u8| letter.is_ascii_alphanumeric() || matches!(letter, b'_' | b'.');
-    if name.is_empty() || name.len() > MAX_NAME || !name.bytes().all(plain) {
+    if !is_name(name) {
         let name = name.chars().take(MAX_NAME).collect();
         return Err(ProtocolError::Unwritable { name, reason });
     }

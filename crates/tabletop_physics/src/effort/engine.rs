@@ -10,7 +10,7 @@ pub struct Engine<'a> {
     /// Settings of all bodies.
     pub parameters: &'a mut IntegrationParameters,
     /// The awake bodies.
-    pub islands: &'a IslandManager,
+    pub islands: &'a mut IslandManager,
     /// Pairs of shapes near each other.
     pub broad_phase: &'a DefaultBroadPhase,
     /// Pairs of shapes that touch.

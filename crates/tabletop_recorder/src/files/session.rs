@@ -81,6 +81,14 @@ pub struct SessionCommand {
     pub actor: Actor,
     /// The command.
     pub command: SimCommand,
+    /// Of a scene that is set in a pause: it was in the same moment as the scene before it, or as the start of the recording.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub at_once: bool,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde wants it")]
+const fn is_false(value: &bool) -> bool {
+    !*value
 }
 
 /// The content of a session log.
@@ -105,6 +113,7 @@ impl SessionCommand {
             tick: tick.0,
             actor: issued.actor,
             command: issued.command.clone(),
+            at_once: false,
         }
     }
 
@@ -114,6 +123,7 @@ impl SessionCommand {
             tick: tick.0,
             actor: Actor::App,
             command: command.into(),
+            at_once: false,
         }
     }
 }
@@ -325,6 +335,7 @@ mod tests {
             tick,
             actor: Actor::Mouse,
             command: command.into(),
+            at_once: false,
         }
     }
 

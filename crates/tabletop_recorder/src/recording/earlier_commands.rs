@@ -73,6 +73,7 @@ impl EarlierCommands {
         commands: &[IssuedCommand],
         hands_are_empty: bool,
     ) {
+        let mut follows = false;
         for issued in commands {
             let sets_scene = match &issued.command {
                 SimCommand::Scene(SceneCommand::Set(_)) => true,
@@ -88,8 +89,14 @@ impl EarlierCommands {
             };
             if sets_scene && hands_are_empty && !self.has_used_robot {
                 self.begin_at(tick);
+                follows = false;
             }
-            self.append_command(&SessionCommand::of(tick, issued));
+            let is_scene = matches!(issued.command, SimCommand::Scene(_));
+            self.append_command(&SessionCommand {
+                at_once: self.is_paused && is_scene && follows,
+                ..SessionCommand::of(tick, issued)
+            });
+            follows |= is_scene;
             self.note_lasting(&issued.command);
         }
     }

@@ -41,6 +41,8 @@ pub(crate) struct Episode {
     /// True if the simulation is paused where the session log ends.
     is_paused: bool,
     channels: Channels,
+    /// True if the commands of the tick in which it began are not in the session log yet.
+    is_beginning: bool,
     /// The tick before its commands were carried out; they may turn the clock.
     tick: SimTick,
     /// The commands of this tick that are in the session log.
@@ -86,6 +88,7 @@ impl Episode {
             last_joints: None,
             is_paused: earlier.is_paused(),
             channels: destination.channels,
+            is_beginning: true,
             tick: start,
             logged: Vec::new(),
             marks: Vec::new(),

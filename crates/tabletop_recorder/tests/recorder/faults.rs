@@ -104,6 +104,7 @@ fn run_again(recording: &RecordingReader, again: &Place) {
         tick: tick.0,
         actor: Actor::App,
         command: command.into(),
+        at_once: false,
     };
     let end = recording
         .cut_off_at()
@@ -119,6 +120,7 @@ fn run_again(recording: &RecordingReader, again: &Place) {
         tick,
         actor,
         command,
+        ..
     } in commands
     {
         let now = app.world().resource::<SimTick>().0;

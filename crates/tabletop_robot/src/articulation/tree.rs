@@ -1,9 +1,6 @@
 //! The robot as a tree of bodies, and their poses.
 
-use std::{
-    f32::consts::{FRAC_PI_2, PI},
-    path::Path,
-};
+use std::f32::consts::{FRAC_PI_2, PI};
 
 use bevy::{
     math::{DAffine3, DMat3, DQuat, DVec3},
@@ -20,7 +17,10 @@ use tabletop_kinematics::{
 };
 use tabletop_physics::Convex;
 
-use crate::look::{error::LookError, figure::figure_of};
+use crate::{
+    look::{error::LookError, figure::figure_of},
+    source::DescriptionSource,
+};
 
 /// Distance, in units, by which a finger of a wide open gripper stands back: more than the distance at which things touch. So an object
 /// as wide as the opening is not jammed between the fingers.
@@ -149,9 +149,9 @@ impl Articulation {
         Ok(articulation)
     }
 
-    /// Adds the convex hulls of the meshes that are the links' collision shapes, as coarse as the head camera sees them. `urdf` is the
-    /// file of the description. Returns the failures, each with the link that lacks the mesh.
-    pub fn add_meshes(&mut self, urdf: Option<&Path>) -> Vec<(String, LookError)> {
+    /// Adds the convex hulls of the meshes that are the links' collision shapes, as coarse as the head camera sees them. `source` is where
+    /// the description was read from. Returns the failures, each with the link that lacks the mesh.
+    pub fn add_meshes(&mut self, source: Option<&DescriptionSource>) -> Vec<(String, LookError)> {
         let mut lacking = Vec::new();
         for body in &mut self.bodies {
             let Carrier::Link(link) = body.carrier else {
@@ -159,7 +159,7 @@ impl Articulation {
             };
             for collision in &self.model.link(link).collisions {
                 if let Geometry::Mesh { file, .. } = &collision.geometry {
-                    match hull_of(collision, file, urdf) {
+                    match hull_of(collision, file, source) {
                         Ok(hull) => body.parts.push(hull),
                         Err(error) => lacking.push((body.id.clone(), error)),
                     }
@@ -450,8 +450,12 @@ fn play(opening: f32, widest: f64) -> f32 {
 }
 
 /// The convex hull of a mesh, in the frame of the link whose collision shape it is.
-fn hull_of(mesh: &LinkShape, file: &str, urdf: Option<&Path>) -> Result<Convex, LookError> {
-    let points = &figure_of(mesh, urdf)?.coarse.positions;
+fn hull_of(
+    mesh: &LinkShape,
+    file: &str,
+    source: Option<&DescriptionSource>,
+) -> Result<Convex, LookError> {
+    let points = &figure_of(mesh, source)?.coarse.positions;
     let hull = SharedShape::convex_hull(points);
     let shape = hull.ok_or_else(|| LookError::Empty { path: file.into() })?;
     Ok(Convex {

@@ -16,6 +16,12 @@ pub enum LookError {
         /// The places that were searched.
         searched: Vec<PathBuf>,
     },
+    /// The file is where a recording's description may not name any.
+    #[error("{}: it is outside of the recording; `--allow-path DIR` lets it name files in DIR", .path.display())]
+    Outside {
+        /// The file.
+        path: PathBuf,
+    },
     /// A file cannot be read, or its content is no mesh.
     #[error("{}: {source}", .path.display())]
     Mesh {

@@ -1,26 +1,32 @@
 //! Figures of a link's visuals.
 
-use std::{path::Path, sync::Arc};
+use std::sync::Arc;
 
 use bevy::math::{Affine3A, DAffine3, Vec3};
 use tabletop_core::{Face, Figure, Rgb, Triangles, UNITS_PER_METER};
 use tabletop_kinematics::{Geometry, LinkShape};
 
-use crate::look::{error::LookError, faces::face, meshes, solids};
+use crate::{
+    look::{error::LookError, faces::face, meshes, solids},
+    source::DescriptionSource,
+};
 
-/// The figure of a link's visual, in the frame of the link, in units. `urdf` is the file of the description, from
+/// The figure of a link's visual, in the frame of the link, in units. `source` is where the description was read from, around
 /// which named meshes are found; without it only Baxter's own are known (`package://tabletop/...`).
 ///
 /// # Errors
 ///
 /// A mesh cannot be found or read.
-pub fn figure_of(visual: &LinkShape, urdf: Option<&Path>) -> Result<Figure, LookError> {
+pub fn figure_of(
+    visual: &LinkShape,
+    source: Option<&DescriptionSource>,
+) -> Result<Figure, LookError> {
     let color = visual.color.map_or(Rgb::GRAY, |color| {
         let [red, green, blue, _] = color.map(|part| part as f32);
         Rgb::new(red, green, blue)
     });
     let figure = match &visual.geometry {
-        Geometry::Mesh { file, scale } => meshes::figure(file, scale.as_vec3(), color, urdf)?,
+        Geometry::Mesh { file, scale } => meshes::figure(file, scale.as_vec3(), color, source)?,
         solid @ (Geometry::Box { .. } | Geometry::Cylinder { .. } | Geometry::Sphere { .. }) => {
             solids::figure(solid, color)
         }
@@ -58,9 +64,9 @@ pub fn merged(figures: impl IntoIterator<Item = Figure>) -> Option<Figure> {
 pub fn screen_with(
     shown: Face,
     visual: &LinkShape,
-    urdf: Option<&Path>,
+    source: Option<&DescriptionSource>,
 ) -> Result<Figure, LookError> {
-    let screen = figure_of(visual, urdf)?;
+    let screen = figure_of(visual, source)?;
     let face = Arc::new(face(shown));
     let face = Figure {
         fine: Arc::clone(&face),

@@ -15,6 +15,7 @@ use crate::{
     description::Description,
     look::error::LookError,
     look::figure::{figure_of, merged, screen_with, stand_in},
+    look::meshes::is_ours,
 };
 
 /// The figures of the robot's bodies, made when it is shown for the first time.
@@ -108,18 +109,13 @@ fn screen(description: &Description, link: &str, face: Face) -> Option<Figure> {
     let link = description.model.find_link(link).ok()?;
     let link = description.model.link(link);
     match &link.visuals[..] {
-        [visual] if is_ours(visual) => screen_with(face, visual, description.path()).ok(),
+        [visual] if is_ours(visual) => screen_with(face, visual, description.source.as_ref()).ok(),
         _ => figure_of_link(description, link).unwrap_or_else(|_| stand_in(&link.collisions)),
     }
 }
 
 fn seen(visual: &LinkShape, description: &Description) -> Result<Figure, LookError> {
-    figure_of(visual, description.path())
-}
-
-/// True if a visual is one of the program's own shapes.
-fn is_ours(visual: &LinkShape) -> bool {
-    matches!(&visual.geometry, Geometry::Mesh { file, .. } if file.starts_with("package://tabletop/"))
+    figure_of(visual, description.source.as_ref())
 }
 
 /// The figure of a finger.

@@ -8,9 +8,11 @@ use std::{
 
 use bevy::math::Vec3;
 use tabletop_core::{Figure, Rgb, read_regular_file, read_regular_text};
+use tabletop_kinematics::{Geometry, LinkShape};
 use tabletop_mesh::{MeshFileError, Triangle, read_obj, read_stl};
 
 use super::{error::LookError, hull::Hull, shape_file::read_shape, shipped::PARTS};
+use crate::source::DescriptionSource;
 
 /// Prefix of the names of the program's own shapes.
 const OUR_PACKAGE: &str = "package://tabletop/";
@@ -30,13 +32,18 @@ const COARSE_CELLS: f32 = 24.0;
 /// Largest coordinate, in m, that can be drawn.
 const FARTHEST: f32 = 1e6;
 
-/// The figure of a mesh, in units. `urdf` is the file of the description that names it, if there is one. A mesh without
+/// True if a shape is one of the program's own.
+pub(crate) fn is_ours(shape: &LinkShape) -> bool {
+    matches!(&shape.geometry, Geometry::Mesh { file, .. } if file.starts_with(OUR_PACKAGE))
+}
+
+/// The figure of a mesh, in units. `source` is the description that names it, if it was read from files. A mesh without
 /// colours has this one.
 pub(super) fn figure(
     file: &str,
     scale: Vec3,
     color: Rgb,
-    urdf: Option<&Path>,
+    source: Option<&DescriptionSource>,
 ) -> Result<Figure, LookError> {
     let ours = file.strip_prefix(OUR_PACKAGE).and_then(|name| {
         let known = PARTS.iter().find(|(known, _)| *known == name);
@@ -45,7 +52,7 @@ pub(super) fn figure(
     if let Some(text) = ours {
         return shape(file, text);
     }
-    let path = find(file, urdf)?;
+    let path = find(file, source)?;
     let failed = |source| LookError::Mesh {
         path: path.clone(),
         source,
@@ -113,8 +120,8 @@ fn simplified(hull: &Hull) -> Hull {
 
 /// The file that a description names: `package://NAME/rest` is looked for as `NAME/rest` and, where the folder is called
 /// NAME itself, as `rest`, in the folders around the description from the inside out; other names are relative to it.
-fn find(file: &str, urdf: Option<&Path>) -> Result<PathBuf, LookError> {
-    let folder = urdf.map(|urdf| urdf.parent().unwrap_or(Path::new("")));
+fn find(file: &str, source: Option<&DescriptionSource>) -> Result<PathBuf, LookError> {
+    let folder = source.map(DescriptionSource::folder);
     let mut searched = Vec::new();
     let candidates: Vec<PathBuf> = if let Some(rest) = file.strip_prefix("package://") {
         let (package, inside) = rest.split_once('/').unwrap_or((rest, ""));
@@ -136,7 +143,10 @@ fn find(file: &str, urdf: Option<&Path>) -> Result<PathBuf, LookError> {
     };
     for path in candidates {
         if path.is_file() {
-            return Ok(path);
+            return match source.is_none_or(|source| source.reaches(&path)) {
+                true => Ok(path),
+                false => Err(LookError::Outside { path }),
+            };
         }
         searched.push(path);
     }
@@ -149,6 +159,8 @@ fn find(file: &str, urdf: Option<&Path>) -> Result<PathBuf, LookError> {
 #[cfg(test)]
 mod tests {
     use std::fs;
+
+    use tabletop_core::Reach;
 
     use super::*;
 
@@ -168,8 +180,22 @@ mod tests {
         }
 
         fn look(&self, file: &str, urdf: &str) -> Result<Figure, LookError> {
-            let urdf = self.0.join(urdf);
-            figure(file, Vec3::new(1.0, 2.0, -1.0), Rgb::WHITE, Some(&urdf))
+            self.look_within(file, urdf, None)
+        }
+
+        fn look_within(
+            &self,
+            file: &str,
+            urdf: &str,
+            reach: Option<Reach>,
+        ) -> Result<Figure, LookError> {
+            let source = DescriptionSource {
+                path: self.0.join(urdf),
+                urdf: String::new(),
+                layout: None,
+                reach,
+            };
+            figure(file, Vec3::new(1.0, 2.0, -1.0), Rgb::WHITE, Some(&source))
         }
     }
 
@@ -225,6 +251,27 @@ mod tests {
                 .look("../meshes/a.stl", "arm_description/urdf/robot.urdf")
                 .is_ok()
         );
+    }
+
+    #[test]
+    fn a_strangers_description_names_meshes_within_reach_alone() {
+        let files = [("demo/robot/in.stl", STL), ("arm/out.stl", STL)];
+        let folder = MeshFolder::with("reach", &files);
+        let reach = |place: &str| Some(Reach::of([folder.0.join(place)]));
+        let look = |file: &str, place: &str| {
+            folder.look_within(file, "demo/robot/robot.urdf", reach(place))
+        };
+        assert!(look("in.stl", "demo").is_ok());
+        let absolute = folder.0.join("arm/out.stl");
+        for outside in [
+            "../../arm/out.stl",
+            "package://arm/out.stl",
+            absolute.to_str().unwrap(),
+        ] {
+            let error = look(outside, "demo").unwrap_err().to_string();
+            assert!(error.contains("--allow-path"), "{error}");
+            assert!(look(outside, "arm").is_ok(), "{outside}");
+        }
     }
 
     #[test]

@@ -111,6 +111,32 @@ fn nothing_tunnels_through_the_floor_of_a_thin_box() {
 }
 
 #[test]
+fn what_sleeps_and_is_hit_stays_out_of_the_table() {
+    for mass in [1.0, 3.0] {
+        let plate = block((2.0, 2.0, 1.0));
+        let mut world = TestWorld::new([
+            object("low", Vec3::Z * 0.75, 1.0, block(Vec3::splat(1.5))),
+            turned(
+                "plate",
+                Vec3::new(6.0, 0.0, 0.5),
+                Vec3::Z * 20.0,
+                mass,
+                plate,
+            ),
+        ]);
+        world.seconds(4.0);
+        let plate = world.entity("plate");
+        let mut place = world.0.world_mut().get_mut::<Transform>(plate).unwrap();
+        place.translation = Vec3::new(0.1, 0.05, 9.0);
+        for tick in 0..60 {
+            world.0.step(1);
+            let low = world.pose("low").location.z;
+            assert!(low > 0.73, "{low} in tick {tick}, hit by {mass} kg");
+        }
+    }
+}
+
+#[test]
 fn what_leaves_the_world_is_deleted() {
     let mut world = TestWorld::new([object("ball", (30.0, 0.0, 1.0), 1.0, sphere(0.5))]);
     world.seconds(4.0);

@@ -36,6 +36,7 @@ impl Episode {
 
     pub(super) fn log(&mut self, commands: &[IssuedCommand]) -> Result<(), RecorderError> {
         let mut lines = Vec::new();
+        let mut follows = std::mem::take(&mut self.is_beginning);
         for issued in commands {
             if !is_logged(&issued.command) {
                 continue;
@@ -48,7 +49,12 @@ impl Episode {
                 actor: issued.actor,
                 before: self.files.session.len() + lines.len() as u64,
             });
-            let command = SessionCommand::of(self.tick, issued);
+            let is_scene = matches!(issued.command, SimCommand::Scene(_));
+            let command = SessionCommand {
+                at_once: self.is_paused && is_scene && follows,
+                ..SessionCommand::of(self.tick, issued)
+            };
+            follows |= is_scene;
             lines.extend(command_line(&command)?);
         }
         self.files.session.append(&lines)

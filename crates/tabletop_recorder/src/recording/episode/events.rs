@@ -166,6 +166,7 @@ impl Episode {
             tick: self.tick.0,
             actor,
             command: HandCommand::Release(hand).into(),
+            at_once: false,
         });
         self.undoable.push(SegmentStart {
             before,
