@@ -20,6 +20,7 @@ use tabletop::multiplication::{Demonstrator, Made, Multiplication, MultiplyError
 
 use super::{
     Failure, Output,
+    allowed_paths::AllowedPaths,
     faultless::read_faultless_task,
     progress::ProgressLine,
     terminal::{say, show_warnings},
@@ -51,6 +52,8 @@ pub(super) struct MultiplyArgs {
     /// The task file with the objects to do it with [default: the scene of the recording]
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
+    #[command(flatten)]
+    allowed: AllowedPaths,
     /// Put up to so many other objects around
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     distractors: u32,
@@ -99,7 +102,8 @@ pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
         .map_err(Failure::input)?;
     let multiplication = match &args.setup {
         Some(setup) => {
-            let scene = read_faultless_task(setup).map_err(Failure::input)?;
+            let scene =
+                read_faultless_task(setup, &args.allowed.folders).map_err(Failure::input)?;
             multiplication.with_scene(scene).map_err(Failure::run)?
         }
         None => multiplication,
