@@ -18,7 +18,7 @@ pub enum Solid {
     },
     /// A ball of this radius.
     Ball(f32),
-    /// A polyhedron. It is convex, except for the [drawn](Shape::drawn) surfaces of rings and meshes.
+    /// A polyhedron. It is convex, except for the [drawn](crate::Shape::drawn) surfaces of rings and meshes.
     Polyhedron(Polyhedron),
 }
 

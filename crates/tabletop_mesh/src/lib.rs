@@ -1,6 +1,6 @@
 //! Meshes: triangles and surfaces from STL and OBJ files, and the convex solids that fill them.
 //!
-//! [`read_stl`] and [`read_obj`] read triangles; [`surface`] makes a surface of those of an STL file, [`convex_solids`] decomposes one, once
+//! [`read_stl`] and [`read_obj`] read triangles; [`surface()`] makes a surface of those of an STL file, [`convex_solids`] decomposes one, once
 //! for each content, and [`mesh`] does both.
 //!
 //! ```
