@@ -58,6 +58,7 @@ mod reach;
 mod recording;
 mod reflection;
 mod regular_file;
+mod requirement;
 mod rest;
 mod robot;
 mod robot_event;
@@ -121,6 +122,7 @@ pub use random::Random;
 pub use reach::Reach;
 pub use recording::{History, OpenRecording, Recording, Replaying};
 pub use regular_file::{read_regular_file, read_regular_text};
+pub use requirement::require;
 pub use rest::{RestApp, RestingSystems, Upkeep};
 pub use robot::{
     Arm, BaseLayout, CameraCarrier, CameraLayout, Drive, Face, FingerLook, GripperKind,

@@ -23,8 +23,10 @@ pub(crate) fn carry(
     rapier: ReadRapierContext,
     mut held: Query<(&Carry, &CarryTarget, &mut Transform, Option<&mut Velocity>)>,
     mut sleeping: Query<&mut Sleeping>,
-) -> Result {
-    let rapier = rapier.single()?;
+) {
+    let Ok(rapier) = rapier.single() else {
+        return;
+    };
     for object in Hand::ALL.into_iter().filter_map(|hand| hands.held_by(hand)) {
         let Ok((carry, target, mut transform, velocity)) = held.get_mut(object) else {
             continue;
@@ -47,7 +49,6 @@ pub(crate) fn carry(
             }
         }
     }
-    Ok(())
 }
 
 fn collider_of<'a>(rapier: &'a RapierContext, object: Entity) -> Option<&'a rapier::Collider> {

@@ -55,8 +55,9 @@ pub mod prelude {
 }
 
 use bevy::prelude::*;
-use tabletop_core::{ActuateSystems, CommandSystems, RestingSystems};
+use tabletop_core::{ActuateSystems, CommandSystems, RestingSystems, require};
 use tabletop_history::{RollbackApp, is_rolling_back};
+use tabletop_physics::PhysicsPlugin;
 
 /// Adds the hands. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin). With
 /// [`HistoryPlugin`](tabletop_history::HistoryPlugin), their acts can be undone.
@@ -77,5 +78,9 @@ impl Plugin for DemonstratorPlugin {
             )
             .add_observer(grasp::note_lost.run_if(not(is_rolling_back)))
             .add_observer(grasp::note_carried_anew.run_if(not(is_rolling_back)));
+    }
+
+    fn finish(&self, app: &mut App) {
+        require::<PhysicsPlugin>(app, self);
     }
 }

@@ -47,9 +47,9 @@ mod settle;
 mod wrench;
 
 use bevy::prelude::*;
-use tabletop_core::{Bonds, CommandSystems, RestApp as _, RestingSystems};
+use tabletop_core::{Bonds, CommandSystems, RestApp as _, RestingSystems, require};
 use tabletop_history::{RollbackApp, is_rolling_back};
-use tabletop_physics::take_in;
+use tabletop_physics::{PhysicsPlugin, take_in};
 
 /// Adds controls and bonds. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin). With
 /// [`HistoryPlugin`](tabletop_history::HistoryPlugin), acts on them can be undone.
@@ -82,5 +82,9 @@ impl Plugin for MechanismPlugin {
             .add_observer(settle::note_new.run_if(not(is_rolling_back)))
             .add_observer(settle::note_despawned.run_if(not(is_rolling_back)))
             .add_observer(settle::note_parked.run_if(not(is_rolling_back)));
+    }
+
+    fn finish(&self, app: &mut App) {
+        require::<PhysicsPlugin>(app, self);
     }
 }

@@ -70,13 +70,16 @@ fn any(pending: Res<PendingBodies>) -> bool {
 }
 
 /// Gives all pending entities their bodies and joints at once.
+/// Without the [plugin](crate::PhysicsPlugin) there are none.
 ///
 /// # Errors
 ///
 /// The world has no Rapier context.
 pub fn take_in(world: &mut World) -> Result {
-    let PendingBodies { bodies, joints } =
-        std::mem::take(&mut *world.resource_mut::<PendingBodies>());
+    let Some(mut pending) = world.get_resource_mut::<PendingBodies>() else {
+        return Ok(());
+    };
+    let PendingBodies { bodies, joints } = std::mem::take(&mut *pending);
     for entity in bodies {
         let Ok(body) = world.get_entity(entity) else {
             continue; // It has gone in the tick in which it came.

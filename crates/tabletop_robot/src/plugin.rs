@@ -3,9 +3,10 @@
 use bevy::prelude::*;
 use tabletop_core::{
     ActuateSystems, CameraCarrier, CommandSystems, Figure, HeadCamera, RestApp as _,
-    RestingSystems, Robot, RobotLayout, RobotMode, SimSystems,
+    RestingSystems, Robot, RobotLayout, RobotMode, SimSystems, require,
 };
 use tabletop_history::{RollbackApp, is_rolling_back};
+use tabletop_physics::PhysicsPlugin;
 
 use crate::{
     articulation::{
@@ -108,6 +109,10 @@ impl Plugin for RobotPlugin {
             )
             .wake_while(can_move)
             .add_observer(grips::note_lost.run_if(not(is_rolling_back)));
+    }
+
+    fn finish(&self, app: &mut App) {
+        require::<PhysicsPlugin>(app, self);
     }
 }
 

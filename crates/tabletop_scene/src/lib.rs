@@ -50,8 +50,9 @@ pub mod prelude {
 }
 
 use bevy::prelude::*;
-use tabletop_core::{CommandSystems, RestingSystems, SimSystems};
+use tabletop_core::{CommandSystems, RestingSystems, SimSystems, require};
 use tabletop_history::{RollbackApp, is_rolling_back};
+use tabletop_physics::PhysicsPlugin;
 
 use crate::compound::Compounds;
 
@@ -79,5 +80,9 @@ impl Plugin for ScenePlugin {
             .add_observer(lifecycle::note_created.run_if(not(is_rolling_back)))
             .add_observer(lifecycle::note_despawned.run_if(not(is_rolling_back)))
             .add_observer(lifecycle::note_parked.run_if(not(is_rolling_back)));
+    }
+
+    fn finish(&self, app: &mut App) {
+        require::<PhysicsPlugin>(app, self);
     }
 }

@@ -20,7 +20,7 @@ pub(crate) fn sense_contacts(
     index: Res<ObjectIndex>,
     rapier: ReadRapierContext,
     mut robot: ResMut<Robot>,
-) -> Result {
+) {
     for limb in articulation.layout.limb_ids() {
         let holds = grips.of(limb).iter().map(|grip| grip.object);
         if !robot.limb(limb).holds.iter().copied().eq(holds.clone()) {
@@ -29,7 +29,9 @@ pub(crate) fn sense_contacts(
     }
     let mut contacts = Vec::new();
     if robot.is_shown {
-        let rapier = rapier.single()?;
+        let Ok(rapier) = rapier.single() else {
+            return;
+        };
         let order: Vec<_> = tables.iter().chain(index.iter()).collect();
         let things = order.iter().filter_map(|&it| Thing::new(&rapier, it));
         let things: Vec<_> = things.collect();
@@ -52,7 +54,6 @@ pub(crate) fn sense_contacts(
     if robot.contacts != contacts {
         robot.contacts = contacts;
     }
-    Ok(())
 }
 
 /// The contacts of a finger with the objects that its gripper holds.

@@ -34,7 +34,7 @@ pub(crate) struct MovedBodies<'w, 's> {
 /// Moves the joints, the grippers and the objects in them.
 pub(crate) fn advance(
     known: RobotView,
-    settings: Res<PhysicsSettings>,
+    settings: If<Res<PhysicsSettings>>,
     mut targets: ResMut<JointTargets>,
     mut motors: ResMut<Motors>,
     mut robot: ResMut<Robot>,
