@@ -17,6 +17,8 @@ pub(crate) mod panel;
 pub(crate) mod pause;
 pub(crate) mod robot;
 pub(crate) mod status;
+#[cfg(test)]
+mod test_click;
 pub(crate) mod timeline;
 pub(crate) mod toasts;
 pub(crate) mod window;

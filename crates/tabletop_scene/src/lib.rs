@@ -38,6 +38,8 @@ mod ids;
 mod lifecycle;
 mod present;
 mod preset;
+#[cfg(test)]
+mod test_app;
 
 pub use assembly::{Assembly, assemble};
 pub use ids::IdAllocator;

@@ -182,22 +182,9 @@ pub(crate) fn remove_fallen(
 #[cfg(test)]
 mod tests {
     use tabletop_core::{Holder, prelude::*};
-    use tabletop_physics::PhysicsPlugin;
 
     use super::*;
-    use crate::ScenePlugin;
-
-    fn app() -> App {
-        let mut app = App::new();
-        app.add_plugins((
-            MinimalPlugins,
-            CorePlugin::default(),
-            PhysicsPlugin::default(),
-            ScenePlugin,
-        ))
-        .start();
-        app
-    }
+    use crate::test_app::test_app;
 
     fn ball(id: &str) -> ObjectSpec {
         ObjectSpec {
@@ -226,7 +213,7 @@ mod tests {
 
     #[test]
     fn the_last_of_two_scenes_in_a_tick_is_on_the_table() {
-        let mut app = app();
+        let mut app = test_app();
         app.world_mut().write_command(scene(&["a", "b"]));
         app.world_mut().write_command(scene(&["b", "c"]));
         app.step(1);
@@ -238,7 +225,7 @@ mod tests {
 
     #[test]
     fn what_a_hand_holds_stays_and_keeps_its_id() {
-        let mut app = app();
+        let mut app = test_app();
         app.world_mut().write_command(scene(&["a", "b"]));
         app.step(1);
         let held = app.world().resource::<ObjectIndex>().get("a");
@@ -254,7 +241,7 @@ mod tests {
 
     #[test]
     fn an_object_of_a_scene_names_the_command_that_it_came_of() {
-        let mut app = app();
+        let mut app = test_app();
         for command in [scene(&["a"]), SceneCommand::Clear.into()] {
             let id = app.world_mut().write_command(command);
             app.step(1);
@@ -276,7 +263,7 @@ mod tests {
 
     #[test]
     fn an_object_that_anyone_spawns_or_despawns_is_noted() {
-        let mut app = app();
+        let mut app = test_app();
         let object = app.world_mut().spawn(ball("mine")).id();
         assert_eq!(ids(&app), ["mine"]);
         app.world_mut().despawn(object);

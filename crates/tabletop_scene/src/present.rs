@@ -283,20 +283,12 @@ fn with_marks_of_ids(id: &str) -> String {
 #[cfg(test)]
 mod tests {
     use tabletop_core::{Hand, JointMotion, JointedSpec, StepApp as _, prelude::*};
-    use tabletop_physics::PhysicsPlugin;
 
     use super::*;
-    use crate::ScenePlugin;
+    use crate::test_app::test_app;
 
     fn app(items: Vec<SceneItem>) -> App {
-        let mut app = App::new();
-        app.add_plugins((
-            MinimalPlugins,
-            CorePlugin::default(),
-            PhysicsPlugin::default(),
-            ScenePlugin,
-        ))
-        .start();
+        let mut app = test_app();
         let table = Table {
             xspan: 30.0,
             yspan: 8.0,

@@ -211,20 +211,12 @@ fn cuboid(span: Vec3, pose: Pose) -> Convex {
 #[cfg(test)]
 mod tests {
     use tabletop_core::{Hand, Holder, StepApp as _, prelude::*};
-    use tabletop_physics::PhysicsPlugin;
 
     use super::*;
-    use crate::ScenePlugin;
+    use crate::test_app::test_app;
 
     fn app() -> App {
-        let mut app = App::new();
-        app.add_plugins((
-            MinimalPlugins,
-            CorePlugin::default(),
-            PhysicsPlugin::default(),
-            ScenePlugin,
-        ))
-        .start();
+        let mut app = test_app();
         tell(&mut app, SceneCommand::Set(Box::default()));
         app
     }

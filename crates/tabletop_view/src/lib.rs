@@ -13,6 +13,8 @@ mod section;
 mod sheet;
 mod silhouette;
 mod surface;
+#[cfg(test)]
+mod test_app;
 mod viewpoint;
 mod visual;
 

@@ -166,22 +166,12 @@ impl Material for Translucent {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{surface::Surface, visual};
-    use bevy::time::TimeUpdateStrategy;
+    use crate::{test_app::test_app, visual};
     use std::f32::consts::FRAC_PI_2;
-    use tabletop_core::{CorePlugin, Hands, ObjectSpec, Pose, Rgb, Shape};
+    use tabletop_core::{Hands, ObjectSpec, Pose, Rgb, Shape};
 
     fn app() -> App {
-        let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default()))
-            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
-            .init_resource::<Assets<Mesh>>()
-            .init_resource::<Assets<Surface>>()
-            .add_plugins((visual::plugin, systems));
-        app.finish();
-        app.cleanup();
-        app.update();
-        app
+        test_app((visual::plugin, systems))
     }
 
     fn sheet(app: &mut App) -> (Transform, Visibility) {

@@ -203,20 +203,11 @@ impl Looks {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bevy::time::TimeUpdateStrategy;
-    use tabletop_core::{CorePlugin, Pose, Shape, Triangles};
+    use crate::test_app::test_app;
+    use tabletop_core::{Pose, Shape, Triangles};
 
     fn app() -> App {
-        let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default()))
-            .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
-            .init_resource::<Assets<Mesh>>()
-            .init_resource::<Assets<Surface>>()
-            .add_plugins(plugin);
-        app.finish();
-        app.cleanup();
-        app.update();
-        app
+        test_app(plugin)
     }
 
     fn ball(radius: f32) -> ObjectSpec {

@@ -195,6 +195,7 @@ mod tests {
     use egui_kittest::{Harness, kittest::Queryable as _};
 
     use super::*;
+    use crate::panels::test_click::after_click;
 
     #[derive(Default)]
     struct Stage {
@@ -222,10 +223,7 @@ mod tests {
     }
 
     fn clicked(name: &str) -> Option<Request> {
-        let mut harness = harness();
-        harness.get_by_label(name).click();
-        harness.run();
-        harness.state().request
+        after_click(harness(), name).request
     }
 
     #[test]

@@ -3,6 +3,7 @@ use egui_kittest::{Harness, kittest::Queryable as _};
 use tabletop_core::CorePlugin;
 
 use super::*;
+use crate::panels::test_click::after_click;
 
 #[test]
 fn the_first_grasp_opens_the_panel_and_later_ones_leave_it_closed() {
@@ -76,10 +77,7 @@ impl Stage {
     }
 
     fn after_click(self, name: &str) -> Vec<Request> {
-        let mut harness = self.harness();
-        harness.get_by_label(name).click();
-        harness.run();
-        harness.into_state().requests
+        after_click(self.harness(), name).requests
     }
 }
 

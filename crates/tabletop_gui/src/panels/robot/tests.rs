@@ -9,7 +9,7 @@ use super::{
     reading::{number, reading},
     *,
 };
-use crate::input::jog::Directions;
+use crate::{input::jog::Directions, panels::test_click::after_click};
 
 #[test]
 fn joints_are_labelled_by_arm_and_name() {
@@ -78,10 +78,7 @@ impl Stage {
     }
 
     fn after_click(self, name: &str) -> Vec<Request> {
-        let mut harness = self.harness();
-        harness.get_by_label(name).click();
-        harness.run();
-        harness.into_state().requests
+        after_click(self.harness(), name).requests
     }
 }
 
