@@ -20,6 +20,8 @@ pub(crate) struct RecordingProgress {
     pub(crate) sight: FrameSight,
     pub(crate) last_joints: Option<Vec<JointState>>,
     pub(crate) is_paused: bool,
+    /// The marks at the end of the session log, if they are of the present tick.
+    pub(crate) marks: Vec<u8>,
 }
 
 /// The moment before a segment began.
@@ -30,8 +32,6 @@ pub(crate) struct SegmentStart {
     /// The commands in the session log in place of the one that began it, if the recording goes on from here: a grasp that takes an
     /// object out of another hand is a release and a grasp, in segments of their own.
     pub(crate) released: Vec<SessionCommand>,
-    /// The marks of the segments that began in the same tick before it, which follow those commands.
-    pub(crate) marks: Vec<u8>,
     pub(crate) tick: SimTick,
 }
 

@@ -19,9 +19,12 @@ impl Episode {
         let phase = |issued: &IssuedCommand| issued.command.phase();
         let begins = commands.partition_point(|issued| phase(issued) < CommandSystems::History);
         let (first, then) = commands.split_at(begins);
+        // A tick has several frames while it is paused; its marks stay behind the commands of all of them.
+        if tick != self.tick {
+            self.marks.clear();
+        }
         self.tick = tick;
         self.logged.clear();
-        self.marks.clear();
         self.log(first)?;
         if then
             .iter()
@@ -47,7 +50,7 @@ impl Episode {
             self.logged.push(LoggedCommand {
                 id: issued.id,
                 actor: issued.actor,
-                before: self.files.session.len() + lines.len() as u64,
+                before: self.end_of_commands() + lines.len() as u64,
             });
             let is_scene = matches!(issued.command, SimCommand::Scene(_));
             let command = SessionCommand {
@@ -57,6 +60,20 @@ impl Episode {
             follows |= is_scene;
             lines.extend(command_line(&command)?);
         }
-        self.files.session.append(&lines)
+        self.append_commands(&lines)
+    }
+
+    /// Adds lines of commands to the session log, before the marks of this tick.
+    pub(super) fn append_commands(&mut self, lines: &[u8]) -> Result<(), RecorderError> {
+        if lines.is_empty() || self.marks.is_empty() {
+            return self.files.session.append(lines);
+        }
+        self.files.session.cut(self.end_of_commands())?;
+        self.files.session.append(&[lines, &self.marks].concat())
+    }
+
+    /// Length of the session log without the marks of this tick.
+    pub(super) fn end_of_commands(&self) -> u64 {
+        self.files.session.len() - self.marks.len() as u64
     }
 }

@@ -45,13 +45,12 @@ impl Episode {
             }
             self.tick = tick;
             self.logged.clear();
-            self.marks.clear();
         }
         if self.is_paused != paused.0 {
             // A pause is not turned back with the clock.
             let pause = SessionCommand::of_app(tick, ClockCommand::SetPaused(paused.0));
             let line = command_line(&pause)?;
-            self.files.session.append(&line)?;
+            self.append_commands(&line)?;
             self.is_paused = paused.0;
         }
         let unlogged = std::mem::take(&mut self.unlogged);
@@ -158,9 +157,7 @@ impl Episode {
     ) -> Result<(), RecorderError> {
         let mut before = self.progress();
         let cause = self.logged.iter().find(|command| command.id == cause);
-        if let Some(cause) = cause {
-            before.files.session = cause.before;
-        }
+        before.files.session = cause.map_or(self.end_of_commands(), |cause| cause.before);
         let actor = cause.map_or(Actor::App, |cause| cause.actor);
         let released = released.into_iter().map(|hand| SessionCommand {
             tick: self.tick.0,
@@ -171,7 +168,6 @@ impl Episode {
         self.undoable.push(SegmentStart {
             before,
             released: released.collect(),
-            marks: self.marks.clone(),
             tick: self.tick,
             timeline: TimelineMark::of(timeline),
         });

@@ -39,6 +39,7 @@ impl Episode {
             sight: self.sight.clone(),
             last_joints: self.last_joints.clone(),
             is_paused: self.is_paused,
+            marks: self.marks.clone(),
         }
     }
 
@@ -53,7 +54,7 @@ impl Episode {
         for command in &start.released {
             then.extend(command_line(command)?);
         }
-        then.extend(&start.marks);
+        then.extend(&start.before.marks);
         self.files.put_away(start.before.files, &then)?;
         self.resume(start.before.clone());
         let timeline = start.timeline.cut(timeline);
@@ -87,5 +88,6 @@ impl Episode {
         self.sight = progress.sight;
         self.last_joints = progress.last_joints;
         self.is_paused = progress.is_paused;
+        self.marks = progress.marks;
     }
 }
