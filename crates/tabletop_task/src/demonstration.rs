@@ -1,16 +1,13 @@
 //! Demonstrations: the objects, their motions, and the acts of the hands that a recording shows.
 
-use std::{collections::BTreeMap, path::Path};
+use std::collections::BTreeMap;
 
 use bevy::math::Vec3;
 use tabletop_core::{Hand, JointSpec, ObjectSpec, Pose, Rgb, Shape, SimTick, Table};
-use tabletop_recorder::{
-    Occurrence, RecordedSegment, RecorderError, RecordingReader, TICKS_PER_FRAME, read_original,
-};
+use tabletop_recorder::{Occurrence, RecordedSegment, RecorderError, RecordingReader};
 
 use crate::{
     arrangement::Arrangement,
-    inference::inferred_acts,
     operation::{Operation, OperationDeed},
     track::Track,
 };
@@ -70,18 +67,10 @@ pub enum HandDeed {
 }
 
 impl Demonstration {
-    /// Reads a recording, be it one of the original program.
+    /// The demonstration of a recording.
     ///
     /// # Errors
     /// A file cannot be read, or has a line that no recorder writes; the error names the file.
-    pub fn read(folder: impl AsRef<Path>) -> Result<Self, RecorderError> {
-        match read_original(&folder)? {
-            Some(segments) => Ok(Self::of_events(&segments, TICKS_PER_FRAME)),
-            None => Self::of(&RecordingReader::open(folder)?),
-        }
-    }
-
-    /// The demonstration of a recording.
     pub fn of(recording: &RecordingReader) -> Result<Self, RecorderError> {
         let scene = &recording.session().scene;
         let mut shown = Self {
@@ -108,20 +97,6 @@ impl Demonstration {
             }
         }
         Ok(shown)
-    }
-
-    /// The demonstration of segments of events, which are all that a recording of the original program has. Objects are as the properties in their
-    /// events describe them; those of a composite do not describe its parts. If the events name no hand, its acts are inferred from the poses.
-    pub fn of_events(segments: &[RecordedSegment], ticks_per_frame: u64) -> Self {
-        let mut shown = Self::default();
-        shown.follow(segments, ticks_per_frame, true);
-        let frames = segments.iter().flat_map(|segment| &segment.events);
-        let last = frames.map(|event| event.frame).max().unwrap_or(0);
-        shown.end = SimTick(last * ticks_per_frame);
-        if shown.acts.is_empty() {
-            shown.acts = inferred_acts(&shown);
-        }
-        shown
     }
 
     /// The object of this id.
@@ -154,7 +129,12 @@ impl Demonstration {
     }
 
     /// Follows the events; their moves only if `moves` is true, for want of anything better.
-    fn follow(&mut self, segments: &[RecordedSegment], ticks_per_frame: u64, moves: bool) {
+    pub(crate) fn follow(
+        &mut self,
+        segments: &[RecordedSegment],
+        ticks_per_frame: u64,
+        moves: bool,
+    ) {
         for segment in segments {
             // An act shows in the first frame after it. For the first frame, the tick of the act itself is known.
             let mut begun = segment.act.is_some();

@@ -27,6 +27,7 @@ mod noun;
 mod operation;
 mod order;
 mod property;
+mod reading;
 mod relation;
 mod requirement;
 mod role;

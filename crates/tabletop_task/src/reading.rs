@@ -1,0 +1,37 @@
+//! Demonstrations read from folders, be they recordings of this program or of the original one.
+
+use std::path::Path;
+
+use tabletop_core::SimTick;
+use tabletop_recorder::{
+    RecordedSegment, RecorderError, RecordingReader, TICKS_PER_FRAME, read_original,
+};
+
+use crate::{demonstration::Demonstration, inference::inferred_acts};
+
+impl Demonstration {
+    /// Reads a recording, be it one of the original program.
+    ///
+    /// # Errors
+    /// A file cannot be read, or has a line that no recorder writes; the error names the file.
+    pub fn read(folder: impl AsRef<Path>) -> Result<Self, RecorderError> {
+        match read_original(&folder)? {
+            Some(segments) => Ok(Self::of_events(&segments, TICKS_PER_FRAME)),
+            None => Self::of(&RecordingReader::open(folder)?),
+        }
+    }
+
+    /// The demonstration of segments of events, which are all that a recording of the original program has. Objects are as the properties in their
+    /// events describe them; those of a composite do not describe its parts. If the events name no hand, its acts are inferred from the poses.
+    pub fn of_events(segments: &[RecordedSegment], ticks_per_frame: u64) -> Self {
+        let mut shown = Self::default();
+        shown.follow(segments, ticks_per_frame, true);
+        let frames = segments.iter().flat_map(|segment| &segment.events);
+        let last = frames.map(|event| event.frame).max().unwrap_or(0);
+        shown.end = SimTick(last * ticks_per_frame);
+        if shown.acts.is_empty() {
+            shown.acts = inferred_acts(&shown);
+        }
+        shown
+    }
+}
