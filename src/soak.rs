@@ -8,9 +8,9 @@ use std::{
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop_core::{
     Actor, Arm, ClockCommand, Drive, Hand, HandCommand, Held, HistoryCommand, ObjectIndex,
-    ObjectSpec, Pose, Preset, Random, RecordingCommand, Rgb, RobotCommand, RobotJoint,
-    SceneCommand, SceneItem, SceneSpec, Shape, SimCommand, SimFact, StepApp as _, TICKS_PER_SECOND,
-    Table, Twist, WriteCommand as _,
+    ObjectSpec, Pose, Preset, Random, RecordingCommand, Rgb, Robot, RobotCommand, RobotContact,
+    RobotJoint, SceneCommand, SceneItem, SceneSpec, Shape, SimCommand, SimFact, StepApp as _,
+    TICKS_PER_SECOND, Table, Twist, WriteCommand as _,
 };
 use tabletop_physics::{Convex, collider, convex_parts, nearest};
 use tabletop_recorder::{Durability, RecorderPlugin};
@@ -26,11 +26,11 @@ const RECORDED: u64 = 30 * TICKS_PER_SECOND as u64;
 /// Largest depth of a body in the table, or in an immovable object, in units.
 const DEEPEST: f32 = 0.05;
 
-/// Number of ticks for which a body that is hit may be deeper: what falls onto it, or a hand or an arm that passes, presses it in.
+/// Number of ticks for which a body may be deeper after it was hit, or pressed by an arm.
 const HIT: u64 = 6;
 
-/// Largest depth, in units, to which a blow presses a body.
-const DEEPEST_OF_HIT: f32 = 0.5;
+/// Largest depth, in units, of a body that is hit, or pressed by an arm, which moves exactly as told.
+const DEEPEST_PRESSED: f32 = 0.5;
 
 /// Largest number of objects of a scene.
 const OBJECTS: usize = 10;
@@ -120,15 +120,15 @@ struct Obstacle {
 struct Pressed(BTreeMap<String, u64>);
 
 impl Pressed {
-    /// Notes that an object is so deep in something, and says whether that is a fault.
-    fn is_fault(&mut self, id: &str, depth: f32) -> bool {
-        if depth <= DEEPEST {
+    /// Notes that an object is so deep in something, while an arm may press on it; true if that is a fault.
+    fn is_fault(&mut self, id: &str, depth: f32, by_arm: bool) -> bool {
+        if depth <= DEEPEST || by_arm {
             self.0.remove(id);
-            return false;
+            return depth > DEEPEST_PRESSED;
         }
         let ticks = self.0.entry(id.to_owned()).or_default();
         *ticks += 1;
-        *ticks > HIT || depth > DEEPEST_OF_HIT
+        *ticks > HIT || depth > DEEPEST_PRESSED
     }
 }
 
@@ -136,6 +136,7 @@ impl Pressed {
 fn look(app: &mut App, pressed: &mut Pressed) -> Result<(), String> {
     let obstacles = obstacles(app);
     let world = app.world();
+    let by_arm = arm_presses(world);
     for object in world.resource::<ObjectIndex>().iter() {
         let (Some(spec), Some(place)) = (
             world.get::<ObjectSpec>(object),
@@ -160,7 +161,9 @@ fn look(app: &mut App, pressed: &mut Pressed) -> Result<(), String> {
             (depth, &obstacle.id)
         });
         let deepest = depths.max_by(|(one, _), (other, _)| one.total_cmp(other));
-        if let Some((depth, other)) = deepest.filter(|(depth, _)| pressed.is_fault(id, *depth)) {
+        if let Some((depth, other)) =
+            deepest.filter(|(depth, _)| pressed.is_fault(id, *depth, by_arm))
+        {
             let (at, held) = (place.translation, world.get::<Held>(object));
             return Err(format!(
                 "{id} is {depth} deep in {other}, at {at}; {twist:?}, {held:?}"
@@ -168,6 +171,15 @@ fn look(app: &mut App, pressed: &mut Pressed) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// True if an arm presses on an object, and so perhaps on others below that.
+fn arm_presses(world: &World) -> bool {
+    let contacts = &world.resource::<Robot>().contacts;
+    let presses = |contact: &RobotContact| {
+        contact.impulse > 0.0 && world.entity(contact.thing).contains::<ObjectSpec>()
+    };
+    contacts.iter().any(presses)
 }
 
 /// What does not move: the table, and fixed objects that nobody holds.
