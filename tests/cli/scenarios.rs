@@ -102,6 +102,19 @@ fn the_robot_screws_a_valve_tight() {
 }
 
 #[test]
+fn the_plug_of_a_shut_valve_is_locked() {
+    let shut = "Grasp(\"wheel\"), Glide(to: (1, -1, 4), seconds: 1), Glide(to: (1, -1, 2.6), seconds: 1), WaitUntilThere(2),
+        Fasten(\"wheel\"), Fasten(\"wheel\"), Fasten(\"wheel\"), Release,";
+    let steps = format!(
+        "Load(file: \"shipped:tablesetup/valve.xml\"), Wait(0.5), {shut} Loosen(\"plug\"),"
+    );
+    let output = run(&scenario("locked.ron", &steps), &[]);
+    assert_eq!(output.status.code(), Some(1));
+    let words = "Loosen(\"plug\"): refused: `plug` cannot be turned: `drain` is locked";
+    assert!(stderr(&output).contains(words), "{}", stderr(&output));
+}
+
+#[test]
 fn a_run_ends_with_what_was_done() {
     let path = scenario(
         "done.ron",
