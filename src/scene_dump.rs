@@ -1,15 +1,17 @@
 //! Scenes of task files, as the command line writes them.
 
 mod mechanisms;
+mod pose;
 
 use std::io::Write;
 
 use bevy::prelude::*;
 use serde::Serialize;
-use tabletop_core::{JointKind, ObjectSpec, Part, Pose, SceneSpec, Shape};
+use tabletop_core::{JointKind, ObjectSpec, Part, SceneSpec, Shape};
 use tabletop_scene::{Assembly, IdAllocator, assemble};
 
 use mechanisms::{BondDump, BondPointDump, ControlDump, bond_points, bonds, controls};
+use pose::PoseDump;
 
 /// Writes a scene as JSON: the table, every object with its parts, controls and bond points, the joints and bonds, with ids as they will be
 /// on the table. Lengths in units, angles in degrees, colours as `#rrggbb`.
@@ -61,12 +63,6 @@ struct ObjectDump<'a> {
 struct DescriptionDump<'a> {
     name: &'a str,
     value: &'a str,
-}
-
-#[derive(Serialize)]
-struct PoseDump {
-    location: [f32; 3],
-    rotation: [f32; 3],
 }
 
 #[derive(Serialize)]
@@ -307,15 +303,6 @@ fn dump_part(part: Part) -> Option<PartDump> {
         color: color.to_string(),
         pose: part.pose.into(),
     })
-}
-
-impl From<Pose> for PoseDump {
-    fn from(pose: Pose) -> Self {
-        Self {
-            location: pose.location.to_array(),
-            rotation: pose.degrees().to_array(),
-        }
-    }
 }
 
 impl From<Vec3> for SpanDump {

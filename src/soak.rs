@@ -63,7 +63,7 @@ impl Round {
         let mut app = headless_app_with(TabletopSimPlugins.build().set(recorder));
         let mut facts = MessageCursor::<SimFact>::default();
         give(&mut app, SceneCommand::Set(Box::new(scene(&mut random))));
-        let mut pressed = Pressed::default();
+        let mut pressed = DeepTicks::default();
         for tick in 0..Self::TICKS {
             if tick == BEFORE {
                 give(&mut app, RecordingCommand::Start);
@@ -110,16 +110,16 @@ fn give(app: &mut App, command: impl Into<SimCommand>) {
 }
 
 /// Something that nothing moves.
-struct Obstacle {
+struct FixedParts {
     id: String,
     parts: Vec<Convex>,
 }
 
 /// For how many ticks objects have been deeper in what does not move than they may be at rest.
 #[derive(Debug, Default)]
-struct Pressed(BTreeMap<String, u64>);
+struct DeepTicks(BTreeMap<String, u64>);
 
-impl Pressed {
+impl DeepTicks {
     /// Notes that an object is so deep in something, while an arm may press on it; true if that is a fault.
     fn is_fault(&mut self, id: &str, depth: f32, by_arm: bool) -> bool {
         if depth <= DEEPEST || by_arm {
@@ -133,7 +133,7 @@ impl Pressed {
 }
 
 /// Looks at every object: it is somewhere, and in nothing that does not move.
-fn look(app: &mut App, pressed: &mut Pressed) -> Result<(), String> {
+fn look(app: &mut App, pressed: &mut DeepTicks) -> Result<(), String> {
     let obstacles = obstacles(app);
     let world = app.world();
     let by_arm = arm_presses(world);
@@ -183,14 +183,14 @@ fn arm_presses(world: &World) -> bool {
 }
 
 /// What does not move: the table, and fixed objects that nobody holds.
-fn obstacles(app: &mut App) -> Vec<Obstacle> {
+fn obstacles(app: &mut App) -> Vec<FixedParts> {
     let mut tables = app.world_mut().query::<&Table>();
     let table = tables.iter(app.world()).next().map(|table| {
         let slab = Shape::Block {
             span: Vec3::new(table.xspan, table.yspan, Table::THICKNESS),
             color: Rgb::GRAY,
         };
-        Obstacle {
+        FixedParts {
             id: "the table".into(),
             parts: solids(&slab, Pose::at(Vec3::NEG_Z * Table::THICKNESS / 2.0)),
         }
@@ -200,7 +200,7 @@ fn obstacles(app: &mut App) -> Vec<Obstacle> {
         let spec = world.get::<ObjectSpec>(object)?;
         let stands = spec.is_fixed() && !world.entity(object).contains::<Held>();
         let place = world.get::<Transform>(object)?;
-        stands.then(|| Obstacle {
+        stands.then(|| FixedParts {
             id: spec.id.clone(),
             parts: solids(&spec.shape, Pose::from(place)),
         })
@@ -328,7 +328,7 @@ mod tests {
         };
         give(&mut app, SceneCommand::Set(Box::new(scene)));
         app.step(1);
-        assert_eq!(look(&mut app, &mut Pressed::default()), Ok(()));
+        assert_eq!(look(&mut app, &mut DeepTicks::default()), Ok(()));
         let ball = app.world().resource::<ObjectIndex>().get("ball").unwrap();
         let mut place = |z: f32| {
             app.world_mut()
@@ -336,7 +336,7 @@ mod tests {
                 .unwrap()
                 .translation
                 .z = z;
-            let mut pressed = Pressed::default();
+            let mut pressed = DeepTicks::default();
             (0..=HIT).find_map(|ticks| Some((ticks, look(&mut app, &mut pressed).err()?)))
         };
         assert_eq!(place(0.96), None);

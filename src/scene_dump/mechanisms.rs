@@ -3,7 +3,7 @@
 use serde::Serialize;
 use tabletop_core::{BondEnd, BondPoint, Bonds, Control, ObjectSpec, PlacedPart, TightnessStep};
 
-use super::PoseDump;
+use super::pose::PoseDump;
 
 #[derive(Serialize)]
 pub(super) struct ControlDump<'a> {

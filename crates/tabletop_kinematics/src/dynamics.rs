@@ -45,7 +45,7 @@ struct LinkMotion {
 
 /// Force and torque on a body, the latter about the origin of its frame.
 #[derive(Clone, Copy, Default)]
-struct Wrench {
+struct LinkWrench {
     force: DVec3,
     torque: DVec3,
 }
@@ -85,7 +85,7 @@ impl RobotModel {
         loads: &[Load],
     ) -> JointValues {
         let motions = self.motions(frames, velocities, accelerations, gravity);
-        let mut wrenches: Vec<Wrench> = (0..self.links.len())
+        let mut wrenches: Vec<LinkWrench> = (0..self.links.len())
             .map(|i| {
                 let inertial = &self.links[i].inertial;
                 let center = frames[LinkId(i)].transform_vector3(inertial.center);
@@ -107,7 +107,7 @@ impl RobotModel {
 
         let mut torques = self.zero();
         for (i, joint) in self.joints.iter().enumerate().rev() {
-            let Wrench { force, torque } = wrenches[joint.child.index()];
+            let LinkWrench { force, torque } = wrenches[joint.child.index()];
             if joint.kind != JointType::Fixed {
                 let axis = self.axis_in_root(frames, ModelJointId(i));
                 let along = if joint.kind.turns() { torque } else { force };
@@ -245,9 +245,9 @@ impl LinkMotion {
     }
 
     /// The inertia of a point mass that moves along with the body, this far from its frame's origin.
-    fn of_mass(&self, mass: f64, arm: DVec3) -> Wrench {
+    fn of_mass(&self, mass: f64, arm: DVec3) -> LinkWrench {
         let force = mass * self.acceleration_at(arm);
-        Wrench {
+        LinkWrench {
             force,
             torque: arm.cross(force),
         }
