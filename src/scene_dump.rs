@@ -152,6 +152,7 @@ impl<'a> From<&'a Assembly> for SceneDump<'a> {
                         JointKind::Ball => ("ball", None),
                         JointKind::Fixed => ("fixed", None),
                         JointKind::Slider { min, max, .. } => ("slider", Some([min, max])),
+                        JointKind::PushButton { travel, .. } => ("pushButton", Some([0.0, travel])),
                         JointKind::Shears { min, max } => {
                             ("shears", Some([min.to_degrees(), max.to_degrees()]))
                         }

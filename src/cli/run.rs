@@ -265,6 +265,7 @@ fn stops_the_robot(fact: &SimFact) -> bool {
         | SimFact::PointedTo { .. }
         | SimFact::Fastened { .. }
         | SimFact::Loosened { .. }
+        | SimFact::Cut { .. }
         | SimFact::Grasped { .. }
         | SimFact::Released { .. }
         | SimFact::Destroyed { .. }

@@ -41,6 +41,9 @@ fn every_shipped_scenario_replays_to_the_same_bytes() {
         "hanoi_rings",
         "cup",
         "cut_wire",
+        "buttons",
+        "shears",
+        "robot_cut",
         "panel",
         "dock",
         "lock",
@@ -52,6 +55,28 @@ fn every_shipped_scenario_replays_to_the_same_bytes() {
         assert!(folder.join("0/0.png").exists(), "{scenario} has no picture");
         replays_to_the_same_bytes(&folder);
     }
+}
+
+/// Somebody cuts a link in a recording of a shipped scenario.
+fn is_cut_by(scenario: &str, who: &str, blade: &str, link: &str) {
+    let folder = recording(scenario, &format!("{scenario}-events"));
+    let events = fs::read_dir(&folder).unwrap().filter_map(|file| {
+        let path = file.unwrap().path();
+        let is_text = path.extension().is_some_and(|it| it == "txt");
+        is_text.then(|| fs::read_to_string(path).unwrap())
+    });
+    let events = events.collect::<String>();
+    let cut = format!(",cut,{who},{blade},{link}\n");
+    assert!(events.contains(&cut), "{cut} in {events}");
+    let [cut, delete] = [cut, format!(",delete,{link}\n")].map(|line| events.find(&line));
+    assert!(cut < delete, "{events}");
+}
+
+#[test]
+fn recordings_tell_who_has_cut() {
+    is_cut_by("cut_wire", "RightHand", "Scissors_lower", "Wire-link4");
+    is_cut_by("shears", "LeftHand", "anvil", "wire-link2");
+    is_cut_by("robot_cut", "robot:right", "Scissors_lower", "wire-link2");
 }
 
 #[cfg(unix)]

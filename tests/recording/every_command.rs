@@ -43,7 +43,7 @@ fn wide(random: &mut Random, low: f32, high: f32) -> f32 {
 fn ids() -> Vec<String> {
     let named = [
         "c-start", "c-link1", "c-link2", "b-box", "b-lid", "left", "right", "panel", "screw",
-        "nut", "dial", "nothing",
+        "nut", "dial", "knob", "blade", "nothing",
     ];
     let numbered = (0..MOST_OBJECTS).map(|number| format!("object{number}"));
     named
@@ -182,7 +182,6 @@ fn hand_command(random: &mut Random) -> HandCommand {
         },
         9 => HandCommand::Release(hand),
         10 => HandCommand::Destroy(hand),
-        11 => HandCommand::Cut(hand),
         _ => HandCommand::Select(hand),
     }
 }
@@ -249,7 +248,7 @@ fn kind(command: &SimCommand) -> &'static str {
         SimCommand::Mechanism(MechanismCommand::PointTo { .. }) => "PointTo",
         SimCommand::Mechanism(MechanismCommand::Fasten { .. }) => "Fasten",
         SimCommand::Mechanism(MechanismCommand::Loosen { .. }) => "Loosen",
-        SimCommand::Hand(HandCommand::Cut(_)) => "Cut",
+        SimCommand::Mechanism(MechanismCommand::Cut { .. }) => "Cut",
         SimCommand::Robot(RobotCommand::Show(_)) => "Show",
         SimCommand::Robot(RobotCommand::Drive(_)) => "Drive",
         SimCommand::Robot(RobotCommand::ReachTo { .. }) => "ReachTo",

@@ -1,12 +1,16 @@
-//! Controls: switches, lights, and shapes with their own states.
+//! Controls: switches, buttons, lights, and shapes with their own states.
 
+pub(crate) mod button;
 pub(crate) mod lights;
 pub(crate) mod switch;
+
+use std::f32::consts::FRAC_PI_2;
 
 use bevy::prelude::*;
 
 use crate::{
-    Change, Control, ControlKind, IndicatorLights, Part, Pose, Rgb, Shape, Side, ToggleSwitch,
+    Change, Control, ControlKind, IndicatorLights, Part, Pose, PushButton, Rgb, Shape, Side,
+    ToggleSwitch,
 };
 
 impl Control {
@@ -24,6 +28,7 @@ impl Control {
     pub fn states(&self) -> u32 {
         match &self.kind {
             ControlKind::ToggleSwitch(switch) => switch.states,
+            ControlKind::PushButton(button) => button.state + 1,
             ControlKind::IndicatorLights(lights) => lights.states.len() as u32,
             ControlKind::Custom(custom) => custom.states.len() as u32,
         }
@@ -40,6 +45,7 @@ impl Control {
     pub fn type_name(&self) -> &str {
         match &self.kind {
             ControlKind::ToggleSwitch(_) => "toggleSwitch",
+            ControlKind::PushButton(_) => "pushButton",
             ControlKind::IndicatorLights(_) => "indicatorLights",
             ControlKind::Custom(custom) => &custom.name,
         }
@@ -51,6 +57,7 @@ impl Control {
         let state = self.shown_state();
         let name = match &self.kind {
             ControlKind::ToggleSwitch(switch) => return (switch.pressed as u32).to_string(),
+            ControlKind::PushButton(_) => None,
             ControlKind::IndicatorLights(lights) => lights
                 .states
                 .get(state as usize)
@@ -70,6 +77,7 @@ impl Control {
     pub(crate) fn touched(&self) -> Vec<Part> {
         match &self.kind {
             ControlKind::ToggleSwitch(switch) => switch.blocks().into(),
+            ControlKind::PushButton(button) => vec![button.cap()],
             ControlKind::IndicatorLights(lights) => (0..lights.lights)
                 .map(|light| lights.light(light, Rgb::BLACK))
                 .collect(),
@@ -90,7 +98,9 @@ impl Control {
                 .flat_map(|state| &state.lights)
                 .map(|&(light, color)| lights.light(light, color))
                 .collect(),
-            ControlKind::ToggleSwitch(_) | ControlKind::Custom(_) => self.touched(),
+            ControlKind::ToggleSwitch(_) | ControlKind::PushButton(_) | ControlKind::Custom(_) => {
+                self.touched()
+            }
         }
     }
 
@@ -101,7 +111,19 @@ impl Control {
                 .states
                 .get(self.state as usize)
                 .map_or(&[], |state| &state.changes),
-            ControlKind::ToggleSwitch(_) | ControlKind::IndicatorLights(_) => &[],
+            ControlKind::ToggleSwitch(_)
+            | ControlKind::PushButton(_)
+            | ControlKind::IndicatorLights(_) => &[],
+        }
+    }
+
+    /// The push button that it is, if it is one.
+    pub const fn push_button(&self) -> Option<&PushButton> {
+        match &self.kind {
+            ControlKind::PushButton(button) => Some(button),
+            ControlKind::ToggleSwitch(_)
+            | ControlKind::IndicatorLights(_)
+            | ControlKind::Custom(_) => None,
         }
     }
 
@@ -112,6 +134,7 @@ impl Control {
                 let raised = switch.raised() as u32;
                 (part.is_none_or(|part| part == raised)).then(|| (self.state + 1) % switch.states)
             }
+            ControlKind::PushButton(button) => (self.state != button.state).then_some(button.state),
             ControlKind::IndicatorLights(_) => None,
             ControlKind::Custom(custom) => {
                 let next = &custom.states.get(self.shown_state() as usize)?.next;
@@ -121,6 +144,19 @@ impl Control {
                 }
             }
         }
+    }
+}
+
+impl PushButton {
+    /// The cap, about its centre.
+    fn cap(&self) -> Part {
+        let upright = Quat::from_rotation_x(FRAC_PI_2);
+        let shape = Shape::Cylinder {
+            radius: self.radius,
+            yspan: self.length(),
+            color: self.color,
+        };
+        Part::new("", Pose::new(Vec3::ZERO, upright), shape)
     }
 }
 

@@ -113,6 +113,17 @@ pub enum SimFact {
         /// The bond with its new tightness.
         bond: Bond,
     },
+    /// A link of a chain was cut; its [`ObjectDeleted`](Self::ObjectDeleted) comes after.
+    Cut {
+        /// The command that it came of, if it came of one.
+        cause: Option<CommandId>,
+        /// Who has closed the scissors.
+        by: Operator,
+        /// Id of the first blade.
+        blade: String,
+        /// Id of the link.
+        link: String,
+    },
     /// A recording has begun.
     RecordingStarted {
         /// The command that caused it.

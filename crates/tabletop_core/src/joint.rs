@@ -35,6 +35,13 @@ pub enum JointKind {
     },
     /// The frames coincide, and nothing moves.
     Fixed,
+    /// The second frame slides along -X of the first, and springs back to where both coincide.
+    PushButton {
+        /// Greatest distance along -X of the first frame, in units.
+        travel: f32,
+        /// Force of the spring for a unit of way, in kg/s²; at rest it is that of the travel.
+        stiffness: f32,
+    },
     /// The second frame turns about X of the first and springs back to the greatest angle. Closing it cuts a chain link that
     /// touches both objects.
     Shears {

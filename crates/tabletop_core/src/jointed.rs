@@ -3,9 +3,10 @@
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{JointKind, ObjectSpec, Pose};
+use crate::{Control, JointKind, ObjectSpec, Pose, PushButton, Shape};
 
-/// Two objects of which the second slides or turns against the first (`<sliderJoint>`, `<hingeJoint>`). Displacements are in
+/// Two objects of which the second slides or turns against the first (`<sliderJoint>`, `<hingeJoint>`, `<scissors>`,
+/// `<pushButton>`). Displacements are in
 /// units or degrees.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointedSpec {
@@ -34,6 +35,8 @@ pub enum JointMotion {
     Turn,
     /// It turns about X of the joint, springs open, and cuts chain links.
     Shear,
+    /// It is the cap of a push button, which slides along -Z of the joint and springs back.
+    Press,
 }
 
 impl JointedSpec {
@@ -41,6 +44,7 @@ impl JointedSpec {
     pub fn moved(&self, displacement: f32) -> Pose {
         match self.motion {
             JointMotion::Slide => Pose::at(Vec3::NEG_X * displacement),
+            JointMotion::Press => Pose::at(Vec3::NEG_Z * displacement),
             JointMotion::Turn | JointMotion::Shear => {
                 Pose::new(Vec3::ZERO, Quat::from_rotation_x(displacement.to_radians()))
             }
@@ -53,6 +57,7 @@ impl JointedSpec {
         let moved = first.inverse() * second;
         let displacement = match self.motion {
             JointMotion::Slide => -moved.location.x,
+            JointMotion::Press => -moved.location.z,
             JointMotion::Turn | JointMotion::Shear => {
                 let angle = 2.0 * libm::atan2f(moved.rotation.x, moved.rotation.w).to_degrees();
                 // The rotation and its negative turn to the same.
@@ -73,7 +78,21 @@ impl JointedSpec {
 
     /// The joint's frame in the frames of the objects.
     pub fn frames(&self) -> [Pose; 2] {
-        self.objects.each_ref().map(|object| object.pose.inverse())
+        let axes = match self.motion {
+            JointMotion::Press => Pose::new(Vec3::ZERO, PushButton::UPWARDS),
+            JointMotion::Slide | JointMotion::Turn | JointMotion::Shear => Pose::IDENTITY,
+        };
+        let frame = |object: &ObjectSpec| object.pose.inverse() * axes;
+        self.objects.each_ref().map(frame)
+    }
+
+    /// The push button that the objects are, if they are one.
+    pub fn push_button(&self) -> Option<(&Control, &PushButton)> {
+        if let (JointMotion::Press, Shape::Control(control)) = (self.motion, &self.objects[1].shape)
+        {
+            return control.push_button().map(|button| (control, button));
+        }
+        None
     }
 
     /// The motion that the joint leaves free.
@@ -95,6 +114,12 @@ impl JointedSpec {
             JointMotion::Shear => JointKind::Shears {
                 min: min.to_radians(),
                 max: max.to_radians(),
+            },
+            JointMotion::Press => JointKind::PushButton {
+                travel: max,
+                stiffness: self
+                    .push_button()
+                    .map_or(0.0, |(_, button)| button.stiffness()),
             },
         }
     }
@@ -133,7 +158,12 @@ mod tests {
 
     #[test]
     fn displacements_are_found_again() {
-        for motion in [JointMotion::Slide, JointMotion::Turn, JointMotion::Shear] {
+        for motion in [
+            JointMotion::Slide,
+            JointMotion::Turn,
+            JointMotion::Shear,
+            JointMotion::Press,
+        ] {
             for init in [-160.0, -2.5, 0.0, 0.1, 90.0] {
                 let jointed = jointed(motion, init);
                 let found = jointed.displacement(jointed.placed().map(|object| object.pose));

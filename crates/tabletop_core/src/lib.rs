@@ -52,6 +52,7 @@ mod playback;
 mod polyhedron;
 mod pose;
 mod preset;
+mod push_button;
 mod random;
 mod ray;
 mod reach;
@@ -86,6 +87,7 @@ pub use command::{
     WriteCommand, carry_out,
 };
 pub use control::{
+    button::{PressMode, PushButton},
     lights::{IndicatorLights, LightState},
     switch::{Side, ToggleSwitch},
 };

@@ -20,5 +20,14 @@ pub const PROPORTIONS: RangeInclusive<f32> = 0.0..=1.0;
 /// Angles of a switch's blocks, in degrees.
 pub const SWITCH_ANGLES: RangeInclusive<f32> = 0.0..=80.0;
 
+/// How far caps of push buttons go down, in units.
+pub const TRAVELS: RangeInclusive<f32> = 0.01..=10.0;
+
+/// What takes the cap of a push button down, in newtons.
+pub const PRESSING_FORCES: RangeInclusive<f32> = 0.1..=1000.0;
+
+/// Springs of push buttons, in kg/s².
+pub const STIFFNESSES: RangeInclusive<f32> = 0.0..=1e8;
+
 /// Largest number of links of a chain.
 pub const MOST_LINKS: u32 = 1000;

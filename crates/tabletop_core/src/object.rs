@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{BondPoint, IndicatorLights, MeshSpec, Pose, Rgb, Rollback, ToggleSwitch};
+use crate::{BondPoint, IndicatorLights, MeshSpec, Pose, PushButton, Rgb, Rollback, ToggleSwitch};
 
 /// The description of an object: everything that physics, pictures and recordings need to know of it.
 ///
@@ -191,6 +191,8 @@ pub struct Control {
 pub enum ControlKind {
     /// Two blocks that meet at an angle: pressing the raised one lifts the other and changes the state.
     ToggleSwitch(ToggleSwitch),
+    /// The cap of a button, which springs back: its state is where it is.
+    PushButton(PushButton),
     /// A row of lights. Each state turns some of them on.
     IndicatorLights(IndicatorLights),
     /// A control whose task file gives the shapes of every state.

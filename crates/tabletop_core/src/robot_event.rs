@@ -43,12 +43,18 @@ impl SimFact {
                 "the {arm} arm loosens {} from {}: step {}",
                 bond.guest, bond.host, bond.tightness
             ),
+            Self::Cut {
+                by: Operator::Limb(arm),
+                link,
+                ..
+            } => format!("the {arm} arm cuts {link}"),
             Self::TaskLoaded { .. }
             | Self::Triggered { .. }
             | Self::ControlChanged { .. }
             | Self::PointedTo { .. }
             | Self::Fastened { .. }
             | Self::Loosened { .. }
+            | Self::Cut { .. }
             | Self::ObjectCreated { .. }
             | Self::ObjectDeleted { .. }
             | Self::SegmentBegun { .. }

@@ -25,6 +25,7 @@ impl Shape {
             Self::Lid { .. } => "lid",
             Self::Control(control) => match control.kind {
                 ControlKind::ToggleSwitch(_) => "toggleSwitch",
+                ControlKind::PushButton(_) => "pushButton",
                 ControlKind::IndicatorLights(_) => "indicatorLights",
                 ControlKind::Custom(_) => "customControl",
             },

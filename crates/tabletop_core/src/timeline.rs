@@ -107,6 +107,8 @@ pub enum Verb {
     Fasten,
     /// The object is loosened.
     Loosen,
+    /// It is cut.
+    Cut,
 }
 
 impl Timeline {
@@ -158,6 +160,11 @@ impl Act {
                 bond,
                 ..
             } => (Manipulator::Hand(*hand), Verb::Loosen, &bond.guest),
+            SimFact::Cut {
+                by: Operator::Hand(hand),
+                link,
+                ..
+            } => (Manipulator::Hand(*hand), Verb::Cut, link),
             SimFact::GripMade { arm, id } => (Manipulator::Gripper(*arm), Verb::Grasp, id),
             SimFact::GripReleased { arm, id } => (Manipulator::Gripper(*arm), Verb::Release, id),
             SimFact::TaskLoaded { .. }
@@ -165,6 +172,7 @@ impl Act {
             | SimFact::ControlChanged { .. }
             | SimFact::Fastened { .. }
             | SimFact::Loosened { .. }
+            | SimFact::Cut { .. }
             | SimFact::ObjectCreated { .. }
             | SimFact::ObjectDeleted { .. }
             | SimFact::SegmentBegun { .. }
@@ -197,6 +205,7 @@ impl Verb {
             Self::PointTo => "points to",
             Self::Fasten => "fastens",
             Self::Loosen => "loosens",
+            Self::Cut => "cuts",
         }
     }
 }

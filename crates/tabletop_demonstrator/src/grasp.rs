@@ -8,10 +8,7 @@ use tabletop_core::{
 use tabletop_history::begin_segment;
 use tabletop_physics::{Carry, hold, let_go, remove_object};
 
-use crate::{
-    rules,
-    shears::{shears_of, swing_shut},
-};
+use crate::rules;
 
 /// The target pose of a held object.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
@@ -52,10 +49,6 @@ pub(crate) fn obey(
             refuse_while_paused(world)?;
             release(world, cause, hand);
             Ok(())
-        }
-        HandCommand::Cut(hand) => {
-            refuse_while_paused(world)?;
-            cut(world, cause, hand)
         }
         HandCommand::Destroy(hand) => {
             refuse_while_paused(world)?;
@@ -127,19 +120,6 @@ fn destroy(world: &mut World, cause: CommandId, hand: Hand) -> Result<(), String
     world.entity_mut(object).remove::<CarryTarget>();
     remove_object(world, object);
     world.write_message(SimFact::Destroyed { cause, hand, id });
-    Ok(())
-}
-
-/// Closes the scissors in a hand.
-fn cut(world: &mut World, cause: CommandId, hand: Hand) -> Result<(), String> {
-    let Some((object, id)) = held_by(world, hand) else {
-        return Err(format!("{hand} holds nothing that it could cut with"));
-    };
-    let Some(shears) = shears_of(world, object) else {
-        return Err(format!("{hand} cannot cut with `{id}`: it is no scissors"));
-    };
-    begin_segment(world, cause);
-    swing_shut(world, shears, object);
     Ok(())
 }
 

@@ -44,7 +44,6 @@ mod carry;
 mod grasp;
 mod obstacles;
 mod rules;
-mod shears;
 
 pub use grasp::CarryTarget;
 

@@ -1,4 +1,4 @@
-//! Mechanisms: switches, lights and other controls, and the networks between them; screws, nuts and valves.
+//! Mechanisms: switches, buttons, lights and other controls, and the networks between them; screws, nuts and valves; scissors.
 //!
 //! The state of a [`Control`](tabletop_core::Control) is part of its object's [`ObjectSpec`](tabletop_core::ObjectSpec), so physics,
 //! pictures and saved files follow it. A control whose state changes passes its number on to those downstream. [`Bonds`] lists the objects
@@ -40,10 +40,13 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod bonds;
+mod button;
+mod limb;
 mod network;
 mod obey;
 mod press;
 mod settle;
+mod shears;
 mod wrench;
 
 use bevy::prelude::*;
@@ -65,6 +68,8 @@ impl Plugin for MechanismPlugin {
             .rollback_resource::<wrench::Wrenches>()
             .rollback_resource::<Bonds>()
             .rollback_component::<bonds::BondJoint>()
+            .rollback_component::<press::Pressable>()
+            .rollback_component::<shears::Snip>()
             .add_systems(
                 FixedUpdate,
                 (
@@ -72,6 +77,8 @@ impl Plugin for MechanismPlugin {
                     obey::obey,
                     wrench::turn.run_if(wrench::is_possible),
                     press::press.run_if(press::is_possible),
+                    button::moved_caps.pipe(button::follow_caps),
+                    shears::cut_links.run_if(shears::are_there),
                     take_in,
                 )
                     .chain()

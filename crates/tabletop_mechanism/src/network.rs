@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use bevy::prelude::*;
-use tabletop_core::{Cause, Change, Control, ControlKind, ObjectIndex, ObjectSpec, SimFact};
+use tabletop_core::{
+    Cause, Change, Control, ControlKind, ObjectIndex, ObjectSpec, PressMode, SimFact,
+};
 use tabletop_physics::{remove_object, reshape};
 
 /// The controls on the table while they change.
@@ -60,13 +62,30 @@ impl Network {
         });
     }
 
+    /// Notes that a push button is pressed or released, and passes its state on as its mode says.
+    pub fn press(&mut self, id: &str, is_pressed: bool) {
+        let Some(button) = self.control(id).ok().and_then(Control::push_button) else {
+            return;
+        };
+        let state = if is_pressed { button.state } else { 0 };
+        let is_handed_on = is_pressed || button.mode == PressMode::Held;
+        self.change(id, |control| control.state = state);
+        if is_handed_on {
+            self.set_downstream(id, state);
+        }
+    }
+
     /// Gives a control a state, and passes it on downstream. A state that a control does not have, or has already, changes nothing, so
-    /// circles come to an end.
+    /// circles come to an end. A push button takes no state: its cap alone decides.
     pub fn set_state(&mut self, id: &str, state: u32) {
         let mut due = vec![id.to_owned()];
         while let Some(id) = due.pop() {
-            let is_change = |control: &Control| control.state != state && state < control.states();
-            if !self.control(&id).is_ok_and(is_change) {
+            let is_news = |control: &Control| {
+                control.push_button().is_none()
+                    && control.state != state
+                    && state < control.states()
+            };
+            if !self.control(&id).is_ok_and(is_news) {
                 continue;
             }
             self.change(&id, |control| control.state = state);
@@ -82,11 +101,18 @@ impl Network {
         self.change(id, |control| control.override_state = state);
     }
 
-    /// Passes on the present state of a control.
+    /// Passes on the present state of a control; not of a button that does so only when it is pressed.
     pub fn hand_on(&mut self, id: &str) {
-        let Ok(state) = self.control(id).map(|control| control.state) else {
-            return;
+        let is_lasting = |control: &&Control| {
+            let button = control.push_button();
+            button.is_none_or(|button| button.mode == PressMode::Held)
         };
+        if let Some(control) = self.control(id).ok().filter(is_lasting) {
+            self.set_downstream(id, control.state);
+        }
+    }
+
+    fn set_downstream(&mut self, id: &str, state: u32) {
         for id in self.downstream(id) {
             self.set_state(&id, state);
         }

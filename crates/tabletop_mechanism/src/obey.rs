@@ -7,7 +7,7 @@ use tabletop_core::{
 };
 use tabletop_history::begin_segment;
 
-use crate::{bonds, network::Network};
+use crate::{bonds, button, network::Network, shears};
 
 /// Carries out the commands, one after the other.
 pub(crate) fn obey(
@@ -36,6 +36,7 @@ pub(crate) fn obey(
             MechanismCommand::Loosen { hand, guest } => {
                 turn(world, cause, hand, &guest, Turn::Looser)
             }
+            MechanismCommand::Cut { hand, blade } => shears::cut(world, cause, hand, &blade),
         }
     })
 }
@@ -60,6 +61,7 @@ fn next_state(world: &World, id: &str, part: Option<u32>) -> Result<u32, String>
         ControlKind::ToggleSwitch(_) => {
             format!("`{id}` cannot be triggered there: this side is down")
         }
+        ControlKind::PushButton(_) => format!("`{id}` is pressed already"),
         ControlKind::IndicatorLights(_) => {
             format!("`{id}` cannot be triggered: it is a light, which shows what is upstream of it")
         }
@@ -69,7 +71,7 @@ fn next_state(world: &World, id: &str, part: Option<u32>) -> Result<u32, String>
     })
 }
 
-/// Operates a control, which leads to a state.
+/// Operates a control, which leads to a state. A button's cap is pushed, and its state follows when the cap is down.
 pub(crate) fn trigger(
     world: &mut World,
     cause: Option<CommandId>,
@@ -83,6 +85,10 @@ pub(crate) fn trigger(
         control: control.to_owned(),
     });
     let mut network = Network::of(world);
+    if let Ok(ControlKind::PushButton(_)) = network.control(control).map(|control| &control.kind) {
+        button::push_cap(world, control);
+        return;
+    }
     network.flip(control);
     network.set_state(control, next);
     network.take_effect(world, true);

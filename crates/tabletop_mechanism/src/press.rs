@@ -1,21 +1,33 @@
-//! Pressing of controls by touch: the robot's fingers and held objects press them.
+//! Pressing of controls: by touch of the robot's fingers and held objects, and by the force of objects that fall or lean on them.
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Bounds, Hand, Hands, ObjectIndex, ObjectSpec, Operator, Paused, Pose, Robot, RobotLayout, Solid,
+    Bounds, Control, ControlKind, Held, ObjectIndex, ObjectSpec, Operator, Paused, Pose, Robot,
+    RobotLayout, Shape, Solid, TICK_SECONDS, UNITS_PER_METER,
 };
-use tabletop_physics::is_touching;
+use tabletop_physics::{Pressure, is_touching, pressures_on};
 
-use crate::{network::Network, obey::trigger};
+use crate::{limb::limb_of, network::Network, obey::trigger};
 
 /// Largest distance, in units, of a touch: the robot's arms stop a millimetre before things that they cannot push away.
 const TOUCH: f32 = 0.03;
 
-/// The presses at present. A control is triggered when it is touched, and not again until it is let go of.
+/// Distance, in units, beyond which an object has let go of the control it pressed: it may rock and bounce until it lies still.
+const LET_GO: f32 = 0.2;
+
+/// Least pressing force, in newtons: the weight of 50 g. Hands and arms are as strong as necessary, so their touch presses immovable
+/// controls.
+const LEAST_FORCE: f32 = 0.5;
+
+/// Marks an object with switches, or shapes that lead to other states.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Pressable;
+
+/// The presses at present. A control is triggered when it is pressed, and not again until it is let go of.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Pressed(Vec<Press>);
 
-/// A touch of a control's part that leads to another state.
+/// A press on a control's part that leads to another state.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Press {
     by: Operator,
@@ -23,24 +35,45 @@ struct Press {
     next: u32,
 }
 
-/// Run condition: something may touch a control.
-pub(crate) fn is_possible(robot: Res<Robot>, hands: Res<Hands>, pressed: Res<Pressed>) -> bool {
-    !robot.contacts.is_empty() || hands.hold_something() || !pressed.0.is_empty()
+/// Run condition: something may press a control.
+pub(crate) fn is_possible(pressables: Query<(), With<Pressable>>, pressed: Res<Pressed>) -> bool {
+    !pressables.is_empty() || !pressed.0.is_empty()
 }
 
-/// Triggers newly touched controls.
+/// True for objects with a part that can be pressed.
+pub(crate) fn is_pressable(spec: &ObjectSpec) -> bool {
+    let mut controls = spec.controls().into_iter();
+    controls.any(|control| feels_touch(control.what))
+}
+
+/// True for controls that hands and arms operate by touch.
+const fn feels_touch(control: &Control) -> bool {
+    match control.kind {
+        ControlKind::ToggleSwitch(_) | ControlKind::Custom(_) => true,
+        ControlKind::PushButton(_) | ControlKind::IndicatorLights(_) => false,
+    }
+}
+
+/// Triggers newly pressed controls.
 pub(crate) fn press(world: &mut World) {
     if world.resource::<Paused>().0 {
         return;
     }
+    let objects = world.resource::<ObjectIndex>().iter();
+    let pressables: Vec<_> = objects
+        .filter(|&object| world.get::<Pressable>(object).is_some())
+        .collect();
     let mut presses = presses_of_robot(world);
-    presses.extend(presses_of_hands(world));
+    presses.extend(presses_of_held(world, &pressables));
+    presses.extend(presses_of_free(world, &pressables));
     let before = world.resource::<Pressed>().0.clone();
-    let is_new = |press: &&Press| {
-        let is_same = |other: &Press| other.by == press.by && other.control == press.control;
-        !before.iter().any(is_same)
-    };
+    let is_new = |press: &&Press| !before.iter().any(|other| press.is_by_same(other));
     let new: Vec<_> = presses.iter().filter(is_new).cloned().collect();
+    for press in &before {
+        if !presses.iter().any(|other| press.is_by_same(other)) && lies_there(world, press) {
+            presses.push(press.clone());
+        }
+    }
     for Press { by, control, next } in new {
         // Another press of this tick may have changed it.
         let network = Network::of(world);
@@ -56,58 +89,60 @@ pub(crate) fn press(world: &mut World) {
     }
 }
 
+impl Press {
+    fn is_by_same(&self, other: &Self) -> bool {
+        self.by == other.by && self.control == other.control
+    }
+}
+
 fn presses_of_robot(world: &World) -> Vec<Press> {
     let layout = world.resource::<RobotLayout>();
-    let limb = |body: &str| {
-        let mut limbs = layout.limbs.iter();
-        limbs.find(|limb| body.starts_with(limb.name.as_str()))
-    };
     let mut presses = Vec::new();
     for contact in &world.resource::<Robot>().contacts {
         let (Some(limb), Some(spec), Some(place)) = (
-            limb(&contact.body),
+            limb_of(layout, &contact.body),
             world.get::<ObjectSpec>(contact.thing),
             world.get::<Transform>(contact.thing),
         ) else {
             continue;
         };
-        let by = Operator::Limb(limb.name);
+        let force = contact.impulse / (TICK_SECONDS * UNITS_PER_METER as f32);
+        if !spec.is_fixed() && force < LEAST_FORCE {
+            continue;
+        }
+        let by = Operator::Limb(limb);
         let point = Pose::from(place).inverse() * contact.point;
-        add(&mut presses, &by, spec, |shape, at| {
-            let solids = shape.colliding();
-            let distance = |solid: Solid, at: Pose| distance(solid, at.inverse() * point);
-            solids
-                .iter()
-                .any(|solid| distance(solid.solid, at * solid.pose) < TOUCH)
+        add(&mut presses, &by, spec, feels_touch, |shape, at| {
+            has(shape, at, point)
         });
     }
     presses
 }
 
-fn presses_of_hands(world: &mut World) -> Vec<Press> {
-    let hands = world.resource::<Hands>().clone();
+/// What hands and grippers hold presses the immovable as it touches it.
+fn presses_of_held(world: &mut World, pressables: &[Entity]) -> Vec<Press> {
     let objects: Vec<_> = world.resource::<ObjectIndex>().iter().collect();
     let mut presses = Vec::new();
-    for hand in Hand::ALL {
-        let Some(held) = hands.held_by(hand) else {
+    for held in objects {
+        if world.get::<Held>(held).is_none() {
             continue;
-        };
+        }
         let Some((spec, place)) = spec_and_pose(world, held) else {
             continue;
         };
         let bounds = Bounds::of_shape(&spec.shape, place);
-        for &object in objects.iter().filter(|&&object| object != held) {
+        for &object in pressables.iter().filter(|&&object| object != held) {
             let is_near = world.get::<ObjectSpec>(object).is_some_and(|other| {
                 let pose = world.get::<Transform>(object).map(Pose::from);
                 let room = Bounds::of_shape(&other.shape, pose.unwrap_or_default());
-                !other.controls().is_empty() && room.overlaps(bounds, -TOUCH)
+                other.is_fixed() && room.overlaps(bounds, -TOUCH)
             });
             if !is_near {
                 continue;
             }
             if let Some((other, pose)) = spec_and_pose(world, object) {
                 let by = Operator::Object(spec.id.clone());
-                add(&mut presses, &by, &other, |shape, at| {
+                add(&mut presses, &by, &other, feels_touch, |shape, at| {
                     is_touching(world, held, shape, pose * at, TOUCH)
                 });
             }
@@ -116,18 +151,86 @@ fn presses_of_hands(world: &mut World) -> Vec<Press> {
     presses
 }
 
+/// What falls or leans on something, or is pushed onto what can move, presses it by its force.
+fn presses_of_free(world: &mut World, pressables: &[Entity]) -> Vec<Press> {
+    let mut presses = Vec::new();
+    for pressures in pressures_on(world, pressables).chunk_by(|a, b| (a.on, a.by) == (b.on, b.by)) {
+        let Some(&Pressure { on, by, .. }) = pressures.first() else {
+            continue;
+        };
+        let force: f32 = pressures.iter().map(|pressure| pressure.force).sum();
+        let (true, Some(presser), Some((spec, pose))) = (
+            force >= LEAST_FORCE,
+            world.get::<ObjectSpec>(by),
+            spec_and_pose(world, on),
+        ) else {
+            continue;
+        };
+        let is_held = world.get::<Held>(by).is_some();
+        let feels = |control: &Control| match control.kind {
+            ControlKind::ToggleSwitch(_) => true,
+            // What stands on its shapes is not meant.
+            ControlKind::Custom(_) => is_held,
+            ControlKind::PushButton(_) | ControlKind::IndicatorLights(_) => false,
+        };
+        let by = Operator::Object(presser.id.clone());
+        add(&mut presses, &by, &spec, feels, |shape, at| {
+            let own = pressures
+                .iter()
+                .filter(|pressure| has(shape, at, pose.inverse() * pressure.point));
+            own.map(|pressure| pressure.force).sum::<f32>() >= LEAST_FORCE
+        });
+    }
+    presses
+}
+
+/// Whether an object that has pressed a control, and that nobody holds, is still there: it may lie on the side that is raised now.
+fn lies_there(world: &mut World, press: &Press) -> bool {
+    let Operator::Object(id) = &press.by else {
+        return false;
+    };
+    let index = world.resource::<ObjectIndex>();
+    let Some(presser) = index.get(id) else {
+        return false;
+    };
+    if world.get::<Held>(presser).is_some() {
+        return false;
+    }
+    let objects: Vec<_> = index.iter().collect();
+    let control = objects.into_iter().find_map(|object| {
+        let spec = world.get::<ObjectSpec>(object)?;
+        let controls = spec.controls().into_iter();
+        let control = controls.map(|control| (control.id == press.control).then_some(control));
+        let control = control.flatten().next()?;
+        let shape = Shape::Control(control.what.clone().into());
+        let pose = world.get::<Transform>(object).map(Pose::from)?;
+        Some((shape, pose * control.pose))
+    });
+    control.is_some_and(|(shape, at)| is_touching(world, presser, &shape, at, LET_GO))
+}
+
+/// Whether a point, in the frame of an object, is on a part of it.
+fn has(shape: &Shape, at: Pose, point: Vec3) -> bool {
+    let solids = shape.colliding();
+    let distance = |solid: Solid, at: Pose| distance(solid, at.inverse() * point);
+    solids
+        .iter()
+        .any(|solid| distance(solid.solid, at * solid.pose) < TOUCH)
+}
+
 fn spec_and_pose(world: &World, object: Entity) -> Option<(ObjectSpec, Pose)> {
     let spec = world.get::<ObjectSpec>(object)?.clone();
     let pose = world.get::<Transform>(object).map(Pose::from)?;
     Some((spec, pose))
 }
 
-/// Adds the controls of an object whose touched part leads to another state.
+/// Adds the controls of an object whose pressed part leads to another state. Buttons follow their caps instead.
 fn add(
     presses: &mut Vec<Press>,
     by: &Operator,
     spec: &ObjectSpec,
-    mut is_touched: impl FnMut(&tabletop_core::Shape, Pose) -> bool,
+    feels: impl Fn(&Control) -> bool,
+    mut is_pressed: impl FnMut(&Shape, Pose) -> bool,
 ) {
     for surface in spec.surfaces() {
         let Some((id, number)) = surface.control else {
@@ -135,11 +238,12 @@ fn add(
         };
         let next = spec
             .control(id)
+            .filter(|&control| feels(control))
             .and_then(|control| control.next_state(Some(number)));
         let Some(next) = next else {
             continue;
         };
-        if is_touched(&surface.part.shape, surface.part.pose) {
+        if is_pressed(&surface.part.shape, surface.part.pose) {
             presses.push(Press {
                 by: by.clone(),
                 control: id.to_owned(),

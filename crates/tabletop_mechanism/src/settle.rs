@@ -4,7 +4,11 @@ use bevy::prelude::*;
 use tabletop_core::{Bond, Bonds, ObjectSpec, SimFact};
 use tabletop_history::Parked;
 
-use crate::{bonds, network::Network};
+use crate::{
+    bonds,
+    network::Network,
+    press::{Pressable, is_pressable},
+};
 
 /// Objects that have appeared in this tick.
 #[derive(Resource, Default)]
@@ -18,11 +22,15 @@ pub(crate) fn note_new(
     add: On<Add, ObjectSpec>,
     objects: Query<&ObjectSpec>,
     mut new: ResMut<New>,
+    mut commands: Commands,
 ) {
     let does_something =
         |spec: &ObjectSpec| !spec.controls().is_empty() || !spec.guest_points().is_empty();
     if objects.get(add.entity).is_ok_and(does_something) {
         new.0.push(add.entity);
+    }
+    if objects.get(add.entity).is_ok_and(is_pressable) {
+        commands.entity(add.entity).try_insert(Pressable);
     }
 }
 

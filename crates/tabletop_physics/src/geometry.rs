@@ -3,9 +3,11 @@
 mod contact;
 mod convex;
 mod nearby;
+mod pressure;
 mod touch;
 
 pub use contact::contact;
 pub use convex::{Convex, Nearest, convex_parts, nearest, to_rapier};
 pub use nearby::{Nearby, nearby};
+pub use pressure::{Pressure, pressures_on};
 pub use touch::is_touching;

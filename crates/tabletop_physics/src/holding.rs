@@ -101,6 +101,14 @@ pub fn pull_velocity(here: Pose, target: Pose) -> Velocity {
     }
 }
 
+/// Makes an object faster: by a velocity of its centre of mass, in units/s, and by an angular velocity, in rad/s.
+pub fn push(world: &mut World, object: Entity, linear: Vec3, angular: Vec3) {
+    if let Some(mut velocity) = world.get_mut::<Velocity>(object) {
+        velocity.linear += linear;
+        velocity.angular += angular;
+    }
+}
+
 /// Puts an object at another pose at once, at rest.
 pub fn put(world: &mut World, object: Entity, pose: Pose) {
     let mut object = world.entity_mut(object);

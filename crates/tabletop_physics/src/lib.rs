@@ -45,9 +45,10 @@ mod twist;
 pub use bodies::{BodySystems, collider, mass_properties, reshape, take_in};
 pub use effort::{Care, Engine, impulse_share};
 pub use geometry::{
-    Convex, Nearby, Nearest, contact, convex_parts, is_touching, nearby, nearest, to_rapier,
+    Convex, Nearby, Nearest, Pressure, contact, convex_parts, is_touching, nearby, nearest,
+    pressures_on, to_rapier,
 };
-pub use holding::{Carry, JustReleased, hold, let_go, pull_velocity, put};
+pub use holding::{Carry, JustReleased, hold, let_go, pull_velocity, push, put};
 pub use settings::PhysicsSettings;
 pub use snapshot::{PhysicsSnapshot, remove_joint, remove_object, renew_if_empty};
 

@@ -133,7 +133,10 @@ impl StepState {
                 hand,
                 guest: guest.clone(),
             }),
-            Step::Cut => SimCommand::Hand(HandCommand::Cut(hand)),
+            Step::Cut(blade) => SimCommand::Mechanism(MechanismCommand::Cut {
+                hand,
+                blade: blade.clone(),
+            }),
             Step::Start => SimCommand::Recording(RecordingCommand::Start),
             Step::Finish => SimCommand::Recording(RecordingCommand::Finish),
             Step::Undo => SimCommand::History(HistoryCommand::Undo),
@@ -197,7 +200,7 @@ impl StepState {
             | Step::Glide { .. }
             | Step::Release
             | Step::Destroy
-            | Step::Cut
+            | Step::Cut(_)
             | Step::Trigger(_)
             | Step::TriggerPart(..)
             | Step::PointTo(_)
@@ -282,7 +285,7 @@ mod tests {
         "PointTo(\"low\")",
         "Fasten(\"low\")",
         "Loosen(\"low\")",
-        "Cut",
+        "Cut(\"low\")",
         "Robot(Show)",
         "Robot(Close(Left))",
         "Robot(ReachTo(arm: Left, at: (0, 0, 1)))",
@@ -317,7 +320,7 @@ mod tests {
             SimCommand::Robot(RobotCommand::Drive(_)) => 21,
             SimCommand::Robot(RobotCommand::ReachTo { .. }) => 22,
             SimCommand::Robot(RobotCommand::ShowFace(_)) => 23,
-            SimCommand::Hand(HandCommand::Cut(_)) => 19,
+            SimCommand::Mechanism(MechanismCommand::Cut { .. }) => 19,
             SimCommand::Robot(RobotCommand::ShowMarkers(_)) => return None,
         };
         Some(STEPS[place])

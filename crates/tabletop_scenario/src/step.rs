@@ -68,8 +68,8 @@ pub enum Step {
     Fasten(String),
     /// Loosen the guest point or object of this id by a step.
     Loosen(String),
-    /// Close the scissors that are held by a blade.
-    Cut,
+    /// Close the scissors that the object of this id is a blade of.
+    Cut(String),
     /// Wait this many seconds.
     Wait(f32),
     /// Wait until everything is at rest, at most this many seconds.
@@ -139,7 +139,7 @@ impl Step {
             | Self::PointTo(_)
             | Self::Fasten(_)
             | Self::Loosen(_)
-            | Self::Cut
+            | Self::Cut(_)
             | Self::Start
             | Self::Finish
             | Self::Undo
@@ -189,7 +189,7 @@ impl Step {
             | Self::PointTo(_)
             | Self::Fasten(_)
             | Self::Loosen(_)
-            | Self::Cut
+            | Self::Cut(_)
             | Self::Start
             | Self::Finish
             | Self::Undo
@@ -213,7 +213,7 @@ impl Step {
             | Self::PointTo(_)
             | Self::Fasten(_)
             | Self::Loosen(_)
-            | Self::Cut
+            | Self::Cut(_)
             | Self::WaitUntilThere(_) => true,
             Self::Load { .. }
             | Self::Clear

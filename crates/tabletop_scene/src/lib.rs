@@ -33,7 +33,6 @@
 
 mod assembly;
 mod compound;
-mod cutting;
 mod ids;
 mod lifecycle;
 mod present;
@@ -73,9 +72,7 @@ impl Plugin for ScenePlugin {
                 FixedUpdate,
                 (
                     lifecycle::carry_out_commands.in_set(CommandSystems::Scene),
-                    (cutting::cut_links, lifecycle::remove_fallen)
-                        .chain()
-                        .in_set(SimSystems::Sense),
+                    lifecycle::remove_fallen.in_set(SimSystems::Sense),
                 )
                     .in_set(RestingSystems),
             )

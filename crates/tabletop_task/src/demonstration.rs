@@ -204,6 +204,10 @@ impl Demonstration {
                     Occurrence::Loosen { bond, .. } => {
                         operate(OperationDeed::Loosen(bond.clone()));
                     }
+                    Occurrence::Cut { link, .. } => {
+                        let link = link.clone();
+                        operate(OperationDeed::Cut { link });
+                    }
                     Occurrence::InitializeControl { .. } => {}
                 }
             }

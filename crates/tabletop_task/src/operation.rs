@@ -1,4 +1,4 @@
-//! Operations: the objects that were operated, pointed to, fastened and loosened.
+//! Operations: the objects that were operated, pointed to, fastened, loosened and cut.
 
 use serde::{Deserialize, Serialize};
 use tabletop_core::{Bond, SimTick};
@@ -31,6 +31,11 @@ pub enum OperationDeed {
     Fasten(Bond),
     /// A bond was loosened or undone.
     Loosen(Bond),
+    /// A chain link was cut.
+    Cut {
+        /// Its id.
+        link: String,
+    },
 }
 
 impl Operation {
@@ -39,6 +44,7 @@ impl Operation {
         let what = match &self.deed {
             OperationDeed::Trigger { control } => format!("Trigger {control}"),
             OperationDeed::PointTo { part } => format!("Point to {part}"),
+            OperationDeed::Cut { link } => format!("Cut {link}"),
             OperationDeed::Fasten(bond) => {
                 format!(
                     "Fasten {} to {}, step {}",

@@ -241,6 +241,7 @@ pub(crate) fn slider<'s>(joints: &'s [JointSpec], id: &str) -> Option<(&'s Joint
     joints.iter().find_map(|joint| match joint.kind {
         JointKind::Slider { max, .. } if joint.objects[1] == id => Some((joint, max)),
         JointKind::Slider { .. }
+        | JointKind::PushButton { .. }
         | JointKind::Hinge { .. }
         | JointKind::Shears { .. }
         | JointKind::Ball

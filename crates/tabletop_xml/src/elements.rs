@@ -13,6 +13,7 @@ pub(crate) mod mesh_files;
 mod names;
 mod object;
 mod overlap;
+mod push_button;
 mod role;
 mod simple_shape;
 pub(crate) mod value;
@@ -76,6 +77,7 @@ impl ElementReader<'_, '_> {
                     .jointed(child, JointMotion::Turn)
                     .map(SceneItem::Jointed),
                 "scissors" => self.scissors(child).map(SceneItem::Jointed),
+                "pushButton" => self.push_button(child).map(SceneItem::Jointed),
                 _ => self.object(child).map(SceneItem::Object),
             };
             let Some(item) = item else {
@@ -172,7 +174,7 @@ mod tests {
 
     #[test]
     fn elements_have_their_place() {
-        let whole = "block, cylinder, frustum, ring, sphere, box, custom, composite, toggleSwitch, indicatorLights, customControl, chain, lidbox, sliderJoint, hingeJoint, scissors";
+        let whole = "block, cylinder, frustum, ring, sphere, box, custom, composite, toggleSwitch, indicatorLights, customControl, chain, lidbox, sliderJoint, hingeJoint, scissors, pushButton";
         for (content, fault) in [
             ("<cube/>", format!("cube: it is not known, expected one of {whole}")),
             ("<Sphere/>", "Sphere: it is not known, expected <sphere>".into()),

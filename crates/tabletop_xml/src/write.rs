@@ -187,8 +187,23 @@ impl Writer {
         self.close();
     }
 
+    /// Writes a push button; its housing is made of what its cap says.
+    fn push_button(&mut self, button: &JointedSpec) {
+        let [housing, cap] = &button.objects;
+        self.open("pushButton");
+        self.id(&cap.id);
+        self.pose(button.pose);
+        self.number("mass", housing.mass);
+        self.number("init", button.init);
+        self.attributes_of(&cap.shape);
+        self.descriptions(&cap.descriptions);
+        self.parts_of(&cap.shape);
+        self.close();
+    }
+
     fn jointed(&mut self, jointed: &JointedSpec) {
         self.open(match jointed.motion {
+            JointMotion::Press => return self.push_button(jointed),
             JointMotion::Slide => "sliderJoint",
             JointMotion::Turn => "hingeJoint",
             JointMotion::Shear => "scissors",
@@ -203,7 +218,7 @@ impl Writer {
                 self.attribute("collision", &jointed.collides.to_string());
                 self.number("damping", jointed.damping);
             }
-            JointMotion::Shear => {}
+            JointMotion::Shear | JointMotion::Press => {}
         }
         for object in &jointed.objects {
             self.object(object);

@@ -133,6 +133,9 @@ fn schema_and_parser_accept_the_same() {
          <composite location=\"(0,0,1)\" friction=\".2\"><ring location=\"(0,0,1)\"/><frustum location=\"(0,0,1)\"/></composite>",
         "<scissors id=\"s\" location=\"(0,0,1)\" min=\"-5\" max=\"60\" init=\"9\" length=\"2\" mass=\"1\" color=\"red\"/>\
          <scissors location=\"(0,0,1)\"><block location=\"(0,0,0)\"/><ring location=\"(0,0,1)\"/></scissors>",
+        "<pushButton id=\"b\" location=\"(0,0,1)\" rotation=\"(0,90,0)\" mass=\"0\" radius=\".2\" zspan=\".5\" travel=\".2\" force=\"2.5\" \
+         color=\"green\" mode=\"held\" state=\"2\" init=\".1\"><description name=\"a\" value=\"b\"/><downstream id=\"b\"/></pushButton>\
+         <pushButton location=\"(0,0,1)\"/>",
     ]
     .map(file)
     .to_vec();

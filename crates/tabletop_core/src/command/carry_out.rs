@@ -64,7 +64,6 @@ mod tests {
                 | HandCommand::MoveTo { .. }
                 | HandCommand::MoveBy { .. }
                 | HandCommand::Turn { .. }
-                | HandCommand::Cut(_)
                 | HandCommand::Destroy(_) => Ok(()),
             }
         })

@@ -43,8 +43,6 @@ pub enum HandCommand {
     },
     /// Let go of the held object.
     Release(Hand),
-    /// Close the scissors that the hand holds by a blade.
-    Cut(Hand),
     /// Remove the held object from the world.
     Destroy(Hand),
 }

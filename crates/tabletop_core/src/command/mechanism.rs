@@ -39,4 +39,11 @@ pub enum MechanismCommand {
         /// Id of a guest point, or of an object; for an object, its bonded point counts.
         guest: String,
     },
+    /// Close scissors: what links of chains both blades come to touch are cut.
+    Cut {
+        /// The hand.
+        hand: Hand,
+        /// Id of a blade.
+        blade: String,
+    },
 }

@@ -65,6 +65,8 @@ pub enum Action {
     Fasten,
     /// Loosen the held object, or the one under the cursor, by a step.
     Loosen,
+    /// Close the scissors that are held, or that the cursor is on.
+    Cut,
     /// Make a big block (report section 6.1).
     MakeBlock,
     /// Make a stack of five blocks (report section 6.1).

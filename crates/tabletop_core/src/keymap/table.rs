@@ -146,6 +146,7 @@ fn plain_rows() -> Vec<ActionRow> {
         row(Action::PointTo, Demonstration, "Point to", "Points to what the cursor is on", vec![plain(KeyX)]),
         row(Action::Fasten, Demonstration, "Fasten", "Fastens what is held, or what the cursor is on, by a step", vec![plain(KeyF)]),
         row(Action::Loosen, Demonstration, "Loosen", "Loosens what is held, or what the cursor is on, by a step", vec![shift(KeyF)]),
+        row(Action::Cut, Demonstration, "Cut", "Closes the scissors that are held, or that the cursor is on", vec![shift(KeyE)]),
 
         row(Action::MakeBlock, Objects, "Big block", "Makes a big block somewhere on the table", vec![plain(KeyB)]),
         row(Action::MakeStack, Objects, "Stack of five", "Makes a stack of five blocks somewhere on the table", vec![plain(KeyN)]),

@@ -1,4 +1,4 @@
-//! Keys that trigger, point, fasten and loosen, with the held object or the one under the cursor.
+//! Keys that trigger, point, fasten, loosen and cut, with the held object or the one under the cursor.
 
 use bevy::prelude::*;
 use tabletop_core::{Actor, CommandWriter, KeySystems, Keys, Paused};
@@ -45,7 +45,7 @@ fn act(
 mod tests {
     use super::*;
     use crate::test_world::TestWorld;
-    use tabletop_core::{Hand, MechanismCommand};
+    use tabletop_core::{Hand, Joint, JointKind, MechanismCommand, Pose};
 
     #[test]
     fn a_key_points_to_what_the_cursor_is_on() {
@@ -58,6 +58,32 @@ mod tests {
             target: "red".into(),
         };
         assert_eq!(test.hold_still(), [point_to.into()]);
+    }
+
+    #[test]
+    fn a_key_cuts_with_the_scissors_that_are_held() {
+        let mut test = TestWorld::new(plugin);
+        let lower = test.hold("lower", Vec3::Z);
+        let upper = test.block("upper", Vec3::Z * 4.0);
+        let shears = Joint {
+            objects: [lower, upper],
+            frames: [Pose::IDENTITY; 2],
+            kind: JointKind::Shears { min: 0.0, max: 1.0 },
+            collides: false,
+        };
+        let shears = test.app.world_mut().spawn(shears).id();
+        test.keys().press(KeyCode::ShiftLeft);
+        test.keys().press(KeyCode::KeyE);
+        let (hand, blade) = (Hand::Any, "lower".into());
+        let cut = MechanismCommand::Cut { hand, blade };
+        assert_eq!(test.hold_still(), [cut.into()]);
+        test.app.world_mut().despawn(shears);
+        test.keys().release(KeyCode::KeyE);
+        test.hold_still();
+        test.keys().press(KeyCode::KeyE);
+        assert_eq!(test.hold_still(), []);
+        let notices = test.app.world().resource::<Notices>();
+        assert!(notices.iter().any(|notice| notice.contains("no scissors")));
     }
 
     #[test]

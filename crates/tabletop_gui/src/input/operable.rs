@@ -1,9 +1,9 @@
-//! Choices for the thing under the cursor, besides taking it: trigger, point to, fasten, loosen.
+//! Choices for the thing under the cursor, besides taking it: trigger, point to, fasten, loosen, cut.
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
-    Action, Bonds, Hand, Hands, MechanismCommand, ObjectIndex, ObjectSpec, Pose, TouchedSurface,
-    Turn,
+    Action, Bonds, Hand, Hands, Joint, JointKind, MechanismCommand, ObjectIndex, ObjectSpec, Pose,
+    TouchedSurface, Turn,
 };
 
 use crate::input::pick::Pickable;
@@ -15,11 +15,18 @@ pub(crate) enum Deed {
     PointTo,
     Fasten,
     Loosen,
+    Cut,
 }
 
 impl Deed {
     /// In the order of the context menu.
-    pub const ALL: [Self; 4] = [Self::Trigger, Self::PointTo, Self::Fasten, Self::Loosen];
+    pub const ALL: [Self; 5] = [
+        Self::Trigger,
+        Self::PointTo,
+        Self::Fasten,
+        Self::Loosen,
+        Self::Cut,
+    ];
 
     /// The action of its key.
     pub const fn action(self) -> Action {
@@ -28,6 +35,7 @@ impl Deed {
             Self::PointTo => Action::PointTo,
             Self::Fasten => Action::Fasten,
             Self::Loosen => Action::Loosen,
+            Self::Cut => Action::Cut,
         }
     }
 }
@@ -42,13 +50,14 @@ pub(crate) struct Operable<'w, 's> {
     hands: Res<'w, Hands>,
     bonds: Res<'w, Bonds>,
     index: Res<'w, ObjectIndex>,
+    joints: Query<'w, 's, &'static Joint>,
     objects: Query<'w, 's, (&'static ObjectSpec, &'static Transform)>,
 }
 
 impl Operable<'_, '_> {
     /// The choices for the object along a line of sight, with its id; `None` if it is not an object, or another one than the selected
     /// hand holds.
-    pub fn choices_along(&self, ray: Ray3d) -> Option<(&str, [Choice; 4])> {
+    pub fn choices_along(&self, ray: Ray3d) -> Option<(&str, [Choice; 5])> {
         let object = self.pickable.object_along(ray)?;
         let (spec, place) = self.objects.get(object).ok()?;
         let pose = Pose::from(place);
@@ -70,6 +79,7 @@ impl Operable<'_, '_> {
                 }),
                 Deed::Fasten => self.turned(hand, &guest, Turn::Tighter),
                 Deed::Loosen => self.turned(hand, &guest, Turn::Looser),
+                Deed::Cut => self.cut(hand, object),
             };
             (deed, command)
         };
@@ -83,6 +93,7 @@ impl Operable<'_, '_> {
         match (deed, held.and_then(|held| self.objects.get(held).ok())) {
             (Deed::Fasten, Some((spec, _))) => self.turned(hand, &spec.id, Turn::Tighter),
             (Deed::Loosen, Some((spec, _))) => self.turned(hand, &spec.id, Turn::Looser),
+            (Deed::Cut, Some(_)) => self.cut(hand, held.unwrap_or(Entity::PLACEHOLDER)),
             (Deed::Trigger | Deed::PointTo, Some(_)) => Err(format!("{hand} holds something")),
             (deed, None) => {
                 let choices = ray.and_then(|ray| self.choices_along(ray));
@@ -96,6 +107,23 @@ impl Operable<'_, '_> {
                         |(_, command)| command,
                     )
             }
+        }
+    }
+
+    fn cut(&self, hand: Hand, blade: Entity) -> Result<MechanismCommand, String> {
+        let (spec, _) = self
+            .objects
+            .get(blade)
+            .map_err(|_| "there is no such object".to_owned())?;
+        let is_blade = |joint: &Joint| {
+            matches!(joint.kind, JointKind::Shears { .. }) && joint.objects.contains(&blade)
+        };
+        match self.joints.iter().any(is_blade) {
+            true => Ok(MechanismCommand::Cut {
+                hand,
+                blade: spec.id.clone(),
+            }),
+            false => Err(format!("`{}` is no scissors", spec.id)),
         }
     }
 

@@ -55,6 +55,7 @@ fn begin_anew(mut facts: MessageReader<SimFact>, mut turns: ResMut<TurnSums>) {
             | SimFact::PointedTo { .. }
             | SimFact::Fastened { .. }
             | SimFact::Loosened { .. }
+            | SimFact::Cut { .. }
             | SimFact::RecordingStarted { .. }
             | SimFact::RecordingFinished { .. }
             | SimFact::RecordingFailed { .. }

@@ -208,6 +208,7 @@ mod tests {
                 (Deed::PointTo, Ok(point_to)),
                 (Deed::Fasten, no("it has no point")),
                 (Deed::Loosen, no("it has no point")),
+                (Deed::Cut, no("it is no scissors")),
             ],
             is_still: true,
         }
@@ -230,7 +231,7 @@ mod tests {
     fn an_item_asks_for_its_command_and_a_grey_one_for_nothing() {
         let point_to = open_menu().choices[1].1.clone().ok().map(Request::Do);
         assert_eq!(clicked("Point to"), point_to);
-        for label in ["Trigger", "Fasten", "Loosen"] {
+        for label in ["Trigger", "Fasten", "Loosen", "Cut"] {
             assert_eq!(clicked(label), None, "{label}");
         }
     }

@@ -92,6 +92,7 @@ fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
             | SimFact::PointedTo { .. }
             | SimFact::Fastened { .. }
             | SimFact::Loosened { .. }
+            | SimFact::Cut { .. }
             | SimFact::Grasped { .. }
             | SimFact::Released { .. }
             | SimFact::Destroyed { .. }

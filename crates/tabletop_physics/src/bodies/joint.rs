@@ -13,6 +13,9 @@ const FRICTION_RATE: f32 = 60.0;
 /// Speed at which the spring of shears opens them, in rad/s.
 const SPRING_RATE: f32 = 5.0;
 
+/// How long, in s, a cap takes to come up: so long that a tick sees it down.
+const RETURN_SECONDS: f32 = 0.15;
+
 /// The component of a joint's constraint.
 pub(crate) fn add_joint(world: &mut World, entity: Entity, joint: &Joint) {
     let [first, second] = joint.objects;
@@ -55,7 +58,9 @@ fn rate(damping: f32) -> f32 {
 fn constraint(joint: &Joint, load: JointLoad) -> TypedJoint {
     let locked = match joint.kind {
         JointKind::Ball => JointAxesMask::LOCKED_SPHERICAL_AXES,
-        JointKind::Slider { .. } => JointAxesMask::LOCKED_PRISMATIC_AXES,
+        JointKind::Slider { .. } | JointKind::PushButton { .. } => {
+            JointAxesMask::LOCKED_PRISMATIC_AXES
+        }
         JointKind::Hinge { .. } | JointKind::Shears { .. } => JointAxesMask::LOCKED_REVOLUTE_AXES,
         JointKind::Fixed => JointAxesMask::LOCKED_FIXED_AXES,
     };
@@ -99,6 +104,13 @@ fn constraint(joint: &Joint, load: JointLoad) -> TypedJoint {
                 .set_limits(JointAxis::AngX, [min, max])
                 .set_motor_model(JointAxis::AngX, MotorModel::ForceBased)
                 .set_motor_position(JointAxis::AngX, max, stiffness, SPRING_RATE * load.inertia);
+        }
+        JointKind::PushButton { travel, stiffness } => {
+            let damping = stiffness * RETURN_SECONDS;
+            constraint
+                .set_limits(JointAxis::LinX, [-travel, 0.0])
+                .set_motor_model(JointAxis::LinX, MotorModel::ForceBased)
+                .set_motor_position(JointAxis::LinX, travel, stiffness, damping);
         }
     }
     TypedJoint::GenericJoint(constraint)

@@ -11,7 +11,7 @@ pub(crate) use scene::check_table;
 
 use tabletop_core::{
     HeadCamera, JointKind, JointSpec, ObjectSpec, Pose,
-    limits::{DISPLACEMENTS, MASSES, PROPORTIONS},
+    limits::{DISPLACEMENTS, MASSES, PROPORTIONS, STIFFNESSES, TRAVELS},
 };
 
 use crate::files::bounds::{
@@ -80,6 +80,10 @@ pub(crate) fn check_joint(joint: &JointSpec) -> Checked {
             within("max", max, &DISPLACEMENTS)?;
             within("friction", friction, &MASSES)?;
             within("damping", damping, &PROPORTIONS)
+        }
+        JointKind::PushButton { travel, stiffness } => {
+            within("travel", travel, &TRAVELS)?;
+            within("stiffness", stiffness, &STIFFNESSES)
         }
         JointKind::Shears { min, max } => {
             within("min", min, &ANGLES)?;

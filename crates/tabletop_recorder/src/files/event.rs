@@ -99,6 +99,15 @@ pub enum Event<'a> {
         /// The bond.
         bond: &'a Bond,
     },
+    /// A link of a chain was cut; its [`Delete`](Self::Delete) comes after.
+    Cut {
+        /// Who has closed the scissors.
+        by: &'a Operator,
+        /// Id of the first blade.
+        blade: &'a str,
+        /// Id of the link.
+        link: &'a str,
+    },
 }
 
 impl Event<'_> {
@@ -134,6 +143,9 @@ impl Event<'_> {
                 fields.extend([control, state].map(str::to_owned));
             }
             Self::Trigger { by, control } => fields.extend([by.to_string(), control.to_owned()]),
+            Self::Cut { by, blade, link } => {
+                fields.extend([by.to_string(), blade.to_owned(), link.to_owned()]);
+            }
             Self::PointTo { hand, part, object } => {
                 fields.extend([hand.name(), part, object].map(str::to_owned));
             }
@@ -161,6 +173,7 @@ impl Event<'_> {
             Self::PointTo { .. } => "pointTo",
             Self::Fasten { .. } => "fasten",
             Self::Loosen { .. } => "loosen",
+            Self::Cut { .. } => "cut",
         }
     }
 }
@@ -236,6 +249,14 @@ mod tests {
                 "0,changeControlState,s1,0",
             ),
             (Event::Trigger { by, control }, "0,trigger,RightHand,s1"),
+            (
+                Event::Cut {
+                    by,
+                    blade: "lower",
+                    link: "c-link1",
+                },
+                "0,cut,RightHand,lower,c-link1",
+            ),
             (
                 Event::Fasten { by, bond },
                 "0,fasten,RightHand,nutHole,nut,tip,screw,2",

@@ -105,6 +105,15 @@ pub enum Occurrence {
         /// The bond.
         bond: Bond,
     },
+    /// A link of a chain was cut.
+    Cut {
+        /// Who has closed the scissors.
+        by: Operator,
+        /// Id of the first blade.
+        blade: String,
+        /// Id of the link.
+        link: String,
+    },
 }
 
 /// Reads the text of a file of events.
@@ -174,6 +183,11 @@ fn parse(record: &csv::StringRecord) -> Result<RecordedEvent, String> {
         ["fasten", by, ref bonded @ ..] if bonded.len() == 5 => Occurrence::Fasten {
             by: operator(by)?,
             bond: bond(bonded)?,
+        },
+        ["cut", by, blade, link] => Occurrence::Cut {
+            by: operator(by)?,
+            blade: blade.into(),
+            link: link.into(),
         },
         ["loosen", by, ref bonded @ ..] if bonded.len() == 5 => Occurrence::Loosen {
             by: operator(by)?,

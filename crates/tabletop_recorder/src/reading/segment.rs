@@ -75,6 +75,11 @@ impl HandContents {
                 by: Operator::Hand(hand),
                 bond,
             } => (hand, Verb::Loosen, Some(bond.guest.clone())),
+            Occurrence::Cut {
+                by: Operator::Hand(hand),
+                link,
+                ..
+            } => (hand, Verb::Cut, Some(link.clone())),
             Occurrence::Create { .. }
             | Occurrence::Delete { .. }
             | Occurrence::Move { .. }
@@ -82,7 +87,8 @@ impl HandContents {
             | Occurrence::ChangeControlState { .. }
             | Occurrence::Trigger { .. }
             | Occurrence::Fasten { .. }
-            | Occurrence::Loosen { .. } => return None,
+            | Occurrence::Loosen { .. }
+            | Occurrence::Cut { .. } => return None,
         };
         Some(Act {
             manipulator: Manipulator::Hand(*hand),
@@ -110,7 +116,8 @@ pub(super) fn colors(segments: &[RecordedSegment]) -> BTreeMap<String, Rgb> {
         | Occurrence::Trigger { .. }
         | Occurrence::PointTo { .. }
         | Occurrence::Fasten { .. }
-        | Occurrence::Loosen { .. } => None,
+        | Occurrence::Loosen { .. }
+        | Occurrence::Cut { .. } => None,
     });
     created.collect()
 }

@@ -273,7 +273,6 @@ fn act(world: &mut World, reader: &mut SystemState<MessageReader<IssuedCommand>>
             SimCommand::Scene(SceneCommand::Load(_) | SceneCommand::Make { .. })
             | SimCommand::Hand(
                 HandCommand::Select(_)
-                | HandCommand::Cut(_)
                 | HandCommand::MoveTo { .. }
                 | HandCommand::MoveBy { .. }
                 | HandCommand::Turn { .. },

@@ -7,6 +7,7 @@ use bevy_rapier3d::{
     parry::bounding_volume::{Aabb, BoundingVolume},
     prelude::*,
 };
+use tabletop_core::Joint;
 use tabletop_physics::{Convex, nearby};
 
 use crate::{
@@ -40,6 +41,8 @@ pub(crate) struct Environment {
     pub immovable: Vec<SweptSolid>,
     /// Objects that it pushes, in the order of their creation.
     pub free: Vec<FreeObject>,
+    /// Pairs of objects that go through each other, since joints connect them; in both orders.
+    pub pass: BTreeSet<[Entity; 2]>,
 }
 
 impl Environment {
@@ -49,14 +52,26 @@ impl Environment {
         near: &Aabb,
         is_robot: &Query<(), With<RobotLink>>,
         held: &BTreeSet<Entity>,
+        joints: &Query<&Joint>,
         is_shown: bool,
     ) -> Self {
         let mut environment = Self {
             immovable: Vec::new(),
             free: Vec::new(),
+            pass: BTreeSet::new(),
         };
         if !is_shown {
             return environment;
+        }
+        for &Joint {
+            objects: [one, other],
+            collides,
+            ..
+        } in joints
+        {
+            if !collides {
+                environment.pass.extend([[one, other], [other, one]]);
+            }
         }
         let near = near.loosened(MARGIN);
         let is_met = |object| !is_robot.contains(object) && !held.contains(&object);
@@ -90,18 +105,24 @@ impl Environment {
         let mut next = 0;
         while let Some(&thing) = cluster.get(next) {
             next += 1;
-            let bounds = &self.free[thing].bounds;
+            let FreeObject { object, bounds, .. } = &self.free[thing];
             for solid in self.free[thing].solids() {
                 let immovable = self.immovable.iter();
                 deepest = immovable
                     .filter(|obstacle| are_near(obstacle.bounds(), bounds))
+                    .filter(|obstacle| match obstacle.owner {
+                        Owner::Thing(other) => !self.pass.contains(&[*object, other]),
+                        Owner::Body(_) => true,
+                    })
                     .map(|obstacle| solid.depth_in(obstacle))
                     .fold(deepest, f32::max);
             }
             for (other, neighbour) in self.free.iter().enumerate() {
                 if !cluster.contains(&other) && are_near(&neighbour.bounds, bounds) {
-                    let depth = depth_between(&self.free[thing], neighbour);
-                    deepest = deepest.max(depth);
+                    if !self.pass.contains(&[*object, neighbour.object]) {
+                        let depth = depth_between(&self.free[thing], neighbour);
+                        deepest = deepest.max(depth);
+                    }
                     cluster.push(other);
                 }
             }

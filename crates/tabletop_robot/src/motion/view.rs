@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Held, LimbId, ObjectSpec, Obstacle, Pose, Robot, Table};
+use tabletop_core::{Held, Joint, LimbId, ObjectSpec, Obstacle, Pose, Robot, Table};
 use tabletop_physics::convex_parts;
 
 use crate::{
@@ -31,6 +31,7 @@ pub(crate) struct RobotView<'w, 's> {
     pub tables: Query<'w, 's, &'static Table>,
     pub bodies: Query<'w, 's, (), With<RobotLink>>,
     pub objects: Query<'w, 's, (&'static ObjectSpec, Has<Held>)>,
+    pub joints: Query<'w, 's, &'static Joint>,
 }
 
 impl RobotView<'_, '_> {
@@ -45,7 +46,14 @@ impl RobotView<'_, '_> {
         let positions = positions(robot);
         let held: BTreeSet<_> = grips.all().collect();
         let near = reach(posture.bodies().iter().map(|pose| pose.location));
-        let environment = Environment::new(rapier, &near, &self.bodies, &held, robot.is_shown);
+        let environment = Environment::new(
+            rapier,
+            &near,
+            &self.bodies,
+            &held,
+            &self.joints,
+            robot.is_shown,
+        );
         let limbs = self.articulation.layout.limb_ids();
         let carried = limbs.clone().map(|limb| {
             grips

@@ -16,17 +16,29 @@ pub(crate) fn blades(id: &str, length: f32, mass: f32, color: Rgb) -> [ObjectSpe
             true => name.to_owned(),
             false => format!("{id}_{name}"),
         };
-        let (thickness, height) = (THICKNESS * length, HEIGHT * length);
+        let height = HEIGHT * length;
+        // Where parts go through each other, none of their faces is another's.
+        let thickness = THICKNESS * length * if side < 0.0 { 1.0 } else { 0.98 };
         let part = |y: f32, z: f32, span: Vec3, color| {
             let pose = Pose::at(Vec3::new(0.0, y, z));
             Part::new("", pose, Shape::Block { span, color })
         };
-        let bar = |length: f32| Vec3::new(thickness, length, height);
+        let bar = |length: f32, share: f32| Vec3::new(share * thickness, length, height);
         let handle = HANDLE * length;
         let parts = vec![
-            part(length / 2.0, side * height / 2.0, bar(length), color),
-            part(0.0, 0.0, Vec3::new(thickness, height, 2.0 * height), color),
-            part(-handle / 2.0, -side * height / 2.0, bar(handle), Rgb::BLACK),
+            part(length / 2.0, side * height / 2.0, bar(length, 1.0), color),
+            part(
+                0.0,
+                0.0,
+                Vec3::new(1.05 * thickness, height, 1.98 * height),
+                color,
+            ),
+            part(
+                -handle / 2.0,
+                -side * height / 2.0,
+                bar(handle, 0.96),
+                Rgb::BLACK,
+            ),
         ];
         ObjectSpec::new(id, Pose::IDENTITY, mass / 2.0, Shape::Composite { parts })
     })

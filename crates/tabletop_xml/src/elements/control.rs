@@ -25,7 +25,7 @@ const CHANGES: [&str; 3] = ["remove", RECOLOR, SPAWN];
 
 /// The content of a control's element.
 pub(super) struct ControlContent {
-    downstream: Vec<String>,
+    pub(super) downstream: Vec<String>,
     states: States,
 }
 

@@ -21,7 +21,7 @@ impl ElementReader<'_, '_> {
         let _has_no_effect = attributes.id();
         let pose = attributes.pose();
         let (range, greatest) = match motion {
-            JointMotion::Slide => (DISPLACEMENTS, 1.0),
+            JointMotion::Slide | JointMotion::Press => (DISPLACEMENTS, 1.0),
             JointMotion::Turn | JointMotion::Shear => (ANGLES, 90.0),
         };
         let min = attributes.number("min", 0.0, &range);

@@ -30,7 +30,7 @@ pub(crate) const OBJECTS: [&str; 11] = [
     "customControl",
 ];
 
-pub(crate) const ITEMS: [&str; 16] = [
+pub(crate) const ITEMS: [&str; 17] = [
     "block",
     "cylinder",
     "frustum",
@@ -47,6 +47,7 @@ pub(crate) const ITEMS: [&str; 16] = [
     "sliderJoint",
     "hingeJoint",
     "scissors",
+    "pushButton",
 ];
 
 /// Elements that stand in others.

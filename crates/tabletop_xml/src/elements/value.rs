@@ -8,7 +8,7 @@ use tabletop_core::{NAMED_COLORS, Rgb, limits::MOST_LINKS};
 use crate::{document::syntax::is_blank, fault::Excerpt};
 
 pub(crate) use tabletop_core::limits::{
-    DISPLACEMENTS, MASSES, PADDINGS, PROPORTIONS, SPANS, SWITCH_ANGLES,
+    DISPLACEMENTS, MASSES, PADDINGS, PRESSING_FORCES, PROPORTIONS, SPANS, SWITCH_ANGLES, TRAVELS,
 };
 
 /// Components of locations, in units.
@@ -25,6 +25,8 @@ pub(crate) const ANGLES: RangeInclusive<f32> = -180.0..=180.0;
 pub(crate) const LIGHTS: RangeInclusive<u32> = 0..=999;
 /// Numbers of states and of steps.
 pub(crate) const STATES: RangeInclusive<u32> = 0..=999;
+/// States of push buttons that are pressed.
+pub(crate) const PRESSED_STATES: RangeInclusive<u32> = 1..=999;
 /// Numbers of sides.
 pub(crate) const FRICTIONS: RangeInclusive<f32> = 0.0..=1000.0;
 pub(crate) const VELOCITIES: RangeInclusive<f32> = -1000.0..=1000.0;

@@ -1,6 +1,6 @@
 //! Controls of a scene.
 
-use tabletop_core::{Change, Control, ControlKind, Side};
+use tabletop_core::{Change, Control, ControlKind, PressMode, Side};
 
 use crate::write::{
     Writer,
@@ -15,7 +15,7 @@ impl Writer {
             self.close();
         }
         match &control.kind {
-            ControlKind::ToggleSwitch(_) => {}
+            ControlKind::ToggleSwitch(_) | ControlKind::PushButton(_) => {}
             ControlKind::IndicatorLights(lights) => {
                 for state in &lights.states {
                     self.open_state(&state.name);
@@ -69,8 +69,23 @@ impl Writer {
     }
 
     pub(super) fn attributes_of_control(&mut self, control: &Control) {
-        self.attribute("initState", &control.state.to_string());
+        if control.push_button().is_none() {
+            self.attribute("initState", &control.state.to_string());
+        }
         match &control.kind {
+            ControlKind::PushButton(button) => {
+                self.number("radius", button.radius);
+                self.number("zspan", button.zspan);
+                self.number("travel", button.travel);
+                self.number("force", button.force);
+                self.color("color", button.color);
+                let mode = match button.mode {
+                    PressMode::Once => "once",
+                    PressMode::Held => "held",
+                };
+                self.attribute("mode", mode);
+                self.attribute("state", &button.state.to_string());
+            }
             ControlKind::ToggleSwitch(switch) => {
                 self.spans(["xspan", "yspan", "zspan"], switch.span);
                 self.number("angle", switch.angle);

@@ -36,7 +36,7 @@ fn five_faults_give_five_located_messages() {
                 "f.xml:4:27: block, color: `reed` is not a colour, expected #rrggbb or one of {colors}"
             ),
             "f.xml:5:1: sphere, location: it is missing, expected location=\"(x,y,z)\"",
-            "f.xml:6:1: pyramid: it is not known, expected one of block, cylinder, frustum, ring, sphere, box, custom, composite, toggleSwitch, indicatorLights, customControl, chain, lidbox, sliderJoint, hingeJoint, scissors",
+            "f.xml:6:1: pyramid: it is not known, expected one of block, cylinder, frustum, ring, sphere, box, custom, composite, toggleSwitch, indicatorLights, customControl, chain, lidbox, sliderJoint, hingeJoint, scissors, pushButton",
             "f.xml:7:25: box, thicknes: it is not known, expected thickness",
         ]
     );

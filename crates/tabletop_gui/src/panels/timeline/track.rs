@@ -147,7 +147,7 @@ fn show_grips(ui: &mut Ui, model: &Model, axis: TimeAxis, top: f32) {
         response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, &sentence));
         let up = match grip.act.verb {
             Verb::Grasp | Verb::Trigger | Verb::PointTo | Verb::Fasten => MARK,
-            Verb::Release | Verb::Destroy | Verb::Loosen => -MARK,
+            Verb::Release | Verb::Destroy | Verb::Loosen | Verb::Cut => -MARK,
         };
         let ink = ui.visuals().strong_text_color();
         paint_mark(ui.painter(), center, up, ink);

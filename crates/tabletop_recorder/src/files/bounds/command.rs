@@ -36,10 +36,7 @@ fn check_scene_command(command: &SceneCommand) -> Checked {
 
 fn check_hand_command(command: &HandCommand) -> Checked {
     match command {
-        HandCommand::Select(_)
-        | HandCommand::Release(_)
-        | HandCommand::Cut(_)
-        | HandCommand::Destroy(_) => Ok(()),
+        HandCommand::Select(_) | HandCommand::Release(_) | HandCommand::Destroy(_) => Ok(()),
         HandCommand::Grasp { object, .. } => check_count("letters", object.len()),
         HandCommand::MoveTo { location, .. } => finite("location", *location),
         HandCommand::MoveBy { offset, .. } => finite("offset", *offset),
@@ -55,6 +52,7 @@ fn check_mechanism_command(command: &MechanismCommand) -> Checked {
         MechanismCommand::Trigger { control, .. } => control,
         MechanismCommand::PointTo { target, .. } => target,
         MechanismCommand::Fasten { guest, .. } | MechanismCommand::Loosen { guest, .. } => guest,
+        MechanismCommand::Cut { blade, .. } => blade,
     };
     check_count("letters", id.len())
 }

@@ -2,7 +2,7 @@
 
 use tabletop_core::{
     BondEnd, BondPoint, Change, Control, ControlKind, Dynamics, ObjectSpec, Part, Rgb, Shape,
-    limits::{MASSES, PADDINGS, PROPORTIONS, SPANS, SWITCH_ANGLES},
+    limits::{MASSES, PADDINGS, PRESSING_FORCES, PROPORTIONS, SPANS, SWITCH_ANGLES, TRAVELS},
 };
 
 use crate::files::bounds::values::{
@@ -149,6 +149,13 @@ fn check_control(control: &Control, level: usize, count: &mut usize) -> Checked 
         ControlKind::ToggleSwitch(switch) => {
             spans("span", switch.span)?;
             within("angle", switch.angle, &SWITCH_ANGLES)
+        }
+        ControlKind::PushButton(button) => {
+            within("radius", button.radius, &SPANS)?;
+            within("zspan", button.zspan, &SPANS)?;
+            within("travel", button.travel, &TRAVELS)?;
+            within("force", button.force, &PRESSING_FORCES)?;
+            check_count("states", button.state as usize)
         }
         ControlKind::IndicatorLights(lights) => {
             within("radius", lights.radius, &SPANS)?;

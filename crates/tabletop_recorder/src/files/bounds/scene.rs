@@ -1,7 +1,7 @@
 //! Bounds on scenes.
 
 use tabletop_core::{
-    ChainSpec, JointedSpec, LidBoxSpec, SceneItem, SceneSpec, Table,
+    ChainSpec, JointMotion, JointedSpec, LidBoxSpec, SceneItem, SceneSpec, Table,
     limits::{DISPLACEMENTS, MASSES, PADDINGS, PROPORTIONS, SPANS},
 };
 
@@ -40,7 +40,7 @@ fn check_jointed(jointed: &JointedSpec, parts: &mut usize) -> Checked {
     let JointedSpec {
         pose,
         objects,
-        motion: _,
+        motion,
         limits: [min, max],
         init,
         collides: _,
@@ -51,6 +51,9 @@ fn check_jointed(jointed: &JointedSpec, parts: &mut usize) -> Checked {
         within("displacement", displacement, &DISPLACEMENTS)?;
     }
     within("damping", *damping, &PROPORTIONS)?;
+    if *motion == JointMotion::Press && jointed.push_button().is_none() {
+        return Err("a cap is no push button".into());
+    }
     for object in objects {
         check_place(object.pose)
             .and_then(|()| check_object(object, parts))

@@ -111,6 +111,9 @@ impl Episode {
                 },
                 SimFact::Fastened { by, bond, .. } => Event::Fasten { by, bond },
                 SimFact::Loosened { by, bond, .. } => Event::Loosen { by, bond },
+                SimFact::Cut {
+                    by, blade, link, ..
+                } => Event::Cut { by, blade, link },
                 SimFact::TaskLoaded { .. }
                 | SimFact::RecordingStarted { .. }
                 | SimFact::RecordingFinished { .. }

@@ -1,0 +1,79 @@
+//! How hard bodies press onto each other.
+
+use bevy::prelude::*;
+use bevy_rapier3d::{
+    parry::utils::PoseOpt,
+    prelude::*,
+    rapier::prelude::{Collider, ContactPair},
+};
+use tabletop_core::{TICK_SECONDS, UNITS_PER_METER};
+
+use crate::effort::impulse_share;
+
+/// A point at which something presses onto an object.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pressure {
+    /// The object.
+    pub on: Entity,
+    /// What presses.
+    pub by: Entity,
+    /// Where, in the table's frame.
+    pub point: Vec3,
+    /// How hard in the last tick, on the average, in newtons.
+    pub force: f32,
+}
+
+/// What pressed onto objects in the last tick. Bodies that hands or robots move press onto what can move, and not onto what is immovable.
+pub fn pressures_on(world: &mut World, objects: &[Entity]) -> Vec<Pressure> {
+    let mut contexts = world.query_filtered::<(
+        &RapierContextSimulation,
+        &RapierContextColliders,
+        &RapierRigidBodySet,
+    ), With<DefaultRapierContext>>();
+    let Ok((simulation, colliders, bodies)) = contexts.single(world) else {
+        return Vec::new();
+    };
+    let mut pressures = Vec::new();
+    for &on in objects {
+        let Some(&own) = colliders.entity2collider().get(&on) else {
+            continue;
+        };
+        for pair in simulation.narrow_phase.contact_pairs_with(own) {
+            let is_first = pair.collider1 == own;
+            let other = match is_first {
+                true => pair.collider2,
+                false => pair.collider1,
+            };
+            let place = colliders.colliders.get(own).map(Collider::position);
+            let (Some(by), Some(place)) = (colliders.collider_entity(other), place) else {
+                continue;
+            };
+            let share = impulse_share(pair, &bodies.bodies, &colliders.colliders);
+            let per_impulse = share / (TICK_SECONDS * UNITS_PER_METER as f32);
+            pressures.extend(solved_points(pair, is_first).map(|(at, impulse)| Pressure {
+                on,
+                by,
+                point: *place * at,
+                force: impulse * per_impulse,
+            }));
+        }
+    }
+    pressures
+}
+
+/// The points of the first or the second collider of a pair, in its frame, and the impulses that the engine reports there.
+fn solved_points(pair: &ContactPair, on_first: bool) -> impl Iterator<Item = (Vec3, f32)> {
+    pair.solver_manifolds().iter().flat_map(move |manifold| {
+        // Only what the solver has looked at in this tick: other points keep impulses of earlier ones.
+        let solved = manifold.data.solver_contacts.iter();
+        let numbers = solved.flat_map(|solved| solved.contact_indices());
+        let points = numbers.filter_map(|number| manifold.points.get(number as usize));
+        points.map(move |point| {
+            let at = match on_first {
+                true => manifold.subshape_pos1().transform_point(point.local_p1),
+                false => manifold.subshape_pos2().transform_point(point.local_p2),
+            };
+            (at, point.data.impulse)
+        })
+    })
+}
