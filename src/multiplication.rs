@@ -83,9 +83,9 @@ pub enum MultiplyError {
     Requirements(#[from] RequirementError),
     #[error(transparent)]
     Robot(#[from] ModelError),
-    #[error("nothing is moved for good in the recording, so there is nothing to show again")]
+    #[error("the recording moves nothing for good, so there is nothing to demonstrate again")]
     NoTask,
-    #[error("the recording does not say what was on the table when it began")]
+    #[error("the recording does not contain the scene at its beginning")]
     NoScene,
     #[error("{0}")]
     Unbound(#[from] tabletop_task::Unbound),

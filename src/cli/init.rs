@@ -48,7 +48,7 @@ pub(super) fn init(args: &InitArgs) -> Result<ExitCode, Failure> {
             .iter()
             .map(|path| format!("\n  {}", path.display()));
         return Err(Failure::run(format!(
-            "nothing was written, because these files are there and differ:{}",
+            "nothing was written, because these files exist and differ:{}",
             lines.collect::<String>()
         )));
     }

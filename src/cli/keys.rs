@@ -53,7 +53,7 @@ fn table(keymap: &Keymap, preferences: &Preferences) -> String {
         text.push('\n');
     }
     text.push_str(
-        "Keys are those at these places of a US keyboard, whatever is printed on them.\n",
+        "Keys are named by their places on a US keyboard, whatever is printed on them.\n",
     );
     if let Some(path) = preferences.file("keys") {
         let reported = match path.exists() {

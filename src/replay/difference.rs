@@ -49,8 +49,8 @@ fn first_that_differs(
         let name = file.display();
         let (before, after) = (recorded.join(&file), replayed.join(&file));
         let difference = match (before.exists(), after.exists()) {
-            (true, false) => format!("{name}: was recorded, and is not there in the replay"),
-            (false, true) => format!("{name}: was not recorded, and is there in the replay"),
+            (true, false) => format!("{name}: was recorded, but is missing in the replay"),
+            (false, true) => format!("{name}: was not recorded, but exists in the replay"),
             _ => {
                 let (before, after) = (read(&before)?, read(&after)?);
                 if is_same(&file, &before, &after) {

@@ -103,7 +103,7 @@ fn put_back(
     let Some(scene) = understood.scene() else {
         notices.append(
             Tone::Warning,
-            "the recording does not say what was on the table when it began",
+            "the recording does not contain the scene at its beginning",
         );
         return;
     };

@@ -104,7 +104,7 @@ fn what_cannot_be_done_is_reported_in_a_sentence() {
     assert_eq!(output.status.code(), Some(1));
     let reported = stdout(&output);
     assert!(
-        reported.contains("Step 1 failed (Put the red block on the green block.): RedBlock cannot be taken: nothing of it fits between the fingers"),
+        reported.contains("Step 1 failed (Put the red block on the green block.): RedBlock cannot be taken: no part of it fits between the fingers"),
         "{reported}"
     );
 }

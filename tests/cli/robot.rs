@@ -91,7 +91,7 @@ fn a_mesh_that_is_not_there_is_reported_once() {
     let output = tabletop(&["run", path, "--robot", robot, "--record", folder, "--quiet"]);
     assert_eq!(output.status.code(), Some(0));
     let said = stderr(&output);
-    let words = "WARN link left_wrist is shown by what it is touched by: missing.stl";
+    let words = "WARN link left_wrist is shown by its collision shape: missing.stl";
     assert!(said.contains(words) && said.lines().count() == 1, "{said}");
 }
 

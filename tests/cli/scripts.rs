@@ -281,7 +281,7 @@ fn what_cannot_be_run_is_reported_before_anything_starts() {
         ),
         (
             &["matlab", "--engine", "tests/scripts/driver.pl"],
-            "driver.pl is a program, but its name does not tell which engine it is",
+            "driver.pl is a program, but its name does not identify its engine",
         ),
         (
             &["python", "--engine", "octave"],

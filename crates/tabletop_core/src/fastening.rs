@@ -66,9 +66,7 @@ impl Bonds {
         let mut guests = guests(objects);
         guests.retain(|point| point.id == guest || point.object == guest);
         if guests.is_empty() {
-            return Err(format!(
-                "`{guest}` has no point at which it could be fastened"
-            ));
+            return Err(format!("`{guest}` has no guest point to fasten"));
         }
         let is_of_guest = |bond: &&Bond| guests.iter().any(|point| point.id == bond.guest_point);
         match (self.0.iter().find(is_of_guest), turn) {
@@ -81,7 +79,7 @@ impl Bonds {
                 }
                 let tightness = match turn {
                     Turn::Tighter if bond.tightness >= steps => {
-                        return Err(format!("`{guest}` is as tight as can be"));
+                        return Err(format!("`{guest}` is already as tight as possible"));
                     }
                     Turn::Tighter => bond.tightness + 1,
                     Turn::Looser => bond.tightness.saturating_sub(1),
@@ -94,9 +92,7 @@ impl Bonds {
             (None, Turn::Looser) => Err(format!("`{guest}` is not fastened")),
             (None, Turn::Tighter) => {
                 let Some((guest_point, host_point)) = self.nearest(&guests, &hosts) else {
-                    return Err(format!(
-                        "`{guest}` has nothing near to which it could be fastened"
-                    ));
+                    return Err(format!("`{guest}` has no free host point near it"));
                 };
                 if self.is_locked(&hosts, host_point.id) {
                     let host = host_point.id;
@@ -268,7 +264,10 @@ mod tests {
         ];
         let mut bonds = Bonds::default();
         let (steps, reason) = turns(&mut bonds, &objects, "tip", Turn::Tighter);
-        assert_eq!((steps, &*reason), (2, "`tip` is as tight as can be"));
+        assert_eq!(
+            (steps, &*reason),
+            (2, "`tip` is already as tight as possible")
+        );
         assert_eq!(bonds.0[0].host_point, "hole2");
         let (steps, reason) = turns(&mut bonds, &objects, "screw", Turn::Looser);
         assert_eq!((steps, &*reason), (2, "`screw` is not fastened"));

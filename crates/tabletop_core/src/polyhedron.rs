@@ -41,10 +41,10 @@ pub enum PolyhedronError {
     #[error("it has no triangles")]
     Empty,
     /// A coordinate is not a number, or is beyond a million units.
-    #[error("a corner is not a place")]
+    #[error("a corner is not a finite location")]
     NoPlace,
     /// A triangle names a corner that does not exist.
-    #[error("a triangle has a corner that is not there")]
+    #[error("a triangle names a corner that does not exist")]
     NoCorner,
 }
 

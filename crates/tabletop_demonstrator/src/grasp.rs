@@ -113,7 +113,7 @@ fn release(world: &mut World, cause: CommandId, hand: Hand) {
 
 fn destroy(world: &mut World, cause: CommandId, hand: Hand) -> Result<(), String> {
     let Some((object, id)) = held_by(world, hand) else {
-        return Err(format!("{hand} holds nothing that it could destroy"));
+        return Err(format!("{hand} holds nothing to destroy"));
     };
     begin_segment(world, cause);
     world.resource_mut::<Hands>().set_held(hand, None);
@@ -131,7 +131,7 @@ fn held_by(world: &World, hand: Hand) -> Option<(Entity, String)> {
 
 fn retarget(world: &mut World, hand: Hand, to: impl FnOnce(Vec3) -> Vec3) -> Result<(), String> {
     let Some(mut target) = target_of(world, hand) else {
-        return Err(format!("{hand} holds nothing that it could move"));
+        return Err(format!("{hand} holds nothing to move"));
     };
     let location = to(target.0.location);
     if !location.is_finite() {
@@ -143,7 +143,7 @@ fn retarget(world: &mut World, hand: Hand, to: impl FnOnce(Vec3) -> Vec3) -> Res
 
 fn turn(world: &mut World, hand: Hand, axis: Vec3, degrees: f32) -> Result<(), String> {
     let Some(mut target) = target_of(world, hand) else {
-        return Err(format!("{hand} holds nothing that it could turn"));
+        return Err(format!("{hand} holds nothing to turn"));
     };
     let Some(direction) = axis.try_normalize().filter(|_| degrees.is_finite()) else {
         return Err(format!(

@@ -99,7 +99,7 @@ fn last_errors(stderr: &str) -> String {
 /// The option that lets it wait longer, if there is one.
 fn way_to_wait(what: &str) -> &'static str {
     match what.ends_with("script") {
-        true => " (--script-timeout says how long to wait)",
+        true => " (--script-timeout sets the limit)",
         false => "",
     }
 }

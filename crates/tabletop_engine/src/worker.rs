@@ -52,7 +52,7 @@ const GRACE: Duration = Duration::from_secs(1);
 const DRAW_INTERVAL: Duration = Duration::from_millis(200);
 
 /// A note for the user about an agent that is not on disk.
-const TEMPORARY: &str = "the scripts that come with the program run in a temporary folder: what they save there goes with it";
+const TEMPORARY: &str = "the program's own scripts run in a temporary folder: files that they save there are removed with it";
 
 /// The engine's side of the program.
 pub(crate) struct Worker {

@@ -130,7 +130,7 @@ fn an_invalid_motor_is_reported() {
         ),
         (
             "motor.jointVelocity = 1;",
-            "motor.jointVelocity is no field that the robot knows",
+            "motor.jointVelocity is not a field that the robot knows",
         ),
         (
             "motor.headVelocity = ones(2, 2, 2, 2, 2, 2, 2, 2, 2, 2);",

@@ -23,10 +23,10 @@ fn what_is_not_always_sensed_is_explained() {
     for (callback, hint) in [
         (
             "x = sensor.rgbVision;",
-            "structure has no member 'rgbVision': sensor.rgbVision is there only when there is a new picture",
+            "structure has no member 'rgbVision': sensor.rgbVision exists only when there is a new picture",
         ),
         ("sensor.rgbVision(1, 2, 3)", "--picture-every 1"),
-        ("x = sensor.trackerLoc('l-S1');", "a comment will do"),
+        ("x = sensor.trackerLoc('l-S1');", "contains this word"),
         ("x = sensor.objects.id;", "--no-objects"),
         ("x = sensor.jointTorques;", "--dynamic"),
     ] {
@@ -37,7 +37,7 @@ fn what_is_not_always_sensed_is_explained() {
         );
     }
     assert!(message("x = sensor.jointAngles;", "").contains("sensor is empty in the init script"));
-    assert!(!message("", "x = sensor.nosuch;").contains("there only"));
+    assert!(!message("", "x = sensor.nosuch;").contains("exists only"));
 }
 
 #[test]

@@ -168,7 +168,7 @@ fn entries_of<'a>(
                 read.push(KeymapEntry { action, bindings });
                 continue;
             }
-            Ok(Some(action)) => format!("`{action}` has its keys further up already"),
+            Ok(Some(action)) => format!("`{action}` already has its keys further up"),
             Err(fault) => fault,
         };
         let place = place(name.trim().get_ron(), text);
@@ -315,7 +315,7 @@ mod tests {
             "4:14: there is no key `Qu`; keys are named as on a US keyboard: KeyA, Digit1, Space, F1",
             "4:34: Expected string, expected a text in quotes",
             "5:14: there is no modifier `Strg`; it can be Ctrl, Alt, Shift or Super",
-            "6:5: `quit` has its keys further up already",
+            "6:5: `quit` already has its keys further up",
             "7:14: `KeyQ` is a key of `quit` already",
         ];
         assert_eq!(faults, expected);

@@ -112,7 +112,7 @@ pub(crate) fn undo_and_redo(
 fn undo(world: &mut World, cause: CommandId) -> Result<SimFact, String> {
     let Some(begin) = world.resource_mut::<Segments>().undoable.pop_back() else {
         return Err(
-            "there is nothing to undo: only what was done in the present recording can be".into(),
+            "there is nothing to undo: only acts of the present recording can be undone".into(),
         );
     };
     let end = snapshot(world);

@@ -63,7 +63,7 @@ fn next_state(world: &World, id: &str, part: Option<u32>) -> Result<u32, String>
         }
         ControlKind::PushButton(_) => format!("`{id}` is pressed already"),
         ControlKind::IndicatorLights(_) => {
-            format!("`{id}` cannot be triggered: it is a light, which shows what is upstream of it")
+            format!("`{id}` cannot be triggered: it is a light, which only shows the state of other controls")
         }
         ControlKind::Custom(_) => {
             format!("`{id}` cannot be triggered there in its present state")

@@ -51,7 +51,7 @@ pub(crate) fn cut(
         .iter(world)
         .find(|(_, joint)| is_shears(joint) && joint.objects.contains(&object))
         .map(|(entity, joint)| (entity, *joint))
-        .ok_or_else(|| format!("{hand} cannot cut with `{blade}`: it is no scissors"))?;
+        .ok_or_else(|| format!("{hand} cannot cut with `{blade}`: it is not a pair of scissors"))?;
     begin_segment(world, cause);
     swing_shut(world, shears);
     let until = SimTick(world.resource::<SimTick>().0 + SWING_TICKS);

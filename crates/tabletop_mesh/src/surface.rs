@@ -122,7 +122,7 @@ mod tests {
         assert_eq!(reason(&ascii(&[])), "it has no triangles");
         assert_eq!(reason(&ascii(&[[[0.0; 3]; 3]])), "it has no triangles");
         let far = [[[0.0; 3], [1e9, 0.0, 0.0], [0.0, 1.0, 0.0]]];
-        assert_eq!(reason(&binary(&far)), "a corner is not a place");
+        assert_eq!(reason(&binary(&far)), "a corner is not a finite location");
         assert_eq!(
             reason(&vec![0; MAX_STL_BYTES + 1]),
             "it is larger than 16777216 bytes"

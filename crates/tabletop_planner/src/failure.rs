@@ -65,7 +65,7 @@ impl fmt::Display for PlanFailure {
             Self::OutOfReach(object) => write!(f, "no arm reaches {object} and where it belongs"),
             Self::NoGrasp(object) => write!(
                 f,
-                "{object} cannot be taken: nothing of it fits between the fingers"
+                "{object} cannot be taken: no part of it fits between the fingers"
             ),
             Self::Tipped(object) => write!(
                 f,

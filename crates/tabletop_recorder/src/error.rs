@@ -64,7 +64,7 @@ pub enum RecorderError {
     },
     /// An undo, a redo or an end was interrupted, and cannot be done now.
     #[error(
-        "{folder}: what was interrupted when its recording was cut off cannot be done now: {source}"
+        "{folder}: a change that was interrupted when its recording was cut off cannot be finished now: {source}"
     )]
     Interrupted {
         /// The folder of the recording.
@@ -73,7 +73,7 @@ pub enum RecorderError {
         source: Box<RecorderError>,
     },
     /// Another program is undoing or redoing something in the recording.
-    #[error("{folder}: another program is changing this recording; read it when that is over")]
+    #[error("{folder}: another program is changing this recording; read it again later")]
     BeingChanged {
         /// The folder of the recording.
         folder: PathBuf,

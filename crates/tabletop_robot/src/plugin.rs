@@ -57,7 +57,7 @@ impl Plugin for RobotPlugin {
                 }
             };
         for (link, error) in articulation.add_meshes(description.source.as_ref()) {
-            warn!("link {link} is not touched where this mesh would be: {error}");
+            warn!("link {link} has no collision shape where this mesh would be: {error}");
         }
         let layout = description.layout.clone();
         app.register_type::<RobotLink>()

@@ -113,14 +113,14 @@ impl Inventory<'_> {
                 .map_or("", |first| first.id.as_str());
             let unsaid = match compound.item {
                 SceneItem::Chain(_) => format!(
-                    "a task file cannot say how a chain hangs: that of `{id}` is saved in a straight line"
+                    "a task file cannot express how a chain hangs: that of `{id}` is saved in a straight line"
                 ),
                 SceneItem::Jointed(_) => format!(
                     "a task file says where jointed objects are to {UNNOTICED}: `{id}` and what it is jointed to are farther apart"
                 ),
                 SceneItem::LidBox(_) | SceneItem::Object(_) => {
                     format!(
-                        "a task file cannot say that a lid is open: that of `{id}` is saved shut"
+                        "a task file cannot express that a lid is open: that of `{id}` is saved shut"
                     )
                 }
             };
@@ -197,7 +197,7 @@ impl Inventory<'_> {
         let holder = self.world.get::<Held>(object).map(|held| held.by);
         if let (Some(Holder::Hand(hand)), Some(spec)) = (holder, self.spec(object)) {
             let unsaid = format!(
-                "a task file has no hands: `{}`, which {hand} holds, is saved as let go",
+                "a task file has no hands: `{}`, which {hand} holds, is saved as released",
                 spec.id
             );
             self.present.unsaid.push(unsaid);
@@ -230,7 +230,7 @@ impl Inventory<'_> {
         if !self.renamed.is_empty() {
             let renamed = self.renamed.join(", ");
             self.present.unsaid.push(format!(
-                "a task file cannot say all ids: saved are {renamed}"
+                "a task file cannot express all ids: saved are {renamed}"
             ));
         }
     }
@@ -239,7 +239,8 @@ impl Inventory<'_> {
 /// The nearest shape that an object of a task file can have, and the loss.
 fn sayable(shape: &Shape) -> (Shape, Option<&'static str>) {
     if let Shape::Link { span, color, .. } = *shape {
-        let unsaid = "a task file cannot say that a chain is broken: its links are saved as blocks";
+        let unsaid =
+            "a task file cannot express that a chain is broken: its links are saved as blocks";
         return (Shape::Block { span, color }, Some(unsaid));
     }
     match shape.composition() {
@@ -380,7 +381,7 @@ mod tests {
         assert_eq!(ids_of(&present.scene.items[0]), ["a_0"]);
         assert_eq!(
             unsaid(&present),
-            ["a task file cannot say all ids: saved are `a#0` as `a_0`"]
+            ["a task file cannot express all ids: saved are `a#0` as `a_0`"]
         );
     }
 
@@ -398,7 +399,7 @@ mod tests {
         assert_eq!(
             unsaid(&present),
             [
-                "a task file cannot say how a chain hangs: that of `c-start` is saved in a straight line"
+                "a task file cannot express how a chain hangs: that of `c-start` is saved in a straight line"
             ]
         );
     }
@@ -479,7 +480,7 @@ mod tests {
         let present = present_scene(app.world());
         assert_eq!(
             unsaid(&present),
-            ["a task file cannot say that a lid is open: that of `b-box` is saved shut"]
+            ["a task file cannot express that a lid is open: that of `b-box` is saved shut"]
         );
     }
 
@@ -493,7 +494,7 @@ mod tests {
         assert_eq!(present.scene.items.len(), 1);
         assert_eq!(
             unsaid(&present),
-            ["a task file has no hands: `a`, which LeftHand holds, is saved as let go"]
+            ["a task file has no hands: `a`, which LeftHand holds, is saved as released"]
         );
     }
 

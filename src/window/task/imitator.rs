@@ -211,7 +211,7 @@ impl RobotImitator {
 /// The result in a sentence.
 fn reported(task: &Task, imitation: &Imitation) -> Result<String, String> {
     match &imitation.failure {
-        None => Ok("the robot has done what was shown".into()),
+        None => Ok("the robot has done the task".into()),
         Some((step, failure)) => {
             let sentence = task.step(*step).map_or("", |step| step.sentence.as_str());
             Err(format!("step {step} ({sentence}): {failure}"))

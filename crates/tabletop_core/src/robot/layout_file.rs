@@ -228,7 +228,7 @@ impl JointEntry {
         let Self { name, home, .. } = self;
         let limits = self.limits.or_else(|| limits(name)).ok_or_else(|| {
             fault(format!(
-                "joint {name}: neither this file nor the URDF says its limits"
+                "joint {name}: neither this file nor the URDF gives its limits"
             ))
         })?;
         check_limits(name, limits, *home)?;
@@ -321,7 +321,7 @@ mod tests {
         let text = TEXT.replacen("limits: (-1.7, 1.7), ", "", 1);
         assert_eq!(
             error(&text),
-            "joint left_s0: neither this file nor the URDF says its limits"
+            "joint left_s0: neither this file nor the URDF gives its limits"
         );
         let file = LayoutFile::read(&text).unwrap();
         let layout = file.layout(|joint| (joint == "left_s0").then_some([-1.0, 0.5]));

@@ -141,7 +141,7 @@ impl EngineLocator {
                 program: found,
             }),
             None => Err(EngineError::NotFound(format!(
-                "{} is a program, but its name does not tell which engine it is: it must contain matlab, octave or python",
+                "{} is a program, but its name does not identify its engine: it must contain matlab, octave or python",
                 program.display()
             ))),
         }
@@ -322,7 +322,8 @@ mod tests {
         assert_eq!(driver(disk.0.join("mine/lua")), "a driver: mine/lua");
         surroundings.variable = Some("lua".into());
         let fault = surroundings.find(&EngineChoice::Auto).unwrap_err();
-        let message = "TABLETOP_ENGINE: lua is a program, but its name does not tell which engine";
+        let message =
+            "TABLETOP_ENGINE: lua is a program, but its name does not identify its engine";
         assert!(fault.to_string().starts_with(message), "{fault}");
     }
 

@@ -9,23 +9,23 @@ use crate::{
 const FIELDS: [(&str, &str); 6] = [
     (
         "rgbVision",
-        "sensor.rgbVision is there only when there is a new picture: test whether it is; --picture-every 1 gives one in every call",
+        "sensor.rgbVision exists only when there is a new picture: test for it first; --picture-every 1 gives one in every call",
     ),
     (
         "trackerLoc",
-        "sensor.trackerLoc is there only if this word stands in a file of the scripts' folder; a comment will do",
+        "sensor.trackerLoc exists only if the code of a script in the scripts' folder contains this word",
     ),
     ("objects", SENT_TOGETHER),
     ("contacts", SENT_TOGETHER),
     ("held", SENT_TOGETHER),
     (
         "jointTorques",
-        "sensor.jointTorques is there only with --dynamic",
+        "sensor.jointTorques exists only with --dynamic",
     ),
 ];
 
-const SENT_TOGETHER: &str = "sensor.objects, contacts and held are there only if one of these words stands in a file of the scripts' \
-    folder, and not with --no-objects";
+const SENT_TOGETHER: &str = "sensor.objects, contacts and held exist only if the code of a script in the scripts' folder \
+    contains one of these words, and not with --no-objects";
 
 /// Fields that are there in every call of the callback.
 const ALWAYS: [&str; 6] = [
@@ -70,7 +70,7 @@ pub(crate) fn hint(error: &ScriptError, in_init: bool) -> Option<&'static str> {
     }
     if is_of_own_script(error) {
         return Some(
-            "Octave comes to the functions in a script only after the lines above them; give each a file of its own",
+            "Octave defines the functions in a script only after the lines above them have run; give each a file of its own",
         );
     }
     if message.contains("break must appear") {

@@ -145,7 +145,7 @@ impl Encoding {
                 file.display()
             )),
             Self::Mixed(file) => Some(format!(
-                "{} is not UTF-8 as others of its folder; save it as UTF-8",
+                "{} is not UTF-8, unlike others in its folder; save it as UTF-8",
                 file.display()
             )),
         }

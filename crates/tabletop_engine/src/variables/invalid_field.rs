@@ -47,7 +47,7 @@ pub enum InvalidField {
         found: f64,
     },
     /// There is a field that nobody knows.
-    #[error("{field} is no field that the robot knows; known are {known}{}", suggest(.suggestion))]
+    #[error("{field} is not a field that the robot knows; known are {known}{}", suggest(.suggestion))]
     Unknown {
         /// The field, with its variable.
         field: String,

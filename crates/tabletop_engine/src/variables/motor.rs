@@ -258,7 +258,7 @@ mod tests {
         );
         let typo = fault("motor.velocity", Array::scalar(1.0));
         assert!(
-            typo.starts_with("motor.velocity is no field that the robot knows"),
+            typo.starts_with("motor.velocity is not a field that the robot knows"),
             "{typo}"
         );
         let typo = fault("motor.JointVelocity", Array::scalar(1.0));

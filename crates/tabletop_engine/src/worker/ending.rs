@@ -115,7 +115,7 @@ impl Running {
             return;
         }
         let note = format!(
-            "the script's engine was cut off, because it did not end within {} s; what it had not written to files is lost",
+            "the script's engine was killed, because it did not end within {} s; its unwritten data are lost",
             limit.as_secs()
         );
         self.note(&note);

@@ -127,7 +127,7 @@ fn faults_are_reported_with_their_place() {
         ),
         (
             "setattr(motor, 'größe', 1)",
-            "motor.gr__e is no field that the robot knows",
+            "motor.gr__e is not a field that the robot knows",
         ),
         (
             "motor.headVelocity = None",
@@ -147,7 +147,7 @@ fn faults_are_reported_with_their_place() {
         ),
         (
             "motor.spin = 1",
-            "motor.spin is no field that the robot knows",
+            "motor.spin is not a field that the robot knows",
         ),
         ("input()", "EOFError"),
         ("raise KeyboardInterrupt", "KeyboardInterrupt\n  at "),

@@ -94,6 +94,10 @@ mod tests {
         test.keys().press(KeyCode::KeyF);
         assert_eq!(test.hold_still(), []);
         let notices = test.app.world().resource::<Notices>();
-        assert!(notices.iter().any(|notice| notice.contains("no point")));
+        assert!(
+            notices
+                .iter()
+                .any(|notice| notice.contains("no guest point"))
+        );
     }
 }

@@ -103,7 +103,7 @@ impl Operable<'_, '_> {
                     .flatten()
                     .find(|(other, _)| *other == deed)
                     .map_or_else(
-                        || Err("the cursor is on no object".into()),
+                        || Err("there is no object under the cursor".into()),
                         |(_, command)| command,
                     )
             }
@@ -146,7 +146,7 @@ fn trigger(
 ) -> Result<MechanismCommand, String> {
     let (id, part) = surface
         .control
-        .ok_or_else(|| format!("`{}` is no control there", spec.id))?;
+        .ok_or_else(|| format!("`{}` is not a control there", spec.id))?;
     let next = spec
         .control(id)
         .and_then(|control| control.next_state(Some(part)));
@@ -156,7 +156,7 @@ fn trigger(
             control: id.to_owned(),
             part: Some(part),
         }),
-        None => Err(format!("`{id}` leads nowhere from there")),
+        None => Err(format!("`{id}` has no other state from there")),
     }
 }
 

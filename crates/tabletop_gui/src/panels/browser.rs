@@ -176,7 +176,7 @@ fn show(ui: &mut Ui, search: &mut FileSearch) -> Option<Request> {
 fn ask_to_replace(ui: &mut Ui, path: &Path) -> Option<Request> {
     ui.label(format!("{} exists. Replace it?", path.display()));
     let buttons = ui.horizontal(|ui| {
-        let replace = button(ui, true, "Replace", "Saves over what the file holds");
+        let replace = button(ui, true, "Replace", "Replaces the content of the file");
         let keep = button(ui, true, "Keep it", "Goes back to choose another name");
         (replace.clicked(), keep.clicked())
     });
@@ -190,12 +190,7 @@ fn ask_to_replace(ui: &mut Ui, path: &Path) -> Option<Request> {
 fn place(ui: &mut Ui, folder: &FolderContent) -> Option<Request> {
     ui.horizontal(|ui| {
         let above = folder.path.parent();
-        let up = button(
-            ui,
-            above.is_some(),
-            "Up",
-            "Goes to the folder that holds this one",
-        );
+        let up = button(ui, above.is_some(), "Up", "Goes to the parent folder");
         ui.add(Label::new(folder.path.display().to_string()).truncate());
         up.clicked()
             .then(|| above.map(|above| Request::Enter(above.to_owned())))

@@ -208,7 +208,7 @@ mod tests {
                 (Deed::PointTo, Ok(point_to)),
                 (Deed::Fasten, no("it has no point")),
                 (Deed::Loosen, no("it has no point")),
-                (Deed::Cut, no("it is no scissors")),
+                (Deed::Cut, no("it is not a pair of scissors")),
             ],
             is_still: true,
         }

@@ -29,17 +29,17 @@ const MOUSE: [(&str, &str, &str); 6] = [
     (
         "drag",
         "Move what is held",
-        "What the selected hand holds moves in the blue plane",
+        "The held object moves in the blue plane",
     ),
     (
         "press elsewhere",
         "Let go",
-        "The selected hand lets go of what it holds",
+        "The selected hand releases its object",
     ),
     (
         "right drag",
         "Go round",
-        "The camera goes round what is under the cursor",
+        "The camera orbits the point under the cursor",
     ),
     (
         "middle drag",
@@ -49,7 +49,7 @@ const MOUSE: [(&str, &str, &str); 6] = [
     (
         "wheel",
         "Nearer, farther",
-        "The camera goes towards what is under the cursor, or away from it",
+        "The camera goes towards the point under the cursor, or away from it",
     ),
 ];
 
@@ -62,7 +62,7 @@ const MARGIN: f32 = 48.0;
 const FRAME_HEIGHT: f32 = 96.0;
 
 const FOOTNOTE: &str =
-    "Keys are those at these places of a US keyboard, whatever is printed on them.";
+    "Keys are named by their places on a US keyboard, whatever is printed on them.";
 
 /// The state of the sheet: shown or hidden.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -175,7 +175,7 @@ fn tools(ui: &mut Ui, notices: &Notices, list: &mut MessageList) -> Option<Reque
     }
     ui.separator();
     let has_some = !notices.is_empty();
-    let copy = button(ui, has_some, "Copy", "Put what is listed on the clipboard");
+    let copy = button(ui, has_some, "Copy", "Copy the list to the clipboard");
     let clear = button(ui, has_some, "Clear", "Forget all messages");
     match (copy.clicked(), clear.clicked()) {
         (true, _) => Some(Request::Copy),

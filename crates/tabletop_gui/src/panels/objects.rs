@@ -133,7 +133,7 @@ fn tasks(ui: &mut Ui, model: &Model, selection: &mut Selection) -> Option<Reques
             ui,
             selected.is_some(),
             "Load XML",
-            "Clears the table and puts on it what the task file says",
+            "Clears the table and loads the task file",
         );
         (list.clicked(), load.clicked())
     });
@@ -204,7 +204,7 @@ fn files(ui: &mut Ui, model: &Model) -> Option<Request> {
     let mut reloads = model.reloads;
     let check = ui.checkbox(&mut reloads, "Reload when the file changes");
     let check = check.on_hover_text(
-        "Loads the task file anew when another program has changed it, except while recording",
+        "Loads the task file again when another program has changed it, except while recording",
     );
     if check.changed() {
         request = Some(FileRequest::Reload(reloads));

@@ -67,9 +67,9 @@ impl Panel {
         match self {
             Self::Status => "Speeds, the script's state and the recording",
             Self::Camera => "Move and turn your view, or go to one of the views",
-            Self::Robot => "See the robot and what it sees; move its joints",
+            Self::Robot => "See the robot and its view; move its joints",
             Self::DemonstrationTools => {
-                "Hands, what they hold, how it turns; record, undo and redo"
+                "Hands, held objects and their turns; record, undo and redo"
             }
             Self::Objects => "Load and save task files; make objects, and clear the table",
             Self::Messages => "All messages so far, each with its place",

@@ -260,7 +260,7 @@ impl Course {
         }
         if self.is_paused && next_tick > tick {
             return Err(format!(
-                "tick {next_tick} never comes: the simulation is paused in tick {tick}, and nothing ends that"
+                "tick {next_tick} never comes: the simulation is paused in tick {tick}, and no command ends the pause"
             ));
         }
         if self.is_finished {

@@ -39,7 +39,7 @@ pub enum LookError {
         source: serde_json::Error,
     },
     /// A mesh has no triangles, or numbers that cannot be drawn.
-    #[error("{}: there is nothing in it that can be drawn", .path.display())]
+    #[error("{}: it contains nothing that can be drawn", .path.display())]
     Empty {
         /// The file.
         path: PathBuf,

@@ -78,7 +78,7 @@ fn figures_of(description: &Description, articulation: &Articulation) -> Vec<Opt
                 figure_of_link(description, link).unwrap_or_else(|error| {
                     if reported.insert(error.to_string()) {
                         warn!(
-                            "link {} is shown by what it is touched by: {error}",
+                            "link {} is shown by its collision shape: {error}",
                             link.name
                         );
                     }
@@ -89,7 +89,7 @@ fn figures_of(description: &Description, articulation: &Articulation) -> Vec<Opt
                 let gripper = &articulation.layout.limb(limb).gripper;
                 finger(gripper, description).unwrap_or_else(|error| {
                     if reported.insert(error.to_string()) {
-                        warn!("fingers are shown by what they are touched by: {error}");
+                        warn!("fingers are shown by their collision shapes: {error}");
                     }
                     stand_in(&[finger_solid(gripper)])
                 })

@@ -65,8 +65,7 @@ pub(super) fn figure(
         Some("stl") => read_solids,
         Some("obj") => read_obj,
         _ => {
-            let kinds =
-                "what can be read are STL and OBJ files; Blender, for one, writes them of others";
+            let kinds = "only STL and OBJ files can be read; Blender, for example, converts others";
             return Err(failed(io::Error::other(kinds)));
         }
     };

@@ -121,7 +121,7 @@ impl<'d, 'a, 'f> Expander<'d, 'a, 'f> {
                 let expected = format_args!("it directly in {right_parent}");
                 self.context.faults.report(place, problem, expected);
             } else if depth >= MAX_DEPTH {
-                let problem = "with everything put in it is nested too deep";
+                let problem = "after expansion it is nested too deep";
                 let expected = format_args!("at most {MAX_DEPTH} levels");
                 self.context.faults.report(place, problem, expected);
             } else {

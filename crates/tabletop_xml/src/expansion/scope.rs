@@ -61,8 +61,7 @@ impl<'f> Context<'f> {
         let is_left = self.effort.is_left_for_element();
         if !is_left {
             let most = crate::document::build::MAX_ELEMENTS;
-            let problem =
-                "with everything put in there are too many elements; the rest is left out";
+            let problem = "after expansion there are too many elements; the rest is left out";
             self.exhaust(place, problem, &format!("at most {most} elements"));
         }
         is_left
@@ -71,7 +70,7 @@ impl<'f> Context<'f> {
     fn accept_text(&mut self, place: Place, bytes: usize) -> bool {
         let is_left = self.effort.is_left_for_text(bytes);
         if !is_left {
-            let problem = "with everything put in there is too much text; the rest is left out";
+            let problem = "after expansion there is too much text; the rest is left out";
             self.exhaust(
                 place,
                 problem,

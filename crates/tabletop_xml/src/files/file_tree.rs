@@ -108,7 +108,7 @@ impl<'s> FileTree<'s> {
     fn expected(&self) -> String {
         match self {
             Self::Absent => "a task file on the disk".into(),
-            Self::Shipped(_) => "a file that is inside of the program".into(),
+            Self::Shipped(_) => "a file inside the program".into(),
             Self::Disk { root, .. } => format!("a file in {} or below", root.display()),
         }
     }

@@ -18,7 +18,7 @@ fn a_bomb_of_elements_is_a_fault() {
         let task = read(&doubling(last));
         let fault = task.faults[0].to_string();
         assert!(
-            fault.contains("with everything put in there are too many elements"),
+            fault.contains("after expansion there are too many elements"),
             "{fault}"
         );
         assert!(
@@ -39,7 +39,7 @@ fn a_bomb_of_text_is_a_fault() {
     let content = format!(
         "<def name='d'>{content}<sphere id='$v79$' location='(0,0,1)'/></def><instance def='d'/>"
     );
-    let problem = "with everything put in there is too much text; the rest is left out";
+    let problem = "after expansion there is too much text; the rest is left out";
     let faults_of_bomb = faults(&content);
     assert_eq!(faults_of_bomb.len(), 1, "{faults_of_bomb:?}");
     assert!(faults_of_bomb[0].contains(problem), "{faults_of_bomb:?}");
@@ -89,7 +89,7 @@ fn deep_instances_are_faults() {
         );
     }
     let faults = faults(&content);
-    let problem = "composite: with everything put in it is nested too deep";
+    let problem = "composite: after expansion it is nested too deep";
     assert!(
         faults.iter().any(|fault| fault.contains(problem)),
         "{faults:?}"

@@ -36,9 +36,9 @@ impl Tone {
     /// The name of the filter that leaves them out or not.
     pub(crate) const fn filter(self) -> &'static str {
         match self {
-            Self::Event => "List what has happened",
+            Self::Event => "List events",
             Self::Warning => "List warnings",
-            Self::Fault => "List what is wrong",
+            Self::Fault => "List faults",
         }
     }
 

@@ -61,7 +61,7 @@ pub(super) fn joint(
                 input.pressed.struck.set(joint, direction);
             }
         }
-        let home = "Bring every joint back to where it stood at the start";
+        let home = "Bring every joint back to its home position";
         let home = ui
             .add_enabled(!model.is_scripted, Button::new("Home"))
             .on_hover_text(home)
@@ -117,7 +117,7 @@ pub(super) fn goal(
         .update_while_editing(false);
     let slider = ui
         .add_enabled(model.is_free(joint), slider)
-        .on_hover_text("Where the joint is to go")
+        .on_hover_text("Target of the joint")
         .on_disabled_hover_text(SCRIPT_MOVES);
     name(&slider, WidgetType::Slider, "Goal");
     // An object as wide as a gripper opens is released where the slider cannot go any farther.

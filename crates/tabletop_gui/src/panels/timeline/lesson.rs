@@ -39,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, model: &Model) -> Vec<Request> {
         })
         .header_response
         .on_hover_text(
-            "On another table, which objects may take the places of those that were shown",
+            "Requirements on the objects of another table that take the places of the demonstrated ones",
         );
     orders.into_iter().map(Request::Task).collect()
 }
@@ -55,7 +55,7 @@ fn acting(ui: &mut Ui, model: &Model) -> Option<TaskOrder> {
         if button(ui, is_on, "Stop", "The robot stops where it is").clicked() {
             order = Some(TaskOrder::Stop);
         }
-        let back = "Everything goes to where it was in the beginning of the recording";
+        let back = "Every object goes back where the recording began";
         if button(ui, !is_on, "Put everything back", back).clicked() {
             order = Some(TaskOrder::PutBack);
         }
@@ -100,7 +100,7 @@ fn requirements(ui: &mut Ui, role: &ShownRole) -> Option<TaskOrder> {
     ui.horizontal(|ui| {
         ui.strong(&role.id);
         ui.weak(match role.required {
-            Required::AsShown => "most like the one that was shown",
+            Required::AsShown => "most like the demonstrated one",
             Required::Nothing => "any object",
             Required::Some => "any object with",
         });
@@ -133,7 +133,7 @@ fn requirement(ui: &mut Ui, role: &ShownRole, property: &ShownProperty) -> Optio
     let text = format!("{name} {value}");
     let response = ui.checkbox(&mut is_checked, &text);
     let response = named(response, is_checked, &format!("{}: {text}", role.id));
-    let tooltip = format!("What takes its place must have {text}");
+    let tooltip = format!("An object in its place must have {text}");
     response
         .on_hover_text(tooltip)
         .changed()

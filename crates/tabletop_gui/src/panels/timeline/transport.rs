@@ -151,15 +151,12 @@ fn recording(ui: &mut Ui, model: &Model) -> Vec<Request> {
         TimelineStage::Open => {
             let loops = model.playback.loops;
             let switch = ui.add(Button::new("Loop").selected(loops));
-            if switch
-                .on_hover_text("Begin again when it is over")
-                .clicked()
-            {
+            if switch.on_hover_text("Begin again at the end").clicked() {
                 requests.push(Request::Loop(!loops));
             }
             let close = ui.button("Close");
             if close
-                .on_hover_text("Put the recording away, and begin with a fresh task")
+                .on_hover_text("Close the recording, and begin with a fresh task")
                 .clicked()
             {
                 requests.push(Request::Close);

@@ -27,7 +27,7 @@ pub(crate) fn check_command(command: &SimCommand) -> Checked {
 
 fn check_scene_command(command: &SceneCommand) -> Checked {
     match command {
-        SceneCommand::Load(_) => Err("a recording holds scenes, and no names of task files".into()),
+        SceneCommand::Load(_) => Err("a recording holds scenes, not names of task files".into()),
         SceneCommand::Set(scene) => check_scene_spec(scene),
         SceneCommand::Clear => Ok(()),
         SceneCommand::Make { preset, .. } => preset.fault().map_or(Ok(()), Err),
@@ -141,7 +141,7 @@ mod tests {
             (set(nested(101)), "nested more than 100 deep"),
             (
                 SceneCommand::Load("/dev/zero".into()).into(),
-                "no names of task files",
+                "not names of task files",
             ),
             (
                 SceneCommand::Make { preset, seed: 1 }.into(),

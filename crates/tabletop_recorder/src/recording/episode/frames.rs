@@ -125,7 +125,7 @@ impl Episode {
         self.write_frame(tick, Tracked::is_elsewhere, stage, image, timeline)?;
         self.files.finish(&line, &intent)?;
         if let Err(error) = self.files.drop_undone() {
-            warn!("what was undone is still there: {error}");
+            warn!("undone segments could not be removed: {error}");
         }
         Ok(SegmentMark::without_marks(&log))
     }

@@ -46,7 +46,7 @@ impl Episode {
     /// Goes back to the moment before the present segment began, and puts its files away.
     pub(super) fn undo(&mut self, timeline: &mut Timeline) -> Result<(), RecorderError> {
         let Some(start) = self.undoable.pop() else {
-            warn!("the world was set back to before the recording; the recording goes on");
+            warn!("the world was restored to a moment before the recording; the recording goes on");
             return Ok(());
         };
         let end = self.progress();
@@ -69,7 +69,9 @@ impl Episode {
     /// Brings back the segment that was undone last, in the place of what was recorded since.
     pub(super) fn redo(&mut self, timeline: &mut Timeline) -> Result<(), RecorderError> {
         let Some(undone) = self.redoable.pop() else {
-            warn!("the world was set to what the recording does not know; the recording goes on");
+            warn!(
+                "the world was restored to a moment outside the recording; the recording goes on"
+            );
             return Ok(());
         };
         let UndoneSegment { start, end, .. } = undone;
