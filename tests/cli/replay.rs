@@ -130,7 +130,8 @@ fn a_recording_may_be_cut_off_right_after_a_picture() {
     }
     keep_lines(&folder.join("1.txt"), |line| number(line) < Some(frame));
     keep_lines(&folder.join("session.jsonl"), |line| {
-        !line.starts_with("{\"tick\":") || number_after(line, "{\"tick\":") < tick
+        let has_tick = line.starts_with("{\"tick\":") || line.starts_with("{\"segment\":");
+        !has_tick || number_after(line, "\"tick\":") < tick
     });
     fs::remove_file(folder.join("2.txt")).unwrap();
     fs::remove_dir_all(folder.join("2")).unwrap();

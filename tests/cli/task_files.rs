@@ -52,7 +52,7 @@ fn the_final_state_is_saved_as_a_new_task_file() {
     let arguments = ["run", "--setup", setup, "--seconds", "1", "--save", name];
     let output = tabletop(&arguments);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    assert!(stderr(&output).contains("cannot say how a chain hangs"));
+    assert!(stderr(&output).contains("cannot express how a chain hangs"));
     let output = tabletop(&["check", name]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
 

@@ -258,7 +258,7 @@ fn kind(command: &SimCommand) -> &'static str {
 }
 
 /// Number of kinds of commands.
-const KINDS: usize = 25;
+const KINDS: usize = 26;
 
 /// Records a random demonstration; returns the file in which its replay differs, and the difference.
 fn difference(seed: u64, drawn: &mut BTreeMap<&'static str, usize>) -> Option<String> {

@@ -108,6 +108,6 @@ fn an_end_may_take_a_while_but_not_for_ever() {
     session.engine.stop();
     let lines = last_lines(&session);
     let reported =
-        |line: &ConsoleLine| line.text.contains("was cut off") && line.text.contains("10 s");
+        |line: &ConsoleLine| line.text.contains("was killed") && line.text.contains("10 s");
     assert!(lines.iter().any(reported), "{lines:?}");
 }

@@ -151,7 +151,7 @@ fn scripts_of_windows_are_read() {
     assert!(lines[0].text.starts_with(&expected), "{lines:?}");
     fs::write(folder.0.join("helper.m"), "% Größe\n").unwrap();
     session.init().unwrap();
-    let note = format!("{} is not UTF-8 as others", file.display());
+    let note = format!("{} is not UTF-8, unlike others", file.display());
     assert!(session.printed(&note).contains(&note));
 }
 

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    ChainSpec, Composition, Held, Holder, LidBoxSpec, ObjectIndex, ObjectSpec, Pose, SceneItem,
+    BondEnd, ChainSpec, Composition, Held, Holder, LidBoxSpec, ObjectIndex, ObjectSpec, Pose, SceneItem,
     SceneSpec, Shape, Table,
 };
 
@@ -129,7 +129,8 @@ impl Inventory<'_> {
     }
 
     /// Adds an item, under the id from which its objects get their ids again. Returns the objects that the next load makes of it.
-    fn add(&mut self, item: SceneItem, objects: &[Entity]) -> Vec<ObjectSpec> {
+    fn add(&mut self, mut item: SceneItem, objects: &[Entity]) -> Vec<ObjectSpec> {
+        mark_parts(&mut item);
         let ids: Vec<_> = objects
             .iter()
             .filter_map(|&object| self.spec(object).map(|spec| spec.id.clone()))
@@ -271,6 +272,33 @@ fn with_ids(item: &SceneItem, mut new: impl FnMut(&str) -> String) -> SceneItem 
         }
     }
     item
+}
+
+/// Gives the parts of an item's objects ids that a task file can have.
+fn mark_parts(item: &mut SceneItem) {
+    match item {
+        SceneItem::Object(object) => mark_parts_of(&mut object.shape),
+        SceneItem::Jointed(jointed) => {
+            for object in &mut jointed.objects {
+                mark_parts_of(&mut object.shape);
+            }
+        }
+        SceneItem::Chain(_) | SceneItem::LidBox(_) => {}
+    }
+}
+
+fn mark_parts_of(shape: &mut Shape) {
+    if let Shape::Composite { parts } = shape {
+        for part in parts {
+            part.id = with_marks_of_ids(&part.id);
+            mark_parts_of(&mut part.shape);
+        }
+    }
+    if let Shape::BondPoint(point) = shape
+        && let BondEnd::Guest(guest) = &mut point.end
+    {
+        guest.host = with_marks_of_ids(&guest.host);
+    }
 }
 
 /// The nearest id that a task file can have.

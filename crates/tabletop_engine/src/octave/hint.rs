@@ -144,7 +144,7 @@ mod tests {
         let matlab = "Reference to non-existent field 'objects'.";
         assert!(hint(matlab, false).unwrap().contains("--no-objects"));
         let matlab = "Unrecognized field name \"trackerLoc\".";
-        assert!(hint(matlab, false).unwrap().contains("comment"));
+        assert!(hint(matlab, false).unwrap().contains("contains this word"));
         assert_eq!(hint("structure has no member 'mine'", false), None);
         assert_eq!(hint("'rgbVision' undefined", false), None);
         let single = "agentBehavior: function called with too many outputs";

@@ -70,7 +70,7 @@ mod tests {
     use tabletop_core::{Pose, SceneItem};
 
     use super::*;
-    use crate::test_support::{items_of, lines_of};
+    use crate::test_support::{items_of, lines_of, scene_of};
 
     fn only_button(content: &str) -> JointedSpec {
         match items_of(content).as_slice() {
@@ -124,6 +124,20 @@ mod tests {
     fn a_housing_is_as_high_as_its_cap_needs_where_nothing_is_said() {
         let button = only_button("<pushButton location='(0,0,2)' travel='.4'/>");
         assert_eq!(button.push_button().unwrap().1.zspan, 0.7);
+    }
+
+    #[test]
+    fn a_button_is_written_as_it_is_read() {
+        let scene = scene_of(
+            "",
+            "<pushButton id='stop' location='(1,2,3)' rotation='(10,20,30)' mass='0' radius='.5' zspan='1' travel='.4' \
+             force='20' color='green' mode='held' state='3' init='.3'>\
+             <description name='use' value='stopping'/><downstream id='lights'/></pushButton>\
+             <pushButton location='(0,0,2)'/>",
+        );
+        let text = crate::write(&scene);
+        let task = crate::parse("written.xml".as_ref(), text.as_bytes());
+        assert_eq!((task.scene, task.faults), (scene, vec![]), "{text}");
     }
 
     #[test]
