@@ -2,8 +2,8 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    BondEnd, ChainSpec, Composition, Held, Holder, LidBoxSpec, ObjectIndex, ObjectSpec, Pose, SceneItem,
-    SceneSpec, Shape, Table,
+    BondEnd, ChainSpec, Composition, Held, Holder, LidBoxSpec, ObjectIndex, ObjectSpec, Pose,
+    SceneItem, SceneSpec, Shape, Table,
 };
 
 use crate::{

@@ -7,7 +7,7 @@ use bevy_rapier3d::{
     parry::bounding_volume::{Aabb, BoundingVolume},
     prelude::*,
 };
-use tabletop_core::Joint;
+use tabletop_core::{Joint, JointKind};
 use tabletop_physics::{Convex, nearby};
 
 use crate::{
@@ -41,7 +41,7 @@ pub(crate) struct Environment {
     pub immovable: Vec<SweptSolid>,
     /// Objects that it pushes, in the order of their creation.
     pub free: Vec<FreeObject>,
-    /// Pairs of objects that go through each other, since joints connect them; in both orders.
+    /// Pairs of objects that joints let be pushed into each other; in both orders.
     pub pass: BTreeSet<[Entity; 2]>,
 }
 
@@ -63,13 +63,9 @@ impl Environment {
         if !is_shown {
             return environment;
         }
-        for &Joint {
-            objects: [one, other],
-            collides,
-            ..
-        } in joints
-        {
-            if !collides {
+        for joint in joints {
+            let [one, other] = joint.objects;
+            if !joint.collides && gives_way(joint.kind) {
                 environment.pass.extend([[one, other], [other, one]]);
             }
         }
@@ -135,4 +131,15 @@ fn depth_between(one: &FreeObject, other: &FreeObject) -> f32 {
     one.solids()
         .flat_map(|one| other.solids().map(move |other| one.depth_in(&other)))
         .fold(0.0, f32::max)
+}
+
+/// True if a joint is there to be pressed: its objects go into each other against a spring. With others, as with a lid on its box, one would be pushed
+/// through the other.
+fn gives_way(kind: JointKind) -> bool {
+    match kind {
+        JointKind::PushButton { .. } | JointKind::Shears { .. } => true,
+        JointKind::Ball | JointKind::Slider { .. } | JointKind::Hinge { .. } | JointKind::Fixed => {
+            false
+        }
+    }
 }
