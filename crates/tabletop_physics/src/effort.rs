@@ -17,6 +17,7 @@ use bevy_rapier3d::{
         ColliderSet, ContactPair, IntegrationParameters, PhysicsPipeline, RigidBodySet,
     },
 };
+use tabletop_core::Held;
 
 pub use engine::Engine;
 pub(crate) use substeps::{FEWEST_SUBSTEPS, SUBSTEPS_OF_FREE};
@@ -89,6 +90,7 @@ pub(crate) fn spend_effort(
         &RapierContextJoints,
     )>,
     released: Query<(), With<JustReleased>>,
+    held: Query<&RapierRigidBodyHandle, With<Held>>,
     settings: Res<PhysicsSettings>,
     mut care: ResMut<Care>,
 ) {
@@ -102,7 +104,7 @@ pub(crate) fn spend_effort(
             // restored with one would go on differently.
             simulation.pipeline = PhysicsPipeline::new();
         }
-        care.spend(Engine {
+        let mut engine = Engine {
             parameters: &mut simulation.integration_parameters,
             islands: &mut simulation.islands,
             broad_phase: &simulation.broad_phase,
@@ -111,19 +113,20 @@ pub(crate) fn spend_effort(
             colliders: &colliders.colliders,
             joints: &joints.impulse_joints,
             gravity: settings.gravity,
-        });
+        };
+        engine.wake_what_is_hit(held.iter().map(|handle| handle.0));
+        care.spend(engine);
     }
 }
 
 impl Care {
     /// Chooses the engine's precision in the next step.
-    pub fn spend(&mut self, mut engine: Engine) {
+    pub fn spend(&mut self, engine: Engine) {
         if engine.islands.num_active_bodies() == 0 {
             *self = Self::default();
             Mode::UNKNOWN.set(engine.parameters);
             return;
         }
-        engine.wake_what_is_hit();
         let touches = Touches::of(&engine);
         self.handling = ticks_left(self.handling, HANDLING_TICKS, touches.is_handling);
         let is_handling = self.handling > 0;

@@ -17,9 +17,13 @@ const SPEED_OF_BLOW: f32 = 1.0;
 const MARGIN: f32 = 0.02;
 
 impl Engine<'_> {
-    /// Wakes what sleeps in the way of something fast.
-    pub(crate) fn wake_what_is_hit(&mut self) {
-        let movers: Vec<_> = self.islands.active_bodies().collect();
+    /// Wakes what sleeps in the way of something fast: of what moves freely, and of what is held. Robots wake what their links are near to.
+    pub(crate) fn wake_what_is_hit(&mut self, held: impl Iterator<Item = RigidBodyHandle>) {
+        let awake = self.islands.active_bodies();
+        let free = awake.filter(|mover| self.bodies[*mover].is_dynamic());
+        let mut movers: Vec<_> = free.chain(held).collect();
+        // The world's own order depends on what was undone.
+        movers.sort_unstable_by_key(|mover| mover.into_raw_parts());
         for mover in movers {
             for sleeper in self.asleep_in_the_way_of(mover) {
                 self.islands.wake_up(self.bodies, sleeper, true);
@@ -28,7 +32,9 @@ impl Engine<'_> {
     }
 
     fn asleep_in_the_way_of(&self, mover: RigidBodyHandle) -> Vec<RigidBodyHandle> {
-        let body = &self.bodies[mover];
+        let Some(body) = self.bodies.get(mover) else {
+            return Vec::new();
+        };
         let dt = self.parameters.dt;
         let (next, speed) = if body.is_kinematic() {
             let next = *body.next_position();
