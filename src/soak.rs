@@ -342,7 +342,7 @@ mod tests {
         assert_eq!(place(0.96), None);
         let fault = |(ticks, fault): (u64, String)| (ticks, fault[..11].to_owned());
         assert_eq!(place(0.88).map(fault), Some((HIT, "ball is 0.1".into())));
-        assert_eq!(place(0.4).map(fault), Some((0, "ball is 0.6".into())));
+        assert_eq!(place(0.38).map(fault), Some((0, "ball is 0.6".into())));
         assert_eq!(place(f32::NAN).map(fault), Some((0, "ball is now".into())));
     }
 }
