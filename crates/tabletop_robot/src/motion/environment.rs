@@ -133,13 +133,11 @@ fn depth_between(one: &FreeObject, other: &FreeObject) -> f32 {
         .fold(0.0, f32::max)
 }
 
-/// True if a joint is there to be pressed: its objects go into each other against a spring. With others, as with a lid on its box, one would be pushed
-/// through the other.
+/// True if the objects of a joint can be pushed into each other: links of a chain, and what is pressed against a spring. With others, as with
+/// a lid on its box, one would be pushed through the other.
 fn gives_way(kind: JointKind) -> bool {
     match kind {
-        JointKind::PushButton { .. } | JointKind::Shears { .. } => true,
-        JointKind::Ball | JointKind::Slider { .. } | JointKind::Hinge { .. } | JointKind::Fixed => {
-            false
-        }
+        JointKind::Ball | JointKind::PushButton { .. } | JointKind::Shears { .. } => true,
+        JointKind::Slider { .. } | JointKind::Hinge { .. } | JointKind::Fixed => false,
     }
 }
