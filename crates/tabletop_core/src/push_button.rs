@@ -32,7 +32,7 @@ impl PushButton {
             state,
             ..Control::new(ControlKind::PushButton(self))
         };
-        let shape = Shape::Control(control.into());
+        let shape = Shape::Control(control);
         let cap = ObjectSpec::new(id, Pose::at(Vec3::Z * height), cap_mass, shape);
         JointedSpec {
             pose,

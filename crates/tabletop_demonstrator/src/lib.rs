@@ -58,7 +58,7 @@ use tabletop_core::{ActuateSystems, CommandSystems, RestingSystems, require};
 use tabletop_history::{RollbackApp, is_rolling_back};
 use tabletop_physics::PhysicsPlugin;
 
-/// Adds the hands. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin). With
+/// Adds the hands. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`]. With
 /// [`HistoryPlugin`](tabletop_history::HistoryPlugin), their acts can be undone.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DemonstratorPlugin;

@@ -54,7 +54,7 @@ use tabletop_core::{Bonds, CommandSystems, RestApp as _, RestingSystems, require
 use tabletop_history::{RollbackApp, is_rolling_back};
 use tabletop_physics::{PhysicsPlugin, take_in};
 
-/// Adds controls and bonds. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin). With
+/// Adds controls and bonds. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`]. With
 /// [`HistoryPlugin`](tabletop_history::HistoryPlugin), acts on them can be undone.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct MechanismPlugin;

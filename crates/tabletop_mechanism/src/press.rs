@@ -202,7 +202,7 @@ fn lies_there(world: &mut World, press: &Press) -> bool {
         let controls = spec.controls().into_iter();
         let control = controls.map(|control| (control.id == press.control).then_some(control));
         let control = control.flatten().next()?;
-        let shape = Shape::Control(control.what.clone().into());
+        let shape = Shape::Control(control.what.clone());
         let pose = world.get::<Transform>(object).map(Pose::from)?;
         Some((shape, pose * control.pose))
     });

@@ -62,7 +62,7 @@ fn lamp() -> SceneItem {
 }
 
 fn fixed_control(id: &str, at: Vec3, control: Control) -> SceneItem {
-    let shape = Shape::Control(control.into());
+    let shape = Shape::Control(control);
     SceneItem::Object(ObjectSpec::new(id, Pose::at(at), 0.0, shape))
 }
 

@@ -26,7 +26,7 @@ use crate::{
     },
 };
 
-/// Adds the robot. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin).
+/// Adds the robot. Needs [`CorePlugin`](tabletop_core::CorePlugin) and [`PhysicsPlugin`].
 #[derive(Clone, Debug, Default)]
 pub struct RobotPlugin {
     /// A robot other than the one that ships with the program.

@@ -58,7 +58,7 @@ use tabletop_physics::PhysicsPlugin;
 use crate::compound::Compounds;
 
 /// Puts tables and objects into the world and takes them out. Needs [`CorePlugin`](tabletop_core::CorePlugin) and
-/// [`PhysicsPlugin`](tabletop_physics::PhysicsPlugin).
+/// [`PhysicsPlugin`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ScenePlugin;
 
