@@ -9,9 +9,9 @@ use clap::Args;
 use serde_json::json;
 use tabletop::{
     scene::{IdAllocator, assemble},
-    task::{DetourKind, Requirements, Role, Task, TaskStep},
+    task::{DetourKind, Furniture, Requirements, Role, Task, TaskStep},
 };
-use tabletop_core::TICKS_PER_SECOND;
+use tabletop_core::{SceneSpec, TICKS_PER_SECOND};
 
 use super::{
     Failure, Output, allowed_paths::AllowedPaths, faultless::read_faultless_task,
@@ -36,13 +36,17 @@ pub(super) struct ExplainArgs {
 /// Prints the task of a recording.
 pub(super) fn explain(args: &ExplainArgs) -> Result<ExitCode, Failure> {
     show_warnings();
-    let (task, requirements) = read(&args.recording)?;
+    let scene = match &args.setup {
+        Some(setup) => {
+            Some(read_faultless_task(setup, &args.allowed.folders).map_err(Failure::input)?)
+        }
+        None => None,
+    };
+    let furniture = scene.as_ref().map(furniture).unwrap_or_default();
+    let (task, requirements) = read(&args.recording, &furniture)?;
     let binding = match &args.setup {
         Some(setup) => {
-            let scene =
-                read_faultless_task(setup, &args.allowed.folders).map_err(Failure::input)?;
-            let objects = assemble(&scene, &mut IdAllocator::default()).objects;
-            let binding = task.bind(&requirements, &objects);
+            let binding = task.bind(&requirements, &furniture.objects);
             Some(
                 binding
                     .map_err(|unbound| Failure::run(format!("{}: {unbound}", setup.display())))?,
@@ -95,9 +99,21 @@ fn reported(task: &Task) -> Vec<String> {
     reported.into_iter().map(|(_, line)| line).collect()
 }
 
+/// The objects of a scene, which tell what a recording of the original program does not.
+pub(super) fn furniture(scene: &SceneSpec) -> Furniture {
+    let assembly = assemble(scene, &mut IdAllocator::default());
+    Furniture {
+        objects: assembly.objects,
+        joints: assembly.joints,
+    }
+}
+
 /// The task of a recording, with its requirements in its sentences.
-pub(super) fn read(recording: &Path) -> Result<(Task, Requirements), Failure> {
-    let mut task = Task::read(recording).map_err(Failure::input)?;
+pub(super) fn read(
+    recording: &Path,
+    furniture: &Furniture,
+) -> Result<(Task, Requirements), Failure> {
+    let mut task = Task::read_with(recording, furniture).map_err(Failure::input)?;
     let requirements = Requirements::read(recording).map_err(Failure::input)?;
     task.phrase(&requirements);
     Ok((task, requirements))

@@ -14,7 +14,7 @@ use tabletop::{
     imitation::{AppStage, scattered_for},
     multiplication::with_colors_exchanged,
     planner::{Doing, Imitation, RobotBody, imitate},
-    recorder::{RecorderPlugin, RecordingReader, UnrecordedPlugin},
+    recorder::{RecorderPlugin, RecordingReader, UnrecordedPlugin, read_original},
     robot::{Description, RobotPlugin},
     scene::{IdAllocator, assemble},
     task::{Requirements, Task},
@@ -27,7 +27,7 @@ use tabletop_core::{
 use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
-    explain::read,
+    explain::{furniture, read},
     faultless::read_faultless_task,
     robot_options::RobotChoice,
     terminal::{say, show_warnings},
@@ -70,11 +70,11 @@ struct Trial {
 /// Lets the robot do the task, once or several times. Exit code 1 if it has failed.
 pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
     show_warnings();
-    let (task, requirements) = read(&args.recording)?;
     let scene = match &args.setup {
         Some(setup) => read_faultless_task(setup, &args.allowed.folders).map_err(Failure::input)?,
         None => scene_of(&args.recording)?,
     };
+    let (task, requirements) = read(&args.recording, &furniture(&scene))?;
     let robot = args.robot.plugin()?;
     let description = match robot.description.clone() {
         Some(description) => description,
@@ -134,6 +134,15 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
 
 /// The last scene that was put on the table before a recording.
 pub(super) fn scene_of(recording: &Path) -> Result<SceneSpec, Failure> {
+    let unknown = || {
+        Failure::input(
+            "the recording does not say which scene it began with; name one with --setup",
+        )
+    };
+    let original = read_original(recording).map_err(Failure::input)?;
+    if original.is_some() {
+        return Err(unknown());
+    }
     let recording = RecordingReader::open(recording).map_err(Failure::input)?;
     let commands = recording.session().earlier.iter().rev();
     let mut scenes = commands.filter_map(|command| {
@@ -142,11 +151,7 @@ pub(super) fn scene_of(recording: &Path) -> Result<SceneSpec, Failure> {
         };
         Some((**scene).clone())
     });
-    scenes.next().ok_or_else(|| {
-        Failure::input(
-            "the recording does not say which scene it began with; name one with --setup",
-        )
-    })
+    scenes.next().ok_or_else(unknown)
 }
 
 struct Attempt<'a> {

@@ -3,7 +3,7 @@
 use std::{path::PathBuf, process::ExitCode};
 
 use clap::Args;
-use tabletop::task::{Requirements, Role, Task};
+use tabletop::task::{Furniture, Requirements, Role, Task};
 
 use super::{
     Failure,
@@ -33,7 +33,7 @@ pub(super) struct RequireArgs {
 /// Prints or changes the requirements on the objects of a recording.
 pub(super) fn require(args: &RequireArgs) -> Result<ExitCode, Failure> {
     show_warnings();
-    let (task, mut requirements) = read(&args.recording)?;
+    let (task, mut requirements) = read(&args.recording, &Furniture::default())?;
     if let Some(number) = args.step {
         let step = task
             .step(number)
@@ -51,7 +51,7 @@ pub(super) fn require(args: &RequireArgs) -> Result<ExitCode, Failure> {
         change(&mut requirements, &task, role, args)?;
         requirements.write(&args.recording).map_err(Failure::run)?;
     }
-    let (task, _) = read(&args.recording)?;
+    let (task, _) = read(&args.recording, &Furniture::default())?;
     let lines = task.roles.iter().map(|role| {
         let required = match requirements.roles.get(&role.id) {
             None => "as it was shown".to_owned(),

@@ -22,6 +22,7 @@ use tabletop::{
     script::{ScriptPlugin, shut_down},
     shipped::{read_scenario, task_reader, true_path},
     shown_task::shown_task,
+    task::Furniture,
     task_files::save_task,
     xml::AllowedFolders,
 };
@@ -320,7 +321,7 @@ impl RunArgs {
         let Some(recording) = &self.task else {
             return Ok(());
         };
-        let (task, requirements) = read(recording)?;
+        let (task, requirements) = read(recording, &Furniture::default())?;
         let binding = match setup {
             Some(setup) => {
                 let scene = task_reader()

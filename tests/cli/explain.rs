@@ -71,6 +71,21 @@ fn a_box_with_a_lid_is_opened_filled_and_closed() {
 }
 
 #[test]
+fn what_lies_on_another_side_is_tipped() {
+    means(
+        &recorded("stand_up"),
+        &[
+            "1. Stand the red block up on the table at (-2, -2.5).",
+            "2. Lay the green cylinder down on the table at (2, -2.5). (at any time)",
+        ],
+    );
+    means(
+        &recorded("turn_over"),
+        &["1. Turn the blue box over and put it on the table at (0, -2.5)."],
+    );
+}
+
+#[test]
 fn a_swap_needs_a_third_place() {
     means(
         &recorded("swap"),

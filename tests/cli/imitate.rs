@@ -48,6 +48,65 @@ fn a_chest_is_opened_filled_and_closed() {
 }
 
 #[test]
+fn a_bar_is_stood_up_and_a_can_laid_down() {
+    let demo = recorded("stand_up");
+    is_done(&demo, &[]);
+    is_done(&demo, &["--seed", "1"]);
+}
+
+#[test]
+fn a_box_is_turned_over() {
+    is_done(&recorded("turn_over"), &[]);
+}
+
+#[test]
+fn a_block_falls_into_a_bin_that_the_hand_does_not_fit_into() {
+    let folder = place("imitate_bin");
+    std::fs::create_dir(&folder).unwrap();
+    let (setup, shown) = (folder.join("bin.xml"), folder.join("bin.ron"));
+    let objects = r#"
+        <tabletop xmlns="http://synapse.cs.umd.edu/tabletop-xml">
+          <box id="Bin" location="(2,-3,1.25)" xspan="1.6" yspan="1.6" zspan="2.5" thickness="0.1" color="blue" mass="5"/>
+          <block id="Yellow" location="(-3,-3,0.5)" color="yellow"/>
+        </tabletop>"#;
+    let steps = r#"(setup: "bin.xml", steps: [
+        WaitUntilRest(2), Start, Select(Right),
+        Grasp("Yellow"), Glide(to: (-3, -3, 5), seconds: 0.6), Glide(to: (2, -3, 5), seconds: 1),
+        Glide(to: (2, -3, 0.62), seconds: 1), WaitUntilThere(1), Release,
+        WaitUntilRest(3), Finish,
+    ])"#;
+    std::fs::write(&setup, objects.trim_start()).unwrap();
+    std::fs::write(&shown, steps).unwrap();
+    let demo = folder.join("demo");
+    let [shown, demo] = [&shown, &demo].map(|path| path.to_str().unwrap());
+    let output = tabletop(&["run", shown, "--record", demo, "--quiet"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    is_done(demo, &[]);
+}
+
+#[test]
+fn what_no_arm_reaches_is_said_before_anything_moves() {
+    let demo = recorded("stack_three");
+    let folder = place("imitate_beyond");
+    std::fs::create_dir(&folder).unwrap();
+    let setup = folder.join("beyond.xml");
+    let blocks = r#"
+        <tabletop xmlns="http://synapse.cs.umd.edu/tabletop-xml">
+          <block id="Red" location="(0,5,0.5)" color="red"/>
+          <block id="Green" location="(0,-4,0.5)" color="green"/>
+          <block id="Blue" location="(3,-2.5,0.5)" color="blue"/>
+        </tabletop>"#;
+    std::fs::write(&setup, blocks.trim_start()).unwrap();
+    let output = tabletop(&["imitate", &demo, "--setup", setup.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(1));
+    let told = stdout(&output);
+    assert!(
+        told.contains("Step 2 failed (Put the red block on the green block.): no arm gets its fingers around Red where it is; 0.5 s simulated"),
+        "{told}"
+    );
+}
+
+#[test]
 fn the_red_block_is_put_on_the_blue_one_whichever_they_are() {
     let demo = recorded("red_on_blue");
     for requirement in [

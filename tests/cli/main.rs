@@ -12,6 +12,7 @@ mod keys;
 mod kinematics;
 mod language;
 mod multiply;
+mod originals;
 mod panda;
 mod replay;
 mod robot;

@@ -46,6 +46,8 @@ fn tasks_are_demonstrated() {
         "dispenser",
         "valve",
         "stack_three",
+        "stand_up",
+        "turn_over",
         "swap",
         "wall",
         "letter_u",
@@ -206,7 +208,9 @@ fn every_shipped_scenario_has_its_test() {
         "shears.ron",
         "stack_three.ron",
         "stack_two_blocks.ron",
+        "stand_up.ron",
         "swap.ron",
+        "turn_over.ron",
         "valve.ron",
         "wall.ron",
     ];

@@ -8,6 +8,8 @@ use tabletop_kinematics::{
 };
 use tabletop_task::PlacedSolid;
 
+use crate::arm_length::ArmLength;
+
 /// The angles of an arm from its base to its tip, in rad; 0 beyond its last joint.
 pub type Angles = [f64; MOST_ARM_JOINTS];
 
@@ -38,6 +40,7 @@ pub struct LimbBody {
     /// Its name.
     pub name: String,
     chain: ArmChain,
+    length: ArmLength,
     end_effector: DAffine3,
     /// Extents of a finger, in units, in the end effector's frame.
     pub finger: Vec3,
@@ -79,6 +82,8 @@ struct LinkBody {
 
 /// Number of postures from which a pose is tried.
 const STARTS: usize = 24;
+/// Number of postures from which one of many poses is tried.
+const FEW_STARTS: usize = 5;
 /// Share of the motors' speed that joints use.
 const SHARE_OF_SPEED: f64 = 0.75;
 /// Speed of joints without a motor, in rad/s.
@@ -106,6 +111,7 @@ impl LimbBody {
         let chain = ArmChain::new(model, model.root(), tip)?;
         Ok(Self {
             name: limb.name.to_string(),
+            length: ArmLength::of(&chain, joints.iter().map(|joint| joint.home)),
             chain: chain.with_limits(joints.iter().map(|joint| joint.limits)),
             end_effector: DAffine3::from_mat3_translation(
                 DMat3::from_cols(axes[0], axes[1], axes[2]),
@@ -320,6 +326,11 @@ impl RobotBody {
         self.solve(limb, pose, seed, STARTS)
     }
 
+    /// The same, if a short search finds it.
+    pub(crate) fn reach_soon(&self, limb: usize, pose: Pose, seed: &Angles) -> Option<Angles> {
+        self.solve(limb, pose, seed, FEW_STARTS)
+    }
+
     /// The same, if the search from the seed alone finds it.
     pub(crate) fn reach_from(&self, limb: usize, pose: Pose, seed: &Angles) -> Option<Angles> {
         self.solve(limb, pose, seed, 1)
@@ -327,10 +338,9 @@ impl RobotBody {
 
     fn solve(&self, limb: usize, pose: Pose, seed: &Angles, starts: usize) -> Option<Angles> {
         let limb = &self.limbs[limb];
-        let shoulder = limb.chain.tip(limb.own(&limb.home)).translation;
         let target = in_meters(self.base.inverse() * pose) * limb.end_effector.inverse();
-        // For a target far beyond an arm's length, the search would take long to fail.
-        if (target.translation - shoulder).length() > 1.6 {
+        // For a target beyond the arm's length, the search would take long to fail.
+        if limb.length.excludes(&target) {
             return None;
         }
         let solved = limb

@@ -27,8 +27,8 @@ pub(crate) struct Clearance<'a> {
     pub opening: f32,
     /// The held solids, in the end effector's frame.
     pub held: Vec<PlacedSolid>,
-    /// Rotation from the held object, when it does not lean, to the end effector's frame.
-    upright: Quat,
+    /// Rotation from the held object, when it does not lean, to the end effector's frame; `None` if it may lean.
+    upright: Option<Quat>,
 }
 
 /// Distances to be kept from obstacles.
@@ -37,8 +37,6 @@ pub(crate) struct Margins {
     fingers: f32,
     held: f32,
     held_above_table: f32,
-    /// Largest angle by which the held object may lean, in rad.
-    lean: f32,
 }
 
 impl Margins {
@@ -47,24 +45,23 @@ impl Margins {
         fingers: 0.1,
         held: 0.1,
         held_above_table: 0.08,
-        lean: 0.3,
     };
     /// For motions between places where there is no more room.
     pub const TIGHT: Self = Self {
         fingers: 0.04,
         held: 0.03,
         held_above_table: 0.03,
-        lean: 0.3,
     };
     /// For motions where an object is grasped or put down.
     pub const NARROW: Self = Self {
         fingers: 0.025,
         held: 0.004,
         held_above_table: 0.004,
-        lean: 0.3,
     };
 }
 
+/// Largest angle by which what is held may lean, in rad, unless it is to be tipped.
+const LEAN: f32 = 0.3;
 /// Distance of an arm's links from objects and table.
 const LINKS: f32 = 0.05;
 
@@ -88,7 +85,7 @@ impl<'a> Clearance<'a> {
             scratch: RefCell::default(),
             opening: sight.limbs[limb].opening as f32,
             held: Vec::new(),
-            upright: Quat::IDENTITY,
+            upright: None,
             table: sight.table,
             angles,
             body,
@@ -97,8 +94,8 @@ impl<'a> Clearance<'a> {
     }
 
     /// The limb with an object that its end effector carries at `grip`, a pose in the end effector's frame. The object does not lean when the end
-    /// effector is turned by the inverse of `upright`.
-    pub fn holding(mut self, solids: &[PlacedSolid], grip: Pose, upright: Quat) -> Self {
+    /// effector is turned by the inverse of `upright`; if there is none, it may lean.
+    pub fn holding(mut self, solids: &[PlacedSolid], grip: Pose, upright: Option<Quat>) -> Self {
         self.upright = upright;
         self.held = solids
             .iter()
@@ -128,6 +125,10 @@ impl<'a> Clearance<'a> {
         self.body.reach(self.limb, pose, seed)
     }
 
+    pub fn reach_soon(&self, pose: Pose, seed: &Angles) -> Option<Angles> {
+        self.body.reach_soon(self.limb, pose, seed)
+    }
+
     pub fn reach_from(&self, pose: Pose, seed: &Angles) -> Option<Angles> {
         self.body.reach_from(self.limb, pose, seed)
     }
@@ -149,7 +150,8 @@ impl<'a> Clearance<'a> {
                 solid: solid.solid,
             })
             .collect();
-        if !held.is_empty() && lean(end_effector.rotation * self.upright) > margins.lean {
+        let leans = |upright: Quat| lean(end_effector.rotation * upright) > LEAN;
+        if self.upright.is_some_and(leans) {
             return false;
         }
         if fingers

@@ -9,11 +9,13 @@ use crate::stage::Stopped;
 pub enum PlanFailure {
     /// An object of the task is missing.
     Gone(String),
-    /// No arm reaches the object.
+    /// No arm gets its fingers around the object.
     OutOfReach(String),
+    /// No arm that reaches the object reaches where it belongs.
+    PlaceOutOfReach(String),
     /// No part of the object fits between the fingers as it stands.
     NoGrasp(String),
-    /// The object would have to be tipped over, and the robot puts objects down as they stand.
+    /// The object would have to be tipped over, and no grasp allows that.
     Tipped(String),
     /// No free path leads to the goal.
     NoWay(String),
@@ -41,11 +43,62 @@ impl From<Stopped> for PlanFailure {
 }
 
 impl PlanFailure {
+    /// True if it was found before anything moved, so that taking the object from beside may do.
+    pub(crate) const fn is_of_planning(&self) -> bool {
+        match self {
+            Self::OutOfReach(_) | Self::PlaceOutOfReach(_) | Self::NoGrasp(_) | Self::NoWay(_) => {
+                true
+            }
+            Self::Gone(_)
+            | Self::Tipped(_)
+            | Self::NotHeld(_)
+            | Self::Blocked { .. }
+            | Self::NoRoom(_)
+            | Self::Misplaced(_)
+            | Self::Stopped => false,
+        }
+    }
+
+    /// Of this failure and a later one, that of the attempt which came farther.
+    pub(crate) fn or(self, later: Self) -> Self {
+        let progress = |failure: &Self| match failure {
+            Self::NoGrasp(_) => 0,
+            Self::OutOfReach(_) => 1,
+            Self::PlaceOutOfReach(_) => 2,
+            Self::Tipped(_) | Self::NoWay(_) => 3,
+            Self::Gone(_)
+            | Self::NotHeld(_)
+            | Self::Blocked { .. }
+            | Self::NoRoom(_)
+            | Self::Misplaced(_)
+            | Self::Stopped => 4,
+        };
+        match progress(&later) >= progress(&self) {
+            true => later,
+            false => self,
+        }
+    }
+
+    /// True if another try would come to the same.
+    pub(crate) const fn is_final(&self) -> bool {
+        match self {
+            Self::OutOfReach(_)
+            | Self::PlaceOutOfReach(_)
+            | Self::NoGrasp(_)
+            | Self::Tipped(_)
+            | Self::NoRoom(_)
+            | Self::Gone(_)
+            | Self::Stopped => true,
+            Self::NoWay(_) | Self::NotHeld(_) | Self::Blocked { .. } | Self::Misplaced(_) => false,
+        }
+    }
+
     /// Class of the failure, for a table.
     pub const fn class(&self) -> &'static str {
         match self {
             Self::Gone(_) => "gone",
             Self::OutOfReach(_) => "out of reach",
+            Self::PlaceOutOfReach(_) => "place out of reach",
             Self::NoGrasp(_) => "no grasp",
             Self::Tipped(_) => "to be tipped",
             Self::NoWay(_) => "no way",
@@ -62,14 +115,19 @@ impl fmt::Display for PlanFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Gone(object) => write!(f, "{object} is no longer there"),
-            Self::OutOfReach(object) => write!(f, "no arm reaches {object} and where it belongs"),
+            Self::OutOfReach(object) => {
+                write!(f, "no arm gets its fingers around {object} where it is")
+            }
+            Self::PlaceOutOfReach(object) => {
+                write!(f, "no arm that reaches {object} reaches where it belongs")
+            }
             Self::NoGrasp(object) => write!(
                 f,
                 "{object} cannot be taken: no part of it fits between the fingers"
             ),
             Self::Tipped(object) => write!(
                 f,
-                "{object} would have to be tipped, and it is put down as it stands"
+                "{object} would have to be tipped, and no grasp of it is free before and after that"
             ),
             Self::NoWay(object) => {
                 write!(f, "there is no free way for {object} to where it belongs")

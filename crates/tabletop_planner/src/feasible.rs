@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 use tabletop_core::Pose;
 use tabletop_task::{Binding, PlaceRange, PlacedSolid, Relation, Task};
 
-use crate::{goals::is_over, imitation::goal_poses, sight::Sight};
+use crate::{
+    goals::{goal_poses, is_over},
+    sight::Sight,
+};
 
 /// How deep solids may be in each other, in units.
 const PLAY: f32 = 0.02;

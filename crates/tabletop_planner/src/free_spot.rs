@@ -1,6 +1,6 @@
 //! Free places on the table.
 
-use bevy::math::Vec3;
+use bevy::math::{Quat, Vec3};
 use tabletop_core::Pose;
 use tabletop_task::PlacedSolid;
 
@@ -18,11 +18,12 @@ const MOST: usize = 10;
 /// Distance between the candidate places, in units.
 const GRID: f32 = 0.5;
 
-/// Places where an object can be put in its present orientation, the nearest to `near` first. `kept` are solids that will be there later.
+/// Places where an object can be put in this orientation, the nearest to `near` first. `kept` are solids that will be there later.
 pub(crate) fn free_spots(
     body: &RobotBody,
     sight: &Sight,
     id: &str,
+    rotation: Quat,
     near: Vec3,
     limbs: &[usize],
     kept: &[PlacedSolid],
@@ -30,7 +31,7 @@ pub(crate) fn free_spots(
     let Some(object) = sight.objects.get(id) else {
         return Vec::new();
     };
-    let solids = object.solids_at(Pose::new(Vec3::ZERO, object.pose.rotation));
+    let solids = object.solids_at(Pose::new(Vec3::ZERO, rotation));
     let [lowest, highest] = heights(&solids);
     let reach = |way: Vec3| {
         let all = solids.iter().map(|solid| solid.farthest(way).dot(way));
@@ -74,9 +75,7 @@ pub(crate) fn free_spots(
     let found = |room: f32| -> Vec<_> {
         let free = spots.iter().filter(|spot| is_free(spot, room));
         let reached = free.filter(|spot| is_reached(spot)).take(MOST);
-        reached
-            .map(|spot| Pose::new(*spot, object.pose.rotation))
-            .collect()
+        reached.map(|spot| Pose::new(*spot, rotation)).collect()
     };
     let all = ROOMS.into_iter().map(found);
     all.into_iter()

@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{Pose, Table};
 use tabletop_task::{
-    Arrangement, Binding, PlaceRange, PlacedSolid, Reference, Relation, Symmetry, TaskStep,
+    Arrangement, Binding, PlaceRange, PlacedSolid, Reference, Relation, Symmetry, Task, TaskStep,
     twist_about,
 };
 
 use crate::{
     failure::PlanFailure,
-    sight::{Sight, lean},
+    sight::{SeenObject, Sight, heights, lean},
 };
 
 /// A pose that does, and its cost above that of the best.
@@ -19,6 +19,8 @@ use crate::{
 pub(crate) struct Candidate {
     pub pose: Pose,
     pub cost: f32,
+    /// True if the object lies on another side there.
+    pub is_tipped: bool,
 }
 
 /// Earlier poses of objects.
@@ -39,7 +41,7 @@ const SIDES: f32 = 0.6;
 /// Largest angle by which an upright object may lean, in rad.
 const UPRIGHT: f32 = 0.1;
 
-/// The poses of the object that fulfil a step, as far as a turn about the vertical reaches them.
+/// The poses of the object that fulfil a step; if a turn about the vertical reaches some of them, only these.
 pub(crate) fn candidates(
     step: &TaskStep,
     binding: &Binding,
@@ -52,28 +54,33 @@ pub(crate) fn candidates(
         .get(id)
         .ok_or_else(|| PlanFailure::Gone(id.to_owned()))?;
     let mut found = Vec::<Candidate>::new();
+    let symmetry = Symmetry::of(&object.shape);
     for exact in exact(step, binding, sight, before)? {
-        let symmetry = Symmetry::of(&object.shape);
         for variant in symmetry.variants(exact.pose) {
-            // A standing object is turned only about the vertical.
             let turn = variant.rotation * object.pose.rotation.inverse();
-            if lean(turn) > UPRIGHT {
-                continue;
-            }
-            let upright = twist_about(turn, Vec3::Z) * object.pose.rotation;
-            let pose = Pose::new(variant.location, upright);
+            let is_tipped = lean(turn) > UPRIGHT;
+            let rotation = match is_tipped {
+                true => variant.rotation,
+                false => twist_about(turn, Vec3::Z) * object.pose.rotation,
+            };
+            let pose = Pose::new(variant.location, rotation);
             let is_new = found.iter().all(|known| {
                 known.pose.location.distance(pose.location) > 0.01
                     || tabletop_task::angle_between(known.pose.rotation, pose.rotation) > 0.02
             });
             if is_new {
-                let cost = exact.cost;
-                found.push(Candidate { pose, cost });
+                found.push(Candidate {
+                    pose,
+                    cost: exact.cost,
+                    is_tipped,
+                });
             }
         }
     }
-    if found.is_empty() {
-        return Err(PlanFailure::Tipped(id.to_owned()));
+    if found.iter().any(|candidate| !candidate.is_tipped) {
+        found.retain(|candidate| !candidate.is_tipped);
+    } else if is_inside(step) {
+        found = found.iter().map(|goal| untipped(object, *goal)).collect();
     }
     let least = found
         .iter()
@@ -102,6 +109,23 @@ pub(crate) fn candidates(
         }
     }
     Ok(found)
+}
+
+/// Whether a step's object may be anywhere inside another one.
+pub(crate) fn is_inside(step: &TaskStep) -> bool {
+    let goal = step.goal.as_ref();
+    goal.is_some_and(|goal| goal.place == PlaceRange::Inside)
+}
+
+/// A goal at which an object is no lower, but as it lies now.
+fn untipped(object: &SeenObject, goal: Candidate) -> Candidate {
+    let here = Pose::new(goal.pose.location, object.pose.rotation);
+    let [lowest, own] = [goal.pose, here].map(|pose| heights(&object.solids_at(pose))[0]);
+    Candidate {
+        pose: Pose::new(here.location + Vec3::Z * (lowest - own), here.rotation),
+        is_tipped: false,
+        ..goal
+    }
 }
 
 /// True if no part of a solid reaches beyond the table.
@@ -153,11 +177,19 @@ fn exact(
         return Ok(Vec::new());
     };
     let gone = |id: &str| PlanFailure::Gone(id.to_owned());
+    let id = bound(binding, &step.object)?;
+    let object = sight.objects.get(id).ok_or_else(|| gone(id))?;
+    let symmetry = Symmetry::of(&object.shape);
     let frames = match &goal.reference {
         Reference::Table => vec![Pose::IDENTITY],
         Reference::Itself => {
             let frame = before.step.ok_or_else(|| gone(&step.object))?;
-            vec![frame]
+            let mut alike = symmetry.variants(frame);
+            alike.retain(|frame| is_up(frame.rotation * goal.up));
+            match alike.is_empty() {
+                true => vec![frame],
+                false => alike,
+            }
         }
         Reference::Object { object } => {
             let id = bound(binding, object)?;
@@ -172,10 +204,12 @@ fn exact(
         }
     };
     let poses = frames.into_iter().map(|frame| {
+        let frame = levelled(frame, goal.up);
         let pose = frame * goal.pose;
         Candidate {
             cost: change_of_side(step, frame, pose),
             pose,
+            is_tipped: false,
         }
     });
     let is_level = |candidate: &Candidate| candidate.pose.location.z > 0.0;
@@ -190,8 +224,34 @@ fn exact(
     if goal.place == PlaceRange::Exact && shown_height > 0.3 && is_on(step) {
         all.retain(|one| one.pose.location.z > highest - 0.1);
     }
+    let above = goal.pose.rotation.inverse() * goal.up;
+    let lies_as_shown = |one: &Candidate| {
+        let mut alike = symmetry.variants(one.pose).into_iter();
+        alike.any(|pose| is_up(pose.rotation * above))
+    };
+    if all.iter().any(lies_as_shown) {
+        all.retain(lies_as_shown);
+    }
     all.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     Ok(all)
+}
+
+/// Whether a direction is up, rather than to a side.
+fn is_up(way: Vec3) -> bool {
+    // More than half of the eighth of a turn by which variants of what is round differ.
+    way.angle_between(Vec3::Z) < 0.45
+}
+
+/// A frame in which this direction is exactly up, if it nearly is.
+fn levelled(frame: Pose, up: Vec3) -> Pose {
+    let above = frame.rotation * up;
+    match is_up(above) {
+        true => {
+            let turn = Quat::from_rotation_arc(above, Vec3::Z);
+            Pose::new(frame.location, turn * frame.rotation)
+        }
+        false => frame,
+    }
 }
 
 fn is_on(step: &TaskStep) -> bool {
@@ -256,6 +316,34 @@ pub fn is_met(
     }))
 }
 
+/// Goals of the task's objects, as far as they are known before the robot begins: the number of the step, the object,
+/// and its pose.
+pub fn goal_poses(task: &Task, binding: &Binding, sight: &Sight) -> Vec<(usize, String, Pose)> {
+    let mut sight = sight.clone();
+    let poses = sight.objects.iter();
+    let mut before = Before {
+        beginning: poses
+            .map(|(id, object)| (id.clone(), object.pose))
+            .collect(),
+        step: None,
+    };
+    let mut goals = Vec::new();
+    for step in &task.steps {
+        let Some(id) = binding.object(&step.object) else {
+            continue;
+        };
+        before.step = sight.objects.get(id).map(|object| object.pose);
+        let Ok(found) = candidates(step, binding, &sight, &before) else {
+            continue;
+        };
+        if let (Some(goal), Some(object)) = (found.first(), sight.objects.get_mut(id)) {
+            object.pose = goal.pose;
+            goals.push((step.number, id.to_owned(), goal.pose));
+        }
+    }
+    goals
+}
+
 /// The object that takes a role.
 pub(crate) fn bound<'b>(binding: &'b Binding, role: &str) -> Result<&'b str, PlanFailure> {
     binding
@@ -263,15 +351,16 @@ pub(crate) fn bound<'b>(binding: &'b Binding, role: &str) -> Result<&'b str, Pla
         .ok_or_else(|| PlanFailure::Gone(role.to_owned()))
 }
 
-/// The rotations about the vertical with which a container is searched for a free place.
+/// Places around a pose where a container is searched for room.
 pub(crate) fn inside(pose: Pose, by: f32) -> impl Iterator<Item = Candidate> {
     let steps = [0.0, 1.0, -1.0, 2.0, -2.0];
     steps.into_iter().flat_map(move |x| {
         steps.into_iter().map(move |y| {
             let aside = Vec3::new(x, y, 0.0) * by;
             Candidate {
-                pose: Pose::new(pose.location + aside, Quat::IDENTITY * pose.rotation),
+                pose: Pose::new(pose.location + aside, pose.rotation),
                 cost: aside.length(),
+                is_tipped: false,
             }
         })
     })

@@ -13,6 +13,8 @@ pub enum GraspSide {
     Above,
     /// From beside it, or from halfway up.
     Beside,
+    /// From any of these sides.
+    Any,
 }
 
 impl GraspSide {
@@ -21,6 +23,7 @@ impl GraspSide {
         match self {
             Self::Above => &[0.0],
             Self::Beside => &[FRAC_PI_4, -FRAC_PI_4, FRAC_PI_2, -FRAC_PI_2],
+            Self::Any => &[0.0, FRAC_PI_4, -FRAC_PI_4, FRAC_PI_2, -FRAC_PI_2],
         }
     }
 }
@@ -83,9 +86,9 @@ pub fn grasps(
                 if width > widest - PLAY {
                     continue;
                 }
-                let lowest = match side {
-                    GraspSide::Above => ground + ABOVE_GROUND + finger / 2.0,
-                    GraspSide::Beside => f32::NEG_INFINITY,
+                let lowest = match lean == 0.0 {
+                    true => ground + ABOVE_GROUND + finger / 2.0,
+                    false => f32::NEG_INFINITY,
                 };
                 let height = lowest.max(z[1] - DEPTH);
                 if height - finger / 2.0 > z[1] - 0.1 {

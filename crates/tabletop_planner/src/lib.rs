@@ -3,7 +3,18 @@
 //!
 //! [`imitate`] does a [`Task`](tabletop_task::Task) on a [`PlanningStage`], which advances time tick by tick, reports what is seen, and takes
 //! joint velocities. It knows the robot as a [`RobotBody`]: the URDF's links and the frames of the grippers.
+//!
+//! | from the whole to its parts | |
+//! |---|---|
+//! | `imitation` | the steps of the task one after the other, with a look after each: `step` does one, `clearing` makes room for it, `regrasp` goes by way of another place, `arms` chooses the arm |
+//! | `transfer` | one arm moves one object: `choice` of the grasp, `ways`, `acts` |
+//! | `goals`, `grasp`, `standing`, `free_spot` | where an object may go, how it is taken, on which sides it lies, where there is room |
+//! | `transit`, `path`, `rrt`, `clearance` | free paths of an arm |
+//! | `body`, `arm_length` | the robot |
+//! | `motion`, `stage`, `sight`, `execution` | the world: acting on it and seeing it, at a stretch or tick by tick |
+//! | `scatter`, `feasible` | random places for trials |
 
+mod arm_length;
 mod body;
 mod clearance;
 mod execution;
@@ -19,6 +30,7 @@ mod rrt;
 mod scatter;
 mod sight;
 mod stage;
+mod standing;
 mod transfer;
 mod transit;
 
@@ -26,9 +38,9 @@ pub use body::{Angles, LimbBody, RobotBody, angles};
 pub use execution::{Execution, ExecutionTurn};
 pub use failure::PlanFailure;
 pub use feasible::is_feasible;
-pub use goals::{Before, is_met};
+pub use goals::{Before, goal_poses, is_met};
 pub use grasp::{Grasp, GraspSide, grasps};
-pub use imitation::{Doing, Imitation, goal_poses, imitate, undone};
+pub use imitation::{Doing, Imitation, imitate, undone};
 pub use scatter::{Piece, scatter};
 pub use sight::{LimbSight, SeenObject, Sight};
 pub use stage::{LimbOrder, PlanningStage, Stopped};

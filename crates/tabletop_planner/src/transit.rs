@@ -7,7 +7,6 @@ use crate::{
     clearance::{Clearance, Margins},
     path::{Path, even, largest_turn, lift, line},
     rrt::connect,
-    sight::lean,
 };
 
 /// Heights at which an arm crosses the table, in units.
@@ -50,36 +49,33 @@ fn simple(clearance: &Clearance, from: &Angles, to: &Angles, margins: Margins) -
         return Some(direct);
     }
     let ends = [from, to].map(|angles| clearance.end_effector(angles));
-    let is_upright = ends.iter().all(|end| lean(end.rotation) < 0.05);
-    if is_upright {
-        for height in TRAVERSES {
-            let raised = |angles: &Angles, end: &Pose| match end.location.z > height - 0.05 {
-                true => Some(Path::new()),
-                false => lift(clearance, angles, height - end.location.z),
-            };
-            let (Some(up), Some(down)) = (raised(from, &ends[0]), raised(to, &ends[1])) else {
-                continue;
-            };
-            let [above, beyond] =
-                [(&up, from), (&down, to)].map(|(path, end)| *path.last().unwrap_or(end));
-            let descent: Path = match down.is_empty() {
-                true => Path::new(),
-                false => down.iter().rev().skip(1).chain([to]).copied().collect(),
-            };
-            let join = |across: Path| [up.clone(), across, descent.clone()].concat();
-            let path = join(even(&above, &beyond));
-            if is_free(&path) {
-                return Some(path);
-            }
-            let far = clearance.end_effector(&beyond);
-            if let Some(mut across) = line(clearance, &above, far) {
-                let last = *across.last().unwrap_or(&above);
-                if largest_turn(&last, &beyond) < 1.5 {
-                    across.extend(even(&last, &beyond));
-                    let path = join(across);
-                    if is_free(&path) {
-                        return Some(path);
-                    }
+    for height in TRAVERSES {
+        let raised = |angles: &Angles, end: &Pose| match end.location.z > height - 0.05 {
+            true => Some(Path::new()),
+            false => lift(clearance, angles, height - end.location.z),
+        };
+        let (Some(up), Some(down)) = (raised(from, &ends[0]), raised(to, &ends[1])) else {
+            continue;
+        };
+        let [above, beyond] =
+            [(&up, from), (&down, to)].map(|(path, end)| *path.last().unwrap_or(end));
+        let descent: Path = match down.is_empty() {
+            true => Path::new(),
+            false => down.iter().rev().skip(1).chain([to]).copied().collect(),
+        };
+        let join = |across: Path| [up.clone(), across, descent.clone()].concat();
+        let path = join(even(&above, &beyond));
+        if is_free(&path) {
+            return Some(path);
+        }
+        let far = clearance.end_effector(&beyond);
+        if let Some(mut across) = line(clearance, &above, far) {
+            let last = *across.last().unwrap_or(&above);
+            if largest_turn(&last, &beyond) < 1.5 {
+                across.extend(even(&last, &beyond));
+                let path = join(across);
+                if is_free(&path) {
+                    return Some(path);
                 }
             }
         }

@@ -1,13 +1,11 @@
 //! Demonstrations: the objects, their motions, and the acts of the hands that a recording shows.
 
-use std::collections::BTreeMap;
-
-use bevy::math::Vec3;
-use tabletop_core::{Hand, JointSpec, ObjectSpec, Pose, Rgb, Shape, SimTick, Table};
+use tabletop_core::{Hand, JointSpec, ObjectSpec, Pose, SimTick, Table};
 use tabletop_recorder::{Occurrence, RecordedSegment, RecorderError, RecordingReader};
 
 use crate::{
     arrangement::Arrangement,
+    described::described,
     operation::{Operation, OperationDeed},
     track::Track,
 };
@@ -42,6 +40,8 @@ pub struct ShownObject {
     pub created: SimTick,
     /// The tick in which it disappeared, if it did.
     pub deleted: Option<SimTick>,
+    /// True if the recording does not tell its size.
+    pub(crate) is_guessed: bool,
 }
 
 /// An act of a hand.
@@ -124,6 +124,7 @@ impl Demonstration {
             track: Track::default(),
             created,
             deleted: None,
+            is_guessed: false,
             spec,
         });
     }
@@ -160,7 +161,13 @@ impl Demonstration {
                 match &event.what {
                     Occurrence::Create { id, properties } => match self.named_mut(id) {
                         Some(known) => known.deleted = None,
-                        None => self.add(spec_of(id, properties), shown),
+                        None => {
+                            let (spec, tells_size) = described(id, properties);
+                            self.add(spec, shown);
+                            if let Some(object) = self.objects.last_mut() {
+                                object.is_guessed = !tells_size;
+                            }
+                        }
                     },
                     Occurrence::Delete { id } => {
                         if let Some(object) = self.named_mut(id) {
@@ -213,104 +220,4 @@ impl Demonstration {
             }
         }
     }
-}
-
-/// The object that the properties of a recording describe.
-fn spec_of(id: &str, properties: &[(String, String)]) -> ObjectSpec {
-    let known: BTreeMap<&str, &str> = properties
-        .iter()
-        .map(|(name, value)| (name.as_str(), value.as_str()))
-        .collect();
-    let number = |name: &str| known.get(name).and_then(|value| value.parse::<f32>().ok());
-    let length = |name: &str| number(name).unwrap_or(1.0);
-    let span = Vec3::new(length("xspan"), length("yspan"), length("zspan"));
-    let color = known.get("color").and_then(|color| {
-        // The original writes some colours with eight digits.
-        color.get(..7).unwrap_or(color).parse().ok()
-    });
-    let color = color.unwrap_or(Rgb::GRAY);
-    let thickness = number("thickness").unwrap_or(0.05);
-    let radius = number("radius").unwrap_or(0.5);
-    // The original calls a ball a cylinder, and a cylinder's length `zspan`.
-    let yspan = number("yspan").or(number("zspan"));
-    let sides = known.get("sides").and_then(|sides| sides.parse().ok());
-    let sides = sides.unwrap_or(32);
-    let shape = match (known.get("shape").copied().unwrap_or_default(), yspan) {
-        ("block", _) => Shape::Block { span, color },
-        ("box", _) => Shape::Box {
-            span,
-            thickness,
-            color,
-        },
-        ("cylinder", Some(yspan)) if known.contains_key("sides") => Shape::Prism {
-            radius,
-            yspan,
-            sides,
-            color,
-        },
-        ("frustum", _) => Shape::Frustum {
-            radius_top: length("radiusTop"),
-            radius_bottom: length("radiusBottom"),
-            zspan: span.z,
-            sides,
-            color,
-        },
-        ("ring", _) => Shape::Ring {
-            radius_outer: length("radiusOuter"),
-            radius_inner: number("radiusInner").unwrap_or(0.5),
-            zspan: span.z,
-            sides,
-            color,
-        },
-        ("cylinder", Some(yspan)) => Shape::Cylinder {
-            radius,
-            yspan,
-            color,
-        },
-        ("sphere" | "cylinder", _) => Shape::Sphere { radius, color },
-        ("lid", _) => Shape::Lid {
-            span: span.with_z(thickness),
-            color,
-            handle_span: Vec3::new(
-                length("handleXspan"),
-                length("handleYspan"),
-                length("handleZspan"),
-            ),
-            handle_thickness: number("handleThickness").unwrap_or(thickness),
-            handle_color: color,
-        },
-        _ => Shape::Composite { parts: Vec::new() },
-    };
-    let mass = number("mass").unwrap_or(1.0);
-    let mut spec = ObjectSpec::new(id, Pose::IDENTITY, mass, shape);
-    spec.dynamics.friction = number("friction");
-    spec.dynamics.restitution = number("restitution");
-    let geometry = [
-        "xspan",
-        "yspan",
-        "zspan",
-        "radius",
-        "radiusTop",
-        "radiusBottom",
-        "radiusOuter",
-        "radiusInner",
-        "sides",
-        "file",
-        "scale",
-        "color",
-        "thickness",
-        "handleXspan",
-        "handleYspan",
-        "handleZspan",
-        "handleThickness",
-        "friction",
-        "restitution",
-        "mass",
-    ];
-    spec.descriptions = properties
-        .iter()
-        .filter(|(name, _)| !geometry.contains(&name.as_str()))
-        .cloned()
-        .collect();
-    spec
 }

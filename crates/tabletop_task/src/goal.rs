@@ -18,6 +18,8 @@ pub struct Goal {
     pub reference: Reference,
     /// The object's pose in the frame of the reference, as demonstrated.
     pub pose: Pose,
+    /// The vertical in the frame of the reference, as demonstrated: a unit vector.
+    pub up: Vec3,
     /// The orientations that are as good: those in which the object looks the same.
     pub freedom: Freedom,
     /// The locations that are as good.
@@ -133,6 +135,7 @@ impl Goal {
         Some(Self {
             reference,
             pose: frame.inverse() * manipulation.to,
+            up: frame.rotation.inverse() * Vec3::Z,
             freedom: Freedom::from(&Symmetry::of(&object.spec.shape)),
             place,
         })

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use tabletop_core::{Hand, Pose, SimTick};
 
-use crate::demonstration::{Demonstration, HandDeed};
+use crate::demonstration::{Demonstration, HandAct, HandDeed};
 
 /// The handling of one object, by one hand or by several in turn.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +39,24 @@ pub enum Ending {
     Held,
 }
 
+/// The hand that lets go. The original program names the hand that takes over instead, which holds nothing yet.
+fn letting_go(
+    held: &BTreeMap<Hand, (String, SimTick)>,
+    named: Hand,
+    next: Option<&HandAct>,
+) -> Hand {
+    if held.contains_key(&named) {
+        return named;
+    }
+    let taken = next.and_then(|act| match &act.deed {
+        HandDeed::Grasp(id) if act.hand == named => Some(id),
+        HandDeed::Grasp(_) | HandDeed::Release | HandDeed::Destroy => None,
+    });
+    let holds = |(_, (object, _)): &(&Hand, &(String, SimTick))| Some(object) == taken;
+    let holder = held.iter().find(holds).or_else(|| held.iter().next());
+    holder.map_or(named, |(hand, _)| *hand)
+}
+
 /// Most ticks between release and grasp in a hand-over.
 const HAND_OVER: u64 = 2;
 
@@ -47,14 +65,19 @@ impl Manipulation {
     pub fn all(shown: &Demonstration) -> Vec<Self> {
         let mut held = BTreeMap::<Hand, (String, SimTick)>::new();
         let mut all = Vec::new();
-        for act in &shown.acts {
+        for (i, act) in shown.acts.iter().enumerate() {
             let end = |ending| move |(object, grasp)| (act.hand, object, grasp, act.tick, ending);
             let ended = match &act.deed {
                 HandDeed::Grasp(id) => {
                     let before = held.insert(act.hand, (id.clone(), act.tick));
                     before.map(end(Ending::Released))
                 }
-                HandDeed::Release => held.remove(&act.hand).map(end(Ending::Released)),
+                HandDeed::Release => {
+                    let hand = letting_go(&held, act.hand, shown.acts.get(i + 1));
+                    let released = held.remove(&hand);
+                    released
+                        .map(|(object, grasp)| (hand, object, grasp, act.tick, Ending::Released))
+                }
                 HandDeed::Destroy => held.remove(&act.hand).map(end(Ending::Destroyed)),
             };
             all.extend(ended);

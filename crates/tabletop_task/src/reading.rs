@@ -7,28 +7,33 @@ use tabletop_recorder::{
     RecordedSegment, RecorderError, RecordingReader, TICKS_PER_FRAME, read_original,
 };
 
-use crate::{demonstration::Demonstration, inference::inferred_acts};
+use crate::{demonstration::Demonstration, furniture::Furniture, inference::inferred_acts};
 
 impl Demonstration {
-    /// Reads a recording, be it one of the original program.
+    /// Reads a recording, be it one of the original program. The furniture tells what its events do not.
     ///
     /// # Errors
     /// A file cannot be read, or has a line that no recorder writes; the error names the file.
-    pub fn read(folder: impl AsRef<Path>) -> Result<Self, RecorderError> {
+    pub fn read(folder: impl AsRef<Path>, furniture: &Furniture) -> Result<Self, RecorderError> {
         match read_original(&folder)? {
-            Some(segments) => Ok(Self::of_events(&segments, TICKS_PER_FRAME)),
+            Some(segments) => Ok(Self::of_events(&segments, TICKS_PER_FRAME, furniture)),
             None => Self::of(&RecordingReader::open(folder)?),
         }
     }
 
     /// The demonstration of segments of events, which are all that a recording of the original program has. Objects are as the properties in their
-    /// events describe them; those of a composite do not describe its parts. If the events name no hand, its acts are inferred from the poses.
-    pub fn of_events(segments: &[RecordedSegment], ticks_per_frame: u64) -> Self {
+    /// events describe them; what these leave out, as in the furniture. If the events name no hand, its acts are inferred from the poses.
+    pub fn of_events(
+        segments: &[RecordedSegment],
+        ticks_per_frame: u64,
+        furniture: &Furniture,
+    ) -> Self {
         let mut shown = Self::default();
         shown.follow(segments, ticks_per_frame, true);
         let frames = segments.iter().flat_map(|segment| &segment.events);
         let last = frames.map(|event| event.frame).max().unwrap_or(0);
         shown.end = SimTick(last * ticks_per_frame);
+        shown.furnish(furniture);
         if shown.acts.is_empty() {
             shown.acts = inferred_acts(&shown);
         }

@@ -8,6 +8,7 @@ use crate::{
     requirement::Requirements,
     step::TaskStep,
     task::Task,
+    tipping::Tipping,
 };
 
 impl Task {
@@ -35,9 +36,10 @@ fn sentence(task: &Task, step: &TaskStep) -> String {
     let deed = match step.relations.first() {
         Some(Relation::Destroyed) => format!("remove {object}"),
         Some(Relation::Held) => format!("pick up {object}"),
-        Some(Relation::Turned { axis, degrees }) => {
-            format!("turn {object} {}", turn(*axis, *degrees))
-        }
+        Some(Relation::Turned { axis, degrees }) => match step.tipping {
+            Some(tipping) => tipped(tipping, &object),
+            None => format!("turn {object} {}", turn(*axis, *degrees)),
+        },
         Some(Relation::Slid {
             object: on,
             opening,
@@ -61,8 +63,8 @@ fn sentence(task: &Task, step: &TaskStep) -> String {
             | Relation::Aside,
         )
         | None => match handing_over(&step.hands) {
-            Some(hands) => format!("hand {object} {hands} and put it {place}"),
-            None => format!("put {object} {place}"),
+            Some(hands) => format!("hand {object} {hands} and {}", put(step, "it", &place)),
+            None => put(step, &object, &place),
         },
     };
     let deed = match step.meanwhile {
@@ -72,6 +74,28 @@ fn sentence(task: &Task, step: &TaskStep) -> String {
     let mut letters = deed.chars();
     let first = letters.next().map(|letter| letter.to_ascii_uppercase());
     first.into_iter().chain(letters).chain(['.']).collect()
+}
+
+/// The putting of an object to a place, on whichever of its sides.
+fn put(step: &TaskStep, object: &str, place: &str) -> String {
+    match step.tipping {
+        None => format!("put {object} {place}"),
+        Some(tipping @ (Tipping::StoodUp | Tipping::LaidDown)) => {
+            format!("{} {place}", tipped(tipping, object))
+        }
+        Some(tipping @ (Tipping::TurnedOver | Tipping::OntoAnotherSide)) => {
+            format!("{} and put it {place}", tipped(tipping, object))
+        }
+    }
+}
+
+fn tipped(tipping: Tipping, object: &str) -> String {
+    match tipping {
+        Tipping::StoodUp => format!("stand {object} up"),
+        Tipping::LaidDown => format!("lay {object} down"),
+        Tipping::TurnedOver => format!("turn {object} over"),
+        Tipping::OntoAnotherSide => format!("tip {object} onto another side"),
+    }
 }
 
 /// The place to which a step brings its object.

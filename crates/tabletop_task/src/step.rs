@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use tabletop_core::{Hand, SimTick};
 
-use crate::{goal::Goal, relation::Relation};
+use crate::{goal::Goal, relation::Relation, tipping::Tipping};
 
 /// A manipulation of a task.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,6 +26,8 @@ pub struct TaskStep {
     pub relations: Vec<Relation>,
     /// The goal of the object; `None` if it is removed or only picked up.
     pub goal: Option<Goal>,
+    /// The way in which it comes to lie on another of its sides, if it does.
+    pub tipping: Option<Tipping>,
     /// Numbers of the steps that must be done before it.
     pub after: Vec<usize>,
 }

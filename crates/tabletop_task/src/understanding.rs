@@ -7,8 +7,9 @@ use tabletop_recorder::RecorderError;
 use crate::{
     demonstration::Demonstration,
     detour::fold,
+    furniture::Furniture,
     goal::Goal,
-    manipulation::Manipulation,
+    manipulation::{Ending, Manipulation},
     noun::Nouns,
     order::partial_order,
     relation::{Relation, established},
@@ -17,6 +18,7 @@ use crate::{
     step::TaskStep,
     symmetry::Symmetry,
     task::Task,
+    tipping::Tipping,
 };
 
 impl Task {
@@ -25,7 +27,18 @@ impl Task {
     /// # Errors
     /// A file cannot be read, or has a line that no recorder writes; the error names the file.
     pub fn read(folder: impl AsRef<Path>) -> Result<Self, RecorderError> {
-        Ok(Self::of(&Demonstration::read(folder)?))
+        Self::read_with(folder, &Furniture::default())
+    }
+
+    /// The same, with furniture that tells what a recording of the original program does not.
+    ///
+    /// # Errors
+    /// As of [`Task::read`].
+    pub fn read_with(
+        folder: impl AsRef<Path>,
+        furniture: &Furniture,
+    ) -> Result<Self, RecorderError> {
+        Ok(Self::of(&Demonstration::read(folder, furniture)?))
     }
 
     /// The task of a demonstration.
@@ -49,6 +62,7 @@ impl Task {
                 meanwhile: before.is_some_and(|before| manipulation.grasp < before.release),
                 relations: relations[i].clone(),
                 goal: Goal::of(shown, manipulation, &relations[i]),
+                tipping: tipping(shown, manipulation),
                 after: order[i].iter().map(|step| step + 1).collect(),
             }
         });
@@ -64,6 +78,13 @@ impl Task {
         task.phrase(&Requirements::default());
         task
     }
+}
+
+/// The way in which a manipulation tips its object over.
+fn tipping(shown: &Demonstration, manipulation: &Manipulation) -> Option<Tipping> {
+    let is_released = manipulation.ending == Ending::Released;
+    let object = shown.named(&manipulation.object).filter(|_| is_released)?;
+    Tipping::of(&object.spec.shape, manipulation.from, manipulation.to)
 }
 
 /// The roles of these steps.

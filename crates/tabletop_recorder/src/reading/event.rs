@@ -116,11 +116,25 @@ pub enum Occurrence {
     },
 }
 
+/// The writing of a comma in a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum CommaStyle {
+    /// The value is quoted.
+    Quoted,
+    /// A backslash is before the comma, as in recordings of the original program, which knows no quotes.
+    Escaped,
+}
+
 /// Reads the text of a file of events.
-pub(super) fn read(path: &Path, text: &str) -> Result<Vec<RecordedEvent>, RecorderError> {
+pub(super) fn read(
+    path: &Path,
+    text: &str,
+    commas: CommaStyle,
+) -> Result<Vec<RecordedEvent>, RecorderError> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
+        .quoting(commas == CommaStyle::Quoted)
         .from_reader(text.as_bytes());
     let mut events = Vec::new();
     for record in reader.records() {
@@ -129,15 +143,38 @@ pub(super) fn read(path: &Path, text: &str) -> Result<Vec<RecordedEvent>, Record
             let line = error.position().map_or(0, csv::Position::line);
             damaged(path, line, error)
         })?;
-        let event = parse(&record).map_err(|problem| damaged(path, place(&record), problem))?;
+        let fields: Vec<_> = record.iter().map(str::to_owned).collect();
+        let fields = match commas {
+            CommaStyle::Quoted => fields,
+            CommaStyle::Escaped => joined(fields),
+        };
+        let fields: Vec<_> = fields.iter().map(String::as_str).collect();
+        let event = parse(&fields).map_err(|problem| damaged(path, place(&record), problem))?;
         events.push(event);
     }
     Ok(events)
 }
 
-fn parse(record: &csv::StringRecord) -> Result<RecordedEvent, String> {
-    let fields: Vec<_> = record.iter().collect();
-    let [frame, ref event @ ..] = fields[..] else {
+/// The values of fields that were split at commas with a backslash before them.
+fn joined(fields: Vec<String>) -> Vec<String> {
+    let mut values = Vec::<String>::new();
+    let mut goes_on = false;
+    for field in fields {
+        let (text, is_cut) = match field.strip_suffix('\\') {
+            Some(text) => (format!("{text},"), true),
+            None => (field, false),
+        };
+        match values.last_mut() {
+            Some(value) if goes_on => value.push_str(&text),
+            Some(_) | None => values.push(text),
+        }
+        goes_on = is_cut;
+    }
+    values
+}
+
+fn parse(fields: &[&str]) -> Result<RecordedEvent, String> {
+    let [frame, ref event @ ..] = *fields else {
         return Err("the line is empty".into());
     };
     let frame = number("a frame", frame)?;
@@ -252,7 +289,7 @@ mod tests {
             .from_writer(Vec::new());
         lines.write_record(event.fields(7)).unwrap();
         let text = String::from_utf8(lines.into_inner().unwrap()).unwrap();
-        let [event] = &read(Path::new("1.txt"), &text).unwrap()[..] else {
+        let [event] = &read(Path::new("1.txt"), &text, CommaStyle::Quoted).unwrap()[..] else {
             panic!("{text} is not one event");
         };
         assert_eq!(event.frame, 7);
@@ -305,6 +342,22 @@ mod tests {
     }
 
     #[test]
+    fn a_comma_of_the_original_program_has_a_backslash_before_it() {
+        let text = "0,create,a,shape,block,said,\"one\\, two\\, three\n";
+        let events = read(Path::new("0.txt"), text, CommaStyle::Escaped).unwrap();
+        let [
+            RecordedEvent {
+                what: Occurrence::Create { properties, .. },
+                ..
+            },
+        ] = &events[..]
+        else {
+            panic!("{events:?}");
+        };
+        assert_eq!(properties[1].1, "\"one, two, three");
+    }
+
+    #[test]
     fn a_line_that_is_none_is_named() {
         for (line, problem) in [
             ("x,delete,a", "expected a frame, found `x`"),
@@ -317,7 +370,9 @@ mod tests {
             ),
         ] {
             let text = format!("0,delete,\"two\nlines\"\n{line}\n");
-            let error = read(Path::new("1.txt"), &text).unwrap_err().to_string();
+            let error = read(Path::new("1.txt"), &text, CommaStyle::Quoted)
+                .unwrap_err()
+                .to_string();
             assert!(error.starts_with("1.txt:3: "), "{error}");
             assert!(error.contains(problem), "{error}");
         }

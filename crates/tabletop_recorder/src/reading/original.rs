@@ -8,6 +8,7 @@ use crate::{
     error::RecorderError,
     files::{folder::Folder, frame::TICKS_PER_FRAME, storage::is_taken},
     reading::{
+        event::CommaStyle,
         recording_reader::read_events,
         segment::{HandContents, RecordedSegment},
     },
@@ -28,7 +29,7 @@ pub fn read_original(
     let mut segments = Vec::new();
     let mut hands = HandContents::default();
     for number in 0.. {
-        let Some(events) = read_events(&folder, number)? else {
+        let Some(events) = read_events(&folder, number, CommaStyle::Escaped)? else {
             break;
         };
         let act = hands.follow(&events);

@@ -20,7 +20,7 @@ use crate::{
         storage::is_taken,
     },
     reading::{
-        event::{self, RecordedEvent},
+        event::{self, CommaStyle, RecordedEvent},
         rows::{self, JointRow, StateRow},
         segment::{self, HandContents, RecordedFrame, RecordedSegment},
     },
@@ -137,7 +137,7 @@ impl RecordingReader {
         let mut segments = Vec::new();
         let mut hands = HandContents::default();
         for number in 0.. {
-            let Some(events) = read_events(&self.folder, number)? else {
+            let Some(events) = read_events(&self.folder, number, CommaStyle::Quoted)? else {
                 break;
             };
             let act = hands.follow(&events);
@@ -168,13 +168,13 @@ impl RecordingReader {
         let mut segments = Vec::new();
         let mut hands = HandContents::default();
         let mut next = 0;
-        while let Some(events) = read_events(&self.folder, next)? {
+        while let Some(events) = read_events(&self.folder, next, CommaStyle::Quoted)? {
             hands.follow(&events);
             next += 1;
         }
         for number in next.. {
             let folder = self.folder.undone_segment(number);
-            let Some(events) = read_events(&folder, number)? else {
+            let Some(events) = read_events(&folder, number, CommaStyle::Quoted)? else {
                 break;
             };
             let log = read_whole_lines(&folder.session(), MOST_SESSION_BYTES)?;
@@ -285,11 +285,12 @@ impl RecordingReader {
 pub(super) fn read_events(
     folder: &Folder,
     segment: u32,
+    commas: CommaStyle,
 ) -> Result<Option<Vec<RecordedEvent>>, RecorderError> {
     let path = folder.text(segment);
     if !is_taken(&path) {
         return Ok(None);
     }
     let text = read_whole_lines(&path, MOST_EVENT_BYTES)?;
-    event::read(&path, &text).map(Some)
+    event::read(&path, &text, commas).map(Some)
 }

@@ -1,0 +1,185 @@
+//! Clearing: what is in the way is put aside.
+
+use bevy::math::{Quat, Vec3};
+use tabletop_core::Pose;
+use tabletop_task::{PlaceRange, PlacedSolid, Relation, TaskStep};
+
+use super::Imitator;
+use crate::{
+    failure::PlanFailure,
+    free_spot::free_spots,
+    goals::{Candidate, candidates},
+    sight::{SeenObject, Sight},
+    stage::PlanningStage,
+};
+
+/// What is nearer than this leaves no room for fingers, in units.
+const FINGER_ROOM: f32 = 0.7;
+
+impl Imitator<'_> {
+    /// The object that occupies the goal of a step's object and does not belong there.
+    pub(super) fn occupant(
+        &self,
+        sight: &Sight,
+        step: &TaskStep,
+        id: &str,
+    ) -> Result<Option<String>, PlanFailure> {
+        let goals = candidates(step, self.binding, sight, &self.before)?;
+        let object = sight
+            .objects
+            .get(id)
+            .ok_or_else(|| PlanFailure::Gone(id.to_owned()))?;
+        let others = step.relations.iter().filter_map(Relation::object);
+        let meant: Vec<_> = others
+            .filter_map(|role| self.binding.object(role))
+            .collect();
+        let in_the_way = |goal: &Candidate| {
+            let solids = object.solids_at(Pose::new(
+                goal.pose.location + Vec3::Z * 0.02,
+                goal.pose.rotation,
+            ));
+            let others = sight.objects.iter().filter(|(other, seen)| {
+                *other != id && !seen.is_fixed && !meant.contains(&other.as_str())
+            });
+            let mut overlapping = others.filter(|(_, other)| {
+                let other = other.solids();
+                let meets = |solid: &PlacedSolid| {
+                    other
+                        .iter()
+                        .any(|other| solid.shrunk(0.01).is_within(1e-3, other))
+                };
+                solids.iter().any(meets)
+            });
+            overlapping.next().map(|(id, _)| id.clone())
+        };
+        let occupants: Vec<_> = goals.iter().map(in_the_way).collect();
+        // Only if no goal is free.
+        Ok(match occupants.iter().any(Option::is_none) {
+            true => None,
+            false => occupants.into_iter().flatten().next(),
+        })
+    }
+
+    /// The nearest thing that leaves too little room for fingers beside an object or its place, and does not belong there.
+    pub(super) fn neighbour(
+        &self,
+        sight: &Sight,
+        step: &TaskStep,
+        id: &str,
+    ) -> Result<Option<String>, PlanFailure> {
+        let goals = candidates(step, self.binding, sight, &self.before)?;
+        let Some(object) = sight.objects.get(id) else {
+            return Ok(None);
+        };
+        let places = goals.first().map(|goal| goal.pose);
+        let solids: Vec<_> = places
+            .into_iter()
+            .chain([object.pose])
+            .flat_map(|pose| object.solids_at(pose))
+            .collect();
+        let others = step.relations.iter().filter_map(Relation::object);
+        let done = self.task.steps.iter().take(step.number - 1);
+        let settled = done.map(|step| step.object.as_str()).chain(others);
+        let settled: Vec<_> = settled
+            .filter_map(|role| self.binding.object(role))
+            .collect();
+        let is_movable = |other: &str, seen: &SeenObject| {
+            let is_jointed = || {
+                sight
+                    .joints
+                    .iter()
+                    .any(|joint| joint.objects.iter().any(|one| one == other))
+            };
+            other != id && !seen.is_fixed && !settled.contains(&other) && !is_jointed()
+        };
+        let gap = |other: &SeenObject| {
+            let theirs = other.solids();
+            let gaps = solids
+                .iter()
+                .flat_map(|solid| theirs.iter().map(|other| solid.gap_from_above(other)));
+            gaps.fold(f32::INFINITY, f32::min)
+        };
+        let near = sight
+            .objects
+            .iter()
+            .filter(|(other, seen)| is_movable(other, seen))
+            .map(|(other, seen)| (gap(seen), other))
+            .filter(|(gap, _)| *gap < FINGER_ROOM);
+        let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(nearest.map(|(_, other)| other.clone()))
+    }
+
+    /// Moves something out of the way, with what stands on it.
+    pub(super) fn clear(
+        &self,
+        stage: &mut dyn PlanningStage,
+        id: &str,
+        i: usize,
+    ) -> Result<(), PlanFailure> {
+        for above in stage.sight().above(id) {
+            self.clear(stage, &above, i)?;
+        }
+        let sight = stage.sight().clone();
+        let near = sight
+            .objects
+            .get(id)
+            .map_or(Vec3::ZERO, |object| object.pose.location);
+        self.put_aside(stage, id, near, i)
+    }
+
+    pub(super) fn put_aside(
+        &self,
+        stage: &mut dyn PlanningStage,
+        id: &str,
+        near: Vec3,
+        i: usize,
+    ) -> Result<(), PlanFailure> {
+        let sight = stage.sight().clone();
+        let kept = self.kept(&sight, i);
+        let object = sight.objects.get(id);
+        let rotation = object.map_or(Quat::IDENTITY, |object| object.pose.rotation);
+        let mut spots = Vec::new();
+        let all: Vec<_> = (0..self.body.limbs.len()).collect();
+        for limbs in std::iter::once(all.clone()).chain(all.iter().map(|&limb| vec![limb])) {
+            spots.extend(free_spots(
+                self.body, &sight, id, rotation, near, &limbs, &kept,
+            ));
+        }
+        let goals: Vec<_> = spots
+            .into_iter()
+            .map(|pose| Candidate {
+                pose,
+                cost: pose.location.distance(near) * 0.1,
+                is_tipped: false,
+            })
+            .collect();
+        if goals.is_empty() {
+            return Err(PlanFailure::NoRoom(id.to_owned()));
+        }
+        self.by_some_limb(stage, id, near, |transfer, stage| {
+            transfer.carry_out(stage, &goals)
+        })
+    }
+
+    /// The solids that will stand on the table after this and the later steps. Nothing else is put there.
+    pub(super) fn kept(&self, sight: &Sight, from: usize) -> Vec<PlacedSolid> {
+        let steps = self.task.steps[from..].iter();
+        let later = steps.filter(|step| {
+            let is_exact = step
+                .goal
+                .as_ref()
+                .is_some_and(|goal| goal.place == PlaceRange::Exact);
+            is_exact
+                && !matches!(
+                    step.relations.first(),
+                    Some(Relation::Slid { .. } | Relation::Turned { .. })
+                )
+        });
+        let places = later.filter_map(|step| {
+            let id = self.binding.object(&step.object)?;
+            let goals = candidates(step, self.binding, sight, &self.before).ok()?;
+            Some(sight.objects.get(id)?.solids_at(goals.first()?.pose))
+        });
+        places.flatten().collect()
+    }
+}

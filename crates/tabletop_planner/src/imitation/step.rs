@@ -1,0 +1,212 @@
+//! A step: what it asks for, and how the object gets there.
+
+use bevy::math::Vec3;
+use tabletop_core::{JointKind, Pose};
+use tabletop_task::{Relation, TaskStep};
+
+use super::Imitator;
+use crate::{
+    failure::PlanFailure,
+    goals::{Candidate, bound, candidates, inside, is_inside},
+    grasp::GraspSide,
+    sight::{Sight, heights},
+    stage::PlanningStage,
+};
+
+/// Height above a container's rim from which something is let fall into it, in units.
+const ABOVE_RIM: f32 = 0.1;
+/// Cost of letting something fall, so that it is put down where that is possible.
+const COST_OF_FALL: f32 = 10.0;
+/// How many things are moved out of the way for a step.
+const MOST_CLEARED: usize = 4;
+
+impl Imitator<'_> {
+    pub(super) fn do_step(
+        &self,
+        stage: &mut dyn PlanningStage,
+        i: usize,
+    ) -> Result<(), PlanFailure> {
+        let step = &self.task.steps[i];
+        let id = bound(self.binding, &step.object)?;
+        let sight = stage.sight().clone();
+        let object = sight
+            .objects
+            .get(id)
+            .ok_or_else(|| PlanFailure::Gone(id.to_owned()))?;
+        for above in sight.above(id) {
+            self.clear(stage, &above, i)?;
+        }
+        match step.relations.first() {
+            Some(Relation::Slid { object: holder, .. }) => {
+                let holder = bound(self.binding, holder)?;
+                let by = slide(&sight, step, id, holder)
+                    .ok_or_else(|| PlanFailure::Gone(holder.to_owned()))?;
+                self.by_some_limb(stage, id, object.pose.location, |transfer, stage| {
+                    transfer.slide(stage, by)
+                })
+            }
+            Some(Relation::Held) => {
+                self.by_some_limb(stage, id, object.pose.location, |transfer, stage| {
+                    transfer.pick_up(stage)
+                })
+            }
+            Some(Relation::Destroyed) => self.clear(stage, id, i),
+            Some(Relation::Aside) => {
+                let near = step
+                    .goal
+                    .as_ref()
+                    .map_or(Vec3::ZERO, |goal| goal.pose.location);
+                self.put_aside(stage, id, near, i)
+            }
+            Some(
+                Relation::OnTable
+                | Relation::On { .. }
+                | Relation::Inside { .. }
+                | Relation::Around { .. }
+                | Relation::Beside { .. }
+                | Relation::AlignedWith { .. }
+                | Relation::InPlaceOf { .. }
+                | Relation::Turned { .. },
+            )
+            | None => {
+                for _ in 0..MOST_CLEARED {
+                    let Some(occupant) = self.occupant(stage.sight(), step, id)? else {
+                        break;
+                    };
+                    self.clear(stage, &occupant, i)?;
+                }
+                let mut outcome = self.put(stage, step, id, i);
+                for _ in 0..MOST_CLEARED {
+                    if !matches!(outcome, Err(PlanFailure::NoWay(_))) {
+                        break;
+                    }
+                    let Some(neighbour) = self.neighbour(stage.sight(), step, id)? else {
+                        break;
+                    };
+                    self.clear(stage, &neighbour, i)?;
+                    outcome = self.put(stage, step, id, i);
+                }
+                self.or_from_beside(stage, outcome, |stage| {
+                    let goals = self.goals(stage, step)?;
+                    let at = goals.first().map_or(Vec3::ZERO, |goal| goal.pose.location);
+                    self.by_some_limb_from(stage, GraspSide::Beside, id, at, |transfer, stage| {
+                        transfer.carry_out(stage, &goals)
+                    })
+                })
+            }
+        }
+    }
+
+    /// Puts an object where a step wants it. If no limb reaches both ends, or has a grasp that is free at both, it goes by way of another place.
+    fn put(
+        &self,
+        stage: &mut dyn PlanningStage,
+        step: &TaskStep,
+        id: &str,
+        i: usize,
+    ) -> Result<(), PlanFailure> {
+        let straight = self.put_straight(stage, step, id);
+        let Err(failure @ (PlanFailure::PlaceOutOfReach(_) | PlanFailure::NoWay(_))) = straight
+        else {
+            return straight;
+        };
+        let goals = self.goals(stage, step)?;
+        let is_tipped = goals.iter().any(|goal| goal.is_tipped);
+        let sight = stage.sight();
+        let is_held = sight.limbs.iter().any(|limb| !limb.holds.is_empty());
+        let (Some(object), false) = (sight.objects.get(id), is_held) else {
+            return Err(failure);
+        };
+        let at = goals.first().map_or(Vec3::ZERO, |goal| goal.pose.location);
+        let near = object.pose.location.midpoint(at);
+        let is_on_its_way = match is_tipped {
+            true => self.put_for_tipping(stage, id, near, &goals, i)?,
+            false => self.put_halfway(stage, id, near, i)?,
+        };
+        match is_on_its_way {
+            true => self.put_straight(stage, step, id),
+            false if is_tipped => Err(PlanFailure::Tipped(id.to_owned())),
+            false => Err(failure),
+        }
+    }
+
+    fn put_straight(
+        &self,
+        stage: &mut dyn PlanningStage,
+        step: &TaskStep,
+        id: &str,
+    ) -> Result<(), PlanFailure> {
+        let goals = self.goals(stage, step)?;
+        let at = goals.first().map_or(Vec3::ZERO, |goal| goal.pose.location);
+        let side = match goals.iter().any(|goal| goal.is_tipped) {
+            true => GraspSide::Any,
+            false => GraspSide::Above,
+        };
+        self.by_some_limb_from(stage, side, id, at, |transfer, stage| {
+            transfer.carry_out(stage, &goals)
+        })
+    }
+
+    fn goals(
+        &self,
+        stage: &dyn PlanningStage,
+        step: &TaskStep,
+    ) -> Result<Vec<Candidate>, PlanFailure> {
+        let sight = stage.sight();
+        let goals = candidates(step, self.binding, sight, &self.before)?;
+        if !is_inside(step) {
+            return Ok(goals);
+        }
+        let places = goals.iter().flat_map(|goal| inside(goal.pose, 0.3));
+        let mut places: Vec<_> = places.collect();
+        places.extend(self.above_rim(sight, step, &goals));
+        Ok(places)
+    }
+
+    /// Places above a container from which an object falls into it.
+    fn above_rim(&self, sight: &Sight, step: &TaskStep, goals: &[Candidate]) -> Vec<Candidate> {
+        let container = step.relations.first().and_then(Relation::object);
+        let container = container.and_then(|role| self.binding.object(role));
+        let object = self.binding.object(&step.object);
+        let seen = |id: Option<&str>| sight.objects.get(id?);
+        let (Some(container), Some(object)) = (seen(container), seen(object)) else {
+            return Vec::new();
+        };
+        let [_, rim] = heights(&container.solids());
+        let raised = goals.iter().map(|goal| {
+            let [lowest, _] = heights(&object.solids_at(goal.pose));
+            let up = Vec3::Z * (rim + ABOVE_RIM - lowest).max(0.0);
+            Candidate {
+                pose: Pose::new(goal.pose.location + up, goal.pose.rotation),
+                cost: goal.cost + COST_OF_FALL,
+                is_tipped: false,
+            }
+        });
+        raised.collect()
+    }
+}
+
+/// The displacement by which a step slides an object.
+fn slide(sight: &Sight, step: &TaskStep, id: &str, holder: &str) -> Option<Vec3> {
+    let Some(Relation::Slid {
+        opening, travel, ..
+    }) = step.relations.first()
+    else {
+        return None;
+    };
+    let joint = sight
+        .joints
+        .iter()
+        .find(|joint| joint.objects == [holder.to_owned(), id.to_owned()])?;
+    let JointKind::Slider {
+        max: own_travel, ..
+    } = joint.kind
+    else {
+        return None;
+    };
+    let frame = sight.objects.get(holder)?.pose * joint.frames[0];
+    let own = sight.objects.get(id)?.pose * joint.frames[1];
+    let now = -(frame.inverse() * own.location).x;
+    let wanted = opening / travel * own_travel;
+    Some(frame.rotation * Vec3::NEG_X * (wanted - now))
+}

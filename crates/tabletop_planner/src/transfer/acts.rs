@@ -1,0 +1,167 @@
+//! The acts of a transfer: what the arm does when it takes an object, carries it and lets it go.
+
+use bevy::math::Vec3;
+use tabletop_core::Pose;
+
+use super::{
+    PAIRS, Transfer, above_place,
+    choice::Taking,
+    ways::{Placing, RELEASES},
+};
+use crate::{
+    clearance::{Clearance, Margins},
+    failure::PlanFailure,
+    goals::Candidate,
+    motion::{follow, grip, wait},
+    path::{Path, largest_turn, lift, line, withdraw},
+    stage::PlanningStage,
+    transit::WaySearch,
+};
+
+/// Speed of an end effector, in units/s: on its way, and near the place of a grasp or release.
+const FAST: f64 = 6.0;
+const SLOW: f64 = 2.5;
+/// Speed, in units/s, at which an object comes down on its support without pushing it away, and the number of last postures
+/// at which it applies.
+const GENTLE: f64 = 0.5;
+const GENTLE_POSTURES: usize = 2;
+
+impl Transfer<'_> {
+    /// Grasps the object and puts it at one of these goals.
+    pub fn carry_out(
+        &self,
+        stage: &mut dyn PlanningStage,
+        goals: &[Candidate],
+    ) -> Result<(), PlanFailure> {
+        let sight = stage.sight().clone();
+        let (taking, approach) = self.plan(&sight, goals)?;
+        self.take(stage, &taking, &approach)?;
+        self.put(stage, goals)
+    }
+
+    /// Grasps the object and lifts it.
+    pub fn pick_up(&self, stage: &mut dyn PlanningStage) -> Result<(), PlanFailure> {
+        let sight = stage.sight().clone();
+        let object = self.seen(&sight)?;
+        let goal = Candidate {
+            pose: Pose::new(object.pose.location + Vec3::Z, object.pose.rotation),
+            cost: 0.0,
+            is_tipped: false,
+        };
+        let (taking, approach) = self.plan(&sight, &[goal])?;
+        self.take(stage, &taking, &approach)?;
+        let sight = stage.sight().clone();
+        let clearance = Clearance::new(self.body, &sight, self.limb, &[self.object]);
+        let up = lift(&clearance, &clearance.here(), 1.0).ok_or_else(|| self.no_way())?;
+        follow(stage, self.body, self.limb, &up, SLOW, self.object)
+    }
+
+    /// Grasps the object and moves it along a straight line, as a joint allows.
+    pub fn slide(&self, stage: &mut dyn PlanningStage, by: Vec3) -> Result<(), PlanFailure> {
+        let sight = stage.sight().clone();
+        let object = self.seen(&sight)?.clone();
+        let goal = Candidate {
+            pose: Pose::new(object.pose.location + by, object.pose.rotation),
+            cost: 0.0,
+            is_tipped: false,
+        };
+        let (taking, approach) = self.plan(&sight, &[goal])?;
+        self.take(stage, &taking, &approach)?;
+        let sight = stage.sight().clone();
+        let clearance = Clearance::new(self.body, &sight, self.limb, &[self.object]);
+        let here = clearance.here();
+        let mut there = clearance.end_effector(&here);
+        there.location += by;
+        let way = line(&clearance, &here, there).ok_or_else(|| self.no_way())?;
+        follow(stage, self.body, self.limb, &way, 1.5, self.object)?;
+        let opening = stage.sight().limbs[self.limb].opening as f32 + RELEASES[0];
+        self.let_go(stage, opening)
+    }
+
+    fn take(
+        &self,
+        stage: &mut dyn PlanningStage,
+        taking: &Taking,
+        [way, down]: &[Path; 2],
+    ) -> Result<(), PlanFailure> {
+        grip(stage, self.limb, f64::from(taking.opening))?;
+        follow(stage, self.body, self.limb, way, FAST, self.object)?;
+        follow(stage, self.body, self.limb, down, SLOW, self.object)?;
+        grip(stage, self.limb, 0.0)?;
+        let holds = &stage.sight().limbs[self.limb].holds;
+        if holds.iter().any(|id| id == self.object) {
+            return Ok(());
+        }
+        self.retreat(stage)?;
+        Err(PlanFailure::NotHeld(self.object.to_owned()))
+    }
+
+    /// Opens the gripper and withdraws it.
+    fn retreat(&self, stage: &mut dyn PlanningStage) -> Result<(), PlanFailure> {
+        let limb = &self.body.limbs[self.limb];
+        grip(stage, self.limb, f64::from(limb.widest))?;
+        self.withdraw(stage)
+    }
+
+    fn withdraw(&self, stage: &mut dyn PlanningStage) -> Result<(), PlanFailure> {
+        let sight = stage.sight().clone();
+        let clearance = Clearance::new(self.body, &sight, self.limb, &[self.object]);
+        let here = clearance.here();
+        let by = [1.4, 1.0, 0.6]
+            .into_iter()
+            .find_map(|by| withdraw(&clearance, &here, by));
+        match by {
+            Some(up) => follow(stage, self.body, self.limb, &up, SLOW, self.object),
+            None => Ok(()),
+        }
+    }
+
+    fn let_go(&self, stage: &mut dyn PlanningStage, opening: f32) -> Result<(), PlanFailure> {
+        let widest = self.body.limbs[self.limb].widest;
+        grip(stage, self.limb, f64::from(opening.min(widest)))?;
+        self.withdraw(stage)?;
+        Ok(wait(stage, 15)?)
+    }
+
+    /// Puts the held object at one of these goals, as it now lies in the fingers.
+    fn put(&self, stage: &mut dyn PlanningStage, goals: &[Candidate]) -> Result<(), PlanFailure> {
+        let sight = stage.sight().clone();
+        let object = self.seen(&sight)?;
+        let seen = &sight.limbs[self.limb];
+        let here = seen.angles;
+        let end_effector = self.body.end_effector(self.limb, &here);
+        let grip = end_effector.inverse() * object.pose;
+        let is_tipped = goals.iter().any(|goal| goal.is_tipped);
+        let upright = self.upright(&here, is_tipped);
+        let holding = self.holding(&sight, object, grip, seen.opening as f32, upright);
+        let lifted = self
+            .lifted(&holding, &sight, &here, object.pose)
+            .ok_or_else(|| self.no_way())?;
+        let mut sorted: Vec<_> = goals
+            .iter()
+            .filter_map(|goal| {
+                let put = holding.reach(above_place(*goal, grip), &here)?;
+                let cost = largest_turn(&put, &here) / 1.5 + f64::from(goal.cost);
+                let is_free = holding.is_free(&put, Margins::NARROW);
+                is_free.then_some((cost, *goal, put))
+            })
+            .collect();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let with = |search: WaySearch, pairs: usize| {
+            let some = sorted.iter().take(pairs);
+            some.into_iter().find_map(|(_, goal, put)| {
+                self.placing(&holding, &sight, &lifted, *goal, put, search)
+            })
+        };
+        let placing = with(WaySearch::Simple, PAIRS)
+            .or_else(|| with(WaySearch::Trying(self.seed), PAIRS))
+            .ok_or_else(|| self.no_way())?;
+        let Placing { way, down, opening } = placing;
+        follow(stage, self.body, self.limb, &lifted, SLOW, self.object)?;
+        follow(stage, self.body, self.limb, &way, FAST, self.object)?;
+        let (down, end) = down.split_at(down.len().saturating_sub(GENTLE_POSTURES));
+        follow(stage, self.body, self.limb, down, SLOW, self.object)?;
+        follow(stage, self.body, self.limb, end, GENTLE, self.object)?;
+        self.let_go(stage, opening)
+    }
+}

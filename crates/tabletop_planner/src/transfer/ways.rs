@@ -1,0 +1,160 @@
+//! The ways of a transfer: to the object, up with it, across, and down.
+
+use bevy::math::{Quat, Vec3};
+use tabletop_core::Pose;
+use tabletop_task::PlacedSolid;
+
+use super::{BESIDE, Transfer, choice::Taking};
+use crate::{
+    body::Angles,
+    clearance::{Clearance, Margins},
+    goals::Candidate,
+    path::{Path, lift, withdraw},
+    sight::{SeenObject, Sight, heights},
+    transit::{WaySearch, transit},
+};
+
+/// Openings of the fingers for a release, in units beyond the held width. The first that has room is used.
+pub(super) const RELEASES: [f32; 5] = [0.35, 0.22, 0.14, 0.08, 0.05];
+
+/// A feasible way to put the held object down.
+pub(super) struct Placing {
+    /// Path to above the place.
+    pub way: Path,
+    pub down: Path,
+    /// Opening of the fingers there, in units.
+    pub opening: f32,
+}
+
+impl Transfer<'_> {
+    /// Paths to where the object is taken from, and to it.
+    pub(super) fn approach(
+        &self,
+        sight: &Sight,
+        taking: &Taking,
+        search: WaySearch,
+    ) -> Option<[Path; 2]> {
+        let object = self.seen(sight).ok()?;
+        let near =
+            Clearance::new(self.body, sight, self.limb, &[self.object]).opened(taking.opening);
+        let far = Clearance::new(self.body, sight, self.limb, &[]).opened(taking.opening);
+        let end_effector = near.end_effector(&taking.at);
+        let back = end_effector.rotation * Vec3::Z;
+        let solids = object.solids();
+        let reach = solids.iter().map(|solid| solid.farthest(back).dot(back));
+        let reach = reach.fold(f32::NEG_INFINITY, f32::max);
+        let ends = end_effector.location.dot(back) - self.body.limbs[self.limb].finger.z / 2.0;
+        let away = reach - ends + 0.15;
+        let (up, way) = [away, away + 0.5, (away - 0.4).max(0.3)]
+            .into_iter()
+            .find_map(|by| {
+                let up = withdraw(&near, &taking.at, by)?;
+                if !near.is_way_free(&up, Margins::NARROW) {
+                    return None;
+                }
+                let way = transit(&far, &far.here(), up.last()?, search)?;
+                Some((up, way))
+            })?;
+        let down = up
+            .iter()
+            .rev()
+            .skip(1)
+            .chain([&taking.at])
+            .copied()
+            .collect();
+        Some([way, down])
+    }
+
+    /// Rotation from the object, which the arm takes at these angles, to the end effector's frame; `None` if it is to be tipped.
+    pub(super) fn upright(&self, at: &Angles, is_tipped: bool) -> Option<Quat> {
+        (!is_tipped).then(|| self.body.end_effector(self.limb, at).rotation.inverse())
+    }
+
+    /// The clearance of the arm that holds the object like this, with fingers at this opening.
+    pub(super) fn holding(
+        &self,
+        sight: &Sight,
+        object: &SeenObject,
+        grip: Pose,
+        opening: f32,
+        upright: Option<Quat>,
+    ) -> Clearance<'_> {
+        let solids = object.solids_at(Pose::IDENTITY);
+        Clearance::new(self.body, sight, self.limb, &[self.object])
+            .holding(&solids, grip, upright)
+            .opened(opening)
+    }
+
+    /// The path up with the held object, until it is above everything around it.
+    pub(super) fn lifted(
+        &self,
+        holding: &Clearance,
+        sight: &Sight,
+        from: &Angles,
+        at: Pose,
+    ) -> Option<Path> {
+        let by = self.height(sight, at);
+        [by, by + 0.5, (by - 0.4).max(0.3)]
+            .into_iter()
+            .find_map(|by| {
+                let up = lift(holding, from, by)?;
+                // At the beginning, the held object touches its support.
+                holding
+                    .is_way_free(&up[1.min(up.len() - 1)..], Margins::NARROW)
+                    .then_some(up)
+            })
+    }
+
+    /// Height, in units, to which an object must be lifted to pass over everything around this place of it.
+    fn height(&self, sight: &Sight, at: Pose) -> f32 {
+        let Some(object) = sight.objects.get(self.object) else {
+            return 0.5;
+        };
+        let solids = object.solids_at(at);
+        let [lowest, _] = heights(&solids);
+        let others = sight.objects.iter().filter(|(id, _)| *id != self.object);
+        let near = others
+            .flat_map(|(_, other)| other.solids())
+            .filter(|other| {
+                let is_near = |solid: &PlacedSolid| solid.gap_from_above(other) < 0.12;
+                let is_within = (other.pose.location - at.location).truncate().length() < 0.3;
+                is_within || solids.iter().any(is_near)
+            });
+        let tops = near.map(|other| other.heights()[1] - lowest);
+        tops.filter(|top| *top > 0.03)
+            .fold(0.4, |by, top| by.max(top + 0.2))
+    }
+
+    /// Paths from where the object is lifted to above a goal, and down to these angles of the arm.
+    pub(super) fn placing(
+        &self,
+        holding: &Clearance,
+        sight: &Sight,
+        lifted: &Path,
+        goal: Candidate,
+        put: &Angles,
+        search: WaySearch,
+    ) -> Option<Placing> {
+        if !holding.is_free(put, Margins::NARROW) {
+            return None;
+        }
+        let end = holding.end_effector(put);
+        let widest = self.body.limbs[self.limb].widest;
+        let opening = RELEASES
+            .into_iter()
+            .map(|more| (holding.opening + more).min(widest))
+            .find(|opening| holding.has_room_for_fingers(end, *opening, BESIDE))?;
+        let by = self.height(sight, goal.pose);
+        [by, by + 0.5, (by - 0.4).max(0.3)]
+            .into_iter()
+            .find_map(|by| {
+                let up = lift(holding, put, by)?;
+                if !holding.is_way_free(&up, Margins::NARROW) {
+                    return None;
+                }
+                let way = transit(holding, lifted.last()?, up.last()?, search)?;
+                let down = up.iter().rev().skip(1).chain([put]).copied().collect();
+                Some(Placing { way, down, opening })
+            })
+    }
+}
