@@ -154,7 +154,9 @@ impl Rest {
         // A condition that cannot be asked counts as awake.
         let is_awake = |source: &mut BoxedCondition| source.run_readonly((), world).unwrap_or(true);
         let tick = world.resource::<SimTick>().0;
-        if self.wake_sources.iter_mut().any(is_awake) {
+        if let Some(awake) = self.wake_sources.iter_mut().position(is_awake) {
+            // It is asked first in the next tick, in which it is likely to be awake still.
+            self.wake_sources[..=awake].rotate_right(1);
             self.quiet_since = None;
             return 0;
         }

@@ -35,6 +35,7 @@ mod bodies;
 mod effort;
 mod geometry;
 mod holding;
+mod outside;
 mod rest;
 mod settings;
 mod short_turn;
@@ -50,6 +51,7 @@ pub use geometry::{
 };
 pub use holding::{Carry, JustReleased, hold, let_go, pull_velocity, push, put};
 pub use settings::PhysicsSettings;
+pub use short_turn::send;
 pub use snapshot::{PhysicsSnapshot, remove_joint, remove_object, renew_if_empty};
 
 /// The names that most users of this crate need.
@@ -95,6 +97,7 @@ impl Plugin for PhysicsPlugin {
             .add_message::<ContactForceEvent>()
             .add_message::<MassModifiedEvent>();
         app.init_resource::<Care>()
+            .init_resource::<outside::WrittenBack>()
             .insert_resource(self.settings)
             .insert_resource(TimestepMode::Fixed {
                 dt: TICK_SECONDS,
@@ -128,13 +131,15 @@ impl Plugin for PhysicsPlugin {
                 FixedUpdate,
                 (
                     sync_backend().in_set(PhysicsSet::SyncBackend),
-                    (short_turn::turn_the_short_way, effort::spend_effort)
-                        .chain()
+                    effort::spend_effort
                         .after(PhysicsSet::SyncBackend)
                         .before(PhysicsSet::StepSimulation)
                         .in_set(SimSystems::Physics),
                     RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::StepSimulation),
                     RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::Writeback),
+                    outside::note_written_back
+                        .after(PhysicsSet::Writeback)
+                        .in_set(SimSystems::Physics),
                     (transforms::propagate(), twist::note_twists).in_set(SimSystems::Propagate),
                 )
                     .in_set(RestingSystems),
@@ -163,10 +168,10 @@ impl Plugin for PhysicsPlugin {
     }
 }
 
-/// Rapier's systems before a step, with our propagation of transforms in place of its own.
+/// Rapier's systems before a step, with our propagation of transforms in place of its own. Between them they ask for the changes of thirty
+/// components of every body, so they run only when there are any.
 fn sync_backend() -> ScheduleConfigs<ScheduleSystem> {
-    (
-        transforms::propagate(),
+    let carry_changes = (
         (
             systems::on_add_entity_with_parent,
             systems::on_change_context,
@@ -182,10 +187,13 @@ fn sync_backend() -> ScheduleConfigs<ScheduleSystem> {
             systems::apply_joint_user_changes,
             systems::apply_initial_rigid_body_impulses,
             systems::apply_rigid_body_user_changes,
+            short_turn::turn_the_short_way,
         )
             .chain(),
     )
         .chain()
+        .run_if(outside::has_changed);
+    (transforms::propagate(), carry_changes).chain()
 }
 
 /// The parameters of Rapier's solver, tuned until towers of ten unit blocks stand still. At this scale, gravity is ten times the one that

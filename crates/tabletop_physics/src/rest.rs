@@ -4,6 +4,8 @@ use bevy::{ecs::change_detection::Tick, ecs::system::SystemId, prelude::*};
 use bevy_rapier3d::{plugin::systems::step_simulation, prelude::*};
 use tabletop_core::{RestApp as _, RestingSystems, SimSystems};
 
+use crate::outside::Removals;
+
 /// Number of steps after which Rapier's broad phase checks whether its tree is worth tidying up. Any other step in which everything sleeps
 /// only counts.
 const STEPS_OF_BROAD_PHASE: u64 = 8;
@@ -115,25 +117,8 @@ fn is_any_body_changed(
     !bodies.is_empty()
 }
 
-fn is_any_body_removed(
-    mut bodies: RemovedComponents<RapierRigidBodyHandle>,
-    mut colliders: RemovedComponents<RapierColliderHandle>,
-    mut impulse_joints: RemovedComponents<RapierImpulseJointHandle>,
-    mut multibody_joints: RemovedComponents<RapierMultibodyJointHandle>,
-    mut disabled_bodies: RemovedComponents<RigidBodyDisabled>,
-    mut disabled_colliders: RemovedComponents<ColliderDisabled>,
-    mut sensors: RemovedComponents<Sensor>,
-) -> bool {
-    let removed = [
-        bodies.read().count(),
-        colliders.read().count(),
-        impulse_joints.read().count(),
-        multibody_joints.read().count(),
-        disabled_bodies.read().count(),
-        disabled_colliders.read().count(),
-        sensors.read().count(),
-    ];
-    removed.iter().any(|&removed| removed > 0)
+fn is_any_body_removed(mut removed: Removals) -> bool {
+    removed.any()
 }
 
 /// Lets the engine count the steps of ticks that are passed over, as far as the number matters: the last bits of later steps

@@ -2,6 +2,9 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
+use tabletop_core::Pose;
+
+use crate::geometry::to_rapier;
 
 /// Lets kinematic bodies turn by less than half a turn in a step. A quaternion and its negative are the same orientation, but Rapier takes
 /// velocities from them as they stand: when the sign changes, a body that hardly moves would strike what it touches as if it spun round.
@@ -23,6 +26,28 @@ pub(crate) fn turn_the_short_way(
             body.set_next_kinematic_position(next);
         }
     }
+}
+
+/// Sends a kinematic body to a pose in the next step, by the short way. Its [`Transform`] follows after the step. False if the
+/// engine has no such body.
+pub fn send(bodies: &mut RapierRigidBodySet, entity: Entity, pose: Pose) -> bool {
+    let Some(&handle) = bodies.entity2body().get(&entity) else {
+        return false;
+    };
+    let body = bodies.bodies.get(handle);
+    let Some(body) = body.filter(|body| body.is_kinematic() && body.is_enabled()) else {
+        return false;
+    };
+    let mut next = to_rapier(pose);
+    if body.position().rotation.dot(next.rotation) < 0.0 {
+        next.rotation = -next.rotation;
+    }
+    if next != *body.next_position()
+        && let Some(body) = bodies.bodies.get_mut(handle)
+    {
+        body.set_next_kinematic_position(next);
+    }
+    true
 }
 
 /// The turn from one orientation to another as an axis as long as its angle, in rad; less than half a turn.

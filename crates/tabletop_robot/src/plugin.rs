@@ -10,6 +10,7 @@ use tabletop_physics::PhysicsPlugin;
 
 use crate::{
     articulation::{
+        far_links::FarLinks,
         link_entities::{LinkEntities, RobotLink},
         self_collision::SelfCollisionMatrix,
         tree::Articulation,
@@ -67,6 +68,7 @@ impl Plugin for RobotPlugin {
             .init_resource::<LinkFigures>()
             .insert_resource(JointTargets::none(&layout))
             .init_resource::<LinkEntities>()
+            .init_resource::<FarLinks>()
             .insert_resource(Grips::none(&layout))
             .init_resource::<Motors>()
             .init_resource::<HeadCamera>()
@@ -74,6 +76,7 @@ impl Plugin for RobotPlugin {
             .rollback_resource::<Robot>()
             .rollback_resource::<JointTargets>()
             .rollback_resource::<LinkEntities>()
+            .rollback_resource::<FarLinks>()
             .rollback_resource::<Grips>()
             .rollback_resource::<Motors>();
         let world = app.world_mut();

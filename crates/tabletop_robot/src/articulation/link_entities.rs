@@ -8,7 +8,10 @@ use bevy_rapier3d::{
 use tabletop_core::{CarriesHeadCamera, Pose, Robot, Rollback, Table};
 use tabletop_physics::to_rapier;
 
-use crate::articulation::tree::{Articulation, Body, Positions, TreePosition};
+use crate::articulation::{
+    far_links::FarLinks,
+    tree::{Articulation, Body, Positions, TreePosition},
+};
 
 /// A body of the robot: a link, or a finger of a gripper.
 #[derive(Component, Clone, Debug, Reflect)]
@@ -80,6 +83,12 @@ pub(crate) fn enable(world: &mut World, enabled: bool) -> Result {
             link.insert(RigidBodyDisabled);
         }
     }
+    world.resource_scope(|world, mut far: Mut<FarLinks>| -> Result {
+        let mut contexts =
+            world.query_filtered::<&mut RapierContextColliders, With<DefaultRapierContext>>();
+        far.set(Vec::new(), &links.0, &mut *contexts.single_mut(world)?);
+        Ok(())
+    })?;
     let mut contexts =
         world.query_filtered::<&mut RapierRigidBodySet, With<DefaultRapierContext>>();
     let mut set = contexts.single_mut(world)?;

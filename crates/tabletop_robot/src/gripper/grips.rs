@@ -68,6 +68,11 @@ impl Grips {
         self.names[limb.index()]
     }
 
+    /// True if joints hold any of the held objects, too.
+    pub fn hold_jointed(&self) -> bool {
+        self.held.iter().flatten().any(|grip| grip.is_jointed)
+    }
+
     /// All held objects.
     pub fn all(&self) -> impl Iterator<Item = Entity> {
         self.held.iter().flatten().map(|grip| grip.object)

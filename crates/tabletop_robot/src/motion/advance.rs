@@ -3,10 +3,11 @@
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_rapier3d::{prelude::*, rapier::prelude::RigidBodyHandle};
 use tabletop_core::{LimbId, LimbName, Robot, RobotMode, SimFact};
-use tabletop_physics::PhysicsSettings;
+use tabletop_physics::{PhysicsSettings, send};
 
 use crate::{
     articulation::{
+        far_links::FarLinks,
         link_entities::{LinkEntities, positions, put},
         tree::Posture,
     },
@@ -39,6 +40,7 @@ pub(crate) fn advance(
     mut motors: ResMut<Motors>,
     mut robot: ResMut<Robot>,
     mut grips: ResMut<Grips>,
+    mut far: ResMut<FarLinks>,
     mut moved: MovedBodies,
     mut facts: MessageWriter<SimFact>,
     mut commands: Commands,
@@ -49,11 +51,16 @@ pub(crate) fn advance(
     let is_commanded = targets.are_given();
     if !is_dynamic && !is_commanded {
         stand_still(&mut robot);
+        if !far.are(&[]) {
+            let shapes = &mut moved.rapier.single_mut()?.colliders;
+            far.set(Vec::new(), &known.parts.0, shapes);
+        }
         return let_sleep(&known.parts, &mut moved.rapier);
     }
     let mut rapier = moved.rapier.single_mut()?;
     let here = known.posture(&robot, posture.take());
     let mut motion = known.motion(&robot, &grips, &rapier, here);
+    let start = motion.poses(&motion.positions.clone());
     let pulls = is_dynamic.then(|| {
         motors.look(layout, &robot);
         motors.pull(&mut motion, &targets, settings.gravity, |motion, limb| {
@@ -114,14 +121,23 @@ pub(crate) fn advance(
             sleeping.sleeping = false;
         }
     }
+    if robot.is_shown {
+        let now = known.far_bodies(&mut motion, &start, &grips);
+        if !far.are(&now) {
+            far.set(now, &known.parts.0, &mut rapier.colliders);
+        }
+    }
     for (entity, pose) in known.places(&mut motion, &robot, &grips) {
         let Ok(mut transform) = moved.transforms.get_mut(entity) else {
             continue;
         };
+        let bodies = &mut rapier.rigidbody_set;
         if transform.translation.distance(pose.location) > JUMP {
-            put(&mut rapier.rigidbody_set, entity, pose);
+            put(bodies, entity, pose);
         }
-        transform.set_if_neq(pose.into());
+        if !send(bodies, entity, pose) {
+            transform.set_if_neq(pose.into());
+        }
     }
     *posture = Some(motion.scratch);
     for action in actions {

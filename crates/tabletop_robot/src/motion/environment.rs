@@ -7,13 +7,16 @@ use bevy_rapier3d::{
     parry::bounding_volume::{Aabb, BoundingVolume},
     prelude::*,
 };
-use tabletop_core::{Joint, JointKind};
-use tabletop_physics::{Convex, nearby};
+use tabletop_core::{Joint, JointKind, TICK_SECONDS};
+use tabletop_physics::{Convex, Nearby, nearby};
 
 use crate::{
     articulation::link_entities::RobotLink,
     clearance::{MARGIN, Owner, SweptSolid, are_near},
 };
+
+/// Distance, in units, at which something is near: more than that at which the engine looks for contacts.
+const VICINITY: f32 = 0.5;
 
 /// A free object that the robot can push or take.
 pub(crate) struct FreeObject {
@@ -23,6 +26,8 @@ pub(crate) struct FreeObject {
     pub parts: Vec<Convex>,
     /// The box around it.
     pub bounds: Aabb,
+    /// The box of everything that it may come near in this tick.
+    pub vicinity: Aabb,
     /// True while it sleeps.
     pub is_sleeping: bool,
 }
@@ -63,12 +68,6 @@ impl Environment {
         if !is_shown {
             return environment;
         }
-        for joint in joints {
-            let [one, other] = joint.objects;
-            if !joint.collides && gives_way(joint.kind) {
-                environment.pass.extend([[one, other], [other, one]]);
-            }
-        }
         let near = near.loosened(MARGIN);
         let is_met = |object| !is_robot.contains(object) && !held.contains(&object);
         for thing in nearby(&rapier.colliders, &rapier.rigidbody_set, near, is_met) {
@@ -79,6 +78,7 @@ impl Environment {
                     object,
                     parts,
                     bounds: thing.bounds,
+                    vicinity: vicinity(&thing),
                     is_sleeping: thing.body.is_sleeping(),
                 });
             } else {
@@ -88,11 +88,25 @@ impl Environment {
                 environment.immovable.extend(solids);
             }
         }
+        environment.pass = environment.pairs_that_pass(joints);
         environment
     }
-}
 
-impl Environment {
+    fn pairs_that_pass(&self, joints: &Query<&Joint>) -> BTreeSet<[Entity; 2]> {
+        if joints.is_empty() || self.free.is_empty() {
+            return BTreeSet::new();
+        }
+        let free: BTreeSet<_> = self.free.iter().map(|thing| thing.object).collect();
+        let passes = |joint: &&Joint| {
+            let is_near = joint.objects.iter().any(|object| free.contains(object));
+            is_near && !joint.collides && gives_way(joint.kind)
+        };
+        let pairs = joints.iter().filter(passes).map(|joint| joint.objects);
+        pairs
+            .flat_map(|[one, other]| [[one, other], [other, one]])
+            .collect()
+    }
+
     /// Depth, in units, to which a free object, given by its number, and the objects that it pushes in turn, are squeezed into each other
     /// and into immovable solids.
     pub fn squeeze(&self, pushed: usize) -> f32 {
@@ -125,6 +139,13 @@ impl Environment {
         }
         deepest
     }
+}
+
+/// The box of everything that a body may come near in a tick.
+fn vicinity(thing: &Nearby) -> Aabb {
+    let radius = thing.bounds.half_extents().length();
+    let speed = thing.body.linvel().length() + radius * thing.body.angvel().length();
+    thing.bounds.loosened(VICINITY + speed * TICK_SECONDS)
 }
 
 fn depth_between(one: &FreeObject, other: &FreeObject) -> f32 {

@@ -432,6 +432,19 @@ impl TickMotion<'_> {
         None
     }
 
+    /// True if a body comes near no free object on its way from some poses to others.
+    pub fn is_far(&self, number: usize, from: &Poses, to: &Poses) -> bool {
+        let way = self.around(number, from).merged(&self.around(number, to));
+        let [from, to] = [from, to].map(|poses| poses.bodies[number]);
+        let parts = &self.articulation.bodies[number].parts;
+        let free = self.environment.free.iter();
+        let mut near = free.filter(|thing| way.intersects(&thing.vicinity));
+        near.all(|thing| {
+            let mut solids = SweptSolid::moving(parts, Owner::Body(number), from, to);
+            solids.all(|solid| !solid.passes(&thing.vicinity))
+        })
+    }
+
     /// True if a solid of an arm is near this box at present.
     pub fn is_near(&mut self, limb: LimbId, bounds: &Aabb) -> bool {
         let here = self.poses(&self.positions.clone());

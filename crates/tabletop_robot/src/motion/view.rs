@@ -18,7 +18,7 @@ use crate::{
     gripper::grips::Grips,
     motion::{
         environment::Environment,
-        sweep::{Carried, TickMotion, reach},
+        sweep::{Carried, Poses, TickMotion, reach},
     },
 };
 
@@ -166,6 +166,18 @@ impl RobotView<'_, '_> {
                 .extend(self.articulation.joint_origins(limb, posture));
             state.is_moving = targets.is_under_way(&self.articulation.layout, limb);
         }
+    }
+
+    /// Whether each body is so far from all free objects on its way from these poses to its present ones that it touches none.
+    pub fn far_bodies(&self, motion: &mut TickMotion, before: &Poses, grips: &Grips) -> Vec<bool> {
+        if grips.hold_jointed() {
+            return Vec::new();
+        }
+        let here = motion.poses(&motion.positions.clone());
+        let bodies = 0..self.articulation.bodies.len();
+        bodies
+            .map(|number| motion.is_far(number, before, &here))
+            .collect()
     }
 
     /// The sleeping objects that the arms may touch in this tick. Rapier would let things move into sleeping objects for a tick.

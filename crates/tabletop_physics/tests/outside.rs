@@ -1,0 +1,75 @@
+//! What anything but the engine changes in bodies reaches the engine in the next step, also while it is paused for a tick.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
+use tabletop_core::prelude::*;
+use tabletop_physics::PhysicsPlugin;
+
+/// An app in which a ball falls, so that the engine changes something in every tick.
+fn app() -> (App, Entity) {
+    let mut app = App::new();
+    app.add_plugins((
+        MinimalPlugins,
+        CorePlugin::default(),
+        PhysicsPlugin::default(),
+    ))
+    .start();
+    let ball = ball(&mut app, 0.0);
+    app.step(5);
+    (app, ball)
+}
+
+fn ball(app: &mut App, x: f32) -> Entity {
+    let shape = Shape::Sphere {
+        radius: 0.5,
+        color: Rgb::GRAY,
+    };
+    let spec = ObjectSpec::new(format!("ball at {x}"), Pose::at(Vec3::X * x), 1.0, shape);
+    app.world_mut().spawn(spec).id()
+}
+
+fn bodies(app: &mut App) -> usize {
+    let mut sets = app.world_mut().query::<&RapierRigidBodySet>();
+    sets.single(app.world()).unwrap().bodies.len()
+}
+
+#[test]
+fn a_change_of_a_component_reaches_the_engine() {
+    let (mut app, ball) = app();
+    let place = |app: &App| app.world().get::<Transform>(ball).unwrap().translation;
+    app.world_mut()
+        .get_mut::<Transform>(ball)
+        .unwrap()
+        .translation = Vec3::X * 7.0;
+    app.step(1);
+    assert_eq!(place(&app).x, 7.0);
+    app.world_mut().get_mut::<Velocity>(ball).unwrap().linear = Vec3::Y * 6.0;
+    app.step(1);
+    assert!((place(&app).y - 0.1).abs() < 1e-5, "{}", place(&app));
+    app.world_mut()
+        .entity_mut(ball)
+        .insert((GravityScale(0.0), Velocity::zero()));
+    app.step(1);
+    let height = place(&app).z;
+    app.step(10);
+    assert_eq!(place(&app).z, height, "it floats");
+}
+
+#[test]
+fn a_body_that_comes_or_goes_during_a_pause_reaches_the_engine_after_it() {
+    for paused in [1, 2] {
+        let (mut app, falling) = app();
+        let gone = ball(&mut app, 5.0);
+        app.step(2);
+        assert_eq!(bodies(&mut app), 2);
+        app.world_mut().write_command(ClockCommand::SetPaused(true));
+        app.step(3);
+        app.world_mut().entity_mut(gone).remove::<RigidBody>();
+        app.step(paused);
+        app.world_mut()
+            .write_command(ClockCommand::SetPaused(false));
+        app.step(2);
+        assert_eq!(bodies(&mut app), 1, "{falling} is left after {paused}");
+    }
+}
