@@ -5,7 +5,7 @@ use std::fs;
 use tabletop::{prelude::*, replay::first_difference};
 
 use crate::{
-    demonstration::Demonstration,
+    demonstration::{Demonstration, assert_replays},
     random::{Random, scene, script},
 };
 
@@ -120,6 +120,23 @@ fn what_one_object_was_released_for_is_undone_and_it_falls_as_before() {
             with_detour.tick(&[]);
         }
     }
+}
+
+#[test]
+fn what_was_undone_in_a_pause_just_after_a_release_falls_in_time_after_redo() {
+    let mut demonstration = begun("undone_in_a_pause");
+    let set_paused = |is_paused| ClockCommand::SetPaused(is_paused).into();
+    demonstration.act(&[
+        (vec![grasp(Hand::Left, "ball")], 2),
+        (vec![move_to(Hand::Left, (2.0, 0.0, 4.0))], 30),
+        (vec![grasp(Hand::Left, "block4")], 1),
+        (vec![set_paused(true)], 1),
+        (vec![HistoryCommand::Undo.into()], 1),
+        (vec![set_paused(false)], 2),
+        (vec![HistoryCommand::Redo.into()], 20),
+        (vec![RecordingCommand::Finish.into()], 1),
+    ]);
+    assert_replays(&demonstration.folder);
 }
 
 #[test]
