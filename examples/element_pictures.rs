@@ -10,7 +10,7 @@ use std::{collections::BTreeMap, error::Error, fs, fs::File, io::BufWriter, path
 use bevy::prelude::*;
 use tabletop::prelude::*;
 use tabletop_camera::{Camera, DrawnSolid, Rasterizer, Scene};
-use tabletop_core::{Bounds, Picture, Table};
+use tabletop_core::{Bounds, LIGHT, Picture, Table};
 
 const TASK: &str = "tablesetup/elements.xml";
 const FOLDER: &str = "docs/elements";
@@ -120,6 +120,7 @@ fn camera(group: &[(&ObjectSpec, Pose)]) -> Camera {
         width: SIZE[0],
         height: SIZE[1],
         antialiasing: true,
+        light: LIGHT,
     }
 }
 

@@ -7,7 +7,7 @@ use std::{error::Error, fs::File, io::BufWriter, path::Path, sync::Arc};
 
 use bevy::prelude::*;
 use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Facets, Rasterizer, Scene};
-use tabletop_core::{Face, JointRole, Picture, Pose, Rgb, RobotLayout, Solid, Table};
+use tabletop_core::{Face, JointRole, LIGHT, Picture, Pose, Rgb, RobotLayout, Solid, Table};
 use tabletop_kinematics::{RobotModel, baxter};
 use tabletop_robot::look::{figure_of, merged, screen_with};
 
@@ -50,6 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             width: SIZE,
             height: SIZE,
             antialiasing: true,
+            light: LIGHT,
         };
         rasterizer.draw(&scene, &camera, &mut picture);
         write_png(&picture, Path::new(path))?;

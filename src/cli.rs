@@ -9,6 +9,7 @@ mod duration;
 mod explain;
 mod failure;
 mod faultless;
+mod hand_cameras;
 mod imitate;
 mod init;
 #[cfg(feature = "window")]

@@ -21,7 +21,7 @@ use tabletop_core::{
 };
 use tabletop_kinematics::ModelError;
 use tabletop_planner::{PlanFailure, RobotBody, imitate};
-use tabletop_recorder::{Durability, RecorderError, RecorderPlugin, RecordingReader};
+use tabletop_recorder::{Durability, HandPictures, RecorderError, RecorderPlugin, RecordingReader};
 use tabletop_scene::{IdAllocator, assemble};
 use tabletop_task::{Binding, Demonstration, RequirementError, Requirements, Task};
 
@@ -52,6 +52,7 @@ pub struct Multiplication {
     /// The robot, if it demonstrates.
     body: Option<RobotBody>,
     variation: Variation,
+    hand_pictures: HandPictures,
     seed: u64,
 }
 
@@ -133,6 +134,7 @@ impl Multiplication {
             scene,
             body,
             variation,
+            hand_pictures: HandPictures::None,
             seed,
         })
     }
@@ -149,6 +151,15 @@ impl Multiplication {
         }
         self.scene = scene;
         Ok(self)
+    }
+
+    /// The same with the pictures of hand cameras.
+    #[must_use]
+    pub fn with_hand_pictures(self, hand_pictures: HandPictures) -> Self {
+        Self {
+            hand_pictures,
+            ..self
+        }
     }
 
     /// Records the demonstration of this number in a new folder. It tries other places until the relations of the task hold at the end.
@@ -211,8 +222,9 @@ impl Multiplication {
     ) -> Result<Result<(), (usize, PlanFailure)>, MultiplyError> {
         let objects = assemble(&scene, &mut IdAllocator::default()).objects;
         let binding = self.task.bind(&self.requirements, &objects)?;
-        let camera = self.variation.camera(&scene.table, random);
+        let mount = self.variation.mount(&scene.table, random);
         let seed = random.bits();
+        let light = self.variation.light(random);
         let mut header = serde_json::Map::new();
         header.insert(
             "multiplied".into(),
@@ -221,14 +233,15 @@ impl Multiplication {
         let mut app = headless_app_with(TabletopSimPlugins.build().set(RecorderPlugin {
             folder: folder.to_owned(),
             header,
+            hand_pictures: self.hand_pictures.clone(),
             // Demonstrations lost with the power are made again.
             durability: Durability::None,
             ..default()
         }));
-        if let Some(camera) = camera {
-            app.insert_resource::<HeadCamera>(camera);
-        }
         let world = app.world_mut();
+        let mut camera = world.resource_mut::<HeadCamera>();
+        camera.mount = mount;
+        camera.light = light;
         world.write_command(SceneCommand::Set(Box::new(scene)));
         if self.body.is_some() {
             world.write_command(RobotCommand::Show(true));

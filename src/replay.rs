@@ -15,14 +15,14 @@ use std::path::{Path, PathBuf};
 use bevy::{app::PluginGroupBuilder, ecs::message::MessageCursor, prelude::*};
 use serde::Deserialize as _;
 use tabletop_core::{
-    Actor, HeadCamera, Reach, RecordingCommand, SimCommand, SimFact, SimTick, StepApp as _,
-    TICKS_PER_SECOND,
+    Actor, HandCamera, HeadCamera, Reach, RecordingCommand, SimCommand, SimFact, SimTick,
+    StepApp as _, TICKS_PER_SECOND,
 };
 use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
 use tabletop_recorder::{
-    RecorderPlugin, RecordingReader, Session, SessionCommand, TICKS_PER_FRAME,
+    HandPictures, RecorderPlugin, RecordingReader, Session, SessionCommand, TICKS_PER_FRAME,
 };
-use tabletop_robot::RobotPlugin;
+use tabletop_robot::{Description, DescriptionError, RobotPlugin};
 
 use crate::{
     TabletopSimPlugins, headless_app_with,
@@ -98,6 +98,12 @@ impl Replay {
             .clone()
             .plugin(Reach::of([&folder].into_iter().chain(allowed)));
         let robot = robot.map_err(|error| fault("settings.robot", error.to_string()))?;
+        let missing = on_no_link(&header.hand_cameras, &robot)
+            .map_err(|error| fault("settings.robot", error.to_string()))?;
+        if let Some(HandCamera { name, link, .. }) = missing {
+            let problem = format!("{name}: the robot has no link {link}");
+            return Err(fault("hand_cameras", problem));
+        }
         let Some(begin) = header.begin_tick.map(SimTick) else {
             return Err(ReplayError::NoBeginning { path });
         };
@@ -161,6 +167,11 @@ impl Replay {
         self.session.header.camera.unwrap_or_default()
     }
 
+    /// The hand cameras whose pictures were recorded.
+    pub fn hand_cameras(&self) -> &[HandCamera] {
+        &self.session.header.hand_cameras
+    }
+
     /// The simulator with the settings with which it was recorded.
     pub fn plugins(&self) -> PluginGroupBuilder {
         TabletopSimPlugins
@@ -182,13 +193,18 @@ impl Replay {
         player.play_in(app);
     }
 
-    /// Replays it without a window and records that, with its own settings in the header and pictures from this camera.
+    /// Replays it without a window and records that, with its own settings in the header and pictures from this camera; and with those of the
+    /// same hand cameras, unless the recorder has others.
     ///
     /// # Errors
     /// [`ReplayError::Record`], as with a full disk.
     pub fn record(&self, recorder: RecorderPlugin, camera: HeadCamera) -> Result<(), ReplayError> {
         let recorder = RecorderPlugin {
             header: self.session.header.settings.clone(),
+            hand_pictures: match recorder.hand_pictures {
+                HandPictures::None => HandPictures::Of(self.hand_cameras().to_vec()),
+                others => others,
+            },
             ..recorder
         };
         let mut app = headless_app_with(self.plugins().set(recorder));
@@ -205,4 +221,21 @@ impl Replay {
         }
         Ok(())
     }
+}
+
+/// The first of these cameras that is on no link of a robot.
+fn on_no_link<'c>(
+    cameras: &'c [HandCamera],
+    robot: &RobotPlugin,
+) -> Result<Option<&'c HandCamera>, DescriptionError> {
+    if cameras.is_empty() {
+        return Ok(None);
+    }
+    let description = match robot.description.clone() {
+        Some(description) => description,
+        None => Description::baxter()?,
+    };
+    Ok(cameras
+        .iter()
+        .find(|camera| description.model.find_link(&camera.link).is_err()))
 }

@@ -30,6 +30,7 @@ use tabletop_gui::{Preferences, PresetSeeds, WidgetListPlugin, keymap_file::Keym
 use self::opening::{Beginning, Opening};
 use crate::{
     TabletopSimPlugins, TabletopWindowPlugins,
+    recorder::{HandPictures, RecorderPlugin},
     replay::{PlaybackPlugin, Replay},
     robot::RobotPlugin,
     script::{ScriptPlugin, ScriptSettings, Waiting},
@@ -45,6 +46,8 @@ pub struct WindowOptions {
     pub allowed: Vec<PathBuf>,
     /// The robot at the table; a replay has that of its recording.
     pub robot: RobotPlugin,
+    /// The hand cameras whose pictures are recorded, too; a replay has those of its recording.
+    pub hand_pictures: HandPictures,
     /// True if the robot stands at the table from the start.
     pub show_robot: bool,
     /// The scripts that can drive the robot, and their engine.
@@ -124,6 +127,13 @@ fn build(options: WindowOptions) -> App {
             Show::Task(_) => TabletopSimPlugins.build().set(options.robot),
             Show::Replay(replay) => replay.plugins(),
         }
+        .set(RecorderPlugin {
+            hand_pictures: match &options.show {
+                Show::Task(_) => options.hand_pictures,
+                Show::Replay(replay) => HandPictures::Of(replay.hand_cameras().to_vec()),
+            },
+            ..default()
+        })
         .set(ScriptPlugin {
             settings: ScriptSettings {
                 waiting: Waiting::Frame(LONGEST_WAIT),

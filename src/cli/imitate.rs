@@ -14,7 +14,9 @@ use tabletop::{
     imitation::{AppStage, scattered_for},
     multiplication::with_colors_exchanged,
     planner::{Doing, Imitation, RobotBody, imitate},
-    recorder::{RecorderPlugin, RecordingReader, UnrecordedPlugin, read_original},
+    recorder::{
+        HandPictures, RecorderPlugin, RecordingReader, UnrecordedPlugin, read_original,
+    },
     robot::{Description, RobotPlugin},
     scene::{IdAllocator, assemble},
     task::{Requirements, Task},
@@ -29,11 +31,13 @@ use super::{
     allowed_paths::AllowedPaths,
     explain::{furniture, read},
     faultless::read_faultless_task,
+    hand_cameras::HandCameraOption,
     robot_options::RobotChoice,
     terminal::{say, show_warnings},
 };
 
 #[derive(Args)]
+#[command(mut_group("HandCameraOption", |options| options.requires("record")))]
 pub(super) struct ImitateArgs {
     /// The recording's folder
     #[arg(value_name = "DIR")]
@@ -57,6 +61,8 @@ pub(super) struct ImitateArgs {
     /// Record the robot; several trials get a folder each below this one
     #[arg(long, value_name = "DIR")]
     record: Option<PathBuf>,
+    #[command(flatten)]
+    hand_cameras: HandCameraOption,
 }
 
 /// The result of a trial.
@@ -76,6 +82,7 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
     };
     let (task, requirements) = read(&args.recording, &furniture(&scene))?;
     let robot = args.robot.plugin()?;
+    let hand_pictures = args.hand_cameras.of(&robot)?;
     let description = match robot.description.clone() {
         Some(description) => description,
         None => Description::baxter().map_err(Failure::run)?,
@@ -102,6 +109,7 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
             scene: &scene,
             body: &body,
             robot: &robot,
+            hand_pictures: &hand_pictures,
             exchanges_colors: args.exchange_colors,
             seed,
             folder,
@@ -160,6 +168,7 @@ struct Attempt<'a> {
     scene: &'a SceneSpec,
     body: &'a RobotBody,
     robot: &'a RobotPlugin,
+    hand_pictures: &'a HandPictures,
     exchanges_colors: bool,
     seed: Option<u64>,
     folder: Option<PathBuf>,
@@ -193,6 +202,7 @@ impl Attempt<'_> {
         let plugins = match &self.folder {
             Some(folder) => plugins.set(RecorderPlugin {
                 folder: folder.clone(),
+                hand_pictures: self.hand_pictures.clone(),
                 ..default()
             }),
             None => plugins.disable::<RecorderPlugin>().add(UnrecordedPlugin),

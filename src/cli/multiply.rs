@@ -16,17 +16,22 @@ use std::{
 
 use clap::Args;
 use serde_json::{Value, json};
-use tabletop::multiplication::{Demonstrator, Made, Multiplication, MultiplyError, Variation};
+use tabletop::{
+    multiplication::{Demonstrator, Made, Multiplication, MultiplyError, Variation},
+    robot::RobotPlugin,
+};
 
 use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
     faultless::read_faultless_task,
+    hand_cameras::HandCameraOption,
     progress::ProgressLine,
     terminal::{say, show_warnings},
 };
 
 #[derive(Args)]
+#[command(mut_group("HandCameraOption", |options| options.requires("robot")))]
 pub(super) struct MultiplyArgs {
     /// The recording's folder
     #[arg(value_name = "DIR")]
@@ -60,6 +65,11 @@ pub(super) struct MultiplyArgs {
     /// Move the head camera by up to this many units, and turn it by up to 2° per unit
     #[arg(long, value_name = "UNITS", value_parser = length, default_value_t = 0.0, hide_default_value = true)]
     camera: f32,
+    /// Let brightness, direction and colour of the light in the pictures differ by up to this part
+    #[arg(long, value_name = "PART", value_parser = part, default_value_t = 0.0, hide_default_value = true)]
+    light: f32,
+    #[command(flatten)]
+    hand_cameras: HandCameraOption,
     /// Number of demonstrations made at a time [default: the number of cores]
     #[arg(long, value_name = "N")]
     jobs: Option<usize>,
@@ -97,7 +107,9 @@ pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
         sizes: args.sizes,
         distractors: args.distractors,
         camera: args.camera,
+        light: args.light,
     };
+    let hand_pictures = args.hand_cameras.of(&RobotPlugin::default())?;
     let multiplication = Multiplication::of(&args.recording, demonstrator, variation, args.seed)
         .map_err(Failure::input)?;
     let multiplication = match &args.setup {
@@ -108,6 +120,7 @@ pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
         }
         None => multiplication,
     };
+    let multiplication = multiplication.with_hand_pictures(hand_pictures);
     prepare(args)?;
     let start = Instant::now();
     let missing: Vec<_> = (0..args.count)
@@ -302,6 +315,12 @@ impl MultiplyArgs {
         // What was made before there were these options goes on.
         if self.sizes > 0.0 {
             manifest["sizes"] = json!(self.sizes);
+        }
+        if self.light > 0.0 {
+            manifest["light"] = json!(self.light);
+        }
+        if self.hand_cameras.hand_cameras {
+            manifest["hand_cameras"] = json!(true);
         }
         if let Some(setup) = &self.setup {
             manifest["setup"] = json!(setup);

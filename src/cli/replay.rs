@@ -7,7 +7,7 @@ use clap::Args;
 use tabletop::{
     core::{HeadCamera, Pose, SimTick, StepApp as _},
     headless_app_with,
-    recorder::{Channels, Durability, RecorderPlugin},
+    recorder::{Channels, Durability, HandPictures, RecorderPlugin},
     replay::{Player, Replay},
     script::ScriptPlugin,
 };
@@ -68,6 +68,9 @@ struct PictureArgs {
     /// Make the pictures again with this angle of view from top to bottom
     #[arg(long, value_name = "DEGREES", value_parser = angle_of_view)]
     fov: Option<f32>,
+    /// Add the pictures of the cameras in the robot's hands
+    #[arg(long)]
+    hand_cameras: bool,
     /// Write a 16-bit PNG file of distances beside each picture
     #[arg(long)]
     depth: bool,
@@ -202,6 +205,10 @@ impl PictureArgs {
         let recorder = RecorderPlugin {
             folder: into,
             channels,
+            hand_pictures: match self.hand_cameras {
+                true => HandPictures::OfAll,
+                false => HandPictures::None,
+            },
             durability,
             ..default()
         };

@@ -34,6 +34,7 @@ use super::{
     duration::{pass, seconds, ticks},
     explain::read,
     faultless::read_faultless_task,
+    hand_cameras::HandCameraOption,
     robot_options::{EngineOptions, RobotOptions, script},
     script::{Script, headless_settings},
     terminal::{say, show_warnings},
@@ -44,6 +45,7 @@ pub(super) const DEFAULT_SETUP: &str = "tablesetup/default.xml";
 
 #[derive(Args)]
 #[command(mut_group("EngineOptions", |options| options.requires("script")))]
+#[command(mut_group("HandCameraOption", |options| options.requires("record")))]
 pub(super) struct RunArgs {
     /// The scenario to perform (docs/scenarios.md); exit code 1 if one of its steps fails
     #[arg(value_name = "SCENARIO")]
@@ -68,6 +70,8 @@ pub(super) struct RunArgs {
     /// The folder for the scenario's recording; without it, nothing is recorded
     #[arg(long, value_name = "DIR", requires = "scenario")]
     record: Option<PathBuf>,
+    #[command(flatten)]
+    hand_cameras: HandCameraOption,
     /// Write the final pose of every object as CSV (`id,x,y,z,rx,ry,rz`); `-` for standard output
     #[arg(long, value_name = "FILE|-")]
     final_state: Option<Output>,
@@ -173,7 +177,7 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
         program.limit = ticks(seconds);
     }
 
-    let mut app = headless_app_with(recording(plugins(args)?, args));
+    let mut app = headless_app_with(recording(plugins(args)?, args)?);
     let (limit, only_prepares) = (program.limit, program.only_prepares());
     app.insert_resource(ScenarioRun::new(program)).add_systems(
         FixedLast,
@@ -292,9 +296,9 @@ fn plugins(args: &RunArgs) -> Result<PluginGroupBuilder, Failure> {
 }
 
 /// The same with a recorder, if one is asked for.
-fn recording(plugins: PluginGroupBuilder, args: &RunArgs) -> PluginGroupBuilder {
+fn recording(plugins: PluginGroupBuilder, args: &RunArgs) -> Result<PluginGroupBuilder, Failure> {
     let Some(folder) = args.record.clone() else {
-        return plugins.disable::<RecorderPlugin>().add(UnrecordedPlugin);
+        return Ok(plugins.disable::<RecorderPlugin>().add(UnrecordedPlugin));
     };
     let mut header = serde_json::Map::new();
     let scenario = args.scenario.as_deref().map(true_path);
@@ -303,11 +307,12 @@ fn recording(plugins: PluginGroupBuilder, args: &RunArgs) -> PluginGroupBuilder 
         header.insert("setup".into(), json!(true_path(setup)));
     }
     header.insert("seed".into(), json!(args.seed));
-    plugins.set(RecorderPlugin {
+    Ok(plugins.set(RecorderPlugin {
         folder,
         header,
+        hand_pictures: args.hand_cameras.of(&args.robot.plugin()?)?,
         ..default()
-    })
+    }))
 }
 
 impl RunArgs {

@@ -45,6 +45,9 @@ pub(super) struct WindowArgs {
     engine: EngineOptions,
     #[command(flatten)]
     robot: RobotOptions,
+    #[cfg(feature = "window")]
+    #[command(flatten)]
+    hand_cameras: super::hand_cameras::HandCameraOption,
     /// Keep a list of the widgets on the screen in this file, a line each with its name and place, for programs that click
     #[cfg(feature = "window")]
     #[arg(long, value_name = "FILE")]
@@ -62,10 +65,12 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
     if args.screenshot.is_some() {
         display.ask.get_or_insert(false);
     }
+    let robot = args.robot.plugin()?;
     let options = WindowOptions {
         show: Show::Task(args.setup.clone()),
         allowed: args.allowed.folders.clone(),
-        robot: args.robot.plugin()?,
+        hand_pictures: args.hand_cameras.of(&robot)?,
+        robot,
         show_robot: args.robot.show_robot,
         scripts: args.engine.settings(args.script.as_deref())?,
         display,
@@ -91,6 +96,7 @@ pub(super) fn play(
     allowed: Vec<PathBuf>,
 ) -> Result<ExitCode, Failure> {
     use tabletop::{
+        recorder::HandPictures,
         robot::RobotPlugin,
         window::{self, DisplayOptions, Show, WindowOptions},
     };
@@ -98,6 +104,7 @@ pub(super) fn play(
     let options = WindowOptions {
         show: Show::Replay(Box::new(replay)),
         allowed,
+        hand_pictures: HandPictures::default(),
         robot: RobotPlugin::default(),
         show_robot: false,
         scripts,

@@ -92,6 +92,7 @@ mod tests {
                 start_tick: 90,
                 earlier_commands: 1,
                 camera: None,
+                hand_cameras: Vec::new(),
                 settings: serde_json::Map::new(),
             },
             scene: SessionScene {

@@ -4,7 +4,8 @@ use std::f32::consts::TAU;
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{
-    HeadCamera, NAMED_COLORS, ObjectSpec, Pose, Random, Rgb, SceneItem, SceneSpec, Shape, Table,
+    HeadCamera, LIGHT, Light, NAMED_COLORS, ObjectSpec, Pose, Random, Rgb, SceneItem, SceneSpec,
+    Shape, Table,
 };
 use tabletop_planner::RobotBody;
 use tabletop_scene::{IdAllocator, assemble};
@@ -24,6 +25,8 @@ pub struct Variation {
     pub distractors: u32,
     /// Largest displacement of the head camera, in units; it also turns by up to 2° per unit.
     pub camera: f32,
+    /// By which part of it, at most, the brightness of the light in the pictures differs; also its direction and colour. 0 for not at all.
+    pub light: f32,
 }
 
 /// Number of arrangements among which one with all goals on the table is searched for.
@@ -36,13 +39,15 @@ const SHADE: f32 = 0.12;
 const LEVEL: f32 = 0.02;
 /// The extents of distractors, in units.
 const DISTRACTOR: (f32, f32) = (0.6, 1.6);
+/// Part by which red and blue of the light differ per part of its brightness.
+const WARMTH: f32 = 0.5;
 /// Angle by which the camera is turned per unit of its displacement, in rad.
 const TURN: f32 = 0.035;
 
 impl Variation {
-    /// The displaced head camera, if it is to be displaced.
-    pub(super) fn camera(&self, table: &Table, random: &mut Random) -> Option<HeadCamera> {
-        let mut camera = HeadCamera::default();
+    /// The pose of the head camera, if it is to be displaced.
+    pub(super) fn mount(&self, table: &Table, random: &mut Random) -> Option<Pose> {
+        let camera = HeadCamera::default();
         let mut any = |most: f32| random.between((-most, most));
         let by = Vec3::new(any(self.camera), any(self.camera), any(self.camera));
         let turns = [Vec3::X, Vec3::Y, Vec3::Z]
@@ -52,11 +57,24 @@ impl Variation {
         }
         let pose = camera.pose(table);
         let turn = turns[0] * turns[1] * turns[2];
-        camera.mount = Some(Pose::new(
+        Some(Pose::new(
             pose.location + by,
             (turn * pose.rotation).normalize(),
-        ));
-        Some(camera)
+        ))
+    }
+
+    /// The light in the pictures: brighter or darker, more from one side, warmer or colder.
+    pub(super) fn light(&self, random: &mut Random) -> Light {
+        let mut any = |most: f32| random.between((-most, most));
+        let brightness = 1.0 + any(self.light);
+        let from = Vec3::new(any(self.light), any(self.light), 0.0);
+        let warmth = any(self.light * WARMTH);
+        let at_most_all = |shares: Vec3| shares.min(Vec3::ONE);
+        Light {
+            along: at_most_all(LIGHT.along * (Vec3::ONE + from)),
+            against: at_most_all(LIGHT.against * (Vec3::ONE - from)),
+            color: LIGHT.color * brightness * Vec3::new(1.0 + warmth, 1.0, 1.0 - warmth),
+        }
     }
 }
 

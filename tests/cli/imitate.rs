@@ -142,6 +142,36 @@ fn what_the_robot_does_can_be_replayed() {
 }
 
 #[test]
+fn its_hands_see_what_the_robot_does() {
+    let demo = recorded("swap");
+    let robot = place("imitate_hand_cameras");
+    let folder = robot.to_str().unwrap();
+    is_done(&demo, &["--record", folder, "--hand-cameras"]);
+    let first = robot.join("0/0.right_hand_camera.png");
+    assert!(first.is_file());
+    let output = tabletop(&["replay", folder, "--verify"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}
+
+#[test]
+fn a_robot_without_hand_cameras_is_named() {
+    let demo = recorded("stack_three");
+    let robot = place("imitate_no_hand_cameras");
+    let output = tabletop(&[
+        "imitate",
+        &demo,
+        "--robot",
+        "shipped:assets/panda/robot.ron",
+        "--hand-cameras",
+        "--record",
+        robot.to_str().unwrap(),
+    ]);
+    assert_eq!(output.status.code(), Some(2));
+    let told = stderr(&output);
+    assert!(told.contains("has no hand cameras"), "{told}");
+}
+
+#[test]
 fn trials_are_counted() {
     let output = tabletop(&[
         "imitate",

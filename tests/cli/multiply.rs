@@ -189,3 +189,58 @@ fn a_stack_is_shown_with_the_objects_of_another_table() {
     let events = fs::read_to_string(out.join("0000/0.txt")).unwrap();
     assert!(events.contains(",create,Orange,"));
 }
+
+#[test]
+fn the_light_differs_and_nothing_else_does() {
+    let demo = recorded("multiply_light", "stack_three");
+    let [plain, lit, same] =
+        ["multiply_light_plain", "multiply_light_lit", "multiply_light_same"].map(place);
+    multiply(&demo, &plain, &["--count", "2"]);
+    multiply(&demo, &lit, &["--count", "2", "--light", "0.3"]);
+    multiply(&demo, &same, &["--count", "2", "--light", "0.3", "--jobs", "1"]);
+    let [plain, mut lit, same] = [&plain, &lit, &same].map(|folder| files(folder));
+    assert!(lit == same);
+    assert_ne!(lit["0000/0/0.png"], plain["0000/0/0.png"]);
+    let light = |name: &str| {
+        let header = lit[name].split(|byte| *byte == b'\n').next().unwrap();
+        let header: serde_json::Value = serde_json::from_slice(header).unwrap();
+        header["camera"]["light"].clone()
+    };
+    let [one, other] = ["0000/session.jsonl", "0001/session.jsonl"].map(light);
+    assert!(one["color"][0].is_number());
+    assert_ne!(one, other);
+    lit.retain(|name, _| name.ends_with(".csv") || name.ends_with(".txt"));
+    for (name, bytes) in lit {
+        assert!(plain[&name] == bytes, "{name}");
+    }
+    let folder = place("multiply_light_lit_again");
+    multiply(&demo, &folder, &["--count", "1", "--light", "0.3"]);
+    let replayed = tabletop(&["replay", folder.join("0000").to_str().unwrap(), "--verify"]);
+    assert_eq!(replayed.status.code(), Some(0), "{}", stderr(&replayed));
+}
+
+#[test]
+fn the_robot_shows_it_with_the_pictures_of_its_hands() {
+    let demo = recorded("multiply_hand_cameras", "stack_three");
+    let out = place("multiply_hand_cameras_out");
+    let options = ["--count", "1", "--robot", "--hand-cameras", "--light", "0.2"];
+    multiply(&demo, &out, &options);
+    let found = files(&out.join("0000/0"));
+    let of = |ending: &str| found.keys().filter(|name| name.ends_with(ending)).count();
+    let frames = of(".left_hand_camera.png");
+    assert!(frames > 20, "{frames}");
+    assert_eq!(of(".right_hand_camera.png"), frames);
+    assert_eq!(of(".png"), 3 * frames);
+    let replayed = tabletop(&["replay", out.join("0000").to_str().unwrap(), "--verify"]);
+    assert_eq!(replayed.status.code(), Some(0), "{}", stderr(&replayed));
+}
+
+#[test]
+fn no_hand_has_a_camera_without_a_robot() {
+    let demo = recorded("multiply_no_hands", "stack_three");
+    let out = place("multiply_no_hands_out");
+    let out = out.to_str().unwrap();
+    let output = tabletop(&["multiply", &demo, "--out", out, "--hand-cameras"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("--robot"), "{}", stderr(&output));
+}

@@ -7,6 +7,7 @@ mod dock;
 mod ending;
 mod every_command;
 mod faults;
+mod hand_cameras;
 mod history_size;
 mod mechanisms;
 mod passed_over;

@@ -8,7 +8,7 @@ use bevy::{
     math::{Mat3A, Vec2, Vec3, Vec3A},
     prelude::Quat,
 };
-use tabletop_core::{HeadCamera, Pose, Table};
+use tabletop_core::{HeadCamera, Light, Pose, Table};
 
 pub(crate) use linear::{Linear, OnRow, Rays, SampleOffset};
 
@@ -35,6 +35,8 @@ pub struct Camera {
     /// Smooths edges by four samples a pixel. This changes only colours, and only of pixels that show more than one
     /// surface.
     pub antialiasing: bool,
+    /// The light in its pictures.
+    pub light: Light,
 }
 
 impl Camera {
@@ -47,6 +49,7 @@ impl Camera {
             width: head.width,
             height: head.height,
             antialiasing: head.antialiasing,
+            light: head.light,
         }
     }
 

@@ -46,9 +46,11 @@
 
 mod camera;
 mod color;
+mod hand_cameras;
 mod head_camera;
 mod raster;
 mod scene;
+mod visible_world;
 
 pub use camera::Camera;
 pub use raster::Rasterizer;
@@ -66,7 +68,8 @@ use tabletop_core::{
 };
 use tabletop_history::RollbackApp;
 
-/// Takes the head camera's picture on demand: of [`HeadCamera`], on [`PictureDemand`], into [`SensorImage`].
+/// Takes the head camera's picture on demand: of [`HeadCamera`], on [`PictureDemand`], into [`SensorImage`]; and with it those of
+/// the hand cameras that [`HandImages`](tabletop_core::HandImages) are asked for.
 /// Needs [`CorePlugin`](tabletop_core::CorePlugin).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CameraPlugin;
@@ -78,14 +81,19 @@ impl Plugin for CameraPlugin {
             .init_resource::<PictureDemand>()
             .init_resource::<SensorImage>()
             .init_resource::<head_camera::HeadCameraRenderer>()
-            .derived_component::<head_camera::DrawnFacets>()
-            .derived_component::<head_camera::ObjectSolids>()
-            .add_observer(head_camera::prepare_object)
-            .add_observer(head_camera::prepare_figure)
-            .add_observer(head_camera::remove_figure)
+            .init_resource::<hand_cameras::HandCameraRenderer>()
+            .init_resource::<visible_world::FigureCount>()
+            .derived_component::<visible_world::DrawnFacets>()
+            .derived_component::<visible_world::ObjectSolids>()
+            .add_observer(visible_world::prepare_object)
+            .add_observer(visible_world::prepare_figure)
+            .add_observer(visible_world::remove_figure)
             .add_systems(
                 FixedUpdate,
-                head_camera::render_head_camera
+                (
+                    head_camera::render_head_camera,
+                    hand_cameras::render_hand_cameras,
+                )
                     .in_set(PictureSystems)
                     .in_set(RestingSystems),
             );

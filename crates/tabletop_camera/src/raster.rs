@@ -7,6 +7,7 @@ mod coverage;
 mod edge_table;
 mod face;
 mod kept;
+mod lighting;
 mod polyhedra;
 mod quadric;
 mod resolve;
@@ -25,6 +26,7 @@ use self::{
     band::{Band, Frame},
     face::ROWS,
     kept::{KeptBand, KeptBands},
+    lighting::Lighting,
     polyhedra::Polyhedra,
     resolve::Pixels,
     transparent::TransparentSpheres,
@@ -58,9 +60,15 @@ impl Rasterizer {
     /// cylinders and balls, these before figures, and polyhedra are last; within a kind, the first in the scene wins.
     pub fn draw(&mut self, scene: &Scene, camera: &Camera, picture: &mut Picture) {
         let view = PinholeView::of(camera);
+        let lighting = Lighting::from(camera.light);
+        if self.visible.lighting != lighting {
+            // Nothing of the last picture looks the same.
+            *self = Self::default();
+            self.visible.lighting = lighting;
+        }
         self.polyhedra.find(&scene.solids);
         self.visible.project(scene, self.polyhedra.figures(), &view);
-        self.spheres.project(&scene.markers, &view);
+        self.spheres.project(&scene.markers, &view, &lighting);
         picture.resize(camera.width, camera.height);
         if picture.depth.is_empty() {
             return;

@@ -30,6 +30,7 @@ mod fact;
 mod fastening;
 mod figure;
 mod hand;
+mod hand_camera;
 mod holder;
 mod idle;
 mod joint;
@@ -95,6 +96,7 @@ pub use fact::SimFact;
 pub use fastening::Turn;
 pub use figure::{CarriesHeadCamera, Figure, Triangles};
 pub use hand::{Hand, Hands};
+pub use hand_camera::{HandCamera, HandCameras, HandImages};
 pub use holder::{Held, Holder};
 pub use idle::Idle;
 pub use joint::{Joint, JointKind, JointSpec};
@@ -128,9 +130,10 @@ pub use requirement::require;
 pub use rest::{RestApp, RestingSystems, Upkeep};
 pub use robot::{
     Arm, BaseLayout, CameraCarrier, CameraLayout, Drive, Face, FingerLook, GripperKind,
-    GripperLayout, JOINTS_PER_ARM, JointId, JointLayout, JointName, JointRole, JointState,
-    LayoutError, LayoutFile, LimbId, LimbLayout, LimbName, LimbState, LinkFrame, MANUAL_SPEED,
-    Markers, Obstacle, Robot, RobotContact, RobotJoint, RobotLayout, RobotMode, WIDEST_GRIP,
+    GripperLayout, HandCameraLayout, JOINTS_PER_ARM, JointId, JointLayout, JointName, JointRole,
+    JointState, LayoutError, LayoutFile, LimbId, LimbLayout, LimbName, LimbState, LinkFrame,
+    MANUAL_SPEED, Markers, Obstacle, Robot, RobotContact, RobotJoint, RobotLayout, RobotMode,
+    WIDEST_GRIP,
 };
 pub use rollback::Rollback;
 pub use scene::{ChainSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
@@ -192,6 +195,8 @@ impl Plugin for CorePlugin {
             .init_resource::<SimBlocked>()
             .init_resource::<DragPlane>()
             .init_resource::<Ghosts>()
+            .init_resource::<HandCameras>()
+            .init_resource::<HandImages>()
             .init_resource::<Hands>()
             .init_resource::<History>()
             .init_resource::<Imitating>()

@@ -8,8 +8,8 @@ mod obstacle;
 
 pub use baxter::{Arm, JOINTS_PER_ARM, RobotJoint, WIDEST_GRIP};
 pub use layout::{
-    BaseLayout, CameraCarrier, CameraLayout, FingerLook, GripperKind, GripperLayout, JointId,
-    JointLayout, JointRole, LimbId, LimbLayout, LinkFrame, RobotLayout,
+    BaseLayout, CameraCarrier, CameraLayout, FingerLook, GripperKind, GripperLayout,
+    HandCameraLayout, JointId, JointLayout, JointRole, LimbId, LimbLayout, LinkFrame, RobotLayout,
 };
 pub use layout_file::{LayoutError, LayoutFile};
 pub(crate) use name::snake_case;

@@ -8,7 +8,7 @@ use std::{
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{CameraCarrier, Paused, Pose, SimTick};
+use crate::{CameraCarrier, Light, Paused, Pose, SimTick};
 
 /// The settings of the robot's head camera (report section 4, "head camera").
 ///
@@ -35,15 +35,12 @@ pub struct HeadCamera {
     /// Pose of a camera that is not on the robot's head: it looks along its own -Z, with its Y up. Lengths in units.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mount: Option<Pose>,
+    /// The light in its pictures. The window shows everything in the [usual one](crate::LIGHT).
+    #[serde(default, skip_serializing_if = "is_usual")]
+    pub light: Light,
 }
 
 impl HeadCamera {
-    #[expect(
-        clippy::approx_constant,
-        reason = "an angle of view is smaller than π, however little"
-    )]
-    const WIDEST_VIEW: f32 = 3.141;
-
     /// Largest number of pixels of a picture. Its rows and columns are at most [`MOST_SIDE`](Self::MOST_SIDE).
     pub const MOST_PIXELS: u64 = 1 << 24;
     /// Largest number of rows, and of columns, of a picture.
@@ -51,30 +48,45 @@ impl HeadCamera {
 
     /// The fault of settings that make no sense.
     pub fn fault(&self) -> Option<String> {
-        let Self { width, height, .. } = *self;
-        let sides = 1..=Self::MOST_SIDE;
-        let pixels = u64::from(width) * u64::from(height);
-        if !sides.contains(&width) || !sides.contains(&height) || pixels > Self::MOST_PIXELS {
-            return Some(format!(
-                "{width}x{height} is no size of a picture, expected sides of 1 to {} and at most {} pixels",
-                Self::MOST_SIDE,
-                Self::MOST_PIXELS
-            ));
-        }
-        if !(0.001..=Self::WIDEST_VIEW).contains(&self.vertical_fov) {
-            return Some(format!(
-                "an angle of view of {} rad, expected 0.001 to 3.141",
-                self.vertical_fov
-            ));
+        let fault = fault_of_view(self.width, self.height, self.vertical_fov);
+        if fault.is_some() {
+            return fault;
         }
         let is_finite = self.pan.is_finite()
             && self.carrier.is_finite()
             && self.mount.is_none_or(|mount| {
                 mount.location.is_finite() && (mount.rotation.length_squared() - 1.0).abs() < 0.01
             });
-        (!is_finite)
-            .then(|| "it is nowhere: a number is not finite, or its rotation is none".into())
+        if !is_finite {
+            return Some("it is nowhere: a number is not finite, or its rotation is none".into());
+        }
+        self.light.fault()
     }
+}
+
+#[expect(
+    clippy::approx_constant,
+    reason = "an angle of view is smaller than π, however little"
+)]
+const WIDEST_VIEW: f32 = 3.141;
+
+/// The fault of pictures of this size with this angle of view, in rad.
+pub(crate) fn fault_of_view(width: u32, height: u32, vertical_fov: f32) -> Option<String> {
+    let sides = 1..=HeadCamera::MOST_SIDE;
+    let pixels = u64::from(width) * u64::from(height);
+    if !sides.contains(&width) || !sides.contains(&height) || pixels > HeadCamera::MOST_PIXELS {
+        return Some(format!(
+            "{width}x{height} is no size of a picture, expected sides of 1 to {} and at most {} pixels",
+            HeadCamera::MOST_SIDE,
+            HeadCamera::MOST_PIXELS
+        ));
+    }
+    (!(0.001..=WIDEST_VIEW).contains(&vertical_fov))
+        .then(|| format!("an angle of view of {vertical_fov} rad, expected 0.001 to {WIDEST_VIEW}"))
+}
+
+fn is_usual(light: &Light) -> bool {
+    *light == Light::default()
 }
 
 fn is_baxter(carrier: &CameraCarrier) -> bool {
@@ -92,6 +104,7 @@ impl Default for HeadCamera {
             antialiasing: true,
             carrier: CameraCarrier::default(),
             mount: None,
+            light: Light::default(),
         }
     }
 }

@@ -8,6 +8,7 @@ pub(crate) mod event;
 pub(crate) mod folder;
 pub(crate) mod format;
 pub(crate) mod frame;
+pub(crate) mod hand_pictures;
 pub(crate) mod intent;
 pub(crate) mod joints;
 pub(crate) mod json;

@@ -38,6 +38,7 @@ pub use files::{
     durability::Durability,
     event::Event,
     frame::{FRAMES_PER_SECOND, TICKS_PER_FRAME},
+    hand_pictures::HandPictures,
     log_file::whole_lines,
     session::{
         Session, SessionCommand, SessionHeader, SessionObject, SessionScene, SessionSettings,

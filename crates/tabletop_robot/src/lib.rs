@@ -32,6 +32,7 @@ mod contacts;
 mod description;
 mod dynamics;
 mod gripper;
+mod hand_cameras;
 pub mod look;
 mod motion;
 mod plugin;

@@ -2,8 +2,9 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    ActuateSystems, CameraCarrier, CommandSystems, Figure, HeadCamera, RestApp as _,
-    RestingSystems, Robot, RobotLayout, RobotMode, SimSystems, require,
+    ActuateSystems, CameraCarrier, CommandSystems, Figure, HandCameras, HandImages, HeadCamera,
+    PictureSystems, RestApp as _, RestingSystems, Robot, RobotLayout, RobotMode, SimSystems,
+    TickSystems, require,
 };
 use tabletop_history::{RollbackApp, is_rolling_back};
 use tabletop_physics::PhysicsPlugin;
@@ -20,6 +21,7 @@ use crate::{
     description::Description,
     dynamics::motors::Motors,
     gripper::grips::{self, Grips},
+    hand_cameras::place_hand_cameras,
     look::link_figures::{LinkFigures, show_figures},
     motion::{
         advance::advance,
@@ -63,6 +65,7 @@ impl Plugin for RobotPlugin {
         let layout = description.layout.clone();
         app.register_type::<RobotLink>()
             .insert_resource(SelfCollisionMatrix::new(&articulation))
+            .insert_resource(HandCameras(articulation.hand_cameras.clone().into()))
             .insert_resource(articulation)
             .insert_resource(description)
             .init_resource::<LinkFigures>()
@@ -104,6 +107,11 @@ impl Plugin for RobotPlugin {
                         .chain()
                         .in_set(ActuateSystems::Robot),
                     sense::sense_contacts.in_set(SimSystems::Sense),
+                    place_hand_cameras
+                        .run_if(HandImages::is_asked)
+                        .after(SimSystems::Sense)
+                        .before(PictureSystems)
+                        .in_set(TickSystems),
                     show_figures
                         .run_if(resource_changed::<Robot>)
                         .in_set(SimSystems::Propagate),

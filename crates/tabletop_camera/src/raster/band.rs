@@ -250,11 +250,13 @@ impl Band {
     /// Blends transparent spheres into the colours of a row.
     fn blend_row(&mut self, frame: &Frame, row: u32, i: usize, rgb: &mut [u8]) {
         let Frame { view, spheres, .. } = *frame;
+        let lighting = &frame.visible.lighting;
         if frame.is_smooth {
             let samples = self.smooth.smooth_row(i);
             let nearest = |sample, column: usize| samples.inverse_depth[column][sample];
             spheres.blend(
                 view,
+                lighting,
                 row,
                 &SampleOffset::SMOOTH,
                 nearest,
@@ -266,6 +268,7 @@ impl Band {
             let nearest = |_, column: usize| samples.inverse_depth[column];
             spheres.blend(
                 view,
+                lighting,
                 row,
                 &[SampleOffset::CENTER],
                 nearest,

@@ -221,6 +221,7 @@ mod tests {
             width: WIDTH,
             height: HEIGHT,
             antialiasing: false,
+            light: tabletop_core::LIGHT,
         })
     }
 

@@ -120,7 +120,7 @@ impl RowResolver<'_, '_> {
                 &pixels.depth[start..end],
                 &mut pixels.rgb[3 * start..3 * end],
             );
-            surface.paint(self.row, start, depths, rgb);
+            surface.paint(&visible.lighting, self.row, start, depths, rgb);
             start = end;
         }
         self.smooth(columns);
@@ -147,7 +147,12 @@ impl RowResolver<'_, '_> {
         for (i, offset) in SampleOffset::SMOOTH.into_iter().enumerate() {
             let surface = &self.visible.surfaces[smooth.surface[column][i] as usize];
             let (x, y) = (column as f32 + offset.x, self.row as f32 + offset.y);
-            sum += surface.shown(x, y, 1.0 / smooth.inverse_depth[column][i]);
+            sum += surface.shown(
+                &self.visible.lighting,
+                x,
+                y,
+                1.0 / smooth.inverse_depth[column][i],
+            );
         }
         sum / 4.0
     }

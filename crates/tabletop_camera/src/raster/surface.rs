@@ -1,14 +1,12 @@
 //! Surfaces and their looks.
 
-use bevy::math::Vec3;
-use tabletop_core::LIGHT;
-
 use crate::{
     camera::{Linear, SampleOffset},
     color::{nearest_byte, nearest_bytes, scaled_to_bytes},
-    raster::quadric::Curve,
+    raster::{lighting::Lighting, quadric::Curve},
     scene::DrawnSolid,
 };
+use bevy::math::Vec3;
 
 /// A surface of one colour: one face of a cuboid, an end or the side of a cylinder, a ball, a triangle of a figure.
 #[derive(Clone, Copy, Debug)]
@@ -55,9 +53,9 @@ impl FlatLook {
     }
 
     /// The look of a plane that faces this way.
-    pub fn of(drawn: &DrawnSolid, normal: Vec3) -> Self {
-        let color = scaled_to_bytes(drawn.color);
-        Self::new(drawn.object, color, LIGHT.share(normal))
+    pub fn of(drawn: &DrawnSolid, normal: Vec3, lighting: &Lighting) -> Self {
+        let color = lighting.lit(scaled_to_bytes(drawn.color));
+        Self::new(drawn.object, color, lighting.share(normal))
     }
 
     /// Colours some pixels.
@@ -80,16 +78,16 @@ impl RasterSurface {
     };
 
     /// A plane that faces this way.
-    pub fn flat(drawn: &DrawnSolid, normal: Vec3) -> Self {
-        Self::of(drawn, Shading::Flat(LIGHT.share(normal)))
+    pub fn flat(drawn: &DrawnSolid, normal: Vec3, lighting: &Lighting) -> Self {
+        Self::of(drawn, Shading::Flat(lighting.share(normal)), lighting)
     }
 
     /// A ball, or the side of a cylinder.
-    pub fn curved(drawn: &DrawnSolid, curve: Curve) -> Self {
-        Self::of(drawn, Shading::Curved(curve))
+    pub fn curved(drawn: &DrawnSolid, curve: Curve, lighting: &Lighting) -> Self {
+        Self::of(drawn, Shading::Curved(curve), lighting)
     }
 
-    /// A triangle of this colour, red, green and blue in 0..=255.
+    /// A triangle of this lit colour, red, green and blue in 0..=255.
     pub const fn gouraud(object: u32, color: Vec3, share_by_depth: Linear) -> Self {
         Self {
             object,
@@ -98,28 +96,35 @@ impl RasterSurface {
         }
     }
 
-    fn of(drawn: &DrawnSolid, shading: Shading) -> Self {
+    fn of(drawn: &DrawnSolid, shading: Shading, lighting: &Lighting) -> Self {
         Self {
             object: drawn.object,
-            color: scaled_to_bytes(drawn.color),
+            color: lighting.lit(scaled_to_bytes(drawn.color)),
             shading,
         }
     }
 
     /// Red, green, blue in 0..=255 at this depth behind this point of the picture.
-    pub fn shown(&self, x: f32, y: f32, depth: f32) -> Vec3 {
+    pub fn shown(&self, lighting: &Lighting, x: f32, y: f32, depth: f32) -> Vec3 {
         self.color
             * match self.shading {
                 Shading::Flat(share) => share,
                 Shading::Curved(curve) => {
-                    LIGHT.share(curve.normal(curve.rays.through(x, y), depth))
+                    lighting.share(curve.normal(curve.rays.through(x, y), depth))
                 }
-                Shading::Gouraud(share_by_depth) => clamp_share(share_by_depth.at(x, y) * depth),
+                Shading::Gouraud(share_by_depth) => lighting.clamp(share_by_depth.at(x, y) * depth),
             }
     }
 
     /// Colours a part of a row, from this column on, where the surface is seen at these depths.
-    pub fn paint(&self, row: u32, column: usize, depths: &[f32], rgb: &mut [u8]) {
+    pub fn paint(
+        &self,
+        lighting: &Lighting,
+        row: u32,
+        column: usize,
+        depths: &[f32],
+        rgb: &mut [u8],
+    ) {
         match self.shading {
             Shading::Flat(share) => {
                 let shown = nearest_bytes(self.color * share);
@@ -130,7 +135,7 @@ impl RasterSurface {
             Shading::Curved(curve) => {
                 let ray = curve.rays.on_row(row, SampleOffset::CENTER);
                 self.paint_shares::<16>(column, depths, rgb, |x, depth| {
-                    LIGHT.share(curve.normal(ray.at(x), depth))
+                    lighting.share(curve.normal(ray.at(x), depth))
                 });
             }
             Shading::Gouraud(share_by_depth) => {
@@ -139,7 +144,7 @@ impl RasterSurface {
                 for (x, (depth, pixel)) in
                     (column as i32..).zip(depths.iter().zip(rgb.chunks_exact_mut(3)))
                 {
-                    let share = clamp_share(share_by_depth.at(x as f32) * depth);
+                    let share = lighting.clamp(share_by_depth.at(x as f32) * depth);
                     pixel.copy_from_slice(&nearest_bytes(self.color * share));
                 }
             }
@@ -173,9 +178,4 @@ impl RasterSurface {
             }
         }
     }
-}
-
-/// A share clamped to 0..=1: rounding may bring shares a little beyond those at a triangle's corners.
-pub(crate) fn clamp_share(share: f32) -> f32 {
-    share.max(LIGHT.least()).min(1.0)
 }

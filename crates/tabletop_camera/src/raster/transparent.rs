@@ -8,6 +8,7 @@ use crate::{
     color::nearest_bytes,
     raster::{
         bounds::corners_of_solid,
+        lighting::Lighting,
         quadric::{Curve, Ends, Quadric},
         samples::CenterSamples,
         surface::RasterSurface,
@@ -39,12 +40,12 @@ struct Sphere {
 
 impl TransparentSpheres {
     /// Replaces the spheres by those around these points.
-    pub fn project(&mut self, markers: &[Vec3], view: &PinholeView) {
+    pub fn project(&mut self, markers: &[Vec3], view: &PinholeView, lighting: &Lighting) {
         self.spheres.clear();
         self.spheres.extend(
             markers
                 .iter()
-                .filter_map(|&center| Sphere::seen(center, view)),
+                .filter_map(|&center| Sphere::seen(center, view, lighting)),
         );
         self.spheres
             .sort_by(|one, other| other.distance.total_cmp(&one.distance));
@@ -60,6 +61,7 @@ impl TransparentSpheres {
     pub fn blend(
         &self,
         view: &PinholeView,
+        lighting: &Lighting,
         row: u32,
         offsets: &[SampleOffset],
         nearest: impl Fn(usize, usize) -> f32,
@@ -84,7 +86,7 @@ impl TransparentSpheres {
                     let inverse_depth = samples.inverse_depth[column as usize];
                     if inverse_depth > nearest(sample, column as usize) {
                         let (x, y) = (column as f32 + offset.x, row as f32 + offset.y);
-                        let shown = sphere.surface.shown(x, y, 1.0 / inverse_depth);
+                        let shown = sphere.surface.shown(lighting, x, y, 1.0 / inverse_depth);
                         *sum += shown.extend(1.0);
                     }
                 }
@@ -104,7 +106,7 @@ impl TransparentSpheres {
 }
 
 impl Sphere {
-    fn seen(center: Vec3, view: &PinholeView) -> Option<Self> {
+    fn seen(center: Vec3, view: &PinholeView, lighting: &Lighting) -> Option<Self> {
         let drawn = DrawnSolid {
             pose: Pose::at(center),
             solid: Solid::Ball(Markers::RADIUS),
@@ -116,7 +118,7 @@ impl Sphere {
         Some(Self {
             distance: center.distance(view.eye),
             quadric: Quadric::new(curve, Ends::NONE, window, [1; 2]),
-            surface: RasterSurface::curved(&drawn, curve),
+            surface: RasterSurface::curved(&drawn, curve, lighting),
         })
     }
 }

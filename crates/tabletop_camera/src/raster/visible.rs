@@ -3,7 +3,7 @@
 use std::{ops::Range, sync::Arc};
 
 use bevy::math::{Mat3, Mat3A, Vec2, Vec3, Vec3A};
-use tabletop_core::{LIGHT, Solid};
+use tabletop_core::Solid;
 
 use crate::{
     camera::{Linear, PinholeView, Window},
@@ -11,8 +11,9 @@ use crate::{
         bounds::{corners_of_box, corners_of_solid},
         edge_table::EdgeTable,
         face::{CUBOID, CUBOID_NORMALS, EDGE_ON, ROWS, RasterFace, first_column},
+        lighting::Lighting,
         quadric::{Curve, Ends, Quadric},
-        surface::{FlatLook, RasterSurface, clamp_share},
+        surface::{FlatLook, RasterSurface},
         triangle::Triangle,
     },
     scene::{DrawnFigure, DrawnSolid, Facets, Scene},
@@ -21,6 +22,8 @@ use crate::{
 /// The surfaces that face a camera, with their faces and triangles.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct VisibleSurfaces {
+    /// The light in which they are seen. As long as it stays the same, so do their looks.
+    pub lighting: Lighting,
     /// Looks of the surfaces; the first is the background.
     pub surfaces: Vec<RasterSurface>,
     /// The patches of the surfaces. Surfaces of one patch form a smooth surface without edges between them.
@@ -176,15 +179,16 @@ impl VisibleSurfaces {
         window: Window,
         corners: &[Vec3; 8],
     ) {
+        let lighting = self.lighting;
         for (face, normal) in CUBOID.into_iter().zip(CUBOID_NORMALS) {
             let normal = drawn.pose.rotation * normal;
             let corners = face.map(|corner| corners[corner]);
             let surface = self.surfaces.len() as u32;
             let rows = window.rows.clone();
-            let look = || FlatLook::of(drawn, normal);
+            let look = || FlatLook::of(drawn, normal, &lighting);
             if let Some(face) = RasterFace::seen(view, corners, normal, rows, surface, look) {
                 self.faces.push(face);
-                self.add_surface(RasterSurface::flat(drawn, normal));
+                self.add_surface(RasterSurface::flat(drawn, normal, &lighting));
             }
         }
     }
@@ -205,8 +209,8 @@ impl VisibleSurfaces {
         let side = self.surfaces.len() as u32;
         self.quadrics
             .push(Quadric::new(curve, ends, window, [side, side + 1]));
-        self.add_surface(RasterSurface::curved(drawn, curve));
-        self.add_surface(RasterSurface::flat(drawn, to_eye));
+        self.add_surface(RasterSurface::curved(drawn, curve, &self.lighting));
+        self.add_surface(RasterSurface::flat(drawn, to_eye, &self.lighting));
     }
 
     fn add_ball(&mut self, drawn: &DrawnSolid, view: &PinholeView, window: Window, radius: f32) {
@@ -214,7 +218,7 @@ impl VisibleSurfaces {
         let surface = self.surfaces.len() as u32;
         self.quadrics
             .push(Quadric::new(curve, Ends::NONE, window, [surface; 2]));
-        self.add_surface(RasterSurface::curved(drawn, curve));
+        self.add_surface(RasterSurface::curved(drawn, curve, &self.lighting));
     }
 
     fn add_figure(&mut self, drawn: &DrawnFigure, view: &PinholeView, window: &Window) {
@@ -224,11 +228,12 @@ impl VisibleSurfaces {
         self.vertices.clear();
         let (turned, location) = (Mat3A::from(axes), Vec3A::from(drawn.pose.location));
         let view_eye = Vec3A::from(view.eye);
+        let lighting = self.lighting;
         self.vertices
             .extend(facets.vertices.iter().map(|vertex| VisibleCorner {
                 pixel: pixel_of(vertex.position),
                 place: (location + turned * vertex.position - view_eye).into(),
-                share: clamp_share(LIGHT.share((turned * vertex.normal).into())),
+                share: lighting.clamp(lighting.share((turned * vertex.normal).into())),
             }));
         let eye = drawn.pose.inverse() * view.eye;
         for facet in &facets.triangles {
@@ -251,7 +256,7 @@ impl VisibleSurfaces {
                 .push(Triangle::seen(view, places, normal, rows, surface));
             self.surfaces.push(RasterSurface::gouraud(
                 drawn.object,
-                facet.color,
+                lighting.lit(facet.color),
                 share_by_depth(view, &corners, normal),
             ));
             self.patches.push(self.patch_count + facet.patch);

@@ -3,7 +3,7 @@
 use bevy::{math::Vec3, prelude::*};
 use proptest::prelude::*;
 use tabletop_camera::{Camera, DrawnSolid};
-use tabletop_core::{Picture, Pose, Primitive, Rgb, Solid};
+use tabletop_core::{LIGHT, Picture, Pose, Primitive, Rgb, Solid};
 
 use crate::scenes::{draw, head, level, mixed_scene, smooth, solid};
 
@@ -267,7 +267,7 @@ proptest! {
             .zip(solids)
             .map(|(object, (pose, solid))| DrawnSolid { pose, solid, color: Rgb::GRAY, object })
             .collect();
-        let camera = Camera { pose, vertical_fov: fov, square_fov, width, height, antialiasing: false };
+        let camera = Camera { pose, vertical_fov: fov, square_fov, width, height, antialiasing: false, light: LIGHT };
         assert_seen(&scene, &camera, &draw(&scene, &camera));
     }
 }

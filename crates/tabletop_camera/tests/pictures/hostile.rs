@@ -3,7 +3,7 @@
 use bevy::math::{Quat, Vec3};
 use proptest::prelude::*;
 use tabletop_camera::{Camera, DrawnSolid, Rasterizer};
-use tabletop_core::{Picture, Pose, Rgb, Solid};
+use tabletop_core::{LIGHT, Picture, Pose, Rgb, Solid};
 
 use crate::scenes::{draw, head, mixed_scene, of_solids, smooth};
 
@@ -58,7 +58,7 @@ proptest! {
                 object,
             })
             .collect();
-        let camera = Camera { pose, vertical_fov: fov, square_fov, width, height, antialiasing };
+        let camera = Camera { pose, vertical_fov: fov, square_fov, width, height, antialiasing, light: LIGHT };
         let picture = draw(&scene, &camera);
         let pixels = width as usize * height as usize;
         prop_assert_eq!(picture.rgb.len(), 3 * pixels);

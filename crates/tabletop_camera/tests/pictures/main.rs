@@ -5,4 +5,5 @@ mod edges;
 mod figures;
 mod geometry;
 mod hostile;
+mod light;
 mod scenes;

@@ -2,7 +2,7 @@
 
 use bevy::math::{Quat, Vec3};
 use tabletop_camera::{Camera, DrawnSolid, Rasterizer, Scene};
-use tabletop_core::{HeadCamera, Picture, Pose, Rgb, Solid, Table};
+use tabletop_core::{HeadCamera, LIGHT, Picture, Pose, Rgb, Solid, Table};
 
 pub fn draw(solids: &[DrawnSolid], camera: &Camera) -> Picture {
     draw_scene(&of_solids(solids), camera)
@@ -45,6 +45,7 @@ pub fn level(location: Vec3, width: u32, height: u32) -> Camera {
         width,
         height,
         antialiasing: false,
+        light: LIGHT,
     }
 }
 

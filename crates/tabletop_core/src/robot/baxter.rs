@@ -46,6 +46,7 @@ impl RobotLayout {
                 at: Vec3::ZERO,
                 tilt: 0.0,
             },
+            hand_cameras: Vec::new(),
             screen: None,
             known_postures: Vec::new(),
             may_touch: Vec::new(),

@@ -1,10 +1,13 @@
 //! The layout of a robot: its limbs and joints.
 
-use bevy::prelude::*;
+use bevy::{
+    math::{DMat3, DQuat, DVec3},
+    prelude::*,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    KeyBinding, Pose, Table,
+    HandCamera, KeyBinding, Pose, Table, UNITS_PER_METER,
     robot::name::{JointName, LimbName},
 };
 
@@ -47,6 +50,8 @@ pub struct RobotLayout {
     pub base: BaseLayout,
     /// The place of its camera.
     pub camera: CameraLayout,
+    /// The cameras on its links.
+    pub hand_cameras: Vec<HandCameraLayout>,
     /// The link whose front shows a face.
     pub screen: Option<String>,
     /// Positions of the limbs' joints in postures that the real robot takes. If the solids of two links overlap in one of them, they are too
@@ -179,6 +184,49 @@ pub struct LinkFrame {
     /// The frame's x, y and z axis in the link's frame.
     #[serde(default = "unturned")]
     pub axes: [[f64; 3]; 3],
+}
+
+/// A camera on a link.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HandCameraLayout {
+    /// Its name.
+    pub name: String,
+    /// Its frame on the first of these links that the URDF has: x to the right in its pictures, y down, z the way it looks.
+    pub frame: Vec<LinkFrame>,
+    /// Angle between the lower and upper edges of its pictures in radians.
+    pub fov: f32,
+    /// Columns and rows of its pictures.
+    pub size: (u32, u32),
+}
+
+impl HandCameraLayout {
+    /// The camera where this frame has it.
+    pub fn on(&self, frame: &LinkFrame) -> HandCamera {
+        let [x, y, z] = frame.axes.map(DVec3::from_array);
+        let axes = DMat3::from_cols(x, -y, -z);
+        HandCamera {
+            name: self.name.clone(),
+            link: frame.link.clone(),
+            mount: Pose::new(
+                (DVec3::from_array(frame.at) * UNITS_PER_METER).as_vec3(),
+                DQuat::from_mat3(&axes).normalize().as_quat(),
+            ),
+            vertical_fov: self.fov,
+            width: self.size.0,
+            height: self.size.1,
+        }
+    }
+}
+
+impl LinkFrame {
+    /// True if its axes are at right angles, of length 1 and right-handed.
+    pub(crate) fn is_frame(&self) -> bool {
+        const PLAY: f64 = 1e-3;
+        let [x, y, z] = self.axes.map(DVec3::from_array);
+        let is_near = |one: DVec3, other: DVec3| (one - other).length() < PLAY;
+        is_near(x.cross(y), z) && is_near(y.cross(z), x) && is_near(z.cross(x), y)
+    }
 }
 
 /// The look of a finger.

@@ -8,11 +8,12 @@ use serde::Deserialize;
 use thiserror::Error;
 
 use crate::{
-    BindingError, KeyBinding, Modifiers,
+    BindingError, HandCamera, KeyBinding, Modifiers,
     robot::{
         layout::{
             BaseLayout, CameraCarrier, CameraLayout, FingerLook, GripperKind, GripperLayout,
-            JointId, JointLayout, JointRole, LimbId, LimbLayout, LinkFrame, RobotLayout,
+            HandCameraLayout, JointId, JointLayout, JointRole, LimbId, LimbLayout, LinkFrame,
+            RobotLayout,
         },
         name::{JointName, LimbName},
     },
@@ -27,6 +28,8 @@ pub struct LayoutFile {
     pub urdf: String,
     base: BaseLayout,
     camera: CameraLayout,
+    #[serde(default)]
+    hand_cameras: Vec<HandCameraLayout>,
     limbs: Vec<LimbEntry>,
     #[serde(default)]
     neck: Option<JointEntry>,
@@ -167,6 +170,7 @@ impl LayoutFile {
             neck,
             base: self.base,
             camera: self.camera,
+            hand_cameras: self.hand_cameras.clone(),
             screen: self.screen.clone(),
             known_postures: self.known_postures.clone(),
             may_touch: self.may_touch.clone(),
@@ -174,6 +178,7 @@ impl LayoutFile {
         if !CameraCarrier::from(&layout).is_finite() {
             return Err(fault("base or camera: a number is not finite"));
         }
+        check_hand_cameras(&layout.hand_cameras)?;
         for (i, joint) in layout.joints.iter().enumerate() {
             if layout.find_joint(joint.name) != Some(JointId(i as u16)) {
                 return Err(fault(format!("there are two joints {}", joint.name)));
@@ -283,6 +288,31 @@ impl GripperEntry {
     }
 }
 
+fn check_hand_cameras(cameras: &[HandCameraLayout]) -> Result<(), LayoutError> {
+    let mut first = Vec::new();
+    for camera in cameras {
+        let name = &camera.name;
+        let Some(frame) = camera.frame.first() else {
+            return Err(fault(format!("hand_cameras: {name}: it has no frame")));
+        };
+        if let Some(frame) = camera.frame.iter().find(|frame| !frame.is_frame()) {
+            let link = &frame.link;
+            return Err(fault(format!(
+                "hand_cameras: {name}: its axes on {link} are not at right angles, of length 1 and right-handed"
+            )));
+        }
+        let mut on_each = camera.frame.iter().map(|frame| camera.on(frame));
+        if let Some(problem) = on_each.find_map(|camera| camera.fault()) {
+            return Err(fault(format!("hand_cameras: {problem}")));
+        }
+        first.push(camera.on(frame));
+    }
+    match HandCamera::fault_of(&first) {
+        Some(problem) => Err(fault(format!("hand_cameras: {problem}"))),
+        None => Ok(()),
+    }
+}
+
 fn check_limits(joint: &str, [least, largest]: [f64; 2], home: f64) -> Result<(), LayoutError> {
     if !(least.is_finite() && largest.is_finite() && least <= largest) {
         return Err(fault(format!(
@@ -350,6 +380,21 @@ mod tests {
                 "there are two limbs left",
             ),
             ("limits:", "limit:", "limit"),
+            (
+                "name: \"right_hand_camera\"",
+                "name: \"left_hand_camera\"",
+                "hand_cameras: there are two cameras left_hand_camera",
+            ),
+            (
+                "size: (200, 125)",
+                "size: (0, 125)",
+                "hand_cameras: left_hand_camera: 0x125 is no size",
+            ),
+            (
+                "axes: ((1, 0, 0), (0, -1, 0), (0, 0, -1))",
+                "axes: ((1, 0, 0), (0, 1, 0), (0, 0, -1))",
+                "left_hand_camera: its axes on left_end_effector are not at right angles",
+            ),
         ] {
             assert!(TEXT.contains(from), "{from}");
             let error = error(&TEXT.replacen(from, to, 1));

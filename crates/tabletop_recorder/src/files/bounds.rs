@@ -10,7 +10,7 @@ pub(crate) use command::check_command;
 pub(crate) use scene::check_table;
 
 use tabletop_core::{
-    HeadCamera, JointKind, JointSpec, ObjectSpec, Pose,
+    HandCamera, HeadCamera, JointKind, JointSpec, ObjectSpec, Pose,
     limits::{DISPLACEMENTS, MASSES, PROPORTIONS, STIFFNESSES, TRAVELS},
 };
 
@@ -25,12 +25,8 @@ pub(crate) const MOST_TICKS: u64 = 30 * 24 * 3600 * 60;
 /// No tick is later.
 const LAST_TICK: u64 = 1 << 53;
 
-/// The first command of a recording, its start, and its camera.
-pub(crate) fn check_begin(
-    begin_tick: Option<u64>,
-    start_tick: u64,
-    camera: Option<&HeadCamera>,
-) -> Checked {
+/// The first command of a recording, and its start.
+pub(crate) fn check_begin(begin_tick: Option<u64>, start_tick: u64) -> Checked {
     let begin = begin_tick.unwrap_or(start_tick);
     if start_tick > LAST_TICK {
         return Err(format!("start_tick: {start_tick} is over {LAST_TICK}"));
@@ -40,9 +36,16 @@ pub(crate) fn check_begin(
             "begin_tick: {begin} is after the start in tick {start_tick}"
         ));
     }
-    check_ticks(begin, start_tick).map_err(at("start_tick"))?;
-    match camera.and_then(HeadCamera::fault) {
-        Some(fault) => Err(format!("camera: {fault}")),
+    check_ticks(begin, start_tick).map_err(at("start_tick"))
+}
+
+/// The cameras of a recording.
+pub(crate) fn check_cameras(camera: Option<&HeadCamera>, hand_cameras: &[HandCamera]) -> Checked {
+    if let Some(fault) = camera.and_then(HeadCamera::fault) {
+        return Err(format!("camera: {fault}"));
+    }
+    match HandCamera::fault_of(hand_cameras) {
+        Some(fault) => Err(format!("hand_cameras: {fault}")),
         None => Ok(()),
     }
 }
@@ -110,29 +113,16 @@ mod tests {
             height: 20_000,
             ..default()
         };
-        assert_eq!(check_begin(Some(5), 9, Some(&default())), Ok(()));
-        for (begin, start, camera, problem) in [
-            (Some(5), 9, Some(&large), "camera: 20000x20000"),
-            (
-                Some(10),
-                9,
-                None,
-                "begin_tick: 10 is after the start in tick 9",
-            ),
-            (
-                None,
-                u64::MAX,
-                None,
-                "start_tick: 18446744073709551615 is over",
-            ),
-            (
-                Some(5),
-                1 << 40,
-                None,
-                "more than 155520000 ticks (30 days)",
-            ),
+        assert_eq!(check_cameras(Some(&default()), &[]), Ok(()));
+        let found = check_cameras(Some(&large), &[]).unwrap_err();
+        assert!(found.contains("camera: 20000x20000"), "{found}");
+        assert_eq!(check_begin(Some(5), 9), Ok(()));
+        for (begin, start, problem) in [
+            (Some(10), 9, "begin_tick: 10 is after the start in tick 9"),
+            (None, u64::MAX, "start_tick: 18446744073709551615 is over"),
+            (Some(5), 1 << 40, "more than 155520000 ticks (30 days)"),
         ] {
-            let found = check_begin(begin, start, camera).unwrap_err();
+            let found = check_begin(begin, start).unwrap_err();
             assert!(found.contains(problem), "{found}");
         }
     }

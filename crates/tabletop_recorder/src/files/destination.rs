@@ -2,13 +2,16 @@
 
 use std::path::PathBuf;
 
-use crate::files::{channels::Channels, durability::Durability, storage::Storage};
+use crate::files::{
+    channels::Channels, durability::Durability, hand_pictures::HandPictures, storage::Storage,
+};
 
 /// The destination of recordings: their folder and files.
 #[derive(Clone, Debug)]
 pub(crate) struct Destination {
     pub(crate) folder: PathBuf,
     pub(crate) channels: Channels,
+    pub(crate) hand_pictures: HandPictures,
     pub(crate) durability: Durability,
     pub(crate) storage: Storage,
 }

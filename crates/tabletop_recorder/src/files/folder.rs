@@ -174,7 +174,7 @@ impl Folder {
         self.pictures(segment).join(format!("{frame}.png"))
     }
 
-    /// A picture's channel, `depth` or `ids`.
+    /// Another file of a frame: a picture's channel, `depth` or `ids`, or the picture of a hand camera of this name.
     pub(crate) fn channel(&self, segment: u32, frame: u64, name: &str) -> PathBuf {
         self.pictures(segment).join(format!("{frame}.{name}.png"))
     }

@@ -6,15 +6,16 @@ use bevy::prelude::Resource;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
 use tabletop_core::{
-    Actor, ClockCommand, HeadCamera, IssuedCommand, JointSpec, ObjectSpec, Pose, RecordingCommand,
-    SimCommand, SimTick, Table,
+    Actor, ClockCommand, HandCamera, HeadCamera, IssuedCommand, JointSpec, ObjectSpec, Pose,
+    RecordingCommand, SimCommand, SimTick, Table,
 };
 
 use crate::{
     error::RecorderError,
     files::{
         bounds::{
-            check_begin, check_command, check_joint, check_present, check_table, check_ticks,
+            check_begin, check_cameras, check_command, check_joint, check_present, check_table,
+            check_ticks,
         },
         format::FORMAT,
         json::{from_json, reads_back, to_json_line},
@@ -44,6 +45,9 @@ pub struct SessionHeader {
     pub earlier_commands: usize,
     /// The head camera, if there is one.
     pub camera: Option<HeadCamera>,
+    /// The hand cameras whose pictures it holds, too.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub hand_cameras: Vec<HandCamera>,
     /// The [settings](SessionSettings) when the recording started.
     pub settings: Map<String, Value>,
 }
@@ -168,7 +172,8 @@ impl Session {
             }
         };
         let header: SessionHeader = parse_header(&path, line(1))?;
-        check_begin(header.begin_tick, header.start_tick, header.camera.as_ref())
+        check_begin(header.begin_tick, header.start_tick)
+            .and_then(|()| check_cameras(header.camera.as_ref(), &header.hand_cameras))
             .map_err(fault(1))?;
         let scene: SessionScene = parse(&path, line(2))?;
         scene.check().map_err(fault(2))?;
@@ -390,6 +395,7 @@ mod tests {
             start_tick: 3,
             earlier_commands: 1,
             camera: None,
+            hand_cameras: Vec::new(),
             settings: Map::new(),
         };
         let mut log = to_json_line(&header).unwrap();

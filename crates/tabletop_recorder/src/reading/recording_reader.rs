@@ -2,7 +2,7 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
-    path::Path,
+    path::{Path, PathBuf},
 };
 
 use tabletop_core::{JointName, JointState, SimTick, Timeline, TimelinePicture, TimelineStage};
@@ -200,8 +200,24 @@ impl RecordingReader {
             number,
             tick: self.tick_of_frame(number),
             picture: folder.picture(segment, number),
+            hand_pictures: self.hand_pictures(folder, segment, number),
         });
         Ok(frames.filter(|frame| frame.picture.exists()).collect())
+    }
+
+    /// The pictures of the hand cameras at a frame, by their names.
+    fn hand_pictures(
+        &self,
+        folder: &Folder,
+        segment: u32,
+        frame: u64,
+    ) -> BTreeMap<String, PathBuf> {
+        let cameras = self.header().hand_cameras.iter();
+        let pictures = cameras.map(|camera| {
+            let picture = folder.channel(segment, frame, &camera.name);
+            (camera.name.clone(), picture)
+        });
+        pictures.filter(|(_, picture)| picture.exists()).collect()
     }
 
     /// The tick that a frame shows the end of.

@@ -30,6 +30,8 @@ pub struct RecordedFrame {
     pub tick: SimTick,
     /// The file of its picture.
     pub picture: PathBuf,
+    /// The files of the hand cameras' pictures, by the names of these.
+    pub hand_pictures: BTreeMap<String, PathBuf>,
 }
 
 impl RecordedSegment {

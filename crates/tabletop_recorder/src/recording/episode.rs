@@ -5,10 +5,14 @@ mod events;
 mod frames;
 mod history;
 
-use std::path::{Path, PathBuf};
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
 
 use tabletop_core::{
-    Actor, CommandId, IssuedCommand, JointState, SimTick, Timeline, TimelineSegment, TimelineStage,
+    Actor, CommandId, HandCamera, IssuedCommand, JointState, SimTick, Timeline, TimelineSegment,
+    TimelineStage,
 };
 
 use crate::{
@@ -41,6 +45,7 @@ pub(crate) struct Episode {
     /// True if the simulation is paused where the session log ends.
     is_paused: bool,
     channels: Channels,
+    hand_cameras: Arc<[HandCamera]>,
     /// True if the commands of the tick in which it began are not in the session log yet.
     is_beginning: bool,
     /// The tick before its commands were carried out; they may turn the clock.
@@ -88,6 +93,7 @@ impl Episode {
             last_joints: None,
             is_paused: earlier.is_paused(),
             channels: destination.channels,
+            hand_cameras: header.hand_cameras.clone().into(),
             is_beginning: true,
             tick: start,
             logged: Vec::new(),
@@ -130,6 +136,11 @@ impl Episode {
 
     pub(crate) fn is_frame(&self, tick: SimTick) -> bool {
         self.clock.is_frame(tick)
+    }
+
+    /// The hand cameras whose pictures it holds.
+    pub(crate) const fn hand_cameras(&self) -> &Arc<[HandCamera]> {
+        &self.hand_cameras
     }
 
     /// Number of ticks before a frame, from this one on.

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 use tabletop_core::{
-    CommandId, CommandKind as _, Hand, Hands, IssuedCommand, Paused, PictureDemand, Recording,
-    RecordingCommand, SensorImage, SimFact, SimTick, TICKS_PER_SECOND, Timeline, TimelineStage,
+    CommandId, CommandKind as _, Hand, HandImages, Hands, IssuedCommand, Paused, PictureDemand,
+    Recording, RecordingCommand, SensorImage, SimFact, SimTick, TICKS_PER_SECOND, Timeline,
+    TimelineStage,
 };
 
 use crate::{
@@ -61,6 +62,7 @@ impl Recorder {
             start_tick: tick.0,
             earlier_commands: self.earlier.count(),
             camera: stage.camera.as_deref().copied(),
+            hand_cameras: stage.hand_cameras(&self.destination.hand_pictures),
             settings: stage.settings.0.clone(),
         };
         let scene = stage.scene();
@@ -156,12 +158,13 @@ pub(crate) fn pass_over(world: &mut World, ticks: u64) -> Result {
     Ok(())
 }
 
-/// Asks for a picture of a tick that is a frame.
+/// Asks for the pictures of a tick that is a frame.
 pub(crate) fn ask_for_picture(
     recorder: Res<Recorder>,
     tick: Res<SimTick>,
     paused: Res<Paused>,
     demand: Option<Res<PictureDemand>>,
+    mut hand_images: ResMut<HandImages>,
 ) {
     let (Some(episode), Some(demand)) = (&recorder.episode, demand) else {
         return;
@@ -170,6 +173,11 @@ pub(crate) fn ask_for_picture(
         demand.insist();
     } else if !paused.0 && episode.is_frame(*tick) {
         demand.ask();
+    } else {
+        return;
+    }
+    if !episode.hand_cameras().is_empty() {
+        hand_images.ask(episode.hand_cameras());
     }
 }
 

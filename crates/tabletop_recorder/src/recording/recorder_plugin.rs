@@ -11,7 +11,7 @@ use tabletop_core::{
 use crate::{
     files::{
         channels::Channels, destination::Destination, durability::Durability,
-        session::SessionSettings, storage::Storage,
+        hand_pictures::HandPictures, session::SessionSettings, storage::Storage,
     },
     recording::recorder::{
         Recorder, ask_for_picture, pass_over, record, take_commands, ticks_to_frame,
@@ -34,6 +34,8 @@ pub struct RecorderPlugin {
     pub header: Map<String, Value>,
     /// The files beside the pictures.
     pub channels: Channels,
+    /// The hand cameras whose pictures are recorded, too.
+    pub hand_pictures: HandPictures,
     /// The durability over a loss of power.
     pub durability: Durability,
     /// The file system, which tests let fail.
@@ -46,6 +48,7 @@ impl Default for RecorderPlugin {
             folder: "demo".into(),
             header: Map::new(),
             channels: Channels::default(),
+            hand_pictures: HandPictures::default(),
             durability: Durability::default(),
             storage: Storage::default(),
         }
@@ -57,6 +60,7 @@ impl Plugin for RecorderPlugin {
         app.insert_resource(Recorder::new(Destination {
             folder: self.folder.clone(),
             channels: self.channels,
+            hand_pictures: self.hand_pictures.clone(),
             durability: self.durability,
             storage: self.storage.clone(),
         }))

@@ -2,12 +2,13 @@
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
-    HeadCamera, Joint, JointSpec, JointState, ObjectIndex, ObjectSpec, Robot, RobotLayout, Shape,
-    Table, Twist,
+    HandCamera, HandCameras, HandImages, HeadCamera, Joint, JointSpec, JointState, ObjectIndex,
+    ObjectSpec, Robot, RobotLayout, Shape, Table, Twist,
 };
 
 use crate::{
     files::{
+        hand_pictures::HandPictures,
         session::{SessionObject, SessionScene, SessionSettings},
         states::ObjectState,
     },
@@ -30,6 +31,8 @@ pub(crate) struct RecordedWorld<'w, 's> {
     tables: Query<'w, 's, &'static Table>,
     joints: Query<'w, 's, &'static Joint>,
     pub(crate) camera: Option<Res<'w, HeadCamera>>,
+    hand_cameras: Res<'w, HandCameras>,
+    pub(crate) hand_images: Res<'w, HandImages>,
     pub(crate) settings: Res<'w, SessionSettings>,
     robot: Res<'w, Robot>,
     pub(crate) layout: Res<'w, RobotLayout>,
@@ -93,8 +96,17 @@ impl RecordedWorld<'_, '_> {
         &self.robot.joints
     }
 
-    /// The sight of these objects and the robot, wherever they are.
-    pub(crate) fn sight(&self, objects: &[Tracked]) -> FrameSight {
+    /// The hand cameras whose pictures are to be recorded.
+    pub(crate) fn hand_cameras(&self, pictures: &HandPictures) -> Vec<HandCamera> {
+        match pictures {
+            HandPictures::None => Vec::new(),
+            HandPictures::OfAll => self.hand_cameras.0.to_vec(),
+            HandPictures::Of(cameras) => cameras.clone(),
+        }
+    }
+
+    /// The sight of these objects and the robot, wherever they are; and of the robot's posture, if hand cameras are to see it.
+    pub(crate) fn sight(&self, objects: &[Tracked], hands_see: bool) -> FrameSight {
         let shape = |id: &str| Some(self.spec(self.index.get(id)?)?.shape.clone());
         let seen = objects
             .iter()
@@ -102,6 +114,15 @@ impl RecordedWorld<'_, '_> {
         FrameSight {
             objects: seen.collect(),
             robot: self.robot.is_shown,
+            posture: match hands_see {
+                true => self
+                    .robot
+                    .joints
+                    .iter()
+                    .map(|joint| joint.position)
+                    .collect(),
+                false => Vec::new(),
+            },
         }
     }
 }
@@ -121,4 +142,6 @@ pub(crate) struct FrameSight {
     objects: Vec<(usize, Shape)>,
     /// True if the robot stands at the table.
     robot: bool,
+    /// The positions of its joints, where hand cameras see by them.
+    posture: Vec<f64>,
 }

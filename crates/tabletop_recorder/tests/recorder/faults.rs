@@ -15,7 +15,7 @@ use tabletop_core::{
     StepApp as _, WriteCommand as _,
 };
 use tabletop_recorder::{
-    Channels, Durability, RecorderPlugin, RecordingReader, SessionCommand, Storage, StorageFault,
+    Channels, Durability, HandPictures, RecorderPlugin, RecordingReader, SessionCommand, Storage, StorageFault,
     whole_lines,
 };
 
@@ -35,6 +35,7 @@ fn recorder(place: &Place, storage: Storage, durability: Durability) -> App {
             depth: true,
             ids: false,
         },
+        hand_pictures: HandPictures::OfAll,
         storage,
         ..default()
     })

@@ -4,6 +4,7 @@
 mod faults;
 mod files;
 mod full_disk;
+mod hand_pictures;
 mod kill;
 mod reading;
 mod stage;

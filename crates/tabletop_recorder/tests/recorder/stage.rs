@@ -9,8 +9,8 @@ use std::{
 
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
-    CommandId, CorePlugin, Hand, HandCommand, Hands, HistoryCommand, IssuedCommand, ObjectIndex,
-    ObjectSpec, PictureDemand, PictureSystems, Pose, Recording, Rgb, SceneCommand, SceneItem,
+    CommandId, CorePlugin, Hand, HandCamera, HandCameras, HandCommand, HandImages, Hands, HistoryCommand, IssuedCommand, ObjectIndex,
+    ObjectSpec, Picture, PictureDemand, PictureSystems, Pose, Recording, Rgb, SceneCommand, SceneItem,
     SceneSpec, SensorImage, Shape, SimCommand, SimFact, SimSystems, SimTick, StepApp as _,
     WriteCommand as _,
 };
@@ -133,6 +133,7 @@ pub fn app_into(folder: PathBuf) -> App {
 pub fn app_with(recorder: RecorderPlugin) -> App {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, CorePlugin::default(), recorder))
+        .insert_resource(HandCameras(["left_camera", "right_camera"].map(hand_camera).into()))
         .init_resource::<Heard>()
         .init_resource::<Moments>()
         .init_resource::<PictureDemand>()
@@ -148,6 +149,17 @@ pub fn app_with(recorder: RecorderPlugin) -> App {
         )
         .start();
     app
+}
+
+fn hand_camera(name: &str) -> HandCamera {
+    HandCamera {
+        name: name.into(),
+        link: "hand".into(),
+        mount: Pose::IDENTITY,
+        vertical_fov: 1.0,
+        width: 5,
+        height: 2,
+    }
 }
 
 pub fn block(id: &str) -> ObjectSpec {
@@ -198,12 +210,24 @@ fn move_objects(tick: Res<SimTick>, mut objects: Query<(&ObjectSpec, &mut Transf
 fn take_picture(
     mut demand: ResMut<PictureDemand>,
     mut image: ResMut<SensorImage>,
+    mut hand_images: ResMut<HandImages>,
     tick: Res<SimTick>,
 ) {
     if demand.take() {
         image.tick = *tick;
         image.picture.resize(4, 3);
         image.picture.rgb.fill(tick.0 as u8);
+    }
+    if let Some(cameras) = hand_images.take() {
+        hand_images.tick = *tick;
+        hand_images.pictures = (cameras.iter().enumerate())
+            .map(|(i, camera)| {
+                let mut picture = Picture::default();
+                picture.resize(camera.width, camera.height);
+                picture.rgb.fill((tick.0 + i as u64) as u8);
+                picture
+            })
+            .collect();
     }
 }
 

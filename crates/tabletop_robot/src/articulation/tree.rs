@@ -9,7 +9,8 @@ use bevy::{
 use bevy_rapier3d::rapier::prelude::SharedShape;
 use smallvec::SmallVec;
 use tabletop_core::{
-    JointId, JointRole, LimbId, LimbLayout, LinkFrame, Pose, RobotLayout, UNITS_PER_METER,
+    HandCamera, JointId, JointRole, LimbId, LimbLayout, LinkFrame, Pose, RobotLayout,
+    UNITS_PER_METER,
 };
 use tabletop_kinematics::{
     ArmChain, Frames, Geometry, JointValues, LinkId, LinkShape, Load, ModelError, ModelJointId,
@@ -80,6 +81,8 @@ pub(crate) struct Articulation {
     limbs: Vec<Limb>,
     /// The bodies.
     pub bodies: Vec<Body>,
+    /// The cameras on its links.
+    pub hand_cameras: Vec<HandCamera>,
 }
 
 /// The model's part of a limb.
@@ -138,8 +141,13 @@ impl Articulation {
             .limbs
             .iter()
             .map(|limb| Limb::new(&model, &layout, limb));
+        let hand_cameras = layout.hand_cameras.iter().map(|camera| {
+            let frame = first_there(&model, &camera.frame)?.1;
+            Ok(camera.on(frame))
+        });
         let mut articulation = Self {
             limbs: limbs.collect::<Result<_, _>>()?,
+            hand_cameras: hand_cameras.collect::<Result<_, _>>()?,
             joints,
             bodies: Vec::new(),
             layout,
@@ -337,6 +345,12 @@ impl Articulation {
         )
     }
 
+    /// Pose of a link, in units; `None` if the model has no link of this name.
+    pub fn link_pose(&self, posture: &Posture, link: &str) -> Option<Pose> {
+        let link = self.model.find_link(link).ok()?;
+        Some(posture.base * in_units(posture.frames()[link]))
+    }
+
     /// The axes of a limb's joints: a point and a unit vector, in m in the torso's frame.
     pub fn axes(&self, limb: LimbId, posture: &Posture) -> Vec<(DVec3, DVec3)> {
         let joints = self.limbs[limb.index()].chain.joints().iter();
@@ -399,18 +413,27 @@ impl Limb {
     }
 }
 
-/// The first of these frames whose link the model has.
-fn frame_on(model: &RobotModel, frames: &[LinkFrame]) -> Result<(LinkId, DAffine3), ModelError> {
-    let mut missing = model.find_link("");
+/// The first of these frames whose link the model has, and the link.
+fn first_there<'f>(
+    model: &RobotModel,
+    frames: &'f [LinkFrame],
+) -> Result<(LinkId, &'f LinkFrame), ModelError> {
+    let mut missing = None;
     for frame in frames {
-        missing = model.find_link(&frame.link);
-        if let Ok(link) = missing {
-            let axes = DMat3::from_cols_array_2d(&frame.axes);
-            let origin = DVec3::from_array(frame.at);
-            return Ok((link, DAffine3::from_mat3_translation(axes, origin)));
+        match model.find_link(&frame.link) {
+            Ok(link) => return Ok((link, frame)),
+            Err(error) => missing = Some(error),
         }
     }
-    missing.map(|link| (link, DAffine3::IDENTITY))
+    Err(missing.unwrap_or(ModelError::Empty))
+}
+
+/// The first of these frames whose link the model has.
+fn frame_on(model: &RobotModel, frames: &[LinkFrame]) -> Result<(LinkId, DAffine3), ModelError> {
+    let (link, frame) = first_there(model, frames)?;
+    let axes = DMat3::from_cols_array_2d(&frame.axes);
+    let origin = DVec3::from_array(frame.at);
+    Ok((link, DAffine3::from_mat3_translation(axes, origin)))
 }
 
 /// A frame of the model as a pose in units.

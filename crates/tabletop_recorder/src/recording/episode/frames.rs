@@ -1,7 +1,9 @@
 //! The states, frames and pictures of an episode.
 
-use bevy::prelude::warn;
-use tabletop_core::{IssuedCommand, Pose, SensorImage, SimTick, Timeline, TimelinePicture};
+use bevy::prelude::{Entity, warn};
+use tabletop_core::{
+    IssuedCommand, Picture, Pose, SensorImage, SimTick, Timeline, TimelinePicture,
+};
 
 use crate::{
     error::RecorderError,
@@ -62,13 +64,14 @@ impl Episode {
                 moves.push(Event::Move { id, pose }.fields(frame));
             }
         }
-        let sight = stage.sight(self.objects.tracked());
+        let sight = stage.sight(self.objects.tracked(), !self.hand_cameras.is_empty());
         let is_another = sight != self.sight;
         self.sight = sight;
         if (is_another || !moves.is_empty())
             && let Some(image) = image
         {
-            self.write_image(frame, image, stage)?;
+            self.write_picture(frame, None, &image.picture, &image.shown, stage)?;
+            self.write_hand_pictures(tick, frame, stage)?;
             self.pictures += 1;
             let path = self.files.folder.picture(self.files.segment, frame);
             timeline.pictures.pop_if(|last| last.path == path);
@@ -81,24 +84,48 @@ impl Episode {
         self.files.text.append_records(&moves)
     }
 
-    pub(super) fn write_image(
+    /// Writes the pictures that the hand cameras have taken in this tick.
+    fn write_hand_pictures(
+        &self,
+        tick: SimTick,
+        frame: u64,
+        stage: &RecordedWorld,
+    ) -> Result<(), RecorderError> {
+        let images = &stage.hand_images;
+        if images.tick != tick {
+            return Ok(());
+        }
+        let taken = self.hand_cameras.iter().zip(&images.pictures);
+        for (camera, picture) in taken.filter(|(_, picture)| picture.width > 0) {
+            self.write_picture(frame, Some(&camera.name), picture, &images.shown, stage)?;
+        }
+        Ok(())
+    }
+
+    /// Writes a picture of the head camera, or of the hand camera of this name.
+    fn write_picture(
         &self,
         frame: u64,
-        image: &SensorImage,
+        camera: Option<&str>,
+        picture: &Picture,
+        shown: &[Entity],
         stage: &RecordedWorld,
     ) -> Result<(), RecorderError> {
         let (folder, segment) = (&self.files.folder, self.files.segment);
-        let channel = |name| folder.channel(segment, frame, name);
-        let picture = &image.picture;
-        self.files
-            .write_picture(&folder.picture(segment, frame), color_png(picture))?;
+        let (path, channel) = match camera {
+            None => (folder.picture(segment, frame), String::new()),
+            Some(camera) => (folder.channel(segment, frame, camera), format!("{camera}.")),
+        };
+        let channel = |name| folder.channel(segment, frame, &format!("{channel}{name}"));
+        self.files.write_picture(&path, color_png(picture))?;
         if self.channels.depth {
             self.files
                 .write_picture(&channel("depth"), depth_png(picture))?;
         }
         if self.channels.ids {
-            let shown = image.shown.iter();
-            let numbers = shown.map(|&entity| self.objects.number_of(stage.shown(entity)));
+            let numbers = shown
+                .iter()
+                .map(|&entity| self.objects.number_of(stage.shown(entity)));
             let encoded = ids_png(picture, &numbers.collect::<Vec<_>>());
             self.files.write_picture(&channel("ids"), encoded)?;
         }
