@@ -193,11 +193,19 @@ fn a_stack_is_shown_with_the_objects_of_another_table() {
 #[test]
 fn the_light_differs_and_nothing_else_does() {
     let demo = recorded("multiply_light", "stack_three");
-    let [plain, lit, same] =
-        ["multiply_light_plain", "multiply_light_lit", "multiply_light_same"].map(place);
+    let [plain, lit, same] = [
+        "multiply_light_plain",
+        "multiply_light_lit",
+        "multiply_light_same",
+    ]
+    .map(place);
     multiply(&demo, &plain, &["--count", "2"]);
     multiply(&demo, &lit, &["--count", "2", "--light", "0.3"]);
-    multiply(&demo, &same, &["--count", "2", "--light", "0.3", "--jobs", "1"]);
+    multiply(
+        &demo,
+        &same,
+        &["--count", "2", "--light", "0.3", "--jobs", "1"],
+    );
     let [plain, mut lit, same] = [&plain, &lit, &same].map(|folder| files(folder));
     assert!(lit == same);
     assert_ne!(lit["0000/0/0.png"], plain["0000/0/0.png"]);
@@ -223,7 +231,14 @@ fn the_light_differs_and_nothing_else_does() {
 fn the_robot_shows_it_with_the_pictures_of_its_hands() {
     let demo = recorded("multiply_hand_cameras", "stack_three");
     let out = place("multiply_hand_cameras_out");
-    let options = ["--count", "1", "--robot", "--hand-cameras", "--light", "0.2"];
+    let options = [
+        "--count",
+        "1",
+        "--robot",
+        "--hand-cameras",
+        "--light",
+        "0.2",
+    ];
     multiply(&demo, &out, &options);
     let found = files(&out.join("0000/0"));
     let of = |ending: &str| found.keys().filter(|name| name.ends_with(ending)).count();

@@ -95,7 +95,8 @@ impl HandCamera {
 }
 
 impl HandImages {
-    /// Asks these cameras for pictures of this tick. The head camera must be asked, too.
+    /// Asks these cameras for pictures of this tick. While the simulation stands still, the request waits, unless the head camera's picture
+    /// is [insisted](crate::PictureDemand::insist) on.
     pub fn ask(&mut self, cameras: &Arc<[HandCamera]>) {
         self.asked = Some(Arc::clone(cameras));
     }

@@ -19,3 +19,41 @@ pub(crate) fn place_hand_cameras(
         .map(|camera| Some(place(&camera.link)? * camera.mount));
     images.poses = poses.collect();
 }
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::{Pose, RobotLayout};
+
+    use super::*;
+    use crate::{
+        articulation::{link_entities::positions, tree::Articulation},
+        description::Description,
+    };
+
+    #[test]
+    fn they_look_down_past_the_fingers_whichever_frame_the_description_has() {
+        let Description { model, layout, .. } = Description::baxter().unwrap();
+        let home = positions(&Robot::at_home(&layout));
+        let articulation = Articulation::new(model, layout).unwrap();
+        let posture = articulation.posture(&home, Pose::IDENTITY);
+        let cameras = &RobotLayout::baxter().hand_cameras;
+        assert_eq!(cameras.len(), 2);
+        for (camera, end_effector) in cameras.iter().zip(posture.end_effectors()) {
+            let poses = camera.frame.iter().map(|frame| {
+                let camera = camera.on(frame);
+                articulation.link_pose(&posture, &camera.link).unwrap() * camera.mount
+            });
+            let poses: Vec<_> = poses.collect();
+            for pose in &poses {
+                assert!(
+                    pose.location.distance(poses[0].location) < 1e-3,
+                    "{poses:?}"
+                );
+                assert!(pose.rotation.angle_between(poses[0].rotation) < 1e-3);
+                assert!((pose.rotation * Vec3::NEG_Z).z < -0.99);
+                let ahead = pose.inverse() * end_effector.location;
+                assert!(ahead.z < -0.5 && ahead.y > 0.3, "{ahead}");
+            }
+        }
+    }
+}

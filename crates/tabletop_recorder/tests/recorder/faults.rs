@@ -15,8 +15,8 @@ use tabletop_core::{
     StepApp as _, WriteCommand as _,
 };
 use tabletop_recorder::{
-    Channels, Durability, HandPictures, RecorderPlugin, RecordingReader, SessionCommand, Storage, StorageFault,
-    whole_lines,
+    Channels, Durability, HandPictures, RecorderPlugin, RecordingReader, SessionCommand, Storage,
+    StorageFault, whole_lines,
 };
 
 use crate::stage::{Place, app_with, files_in, grasp, run, scene};

@@ -133,7 +133,11 @@ fn what_moves_the_robot_is_seen_by_its_hands() {
         app.step(1);
         let recording = RecordingReader::open(place.demo()).unwrap();
         let segments = recording.segments().unwrap();
-        segments[0].frames.iter().map(|it| it.number).collect::<BTreeSet<_>>()
+        segments[0]
+            .frames
+            .iter()
+            .map(|it| it.number)
+            .collect::<BTreeSet<_>>()
     };
     assert_eq!(frames(HandPictures::None), [0].into());
     assert_eq!(frames(HandPictures::OfAll), [0, 3].into());
@@ -145,14 +149,30 @@ fn a_header_with_cameras_that_cannot_be_is_refused() {
     let log = place.read("session.jsonl");
     for (from, to, problem) in [
         ("left_camera", "../left", "is no name of a camera"),
-        ("left_camera", "right_camera", "there are two cameras right_camera"),
-        ("\"width\":5", "\"width\":50000", "50000x2 is no size of a picture"),
+        (
+            "left_camera",
+            "right_camera",
+            "there are two cameras right_camera",
+        ),
+        (
+            "\"width\":5",
+            "\"width\":50000",
+            "50000x2 is no size of a picture",
+        ),
         ("\"width\":5", "\"width\":-5", "invalid value"),
-        ("\"vertical_fov\":1.0", "\"vertical_fov\":9.0", "an angle of view of 9 rad"),
+        (
+            "\"vertical_fov\":1.0",
+            "\"vertical_fov\":9.0",
+            "an angle of view of 9 rad",
+        ),
         ("\"link\":", "\"lnik\":", "unknown field"),
     ] {
         assert!(log.contains(from), "{from}");
-        fs::write(place.demo().join("session.jsonl"), log.replacen(from, to, 1)).unwrap();
+        fs::write(
+            place.demo().join("session.jsonl"),
+            log.replacen(from, to, 1),
+        )
+        .unwrap();
         let error = RecordingReader::open(place.demo()).unwrap_err().to_string();
         assert!(error.contains("session.jsonl:1: "), "{error}");
         assert!(error.contains(problem), "{from}: {error}");

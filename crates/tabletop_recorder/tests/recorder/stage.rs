@@ -9,10 +9,10 @@ use std::{
 
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
-    CommandId, CorePlugin, Hand, HandCamera, HandCameras, HandCommand, HandImages, Hands, HistoryCommand, IssuedCommand, ObjectIndex,
-    ObjectSpec, Picture, PictureDemand, PictureSystems, Pose, Recording, Rgb, SceneCommand, SceneItem,
-    SceneSpec, SensorImage, Shape, SimCommand, SimFact, SimSystems, SimTick, StepApp as _,
-    WriteCommand as _,
+    CommandId, CorePlugin, Hand, HandCamera, HandCameras, HandCommand, HandImages, Hands,
+    HistoryCommand, IssuedCommand, ObjectIndex, ObjectSpec, Picture, PictureDemand, PictureSystems,
+    Pose, Recording, Rgb, SceneCommand, SceneItem, SceneSpec, SensorImage, Shape, SimCommand,
+    SimFact, SimSystems, SimTick, StepApp as _, WriteCommand as _,
 };
 use tabletop_recorder::RecorderPlugin;
 
@@ -133,7 +133,9 @@ pub fn app_into(folder: PathBuf) -> App {
 pub fn app_with(recorder: RecorderPlugin) -> App {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, CorePlugin::default(), recorder))
-        .insert_resource(HandCameras(["left_camera", "right_camera"].map(hand_camera).into()))
+        .insert_resource(HandCameras(
+            ["left_camera", "right_camera"].map(hand_camera).into(),
+        ))
         .init_resource::<Heard>()
         .init_resource::<Moments>()
         .init_resource::<PictureDemand>()
