@@ -49,6 +49,7 @@ mod operator;
 mod pace;
 mod paused;
 mod phase;
+mod picture;
 mod playback;
 mod polyhedron;
 mod pose;
@@ -118,6 +119,7 @@ pub use operator::{Operator, OperatorError};
 pub use pace::{Pace, PacePlugin, SingleStep};
 pub use paused::Paused;
 pub use phase::{ActuateSystems, CommandSystems, OrderSystems, SimSystems, TickSystems};
+pub use picture::Picture;
 pub use playback::{Playback, PlaybackOrder};
 pub use polyhedron::{MOST_SIDES, Polyhedron, PolyhedronError, ROUND_SIDES};
 pub use pose::{Pose, UNITS_PER_METER, degrees_from_quat, quat_from_degrees};
@@ -137,7 +139,7 @@ pub use robot::{
 };
 pub use rollback::Rollback;
 pub use scene::{ChainSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
-pub use sensor::{HeadCamera, Picture, PictureDemand, PictureSystems, SensorImage};
+pub use sensor::{HeadCamera, PictureDemand, PictureSystems, SensorImage};
 pub use shape::{Composition, attributes::AttributeValue};
 pub use shipped::{ShippedFile, ShippedFiles, is_shipped, seen_from};
 pub use shown_task::{
