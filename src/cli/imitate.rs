@@ -14,9 +14,7 @@ use tabletop::{
     imitation::{AppStage, scattered_for},
     multiplication::with_colors_exchanged,
     planner::{Doing, Imitation, RobotBody, imitate},
-    recorder::{
-        HandPictures, RecorderPlugin, RecordingReader, UnrecordedPlugin, read_original,
-    },
+    recorder::{HandPictures, RecorderPlugin, RecordingReader, UnrecordedPlugin, read_original},
     robot::{Description, RobotPlugin},
     scene::{IdAllocator, assemble},
     task::{Requirements, Task},

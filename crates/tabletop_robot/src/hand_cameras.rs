@@ -1,9 +1,12 @@
 //! The places of the cameras in the robot's hands.
 
 use bevy::prelude::*;
-use tabletop_core::{HandImages, Robot};
+use tabletop_core::{HandImages, Pose, Robot};
 
-use crate::motion::view::RobotView;
+use crate::{
+    articulation::tree::{Articulation, Posture, in_units},
+    motion::view::RobotView,
+};
 
 /// Places the hand cameras that are asked for pictures where the joints have brought them.
 pub(crate) fn place_hand_cameras(
@@ -12,23 +15,24 @@ pub(crate) fn place_hand_cameras(
     mut images: ResMut<HandImages>,
 ) {
     let posture = known.posture(&robot, None);
-    let place = |link| known.articulation.link_pose(&posture, link);
-    let poses = images
-        .asked()
-        .iter()
-        .map(|camera| Some(place(&camera.link)? * camera.mount));
+    let place = |link| link_pose(&known.articulation, &posture, link);
+    let poses = images.asked().iter();
+    let poses = poses.map(|camera| Some(place(&camera.link)? * camera.mount));
     images.poses = poses.collect();
+}
+
+/// Pose of a link in a posture, in units; `None` if the robot has no link of this name.
+fn link_pose(articulation: &Articulation, posture: &Posture, link: &str) -> Option<Pose> {
+    let link = articulation.model().find_link(link).ok()?;
+    Some(posture.base() * in_units(posture.frames()[link]))
 }
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Pose, RobotLayout};
+    use tabletop_core::RobotLayout;
 
     use super::*;
-    use crate::{
-        articulation::{link_entities::positions, tree::Articulation},
-        description::Description,
-    };
+    use crate::{articulation::link_entities::positions, description::Description};
 
     #[test]
     fn they_look_down_past_the_fingers_whichever_frame_the_description_has() {
@@ -41,7 +45,7 @@ mod tests {
         for (camera, end_effector) in cameras.iter().zip(posture.end_effectors()) {
             let poses = camera.frame.iter().map(|frame| {
                 let camera = camera.on(frame);
-                articulation.link_pose(&posture, &camera.link).unwrap() * camera.mount
+                link_pose(&articulation, &posture, &camera.link).unwrap() * camera.mount
             });
             let poses: Vec<_> = poses.collect();
             for pose in &poses {

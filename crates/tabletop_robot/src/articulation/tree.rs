@@ -141,13 +141,11 @@ impl Articulation {
             .limbs
             .iter()
             .map(|limb| Limb::new(&model, &layout, limb));
-        let hand_cameras = layout.hand_cameras.iter().map(|camera| {
-            let frame = first_there(&model, &camera.frame)?.1;
-            Ok(camera.on(frame))
-        });
+        let cameras = layout.hand_cameras.iter();
+        let cameras = cameras.map(|camera| Ok(camera.on(first_there(&model, &camera.frame)?.1)));
         let mut articulation = Self {
             limbs: limbs.collect::<Result<_, _>>()?,
-            hand_cameras: hand_cameras.collect::<Result<_, _>>()?,
+            hand_cameras: cameras.collect::<Result<_, _>>()?,
             joints,
             bodies: Vec::new(),
             layout,
@@ -345,12 +343,6 @@ impl Articulation {
         )
     }
 
-    /// Pose of a link, in units; `None` if the model has no link of this name.
-    pub fn link_pose(&self, posture: &Posture, link: &str) -> Option<Pose> {
-        let link = self.model.find_link(link).ok()?;
-        Some(posture.base * in_units(posture.frames()[link]))
-    }
-
     /// The axes of a limb's joints: a point and a unit vector, in m in the torso's frame.
     pub fn axes(&self, limb: LimbId, posture: &Posture) -> Vec<(DVec3, DVec3)> {
         let joints = self.limbs[limb.index()].chain.joints().iter();
@@ -418,14 +410,10 @@ fn first_there<'f>(
     model: &RobotModel,
     frames: &'f [LinkFrame],
 ) -> Result<(LinkId, &'f LinkFrame), ModelError> {
-    let mut missing = None;
-    for frame in frames {
-        match model.find_link(&frame.link) {
-            Ok(link) => return Ok((link, frame)),
-            Err(error) => missing = Some(error),
-        }
-    }
-    Err(missing.unwrap_or(ModelError::Empty))
+    let found = frames
+        .iter()
+        .map(|frame| Ok((model.find_link(&frame.link)?, frame)));
+    found.reduce(Result::or).unwrap_or(Err(ModelError::Empty))
 }
 
 /// The first of these frames whose link the model has.
@@ -437,7 +425,7 @@ fn frame_on(model: &RobotModel, frames: &[LinkFrame]) -> Result<(LinkId, DAffine
 }
 
 /// A frame of the model as a pose in units.
-fn in_units(frame: DAffine3) -> Pose {
+pub(crate) fn in_units(frame: DAffine3) -> Pose {
     let rotation = DQuat::from_mat3(&frame.matrix3).normalize();
     Pose::new(
         (frame.translation * UNITS_PER_METER).as_vec3(),
