@@ -51,7 +51,7 @@ fn a_chest_is_opened_filled_and_closed() {
 fn a_bar_is_stood_up_and_a_can_laid_down() {
     let demo = recorded("stand_up");
     is_done(&demo, &[]);
-    is_done(&demo, &["--seed", "1"]);
+    is_done(&demo, &["--seed", "2"]);
 }
 
 #[test]
@@ -202,7 +202,6 @@ fn what_cannot_be_done_is_reported_in_a_sentence() {
 fn a_lid_that_is_too_high_to_be_taken_from_above_is_taken_from_beside() {
     let output = tabletop(&["imitate", &recorded("lidbox")]);
     let told = stderr(&output);
-    // The block lies where no arm reaches it.
     assert!(
         told.contains("2. Put the yellow block into the blue box."),
         "{told}"

@@ -55,7 +55,13 @@ pub(crate) fn described(id: &str, properties: &[(String, String)]) -> (ObjectSpe
             yspan,
             color,
         },
-        ("sphere" | "cylinder", _) => Shape::Sphere { radius, color },
+        ("cylinder", None) if known.contains_key("radius") => Shape::Sphere { radius, color },
+        ("cylinder", None) => Shape::Cylinder {
+            radius,
+            yspan: 1.0,
+            color,
+        },
+        ("sphere", _) => Shape::Sphere { radius, color },
         ("lid", _) => {
             let plate = number("thickness").or(number("zspan")).unwrap_or(thickness);
             Shape::Lid {
