@@ -203,7 +203,7 @@ impl Replay {
             header: self.session.header.settings.clone(),
             hand_pictures: match recorder.hand_pictures {
                 HandPictures::None => HandPictures::Of(self.hand_cameras().to_vec()),
-                others => others,
+                others @ (HandPictures::OfAll | HandPictures::Of(_)) => others,
             },
             ..recorder
         };
