@@ -23,7 +23,8 @@ pub struct Light {
     pub color: Vec3,
 }
 
-/// The light of every scene, but for cameras that are given [another](crate::HeadCamera::light). As in the original program, the sides that the user and the robot see first show 80 %. The others
+/// The light of every scene, but for cameras that are given [another](crate::HeadCamera::light). As in the original program, the sides
+/// that the user and the robot see first show 80 %. The others
 /// differ from them, so that edges are visible.
 pub const LIGHT: Light = Light {
     along: Vec3::new(0.9, 0.85, 1.0),
