@@ -1,7 +1,7 @@
 //! Kinematic bodies turn the short way.
 
 use bevy::prelude::*;
-use bevy_rapier3d::prelude::*;
+use bevy_rapier3d::{prelude::*, rapier::prelude as rapier};
 use tabletop_core::Pose;
 
 use crate::geometry::to_rapier;
@@ -16,14 +16,10 @@ pub(crate) fn turn_the_short_way(
         return;
     };
     for handle in &moved {
-        let turns_the_long_way = bodies.bodies.get(handle.0).is_some_and(|body| {
-            let turns = body.position().rotation.dot(body.next_position().rotation);
-            body.is_kinematic() && turns < 0.0
-        });
-        if turns_the_long_way && let Some(body) = bodies.bodies.get_mut(handle.0) {
-            let mut next = *body.next_position();
-            next.rotation = -next.rotation;
-            body.set_next_kinematic_position(next);
+        let body = bodies.bodies.get(handle.0);
+        if let Some(body) = body.filter(|body| body.is_kinematic()) {
+            let next = the_short_way(body, *body.next_position());
+            go_to(&mut bodies, handle.0, next);
         }
     }
 }
@@ -38,16 +34,27 @@ pub fn send(bodies: &mut RapierRigidBodySet, entity: Entity, pose: Pose) -> bool
     let Some(body) = body.filter(|body| body.is_kinematic() && body.is_enabled()) else {
         return false;
     };
-    let mut next = to_rapier(pose);
+    let next = the_short_way(body, to_rapier(pose));
+    go_to(bodies, handle, next);
+    true
+}
+
+/// The next pose of a body, with that sign of its quaternion to which the body turns by less than half a turn.
+fn the_short_way(body: &rapier::RigidBody, mut next: rapier::Pose) -> rapier::Pose {
     if body.position().rotation.dot(next.rotation) < 0.0 {
         next.rotation = -next.rotation;
     }
-    if next != *body.next_position()
+    next
+}
+
+/// Gives a body its next pose, unless it has it already: what is touched counts as changed.
+fn go_to(bodies: &mut RapierRigidBodySet, handle: rapier::RigidBodyHandle, next: rapier::Pose) {
+    let body = bodies.bodies.get(handle);
+    if body.is_some_and(|body| *body.next_position() != next)
         && let Some(body) = bodies.bodies.get_mut(handle)
     {
         body.set_next_kinematic_position(next);
     }
-    true
 }
 
 /// The turn from one orientation to another as an axis as long as its angle, in rad; less than half a turn.

@@ -23,6 +23,17 @@ pub(crate) struct Candidate {
     pub is_tipped: bool,
 }
 
+impl Candidate {
+    /// A pose in which the object is not tipped.
+    pub const fn new(pose: Pose, cost: f32) -> Self {
+        Self {
+            pose,
+            cost,
+            is_tipped: false,
+        }
+    }
+}
+
 /// Earlier poses of objects.
 #[derive(Clone, Debug, Default)]
 pub struct Before {
@@ -206,11 +217,7 @@ fn exact(
     let poses = frames.into_iter().map(|frame| {
         let frame = levelled(frame, goal.up);
         let pose = frame * goal.pose;
-        Candidate {
-            cost: change_of_side(step, frame, pose),
-            pose,
-            is_tipped: false,
-        }
+        Candidate::new(pose, change_of_side(step, frame, pose))
     });
     let is_level = |candidate: &Candidate| candidate.pose.location.z > 0.0;
     let upright = poses.filter(is_level);
@@ -357,11 +364,8 @@ pub(crate) fn inside(pose: Pose, by: f32) -> impl Iterator<Item = Candidate> {
     steps.into_iter().flat_map(move |x| {
         steps.into_iter().map(move |y| {
             let aside = Vec3::new(x, y, 0.0) * by;
-            Candidate {
-                pose: Pose::new(pose.location + aside, pose.rotation),
-                cost: aside.length(),
-                is_tipped: false,
-            }
+            let there = Pose::new(pose.location + aside, pose.rotation);
+            Candidate::new(there, aside.length())
         })
     })
 }

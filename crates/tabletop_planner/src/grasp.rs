@@ -80,8 +80,8 @@ pub fn grasps(
         for yaw in yaws(&whole) {
             for &lean in side.leans() {
                 let frame = Quat::from_rotation_z(yaw) * Quat::from_rotation_x(lean);
-                let [x, y, z] =
-                    [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| extent(&whole, frame * axis));
+                let [x, y, z] = [Vec3::X, Vec3::Y, Vec3::Z]
+                    .map(|axis| PlacedSolid::extent(&whole, frame * axis));
                 let width = x[1] - x[0];
                 if width > widest - PLAY {
                     continue;
@@ -170,15 +170,6 @@ fn around(count: u16) -> Vec<f32> {
     (0..count)
         .map(|i| PI * f32::from(i) / f32::from(count))
         .collect()
-}
-
-/// Extent of solids in a direction.
-fn extent(solids: &[PlacedSolid], way: Vec3) -> [f32; 2] {
-    let reach = |way: Vec3| {
-        let all = solids.iter().map(|solid| solid.farthest(way).dot(way));
-        all.fold(f32::NEG_INFINITY, f32::max)
-    };
-    [-reach(-way), reach(way)]
 }
 
 #[cfg(test)]

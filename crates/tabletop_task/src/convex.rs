@@ -36,6 +36,15 @@ impl PlacedSolid {
         self.pose * point
     }
 
+    /// Where solids begin and end in a direction, in units.
+    pub fn extent(solids: &[Self], way: Vec3) -> [f32; 2] {
+        let reach = |way: Vec3| {
+            let all = solids.iter().map(|solid| solid.farthest(way).dot(way));
+            all.fold(f32::NEG_INFINITY, f32::max)
+        };
+        [-reach(-way), reach(way)]
+    }
+
     /// Radius of the ball about its centre that encloses it.
     pub fn radius(&self) -> f32 {
         match self.solid {

@@ -56,14 +56,11 @@ fn long_axis(shape: &Shape) -> Option<Vec3> {
         .iter()
         .map(|solid| PlacedSolid::of(solid, Pose::IDENTITY))
         .collect();
-    let extent = |axis: Vec3| {
-        let reach = |way: Vec3| {
-            let all = solids.iter().map(|solid| solid.farthest(way).dot(way));
-            all.fold(f32::NEG_INFINITY, f32::max)
-        };
-        reach(axis) + reach(-axis)
+    let length = |axis: Vec3| {
+        let [low, high] = PlacedSolid::extent(&solids, axis);
+        high - low
     };
-    let mut axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| (extent(axis), axis));
+    let mut axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| (length(axis), axis));
     axes.sort_by(|a, b| b.0.total_cmp(&a.0));
     let [(longest, axis), (second, _), _] = axes;
     (longest > LONG * second).then_some(axis)

@@ -44,14 +44,14 @@ fn warm_from_the_right() -> Light {
 fn colours_are_those_of_the_light_and_nothing_is_brighter_than_white() {
     let scene = of_solids(&default_scene());
     let usual = draw_scene(&scene, &in_light(LIGHT));
-    let color = Vec3::new(1.1, 0.9, 0.7);
+    let color = Vec3::new(1.1, 0.8, 0.6);
     let warm = draw_scene(&scene, &in_light(Light { color, ..LIGHT }));
     let at = |picture: &Picture, pixel: usize| picture.rgb[3 * pixel..3 * pixel + 3].to_vec();
     // The white table, which faces up, away from its edges.
     let table = (0..usual.objects.len())
         .find(|&pixel| usual.objects[pixel] == 1 && at(&usual, pixel) == [255, 255, 255])
         .unwrap();
-    assert_eq!(at(&warm, table), [255, 230, 179]);
+    assert_eq!(at(&warm, table), [255, 204, 153]);
     assert_eq!((usual.depth, usual.objects), (warm.depth, warm.objects));
 }
 

@@ -147,11 +147,7 @@ impl Imitator<'_> {
         }
         let goals: Vec<_> = spots
             .into_iter()
-            .map(|pose| Candidate {
-                pose,
-                cost: pose.location.distance(near) * 0.1,
-                is_tipped: false,
-            })
+            .map(|pose| Candidate::new(pose, pose.location.distance(near) * 0.1))
             .collect();
         if goals.is_empty() {
             return Err(PlanFailure::NoRoom(id.to_owned()));

@@ -47,10 +47,9 @@ impl Imitator<'_> {
         );
         // The orientations in which it may be grasped there.
         let turned = |pose: Pose| {
-            [0.0_f32, 0.8, -0.8, 1.6].map(|turn| Candidate {
-                pose: Pose::new(pose.location, Quat::from_rotation_z(turn) * pose.rotation),
-                cost: turn.abs() * 0.2,
-                is_tipped: false,
+            [0.0_f32, 0.8, -0.8, 1.6].map(|turn| {
+                let rotation = Quat::from_rotation_z(turn) * pose.rotation;
+                Candidate::new(Pose::new(pose.location, rotation), turn.abs() * 0.2)
             })
         };
         let spots: Vec<_> = spots.into_iter().flat_map(turned).collect();

@@ -176,11 +176,8 @@ impl Imitator<'_> {
         let raised = goals.iter().map(|goal| {
             let [lowest, _] = heights(&object.solids_at(goal.pose));
             let up = Vec3::Z * (rim + ABOVE_RIM - lowest).max(0.0);
-            Candidate {
-                pose: Pose::new(goal.pose.location + up, goal.pose.rotation),
-                cost: goal.cost + COST_OF_FALL,
-                is_tipped: false,
-            }
+            let there = Pose::new(goal.pose.location + up, goal.pose.rotation);
+            Candidate::new(there, goal.cost + COST_OF_FALL)
         });
         raised.collect()
     }

@@ -14,6 +14,7 @@ use crate::{
     goals::Candidate,
     motion::{follow, grip, wait},
     path::{Path, largest_turn, lift, line, withdraw},
+    sight::Sight,
     stage::PlanningStage,
     transit::WaySearch,
 };
@@ -34,8 +35,7 @@ impl Transfer<'_> {
         goals: &[Candidate],
     ) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
-        let (taking, approach) = self.plan(&sight, goals)?;
-        self.take(stage, &taking, &approach)?;
+        self.grasp(stage, &sight, goals)?;
         self.put(stage, goals)
     }
 
@@ -43,13 +43,8 @@ impl Transfer<'_> {
     pub fn pick_up(&self, stage: &mut dyn PlanningStage) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
         let object = self.seen(&sight)?;
-        let goal = Candidate {
-            pose: Pose::new(object.pose.location + Vec3::Z, object.pose.rotation),
-            cost: 0.0,
-            is_tipped: false,
-        };
-        let (taking, approach) = self.plan(&sight, &[goal])?;
-        self.take(stage, &taking, &approach)?;
+        let there = Pose::new(object.pose.location + Vec3::Z, object.pose.rotation);
+        self.grasp(stage, &sight, &[Candidate::new(there, 0.0)])?;
         let sight = stage.sight().clone();
         let clearance = Clearance::new(self.body, &sight, self.limb, &[self.object]);
         let up = lift(&clearance, &clearance.here(), 1.0).ok_or_else(|| self.no_way())?;
@@ -59,14 +54,9 @@ impl Transfer<'_> {
     /// Grasps the object and moves it along a straight line, as a joint allows.
     pub fn slide(&self, stage: &mut dyn PlanningStage, by: Vec3) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
-        let object = self.seen(&sight)?.clone();
-        let goal = Candidate {
-            pose: Pose::new(object.pose.location + by, object.pose.rotation),
-            cost: 0.0,
-            is_tipped: false,
-        };
-        let (taking, approach) = self.plan(&sight, &[goal])?;
-        self.take(stage, &taking, &approach)?;
+        let object = self.seen(&sight)?;
+        let there = Pose::new(object.pose.location + by, object.pose.rotation);
+        self.grasp(stage, &sight, &[Candidate::new(there, 0.0)])?;
         let sight = stage.sight().clone();
         let clearance = Clearance::new(self.body, &sight, self.limb, &[self.object]);
         let here = clearance.here();
@@ -76,6 +66,17 @@ impl Transfer<'_> {
         follow(stage, self.body, self.limb, &way, 1.5, self.object)?;
         let opening = stage.sight().limbs[self.limb].opening as f32 + RELEASES[0];
         self.let_go(stage, opening)
+    }
+
+    /// Plans how to grasp the object for one of these goals, and grasps it.
+    fn grasp(
+        &self,
+        stage: &mut dyn PlanningStage,
+        sight: &Sight,
+        goals: &[Candidate],
+    ) -> Result<(), PlanFailure> {
+        let (taking, approach) = self.plan(sight, goals)?;
+        self.take(stage, &taking, &approach)
     }
 
     fn take(
