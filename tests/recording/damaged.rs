@@ -2,8 +2,9 @@
 
 use std::{fs, path::Path};
 
+use bevy::prelude::*;
 use proptest::prelude::*;
-use tabletop::{headless_app_with, prelude::*, replay::Replay};
+use tabletop::{TabletopSimPlugins, headless_app_with, prelude::*, replay::Replay};
 
 use crate::demonstration::{Demonstration, fresh_folder_in_memory};
 
@@ -113,4 +114,27 @@ fn a_changed_session_is_refused_or_replayed() {
         }
     );
     fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn quaternions_that_are_almost_of_length_one_are_taken() {
+    let mut app = headless_app_with(TabletopSimPlugins);
+    let shape = Shape::Cylinder {
+        radius: 0.5,
+        yspan: 1.0,
+        color: Rgb::GRAY,
+    };
+    let rotation = Quat::from_xyzw(0.0, 0.0, -0.7071, 0.71);
+    let pose = Pose::new(Vec3::Z, rotation);
+    let object = SceneItem::Object(ObjectSpec::new("peg", pose, 1.0, shape));
+    let scene = SceneSpec {
+        items: vec![object],
+        ..default()
+    };
+    app.world_mut()
+        .write_command_of(Actor::App, SceneCommand::Set(Box::new(scene)));
+    app.step(120);
+    let peg = app.world().resource::<ObjectIndex>().get("peg").unwrap();
+    let place = app.world().get::<Transform>(peg).unwrap();
+    assert!((place.translation.z - 0.5).abs() < 0.01, "{place:?}");
 }

@@ -189,3 +189,27 @@ fn a_scene_settles_while_something_is_moved_far_away() {
     }
     assert_eq!(Some(hammer(&app)), resting);
 }
+
+#[test]
+fn what_is_fixed_carries_what_falls_on_it_after_it_was_held() {
+    let text = r#"<tabletop xmlns="http://synapse.cs.umd.edu/tabletop-xml" xspan="20" yspan="12">
+        <block id="shelf" location="(0,0,3)" xspan="4" yspan="4" zspan="0.5" mass="0"/>
+        <block id="load" location="(0,0,8)" xspan="1" yspan="1" zspan="1" mass="1"/>
+      </tabletop>"#;
+    let scene = xml::parse("shelf".as_ref(), text.as_bytes()).scene;
+    let mut app = headless_app();
+    app.world_mut()
+        .write_command(SceneCommand::Set(Box::new(scene)));
+    app.step(2);
+    let (hand, object) = (Hand::Any, "shelf".to_owned());
+    app.world_mut()
+        .write_command(HandCommand::Grasp { hand, object });
+    app.step(3);
+    app.world_mut().write_command(HandCommand::Release(hand));
+    for _ in 0..120 {
+        app.step(1);
+        let load = app.world().resource::<ObjectIndex>().get("load").unwrap();
+        let height = app.world().get::<Transform>(load).unwrap().translation.z;
+        assert!(height > 3.75 - 0.05, "{height}");
+    }
+}

@@ -136,6 +136,16 @@ impl Care {
         for handle in engine.islands.active_bodies() {
             let body = &engine.bodies[handle];
             if !body.is_dynamic() {
+                // The engine keeps what was held and is fixed now among the moving bodies while anything moves, and solves its contacts with
+                // the sub-steps of whichever body has fewer.
+                let substeps = if body.is_fixed() {
+                    MOST_SUBSTEPS
+                } else {
+                    FEWEST_SUBSTEPS
+                };
+                if substeps != FEWEST_SUBSTEPS + body.additional_solver_iterations() {
+                    changes.push((handle, substeps, body.soft_ccd_prediction()));
+                }
                 continue;
             }
             let situation = SubstepFactors::of(handle, &engine, &touches);

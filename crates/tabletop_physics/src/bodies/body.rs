@@ -28,6 +28,8 @@ pub(crate) fn add_object(world: &mut World, object: Entity, spec: &ObjectSpec) {
     let mut body = world.entity_mut(object);
     body.insert_if_new((
         collider(&spec.shape),
+        // Objects have a size, not a scale; a file's quaternions may be a little longer than one, which looks like a scale.
+        ColliderScale::Absolute(Vec3::ONE),
         surface(&settings, spec.dynamics),
         Velocity::linear(spec.dynamics.velocity),
         Twist {
