@@ -206,10 +206,12 @@ fn what_is_fixed_carries_what_falls_on_it_after_it_was_held() {
         .write_command(HandCommand::Grasp { hand, object });
     app.step(3);
     app.world_mut().write_command(HandCommand::Release(hand));
+    let load = app.world().resource::<ObjectIndex>().get("load").unwrap();
+    let place = |app: &App| app.world().get::<Transform>(load).unwrap().translation;
     for _ in 0..120 {
         app.step(1);
-        let load = app.world().resource::<ObjectIndex>().get("load").unwrap();
-        let height = app.world().get::<Transform>(load).unwrap().translation.z;
-        assert!(height > 3.75 - 0.05, "{height}");
+        assert!(place(&app).z > 3.75 - 0.05, "{}", place(&app));
     }
+    let aside = place(&app).truncate().length();
+    assert!(aside < 0.002, "it landed {aside} aside");
 }
