@@ -124,7 +124,7 @@ fn quaternions_that_are_almost_of_length_one_are_taken() {
         yspan: 1.0,
         color: Rgb::GRAY,
     };
-    let rotation = Quat::from_xyzw(0.0, 0.0, -0.7071, 0.71);
+    let rotation = Quat::from_xyzw(0.0, 0.0, -0.705, 0.7122);
     let pose = Pose::new(Vec3::Z, rotation);
     let object = SceneItem::Object(ObjectSpec::new("peg", pose, 1.0, shape));
     let scene = SceneSpec {
