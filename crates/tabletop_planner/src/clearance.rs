@@ -19,6 +19,8 @@ pub(crate) struct Clearance<'a> {
     angles: Vec<Angles>,
     table: Table,
     obstacles: Vec<PlacedSolid>,
+    /// The object that is taken or has been let go: only the fingers may be beside it.
+    taken: Vec<PlacedSolid>,
     /// The rest of the robot, including the fingers of other limbs.
     rest: Vec<LinkSolid>,
     others_fingers: Vec<PlacedSolid>,
@@ -80,6 +82,7 @@ impl<'a> Clearance<'a> {
         });
         Self {
             obstacles: obstacles.collect(),
+            taken: Vec::new(),
             others_fingers: fingers.collect(),
             rest: body.rest(limb, &angles),
             scratch: RefCell::default(),
@@ -91,6 +94,12 @@ impl<'a> Clearance<'a> {
             body,
             limb,
         }
+    }
+
+    /// The limb as it takes an object of these solids, or lets it go.
+    pub fn taking(mut self, solids: Vec<PlacedSolid>) -> Self {
+        self.taken = solids;
+        self
     }
 
     /// The limb with an object that its end effector carries at `grip`, a pose in the end effector's frame. The object does not lean when the end
@@ -165,15 +174,8 @@ impl<'a> Clearance<'a> {
         {
             return false;
         }
-        let meets_fingers = |solids: &[PlacedSolid]| {
-            let near = |one: &PlacedSolid| {
-                self.others_fingers
-                    .iter()
-                    .any(|other| one.is_within(0.15, other))
-            };
-            solids.iter().any(near)
-        };
-        if meets_fingers(&fingers) || meets_fingers(&held) {
+        let meets_fingers = |one: &PlacedSolid| is_near(one, &self.others_fingers, 0.15);
+        if fingers.iter().chain(&held).any(meets_fingers) {
             return false;
         }
         let mut own = self.scratch.borrow_mut();
@@ -181,8 +183,10 @@ impl<'a> Clearance<'a> {
         let far_out = |link: &LinkSolid| self.body.is_far_out(link.link);
         let is_clear = |solid: &PlacedSolid| {
             !self.is_at_table(solid, LINKS)
-                && !self.meets(&[*solid], LINKS)
-                && !meets_fingers(&[*solid])
+                && !is_near(solid, &self.obstacles, LINKS)
+                && !is_near(solid, &self.taken, LINKS)
+                && !is_near(solid, &held, LINKS)
+                && !meets_fingers(solid)
         };
         own.iter()
             .filter(|link| far_out(link))
@@ -206,12 +210,9 @@ impl<'a> Clearance<'a> {
     }
 
     fn meets(&self, solids: &[PlacedSolid], margin: f32) -> bool {
-        let near = |one: &PlacedSolid| {
-            self.obstacles
-                .iter()
-                .any(|other| one.is_within(margin, other))
-        };
-        solids.iter().any(near)
+        solids
+            .iter()
+            .any(|solid| is_near(solid, &self.obstacles, margin))
     }
 
     /// True if it is nearer to the table's top than this margin, or below it.
@@ -224,4 +225,8 @@ impl<'a> Clearance<'a> {
             && at.y.abs() - radius < half.y
             && solid.heights()[0] < margin
     }
+}
+
+fn is_near(solid: &PlacedSolid, others: &[PlacedSolid], margin: f32) -> bool {
+    others.iter().any(|other| solid.is_within(margin, other))
 }

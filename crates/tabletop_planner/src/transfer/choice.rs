@@ -8,7 +8,7 @@ use tabletop_task::{PlacedSolid, angle_between};
 use super::{BESIDE, PAIRS, Transfer, above_place};
 use crate::{
     body::Angles,
-    clearance::{Clearance, Margins},
+    clearance::Margins,
     failure::PlanFailure,
     goals::Candidate,
     grasp::{Grasp, grasps},
@@ -139,9 +139,9 @@ impl Transfer<'_> {
         found: &Cell<Obstructions>,
     ) -> Vec<Taking> {
         let limb = &self.body.limbs[self.limb];
-        let mut free = Clearance::new(self.body, sight, self.limb, &[self.object]);
-        let here = free.here();
         let own = object.solids();
+        let mut free = self.taking(sight, object);
+        let here = free.here();
         let mut takings = Vec::new();
         for &grasp in grasps {
             let pose = object.pose * grasp.end_effector;

@@ -35,8 +35,7 @@ impl Transfer<'_> {
         search: WaySearch,
     ) -> Option<[Path; 2]> {
         let object = self.seen(sight).ok()?;
-        let near =
-            Clearance::new(self.body, sight, self.limb, &[self.object]).opened(taking.opening);
+        let near = self.taking(sight, object).opened(taking.opening);
         let far = Clearance::new(self.body, sight, self.limb, &[]).opened(taking.opening);
         let end_effector = near.end_effector(&taking.at);
         let back = end_effector.rotation * Vec3::Z;
@@ -68,6 +67,11 @@ impl Transfer<'_> {
     /// Rotation from the object, which the arm takes at these angles, to the end effector's frame; `None` if it is to be tipped.
     pub(super) fn upright(&self, at: &Angles, is_tipped: bool) -> Option<Quat> {
         (!is_tipped).then(|| self.body.end_effector(self.limb, at).rotation.inverse())
+    }
+
+    /// The clearance of the arm that takes the object, or has let it go.
+    pub(super) fn taking(&self, sight: &Sight, object: &SeenObject) -> Clearance<'_> {
+        Clearance::new(self.body, sight, self.limb, &[self.object]).taking(object.solids())
     }
 
     /// The clearance of the arm that holds the object like this, with fingers at this opening.
