@@ -54,7 +54,7 @@ pub(crate) fn close(
         room: opening,
         touched: Vec::new(),
     };
-    let mut thickness = BTreeMap::new();
+    let mut filled = BTreeMap::new();
     for candidate in between {
         let [Some(left), Some(right)] = pads.map(|pad| pad.touch(&candidate.parts, opening)) else {
             continue;
@@ -68,9 +68,9 @@ pub(crate) fn close(
                 points: [left.point, right.point],
             });
         }
-        add_thickness(&mut thickness, pads, candidate, opening);
+        add_filled(&mut filled, pads, candidate, opening);
     }
-    let thickest = thickness.values().copied().fold(0.0, f32::max);
+    let thickest = filled.into_values().map(thickness).fold(0.0, f32::max);
     closing.room = closing.room.min((opening - thickest).max(0.0));
     closing
 }
@@ -81,9 +81,9 @@ fn angle(left: FingerTouch, right: FingerTouch, end_effector: Pose) -> f32 {
     across.angle_between(end_effector.rotation * Vec3::X)
 }
 
-/// Adds the thickness of an object along each line from finger to finger, so that objects behind each other add up.
-fn add_thickness(
-    thickness: &mut BTreeMap<ProbeRay, f32>,
+/// Adds the part that an object fills of each line from finger to finger, from its nearest to its farthest point.
+fn add_filled(
+    filled: &mut BTreeMap<ProbeRay, Vec<[f32; 2]>>,
     [left, right]: [FingerPad; 2],
     candidate: &Graspable,
     opening: f32,
@@ -91,9 +91,22 @@ fn add_thickness(
     let from_right: BTreeMap<_, _> = right.probe(&candidate.parts, opening).collect();
     for (ray, from_left) in left.probe(&candidate.parts, opening) {
         if let Some(from_right) = from_right.get(&opposite(ray)) {
-            *thickness.entry(ray).or_default() += opening - from_left - from_right;
+            let part = [from_left, opening - from_right];
+            filled.entry(ray).or_default().push(part);
         }
     }
+}
+
+/// The thickness of objects along a line. Those behind each other add up; what is inside another one does not count.
+fn thickness(mut parts: Vec<[f32; 2]>) -> f32 {
+    parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut end = f32::NEG_INFINITY;
+    let lengths = parts.into_iter().map(|[from, to]| {
+        let length = (to - from.max(end)).max(0.0);
+        end = end.max(to);
+        length
+    });
+    lengths.sum()
 }
 
 #[cfg(test)]
@@ -175,6 +188,21 @@ mod tests {
         let closing = close(Pose::IDENTITY, 2.0, FINGER, &halves);
         assert!((closing.room - 1.0).abs() < 1e-4, "{closing:?}");
         assert!(closing.touched.is_empty());
+    }
+
+    #[test]
+    fn what_a_box_contains_does_not_keep_the_fingers_from_it() {
+        let wall = |x: f32| Convex {
+            pose: Pose::at(Vec3::X * x),
+            shape: SharedShape::cuboid(0.05, 0.8, 0.5),
+        };
+        let walls = Graspable {
+            object: OBJECT,
+            parts: vec![wall(-0.75), wall(0.75)],
+        };
+        let content = candidate(SharedShape::cuboid(0.5, 0.5, 0.5), Pose::IDENTITY);
+        let closing = close(Pose::IDENTITY, 1.9, FINGER, &[walls, content]);
+        assert!((closing.room - 0.3).abs() < 1e-4, "{closing:?}");
     }
 
     #[test]
