@@ -18,5 +18,6 @@ mod replay;
 mod robot;
 mod scenarios;
 mod scripts;
+mod strange_scenes;
 mod support;
 mod task_files;

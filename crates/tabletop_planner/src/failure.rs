@@ -11,12 +11,21 @@ pub enum PlanFailure {
     Gone(String),
     /// No arm gets its fingers around the object.
     OutOfReach(String),
+    /// Something leaves the fingers no room around the object.
+    Enclosed(String),
     /// No arm that reaches the object reaches where it belongs.
     PlaceOutOfReach(String),
     /// No part of the object fits between the fingers as it stands.
     NoGrasp(String),
     /// The object would have to be tipped over, and no grasp allows that.
     Tipped(String),
+    /// Something that nothing moves is where the object belongs.
+    Occupied {
+        /// The object that was to be moved.
+        object: String,
+        /// What is there.
+        by: String,
+    },
     /// No free path leads to the goal.
     NoWay(String),
     /// The fingers have closed without holding the object.
@@ -46,11 +55,14 @@ impl PlanFailure {
     /// True if it was found before anything moved, so that taking the object from beside may do.
     pub(crate) const fn is_of_planning(&self) -> bool {
         match self {
-            Self::OutOfReach(_) | Self::PlaceOutOfReach(_) | Self::NoGrasp(_) | Self::NoWay(_) => {
-                true
-            }
+            Self::OutOfReach(_)
+            | Self::Enclosed(_)
+            | Self::PlaceOutOfReach(_)
+            | Self::NoGrasp(_)
+            | Self::NoWay(_) => true,
             Self::Gone(_)
             | Self::Tipped(_)
+            | Self::Occupied { .. }
             | Self::NotHeld(_)
             | Self::Blocked { .. }
             | Self::NoRoom(_)
@@ -64,14 +76,16 @@ impl PlanFailure {
         let progress = |failure: &Self| match failure {
             Self::NoGrasp(_) => 0,
             Self::OutOfReach(_) => 1,
-            Self::PlaceOutOfReach(_) => 2,
-            Self::Tipped(_) | Self::NoWay(_) => 3,
+            Self::Enclosed(_) => 2,
+            Self::PlaceOutOfReach(_) => 3,
+            Self::Tipped(_) | Self::NoWay(_) => 4,
             Self::Gone(_)
+            | Self::Occupied { .. }
             | Self::NotHeld(_)
             | Self::Blocked { .. }
             | Self::NoRoom(_)
             | Self::Misplaced(_)
-            | Self::Stopped => 4,
+            | Self::Stopped => 5,
         };
         match progress(&later) >= progress(&self) {
             true => later,
@@ -83,9 +97,11 @@ impl PlanFailure {
     pub(crate) const fn is_final(&self) -> bool {
         match self {
             Self::OutOfReach(_)
+            | Self::Enclosed(_)
             | Self::PlaceOutOfReach(_)
             | Self::NoGrasp(_)
             | Self::Tipped(_)
+            | Self::Occupied { .. }
             | Self::NoRoom(_)
             | Self::Gone(_)
             | Self::Stopped => true,
@@ -98,9 +114,11 @@ impl PlanFailure {
         match self {
             Self::Gone(_) => "gone",
             Self::OutOfReach(_) => "out of reach",
+            Self::Enclosed(_) => "enclosed",
             Self::PlaceOutOfReach(_) => "place out of reach",
             Self::NoGrasp(_) => "no grasp",
             Self::Tipped(_) => "to be tipped",
+            Self::Occupied { .. } => "occupied",
             Self::NoWay(_) => "no way",
             Self::NotHeld(_) => "not held",
             Self::Blocked { .. } => "blocked",
@@ -118,6 +136,12 @@ impl fmt::Display for PlanFailure {
             Self::OutOfReach(object) => {
                 write!(f, "no arm gets its fingers around {object} where it is")
             }
+            Self::Enclosed(object) => {
+                write!(
+                    f,
+                    "there is no room for fingers around {object} where it is"
+                )
+            }
             Self::PlaceOutOfReach(object) => {
                 write!(f, "no arm that reaches {object} reaches where it belongs")
             }
@@ -129,6 +153,9 @@ impl fmt::Display for PlanFailure {
                 f,
                 "{object} would have to be tipped, and no grasp of it is free before and after that"
             ),
+            Self::Occupied { object, by } => {
+                write!(f, "{by} is where {object} belongs, and nothing moves it")
+            }
             Self::NoWay(object) => {
                 write!(f, "there is no free way for {object} to where it belongs")
             }

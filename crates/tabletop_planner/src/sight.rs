@@ -8,6 +8,9 @@ use tabletop_task::{Arrangement, PlacedSolid};
 
 use crate::body::Angles;
 
+/// Depth to which a part that is above an object may be in it, in units.
+const PLAY: f32 = 0.05;
+
 /// The world at the end of a tick.
 #[derive(Clone, Debug, Default)]
 pub struct Sight {
@@ -75,6 +78,19 @@ impl Sight {
             false => (id.as_str(), &object.shape, object.pose),
         });
         Arrangement::new(objects)
+    }
+
+    /// True if a part of one object is above another one.
+    pub(crate) fn covers(&self, one: &str, other: &str) -> bool {
+        let (Some(one), Some(other)) = (self.objects.get(one), self.objects.get(other)) else {
+            return false;
+        };
+        let below = other.solids();
+        let [_, top] = heights(&below);
+        one.solids().iter().any(|part| {
+            let is_over = |solid: &PlacedSolid| part.gap_from_above(solid) <= 0.0;
+            part.heights()[0] > top - PLAY && below.iter().any(is_over)
+        })
     }
 
     /// Ids of the objects that stand directly on an object.

@@ -79,7 +79,7 @@ impl Imitator<'_> {
             parked.location.distance(middle)
         };
         limbs.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let mut failure = PlanFailure::OutOfReach(id.to_owned());
+        let mut failure = PlanFailure::NoGrasp(id.to_owned());
         for limb in limbs {
             for other in (0..self.body.limbs.len()).filter(|&other| other != limb) {
                 self.try_to_park(stage, other)?;

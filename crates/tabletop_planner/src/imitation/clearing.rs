@@ -8,7 +8,7 @@ use super::Imitator;
 use crate::{
     failure::PlanFailure,
     free_spot::free_spots,
-    goals::{Candidate, candidates},
+    goals::{Candidate, candidates, is_inside},
     sight::{SeenObject, Sight},
     stage::PlanningStage,
 };
@@ -18,6 +18,9 @@ const FINGER_ROOM: f32 = 0.7;
 
 impl Imitator<'_> {
     /// The object that occupies the goal of a step's object and does not belong there.
+    ///
+    /// # Errors
+    /// Nothing moves it.
     pub(super) fn occupant(
         &self,
         sight: &Sight,
@@ -33,14 +36,17 @@ impl Imitator<'_> {
         let meant: Vec<_> = others
             .filter_map(|role| self.binding.object(role))
             .collect();
+        let is_fixed =
+            |other: &String| sight.objects.get(other).is_some_and(|other| other.is_fixed);
         let in_the_way = |goal: &Candidate| {
             let solids = object.solids_at(Pose::new(
                 goal.pose.location + Vec3::Z * 0.02,
                 goal.pose.rotation,
             ));
-            let others = sight.objects.iter().filter(|(other, seen)| {
-                *other != id && !seen.is_fixed && !meant.contains(&other.as_str())
-            });
+            let others = sight
+                .objects
+                .iter()
+                .filter(|(other, _)| *other != id && !meant.contains(&other.as_str()));
             let mut overlapping = others.filter(|(_, other)| {
                 let other = other.solids();
                 let meets = |solid: &PlacedSolid| {
@@ -52,15 +58,22 @@ impl Imitator<'_> {
             });
             overlapping.next().map(|(id, _)| id.clone())
         };
-        let occupants: Vec<_> = goals.iter().map(in_the_way).collect();
+        let occupants: Option<Vec<_>> = goals.iter().map(in_the_way).collect();
         // Only if no goal is free.
-        Ok(match occupants.iter().any(Option::is_none) {
-            true => None,
-            false => occupants.into_iter().flatten().next(),
-        })
+        let Some(occupants) = occupants else {
+            return Ok(None);
+        };
+        let movable = occupants.iter().find(|other| !is_fixed(other));
+        match (movable, occupants.first()) {
+            (None, Some(fixed)) if !is_inside(step) => Err(PlanFailure::Occupied {
+                object: id.to_owned(),
+                by: fixed.clone(),
+            }),
+            (movable, _) => Ok(movable.cloned()),
+        }
     }
 
-    /// The nearest thing that leaves too little room for fingers beside an object or its place, and does not belong there.
+    /// The nearest thing that leaves too little room for fingers beside an object or its place, and does not belong there or carry it.
     pub(super) fn neighbour(
         &self,
         sight: &Sight,
@@ -77,11 +90,23 @@ impl Imitator<'_> {
             .chain([object.pose])
             .flat_map(|pose| object.solids_at(pose))
             .collect();
-        let others = step.relations.iter().filter_map(Relation::object);
-        let done = self.task.steps.iter().take(step.number - 1);
-        let settled = done.map(|step| step.object.as_str()).chain(others);
+        let done = &self.task.steps[..step.number - 1];
+        let references = self.task.steps[..step.number].iter();
+        let references = references.flat_map(|step| &step.relations);
+        let settled = done
+            .iter()
+            .map(|step| step.object.as_str())
+            .chain(references.filter_map(Relation::object));
+        let arrangement = sight.arrangement();
+        let carriers = [
+            arrangement.supports(id),
+            arrangement.containers(id),
+            arrangement.posts(id),
+        ];
+        let carriers = carriers.concat().into_iter();
         let settled: Vec<_> = settled
             .filter_map(|role| self.binding.object(role))
+            .chain(carriers.filter(|carrier| !sight.covers(carrier, id)))
             .collect();
         let is_movable = |other: &str, seen: &SeenObject| {
             let is_jointed = || {

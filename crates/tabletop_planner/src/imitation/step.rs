@@ -77,7 +77,10 @@ impl Imitator<'_> {
                 }
                 let mut outcome = self.put(stage, step, id, i);
                 for _ in 0..MOST_CLEARED {
-                    if !matches!(outcome, Err(PlanFailure::NoWay(_))) {
+                    if !matches!(
+                        outcome,
+                        Err(PlanFailure::NoWay(_) | PlanFailure::Enclosed(_))
+                    ) {
                         break;
                     }
                     let Some(neighbour) = self.neighbour(stage.sight(), step, id)? else {

@@ -68,7 +68,7 @@ impl Transfer<'_> {
         let searched = looked_into
             .iter()
             .find_map(|takings| self.best(sight, takings, goals, search, &found));
-        searched.ok_or_else(|| self.failure(found.get()))
+        searched.ok_or_else(|| self.failure(sight, found.get()))
     }
 
     /// True if a way to one of the goals is found without a search.
@@ -84,10 +84,13 @@ impl Transfer<'_> {
         })
     }
 
-    fn failure(&self, found: Obstructions) -> PlanFailure {
+    fn failure(&self, sight: &Sight, found: Obstructions) -> PlanFailure {
         let object = self.object.to_owned();
         match found {
-            Obstructions { reached: false, .. } => PlanFailure::OutOfReach(object),
+            Obstructions { reached: false, .. } => match self.reach(sight) {
+                Ok(()) => PlanFailure::Enclosed(object),
+                Err(failure) => failure,
+            },
             Obstructions {
                 free: true,
                 put: false,
