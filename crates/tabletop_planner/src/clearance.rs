@@ -60,6 +60,11 @@ impl Margins {
         held: 0.004,
         held_above_table: 0.004,
     };
+    /// For fingers that come from beside an object, which may have neighbours.
+    pub const BARE: Self = Self {
+        fingers: 0.005,
+        ..Self::NARROW
+    };
 }
 
 /// Largest angle by which what is held may lean, in rad, unless it is to be tipped.

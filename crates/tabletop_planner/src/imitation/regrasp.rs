@@ -18,9 +18,6 @@ use crate::{
     transfer::Transfer,
 };
 
-/// Number of places that are examined for an object that is to be tipped.
-const MOST_PLACES: usize = 24;
-
 impl Imitator<'_> {
     /// Puts an object down where every limb reaches it. Returns false if there is no such place.
     pub(super) fn put_halfway(
@@ -95,7 +92,7 @@ impl Imitator<'_> {
         let kept = self.kept(sight, i);
         let limbs = || 0..self.body.limbs.len();
         let rotations = different_turns(object);
-        let places = rotations.iter().flat_map(|&rotation| {
+        let mut places = rotations.iter().flat_map(|&rotation| {
             limbs().filter_map({
                 let kept = &kept;
                 move |limb| {
@@ -109,7 +106,7 @@ impl Imitator<'_> {
                 }
             })
         });
-        let found = places.take(MOST_PLACES).find(|(limb, place)| {
+        let found = places.find(|(limb, place)| {
             let mut there = sight.clone();
             if let Some(object) = there.objects.get_mut(id) {
                 object.pose = place.pose;

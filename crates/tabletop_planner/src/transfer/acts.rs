@@ -6,14 +6,14 @@ use tabletop_core::Pose;
 use super::{
     PAIRS, Transfer, above_place,
     choice::Taking,
-    ways::{Placing, RELEASES},
+    ways::{Placing, RELEASES, back_or_out},
 };
 use crate::{
     clearance::{Clearance, Margins},
     failure::PlanFailure,
     goals::Candidate,
     motion::{follow, grip, wait},
-    path::{Path, largest_turn, lift, line, withdraw},
+    path::{Path, largest_turn, lift, line},
     sight::Sight,
     stage::PlanningStage,
     transit::WaySearch,
@@ -106,13 +106,12 @@ impl Transfer<'_> {
 
     fn withdraw(&self, stage: &mut dyn PlanningStage) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
-        let clearance = Clearance::new(self.body, &sight, self.limb, &[self.object]);
-        let here = clearance.here();
-        let by = [1.4, 1.0, 0.6]
-            .into_iter()
-            .find_map(|by| withdraw(&clearance, &here, by));
-        match by {
-            Some(up) => follow(stage, self.body, self.limb, &up, SLOW, self.object),
+        let released = match self.seen(&sight) {
+            Ok(object) => self.taking(&sight, object),
+            Err(_) => Clearance::new(self.body, &sight, self.limb, &[]),
+        };
+        match back_or_out(&released, &released.here()) {
+            Some(back) => follow(stage, self.body, self.limb, &back, SLOW, self.object),
             None => Ok(()),
         }
     }

@@ -16,6 +16,8 @@ use crate::{
 
 /// Openings of the fingers for a release, in units beyond the held width. The first that has room is used.
 pub(super) const RELEASES: [f32; 5] = [0.35, 0.22, 0.14, 0.08, 0.05];
+/// Distances by which an arm withdraws from what it has let go, in units: rather more than less.
+const BACK: [f32; 3] = [1.4, 1.0, 0.6];
 
 /// A feasible way to put the held object down.
 pub(super) struct Placing {
@@ -148,6 +150,9 @@ impl Transfer<'_> {
             .into_iter()
             .map(|more| (holding.opening + more).min(widest))
             .find(|opening| holding.has_room_for_fingers(end, *opening, BESIDE))?;
+        let there = self.seen(sight).ok()?.solids_at(goal.pose);
+        let released = Clearance::new(self.body, sight, self.limb, &[self.object]);
+        back(&released.taking(there).opened(opening), put)?;
         let by = self.height(sight, goal.pose);
         [by, by + 0.5, (by - 0.4).max(0.3)]
             .into_iter()
@@ -161,4 +166,20 @@ impl Transfer<'_> {
                 Some(Placing { way, down, opening })
             })
     }
+}
+
+/// The way back from an object that has been let go, to where the arm is free to go on.
+fn back(released: &Clearance, from: &Angles) -> Option<Path> {
+    BACK.into_iter().find_map(|by| {
+        let back = withdraw(released, from, by)?;
+        let is_free = released.is_way_free(&back, Margins::BARE)
+            && released.is_free(back.last()?, Margins::TIGHT);
+        is_free.then_some(back)
+    })
+}
+
+/// The same, or without a free one any way that the arm can go.
+pub(super) fn back_or_out(released: &Clearance, from: &Angles) -> Option<Path> {
+    let any = || BACK.into_iter().find_map(|by| withdraw(released, from, by));
+    back(released, from).or_else(any)
 }
