@@ -172,6 +172,11 @@ impl Replay {
         &self.session.header.hand_cameras
     }
 
+    /// The robot that was recorded.
+    pub fn robot(&self) -> &RobotPlugin {
+        &self.robot
+    }
+
     /// The simulator with the settings with which it was recorded.
     pub fn plugins(&self) -> PluginGroupBuilder {
         TabletopSimPlugins

@@ -7,7 +7,7 @@ use clap::Args;
 use tabletop::{
     core::{HeadCamera, Pose, SimTick, StepApp as _},
     headless_app_with,
-    recorder::{Channels, Durability, HandPictures, RecorderPlugin},
+    recorder::{Channels, Durability, RecorderPlugin},
     replay::{Player, Replay},
     script::ScriptPlugin,
 };
@@ -16,6 +16,7 @@ use super::{
     Failure,
     allowed_paths::AllowedPaths,
     duration::{seconds, ticks},
+    hand_cameras::HandCameraOption,
     robot_options::{EngineOptions, script},
     script::{Script, headless_settings},
     temporary_folder::TemporaryFolder,
@@ -202,13 +203,13 @@ impl PictureArgs {
             depth: self.depth,
             ids: self.ids,
         };
+        let asked = HandCameraOption {
+            hand_cameras: self.hand_cameras,
+        };
         let recorder = RecorderPlugin {
             folder: into,
             channels,
-            hand_pictures: match self.hand_cameras {
-                true => HandPictures::OfAll,
-                false => HandPictures::None,
-            },
+            hand_pictures: asked.of(replay.robot())?,
             durability,
             ..default()
         };

@@ -424,3 +424,20 @@ fn what_a_terminal_obeys_is_written_out() {
     assert!(said.contains("\\u{1b}[31mred"), "{said}");
     assert!(!said.contains('\u{1b}'), "{said}");
 }
+
+#[test]
+fn hand_cameras_that_the_recorded_robot_lacks_are_not_passed_over() {
+    let scenario = shipped("scenarios", "panda_stack.ron");
+    let [demo, out] = ["replay_panda", "replay_panda_out"].map(place);
+    let [scenario, demo, out] = [&scenario, &demo, &out].map(|path| path.to_str().unwrap());
+    let robot = "shipped:assets/panda/robot.ron";
+    let output = tabletop(&["run", scenario, "--robot", robot, "--record", demo]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let output = tabletop(&["replay", demo, "--out", out, "--hand-cameras"]);
+    assert_eq!(output.status.code(), Some(2));
+    let told = stderr(&output);
+    assert!(
+        told.contains("the robot Panda has no hand cameras"),
+        "{told}"
+    );
+}
