@@ -256,7 +256,7 @@ pub fn scattered(
         .chain(arms.into_iter().filter(low))
         .collect();
     let seed = Random::new(seed).bits();
-    let is_reached = |points: &[Vec3]| body.is_none_or(|body| body.reaches_from_above(points));
+    let is_reached = |points: &[Vec3]| body.is_none_or(|body| body.reaches(points));
     let motions = scatter(&pieces, &arrangement, &scene.table, &kept, is_reached, seed)?;
     let items = scene.items.iter().zip(motions);
     let items = items.map(|(item, motion)| moved(item, motion));

@@ -287,7 +287,7 @@ fn table(trials: &[Trial]) -> String {
         .filter(|(_, imitation)| imitation.corrections > 0)
         .count();
     let mean = |time: fn(&Trial) -> f64| {
-        made.iter().map(|(trial, _)| time(trial)).sum::<f64>() / made.len().max(1) as f64
+        made.iter().map(|(trial, _)| time(trial)).sum::<f64>() / made.len() as f64
     };
     let mut lines = vec![
         format!("{:<14}{:>5} of {}", "done", made.len() - failed, made.len()),
@@ -304,10 +304,12 @@ fn table(trials: &[Trial]) -> String {
     if without_room > 0 {
         lines.push(format!("{:<14}{without_room:>5}  not tried", "no room"));
     }
-    lines.push(format!(
-        "{:.1} s simulated and {:.2} s real on average",
-        mean(|trial| trial.simulated),
-        mean(|trial| trial.real)
-    ));
+    if !made.is_empty() {
+        lines.push(format!(
+            "{:.1} s simulated and {:.2} s real on average",
+            mean(|trial| trial.simulated),
+            mean(|trial| trial.real)
+        ));
+    }
     lines.join("\n") + "\n"
 }

@@ -1,6 +1,6 @@
 //! Scattering: a scene whose objects are moved to random places.
 
-use std::f32::consts::PI;
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use bevy::math::{Quat, Vec3};
 use tabletop_core::{Pose, Random, Table};
@@ -27,6 +27,10 @@ const GAP: f32 = 0.3;
 const TRIES: u32 = 3000;
 /// Distance of pieces from the table's edges, in units.
 const EDGE: f32 = 0.05;
+/// Height from which on things are taken from beside, in units: no arm has room above them.
+const HIGH: f32 = 4.0;
+/// Height of a hold above a point that is to be reached, in units.
+const HOLD: f32 = 0.3;
 
 /// Motions that bring all pieces to random places, turned by random angles. `is_reached` must hold of each group of points that has to be reached.
 /// Pieces that stand on, in or around others move with them. Nothing comes near the solids `kept` free. `None` if there is
@@ -97,13 +101,33 @@ pub fn scatter(
 }
 
 impl RobotBody {
-    /// True if one limb reaches all points, and the space above them, from above, with its fingers turned in any direction.
-    pub fn reaches_from_above(&self, points: &[Vec3]) -> bool {
+    /// True if one limb reaches all points, and the space above them, from above, with its fingers turned in any direction; or, if they are too high
+    /// for that, from the same side.
+    pub fn reaches(&self, points: &[Vec3]) -> bool {
+        let are_high = points.iter().all(|point| point.z > HIGH);
         let mut limbs = 0..self.limbs.len();
-        limbs.any(|limb| {
-            points
-                .iter()
-                .all(|&point| self.limb_reaches_from_above(limb, point))
+        limbs.any(|limb| match are_high {
+            true => self.limb_reaches_from_beside(limb, points),
+            false => {
+                let mut points = points.iter();
+                points.all(|&point| self.limb_reaches_from_above(limb, point))
+            }
+        })
+    }
+
+    fn limb_reaches_from_beside(&self, limb: usize, points: &[Vec3]) -> bool {
+        let home = self.limbs[limb].home;
+        let leans = [FRAC_PI_4, FRAC_PI_2].into_iter();
+        let mut turns = leans.flat_map(|lean| {
+            (0..8_u16).map(move |eighth| {
+                Quat::from_rotation_z(FRAC_PI_4 * f32::from(eighth)) * Quat::from_rotation_x(lean)
+            })
+        });
+        turns.any(|turn| {
+            points.iter().all(|&point| {
+                let pose = Pose::new(point + Vec3::Z * HOLD, turn);
+                self.reach(limb, pose, &home).is_some()
+            })
         })
     }
 
@@ -113,8 +137,8 @@ impl RobotBody {
             let pose = Pose::new(point.with_z(z), Quat::from_rotation_z(turn));
             self.reach(limb, pose, &home).is_some()
         };
-        let low = point.z + 0.3;
-        [0.0, PI / 4.0, PI / 2.0, -PI / 4.0]
+        let low = point.z + HOLD;
+        [0.0, FRAC_PI_4, FRAC_PI_2, -FRAC_PI_4]
             .into_iter()
             .all(|turn| there(low, turn) && there(low + 2.5, turn))
     }
