@@ -14,7 +14,7 @@ const LINE_STEP: (f32, f32) = (0.25, 0.25);
 /// Largest turn of a joint between neighbouring postures of a line, in rad.
 const JUMP: f64 = 0.5;
 /// Largest turn of a joint between neighbouring postures of a free path, in rad.
-const JOINT_STEP: f64 = 0.06;
+const JOINT_STEP: f64 = 0.03;
 
 /// The largest turn of a joint between two postures, in rad.
 pub(crate) fn largest_turn(a: &Angles, b: &Angles) -> f64 {
