@@ -26,6 +26,9 @@ pub(crate) const TOUCHING: f32 = 0.01;
 /// Depth, in units, to which a free object is squeezed before its pusher stops.
 const SQUEEZE: f32 = 0.05;
 
+/// Depth, in units, to which a free object is squeezed between its pusher and what does not move.
+const PRESSED: f32 = 0.03;
+
 /// The owner of a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Owner {
@@ -104,13 +107,23 @@ impl SweptSolid {
     pub fn approach(&self, free: &Self) -> Option<Approach> {
         let reach = self.from.location.distance(self.to.location)
             + self.from.rotation.angle_between(self.to.rotation) * self.extent();
-        let [here, ahead] =
-            [self.from, self.to].map(|at| self.distance(at, free, free.to, reach + TOUCHING));
+        let here = self.contact(free, reach + TOUCHING)?;
+        let ahead = self.distance(self.to, free, free.to, reach + TOUCHING)?;
         let approach = Approach {
-            distance: here?,
-            way: here? - ahead?,
+            distance: here.dist,
+            way: here.dist - ahead,
+            direction: here.normal1,
         };
         (approach.way > 0.0).then_some(approach)
+    }
+
+    /// The solid, shifted.
+    pub fn shifted(mut self, by: Vec3) -> Self {
+        self.from.location += by;
+        self.to.location += by;
+        self.bounds.mins += by;
+        self.bounds.maxs += by;
+        self
     }
 
     /// Depth of this solid inside another, in units, before they move.
@@ -168,6 +181,8 @@ pub(crate) struct Approach {
     distance: f32,
     /// Decrease of the gap by its end.
     way: f32,
+    /// Normal of the contact, from the solid to the free object.
+    pub direction: Vec3,
 }
 
 impl Approach {
@@ -184,6 +199,12 @@ impl Approach {
         } else {
             ((self.distance - TOUCHING / 2.0) / self.way).min(1.0)
         }
+    }
+
+    /// The part of its way that the solid can go on pushing a free object that cannot give way and is squeezed to this depth, in units.
+    pub fn part_pressing(self, depth: f32) -> f32 {
+        let room = PRESSED - depth + self.distance.min(0.0);
+        (room / self.way).clamp(0.0, 1.0)
     }
 }
 

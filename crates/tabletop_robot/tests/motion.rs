@@ -334,3 +334,33 @@ fn an_arm_that_presses_a_block_onto_the_table_stops() {
         "{place}"
     );
 }
+
+#[test]
+fn an_arm_that_presses_a_tower_presses_nothing_into_the_table() {
+    for blocks in 1..=3 {
+        let mut stage = Stage::new();
+        drive(&mut stage, RobotJoint::RightGripper, Drive::Position(0.2));
+        stage.reach(Arm::Right, Vec3::new(3.0, -3.0, 5.5), 0.0);
+        for number in 0..blocks {
+            let place = Pose::at(Vec3::new(3.0, -3.0, 0.5 + number as f32));
+            stage.put(&number.to_string(), block(Vec3::ONE), 1.0, place);
+        }
+        stage.tell(RobotCommand::ReachTo {
+            arm: Arm::Right.name(),
+            pose: Pose::at(Vec3::new(3.0, -3.0, 0.9)),
+        });
+        let mut is_pressed = false;
+        for _ in 0..300 {
+            stage.app.step(1);
+            let contacts = &stage.robot().contacts;
+            is_pressed |= contacts.iter().any(|contact| contact.impulse > 0.0);
+            for number in 0..blocks {
+                let Pose { location, rotation } = stage.place(&number.to_string());
+                let half = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| (rotation * axis).z.abs() / 2.0);
+                let low = location.z - half.iter().sum::<f32>();
+                assert!(low > -0.05, "block {number} of {blocks}: {low}");
+            }
+        }
+        assert!(is_pressed, "{blocks}");
+    }
+}

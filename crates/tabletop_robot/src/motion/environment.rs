@@ -18,6 +18,12 @@ use crate::{
 /// Distance, in units, at which something is near: more than that at which the engine looks for contacts.
 const VICINITY: f32 = 0.5;
 
+/// Distance, in units, by which it is tried whether a free object can be pushed.
+const PROBE: f32 = 0.05;
+
+/// Least increase of a depth, in units, with which that meets anything.
+const LEAST_STOP: f32 = 0.01;
+
 /// A free object that the robot can push or take.
 pub(crate) struct FreeObject {
     /// The object.
@@ -115,29 +121,60 @@ impl Environment {
         let mut next = 0;
         while let Some(&thing) = cluster.get(next) {
             next += 1;
-            let FreeObject { object, bounds, .. } = &self.free[thing];
-            for solid in self.free[thing].solids() {
-                let immovable = self.immovable.iter();
-                deepest = immovable
-                    .filter(|obstacle| are_near(obstacle.bounds(), bounds))
-                    .filter(|obstacle| match obstacle.owner {
-                        Owner::Thing(other) => !self.pass.contains(&[*object, other]),
-                        Owner::Body(_) => true,
-                    })
-                    .map(|obstacle| solid.depth_in(obstacle))
-                    .fold(deepest, f32::max);
-            }
+            let thing = &self.free[thing];
+            deepest = deepest.max(self.depth(thing, Vec3::ZERO));
             for (other, neighbour) in self.free.iter().enumerate() {
-                if !cluster.contains(&other) && are_near(&neighbour.bounds, bounds) {
-                    if !self.pass.contains(&[*object, neighbour.object]) {
-                        let depth = depth_between(&self.free[thing], neighbour);
-                        deepest = deepest.max(depth);
+                if !cluster.contains(&other) && are_near(&neighbour.bounds, &thing.bounds) {
+                    if !self.pass.contains(&[thing.object, neighbour.object]) {
+                        deepest = deepest.max(depth_between(thing, Vec3::ZERO, neighbour));
                     }
                     cluster.push(other);
                 }
             }
         }
         deepest
+    }
+
+    /// True if a free object, given by its number, cannot be pushed in a direction: it, or what it pushes in turn, would go into an immovable solid.
+    pub fn is_stopped(&self, pushed: usize, direction: Vec3) -> bool {
+        let by = direction * PROBE;
+        let mut cluster = vec![pushed];
+        let mut next = 0;
+        while let Some(&thing) = cluster.get(next) {
+            next += 1;
+            let thing = &self.free[thing];
+            if self.depth(thing, by) - self.depth(thing, Vec3::ZERO) > LEAST_STOP {
+                return true;
+            }
+            for (other, neighbour) in self.free.iter().enumerate() {
+                let is_pushed = !cluster.contains(&other)
+                    && !self.pass.contains(&[thing.object, neighbour.object])
+                    && depth_between(thing, by, neighbour)
+                        > depth_between(thing, Vec3::ZERO, neighbour) + LEAST_STOP;
+                if is_pushed {
+                    cluster.push(other);
+                }
+            }
+        }
+        false
+    }
+
+    /// Depth, in units, of a shifted free object in immovable solids.
+    fn depth(&self, thing: &FreeObject, by: Vec3) -> f32 {
+        let passes = |obstacle: &SweptSolid| match obstacle.owner {
+            Owner::Thing(other) => self.pass.contains(&[thing.object, other]),
+            Owner::Body(_) => false,
+        };
+        let solids = thing.solids().map(|solid| solid.shifted(by));
+        let depths = solids.flat_map(|solid| {
+            let immovable = self.immovable.iter();
+            immovable
+                .filter(|obstacle| !passes(obstacle))
+                .filter(|obstacle| are_near(obstacle.bounds(), solid.bounds()))
+                .map(|obstacle| solid.depth_in(obstacle))
+                .collect::<Vec<_>>()
+        });
+        depths.fold(0.0, f32::max)
     }
 }
 
@@ -148,8 +185,10 @@ fn vicinity(thing: &Nearby) -> Aabb {
     thing.bounds.loosened(VICINITY + speed * TICK_SECONDS)
 }
 
-fn depth_between(one: &FreeObject, other: &FreeObject) -> f32 {
-    one.solids()
+/// Depth, in units, of a shifted free object in another.
+fn depth_between(one: &FreeObject, by: Vec3, other: &FreeObject) -> f32 {
+    let solids = one.solids().map(|one| one.shifted(by));
+    solids
         .flat_map(|one| other.solids().map(move |other| one.depth_in(&other)))
         .fold(0.0, f32::max)
 }

@@ -233,13 +233,20 @@ impl TickMotion<'_> {
                 .filter(|(_, solid)| solid.passes(&thing.bounds))
                 .flat_map(|(_, solid)| thing.solids().filter_map(|thing| solid.approach(&thing)));
             let mut can_go = 1.0_f32;
-            let mut is_pushed = false;
+            let mut pushes = Vec::new();
             for approach in approaches {
                 can_go = can_go.min(approach.part());
-                is_pushed |= approach.is_push();
+                pushes.extend(approach.is_push().then_some(approach));
             }
+            let is_pushed = !pushes.is_empty();
             if is_pushed {
-                can_go = can_go.min(part_left(self.environment.squeeze(i)));
+                let squeeze = self.environment.squeeze(i);
+                can_go = can_go.min(part_left(squeeze));
+                for push in pushes {
+                    if self.environment.is_stopped(i, push.direction) {
+                        can_go = can_go.min(push.part_pressing(squeeze));
+                    }
+                }
             }
             if can_go < part {
                 (part, most_pushed) = (can_go, is_pushed.then_some(thing.object));
