@@ -8,9 +8,9 @@ use std::{
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop_core::{
     Actor, Arm, ClockCommand, Drive, Hand, HandCommand, Held, HistoryCommand, ObjectIndex,
-    ObjectSpec, Pose, Preset, Random, RecordingCommand, Rgb, Robot, RobotCommand, RobotContact,
-    RobotJoint, SceneCommand, SceneItem, SceneSpec, Shape, SimCommand, SimFact, StepApp as _,
-    TICKS_PER_SECOND, Table, Twist, WriteCommand as _,
+    ObjectSpec, Pose, Preset, Random, RecordingCommand, Rgb, RobotCommand, RobotJoint,
+    SceneCommand, SceneItem, SceneSpec, Shape, SimCommand, SimFact, StepApp as _, TICKS_PER_SECOND,
+    Table, Twist, WriteCommand as _,
 };
 use tabletop_physics::{Convex, collider, convex_parts, nearest};
 use tabletop_recorder::{Durability, RecorderPlugin};
@@ -26,11 +26,11 @@ const RECORDED: u64 = 30 * TICKS_PER_SECOND as u64;
 /// Largest depth of a body in the table, or in an immovable object, in units.
 const DEEPEST: f32 = 0.05;
 
-/// Number of ticks for which a body may be deeper after it was hit, or pressed by an arm.
+/// Number of ticks for which a body may be deeper after it was hit.
 const HIT: u64 = 6;
 
-/// Largest depth, in units, of a body that is hit, or pressed by an arm, which moves exactly as told.
-const DEEPEST_PRESSED: f32 = 0.5;
+/// Largest depth of a body that is hit, in units.
+const DEEPEST_HIT: f32 = 0.5;
 
 /// Largest number of objects of a scene.
 const OBJECTS: usize = 10;
@@ -63,7 +63,7 @@ impl Round {
         let mut app = headless_app_with(TabletopSimPlugins.build().set(recorder));
         let mut facts = MessageCursor::<SimFact>::default();
         give(&mut app, SceneCommand::Set(Box::new(scene(&mut random))));
-        let mut pressed = DeepTicks::default();
+        let mut deep = DeepTicks::default();
         for tick in 0..Self::TICKS {
             if tick == BEFORE {
                 give(&mut app, RecordingCommand::Start);
@@ -72,7 +72,7 @@ impl Round {
                 give(&mut app, command(&mut random));
             }
             app.step(1);
-            look(&mut app, &mut pressed).map_err(|fault| format!("tick {tick}: {fault}"))?;
+            look(&mut app, &mut deep).map_err(|fault| format!("tick {tick}: {fault}"))?;
             for fact in facts.read(app.world().resource::<Messages<SimFact>>()) {
                 if let SimFact::RecordingFailed { reason, .. } = fact {
                     return Err(format!("tick {tick}: the recording ended: {reason}"));
@@ -120,23 +120,22 @@ struct FixedParts {
 struct DeepTicks(BTreeMap<String, u64>);
 
 impl DeepTicks {
-    /// Notes that an object is so deep in something, while an arm may press on it; true if that is a fault.
-    fn is_fault(&mut self, id: &str, depth: f32, by_arm: bool) -> bool {
-        if depth <= DEEPEST || by_arm {
+    /// Notes that an object is so deep in something; true if that is a fault.
+    fn is_fault(&mut self, id: &str, depth: f32) -> bool {
+        if depth <= DEEPEST {
             self.0.remove(id);
-            return depth > DEEPEST_PRESSED;
+            return false;
         }
         let ticks = self.0.entry(id.to_owned()).or_default();
         *ticks += 1;
-        *ticks > HIT || depth > DEEPEST_PRESSED
+        *ticks > HIT || depth > DEEPEST_HIT
     }
 }
 
 /// Looks at every object: it is somewhere, and in nothing that does not move.
-fn look(app: &mut App, pressed: &mut DeepTicks) -> Result<(), String> {
+fn look(app: &mut App, deep: &mut DeepTicks) -> Result<(), String> {
     let obstacles = obstacles(app);
     let world = app.world();
-    let by_arm = arm_presses(world);
     for object in world.resource::<ObjectIndex>().iter() {
         let (Some(spec), Some(place)) = (
             world.get::<ObjectSpec>(object),
@@ -161,9 +160,7 @@ fn look(app: &mut App, pressed: &mut DeepTicks) -> Result<(), String> {
             (depth, &obstacle.id)
         });
         let deepest = depths.max_by(|(one, _), (other, _)| one.total_cmp(other));
-        if let Some((depth, other)) =
-            deepest.filter(|(depth, _)| pressed.is_fault(id, *depth, by_arm))
-        {
+        if let Some((depth, other)) = deepest.filter(|(depth, _)| deep.is_fault(id, *depth)) {
             let (at, held) = (place.translation, world.get::<Held>(object));
             return Err(format!(
                 "{id} is {depth} deep in {other}, at {at}; {twist:?}, {held:?}"
@@ -171,15 +168,6 @@ fn look(app: &mut App, pressed: &mut DeepTicks) -> Result<(), String> {
         }
     }
     Ok(())
-}
-
-/// True if an arm presses on an object, and so perhaps on others below that.
-fn arm_presses(world: &World) -> bool {
-    let contacts = &world.resource::<Robot>().contacts;
-    let presses = |contact: &RobotContact| {
-        contact.impulse > 0.0 && world.entity(contact.thing).contains::<ObjectSpec>()
-    };
-    contacts.iter().any(presses)
 }
 
 /// What does not move: the table, and fixed objects that nobody holds.
@@ -336,8 +324,8 @@ mod tests {
                 .unwrap()
                 .translation
                 .z = z;
-            let mut pressed = DeepTicks::default();
-            (0..=HIT).find_map(|ticks| Some((ticks, look(&mut app, &mut pressed).err()?)))
+            let mut deep = DeepTicks::default();
+            (0..=HIT).find_map(|ticks| Some((ticks, look(&mut app, &mut deep).err()?)))
         };
         assert_eq!(place(0.96), None);
         let fault = |(ticks, fault): (u64, String)| (ticks, fault[..11].to_owned());

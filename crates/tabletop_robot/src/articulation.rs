@@ -1,6 +1,6 @@
 //! The robot's bodies, and the joints that carry them.
 
-pub(crate) mod far_links;
 pub(crate) mod link_entities;
+pub(crate) mod passive_links;
 pub(crate) mod self_collision;
 pub(crate) mod tree;

@@ -24,7 +24,7 @@ const APPROACH: f32 = 1e-5;
 pub(crate) const TOUCHING: f32 = 0.01;
 
 /// Depth, in units, to which a free object is squeezed before its pusher stops.
-const SQUEEZE: f32 = 0.05;
+pub(crate) const SQUEEZE: f32 = 0.05;
 
 /// Depth, in units, to which a free object is squeezed between its pusher and what does not move.
 const PRESSED: f32 = 0.03;

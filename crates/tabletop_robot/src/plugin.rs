@@ -11,8 +11,8 @@ use tabletop_physics::PhysicsPlugin;
 
 use crate::{
     articulation::{
-        far_links::FarLinks,
         link_entities::{LinkEntities, RobotLink},
+        passive_links::PassiveLinks,
         self_collision::SelfCollisionMatrix,
         tree::Articulation,
     },
@@ -25,7 +25,7 @@ use crate::{
     look::link_figures::{LinkFigures, show_figures},
     motion::{
         advance::advance,
-        placement::{publish, stand_at_table, table_has_come},
+        placement::{leave_objects, links_are_inside, publish, stand_at_table, table_has_come},
     },
 };
 
@@ -71,7 +71,7 @@ impl Plugin for RobotPlugin {
             .init_resource::<LinkFigures>()
             .insert_resource(JointTargets::none(&layout))
             .init_resource::<LinkEntities>()
-            .init_resource::<FarLinks>()
+            .init_resource::<PassiveLinks>()
             .insert_resource(Grips::none(&layout))
             .init_resource::<Motors>()
             .init_resource::<HeadCamera>()
@@ -79,7 +79,7 @@ impl Plugin for RobotPlugin {
             .rollback_resource::<Robot>()
             .rollback_resource::<JointTargets>()
             .rollback_resource::<LinkEntities>()
-            .rollback_resource::<FarLinks>()
+            .rollback_resource::<PassiveLinks>()
             .rollback_resource::<Grips>()
             .rollback_resource::<Motors>();
         let world = app.world_mut();
@@ -103,7 +103,12 @@ impl Plugin for RobotPlugin {
                     )
                         .chain()
                         .in_set(CommandSystems::Robot),
-                    (advance, grips::pull_jointed, turn_camera)
+                    (
+                        leave_objects.run_if(links_are_inside),
+                        advance,
+                        grips::pull_jointed,
+                        turn_camera,
+                    )
                         .chain()
                         .in_set(ActuateSystems::Robot),
                     sense::sense_contacts.in_set(SimSystems::Sense),

@@ -336,6 +336,34 @@ fn an_arm_that_presses_a_block_onto_the_table_stops() {
 }
 
 #[test]
+fn an_arm_shown_in_a_block_pushes_it_once_it_has_left_it() {
+    let mut stage = Stage::new();
+    let corner = Vec3::new(3.0, -3.0, 0.5);
+    drive(&mut stage, RobotJoint::RightGripper, Drive::Position(0.2));
+    stage.reach(Arm::Right, corner.with_z(1.0), 0.0);
+    stage.tell(RobotCommand::Show(false));
+    stage.app.step(1);
+    stage.put("block", block(Vec3::ONE), 1.0, Pose::at(corner));
+    stage.app.step(60);
+    stage.tell(RobotCommand::Show(true));
+    for height in [1.0, 1.2, 4.0] {
+        stage.reach(Arm::Right, corner.with_z(height), 0.0);
+        stage.app.step(60);
+        let moved = stage.place("block").location.distance(corner);
+        assert!(moved < 0.001, "{moved} at {height}");
+    }
+    for beside in [
+        Vec3::new(5.5, -3.0, 4.0),
+        Vec3::new(5.5, -3.0, 1.0),
+        Vec3::new(3.5, -3.0, 1.0),
+    ] {
+        stage.reach(Arm::Right, beside, 0.0);
+    }
+    let moved = stage.place("block").location.distance(corner);
+    assert!(moved > 0.1, "{moved}");
+}
+
+#[test]
 fn an_arm_that_presses_a_tower_presses_nothing_into_the_table() {
     for blocks in 1..=3 {
         let mut stage = Stage::new();

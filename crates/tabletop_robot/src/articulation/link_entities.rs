@@ -9,7 +9,7 @@ use tabletop_core::{CarriesHeadCamera, Pose, Robot, Rollback, Table};
 use tabletop_physics::to_rapier;
 
 use crate::articulation::{
-    far_links::FarLinks,
+    passive_links::PassiveLinks,
     tree::{Articulation, Body, Positions, TreePosition},
 };
 
@@ -83,12 +83,6 @@ pub(crate) fn enable(world: &mut World, enabled: bool) -> Result {
             link.insert(RigidBodyDisabled);
         }
     }
-    world.resource_scope(|world, mut far: Mut<FarLinks>| -> Result {
-        let mut contexts =
-            world.query_filtered::<&mut RapierContextColliders, With<DefaultRapierContext>>();
-        far.set(Vec::new(), &links.0, &mut *contexts.single_mut(world)?);
-        Ok(())
-    })?;
     let mut contexts =
         world.query_filtered::<&mut RapierRigidBodySet, With<DefaultRapierContext>>();
     let mut set = contexts.single_mut(world)?;
@@ -130,6 +124,17 @@ pub(crate) fn base(world: &mut World) -> Pose {
         .layout
         .base
         .pose(&table.unwrap_or_default())
+}
+
+/// Lets these links push nothing, and all others what they meet.
+pub(crate) fn make_passive(world: &mut World, passive: PassiveLinks) -> Result {
+    let links = world.resource::<LinkEntities>().clone();
+    world.resource_scope(|world, mut now: Mut<PassiveLinks>| {
+        let mut contexts =
+            world.query_filtered::<&mut RapierContextColliders, With<DefaultRapierContext>>();
+        now.set(passive, &links.0, &mut *contexts.single_mut(world)?);
+        Ok(())
+    })
 }
 
 /// Puts the bodies where the posture has them, without pushing anything on the way.

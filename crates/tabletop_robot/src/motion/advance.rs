@@ -7,8 +7,8 @@ use tabletop_physics::{PhysicsSettings, send};
 
 use crate::{
     articulation::{
-        far_links::FarLinks,
         link_entities::{LinkEntities, positions, put},
+        passive_links::PassiveLinks,
         tree::Posture,
     },
     command::joint_targets::JointTargets,
@@ -40,7 +40,7 @@ pub(crate) fn advance(
     mut motors: ResMut<Motors>,
     mut robot: ResMut<Robot>,
     mut grips: ResMut<Grips>,
-    mut far: ResMut<FarLinks>,
+    mut passive: ResMut<PassiveLinks>,
     mut moved: MovedBodies,
     mut facts: MessageWriter<SimFact>,
     mut commands: Commands,
@@ -49,17 +49,20 @@ pub(crate) fn advance(
     let layout = &known.articulation.layout;
     let is_dynamic = robot.mode == RobotMode::Dynamic;
     let is_commanded = targets.are_given();
+    let inside = passive.inside.clone();
     if !is_dynamic && !is_commanded {
         stand_still(&mut robot);
-        if !far.are(&[]) {
+        let standing = PassiveLinks::new(Vec::new(), inside);
+        if *passive != standing {
             let shapes = &mut moved.rapier.single_mut()?.colliders;
-            far.set(Vec::new(), &known.parts.0, shapes);
+            passive.set(standing, &known.parts.0, shapes);
         }
         return let_sleep(&known.parts, &mut moved.rapier);
     }
     let mut rapier = moved.rapier.single_mut()?;
     let here = known.posture(&robot, posture.take());
     let mut motion = known.motion(&robot, &grips, &rapier, here);
+    motion.inside.clone_from(&inside);
     let start = motion.poses(&motion.positions.clone());
     let pulls = is_dynamic.then(|| {
         motors.look(layout, &robot);
@@ -122,9 +125,10 @@ pub(crate) fn advance(
         }
     }
     if robot.is_shown {
-        let now = known.far_bodies(&mut motion, &start, &grips);
-        if !far.are(&now) {
-            far.set(now, &known.parts.0, &mut rapier.colliders);
+        let far = known.far_bodies(&mut motion, &start, &grips);
+        let now = PassiveLinks::new(far, inside);
+        if *passive != now {
+            passive.set(now, &known.parts.0, &mut rapier.colliders);
         }
     }
     for (entity, pose) in known.places(&mut motion, &robot, &grips) {

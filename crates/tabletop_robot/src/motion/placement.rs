@@ -5,7 +5,12 @@ use bevy_rapier3d::prelude::*;
 use tabletop_core::{Robot, SimFact, Table};
 
 use crate::{
-    articulation::link_entities, command::joint_targets::JointTargets, gripper::grips::Grips,
+    articulation::{
+        link_entities::{LinkEntities, make_passive, teleport},
+        passive_links::PassiveLinks,
+    },
+    command::joint_targets::JointTargets,
+    gripper::grips::Grips,
     motion::view::RobotView,
 };
 
@@ -15,8 +20,36 @@ pub(crate) fn table_has_come(tables: Query<(), Added<Table>>) -> bool {
 
 /// Puts the robot in front of the table, with its present joint positions.
 pub(crate) fn stand_at_table(world: &mut World) -> Result {
-    link_entities::teleport(world);
+    teleport(world);
+    let is_shown = world.resource::<Robot>().is_shown;
+    let links = world.resource::<LinkEntities>().0.len();
+    let newcomer = PassiveLinks::of_newcomer(if is_shown { links } else { 0 });
+    make_passive(world, newcomer)?;
     world.run_system_cached(publish)?;
+    Ok(())
+}
+
+/// True while links stand in objects.
+pub(crate) fn links_are_inside(passive: Res<PassiveLinks>) -> bool {
+    passive.are_inside()
+}
+
+/// Lets links push things again that are out of the objects in which they stood when the robot came.
+pub(crate) fn leave_objects(
+    known: RobotView,
+    grips: Res<Grips>,
+    robot: Res<Robot>,
+    mut rapier: WriteRapierContext,
+    mut passive: ResMut<PassiveLinks>,
+) -> Result {
+    let mut rapier = rapier.single_mut()?;
+    let posture = known.posture(&robot, None);
+    let mut motion = known.motion(&robot, &grips, &rapier, posture);
+    let here = motion.poses(&motion.positions.clone());
+    let now = passive.after_tick(|number| motion.is_inside_free(number, &here));
+    if *passive != now {
+        passive.set(now, &known.parts.0, &mut rapier.colliders);
+    }
     Ok(())
 }
 

@@ -10,7 +10,7 @@ use tabletop_physics::Convex;
 use crate::{
     articulation::self_collision::SelfCollisionMatrix,
     articulation::tree::{Articulation, Body, Carrier, Positions, Posture, TreePosition},
-    clearance::{Owner, SweptSolid, are_near, part_left},
+    clearance::{Owner, SQUEEZE, SweptSolid, are_near, part_left},
     command::joint_targets::{JointTargets, Setpoint},
     gripper::{
         alignment::PRESS,
@@ -82,6 +82,8 @@ pub(crate) struct TickMotion<'a> {
     pub held_up_by: Vec<Option<Entity>>,
     /// True for each arm that was slowed in this tick by squeezing a free object.
     pub is_squeezing: Vec<bool>,
+    /// True for each body that stands in an object, and pushes nothing.
+    pub inside: Vec<bool>,
     /// True if it can meet anything.
     pub is_shown: bool,
     /// The last poses that were asked for.
@@ -220,12 +222,13 @@ impl TickMotion<'_> {
             return (1.0, None);
         }
         let [here, there] = [&self.positions.clone(), there].map(|at| self.poses(at));
-        let solids = self.solids_of(limb, &here, &there, |number| {
+        let mut solids = self.solids_of(limb, &here, &there, |number| {
             let way = [&here, &there].map(|poses| self.around(number, poses));
             let way = way[0].merged(&way[1]);
             let mut free = self.environment.free.iter();
             free.any(|thing| are_near(&way, &thing.bounds))
         });
+        solids.retain(|(_, solid)| !self.stands_inside(solid.owner));
         let (mut part, mut most_pushed) = (1.0, None);
         for (i, thing) in self.environment.free.iter().enumerate() {
             let approaches = solids
@@ -258,6 +261,27 @@ impl TickMotion<'_> {
             LEAST_PUSH
         };
         (f64::from(part).max(least), most_pushed)
+    }
+
+    /// True for a body that stands in an object.
+    fn stands_inside(&self, owner: Owner) -> bool {
+        match owner {
+            Owner::Body(number) => self.inside.get(number).copied().unwrap_or(false),
+            Owner::Thing(_) => false,
+        }
+    }
+
+    /// True if a body is deeper in a free object than it could press into it.
+    pub fn is_inside_free(&self, number: usize, poses: &Poses) -> bool {
+        let around = self.around(number, poses);
+        let parts = &self.articulation.bodies[number].parts;
+        let pose = poses.bodies[number];
+        let free = self.environment.free.iter();
+        let mut near = free.filter(|thing| are_near(&thing.bounds, &around));
+        near.any(|thing| {
+            let mut solids = SweptSolid::moving(parts, Owner::Body(number), pose, pose);
+            solids.any(|solid| thing.solids().any(|thing| solid.depth_in(&thing) > SQUEEZE))
+        })
     }
 
     /// Approximate distance that the bodies of an arm go between two positions, in units.

@@ -82,6 +82,7 @@ impl RobotView<'_, '_> {
             held_up_by: vec![None; limbs.len()],
             is_squeezing: vec![false; limbs.len()],
             holds: limbs.map(|limb| !grips.of(limb).is_empty()).collect(),
+            inside: Vec::new(),
             is_shown: robot.is_shown,
             asked: Vec::new(),
             scratch: posture,
