@@ -2,10 +2,13 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*, rapier::prelude as rapier};
-use tabletop_core::{Hand, Hands, Pose, TICK_SECONDS};
-use tabletop_physics::{Carry, Convex, convex_parts, nearby, nearest, pull_velocity};
+use tabletop_core::{Hand, Hands, Joint, Pose, TICK_SECONDS};
+use tabletop_physics::{Carry, Convex, Nearest, convex_parts, nearby, nearest, pull_velocity};
 
-use crate::{grasp::CarryTarget, obstacles::slide};
+use crate::{
+    grasp::CarryTarget,
+    obstacles::{leave, slide},
+};
 
 /// Greatest speeds of a hand: in units/s, and in rad/s for turning.
 const FASTEST: (f32, f32) = (40.0, 10.0);
@@ -16,6 +19,18 @@ const FASTEST_PUSH: f32 = 6.0;
 /// Depth, in units, to which a free object may be squeezed against something before the hand yields.
 const MOST_SQUEEZE: f32 = 0.002;
 
+/// Gap, in units, to which a free object is reached before it is pushed.
+const GAP: f32 = 0.01;
+
+/// Depths, in units, of a free object in something: from the first on the hand slows, at the second it only yields.
+const TOO_DEEP: (f32, f32) = (0.02, 0.05);
+
+/// Number of tries to slide along obstacles and push no free object too much.
+const MOST_SLIDES: usize = 4;
+
+/// Largest difference of equal steps, in units.
+const SAME_STEP: f32 = 1e-4;
+
 /// Moves every held object towards its target for one tick, and keeps its surroundings awake: Rapier would let things fall into
 /// sleeping objects for a tick.
 pub(crate) fn carry(
@@ -23,6 +38,7 @@ pub(crate) fn carry(
     rapier: ReadRapierContext,
     mut held: Query<(&Carry, &CarryTarget, &mut Transform, Option<&mut Velocity>)>,
     mut sleeping: Query<&mut Sleeping>,
+    joints: Query<&Joint>,
 ) {
     let Ok(rapier) = rapier.single() else {
         return;
@@ -40,7 +56,7 @@ pub(crate) fn carry(
             continue;
         };
         let next = advanced(here, target.0);
-        let near = Near::new(&rapier, collider, here, next);
+        let near = Near::new(&rapier, collider, &joints, here, next);
         let next = carried(collider, here, next, &near);
         transform.set_if_neq(next.into());
         for neighbour in near.sleeping {
@@ -59,22 +75,53 @@ fn collider_of<'a>(rapier: &'a RapierContext, object: Entity) -> Option<&'a rapi
 /// The pose that a freely carried object reaches on its way from one pose to another.
 fn carried(collider: &rapier::Collider, here: Pose, mut next: Pose, near: &Near) -> Pose {
     let held = convex_parts(Pose::IDENTITY, collider.shared_shape());
-    next.location = here.location + pushing(next.location - here.location, &held, here, &near.free);
-    slide(&held, here, next, &near.immovable)
+    if let Some(outside) = leave(&held, here, next, &near.immovable) {
+        return outside;
+    }
+    let step = next.location - here.location;
+    let pushes = near.pushes(&held, here, step.length());
+    let mut step = pushed(step * slowness(&pushes), &pushes);
+    for _ in 0..MOST_SLIDES {
+        next.location = here.location + step;
+        let there = slide(&held, here, next, &near.immovable);
+        let slid = there.location - here.location;
+        step = pushed(slid, &pushes);
+        if step.distance(slid) < SAME_STEP {
+            return there;
+        }
+    }
+    here
+}
+
+/// A free object that a held one reaches.
+struct Push {
+    nearest: Nearest,
+    /// The way, in units, by which it gives way before it is too deep in something.
+    give: f32,
+    /// Its depth in something, in units.
+    depth: f32,
+}
+
+/// The part of a step at which a hand slows, so that nothing is squeezed ever more.
+fn slowness(pushes: &[Push]) -> f32 {
+    let depths = pushes
+        .iter()
+        .map(|push| push.depth.max(-push.nearest.distance));
+    let room = TOO_DEEP.1 - depths.fold(0.0, f32::max);
+    (room / (TOO_DEEP.1 - TOO_DEEP.0)).clamp(0.0, 1.0)
 }
 
 /// The part of a step that remains when free objects are reached in one tick and pushed from the next one on, no faster
 /// than a hand pushes, and without being squeezed.
-fn pushing(mut step: Vec3, held: &[Convex], here: Pose, free: &[Convex]) -> Vec3 {
-    let reach = step.length() + MOST_SQUEEZE;
-    for nearest in nearest(held, here, free, reach) {
+fn pushed(mut step: Vec3, pushes: &[Push]) -> Vec3 {
+    for Push { nearest, give, .. } in pushes {
         let squeeze = (-nearest.distance / MOST_SQUEEZE).max(0.0);
         let push = match squeeze < 1.0 {
-            true => FASTEST_PUSH * TICK_SECONDS * (1.0 - squeeze),
+            true => give.min(FASTEST_PUSH * TICK_SECONDS) * (1.0 - squeeze),
             false => MOST_SQUEEZE * (1.0 - squeeze) / 2.0,
         };
         let approach = -step.dot(nearest.away);
-        step += nearest.away * (approach - push.max(nearest.distance)).max(0.0);
+        step += nearest.away * (approach - push.max(nearest.distance - GAP)).max(0.0);
     }
     step
 }
@@ -105,15 +152,24 @@ struct Near {
     /// Obstacles: everything that does not move by itself.
     immovable: Vec<Convex>,
     /// Objects that it pushes.
-    free: Vec<Convex>,
+    free: Vec<FreeNeighbour>,
     /// The free objects that sleep.
     sleeping: Vec<Entity>,
 }
 
 impl Near {
-    fn new(rapier: &RapierContext, carried: &rapier::Collider, here: Pose, next: Pose) -> Self {
+    fn new(
+        rapier: &RapierContext,
+        carried: &rapier::Collider,
+        joints: &Query<&Joint>,
+        here: Pose,
+        next: Pose,
+    ) -> Self {
         let bounds = carried.shape().compute_local_bounding_sphere();
-        let reach = bounds.center().length() + bounds.radius() + 0.1;
+        let radius = bounds.center().length() + bounds.radius();
+        // It is pushed out of what it would be turned into.
+        let turning = here.rotation.angle_between(next.rotation) * radius;
+        let reach = radius + turning + 0.1;
         let way = Aabb::new(
             here.location.min(next.location) - reach,
             here.location.max(next.location) + reach,
@@ -131,11 +187,64 @@ impl Near {
                 near.immovable.extend(other.parts());
                 continue;
             }
-            near.free.extend(other.parts());
+            let is_of_joint = |joint: &Joint| joint.objects.contains(&other.entity);
+            near.free.push(FreeNeighbour {
+                parts: other.parts(),
+                is_jointed: joints.iter().any(is_of_joint),
+            });
             if other.body.is_sleeping() {
                 near.sleeping.push(other.entity);
             }
         }
         near
+    }
+
+    /// The free objects that a held one at a pose reaches within a step's length, in units.
+    fn pushes(&self, held: &[Convex], here: Pose, step: f32) -> Vec<Push> {
+        let of_object = |object: &FreeNeighbour| {
+            let nearest = nearest(held, here, &object.parts, step + MOST_SQUEEZE);
+            let push = |nearest: Nearest| Push {
+                give: object.give(-nearest.away, &self.immovable),
+                depth: object.depth(Vec3::ZERO, &self.immovable),
+                nearest,
+            };
+            nearest.map(push).collect::<Vec<_>>()
+        };
+        self.free.iter().flat_map(of_object).collect()
+    }
+}
+
+/// Distance, in units, by which it is tried whether a free object gives way.
+const PROBE: f32 = 0.05;
+
+/// Increase of depth with the way from which a free object does not give way.
+const STEEP: f32 = 0.1;
+
+/// A free object near a carried one.
+struct FreeNeighbour {
+    /// Its convex parts, in the frame of the world.
+    parts: Vec<Convex>,
+    /// True if a joint holds it, perhaps inside another object.
+    is_jointed: bool,
+}
+
+impl FreeNeighbour {
+    /// Depth, in units, of the shifted object in what does not move.
+    fn depth(&self, by: Vec3, immovable: &[Convex]) -> f32 {
+        if self.is_jointed {
+            return 0.0;
+        }
+        let depths = nearest(&self.parts, Pose::at(by), immovable, 0.0);
+        depths.map(|nearest| -nearest.distance).fold(0.0, f32::max)
+    }
+
+    /// The way, in units, by which it can be pushed in a direction until it is too deep in something.
+    fn give(&self, direction: Vec3, immovable: &[Convex]) -> f32 {
+        let depth = self.depth(Vec3::ZERO, immovable);
+        let steepness = (self.depth(direction * PROBE, immovable) - depth) / PROBE;
+        if steepness < STEEP {
+            return f32::INFINITY;
+        }
+        ((TOO_DEEP.0 - depth) / steepness).max(0.0)
     }
 }

@@ -16,6 +16,30 @@ const MOST_STEPS: usize = 96;
 /// Number of rounds in which an object is pushed out of obstacles.
 const MOST_PUSHES: usize = 12;
 
+/// Depth, in units, from which an object is inside an obstacle.
+const INSIDE: f32 = 0.01;
+
+/// Greatest way, in units, that an object goes in a tick to leave an obstacle.
+const LEAVING: f32 = 0.1;
+
+/// The pose of an object a tick later on its way out of the obstacles that it is inside of, as after something was put, or appeared, there.
+/// If they leave no way out, it goes to its target through them. `None` if it is inside nothing.
+pub(crate) fn leave(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex]) -> Option<Pose> {
+    let is_entered = |obstacle: &Convex| {
+        let obstacle = std::slice::from_ref(obstacle);
+        nearest(held, from, obstacle, 0.0).any(|nearest| nearest.distance < -INSIDE)
+    };
+    let (entered, others): (Vec<_>, Vec<_>) = obstacles.iter().cloned().partition(is_entered);
+    if entered.is_empty() {
+        return None;
+    }
+    let Some(out) = pushed_out(held, from, obstacles, &mut Vec::new()) else {
+        return Some(slide(held, from, to, &others));
+    };
+    let way = (out.location - from.location).clamp_length_max(LEAVING);
+    Some(Pose::new(from.location + way, from.rotation))
+}
+
 /// The pose without depth: pushed out of all entered obstacles, along the shortest ways. `None` if there is no way
 /// out. Every direction of a push is added to `pushed`.
 fn pushed_out(
@@ -43,10 +67,13 @@ pub(crate) fn slide(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex])
     let mut at = from;
     if from.rotation != to.rotation {
         let turned = Pose::new(from.location, to.rotation);
-        if let Some(room) = pushed_out(held, turned, obstacles, &mut Vec::new()) {
-            at = room;
-        }
+        let room = pushed_out(held, turned, obstacles, &mut Vec::new());
+        at = room
+            .filter(|room| room.location.distance(from.location) < turning_reach(held, from, to))
+            .unwrap_or(from);
     }
+    let farthest = at.location.distance(to.location) + STEP;
+    let start = at.location;
     let mut sliding_along: Vec<Vec3> = Vec::new();
     for _ in 0..MOST_STEPS {
         let way = clipped(to.location - at.location, &sliding_along);
@@ -63,6 +90,10 @@ pub(crate) fn slide(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex])
         let Some(next) = pushed_out(held, ahead, obstacles, &mut pushed) else {
             break;
         };
+        if next.location.distance(start) > farthest {
+            // Obstacles that almost meet push it away from both.
+            break;
+        }
         let is_stuck = next.location.distance(at.location) < 1e-5;
         if is_stuck && pushed.iter().all(|away| sliding_along.contains(away)) {
             break;
@@ -71,6 +102,16 @@ pub(crate) fn slide(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex])
         at = next;
     }
     at
+}
+
+/// A little more than the greatest distance, in units, that a point of an object goes when it turns.
+fn turning_reach(held: &[Convex], from: Pose, to: Pose) -> f32 {
+    let radius = |part: &Convex| {
+        let ball = part.shape.compute_local_bounding_sphere();
+        part.pose.location.length() + ball.center().length() + ball.radius()
+    };
+    let radius = held.iter().map(radius).fold(0.0, f32::max);
+    radius * from.rotation.angle_between(to.rotation) + STEP
 }
 
 /// The distance that the object may go in a direction. Convex solids stay apart while they approach by less than their gap;
@@ -171,6 +212,25 @@ mod tests {
         let at = slide(&unit_block(), from, to, &[table()]);
         assert!(at.rotation.angle_between(to.rotation) < 1e-3);
         assert!((at.location.z - 0.5f32.sqrt()).abs() < 0.01, "{at:?}");
+    }
+
+    #[test]
+    fn a_block_inside_an_obstacle_leaves_it_by_and_by() {
+        let step = |from: Vec3, obstacles: &[Convex]| {
+            let target = Pose::at(Vec3::X * 9.0);
+            leave(&unit_block(), Pose::at(from), target, obstacles).map(|pose| pose.location)
+        };
+        assert_eq!(step(Vec3::Z * 0.5, &[table()]), None);
+        let mut at = Vec3::Z * -0.2;
+        let mut ticks = 0;
+        while let Some(next) = step(at, &[table()]) {
+            assert!(next.distance(at) < LEAVING + 1e-6, "{next}");
+            (at, ticks) = (next, ticks + 1);
+        }
+        assert_eq!(ticks, 7);
+        let above = cuboid(Vec3::new(20.0, 12.0, 4.0), Vec3::Z * 2.5);
+        let pinned = step(Vec3::Z * 0.2, &[table(), above]).unwrap();
+        assert!(pinned.distance(Vec3::X * 9.0) < 1e-3, "{pinned}");
     }
 
     #[test]

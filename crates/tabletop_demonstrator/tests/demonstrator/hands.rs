@@ -170,6 +170,38 @@ fn a_block_squeezed_against_a_wall_stops_the_hand_and_does_not_explode() {
 }
 
 #[test]
+fn a_hand_seldom_presses_a_block_into_the_table() {
+    let mut deep_ticks = 0;
+    for seed in 0..40 {
+        let mut random = tabletop_core::Random::new(seed);
+        let mut desk = Desk::new(vec![
+            object("large", (0.0, 0.0, 0.75), 1.0, block(Vec3::splat(1.5))),
+            object("held", (4.0, 0.0, 0.5), 1.0, block(Vec3::ONE)),
+        ]);
+        let mut beside = || random.between((-1.0, 1.0));
+        let above = Vec3::new(beside(), beside(), 3.0);
+        let below = Vec3::new(beside(), beside(), 0.5);
+        let axis = Vec3::new(beside(), beside(), beside());
+        let (hand, degrees) = (Hand::Left, 90.0 * beside());
+        desk.grasp(hand, "held").move_to(hand, above).step(60);
+        let turn = HandCommand::Turn {
+            hand,
+            axis,
+            degrees,
+        };
+        desk.tell(turn).step(30).move_to(hand, below);
+        for _ in 0..120 {
+            desk.step(1);
+            let Pose { location, rotation } = desk.pose("large");
+            let reach = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| (rotation * axis).z.abs() * 0.75);
+            let depth = reach.iter().sum::<f32>() - location.z;
+            deep_ticks += u32::from(depth > 0.1);
+        }
+    }
+    assert!(deep_ticks < 100, "{deep_ticks}");
+}
+
+#[test]
 fn a_fixed_object_is_moved_as_one_piece_with_its_collider() {
     let mut items = two_blocks();
     items.push(object("post", (0.0, 3.0, 1.0), 0.0, block((1.0, 1.0, 2.0))));

@@ -46,7 +46,7 @@ pub(crate) fn leave_objects(
     let posture = known.posture(&robot, None);
     let mut motion = known.motion(&robot, &grips, &rapier, posture);
     let here = motion.poses(&motion.positions.clone());
-    let now = passive.after_tick(|number| motion.is_inside_free(number, &here));
+    let now = passive.after_tick(|number| motion.is_inside_object(number, &here));
     if *passive != now {
         passive.set(now, &known.parts.0, &mut rapier.colliders);
     }

@@ -16,7 +16,7 @@ use crate::{
         alignment::PRESS,
         closing::{Closing, Graspable, close},
     },
-    motion::environment::Environment,
+    motion::environment::{Environment, FreeObject},
 };
 
 /// Largest distance of a body, in units, between two checks for obstacles: less than the thickness of a finger.
@@ -271,17 +271,19 @@ impl TickMotion<'_> {
         }
     }
 
-    /// True if a body is deeper in a free object than it could press into it.
-    pub fn is_inside_free(&self, number: usize, poses: &Poses) -> bool {
+    /// True if a body is deeper in an object than it could press into it.
+    pub fn is_inside_object(&self, number: usize, poses: &Poses) -> bool {
         let around = self.around(number, poses);
         let parts = &self.articulation.bodies[number].parts;
         let pose = poses.bodies[number];
-        let free = self.environment.free.iter();
-        let mut near = free.filter(|thing| are_near(&thing.bounds, &around));
-        near.any(|thing| {
-            let mut solids = SweptSolid::moving(parts, Owner::Body(number), pose, pose);
-            solids.any(|solid| thing.solids().any(|thing| solid.depth_in(&thing) > SQUEEZE))
-        })
+        let solids: Vec<_> = SweptSolid::moving(parts, Owner::Body(number), pose, pose).collect();
+        let is_entered = |thing: &SweptSolid| {
+            are_near(thing.bounds(), &around)
+                && solids.iter().any(|solid| solid.depth_in(thing) > SQUEEZE)
+        };
+        let environment = &self.environment;
+        let mut free = environment.free.iter().flat_map(FreeObject::solids);
+        environment.immovable.iter().any(is_entered) || free.any(|thing| is_entered(&thing))
     }
 
     /// Approximate distance that the bodies of an arm go between two positions, in units.
