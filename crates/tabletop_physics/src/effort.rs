@@ -14,7 +14,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::{
     prelude::*,
     rapier::prelude::{
-        ColliderSet, ContactPair, IntegrationParameters, PhysicsPipeline, RigidBodySet,
+        CCDSolver, ColliderSet, ContactPair, IntegrationParameters, PhysicsPipeline, RigidBodySet,
     },
 };
 use tabletop_core::Held;
@@ -99,6 +99,9 @@ pub(crate) fn spend_effort(
     }
     for (mut simulation, colliders, mut bodies, joints) in &mut contexts {
         let simulation = &mut *simulation;
+        // It keeps the fixed shapes from step to step, and learns of changes only in steps in which something is fast: it would look for shapes
+        // that are gone.
+        simulation.ccd_solver = CCDSolver::new();
         if !joints.impulse_joints.is_empty() {
             // The pipeline keeps the grouping of joints from step to step, and a new pipeline would group them differently: a world that was
             // restored with one would go on differently.
