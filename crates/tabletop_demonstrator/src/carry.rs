@@ -202,13 +202,17 @@ impl Near {
     /// The free objects that a held one at a pose reaches within a step's length, in units.
     fn pushes(&self, held: &[Convex], here: Pose, step: f32) -> Vec<Push> {
         let of_object = |object: &FreeNeighbour| {
-            let nearest = nearest(held, here, &object.parts, step + MOST_SQUEEZE);
+            let reached: Vec<_> = nearest(held, here, &object.parts, step + MOST_SQUEEZE).collect();
+            let depth = match reached.is_empty() {
+                true => 0.0,
+                false => object.depth(Vec3::ZERO, &self.immovable),
+            };
             let push = |nearest: Nearest| Push {
-                give: object.give(-nearest.away, &self.immovable),
-                depth: object.depth(Vec3::ZERO, &self.immovable),
+                give: object.give(-nearest.away, depth, &self.immovable),
+                depth,
                 nearest,
             };
-            nearest.map(push).collect::<Vec<_>>()
+            reached.into_iter().map(push).collect::<Vec<_>>()
         };
         self.free.iter().flat_map(of_object).collect()
     }
@@ -238,9 +242,8 @@ impl FreeNeighbour {
         depths.map(|nearest| -nearest.distance).fold(0.0, f32::max)
     }
 
-    /// The way, in units, by which it can be pushed in a direction until it is too deep in something.
-    fn give(&self, direction: Vec3, immovable: &[Convex]) -> f32 {
-        let depth = self.depth(Vec3::ZERO, immovable);
+    /// The way, in units, by which it can be pushed in a direction, from its present depth until it is too deep in something.
+    fn give(&self, direction: Vec3, depth: f32, immovable: &[Convex]) -> f32 {
         let steepness = (self.depth(direction * PROBE, immovable) - depth) / PROBE;
         if steepness < STEEP {
             return f32::INFINITY;

@@ -29,11 +29,12 @@ pub(crate) fn leave(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex])
         let obstacle = std::slice::from_ref(obstacle);
         nearest(held, from, obstacle, 0.0).any(|nearest| nearest.distance < -INSIDE)
     };
-    let (entered, others): (Vec<_>, Vec<_>) = obstacles.iter().cloned().partition(is_entered);
-    if entered.is_empty() {
+    if !obstacles.iter().any(is_entered) {
         return None;
     }
     let Some(out) = pushed_out(held, from, obstacles, &mut Vec::new()) else {
+        let others = obstacles.iter().filter(|obstacle| !is_entered(obstacle));
+        let others: Vec<_> = others.cloned().collect();
         return Some(slide(held, from, to, &others));
     };
     let way = (out.location - from.location).clamp_length_max(LEAVING);
