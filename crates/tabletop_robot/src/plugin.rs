@@ -25,7 +25,7 @@ use crate::{
     look::link_figures::{LinkFigures, show_figures},
     motion::{
         advance::advance,
-        placement::{leave_objects, links_are_inside, publish, stand_at_table, table_has_come},
+        placement::{meets_objects, pass_through_objects, publish, stand_at_table, table_has_come},
     },
 };
 
@@ -104,7 +104,7 @@ impl Plugin for RobotPlugin {
                         .chain()
                         .in_set(CommandSystems::Robot),
                     (
-                        leave_objects.run_if(links_are_inside),
+                        pass_through_objects.run_if(meets_objects),
                         advance,
                         grips::pull_jointed,
                         turn_camera,

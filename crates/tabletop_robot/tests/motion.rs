@@ -364,6 +364,18 @@ fn an_arm_shown_in_a_block_pushes_it_once_it_has_left_it() {
 }
 
 #[test]
+fn an_arm_lets_what_it_crushes_out_of_the_table() {
+    let mut stage = Stage::new();
+    drive(&mut stage, RobotJoint::RightGripper, Drive::Position(0.2));
+    let place = Vec3::new(3.0, -3.0, 0.3);
+    stage.reach(Arm::Right, place.with_z(1.2), 0.0);
+    stage.put("crushed", block(Vec3::ONE), 1.0, Pose::at(place));
+    stage.app.step(60);
+    let height = stage.place("crushed").location.z;
+    assert!(height > 0.48, "{height}");
+}
+
+#[test]
 fn an_arm_that_presses_a_tower_presses_nothing_into_the_table() {
     for blocks in 1..=3 {
         let mut stage = Stage::new();

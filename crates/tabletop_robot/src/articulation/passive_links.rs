@@ -10,7 +10,8 @@ pub(crate) struct PassiveLinks {
     /// The links that are far from everything they could push: keeping the boxes of two dozen moving bodies in order would be most of the
     /// engine's step.
     far: Vec<bool>,
-    /// The links that stand in an object since the robot came. They would press it into the table, so they push nothing until they are out.
+    /// The links that stand in an object, since the robot came or because something pressed the object against them. They would press it into
+    /// the table, so they push nothing until they are out.
     pub inside: Vec<bool>,
     /// True in the tick in which the robot comes: what comes with it has no bodies yet.
     is_new: bool,
@@ -41,10 +42,16 @@ impl PassiveLinks {
         }
     }
 
-    /// The same a tick later, without the links that are inside nothing now.
-    pub fn after_tick(&self, mut is_inside: impl FnMut(usize) -> bool) -> Self {
-        let links = self.inside.iter().enumerate();
-        let inside = links.map(|(number, &inside)| inside && (self.is_new || is_inside(number)));
+    /// The same a tick later, of a robot with so many links: without those that are inside nothing now, and with those that crush something.
+    pub fn after_tick(
+        &self,
+        links: usize,
+        mut is_inside: impl FnMut(usize) -> bool,
+        crushes: impl Fn(usize) -> bool,
+    ) -> Self {
+        let was_inside = |link: usize| self.inside.get(link).copied().unwrap_or(false);
+        let inside = (0..links)
+            .map(|link| crushes(link) || was_inside(link) && (self.is_new || is_inside(link)));
         Self::new(self.far.clone(), inside.collect())
     }
 

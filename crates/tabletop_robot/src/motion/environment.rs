@@ -12,7 +12,7 @@ use tabletop_physics::{Convex, Nearby, nearby};
 
 use crate::{
     articulation::link_entities::RobotLink,
-    clearance::{MARGIN, Owner, SweptSolid, are_near},
+    clearance::{MARGIN, Owner, SQUEEZE, SweptSolid, are_near},
 };
 
 /// Distance, in units, at which something is near: more than that at which the engine looks for contacts.
@@ -133,6 +133,12 @@ impl Environment {
             }
         }
         deepest
+    }
+
+    /// True if a free object, or what it is pressed against in turn, is squeezed more than a push may.
+    pub fn is_crushed(&self, object: Entity) -> bool {
+        let number = self.free.iter().position(|thing| thing.object == object);
+        number.is_some_and(|number| self.squeeze(number) > SQUEEZE)
     }
 
     /// True if a free object, given by its number, cannot be pushed in a direction: it, or what it pushes in turn, would go into an immovable solid.

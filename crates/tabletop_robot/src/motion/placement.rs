@@ -29,13 +29,13 @@ pub(crate) fn stand_at_table(world: &mut World) -> Result {
     Ok(())
 }
 
-/// True while links stand in objects.
-pub(crate) fn links_are_inside(passive: Res<PassiveLinks>) -> bool {
-    passive.are_inside()
+/// True while links stand in objects, or press on some.
+pub(crate) fn meets_objects(passive: Res<PassiveLinks>, robot: Res<Robot>) -> bool {
+    passive.are_inside() || robot.contacts.iter().any(|contact| contact.impulse > 0.0)
 }
 
-/// Lets links push things again that are out of the objects in which they stood when the robot came.
-pub(crate) fn leave_objects(
+/// Lets links push nothing while they stand in objects, and from when they crush one on.
+pub(crate) fn pass_through_objects(
     known: RobotView,
     grips: Res<Grips>,
     robot: Res<Robot>,
@@ -46,7 +46,18 @@ pub(crate) fn leave_objects(
     let posture = known.posture(&robot, None);
     let mut motion = known.motion(&robot, &grips, &rapier, posture);
     let here = motion.poses(&motion.positions.clone());
-    let now = passive.after_tick(|number| motion.is_inside_object(number, &here));
+    let bodies = &known.articulation.bodies;
+    let crushing: Vec<_> = robot
+        .contacts
+        .iter()
+        .filter(|contact| contact.impulse > 0.0 && motion.environment.is_crushed(contact.thing))
+        .map(|contact| &contact.body)
+        .collect();
+    let now = passive.after_tick(
+        bodies.len(),
+        |number| motion.is_inside_object(number, &here),
+        |number| crushing.contains(&&bodies[number].id),
+    );
     if *passive != now {
         passive.set(now, &known.parts.0, &mut rapier.colliders);
     }
