@@ -2,9 +2,12 @@
 
 mod arms;
 mod clearing;
+mod putting_back;
 mod regrasp;
+mod slider;
 mod step;
 
+use putting_back::Cleared;
 use tabletop_task::{Binding, PlaceRange, Reference, Relation, Task, TaskStep};
 
 use crate::{
@@ -64,6 +67,7 @@ pub fn imitate(
             beginning: beginning.collect(),
             step: None,
         },
+        cleared: Vec::new(),
         outcome: Imitation::default(),
     };
     if imitator.do_all(stage, &mut tell).is_err() {
@@ -109,6 +113,8 @@ struct Imitator<'a> {
     /// The posture in which each limb waits.
     parked: Vec<Angles>,
     before: Before,
+    /// What was moved out of the way, in this order.
+    cleared: Vec<Cleared>,
     outcome: Imitation,
 }
 
@@ -177,6 +183,7 @@ impl Imitator<'_> {
             self.outcome.steps_done += 1;
         }
         if self.outcome.failure.is_none() {
+            self.put_all_back(stage)?;
             self.outcome.failure = undone(self.task, self.binding, stage.sight(), &self.before);
         }
         let is_held = |step: &TaskStep| step.relations.first() == Some(&Relation::Held);

@@ -11,6 +11,9 @@ use crate::body::Angles;
 /// Depth to which a part that is above an object may be in it, in units.
 const PLAY: f32 = 0.05;
 
+/// Height above its place at which an object meets nothing that carries it, in units.
+const RAISED: f32 = 0.02;
+
 /// The world at the end of a tick.
 #[derive(Clone, Debug, Default)]
 pub struct Sight {
@@ -85,12 +88,23 @@ impl Sight {
         let (Some(one), Some(other)) = (self.objects.get(one), self.objects.get(other)) else {
             return false;
         };
-        let below = other.solids();
-        let [_, top] = heights(&below);
-        one.solids().iter().any(|part| {
-            let is_over = |solid: &PlacedSolid| part.gap_from_above(solid) <= 0.0;
-            part.heights()[0] > top - PLAY && below.iter().any(is_over)
-        })
+        is_above(&one.solids(), &other.solids())
+    }
+
+    /// An object, none of these, that is where another one would be at this pose.
+    pub(crate) fn occupant(&self, id: &str, pose: Pose, except: &[&str]) -> Option<String> {
+        let raised = Pose::new(pose.location + Vec3::Z * RAISED, pose.rotation);
+        let solids = self.objects.get(id)?.solids_at(raised);
+        let mut others = self.objects.iter();
+        let occupant = others.find(|(other, seen)| {
+            let theirs = seen.solids();
+            let meets = |solid: &PlacedSolid| {
+                let solid = solid.shrunk(0.01);
+                theirs.iter().any(|other| solid.is_within(1e-3, other))
+            };
+            *other != id && !except.contains(&other.as_str()) && solids.iter().any(meets)
+        });
+        occupant.map(|(other, _)| other.clone())
     }
 
     /// Ids of the objects that stand directly on an object.
@@ -100,6 +114,15 @@ impl Sight {
         let above = others.filter(|other| arrangement.supports(other).contains(&id));
         above.cloned().collect()
     }
+}
+
+/// True if one of these solids is above all of the others.
+pub(crate) fn is_above(solids: &[PlacedSolid], below: &[PlacedSolid]) -> bool {
+    let [_, top] = heights(below);
+    solids.iter().any(|part| {
+        let is_over = |solid: &PlacedSolid| part.gap_from_above(solid) <= 0.0;
+        part.heights()[0] > top - PLAY && below.iter().any(is_over)
+    })
 }
 
 /// Lowest and highest Z of solids.

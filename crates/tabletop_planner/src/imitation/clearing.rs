@@ -4,12 +4,12 @@ use bevy::math::{Quat, Vec3};
 use tabletop_core::Pose;
 use tabletop_task::{PlaceRange, PlacedSolid, Relation, TaskStep};
 
-use super::Imitator;
+use super::{Imitator, slider::Slider};
 use crate::{
     failure::PlanFailure,
     free_spot::free_spots,
     goals::{Candidate, candidates, is_inside},
-    sight::{SeenObject, Sight},
+    sight::{SeenObject, Sight, is_above},
     stage::PlanningStage,
 };
 
@@ -28,36 +28,13 @@ impl Imitator<'_> {
         id: &str,
     ) -> Result<Option<String>, PlanFailure> {
         let goals = candidates(step, self.binding, sight, &self.before)?;
-        let object = sight
-            .objects
-            .get(id)
-            .ok_or_else(|| PlanFailure::Gone(id.to_owned()))?;
         let others = step.relations.iter().filter_map(Relation::object);
         let meant: Vec<_> = others
             .filter_map(|role| self.binding.object(role))
             .collect();
         let is_fixed =
             |other: &String| sight.objects.get(other).is_some_and(|other| other.is_fixed);
-        let in_the_way = |goal: &Candidate| {
-            let solids = object.solids_at(Pose::new(
-                goal.pose.location + Vec3::Z * 0.02,
-                goal.pose.rotation,
-            ));
-            let others = sight
-                .objects
-                .iter()
-                .filter(|(other, _)| *other != id && !meant.contains(&other.as_str()));
-            let mut overlapping = others.filter(|(_, other)| {
-                let other = other.solids();
-                let meets = |solid: &PlacedSolid| {
-                    other
-                        .iter()
-                        .any(|other| solid.shrunk(0.01).is_within(1e-3, other))
-                };
-                solids.iter().any(meets)
-            });
-            overlapping.next().map(|(id, _)| id.clone())
-        };
+        let in_the_way = |goal: &Candidate| sight.occupant(id, goal.pose, &meant);
         let occupants: Option<Vec<_>> = goals.iter().map(in_the_way).collect();
         // Only if no goal is free.
         let Some(occupants) = occupants else {
@@ -134,9 +111,36 @@ impl Imitator<'_> {
         Ok(nearest.map(|(_, other)| other.clone()))
     }
 
+    /// The lids above an object or its place, and the displacements after which they are no longer.
+    pub(super) fn lids(
+        &self,
+        sight: &Sight,
+        step: &TaskStep,
+        id: &str,
+    ) -> Result<Vec<(String, Vec3)>, PlanFailure> {
+        let goals = candidates(step, self.binding, sight, &self.before)?;
+        let Some(object) = sight.objects.get(id) else {
+            return Ok(Vec::new());
+        };
+        let places = goals.first().map(|goal| goal.pose).into_iter();
+        let places = places.chain([object.pose]);
+        let places: Vec<_> = places.map(|pose| object.solids_at(pose)).collect();
+        let lids = sight.objects.iter().filter_map(|(other, seen)| {
+            let slider = Slider::of(sight, other).filter(|_| other != id)?;
+            let covers = |by: Vec3| {
+                let solids = seen.solids_at(Pose::new(seen.pose.location + by, seen.pose.rotation));
+                places.iter().any(|place| is_above(&solids, place))
+            };
+            let ends = [slider.travel, 0.0].map(|end| slider.by(end));
+            let by = ends.into_iter().find(|by| !covers(*by))?;
+            covers(Vec3::ZERO).then(|| (other.clone(), by))
+        });
+        Ok(lids.collect())
+    }
+
     /// Moves something out of the way, with what stands on it.
     pub(super) fn clear(
-        &self,
+        &mut self,
         stage: &mut dyn PlanningStage,
         id: &str,
         i: usize,
@@ -145,6 +149,7 @@ impl Imitator<'_> {
             self.clear(stage, &above, i)?;
         }
         let sight = stage.sight().clone();
+        self.remember(&sight, id);
         let near = sight
             .objects
             .get(id)

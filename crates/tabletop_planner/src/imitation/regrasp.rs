@@ -18,6 +18,9 @@ use crate::{
     transfer::Transfer,
 };
 
+/// Which of the free places, the nearest first, are tried to put something down on another side.
+const SPOTS: [usize; 3] = [0, 4, 9];
+
 impl Imitator<'_> {
     /// Puts an object down where every limb reaches it. Returns false if there is no such place.
     pub(super) fn put_halfway(
@@ -91,19 +94,21 @@ impl Imitator<'_> {
         let object = sight.objects.get(id)?;
         let kept = self.kept(sight, i);
         let limbs = || 0..self.body.limbs.len();
-        let rotations = different_turns(object);
-        let mut places = rotations.iter().flat_map(|&rotation| {
-            limbs().filter_map({
-                let kept = &kept;
-                move |limb| {
-                    let spots = free_spots(self.body, sight, id, rotation, near, &[limb], kept);
-                    let place = Candidate {
-                        pose: *spots.first()?,
-                        cost: 0.0,
-                        is_tipped: true,
-                    };
-                    Some((limb, place))
-                }
+        let mut spots = Vec::new();
+        for rotation in different_turns(object) {
+            for limb in limbs() {
+                let free = free_spots(self.body, sight, id, rotation, near, &[limb], &kept);
+                spots.push((limb, free));
+            }
+        }
+        let mut places = SPOTS.iter().flat_map(|&number| {
+            spots.iter().filter_map(move |(limb, spots)| {
+                let place = Candidate {
+                    pose: *spots.get(number)?,
+                    cost: 0.0,
+                    is_tipped: true,
+                };
+                Some((*limb, place))
             })
         });
         let found = places.find(|(limb, place)| {

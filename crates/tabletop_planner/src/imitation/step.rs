@@ -1,10 +1,10 @@
 //! A step: what it asks for, and how the object gets there.
 
 use bevy::math::Vec3;
-use tabletop_core::{JointKind, Pose};
+use tabletop_core::Pose;
 use tabletop_task::{Relation, TaskStep};
 
-use super::Imitator;
+use super::{Imitator, slider::Slider};
 use crate::{
     failure::PlanFailure,
     goals::{Candidate, bound, candidates, inside, is_inside},
@@ -22,12 +22,13 @@ const MOST_CLEARED: usize = 4;
 
 impl Imitator<'_> {
     pub(super) fn do_step(
-        &self,
+        &mut self,
         stage: &mut dyn PlanningStage,
         i: usize,
     ) -> Result<(), PlanFailure> {
-        let step = &self.task.steps[i];
-        let id = bound(self.binding, &step.object)?;
+        let (task, binding) = (self.task, self.binding);
+        let step = &task.steps[i];
+        let id = bound(binding, &step.object)?;
         let sight = stage.sight().clone();
         let object = sight
             .objects
@@ -37,13 +38,15 @@ impl Imitator<'_> {
             self.clear(stage, &above, i)?;
         }
         match step.relations.first() {
-            Some(Relation::Slid { object: holder, .. }) => {
-                let holder = bound(self.binding, holder)?;
-                let by = slide(&sight, step, id, holder)
-                    .ok_or_else(|| PlanFailure::Gone(holder.to_owned()))?;
-                self.by_some_limb(stage, id, object.pose.location, |transfer, stage| {
-                    transfer.slide(stage, by)
-                })
+            Some(Relation::Slid {
+                object: holder,
+                opening,
+                travel,
+            }) => {
+                let holder = bound(binding, holder)?;
+                let slider = Slider::of(&sight, id).filter(|slider| slider.holder == holder);
+                let slider = slider.ok_or_else(|| PlanFailure::Gone(holder.to_owned()))?;
+                self.slide(stage, id, slider.by(opening / travel * slider.travel))
             }
             Some(Relation::Held) => {
                 self.by_some_limb(stage, id, object.pose.location, |transfer, stage| {
@@ -69,6 +72,10 @@ impl Imitator<'_> {
                 | Relation::Turned { .. },
             )
             | None => {
+                for (lid, by) in self.lids(stage.sight(), step, id)? {
+                    self.remember(stage.sight(), &lid);
+                    self.slide(stage, &lid, by)?;
+                }
                 for _ in 0..MOST_CLEARED {
                     let Some(occupant) = self.occupant(stage.sight(), step, id)? else {
                         break;
@@ -116,6 +123,10 @@ impl Imitator<'_> {
         let goals = self.goals(stage, step)?;
         let is_tipped = goals.iter().any(|goal| goal.is_tipped);
         let sight = stage.sight();
+        let limbs = || 0..self.body.limbs.len();
+        if !limbs().any(|limb| self.transfer(limb, id, GraspSide::Any).reaches(sight, &goals)) {
+            return Err(PlanFailure::PlaceOutOfReach(id.to_owned()));
+        }
         let is_held = sight.limbs.iter().any(|limb| !limb.holds.is_empty());
         let (Some(object), false) = (sight.objects.get(id), is_held) else {
             return Err(failure);
@@ -184,29 +195,4 @@ impl Imitator<'_> {
         });
         raised.collect()
     }
-}
-
-/// The displacement by which a step slides an object.
-fn slide(sight: &Sight, step: &TaskStep, id: &str, holder: &str) -> Option<Vec3> {
-    let Some(Relation::Slid {
-        opening, travel, ..
-    }) = step.relations.first()
-    else {
-        return None;
-    };
-    let joint = sight
-        .joints
-        .iter()
-        .find(|joint| joint.objects == [holder.to_owned(), id.to_owned()])?;
-    let JointKind::Slider {
-        max: own_travel, ..
-    } = joint.kind
-    else {
-        return None;
-    };
-    let frame = sight.objects.get(holder)?.pose * joint.frames[0];
-    let own = sight.objects.get(id)?.pose * joint.frames[1];
-    let now = -(frame.inverse() * own.location).x;
-    let wanted = opening / travel * own_travel;
-    Some(frame.rotation * Vec3::NEG_X * (wanted - now))
 }

@@ -118,6 +118,22 @@ impl Transfer<'_> {
         }
     }
 
+    /// Whether the arm reaches one of these goals with the object in its fingers, whatever is in the way.
+    pub fn reaches(&self, sight: &Sight, goals: &[Candidate]) -> bool {
+        let Ok(object) = self.seen(sight) else {
+            return false;
+        };
+        let here = sight.limbs[self.limb].angles;
+        let grasps = self.grasps(object);
+        goals.iter().any(|goal| {
+            let is_reached = |grasp: &Grasp| {
+                let pose = above_place(*goal, grasp.end_effector.inverse());
+                self.body.reach(self.limb, pose, &here).is_some()
+            };
+            grasps.iter().any(is_reached)
+        })
+    }
+
     /// The ways to take the object, the best first.
     fn grasps(&self, object: &SeenObject) -> Vec<Grasp> {
         let limb = &self.body.limbs[self.limb];

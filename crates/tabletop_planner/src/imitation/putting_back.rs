@@ -1,0 +1,83 @@
+//! Putting back what was in the way, after the last step.
+
+use tabletop_core::Pose;
+
+use super::{Imitator, slider::Slider};
+use crate::{
+    failure::PlanFailure,
+    goals::Candidate,
+    sight::Sight,
+    stage::{PlanningStage, Stopped},
+};
+
+/// An object that was in the way, and how it stood.
+pub(super) struct Cleared {
+    id: String,
+    pose: Pose,
+    supports: Vec<String>,
+}
+
+impl Cleared {
+    fn new(sight: &Sight, id: &str) -> Option<Self> {
+        Some(Self {
+            id: id.to_owned(),
+            pose: sight.objects.get(id)?.pose,
+            supports: owned(&sight.arrangement().supports(id)),
+        })
+    }
+
+    /// True if it would stand there as it stood, and the place is free.
+    fn fits(&self, sight: &Sight) -> bool {
+        let there = sight.arrangement_with(&self.id, self.pose);
+        owned(&there.supports(&self.id)) == self.supports
+            && sight.occupant(&self.id, self.pose, &[]).is_none()
+    }
+}
+
+fn owned(ids: &[&str]) -> Vec<String> {
+    ids.iter().map(|&id| id.to_owned()).collect()
+}
+
+impl Imitator<'_> {
+    /// Remembers how something stands that is about to be moved out of the way.
+    pub(super) fn remember(&mut self, sight: &Sight, id: &str) {
+        let is_known = self.cleared.iter().any(|cleared| cleared.id == id);
+        let mut steps = self.task.steps.iter();
+        let is_of_task = steps.any(|step| self.binding.object(&step.object) == Some(id));
+        if !is_known && !is_of_task {
+            self.cleared.extend(Cleared::new(sight, id));
+        }
+    }
+
+    /// Puts back what was moved out of the way, the last first. What does not fit any more, or cannot be put back, stays where it is.
+    pub(super) fn put_all_back(&mut self, stage: &mut dyn PlanningStage) -> Result<(), Stopped> {
+        for cleared in std::mem::take(&mut self.cleared).iter().rev() {
+            if let Err(PlanFailure::Stopped) = self.put_back(stage, cleared) {
+                return Err(Stopped);
+            }
+        }
+        Ok(())
+    }
+
+    fn put_back(
+        &self,
+        stage: &mut dyn PlanningStage,
+        cleared: &Cleared,
+    ) -> Result<(), PlanFailure> {
+        let Cleared { id, pose, .. } = cleared;
+        let sight = stage.sight().clone();
+        let Some(object) = sight.objects.get(id) else {
+            return Ok(());
+        };
+        if Slider::of(&sight, id).is_some() {
+            let by = pose.location - object.pose.location;
+            return self.slide(stage, id, by);
+        }
+        match cleared.fits(&sight) {
+            true => self.by_some_limb(stage, id, pose.location, |transfer, stage| {
+                transfer.carry_out(stage, &[Candidate::new(*pose, 0.0)])
+            }),
+            false => Ok(()),
+        }
+    }
+}
