@@ -69,6 +69,8 @@ fn a_box_is_turned_over() {
     is_done(&demo, &[]);
     // Here only the last of its sides does on the way.
     is_done(&demo, &["--seed", "5"]);
+    // Here it does so only farther away.
+    is_done(&demo, &["--seed", "22"]);
 }
 
 #[test]
@@ -194,4 +196,6 @@ fn a_high_box_is_opened_filled_and_closed_from_beside() {
     is_done(&demo, &[]);
     is_done(&demo, &["--dynamic"]);
     is_done(&demo, &["--seed", "1"]);
+    // Here the block has to lean on its way over the rim.
+    is_done(&demo, &["--seed", "3"]);
 }

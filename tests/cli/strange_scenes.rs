@@ -141,10 +141,7 @@ fn where_no_arm_reaches_is_said_at_once() {
     let blue = r#"<block id="Blue" location="(0,5,0.5)" color="blue"/>"#;
     let (told, _) = stacked("goal_beyond", &[RED, GREEN, blue]);
     let reason = "no arm that reaches Green reaches where it belongs";
-    assert!(
-        told.contains(reason) && !told.contains("(again)"),
-        "{told}"
-    );
+    assert!(told.contains(reason) && !told.contains("(again)"), "{told}");
 }
 
 #[test]

@@ -19,8 +19,18 @@ use crate::{
 pub(crate) struct Candidate {
     pub pose: Pose,
     pub cost: f32,
-    /// True if the object lies on another side there.
-    pub is_tipped: bool,
+    pub placement: Placement,
+}
+
+/// How an object comes to its goal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Placement {
+    /// It stands as before.
+    Upright,
+    /// It lies on another side.
+    Tipped,
+    /// It falls from there.
+    Dropped,
 }
 
 impl Candidate {
@@ -29,8 +39,12 @@ impl Candidate {
         Self {
             pose,
             cost,
-            is_tipped: false,
+            placement: Placement::Upright,
         }
+    }
+
+    pub fn is_tipped(&self) -> bool {
+        self.placement == Placement::Tipped
     }
 }
 
@@ -83,13 +97,16 @@ pub(crate) fn candidates(
                 found.push(Candidate {
                     pose,
                     cost: exact.cost,
-                    is_tipped,
+                    placement: match is_tipped {
+                        true => Placement::Tipped,
+                        false => Placement::Upright,
+                    },
                 });
             }
         }
     }
-    if found.iter().any(|candidate| !candidate.is_tipped) {
-        found.retain(|candidate| !candidate.is_tipped);
+    if found.iter().any(|candidate| !candidate.is_tipped()) {
+        found.retain(|candidate| !candidate.is_tipped());
     } else if is_inside(step) {
         found = found.iter().map(|goal| untipped(object, *goal)).collect();
     }
@@ -134,7 +151,7 @@ fn untipped(object: &SeenObject, goal: Candidate) -> Candidate {
     let [lowest, own] = [goal.pose, here].map(|pose| heights(&object.solids_at(pose))[0]);
     Candidate {
         pose: Pose::new(here.location + Vec3::Z * (lowest - own), here.rotation),
-        is_tipped: false,
+        placement: Placement::Upright,
         ..goal
     }
 }

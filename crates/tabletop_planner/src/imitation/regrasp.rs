@@ -10,7 +10,7 @@ use super::Imitator;
 use crate::{
     failure::PlanFailure,
     free_spot::free_spots,
-    goals::Candidate,
+    goals::{Candidate, Placement},
     grasp::GraspSide,
     sight::{SeenObject, Sight},
     stage::PlanningStage,
@@ -106,7 +106,7 @@ impl Imitator<'_> {
                 let place = Candidate {
                     pose: *spots.get(number)?,
                     cost: 0.0,
-                    is_tipped: true,
+                    placement: Placement::Tipped,
                 };
                 Some((*limb, place))
             })

@@ -7,7 +7,7 @@ use tabletop_task::{Relation, TaskStep};
 use super::{Imitator, slider::Slider};
 use crate::{
     failure::PlanFailure,
-    goals::{Candidate, bound, candidates, inside, is_inside},
+    goals::{Candidate, Placement, bound, candidates, inside, is_inside},
     grasp::GraspSide,
     sight::{Sight, heights},
     stage::PlanningStage,
@@ -121,10 +121,13 @@ impl Imitator<'_> {
             return straight;
         };
         let goals = self.goals(stage, step)?;
-        let is_tipped = goals.iter().any(|goal| goal.is_tipped);
+        let is_tipped = goals.iter().any(|goal| goal.is_tipped());
         let sight = stage.sight();
         let limbs = || 0..self.body.limbs.len();
-        if !limbs().any(|limb| self.transfer(limb, id, GraspSide::Any).reaches(sight, &goals)) {
+        if !limbs().any(|limb| {
+            self.transfer(limb, id, GraspSide::Any)
+                .reaches(sight, &goals)
+        }) {
             return Err(PlanFailure::PlaceOutOfReach(id.to_owned()));
         }
         let is_held = sight.limbs.iter().any(|limb| !limb.holds.is_empty());
@@ -152,7 +155,7 @@ impl Imitator<'_> {
     ) -> Result<(), PlanFailure> {
         let goals = self.goals(stage, step)?;
         let at = goals.first().map_or(Vec3::ZERO, |goal| goal.pose.location);
-        let side = match goals.iter().any(|goal| goal.is_tipped) {
+        let side = match goals.iter().any(|goal| goal.is_tipped()) {
             true => GraspSide::Any,
             false => GraspSide::Above,
         };
@@ -191,7 +194,11 @@ impl Imitator<'_> {
             let [lowest, _] = heights(&object.solids_at(goal.pose));
             let up = Vec3::Z * (rim + ABOVE_RIM - lowest).max(0.0);
             let there = Pose::new(goal.pose.location + up, goal.pose.rotation);
-            Candidate::new(there, goal.cost + COST_OF_FALL)
+            Candidate {
+                pose: there,
+                cost: goal.cost + COST_OF_FALL,
+                placement: Placement::Dropped,
+            }
         });
         raised.collect()
     }

@@ -11,7 +11,7 @@ use super::{
 use crate::{
     clearance::{Clearance, Margins},
     failure::PlanFailure,
-    goals::Candidate,
+    goals::{Candidate, Placement},
     motion::{follow, grip, wait},
     path::{Path, largest_turn, lift, line},
     sight::Sight,
@@ -131,15 +131,17 @@ impl Transfer<'_> {
         let here = seen.angles;
         let end_effector = self.body.end_effector(self.limb, &here);
         let grip = end_effector.inverse() * object.pose;
-        let is_tipped = goals.iter().any(|goal| goal.is_tipped);
-        let upright = self.upright(&here, is_tipped);
-        let holding = self.holding(&sight, object, grip, seen.opening as f32, upright);
+        let holding = |placement: Placement| {
+            let upright = self.upright(&here, placement);
+            self.holding(&sight, object, grip, seen.opening as f32, upright)
+        };
         let lifted = self
-            .lifted(&holding, &sight, &here, object.pose)
+            .lifted(&holding(Placement::Upright), &sight, &here, object.pose)
             .ok_or_else(|| self.no_way())?;
         let mut sorted: Vec<_> = goals
             .iter()
             .filter_map(|goal| {
+                let holding = holding(goal.placement);
                 let put = holding.reach(above_place(*goal, grip), &here)?;
                 let cost = largest_turn(&put, &here) / 1.5 + f64::from(goal.cost);
                 let is_free = holding.is_free(&put, Margins::NARROW);
@@ -150,7 +152,14 @@ impl Transfer<'_> {
         let with = |search: WaySearch, pairs: usize| {
             let some = sorted.iter().take(pairs);
             some.into_iter().find_map(|(_, goal, put)| {
-                self.placing(&holding, &sight, &lifted, *goal, put, search)
+                self.placing(
+                    &holding(goal.placement),
+                    &sight,
+                    &lifted,
+                    *goal,
+                    put,
+                    search,
+                )
             })
         };
         let placing = with(WaySearch::Simple, PAIRS)

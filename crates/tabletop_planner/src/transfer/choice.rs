@@ -230,11 +230,11 @@ impl Transfer<'_> {
         for (_, i, goal) in pairs {
             let taking = &takings[i];
             let grip = taking.grasp.end_effector.inverse();
-            let upright = self.upright(&taking.at, goal.is_tipped);
+            let upright = self.upright(&taking.at, goal.placement);
             let holding = self.holding(sight, object, grip, taking.grasp.width, upright);
             let end = above_place(goal, grip);
             // What is tipped has many goals that look the same.
-            let put = match goal.is_tipped {
+            let put = match goal.is_tipped() {
                 true => holding.reach_soon(end, &taking.at),
                 false => holding.reach(end, &taking.at),
             };

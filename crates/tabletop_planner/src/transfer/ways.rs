@@ -8,7 +8,7 @@ use super::{BESIDE, Transfer, choice::Taking};
 use crate::{
     body::Angles,
     clearance::{Clearance, Margins},
-    goals::Candidate,
+    goals::{Candidate, Placement},
     path::{Path, lift, withdraw},
     sight::{SeenObject, Sight, heights},
     transit::{WaySearch, transit},
@@ -66,9 +66,12 @@ impl Transfer<'_> {
         Some([way, down])
     }
 
-    /// Rotation from the object, which the arm takes at these angles, to the end effector's frame; `None` if it is to be tipped.
-    pub(super) fn upright(&self, at: &Angles, is_tipped: bool) -> Option<Quat> {
-        (!is_tipped).then(|| self.body.end_effector(self.limb, at).rotation.inverse())
+    /// Rotation from the object, which the arm takes at these angles, to the end effector's frame; `None` if it may lean on its way.
+    pub(super) fn upright(&self, at: &Angles, placement: Placement) -> Option<Quat> {
+        match placement {
+            Placement::Upright => Some(self.body.end_effector(self.limb, at).rotation.inverse()),
+            Placement::Tipped | Placement::Dropped => None,
+        }
     }
 
     /// The clearance of the arm that takes the object, or has let it go.
