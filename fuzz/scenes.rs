@@ -13,8 +13,11 @@ use crate::mutation::Random;
 
 const TICKS: u64 = 120;
 
-/// Largest number of objects of a scene.
-const OBJECTS: usize = 12;
+/// Largest number of objects of a scene, mostly.
+const FEW: usize = 3;
+
+/// Largest number of objects of a scene. A dozen that stand in one another take a hundred times as long as a few, so they are rare.
+const MANY: usize = 12;
 
 /// Number of scenes after which a new app is made.
 const SCENES_PER_APP: u32 = 200;
@@ -137,7 +140,8 @@ fn shape(random: &mut Random, depth: usize) -> Shape {
 }
 
 fn scene(random: &mut Random) -> SceneSpec {
-    let items = (0..1 + random.below(OBJECTS)).map(|i| {
+    let most = if random.below(32) == 0 { MANY } else { FEW };
+    let items = (0..1 + random.below(most)).map(|i| {
         let id = format!("o{i}");
         SceneItem::Object(ObjectSpec::new(
             id,

@@ -21,12 +21,15 @@ fn app() -> (App, Entity) {
 }
 
 fn ball(app: &mut App, x: f32) -> Entity {
-    let shape = Shape::Sphere {
-        radius: 0.5,
-        color: Rgb::GRAY,
-    };
-    let spec = ObjectSpec::new(format!("ball at {x}"), Pose::at(Vec3::X * x), 1.0, shape);
-    app.world_mut().spawn(spec).id()
+    sphere(app, Vec3::X * x, 0.5, 1.0)
+}
+
+fn sphere(app: &mut App, at: Vec3, radius: f32, mass: f32) -> Entity {
+    let color = Rgb::GRAY;
+    let shape = Shape::Sphere { radius, color };
+    let spec = ObjectSpec::new(format!("ball at {at}"), Pose::at(at), mass, shape);
+    let place = Transform::from_translation(at);
+    app.world_mut().spawn((spec, place)).id()
 }
 
 fn bodies(app: &mut App) -> usize {
@@ -72,4 +75,24 @@ fn a_body_that_comes_or_goes_during_a_pause_reaches_the_engine_after_it() {
         app.step(2);
         assert_eq!(bodies(&mut app), 1, "{falling} is left after {paused}");
     }
+}
+
+#[test]
+fn what_falls_fast_meets_nothing_that_is_gone() {
+    let (mut app, small) = app();
+    let post = sphere(&mut app, Vec3::new(20.0, 0.0, -100.0), 1.0, 0.0);
+    let large = sphere(&mut app, Vec3::X * 20.0, 4.0, 1.0);
+    for falling in [small, large] {
+        app.world_mut().entity_mut(falling).insert(Ccd::disabled());
+    }
+    // The small one is so fast that the engine looks for what it may hit.
+    app.step(30);
+    for gone in [small, post] {
+        app.world_mut().despawn(gone);
+        app.step(1);
+    }
+    // The large one becomes so fast without any other change.
+    app.step(80);
+    let place = app.world().get::<Transform>(large).unwrap().translation;
+    assert!(place.z < -110.0, "{place}");
 }
