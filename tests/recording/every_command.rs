@@ -308,5 +308,6 @@ fn what_any_commands_leave_after_undo_replays_to_the_same_bytes() {
         "{} of {seeds:?}: {differences:#?}",
         differences.len()
     );
-    assert_eq!(drawn.len(), KINDS, "{drawn:?}");
+    // A few seeds, to look for a fault, need not draw them all.
+    assert!(drawn.len() == KINDS || seeds.count() < 40, "{drawn:?}");
 }

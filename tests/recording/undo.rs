@@ -2,10 +2,12 @@
 
 use std::fs;
 
+use bevy::prelude::*;
 use tabletop::{prelude::*, replay::first_difference};
 
 use crate::{
     demonstration::{Demonstration, assert_replays},
+    mechanisms,
     random::{Random, scene, script},
 };
 
@@ -134,6 +136,38 @@ fn what_was_undone_in_a_pause_just_after_a_release_falls_in_time_after_redo() {
         (vec![HistoryCommand::Undo.into()], 1),
         (vec![set_paused(false)], 2),
         (vec![HistoryCommand::Redo.into()], 20),
+        (vec![RecordingCommand::Finish.into()], 1),
+    ]);
+    assert_replays(&demonstration.folder);
+}
+
+#[test]
+fn a_screw_that_came_with_a_grasp_is_fastened_again_after_undo() {
+    let mut demonstration = begun("screw_that_came");
+    let block = ObjectSpec::new(
+        "block",
+        Pose::at(Vec3::new(-8.0, 4.0, 0.5)),
+        1.0,
+        Shape::Block {
+            span: Vec3::ONE,
+            color: Rgb::GRAY,
+        },
+    );
+    let mut items = mechanisms::items(Vec3::Z * 2.0);
+    items.push(SceneItem::Object(block));
+    let scene = SceneSpec { items, ..default() };
+    let set_paused = |is_paused| ClockCommand::SetPaused(is_paused).into();
+    demonstration.act(&[
+        (
+            vec![
+                SceneCommand::Set(Box::new(scene)).into(),
+                grasp(Hand::Left, "block"),
+            ],
+            1,
+        ),
+        (vec![set_paused(true)], 1),
+        (vec![HistoryCommand::Undo.into()], 1),
+        (vec![set_paused(false)], 20),
         (vec![RecordingCommand::Finish.into()], 1),
     ]);
     assert_replays(&demonstration.folder);

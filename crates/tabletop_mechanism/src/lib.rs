@@ -62,6 +62,7 @@ pub struct MechanismPlugin;
 impl Plugin for MechanismPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<settle::New>()
+            .rollback_resource::<settle::New>()
             .init_resource::<press::Pressed>()
             .rollback_resource::<press::Pressed>()
             .init_resource::<wrench::Wrenches>()

@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// Objects that have appeared in this tick.
-#[derive(Resource, Default)]
+#[derive(Resource, Clone, Default)]
 pub(crate) struct New(Vec<Entity>);
 
 pub(crate) fn any(new: Res<New>) -> bool {

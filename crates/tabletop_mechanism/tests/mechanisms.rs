@@ -132,8 +132,8 @@ fn states_are_passed_on_when_a_scene_is_set_and_nothing_is_reported() {
     assert_eq!(changes.count(), 0);
 }
 
-#[test]
-fn a_custom_control_collides_as_its_state_shows_and_wakes_what_lies_on_it() {
+/// A tower whose control `lift` is two units high in its first state, and one in its second.
+fn tower() -> ObjectSpec {
     let block = |zspan: f32, next| CustomState {
         name: String::new(),
         parts: vec![Part::new(
@@ -151,21 +151,40 @@ fn a_custom_control_collides_as_its_state_shows_and_wakes_what_lies_on_it() {
         name: "lift".into(),
         states: vec![block(2.0, 1), block(1.0, 0)],
     }));
-    let ball = Shape::Block {
+    let part = Part::new("lift", Pose::IDENTITY, Shape::Control(lift));
+    let shape = Shape::Composite { parts: vec![part] };
+    ObjectSpec::new("tower", Pose::IDENTITY, 0.0, shape)
+}
+
+fn block(at: Vec3) -> ObjectSpec {
+    let shape = Shape::Block {
         span: Vec3::ONE,
         color: Rgb::RED,
     };
-    let part = Part::new("lift", Pose::IDENTITY, Shape::Control(lift));
-    let tower = Shape::Composite { parts: vec![part] };
-    let mut app = app(vec![
-        ObjectSpec::new("tower", Pose::IDENTITY, 0.0, tower),
-        ObjectSpec::new("block", Pose::at(Vec3::Z * 2.5), 1.0, ball),
-    ]);
+    ObjectSpec::new("block", Pose::at(at), 1.0, shape)
+}
+
+#[test]
+fn a_custom_control_collides_as_its_state_shows_and_wakes_what_lies_on_it() {
+    let mut app = app(vec![tower(), block(Vec3::Z * 2.5)]);
     app.step(300);
     assert!((pose(&app, "block").location.z - 2.5).abs() < 0.01);
     trigger(&mut app, "lift");
     app.step(120);
     assert!((pose(&app, "block").location.z - 1.5).abs() < 0.01);
+}
+
+#[test]
+fn a_control_collides_as_the_state_shows_that_is_passed_on_to_it_at_first() {
+    let on = Control {
+        state: 1,
+        ..switch(&["lift"])
+    };
+    let power = control("power", Vec3::X * 5.0, on);
+    let mut app = app(vec![tower(), block(Vec3::Z * 1.6), power]);
+    app.step(120);
+    let height = pose(&app, "block").location.z;
+    assert!((height - 1.5).abs() < 0.01, "{height}");
 }
 
 #[test]

@@ -31,22 +31,29 @@ pub fn reshape(world: &mut World, object: Entity, spec: ObjectSpec) {
     world.entity_mut(object).insert(spec);
 }
 
-/// Changes the collider in the engine alone: undo restores it there, and the component matters only for new objects.
+/// Changes the collider in the engine, where undo restores it. The components follow unnoticed: those of a new object have yet to be
+/// carried to the engine.
 fn set_collider(world: &mut World, object: Entity, spec: &ObjectSpec) {
+    let collider = collider(&spec.shape);
+    let mass = (!spec.is_fixed()).then(|| mass_properties(&spec.shape, spec.mass));
     let mut contexts =
         world.query_filtered::<&mut RapierContextColliders, With<DefaultRapierContext>>();
-    let Ok(mut colliders) = contexts.single_mut(world) else {
-        return;
-    };
-    let Some(handle) = colliders.entity2collider().get(&object).copied() else {
-        return;
-    };
-    if let Some(engine_collider) = colliders.colliders.get_mut(handle) {
-        engine_collider.set_shape(collider(&spec.shape).raw);
-        if !spec.is_fixed() {
-            let properties = mass_properties(&spec.shape, spec.mass);
-            engine_collider.set_mass_properties(properties.into_rapier());
+    if let Ok(mut colliders) = contexts.single_mut(world)
+        && let Some(handle) = colliders.entity2collider().get(&object).copied()
+        && let Some(engine_collider) = colliders.colliders.get_mut(handle)
+    {
+        engine_collider.set_shape(collider.raw.clone());
+        if let Some(mass) = mass {
+            engine_collider.set_mass_properties(mass.into_rapier());
         }
+    }
+    if let Some(mut component) = world.get_mut::<Collider>(object) {
+        *component.bypass_change_detection() = collider;
+    }
+    if let Some(mass) = mass
+        && let Some(mut component) = world.get_mut::<ColliderMassProperties>(object)
+    {
+        *component.bypass_change_detection() = ColliderMassProperties::MassProperties(mass);
     }
 }
 
