@@ -1,4 +1,4 @@
-//! Everything that changes in a tick on an entity that rolls back is restored by undo, or derived from what is.
+//! What changes in a tick, on an entity that rolls back or in a resource, is restored by undo, or derived from what is.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -73,15 +73,62 @@ impl Composition {
     }
 }
 
-/// Simulates a tick, and adds the names of the components that undo forgets.
+/// Simulates a tick, and adds the names of the components and resources that undo forgets.
 fn watch(app: &mut App, forgotten: &mut BTreeSet<String>) {
     let before = Composition::of(app.world_mut());
     app.step(1);
+    forgotten.extend(forgotten_resources(app.world_mut(), before.at));
     forgotten.extend(before.forgotten(app.world_mut()));
 }
 
+/// Resources that undo leaves as they are.
+const NOT_ROLLED_BACK: [&str; 23] = [
+    // Undo itself, and the recording that it is a part of.
+    "tabletop_core::recording::History",
+    "tabletop_core::recording::Recording",
+    "tabletop_core::timeline::Timeline",
+    "tabletop_history::removal::KeepRemoved",
+    "tabletop_history::rollback::RollingBack",
+    "tabletop_history::segments::Segments",
+    "tabletop_recorder::files::session::SessionSettings",
+    "tabletop_recorder::recording::recorder::Recorder",
+    // Commands go on, whatever is undone.
+    "tabletop_core::command::carry_out::Cause",
+    "tabletop_core::command::issued::NextCommandId",
+    "tabletop_scenario::run::ScenarioRun",
+    "tabletop_script::runner::ScriptRunner",
+    // Pictures are made of what is there.
+    "tabletop_camera::head_camera::HeadCameraRenderer",
+    "tabletop_camera::visible_world::FigureCount",
+    "tabletop_core::hand_camera::HandImages",
+    "tabletop_core::sensor::HeadCamera",
+    "tabletop_core::sensor::PictureDemand",
+    "tabletop_core::sensor::SensorImage",
+    "tabletop_robot::look::link_figures::LinkFigures",
+    // Empty when undo comes.
+    "tabletop_physics::bodies::PendingBodies",
+    // Found out anew in every tick.
+    "tabletop_core::rest::Rest",
+    "tabletop_physics::outside::WrittenBack",
+    "tabletop_physics::rest::LastStep",
+];
+
+/// The names of the program's resources that have changed since, and of which undo knows nothing.
+fn forgotten_resources(world: &mut World, since: Tick) -> BTreeSet<String> {
+    let now = world.increment_change_tick();
+    let registry = world.resource::<RollbackRegistry>();
+    let changed = world.iter_resources().filter_map(|(info, _)| {
+        let ticks = world.get_resource_change_ticks_by_id(info.id())?;
+        let is_covered = info.type_id().is_some_and(|id| registry.covers(id));
+        let name = info.name().to_string();
+        let is_ours = name.starts_with("tabletop_") && !NOT_ROLLED_BACK.contains(&name.as_str());
+        (ticks.is_changed(since, now) && is_ours && !is_covered).then_some(name)
+    });
+    changed.collect()
+}
+
 #[test]
-fn no_component_that_a_random_demonstration_changes_is_forgotten() {
+fn nothing_that_a_random_demonstration_changes_is_forgotten() {
     let mut forgotten = BTreeSet::new();
     for seed in 0..4 {
         let mut demonstration = Demonstration::new("watched");
@@ -99,12 +146,12 @@ fn no_component_that_a_random_demonstration_changes_is_forgotten() {
     }
     assert!(
         forgotten.is_empty(),
-        "register these with rollback_component or derived_component: {forgotten:#?}"
+        "register these with rollback_component, rollback_resource or derived_component: {forgotten:#?}"
     );
 }
 
 #[test]
-fn no_component_that_a_shipped_scenario_changes_is_forgotten() {
+fn nothing_that_a_shipped_scenario_changes_is_forgotten() {
     let mut forgotten = BTreeSet::new();
     for entry in fs::read_dir("scenarios").unwrap() {
         let path = entry.unwrap().path();
@@ -116,7 +163,7 @@ fn no_component_that_a_shipped_scenario_changes_is_forgotten() {
     }
     assert!(
         forgotten.is_empty(),
-        "register these with rollback_component or derived_component: {forgotten:#?}"
+        "register these with rollback_component, rollback_resource or derived_component: {forgotten:#?}"
     );
 }
 

@@ -107,11 +107,9 @@ impl RollbackRegistry {
         self.parts.iter().copied()
     }
 
-    /// True if undo takes care of a component: it is restored, or derived from what is.
-    pub fn covers(&self, component: TypeId) -> bool {
-        let is_put_back =
-            |part: &RollbackPart| part.kind == RollbackKind::Component && part.of == component;
-        self.parts.iter().any(is_put_back) || self.derived.contains(&component)
+    /// True if undo takes care of a component or resource: it is restored, or derived from what is.
+    pub fn covers(&self, id: TypeId) -> bool {
+        self.parts.iter().any(|part| part.of == id) || self.derived.contains(&id)
     }
 }
 

@@ -1,13 +1,14 @@
 //! Imitation: the steps of a task, with a look at the world after each.
 
 mod arms;
+mod cleared;
 mod clearing;
 mod putting_back;
 mod regrasp;
 mod slider;
 mod step;
 
-use putting_back::Cleared;
+use cleared::Cleared;
 use tabletop_task::{Binding, PlaceRange, Reference, Relation, Task, TaskStep};
 
 use crate::{

@@ -1,42 +1,12 @@
 //! Putting back what was in the way, after the last step.
 
-use tabletop_core::Pose;
-
-use super::{Imitator, slider::Slider};
+use super::{Imitator, cleared::Cleared, slider::Slider};
 use crate::{
     failure::PlanFailure,
     goals::Candidate,
     sight::Sight,
     stage::{PlanningStage, Stopped},
 };
-
-/// An object that was in the way, and how it stood.
-pub(super) struct Cleared {
-    id: String,
-    pose: Pose,
-    supports: Vec<String>,
-}
-
-impl Cleared {
-    fn new(sight: &Sight, id: &str) -> Option<Self> {
-        Some(Self {
-            id: id.to_owned(),
-            pose: sight.objects.get(id)?.pose,
-            supports: owned(&sight.arrangement().supports(id)),
-        })
-    }
-
-    /// True if it would stand there as it stood, and the place is free.
-    fn fits(&self, sight: &Sight) -> bool {
-        let there = sight.arrangement_with(&self.id, self.pose);
-        owned(&there.supports(&self.id)) == self.supports
-            && sight.occupant(&self.id, self.pose, &[]).is_none()
-    }
-}
-
-fn owned(ids: &[&str]) -> Vec<String> {
-    ids.iter().map(|&id| id.to_owned()).collect()
-}
 
 impl Imitator<'_> {
     /// Remembers how something stands that is about to be moved out of the way.
