@@ -1,7 +1,11 @@
 //! Carrying: the motion of held objects.
 
 use bevy::prelude::*;
-use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*, rapier::prelude as rapier};
+use bevy_rapier3d::{
+    parry::bounding_volume::{Aabb, BoundingVolume as _},
+    prelude::*,
+    rapier::prelude as rapier,
+};
 use tabletop_core::{Hand, Hands, Joint, Pose, TICK_SECONDS};
 use tabletop_physics::{Carry, Convex, Nearest, convex_parts, nearby, nearest, pull_velocity};
 
@@ -151,6 +155,8 @@ fn advanced(here: Pose, target: Pose) -> Pose {
 struct Near {
     /// Obstacles: everything that does not move by itself.
     immovable: Vec<Convex>,
+    /// The same near the free objects, which may be pressed into it.
+    beneath: Vec<Convex>,
     /// Objects that it pushes.
     free: Vec<FreeNeighbour>,
     /// The free objects that sleep.
@@ -176,9 +182,11 @@ impl Near {
         );
         let mut near = Self {
             immovable: Vec::new(),
+            beneath: Vec::new(),
             free: Vec::new(),
             sleeping: Vec::new(),
         };
+        let mut around_free = None::<Aabb>;
         for other in nearby(rapier.colliders, rapier.rigidbody_set, way, |_| true) {
             if other.collider.parent() == carried.parent() {
                 continue;
@@ -187,6 +195,8 @@ impl Near {
                 near.immovable.extend(other.parts());
                 continue;
             }
+            let room = other.collider.compute_aabb().loosened(PROBE);
+            around_free = Some(around_free.map_or(room, |all| all.merged(&room)));
             let is_of_joint = |joint: &Joint| joint.objects.contains(&other.entity);
             near.free.push(FreeNeighbour {
                 parts: other.parts(),
@@ -194,6 +204,13 @@ impl Near {
             });
             if other.body.is_sleeping() {
                 near.sleeping.push(other.entity);
+            }
+        }
+        if let Some(room) = around_free {
+            for other in nearby(rapier.colliders, rapier.rigidbody_set, room, |_| true) {
+                if other.collider.parent() != carried.parent() && !other.body.is_dynamic() {
+                    near.beneath.extend(other.parts());
+                }
             }
         }
         near
@@ -205,10 +222,10 @@ impl Near {
             let reached: Vec<_> = nearest(held, here, &object.parts, step + MOST_SQUEEZE).collect();
             let depth = match reached.is_empty() {
                 true => 0.0,
-                false => object.depth(Vec3::ZERO, &self.immovable),
+                false => object.depth(Vec3::ZERO, &self.beneath),
             };
             let push = |nearest: Nearest| Push {
-                give: object.give(-nearest.away, depth, &self.immovable),
+                give: object.give(-nearest.away, depth, &self.beneath),
                 depth,
                 nearest,
             };

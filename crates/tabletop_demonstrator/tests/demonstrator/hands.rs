@@ -170,7 +170,7 @@ fn a_block_squeezed_against_a_wall_stops_the_hand_and_does_not_explode() {
 }
 
 #[test]
-fn a_hand_seldom_presses_a_block_into_the_table() {
+fn a_hand_presses_no_block_into_the_table() {
     let mut deep_ticks = 0;
     for seed in 0..40 {
         let mut random = tabletop_core::Random::new(seed);
@@ -198,7 +198,7 @@ fn a_hand_seldom_presses_a_block_into_the_table() {
             deep_ticks += u32::from(depth > 0.1);
         }
     }
-    assert!(deep_ticks < 100, "{deep_ticks}");
+    assert_eq!(deep_ticks, 0);
 }
 
 #[test]
