@@ -46,7 +46,7 @@ fn places(recording: &Path, id: &str) -> [Vec3; 2] {
         (fields[1] == id).then(|| Vec3::new(number(2), number(3), number(4)))
     });
     let first = places.next().unwrap();
-    [first, places.last().unwrap_or(first)]
+    [first, places.next_back().unwrap_or(first)]
 }
 
 fn is_stacked(scene: &str, objects: &[&str]) {
