@@ -34,6 +34,41 @@ fn what_the_robot_did_before_and_in_a_recording_is_done_again() {
 }
 
 #[test]
+fn a_robot_is_passive_again_in_what_a_scene_put_into_it_after_undo() {
+    let mut demonstration = Demonstration::new("passive_again");
+    let block = |id: String, at| {
+        let shape = Shape::Block {
+            span: Vec3::splat(0.8),
+            color: Rgb::GRAY,
+        };
+        SceneItem::Object(ObjectSpec::new(id, Pose::at(at), 1.0, shape))
+    };
+    let set = |items| SceneCommand::Set(Box::new(SceneSpec { items, ..default() })).into();
+    demonstration.act(&[
+        (vec![set(Vec::new()), RobotCommand::Show(true).into()], 5),
+        (vec![RecordingCommand::Start.into()], 5),
+    ]);
+    let world = demonstration.app.world_mut();
+    let mut links = world.query_filtered::<&Transform, (With<RobotLink>, With<Collider>)>();
+    let places = links.iter(world).map(|place| place.translation);
+    let high = places.filter(|place| place.z > 1.0).enumerate();
+    let mut items: Vec<_> = high.map(|(i, at)| block(format!("in{i}"), at)).collect();
+    items.push(block("held".into(), Vec3::new(0.0, 4.0, 0.4)));
+    let grasp = HandCommand::Grasp {
+        hand: Hand::Left,
+        object: "held".into(),
+    };
+    demonstration.act(&[
+        (vec![set(items), grasp.into()], 1),
+        (vec![ClockCommand::SetPaused(true).into()], 1),
+        (vec![HistoryCommand::Undo.into()], 1),
+        (vec![ClockCommand::SetPaused(false).into()], 20),
+        (vec![RecordingCommand::Finish.into()], 1),
+    ]);
+    assert_replays(&demonstration.folder);
+}
+
+#[test]
 fn a_robot_shown_in_a_long_pause_moves_and_is_touched_afterwards() {
     let mut demonstration = Demonstration::new("shown_in_pause");
     let pause = |paused| SimCommand::Clock(ClockCommand::SetPaused(paused));

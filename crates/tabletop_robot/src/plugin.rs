@@ -25,7 +25,10 @@ use crate::{
     look::link_figures::{LinkFigures, show_figures},
     motion::{
         advance::advance,
-        placement::{meets_objects, pass_through_objects, publish, stand_at_table, table_has_come},
+        placement::{
+            NewTable, meets_objects, note_table, pass_through_objects, publish, stand_at_table,
+            table_has_come,
+        },
     },
 };
 
@@ -72,6 +75,7 @@ impl Plugin for RobotPlugin {
             .insert_resource(JointTargets::none(&layout))
             .init_resource::<LinkEntities>()
             .init_resource::<PassiveLinks>()
+            .init_resource::<NewTable>()
             .insert_resource(Grips::none(&layout))
             .init_resource::<Motors>()
             .init_resource::<HeadCamera>()
@@ -80,6 +84,7 @@ impl Plugin for RobotPlugin {
             .rollback_resource::<JointTargets>()
             .rollback_resource::<LinkEntities>()
             .rollback_resource::<PassiveLinks>()
+            .rollback_resource::<NewTable>()
             .rollback_resource::<Grips>()
             .rollback_resource::<Motors>();
         let world = app.world_mut();
@@ -124,6 +129,7 @@ impl Plugin for RobotPlugin {
                     .in_set(RestingSystems),
             )
             .wake_while(can_move)
+            .add_observer(note_table.run_if(not(is_rolling_back)))
             .add_observer(grips::note_lost.run_if(not(is_rolling_back)));
     }
 

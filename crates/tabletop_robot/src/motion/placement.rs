@@ -14,12 +14,21 @@ use crate::{
     motion::view::RobotView,
 };
 
-pub(crate) fn table_has_come(tables: Query<(), Added<Table>>) -> bool {
-    !tables.is_empty()
+/// Whether a table has come at which the robot does not stand yet.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct NewTable(bool);
+
+pub(crate) fn note_table(_: On<Add, Table>, mut table: ResMut<NewTable>) {
+    table.0 = true;
+}
+
+pub(crate) fn table_has_come(table: Res<NewTable>) -> bool {
+    table.0
 }
 
 /// Puts the robot in front of the table, with its present joint positions.
 pub(crate) fn stand_at_table(world: &mut World) -> Result {
+    world.insert_resource(NewTable(false));
     teleport(world);
     let is_shown = world.resource::<Robot>().is_shown;
     let links = world.resource::<LinkEntities>().0.len();
