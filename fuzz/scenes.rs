@@ -16,7 +16,7 @@ const TICKS: u64 = 120;
 /// Largest number of objects of a scene, mostly.
 const FEW: usize = 3;
 
-/// Largest number of objects of a scene. A dozen that stand in one another take a hundred times as long as a few, so they are rare.
+/// Largest number of objects of a scene. While scenes had up to a dozen, which stand in one another, they took five times as long on average.
 const MANY: usize = 12;
 
 /// Number of scenes after which a new app is made.
