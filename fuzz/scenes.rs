@@ -14,7 +14,7 @@ use crate::mutation::Random;
 const TICKS: u64 = 120;
 
 /// Largest number of objects of a scene, mostly.
-const FEW: usize = 3;
+const FEW: usize = 2;
 
 /// Largest number of objects of a scene. While scenes had up to a dozen, which stand in one another, they took five times as long on average.
 const MANY: usize = 12;
@@ -140,7 +140,7 @@ fn shape(random: &mut Random, depth: usize) -> Shape {
 }
 
 fn scene(random: &mut Random) -> SceneSpec {
-    let most = if random.below(32) == 0 { MANY } else { FEW };
+    let most = if random.below(64) == 0 { MANY } else { FEW };
     let items = (0..1 + random.below(most)).map(|i| {
         let id = format!("o{i}");
         SceneItem::Object(ObjectSpec::new(
