@@ -23,22 +23,41 @@ const INSIDE: f32 = 0.01;
 const LEAVING: f32 = 0.1;
 
 /// The pose of an object a tick later on its way out of the obstacles that it is inside of, as after something was put, or appeared, there.
-/// If they leave no way out, it goes to its target through them. `None` if it is inside nothing.
+/// If they leave no way out, it goes towards its target, but no deeper into them. `None` if it is inside nothing.
 pub(crate) fn leave(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex]) -> Option<Pose> {
-    let is_entered = |obstacle: &Convex| {
-        let obstacle = std::slice::from_ref(obstacle);
-        nearest(held, from, obstacle, 0.0).any(|nearest| nearest.distance < -INSIDE)
-    };
-    if !obstacles.iter().any(is_entered) {
+    let (entered, others): (Vec<_>, Vec<_>) = obstacles
+        .iter()
+        .cloned()
+        .partition(|obstacle| depth(held, from, std::slice::from_ref(obstacle)) > INSIDE);
+    if entered.is_empty() {
         return None;
     }
     let Some(out) = pushed_out(held, from, obstacles, &mut Vec::new()) else {
-        let others = obstacles.iter().filter(|obstacle| !is_entered(obstacle));
-        let others: Vec<_> = others.cloned().collect();
-        return Some(slide(held, from, to, &others));
+        let away: Vec<_> = nearest(held, from, &entered, 0.0)
+            .map(|nearest| nearest.away)
+            .collect();
+        let way = clipped(to.location - from.location, &away);
+        let turned = Pose::new(from.location, to.rotation);
+        let goes_deeper = entered.iter().any(|obstacle| {
+            let obstacle = std::slice::from_ref(obstacle);
+            depth(held, turned, obstacle) > depth(held, from, obstacle) + TOUCHING
+        });
+        let rotation = if goes_deeper {
+            from.rotation
+        } else {
+            to.rotation
+        };
+        let along = Pose::new(from.location + way, rotation);
+        return Some(slide(held, from, along, &others));
     };
     let way = (out.location - from.location).clamp_length_max(LEAVING);
     Some(Pose::new(from.location + way, from.rotation))
+}
+
+/// Depth, in units, of an object in obstacles.
+fn depth(held: &[Convex], at: Pose, obstacles: &[Convex]) -> f32 {
+    let depths = nearest(held, at, obstacles, 0.0).map(|nearest| -nearest.distance);
+    depths.fold(0.0, f32::max)
 }
 
 /// The pose without depth: pushed out of all entered obstacles, along the shortest ways. `None` if there is no way
@@ -231,7 +250,24 @@ mod tests {
         assert_eq!(ticks, 7);
         let above = cuboid(Vec3::new(20.0, 12.0, 4.0), Vec3::Z * 2.5);
         let pinned = step(Vec3::Z * 0.2, &[table(), above]).unwrap();
-        assert!(pinned.distance(Vec3::X * 9.0) < 1e-3, "{pinned}");
+        assert!(pinned.distance(Vec3::new(9.0, 0.0, 0.2)) < 1e-3, "{pinned}");
+    }
+
+    #[test]
+    fn a_block_that_is_pinned_is_not_turned_deeper() {
+        let above = cuboid(Vec3::new(20.0, 12.0, 4.0), Vec3::Z * 2.9);
+        let from = Pose::at(Vec3::Z * 0.45);
+        let target = |degrees: Vec3| {
+            let target = Pose::from_degrees(from.location, degrees);
+            let obstacles = [table(), above.clone()];
+            let pose = leave(&unit_block(), from, target, &obstacles).unwrap();
+            assert!(pose.location.distance(from.location) < 1e-3, "{pose:?}");
+            (pose.rotation, target.rotation)
+        };
+        let (rotation, _) = target(Vec3::X * 20.0);
+        assert_eq!(rotation, from.rotation);
+        let (rotation, wanted) = target(Vec3::Z * 20.0);
+        assert_eq!(rotation, wanted);
     }
 
     #[test]
