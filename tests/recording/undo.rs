@@ -174,6 +174,39 @@ fn a_screw_that_came_with_a_grasp_is_fastened_again_after_undo() {
 }
 
 #[test]
+fn what_has_shrunk_in_an_undo_leaves_room() {
+    let task = r#"<tabletop xmlns="http://synapse.cs.umd.edu/tabletop-xml">
+      <customControl id="dial" location="(0,0,0.5)">
+        <state><block location="(0,0,0)" xspan="1" yspan="1" zspan="1" nextStateWhenTriggered="1"/></state>
+        <state><block location="(0,0,0)" xspan="20" yspan="12" zspan="1"/></state>
+      </customControl>
+    </tabletop>"#;
+    let scene = tabletop::xml::parse("dial.xml".as_ref(), task.as_bytes()).scene;
+    let mut demonstration = Demonstration::new("shrunk");
+    demonstration.tick(&[SceneCommand::Set(Box::new(scene)).into()]);
+    demonstration.tick(&[RecordingCommand::Start.into()]);
+    let trigger = MechanismCommand::Trigger {
+        hand: Hand::Left,
+        control: "dial".into(),
+        part: None,
+    };
+    demonstration.tick(&[trigger.into()]);
+    demonstration.tick(&[HistoryCommand::Undo.into()]);
+    let preset = Preset::Stack(2);
+    demonstration.tick(&[SceneCommand::Make { preset, seed: 1 }.into()]);
+    demonstration.tick(&[RecordingCommand::Finish.into()]);
+    assert!(
+        demonstration
+            .app
+            .world()
+            .resource::<ObjectIndex>()
+            .get("smallblock")
+            .is_some()
+    );
+    assert_replays(&demonstration.folder);
+}
+
+#[test]
 fn redo_brings_back_what_was_undone() {
     for seed in 1000..1020 {
         let script = script(&mut Random(seed), 80);

@@ -3,7 +3,7 @@
 use std::f32::consts::FRAC_PI_2;
 
 use bevy::prelude::*;
-use bevy_rapier3d::prelude::{Collider, RigidBodyDisabled};
+use bevy_rapier3d::prelude::{DefaultRapierContext, RapierContextColliders, RigidBodyDisabled};
 use tabletop_core::{Held, ObjectIndex, ObjectSpec, Pose, Preset, Random, Rgb, Shape, Table};
 use tabletop_physics::{Convex, collider, convex_parts};
 
@@ -151,19 +151,25 @@ impl Surroundings {
             solids: Vec::new(),
             held: Vec::new(),
         };
-        let mut things = world.query_filtered::<(
-            &Transform,
-            Option<&ObjectSpec>,
-            Option<&Collider>,
-            Has<Held>,
-        ), (Without<Table>, Without<RigidBodyDisabled>)>();
-        for (place, spec, body, is_held) in things.iter(world) {
+        let mut things = world.query_filtered::<
+            (Entity, &Transform, Option<&ObjectSpec>, Has<Held>),
+            (Without<Table>, Without<RigidBodyDisabled>),
+        >();
+        let mut contexts =
+            world.query_filtered::<&RapierContextColliders, With<DefaultRapierContext>>();
+        let colliders = contexts.single(world).ok();
+        for (thing, place, spec, is_held) in things.iter(world) {
+            // Of an object that has changed its shape, undo restores the body, and not the component that describes it.
+            let body = colliders.and_then(|colliders| {
+                let handle = colliders.entity2collider().get(&thing)?;
+                Some(colliders.colliders.get(*handle)?.shared_shape().clone())
+            });
             // An object that has just appeared has no body yet.
-            let own = || spec.map(|spec| collider(&spec.shape));
-            let Some(body) = body.cloned().or_else(own) else {
+            let own = || spec.map(|spec| collider(&spec.shape).raw);
+            let Some(body) = body.or_else(own) else {
                 continue;
             };
-            let solids = convex_parts(place.into(), &body.raw);
+            let solids = convex_parts(place.into(), &body);
             if is_held || spec.is_none() {
                 surroundings.held.extend(solids.iter().cloned());
             }
