@@ -20,11 +20,11 @@ use bevy_rapier3d::{
 use tabletop_core::Held;
 
 pub use engine::Engine;
-pub(crate) use substeps::{FEWEST_SUBSTEPS, SUBSTEPS_OF_FREE};
+pub(crate) use substeps::{BASE_SUBSTEPS, SUBSTEPS_OF_FREE};
 
 use crate::{holding::JustReleased, settings::PhysicsSettings};
 use landing::landing_speed;
-use substeps::{MOST_SUBSTEPS, SubstepFactors};
+use substeps::{MOST_SUBSTEPS, SubstepFactors, substeps, substeps_of_unmoved};
 use touches::{Touches, bodies_of};
 
 /// Distance at which contacts are predicted, in units.
@@ -139,28 +139,22 @@ impl Care {
         for handle in engine.islands.active_bodies() {
             let body = &engine.bodies[handle];
             if !body.is_dynamic() {
-                // The engine keeps what was held and is fixed now among the moving bodies while anything moves, and solves its contacts with
-                // the sub-steps of whichever body has fewer.
-                let substeps = if body.is_fixed() {
-                    MOST_SUBSTEPS
-                } else {
-                    FEWEST_SUBSTEPS
-                };
-                if substeps != FEWEST_SUBSTEPS + body.additional_solver_iterations() {
-                    changes.push((handle, substeps, body.soft_ccd_prediction()));
+                let needed = substeps_of_unmoved(body, engine.colliders);
+                if needed != substeps(body) {
+                    changes.push((handle, needed, body.soft_ccd_prediction()));
                 }
                 continue;
             }
             let situation = SubstepFactors::of(handle, &engine, &touches);
-            let before = FEWEST_SUBSTEPS + body.additional_solver_iterations();
-            let substeps = match is_handling {
+            let before = substeps(body);
+            let needed = match is_handling {
                 true => MOST_SUBSTEPS,
                 false => situation.substeps().max(before.saturating_sub(DECAY)),
             };
             let is_fast = is_handling || engine.fastest_point(body) > SPEED_OF_CCD;
             let prediction = if is_fast { SOFT_CCD_PREDICTION } else { 0.0 };
-            if substeps != before || prediction != body.soft_ccd_prediction() {
-                changes.push((handle, substeps, prediction));
+            if needed != before || prediction != body.soft_ccd_prediction() {
+                changes.push((handle, needed, prediction));
             }
             is_any_fast |= is_fast;
             if !situation.is_jointed && !situation.is_handled {
@@ -169,7 +163,7 @@ impl Care {
         }
         for (handle, substeps, prediction) in changes {
             let body = &mut engine.bodies[handle];
-            body.set_additional_solver_iterations(substeps - FEWEST_SUBSTEPS);
+            body.set_additional_solver_iterations(substeps - BASE_SUBSTEPS);
             body.set_soft_ccd_prediction(prediction);
         }
 
@@ -237,9 +231,8 @@ impl Mode {
 /// step as well as those of all sub-steps.
 pub fn impulse_share(pair: &ContactPair, bodies: &RigidBodySet, colliders: &ColliderSet) -> f32 {
     let touching = bodies_of(pair, colliders).into_iter().flatten();
-    let additional =
-        touching.filter_map(|body| Some(bodies.get(body)?.additional_solver_iterations()));
-    let substeps = (FEWEST_SUBSTEPS + additional.max().unwrap_or(0)) as f32;
+    let most = touching.filter_map(|body| Some(substeps(bodies.get(body)?)));
+    let substeps = most.max().unwrap_or(BASE_SUBSTEPS) as f32;
     substeps / (substeps + 1.0)
 }
 

@@ -209,7 +209,7 @@ pub fn integration_parameters() -> IntegrationParameters {
     IntegrationParameters {
         dt: TICK_SECONDS,
         length_unit: LENGTH_UNIT,
-        num_solver_iterations: effort::FEWEST_SUBSTEPS,
+        num_solver_iterations: effort::BASE_SUBSTEPS,
         contact_softness: stiff_contacts,
         static_contact_softness: stiff_contacts,
         warmstart_joints: true,

@@ -8,7 +8,7 @@ use tabletop_core::{
 
 use super::{mass::mass_properties, polytope::Polytope};
 use crate::{
-    effort::{FEWEST_SUBSTEPS, SOFT_CCD_PREDICTION, SUBSTEPS_OF_FREE},
+    effort::{BASE_SUBSTEPS, SOFT_CCD_PREDICTION, SUBSTEPS_OF_FREE},
     settings::PhysicsSettings,
 };
 
@@ -48,7 +48,7 @@ pub(crate) fn add_object(world: &mut World, object: Entity, spec: &ObjectSpec) {
         SoftCcd {
             prediction: SOFT_CCD_PREDICTION,
         },
-        AdditionalSolverIterations(SUBSTEPS_OF_FREE - FEWEST_SUBSTEPS),
+        AdditionalSolverIterations(SUBSTEPS_OF_FREE - BASE_SUBSTEPS),
         Damping {
             linear_damping: 0.0,
             angular_damping: angular_damping(&spec.shape, &settings),

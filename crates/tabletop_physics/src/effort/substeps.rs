@@ -1,11 +1,14 @@
 //! Numbers of sub-steps that bodies need.
 
-use bevy_rapier3d::rapier::prelude::{RigidBody, RigidBodyHandle};
+use bevy_rapier3d::rapier::prelude::{Collider, ColliderSet, RigidBody, RigidBodyHandle};
 
 use super::{engine::Engine, touches::Touches};
 
-/// Least number of sub-steps of an island.
-pub(crate) const FEWEST_SUBSTEPS: usize = 4;
+/// Number of sub-steps of every body; each has more in addition.
+pub(crate) const BASE_SUBSTEPS: usize = 1;
+
+/// Least number of sub-steps of a body that touches others.
+const FEWEST_SUBSTEPS: usize = 4;
 
 /// Number of sub-steps of handled bodies.
 pub(crate) const MOST_SUBSTEPS: usize = 36;
@@ -75,6 +78,25 @@ impl SubstepFactors {
         ];
         let others = others.into_iter().filter(|(applies, _)| *applies);
         others.fold(by_depth, |most, (_, substeps)| most.max(substeps))
+    }
+}
+
+/// Number of sub-steps that a body has at present.
+pub(crate) fn substeps(body: &RigidBody) -> usize {
+    BASE_SUBSTEPS + body.additional_solver_iterations()
+}
+
+/// Number of sub-steps that a body needs which no force moves.
+pub(crate) fn substeps_of_unmoved(body: &RigidBody, colliders: &ColliderSet) -> usize {
+    if body.is_fixed() {
+        // The engine keeps what was held and is fixed now among the moving bodies while anything moves, and solves its contacts with the
+        // sub-steps of whichever body has fewer.
+        return MOST_SUBSTEPS;
+    }
+    let mut shapes = body.colliders().iter();
+    match shapes.any(|shape| colliders.get(*shape).is_some_and(Collider::is_enabled)) {
+        true => FEWEST_SUBSTEPS,
+        false => BASE_SUBSTEPS,
     }
 }
 
