@@ -64,7 +64,7 @@ impl SweptSolid {
                 shape: part.shape.clone(),
                 from: from * part.pose,
                 to,
-                bounds: part.shape.compute_aabb(&to_rapier(to)),
+                bounds: part.bounds_at(to),
             }
         })
     }
@@ -73,7 +73,7 @@ impl SweptSolid {
     pub fn resting(part: Convex, owner: Owner) -> Self {
         Self {
             owner,
-            bounds: part.shape.compute_aabb(&to_rapier(part.pose)),
+            bounds: part.bounds_at(part.pose),
             shape: part.shape,
             from: part.pose,
             to: part.pose,

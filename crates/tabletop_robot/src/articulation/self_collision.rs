@@ -19,12 +19,19 @@ const ROUGH: f32 = 0.05;
 pub(crate) struct SelfCollisionMatrix {
     bodies: usize,
     can_meet: Vec<bool>,
+    /// The bodies that each body can collide with.
+    partners: Vec<Vec<usize>>,
 }
 
 impl SelfCollisionMatrix {
     /// True if two bodies can collide. They are given by their numbers.
     pub fn can_meet(&self, a: usize, b: usize) -> bool {
         self.can_meet[a * self.bodies + b]
+    }
+
+    /// The numbers of the bodies that a body can collide with.
+    pub fn partners(&self, body: usize) -> &[usize] {
+        &self.partners[body]
     }
 
     /// The pairs that are far enough apart along the robot, without those whose solids overlap in postures that the
@@ -34,6 +41,7 @@ impl SelfCollisionMatrix {
         let mut self_collisions = Self {
             bodies,
             can_meet: vec![false; bodies * bodies],
+            partners: Vec::new(),
         };
         let known = articulation.layout.known_postures.iter();
         let postures: Vec<_> = known
@@ -56,6 +64,12 @@ impl SelfCollisionMatrix {
                 self_collisions.can_meet[b * bodies + a] = can_meet;
             }
         }
+        self_collisions.partners = (0..bodies)
+            .map(|a| {
+                let others = 0..bodies;
+                others.filter(|b| self_collisions.can_meet(a, *b)).collect()
+            })
+            .collect();
         self_collisions
     }
 }

@@ -27,12 +27,13 @@ pub(crate) struct Contact {
 }
 
 /// Adds the contacts of a body in the last tick, as the physics engine reports them.
-pub(crate) fn with_pressed<'a>(
-    rapier: &'a RapierContext,
+pub(crate) fn add_pressed(
+    contacts: &mut Vec<Contact>,
+    rapier: &RapierContext,
     body: ColliderHandle,
-) -> impl Iterator<Item = Contact> + 'a {
+) {
     let pairs = rapier.simulation.narrow_phase.contact_pairs_with(body);
-    pairs.filter_map(move |pair| {
+    contacts.extend(pairs.filter_map(|pair| {
         let is_first = pair.collider2 == body;
         let thing = match is_first {
             true => pair.collider1,
@@ -47,7 +48,7 @@ pub(crate) fn with_pressed<'a>(
             point: *at * centre,
             impulse,
         })
-    })
+    }));
 }
 
 /// The centre of pressure on the first or the second collider of a pair, in its frame, and the impulse along the normals that the
@@ -91,31 +92,40 @@ impl<'a> Thing<'a> {
     }
 }
 
-/// Adds the things that a body has reached, each with the nearest point and no impulse.
-pub(crate) fn with_near<'a>(
-    rapier: &'a RapierContext,
+/// Adds the things that a body has reached, each with the nearest point and no impulse. The ball about the body's origin has this radius, in
+/// units.
+pub(crate) fn add_near(
+    contacts: &mut Vec<Contact>,
+    rapier: &RapierContext,
     body: ColliderHandle,
-    things: &'a [Thing],
-) -> impl Iterator<Item = Contact> + 'a {
-    let body = rapier.colliders.colliders.get(body);
-    let body = body.map(|body| (body, body.compute_aabb()));
-    body.into_iter().flat_map(move |(body, bounds)| {
-        let near = things
-            .iter()
-            .filter(move |it| it.bounds.intersects(&bounds));
-        near.filter_map(|thing| {
-            let nearest = contact(
-                body.position(),
-                body.shape(),
-                thing.collider.position(),
-                thing.collider.shape(),
-                REACHED,
-            );
-            Some(Contact {
-                thing: thing.entity,
-                point: nearest?.point2,
-                impulse: 0.0,
-            })
-        })
-    })
+    radius: f32,
+    things: &[Thing],
+) {
+    let Some(body) = rapier.colliders.colliders.get(body) else {
+        return;
+    };
+    let at = body.position().translation;
+    let around = Aabb::new(at - radius, at + radius);
+    let mut bounds = None;
+    for thing in things {
+        let is_near = thing.bounds.intersects(&around)
+            && thing
+                .bounds
+                .intersects(bounds.get_or_insert_with(|| body.compute_aabb()));
+        if !is_near {
+            continue;
+        }
+        let nearest = contact(
+            body.position(),
+            body.shape(),
+            thing.collider.position(),
+            thing.collider.shape(),
+            REACHED,
+        );
+        contacts.extend(nearest.map(|nearest| Contact {
+            thing: thing.entity,
+            point: nearest.point2,
+            impulse: 0.0,
+        }));
+    }
 }

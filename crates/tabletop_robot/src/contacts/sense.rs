@@ -7,7 +7,7 @@ use tabletop_core::{ObjectIndex, Robot, RobotContact, Table};
 use crate::{
     articulation::link_entities::LinkEntities,
     articulation::tree::{Articulation, Carrier},
-    contacts::contact::{Contact, Thing, with_near, with_pressed},
+    contacts::contact::{Contact, Thing, add_near, add_pressed},
     gripper::grips::Grips,
 };
 
@@ -35,15 +35,17 @@ pub(crate) fn sense_contacts(
         let order: Vec<_> = tables.iter().chain(index.iter()).collect();
         let things = order.iter().filter_map(|&it| Thing::new(&rapier, it));
         let things: Vec<_> = things.collect();
+        let mut touched = Vec::new();
         for (body, part) in articulation.bodies.iter().zip(&parts.0) {
             let Some(&part) = rapier.colliders.entity2collider().get(part) else {
                 continue;
             };
-            let touched = with_gripped(body.carrier, &grips, &robot)
-                .chain(with_pressed(&rapier, part))
-                .chain(with_near(&rapier, part, &things));
-            let touched = once_in_order(touched, &order);
-            contacts.extend(touched.map(|contact| RobotContact {
+            touched.clear();
+            add_gripped(&mut touched, body.carrier, &grips, &robot);
+            add_pressed(&mut touched, &rapier, part);
+            add_near(&mut touched, &rapier, part, body.radius, &things);
+            keep_first_in_order(&mut touched, &order);
+            contacts.extend(touched.iter().map(|contact| RobotContact {
                 body: body.id.clone(),
                 thing: contact.thing,
                 point: contact.point,
@@ -56,33 +58,26 @@ pub(crate) fn sense_contacts(
     }
 }
 
-/// The contacts of a finger with the objects that its gripper holds.
-fn with_gripped(carrier: Carrier, grips: &Grips, robot: &Robot) -> impl Iterator<Item = Contact> {
-    let finger = match carrier {
-        Carrier::Gripper(limb, side) => Some((limb, usize::from(side > 0))),
-        Carrier::Link(_) => None,
+/// Adds the contacts of a finger with the objects that its gripper holds.
+fn add_gripped(contacts: &mut Vec<Contact>, carrier: Carrier, grips: &Grips, robot: &Robot) {
+    let (limb, finger) = match carrier {
+        Carrier::Gripper(limb, side) => (limb, usize::from(side > 0)),
+        Carrier::Link(_) => return,
     };
-    finger.into_iter().flat_map(move |(limb, finger)| {
-        grips.of(limb).iter().map(move |grip| Contact {
-            thing: grip.object,
-            point: robot.limb(limb).end_effector * grip.points[finger],
-            impulse: 0.0,
-        })
-    })
+    contacts.extend(grips.of(limb).iter().map(|grip| Contact {
+        thing: grip.object,
+        point: robot.limb(limb).end_effector * grip.points[finger],
+        impulse: 0.0,
+    }));
 }
 
-/// The first contact with each thing, in the order of the things.
-fn once_in_order(
-    contacts: impl Iterator<Item = Contact>,
-    order: &[Entity],
-) -> impl Iterator<Item = Contact> {
-    let mut placed: Vec<_> = contacts
-        .filter_map(|contact| {
-            let place = order.iter().position(|&thing| thing == contact.thing)?;
-            Some((place, contact))
-        })
-        .collect();
-    placed.sort_by_key(|(place, _)| *place);
-    placed.dedup_by_key(|(place, _)| *place);
-    placed.into_iter().map(|(_, contact)| contact)
+/// Keeps the first contact with each thing, in the order of the things.
+fn keep_first_in_order(contacts: &mut Vec<Contact>, order: &[Entity]) {
+    if contacts.is_empty() {
+        return;
+    }
+    let place = |thing: Entity| order.iter().position(|&it| it == thing);
+    contacts.retain(|contact| place(contact.thing).is_some());
+    contacts.sort_by_key(|contact| place(contact.thing));
+    contacts.dedup_by_key(|contact| contact.thing);
 }

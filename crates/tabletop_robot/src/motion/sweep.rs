@@ -10,7 +10,7 @@ use tabletop_physics::Convex;
 use crate::{
     articulation::self_collision::SelfCollisionMatrix,
     articulation::tree::{Articulation, Body, Carrier, Positions, Posture, TreePosition},
-    clearance::{Owner, SQUEEZE, SweptSolid, are_near, part_left},
+    clearance::{MARGIN, Owner, SQUEEZE, SweptSolid, are_near, part_left},
     command::joint_targets::{JointTargets, Setpoint},
     gripper::{
         alignment::PRESS,
@@ -51,6 +51,8 @@ pub(crate) struct Poses {
     positions: Positions,
     /// Its bodies.
     pub bodies: Vec<Pose>,
+    /// A box around each body in any orientation.
+    around: Vec<Aabb>,
     end_effectors: Vec<Pose>,
 }
 
@@ -223,8 +225,7 @@ impl TickMotion<'_> {
         }
         let [here, there] = [&self.positions.clone(), there].map(|at| self.poses(at));
         let mut solids = self.solids_of(limb, &here, &there, |number| {
-            let way = [&here, &there].map(|poses| self.around(number, poses));
-            let way = way[0].merged(&way[1]);
+            let way = here.around[number].merged(&there.around[number]);
             let mut free = self.environment.free.iter();
             free.any(|thing| are_near(&way, &thing.bounds))
         });
@@ -273,12 +274,12 @@ impl TickMotion<'_> {
 
     /// True if a body is deeper in an object than it could press into it.
     pub fn is_inside_object(&self, number: usize, poses: &Poses) -> bool {
-        let around = self.around(number, poses);
+        let around = &poses.around[number];
         let parts = &self.articulation.bodies[number].parts;
         let pose = poses.bodies[number];
         let solids: Vec<_> = SweptSolid::moving(parts, Owner::Body(number), pose, pose).collect();
         let is_entered = |thing: &SweptSolid| {
-            are_near(thing.bounds(), &around)
+            are_near(thing.bounds(), around)
                 && solids.iter().any(|solid| solid.depth_in(thing) > SQUEEZE)
         };
         let environment = &self.environment;
@@ -312,9 +313,16 @@ impl TickMotion<'_> {
             return Rc::clone(poses);
         }
         self.articulation.update(&mut self.scratch, positions);
+        let bodies = self.scratch.bodies().to_vec();
+        let around = bodies.iter().zip(&self.articulation.bodies);
+        let around = around.map(|(at, body)| {
+            let radius = body.radius + ROUNDING;
+            Aabb::new(at.location - radius, at.location + radius)
+        });
         let poses = Rc::new(Poses {
             positions: positions.clone(),
-            bodies: self.scratch.bodies().to_vec(),
+            around: around.collect(),
+            bodies,
             end_effectors: self.scratch.end_effectors().to_vec(),
         });
         if self.asked.len() == MOST_ASKED {
@@ -403,26 +411,25 @@ impl TickMotion<'_> {
         outside.or_else(|| self.own_body(limb, &solids, &here))
     }
 
-    /// A box around a body in any orientation.
-    fn around(&self, number: usize, poses: &Poses) -> Aabb {
-        let at = poses.bodies[number].location;
-        let radius = self.articulation.bodies[number].radius + ROUNDING;
-        Aabb::new(at - radius, at + radius)
-    }
-
     /// True if a body of an arm, or an object it holds, may come near an obstacle on this way.
     fn may_collide(&self, limb: LimbId, number: usize, here: &Poses, there: &Poses) -> bool {
         if !self.carried[limb.index()].is_empty() {
             return true;
         }
-        let around = self.around(number, there);
+        let around = &there.around[number];
         let mut immovable = self.environment.immovable.iter();
-        let mut bodies = self.articulation.bodies.iter().enumerate();
-        immovable.any(|obstacle| are_near(obstacle.bounds(), &around))
-            || bodies.any(|(other, body)| {
-                let poses = if is_of(body, limb) { there } else { here };
-                self.self_collisions.can_meet(number, other)
-                    && are_near(&self.around(other, poses), &around)
+        let mut partners = self.self_collisions.partners(number).iter();
+        immovable.any(|obstacle| are_near(obstacle.bounds(), around))
+            || partners.any(|&other| {
+                let bodies = &self.articulation.bodies;
+                let poses = if is_of(&bodies[other], limb) {
+                    there
+                } else {
+                    here
+                };
+                let reach = bodies[number].radius + bodies[other].radius + MARGIN + ROUNDING;
+                let [at, other_at] = [there.bodies[number], poses.bodies[other]];
+                at.location.distance_squared(other_at.location) < reach * reach
             })
     }
 
@@ -445,9 +452,9 @@ impl TickMotion<'_> {
             if is_of(body, limb) {
                 continue;
             }
-            let around = self.around(number, here);
+            let around = &here.around[number];
             let may_meet = |(a, solid): &(usize, SweptSolid)| {
-                self.self_collisions.can_meet(*a, number) && are_near(solid.bounds(), &around)
+                self.self_collisions.can_meet(*a, number) && are_near(solid.bounds(), around)
             };
             if !solids.iter().any(may_meet) {
                 continue;
@@ -467,7 +474,7 @@ impl TickMotion<'_> {
 
     /// True if a body comes near no free object on its way from some poses to others.
     pub fn is_far(&self, number: usize, from: &Poses, to: &Poses) -> bool {
-        let way = self.around(number, from).merged(&self.around(number, to));
+        let way = from.around[number].merged(&to.around[number]);
         let [from, to] = [from, to].map(|poses| poses.bodies[number]);
         let parts = &self.articulation.bodies[number].parts;
         let free = self.environment.free.iter();
@@ -481,7 +488,7 @@ impl TickMotion<'_> {
     /// True if a solid of an arm is near this box at present.
     pub fn is_near(&mut self, limb: LimbId, bounds: &Aabb) -> bool {
         let here = self.poses(&self.positions.clone());
-        let may_be_near = |number| are_near(&self.around(number, &here), bounds);
+        let may_be_near = |number: usize| are_near(&here.around[number], bounds);
         let solids = self.solids_of(limb, &here, &here, may_be_near);
         solids
             .iter()
