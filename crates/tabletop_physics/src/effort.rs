@@ -33,7 +33,8 @@ pub(crate) const PREDICTION: f32 = 0.2;
 /// The same for fast bodies, in units: more than a body moves in a tick after a fall of 100 units.
 pub(crate) const SOFT_CCD_PREDICTION: f32 = 3.0;
 
-/// Speed, in units/s, from which contacts are predicted that far, and from which collision detection is continuous.
+/// Speed, in units/s, from which contacts are predicted that far, and from which collision detection is continuous. Of slower bodies, the
+/// engine would only forget contacts that they are leaving: what pushes them back in the same tick would push them into what they stand on.
 const SPEED_OF_CCD: f32 = 6.0;
 
 /// Largest decrease of an island's sub-steps from one tick to the next.
@@ -151,12 +152,15 @@ impl Care {
                 true => MOST_SUBSTEPS,
                 false => situation.substeps().max(before.saturating_sub(DECAY)),
             };
-            let is_fast = is_handling || engine.fastest_point(body) > SPEED_OF_CCD;
-            let prediction = if is_fast { SOFT_CCD_PREDICTION } else { 0.0 };
+            let prediction = if engine.speed_of_fall(body) > SPEED_OF_CCD {
+                SOFT_CCD_PREDICTION
+            } else {
+                0.0
+            };
             if needed != before || prediction != body.soft_ccd_prediction() {
                 changes.push((handle, needed, prediction));
             }
-            is_any_fast |= is_fast;
+            is_any_fast |= is_handling || engine.fastest_point(body) > SPEED_OF_CCD;
             if !situation.is_jointed && !situation.is_handled {
                 landing = landing.max(landing_speed(&engine, handle));
             }
