@@ -32,6 +32,9 @@ const TOO_DEEP: (f32, f32) = (0.02, 0.05);
 /// Number of tries to slide along obstacles and push no free object too much.
 const MOST_SLIDES: usize = 4;
 
+/// Number of parts of a turn that are tried, each half as large as the one before.
+const TURNS: i32 = 5;
+
 /// Largest difference of equal steps, in units.
 const SAME_STEP: f32 = 1e-4;
 
@@ -82,6 +85,7 @@ fn carried(collider: &rapier::Collider, here: Pose, mut next: Pose, near: &Near)
     if let Some(outside) = leave(&held, here, next, &near.immovable) {
         return outside;
     }
+    next.rotation = turned(&held, here, next.rotation, near);
     let step = next.location - here.location;
     let pushes = near.pushes(&held, here, step.length());
     let mut step = pushed(step * slowness(&pushes), &pushes);
@@ -97,6 +101,21 @@ fn carried(collider: &rapier::Collider, here: Pose, mut next: Pose, near: &Near)
     here
 }
 
+/// The orientation that a held object reaches on its way to another: the farthest of a few at which it squeezes no free object.
+fn turned(held: &[Convex], here: Pose, rotation: Quat, near: &Near) -> Quat {
+    if rotation == here.rotation || near.free.is_empty() {
+        return rotation;
+    }
+    let squeeze_here = near.squeeze(held, here);
+    let parts = (0..TURNS).map(|halvings| 0.5f32.powi(halvings));
+    let mut turns = parts.map(|part| here.rotation.slerp(rotation, part).normalize());
+    let is_free = |turn: &Quat| {
+        let squeeze = near.squeeze(held, Pose::new(here.location, *turn));
+        squeeze <= squeeze_here.max(0.0)
+    };
+    turns.find(is_free).unwrap_or(here.rotation)
+}
+
 /// A free object that a held one reaches.
 struct Push {
     nearest: Nearest,
@@ -104,6 +123,13 @@ struct Push {
     give: f32,
     /// Its depth in something, in units.
     depth: f32,
+}
+
+impl Push {
+    /// The way, in units, by which it gives way in a tick.
+    fn way(&self) -> f32 {
+        self.give.min(FASTEST_PUSH * TICK_SECONDS)
+    }
 }
 
 /// The part of a step at which a hand slows, so that nothing is squeezed ever more.
@@ -118,14 +144,15 @@ fn slowness(pushes: &[Push]) -> f32 {
 /// The part of a step that remains when free objects are reached in one tick and pushed from the next one on, no faster
 /// than a hand pushes, and without being squeezed.
 fn pushed(mut step: Vec3, pushes: &[Push]) -> Vec3 {
-    for Push { nearest, give, .. } in pushes {
+    for push in pushes {
+        let nearest = &push.nearest;
         let squeeze = (-nearest.distance / MOST_SQUEEZE).max(0.0);
-        let push = match squeeze < 1.0 {
-            true => give.min(FASTEST_PUSH * TICK_SECONDS) * (1.0 - squeeze),
+        let way = match squeeze < 1.0 {
+            true => push.way() * (1.0 - squeeze),
             false => MOST_SQUEEZE * (1.0 - squeeze) / 2.0,
         };
         let approach = -step.dot(nearest.away);
-        step += nearest.away * (approach - push.max(nearest.distance - GAP)).max(0.0);
+        step += nearest.away * (approach - way.max(nearest.distance - GAP)).max(0.0);
     }
     step
 }
@@ -214,6 +241,13 @@ impl Near {
             }
         }
         near
+    }
+
+    /// How much farther, in units, a held one at a pose is in free objects than they give way in a tick.
+    fn squeeze(&self, held: &[Convex], at: Pose) -> f32 {
+        let pushes = self.pushes(held, at, 0.0).into_iter();
+        let squeezes = pushes.map(|push| -push.nearest.distance - push.way());
+        squeezes.fold(f32::NEG_INFINITY, f32::max)
     }
 
     /// The free objects that a held one at a pose reaches within a step's length, in units.

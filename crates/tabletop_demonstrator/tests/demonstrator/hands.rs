@@ -202,6 +202,47 @@ fn a_hand_presses_no_block_into_the_table() {
 }
 
 #[test]
+fn turning_something_in_a_box_does_not_press_the_box_into_the_table() {
+    let mut deepest = 0.0f32;
+    for seed in 0..20 {
+        let mut random = tabletop_core::Random::new(seed);
+        let box_shape = Shape::Box {
+            span: Vec3::new(5.0, 5.0, 3.0),
+            thickness: 0.5,
+            color: Rgb::GRAY,
+        };
+        let mut desk = Desk::new(vec![
+            object("box", (0.0, 0.0, 1.5), 3.0, box_shape),
+            object("held", (5.0, 0.0, 0.4), 1.0, block((1.8, 0.8, 0.8))),
+        ]);
+        let mut beside = || random.between((-1.0, 1.0));
+        let inside = Vec3::new(beside(), beside(), 0.95);
+        let axis = Vec3::new(beside(), beside(), beside());
+        let (hand, degrees) = (Hand::Left, 90.0 * beside());
+        desk.grasp(hand, "held")
+            .move_to(hand, Vec3::new(5.0, 0.0, 5.0))
+            .step(30)
+            .move_to(hand, inside.with_z(5.0))
+            .step(30)
+            .move_to(hand, inside)
+            .step(30);
+        desk.tell(HandCommand::Turn {
+            hand,
+            axis,
+            degrees,
+        });
+        for _ in 0..60 {
+            desk.step(1);
+            let Pose { location, rotation } = desk.pose("box");
+            let up = rotation.inverse() * Vec3::Z;
+            let depth = up.abs().dot(Vec3::new(2.5, 2.5, 1.5)) - location.z;
+            deepest = deepest.max(depth);
+        }
+    }
+    assert!(deepest < 0.05, "{deepest}");
+}
+
+#[test]
 fn a_fixed_object_is_moved_as_one_piece_with_its_collider() {
     let mut items = two_blocks();
     items.push(object("post", (0.0, 3.0, 1.0), 0.0, block((1.0, 1.0, 2.0))));
