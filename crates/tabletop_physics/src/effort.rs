@@ -33,6 +33,19 @@ pub(crate) const PREDICTION: f32 = 0.2;
 /// The same at most, while something is fast: twice as far as a body moves in a tick after a fall of 100 units.
 const FARTHEST_PREDICTION: f32 = 6.0;
 
+/// The way, in units, of a hand or a link that is seen ahead: none, so that it is met when it is there. Seen from afar, the edge of a finger that
+/// goes down beside a block is a slope that would push the block aside.
+const WAY_OF_HANDS: f32 = 1e-6;
+
+/// The way at most, in units, of a body that is seen ahead when it approaches a hand or a link.
+const WAY_TO_HANDS: f32 = 3.0;
+
+/// Speed, in units/s, from which the way of a body to a hand or a link is seen ahead.
+const SPEED_TO_HANDS: f32 = 1.0;
+
+/// The same of a body that is near other things, too: Rapier would forget its contact with what it is leaving.
+const SPEED_TO_HANDS_BESIDE_OTHERS: f32 = 12.0;
+
 /// Speed, in units/s, from which collision detection is continuous.
 const SPEED_OF_CCD: f32 = 6.0;
 
@@ -140,8 +153,13 @@ impl Care {
             let body = &engine.bodies[handle];
             if !body.is_dynamic() {
                 let needed = substeps_of_unmoved(body, engine.colliders);
-                if needed != substeps(body) {
-                    changes.push((handle, needed));
+                let way = if body.is_kinematic() {
+                    WAY_OF_HANDS
+                } else {
+                    0.0
+                };
+                if needed != substeps(body) || way != body.soft_ccd_prediction() {
+                    changes.push((handle, needed, way));
                 }
                 continue;
             }
@@ -151,8 +169,16 @@ impl Care {
                 true => MOST_SUBSTEPS,
                 false => situation.substeps().max(before.saturating_sub(DECAY)),
             };
-            if needed != before {
-                changes.push((handle, needed));
+            let speed_to_hands = match situation.is_near_others {
+                true => SPEED_TO_HANDS_BESIDE_OTHERS,
+                false => SPEED_TO_HANDS,
+            };
+            let way = match situation.is_near_hand && body.linvel().length() > speed_to_hands {
+                true => WAY_TO_HANDS,
+                false => 0.0,
+            };
+            if needed != before || way != body.soft_ccd_prediction() {
+                changes.push((handle, needed, way));
             }
             fastest = fastest.max(engine.speed_of_fall(body));
             is_any_fast |= is_handling || engine.fastest_point(body) > SPEED_OF_CCD;
@@ -160,9 +186,10 @@ impl Care {
                 landing = landing.max(landing_speed(&engine, handle));
             }
         }
-        for (handle, substeps) in changes {
+        for (handle, substeps, way) in changes {
             let body = &mut engine.bodies[handle];
             body.set_additional_solver_iterations(substeps - BASE_SUBSTEPS);
+            body.set_soft_ccd_prediction(way);
         }
 
         self.landing = ticks_left(self.landing, LANDING_TICKS, landing > 0.0);
