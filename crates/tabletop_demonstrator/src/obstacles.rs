@@ -25,14 +25,12 @@ const LEAVING: f32 = 0.1;
 /// The pose of an object a tick later on its way out of the obstacles that it is inside of, as after something was put, or appeared, there.
 /// If they leave no way out, it goes towards its target, but no deeper into them. `None` if it is inside nothing.
 pub(crate) fn leave(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex]) -> Option<Pose> {
-    let (entered, others): (Vec<_>, Vec<_>) = obstacles
-        .iter()
-        .cloned()
-        .partition(|obstacle| depth(held, from, std::slice::from_ref(obstacle)) > INSIDE);
-    if entered.is_empty() {
+    let is_entered = |obstacle: &Convex| depth(held, from, std::slice::from_ref(obstacle)) > INSIDE;
+    if !obstacles.iter().any(is_entered) {
         return None;
     }
     let Some(out) = pushed_out(held, from, obstacles, &mut Vec::new()) else {
+        let (entered, others): (Vec<_>, Vec<_>) = obstacles.iter().cloned().partition(is_entered);
         let away: Vec<_> = nearest(held, from, &entered, 0.0)
             .map(|nearest| nearest.away)
             .collect();
