@@ -30,10 +30,23 @@ use touches::{Touches, bodies_of};
 /// Distance at which contacts are predicted, in units.
 pub(crate) const PREDICTION: f32 = 0.2;
 
-/// The same for fast bodies, in units: more than a body moves in a tick after a fall of 100 units.
-pub(crate) const SOFT_CCD_PREDICTION: f32 = 3.0;
+/// The same at most, while something is fast: twice as far as a body moves in a tick after a fall of 100 units.
+const FARTHEST_PREDICTION: f32 = 6.0;
 
-/// Speed, in units/s, from which contacts are predicted that far, and from which collision detection is continuous.
+/// The way, in units, of a hand or a link that is seen ahead: none, so that it is met when it is there. Seen from afar, the edge of a finger that
+/// goes down beside a block is a slope that would push the block aside.
+const WAY_OF_HANDS: f32 = 1e-6;
+
+/// The way at most, in units, of a body that is seen ahead when it approaches a hand or a link.
+const WAY_TO_HANDS: f32 = 3.0;
+
+/// Speed, in units/s, from which the way of a body to a hand or a link is seen ahead.
+const SPEED_TO_HANDS: f32 = 1.0;
+
+/// The same of a body that is near other things, too: Rapier would forget its contact with what it is leaving.
+const SPEED_TO_HANDS_BESIDE_OTHERS: f32 = 12.0;
+
+/// Speed, in units/s, from which collision detection is continuous.
 const SPEED_OF_CCD: f32 = 6.0;
 
 /// Largest decrease of an island's sub-steps from one tick to the next.
@@ -134,14 +147,19 @@ impl Care {
         self.handling = ticks_left(self.handling, HANDLING_TICKS, touches.is_handling);
         let is_handling = self.handling > 0;
 
-        let (mut landing, mut is_any_fast) = (0.0f32, false);
+        let (mut landing, mut fastest, mut is_any_fast) = (0.0f32, 0.0f32, false);
         let mut changes = Vec::new();
         for handle in engine.islands.active_bodies() {
             let body = &engine.bodies[handle];
             if !body.is_dynamic() {
                 let needed = substeps_of_unmoved(body, engine.colliders);
-                if needed != substeps(body) {
-                    changes.push((handle, needed, body.soft_ccd_prediction()));
+                let way = if body.is_kinematic() {
+                    WAY_OF_HANDS
+                } else {
+                    0.0
+                };
+                if needed != substeps(body) || way != body.soft_ccd_prediction() {
+                    changes.push((handle, needed, way));
                 }
                 continue;
             }
@@ -151,20 +169,27 @@ impl Care {
                 true => MOST_SUBSTEPS,
                 false => situation.substeps().max(before.saturating_sub(DECAY)),
             };
-            let is_fast = is_handling || engine.fastest_point(body) > SPEED_OF_CCD;
-            let prediction = if is_fast { SOFT_CCD_PREDICTION } else { 0.0 };
-            if needed != before || prediction != body.soft_ccd_prediction() {
-                changes.push((handle, needed, prediction));
+            let speed_to_hands = match situation.is_near_others {
+                true => SPEED_TO_HANDS_BESIDE_OTHERS,
+                false => SPEED_TO_HANDS,
+            };
+            let way = match situation.is_near_hand && body.linvel().length() > speed_to_hands {
+                true => WAY_TO_HANDS,
+                false => 0.0,
+            };
+            if needed != before || way != body.soft_ccd_prediction() {
+                changes.push((handle, needed, way));
             }
-            is_any_fast |= is_fast;
+            fastest = fastest.max(engine.speed_of_fall(body));
+            is_any_fast |= is_handling || engine.fastest_point(body) > SPEED_OF_CCD;
             if !situation.is_jointed && !situation.is_handled {
                 landing = landing.max(landing_speed(&engine, handle));
             }
         }
-        for (handle, substeps, prediction) in changes {
+        for (handle, substeps, way) in changes {
             let body = &mut engine.bodies[handle];
             body.set_additional_solver_iterations(substeps - BASE_SUBSTEPS);
-            body.set_soft_ccd_prediction(prediction);
+            body.set_soft_ccd_prediction(way);
         }
 
         self.landing = ticks_left(self.landing, LANDING_TICKS, landing > 0.0);
@@ -176,8 +201,11 @@ impl Care {
         };
         let mode = Mode {
             sweeps,
-            // A body beyond this distance is touched in one point, whatever its shape.
-            prediction: (landing * engine.parameters.dt).clamp(PREDICTION, SOFT_CCD_PREDICTION),
+            // A body beyond this distance is touched in one point, whatever its shape. The broad phase looks half as far for each of two bodies.
+            // Rapier's own prediction for fast bodies (soft CCD) forgets the contact with what a body is leaving, or sliding along: what presses
+            // it back in the same tick would press it in.
+            prediction: (landing.max(2.0 * fastest) * engine.parameters.dt)
+                .clamp(PREDICTION, FARTHEST_PREDICTION),
             recycles: !is_handling && !is_landing,
             clusters: is_handling,
             is_continuous: is_any_fast,

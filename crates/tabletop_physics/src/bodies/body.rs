@@ -8,7 +8,7 @@ use tabletop_core::{
 
 use super::{mass::mass_properties, polytope::Polytope};
 use crate::{
-    effort::{BASE_SUBSTEPS, SOFT_CCD_PREDICTION, SUBSTEPS_OF_FREE},
+    effort::{BASE_SUBSTEPS, SUBSTEPS_OF_FREE},
     settings::PhysicsSettings,
 };
 
@@ -45,9 +45,6 @@ pub(crate) fn add_object(world: &mut World, object: Entity, spec: &ObjectSpec) {
         RigidBody::Dynamic,
         ColliderMassProperties::MassProperties(mass_properties(&spec.shape, spec.mass)),
         Ccd::enabled(),
-        SoftCcd {
-            prediction: SOFT_CCD_PREDICTION,
-        },
         AdditionalSolverIterations(SUBSTEPS_OF_FREE - BASE_SUBSTEPS),
         Damping {
             linear_damping: 0.0,

@@ -26,10 +26,14 @@ pub struct Engine<'a> {
 }
 
 impl Engine<'_> {
-    /// An upper bound on the speed, in units/s, of any point of a body at the end of a tick in which nothing stops it.
+    /// An upper bound on the speed, in units/s, of a body at the end of a tick in which nothing stops it.
+    pub(crate) fn speed_of_fall(&self, body: &RigidBody) -> f32 {
+        body.linvel().length() + self.gravity * self.parameters.dt
+    }
+
+    /// The same of any of its points.
     pub(crate) fn fastest_point(&self, body: &RigidBody) -> f32 {
         const REACH: f32 = 2.0;
-        let falling = self.gravity * self.parameters.dt;
-        body.linvel().length() + falling + REACH * body.angvel().length()
+        self.speed_of_fall(body) + REACH * body.angvel().length()
     }
 }

@@ -45,6 +45,10 @@ pub(crate) struct SubstepFactors {
     pub is_jointed: bool,
     /// True if a hand or a robot touches it.
     pub is_handled: bool,
+    /// True if it is near one.
+    pub is_near_hand: bool,
+    /// True if it is near something else, too.
+    pub is_near_others: bool,
     speed: f32,
 }
 
@@ -59,6 +63,8 @@ impl SubstepFactors {
             is_uneven: touches.uneven.contains(&number),
             is_jointed: engine.joints.attached_joints(handle).next().is_some(),
             is_handled: touches.handled.contains(&number),
+            is_near_hand: touches.near_hands.contains(&number),
+            is_near_others: touches.near_others.contains(&number),
             speed: speed(body),
         }
     }
@@ -115,6 +121,8 @@ mod tests {
         is_uneven: false,
         is_jointed: false,
         is_handled: false,
+        is_near_hand: false,
+        is_near_others: false,
         speed: 0.0,
     };
 

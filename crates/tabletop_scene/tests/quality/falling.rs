@@ -137,6 +137,35 @@ fn what_sleeps_and_is_hit_stays_out_of_the_table() {
 }
 
 #[test]
+fn a_blow_presses_nothing_light_into_the_table() {
+    let half = Vec3::new(0.65, 0.98, 0.9);
+    for number in 0..60 {
+        let aside = Vec2::from_angle(number as f32) * 0.02 * number as f32;
+        let mut world = TestWorld::new([
+            object("light", Vec3::Z * half.z, 0.22, block(2.0 * half)),
+            turned(
+                "heavy",
+                aside.extend(10.0),
+                Vec3::new(45.0, 35.0, 10.0 * number as f32),
+                1.0,
+                block(Vec3::splat(1.5)),
+            ),
+        ]);
+        for tick in 0..90 {
+            world.0.step(1);
+            let light = world.pose("light");
+            let up = light.rotation.inverse() * Vec3::Z;
+            let lowest = light.location.z - up.abs().dot(half);
+            let is_on_table = light.location.xy().abs().cmplt(Vec2::new(9.0, 5.0)).all();
+            assert!(
+                !is_on_table || lowest > -0.01,
+                "{lowest} in tick {tick}, {aside}"
+            );
+        }
+    }
+}
+
+#[test]
 fn what_leaves_the_world_is_deleted() {
     let mut world = TestWorld::new([object("ball", (30.0, 0.0, 1.0), 1.0, sphere(0.5))]);
     world.seconds(4.0);
