@@ -35,6 +35,7 @@ mod bodies;
 mod effort;
 mod geometry;
 mod holding;
+mod order;
 mod outside;
 mod rest;
 mod settings;
@@ -185,6 +186,7 @@ fn sync_backend() -> ScheduleConfigs<ScheduleSystem> {
             .chain(),
         (
             systems::apply_scale,
+            order::note_changes,
             systems::apply_collider_user_changes,
             systems::apply_joint_user_changes,
             systems::apply_initial_rigid_body_impulses,

@@ -96,3 +96,33 @@ fn what_falls_fast_meets_nothing_that_is_gone() {
     let place = app.world().get::<Transform>(large).unwrap().translation;
     assert!(place.z < -110.0, "{place}");
 }
+
+/// Something that moves an entity to another of Bevy's tables.
+#[derive(Component)]
+struct Mark;
+
+#[test]
+fn what_wakes_in_a_tick_wakes_in_the_order_of_bodies() {
+    let (mut app, falling) = app();
+    let balls = [falling, ball(&mut app, 5.0), ball(&mut app, 10.0)];
+    app.step(2);
+    let active = |app: &mut App| {
+        let mut engines = app.world_mut().query::<&RapierContextSimulation>();
+        let engine = engines.single(app.world()).unwrap();
+        engine.islands.active_bodies().collect::<Vec<_>>()
+    };
+    let bodies = active(&mut app);
+    assert_eq!(bodies.len(), balls.len());
+    for ball in balls {
+        let floats = (GravityScale(0.0), Velocity::zero());
+        app.world_mut().entity_mut(ball).insert(floats);
+    }
+    app.step(60);
+    assert_eq!(active(&mut app), []);
+    app.world_mut().entity_mut(balls[0]).insert(Mark);
+    for ball in balls {
+        app.world_mut().get_mut::<Velocity>(ball).unwrap().linear = Vec3::Z;
+    }
+    app.step(1);
+    assert_eq!(active(&mut app), bodies);
+}

@@ -1,0 +1,65 @@
+//! The order of changes: that of the engine's handles.
+
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::*;
+
+/// Bodies whose changes Rapier's plugin is about to carry to the engine.
+type ChangedBody = Or<(
+    Changed<RigidBody>,
+    Changed<RigidBodyDisabled>,
+    Changed<GlobalTransform>,
+    Changed<Velocity>,
+    Changed<Sleeping>,
+    Changed<GravityScale>,
+    Changed<Damping>,
+    Changed<LockedAxes>,
+    Changed<Dominance>,
+    Changed<ExternalForce>,
+    Changed<ExternalImpulse>,
+    Changed<AdditionalMassProperties>,
+    Changed<AdditionalSolverIterations>,
+    Changed<Ccd>,
+    Changed<SoftCcd>,
+)>;
+
+/// The same of colliders.
+type ChangedCollider = Or<(
+    Changed<Collider>,
+    Changed<ColliderDisabled>,
+    Changed<ColliderMassProperties>,
+    Changed<CollisionGroups>,
+    Changed<SolverGroups>,
+    Changed<Friction>,
+    Changed<Restitution>,
+    Changed<Sensor>,
+    Changed<ActiveEvents>,
+    Changed<ActiveHooks>,
+    Changed<ActiveCollisionTypes>,
+    Changed<ContactForceEventThreshold>,
+    Changed<ContactSkin>,
+)>;
+
+/// Notes in the engine what has changed, sorted. The plugin notes it in the order in which Bevy stores entities, which depends on all that ever
+/// happened, undone or not, and the engine wakes bodies and finds their pairs in the order in which they were noted.
+pub(crate) fn note_changes(
+    changed_bodies: Query<&RapierRigidBodyHandle, ChangedBody>,
+    changed_colliders: Query<&RapierColliderHandle, ChangedCollider>,
+    mut contexts: Query<
+        (&mut RapierRigidBodySet, &mut RapierContextColliders),
+        With<DefaultRapierContext>,
+    >,
+) {
+    let Ok((mut bodies, mut colliders)) = contexts.single_mut() else {
+        return;
+    };
+    let mut handles: Vec<_> = changed_colliders.iter().map(|handle| handle.0).collect();
+    handles.sort_unstable_by_key(|handle| handle.into_raw_parts());
+    for handle in handles {
+        colliders.colliders.get_mut(handle);
+    }
+    let mut handles: Vec<_> = changed_bodies.iter().map(|handle| handle.0).collect();
+    handles.sort_unstable_by_key(|handle| handle.into_raw_parts());
+    for handle in handles {
+        bodies.bodies.get_mut(handle);
+    }
+}
