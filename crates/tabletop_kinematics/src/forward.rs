@@ -4,7 +4,7 @@ use std::ops::Index;
 
 use glam::{DAffine3, DVec3};
 
-use crate::{DTwist, JointValues, LinkId, ModelJointId, RobotModel};
+use crate::{DTwist, JointType, JointValues, LinkId, ModelJoint, ModelJointId, RobotModel};
 
 /// The pose of every link of a model: from the link's frame to the root's, in m.
 #[derive(Clone, Debug, Default)]
@@ -40,10 +40,14 @@ impl MovingFrames {
     pub fn move_to(&mut self, model: &RobotModel, configuration: &JointValues) {
         self.moved.fill(false);
         for (i, joint) in model.joints.iter().enumerate() {
-            let [before, now] = [&self.configuration, configuration]
-                .map(|configuration| model.position(ModelJointId(i), configuration));
-            if self.moved[joint.parent.index()] || before.to_bits() != now.to_bits() {
-                self.frames.0[i + 1] = self.frames[joint.parent] * joint.motion(now);
+            let position = |configuration| model.position(ModelJointId(i), configuration);
+            let moves = |joint: &ModelJoint| {
+                joint.kind != JointType::Fixed
+                    && position(&self.configuration).to_bits() != position(configuration).to_bits()
+            };
+            if self.moved[joint.parent.index()] || moves(joint) {
+                let motion = joint.motion(position(configuration));
+                self.frames.0[i + 1] = self.frames[joint.parent] * motion;
                 self.moved[i + 1] = true;
             }
         }

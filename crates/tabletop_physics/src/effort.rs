@@ -152,7 +152,7 @@ impl Care {
         for handle in engine.islands.active_bodies() {
             let body = &engine.bodies[handle];
             if !body.is_dynamic() {
-                let needed = substeps_of_unmoved(body, engine.colliders);
+                let needed = substeps_of_unmoved(body);
                 let way = if body.is_kinematic() {
                     WAY_OF_HANDS
                 } else {

@@ -1,14 +1,11 @@
 //! Numbers of sub-steps that bodies need.
 
-use bevy_rapier3d::rapier::prelude::{Collider, ColliderSet, RigidBody, RigidBodyHandle};
+use bevy_rapier3d::rapier::prelude::{RigidBody, RigidBodyHandle};
 
 use super::{engine::Engine, touches::Touches};
 
 /// Number of sub-steps of every body; each has more in addition.
-pub(crate) const BASE_SUBSTEPS: usize = 1;
-
-/// Least number of sub-steps of a body that touches others.
-const FEWEST_SUBSTEPS: usize = 4;
+pub(crate) const BASE_SUBSTEPS: usize = 4;
 
 /// Number of sub-steps of handled bodies.
 pub(crate) const MOST_SUBSTEPS: usize = 36;
@@ -72,7 +69,7 @@ impl SubstepFactors {
     pub fn substeps(self) -> usize {
         let by_depth = match self.depth {
             Some(depth) => SUBSTEPS_BY_DEPTH[(depth as usize - 1).min(SUBSTEPS_BY_DEPTH.len() - 1)],
-            None if self.is_jointed => FEWEST_SUBSTEPS,
+            None if self.is_jointed => BASE_SUBSTEPS,
             None => SUBSTEPS_OF_FREE,
         };
         let others = [
@@ -93,16 +90,13 @@ pub(crate) fn substeps(body: &RigidBody) -> usize {
 }
 
 /// Number of sub-steps that a body needs which no force moves.
-pub(crate) fn substeps_of_unmoved(body: &RigidBody, colliders: &ColliderSet) -> usize {
+pub(crate) fn substeps_of_unmoved(body: &RigidBody) -> usize {
     if body.is_fixed() {
         // The engine keeps what was held and is fixed now among the moving bodies while anything moves, and solves its contacts with the
         // sub-steps of whichever body has fewer.
-        return MOST_SUBSTEPS;
-    }
-    let mut shapes = body.colliders().iter();
-    match shapes.any(|shape| colliders.get(*shape).is_some_and(Collider::is_enabled)) {
-        true => FEWEST_SUBSTEPS,
-        false => BASE_SUBSTEPS,
+        MOST_SUBSTEPS
+    } else {
+        BASE_SUBSTEPS
     }
 }
 

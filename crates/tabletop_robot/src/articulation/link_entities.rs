@@ -168,3 +168,12 @@ pub(crate) fn put(bodies: &mut RapierRigidBodySet, part: Entity, pose: Pose) {
         body.set_next_kinematic_position(pose);
     }
 }
+
+/// Puts a body that meets nothing at a pose, asleep: the engine leaves it out of its step.
+pub(crate) fn put_asleep(bodies: &mut RapierRigidBodySet, part: Entity, pose: Pose) {
+    let handle = bodies.entity2body().get(&part).copied();
+    if let Some(body) = handle.and_then(|handle| bodies.bodies.get_mut(handle)) {
+        body.set_position(to_rapier(pose), false);
+        body.sleep();
+    }
+}

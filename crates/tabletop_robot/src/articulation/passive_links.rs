@@ -7,8 +7,7 @@ use bevy_rapier3d::prelude::*;
 /// contacts.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct PassiveLinks {
-    /// The links that are far from everything they could push: keeping the boxes of two dozen moving bodies in order would be most of the
-    /// engine's step.
+    /// The links that are far from everything they could push. They sleep: two dozen moving bodies would be most of the engine's step.
     far: Vec<bool>,
     /// The links that stand in an object, since the robot came or because something pressed the object against them. They would press it into
     /// the table, so they push nothing until they are out.
@@ -75,8 +74,12 @@ impl PassiveLinks {
         *self = to;
     }
 
+    /// True for a link that is far from everything it could push.
+    pub fn is_far(&self, link: usize) -> bool {
+        self.far.get(link).copied().unwrap_or(false)
+    }
+
     fn contains(&self, link: usize) -> bool {
-        let is_in = |links: &[bool]| links.get(link).copied().unwrap_or(false);
-        is_in(&self.far) || is_in(&self.inside)
+        self.is_far(link) || self.inside.get(link).copied().unwrap_or(false)
     }
 }

@@ -98,6 +98,7 @@ struct Limb {
 /// The posture of the robot: the frames of its links and the poses of its bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct Posture {
+    positions: Vec<f64>,
     values: JointValues,
     links: MovingFrames,
     openings: SmallVec<[f64; 2]>,
@@ -262,6 +263,7 @@ impl Articulation {
         let mut values = self.model.zero();
         self.set_values(&mut values, positions);
         let mut posture = Posture {
+            positions: positions.to_vec(),
             links: MovingFrames::new(&self.model, values.clone()),
             values,
             openings: self.openings(positions),
@@ -275,6 +277,12 @@ impl Articulation {
 
     /// Brings a posture to other positions of the joints.
     pub fn update(&self, posture: &mut Posture, positions: &[f64]) {
+        let is_same = |(before, now): (&f64, &f64)| before.to_bits() == now.to_bits();
+        if posture.positions.iter().zip(positions).all(is_same) {
+            return;
+        }
+        posture.positions.clear();
+        posture.positions.extend_from_slice(positions);
         self.set_values(&mut posture.values, positions);
         posture.links.move_to(&self.model, &posture.values);
         let openings = self.openings(positions);

@@ -7,7 +7,7 @@ use tabletop_physics::{PhysicsSettings, send};
 
 use crate::{
     articulation::{
-        link_entities::{LinkEntities, positions, put},
+        link_entities::{LinkEntities, positions, put, put_asleep},
         passive_links::PassiveLinks,
         tree::Posture,
     },
@@ -131,7 +131,12 @@ pub(crate) fn advance(
             passive.set(now, &known.parts.0, &mut rapier.colliders);
         }
     }
-    for (entity, pose) in known.places(&mut motion, &robot, &grips) {
+    let places = known.places(&mut motion, &robot, &grips);
+    for (number, (entity, pose)) in places.into_iter().enumerate() {
+        if passive.is_far(number) {
+            put_asleep(&mut rapier.rigidbody_set, entity, pose);
+            continue;
+        }
         let Ok(mut transform) = moved.transforms.get_mut(entity) else {
             continue;
         };

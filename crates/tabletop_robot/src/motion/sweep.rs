@@ -448,11 +448,13 @@ impl TickMotion<'_> {
                 return Some(other.owner);
             }
         }
+        let bounds = solids.iter().map(|(_, solid)| *solid.bounds());
+        let bounds = bounds.reduce(|one, other| one.merged(&other))?;
         for (number, body) in self.articulation.bodies.iter().enumerate() {
-            if is_of(body, limb) {
+            let around = &here.around[number];
+            if is_of(body, limb) || !are_near(&bounds, around) {
                 continue;
             }
-            let around = &here.around[number];
             let may_meet = |(a, solid): &(usize, SweptSolid)| {
                 self.self_collisions.can_meet(*a, number) && are_near(solid.bounds(), around)
             };
