@@ -215,3 +215,39 @@ fn what_is_fixed_carries_what_falls_on_it_after_it_was_held() {
     let aside = place(&app).truncate().length();
     assert!(aside < 0.002, "it landed {aside} aside");
 }
+
+#[test]
+fn what_is_fixed_stops_what_falls_fast_on_it_after_it_was_held_still() {
+    let text = r#"<tabletop xmlns="http://synapse.cs.umd.edu/tabletop-xml" xspan="20" yspan="12">
+        <block id="shelf" location="(0,0,3)" xspan="4" yspan="4" zspan="0.5" mass="0"/>
+        <box id="load" location="(6,0,0.5)" xspan="1" yspan="1" zspan="1" thickness="0.1" mass="1"/>
+      </tabletop>"#;
+    let scene = xml::parse("shelf".as_ref(), text.as_bytes()).scene;
+    let mut app = headless_app();
+    app.world_mut()
+        .write_command(SceneCommand::Set(Box::new(scene)));
+    let (hand, height) = (Hand::Any, 12.0);
+    let lifted = Vec3::new(6.0, 0.0, height);
+    let above = Vec3::Z * height;
+    for (object, ways) in [("shelf", vec![]), ("load", vec![lifted, above])] {
+        app.step(120);
+        let object = object.to_owned();
+        app.world_mut()
+            .write_command(HandCommand::Grasp { hand, object });
+        app.step(120);
+        for location in ways {
+            app.world_mut()
+                .write_command(HandCommand::MoveTo { hand, location });
+            app.step(120);
+        }
+        app.world_mut().write_command(HandCommand::Release(hand));
+    }
+    let load = app.world().resource::<ObjectIndex>().get("load").unwrap();
+    let place = |app: &App| app.world().get::<Transform>(load).unwrap().translation;
+    assert!((place(&app) - above).length() < 0.1, "{}", place(&app));
+    for _ in 0..120 {
+        app.step(1);
+        assert!(place(&app).z > 3.75 - 0.05, "{}", place(&app));
+    }
+    assert!(place(&app).z < 4.0, "{}", place(&app));
+}

@@ -33,10 +33,6 @@ pub(crate) const PREDICTION: f32 = 0.2;
 /// The same at most, while something is fast: twice as far as a body moves in a tick after a fall of 100 units.
 const FARTHEST_PREDICTION: f32 = 6.0;
 
-/// The way, in units, of a hand or a link that is seen ahead: none, so that it is met when it is there. Seen from afar, the edge of a finger that
-/// goes down beside a block is a slope that would push the block aside.
-const WAY_OF_HANDS: f32 = 1e-6;
-
 /// The way at most, in units, of a body that is seen ahead when it approaches a hand or a link.
 const WAY_TO_HANDS: f32 = 3.0;
 
@@ -153,13 +149,8 @@ impl Care {
             let body = &engine.bodies[handle];
             if !body.is_dynamic() {
                 let needed = substeps_of_unmoved(body);
-                let way = if body.is_kinematic() {
-                    WAY_OF_HANDS
-                } else {
-                    0.0
-                };
-                if needed != substeps(body) || way != body.soft_ccd_prediction() {
-                    changes.push((handle, needed, way));
+                if needed != substeps(body) {
+                    changes.push((handle, needed, body.soft_ccd_prediction()));
                 }
                 continue;
             }

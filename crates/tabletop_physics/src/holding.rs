@@ -20,6 +20,10 @@ pub struct JustReleased {
 /// Speed at which it sinks in that tick, in units/s.
 const SETTLING_SPEED: f32 = 1e-3;
 
+/// Lets hands and links be met when they are there, and not ahead. Seen from afar, the edge of a finger that goes down beside a block is a slope
+/// that would push the block aside.
+pub const MET_WHEN_THERE: SoftCcd = SoftCcd { prediction: 1e-6 };
+
 /// Part of the way to its target by which a jointed object is pulled in a tick.
 const PULLED_PER_TICK: f32 = 0.25;
 
@@ -50,7 +54,7 @@ pub fn hold(world: &mut World, object: Entity, by: Holder) -> Carry {
     };
     object.insert((Held { by }, carry)).remove::<JustReleased>();
     match carry {
-        Carry::Freely => object.insert(RigidBody::KinematicPositionBased),
+        Carry::Freely => object.insert((RigidBody::KinematicPositionBased, MET_WHEN_THERE)),
         Carry::AgainstJoints => object.insert(GravityScale(0.0)),
     };
     if carry == Carry::AgainstJoints && object.get() != Some(&RigidBody::Dynamic) {
@@ -63,7 +67,9 @@ pub fn hold(world: &mut World, object: Entity, by: Holder) -> Carry {
 pub fn let_go(world: &mut World, object: Entity) {
     let at = *world.resource::<SimTick>();
     let mut object = world.entity_mut(object);
-    object.remove::<(Held, Carry)>();
+    object
+        .remove::<(Held, Carry)>()
+        .insert(SoftCcd { prediction: 0.0 });
     let is_fixed = object.get().is_some_and(ObjectSpec::is_fixed);
     if is_fixed {
         object.insert(RigidBody::Fixed);

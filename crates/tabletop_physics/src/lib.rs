@@ -50,7 +50,7 @@ pub use geometry::{
     Convex, Nearby, Nearest, Pressure, contact, convex_parts, is_touching, nearby, nearest,
     pressures_on, to_rapier,
 };
-pub use holding::{Carry, JustReleased, hold, let_go, pull_velocity, push, put};
+pub use holding::{Carry, JustReleased, MET_WHEN_THERE, hold, let_go, pull_velocity, push, put};
 pub use settings::PhysicsSettings;
 pub use short_turn::send;
 pub use snapshot::{PhysicsSnapshot, remove_joint, remove_object, renew_if_empty};
@@ -162,6 +162,7 @@ impl Plugin for PhysicsPlugin {
             .rollback_component::<Sleeping>()
             .rollback_component::<RigidBody>()
             .rollback_component::<GravityScale>()
+            .rollback_component::<SoftCcd>()
             .rollback_component::<RigidBodyDisabled>()
             .rollback_component::<JustReleased>()
             .rollback_component::<Carry>()

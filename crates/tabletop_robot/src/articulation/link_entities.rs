@@ -6,7 +6,7 @@ use bevy_rapier3d::{
     prelude::*,
 };
 use tabletop_core::{CarriesHeadCamera, Pose, Robot, Rollback, Table};
-use tabletop_physics::to_rapier;
+use tabletop_physics::{MET_WHEN_THERE, to_rapier};
 
 use crate::articulation::{
     passive_links::PassiveLinks,
@@ -50,6 +50,7 @@ pub(crate) fn spawn(world: &mut World) -> Result {
         if let Some(collider) = collider(body) {
             part.insert((
                 RigidBody::KinematicPositionBased,
+                MET_WHEN_THERE,
                 collider,
                 Friction {
                     coefficient: FRICTION,
