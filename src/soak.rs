@@ -12,7 +12,7 @@ use tabletop_core::{
     SceneCommand, SceneItem, SceneSpec, Shape, SimCommand, SimFact, StepApp as _, TICKS_PER_SECOND,
     Table, Twist, WriteCommand as _,
 };
-use tabletop_physics::{Convex, collider, convex_parts, nearest};
+use tabletop_physics::{Convex, collider, convex_parts, depth};
 use tabletop_recorder::{Durability, RecorderPlugin};
 
 use crate::{TabletopSimPlugins, headless_app_with, replay::Replay};
@@ -156,8 +156,7 @@ fn look(app: &mut App, deep: &mut DeepTicks) -> Result<(), String> {
         }
         let parts = solids(&spec.shape, Pose::IDENTITY);
         let depths = obstacles.iter().map(|obstacle| {
-            let near = nearest(&parts, Pose::from(place), &obstacle.parts, 0.0);
-            let depth = near.map(|near| -near.distance).fold(0.0, f32::max);
+            let depth = depth(&parts, Pose::from(place), &obstacle.parts);
             (depth, &obstacle.id)
         });
         let deepest = depths.max_by(|(one, _), (other, _)| one.total_cmp(other));

@@ -7,7 +7,9 @@ use bevy_rapier3d::{
     rapier::prelude as rapier,
 };
 use tabletop_core::{Hand, Hands, Joint, Pose, TICK_SECONDS};
-use tabletop_physics::{Carry, Convex, Nearest, convex_parts, nearby, nearest, pull_velocity};
+use tabletop_physics::{
+    Carry, Convex, Nearest, convex_parts, depth, nearby, nearest, pull_velocity,
+};
 
 use crate::{
     grasp::CarryTarget,
@@ -289,8 +291,7 @@ impl FreeNeighbour {
         if self.is_jointed {
             return 0.0;
         }
-        let depths = nearest(&self.parts, Pose::at(by), immovable, 0.0);
-        depths.map(|nearest| -nearest.distance).fold(0.0, f32::max)
+        depth(&self.parts, Pose::at(by), immovable)
     }
 
     /// The way, in units, by which it can be pushed in a direction, from its present depth until it is too deep in something.

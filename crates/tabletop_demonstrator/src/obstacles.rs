@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use tabletop_core::Pose;
-use tabletop_physics::{Convex, nearest};
+use tabletop_physics::{Convex, depth, nearest};
 
 /// Depths, in units, that count as touching and not as inside.
 const TOUCHING: f32 = 1e-4;
@@ -50,12 +50,6 @@ pub(crate) fn leave(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex])
     };
     let way = (out.location - from.location).clamp_length_max(LEAVING);
     Some(Pose::new(from.location + way, from.rotation))
-}
-
-/// Depth, in units, of an object in obstacles.
-fn depth(held: &[Convex], at: Pose, obstacles: &[Convex]) -> f32 {
-    let depths = nearest(held, at, obstacles, 0.0).map(|nearest| -nearest.distance);
-    depths.fold(0.0, f32::max)
 }
 
 /// The pose without depth: pushed out of all entered obstacles, along the shortest ways. `None` if there is no way

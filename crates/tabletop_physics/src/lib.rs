@@ -47,7 +47,7 @@ mod twist;
 pub use bodies::{BodySystems, collider, mass_properties, reshape, take_in};
 pub use effort::{Care, Engine, impulse_share};
 pub use geometry::{
-    Convex, Nearby, Nearest, Pressure, contact, convex_parts, is_touching, nearby, nearest,
+    Convex, Nearby, Nearest, Pressure, contact, convex_parts, depth, is_touching, nearby, nearest,
     pressures_on, to_rapier,
 };
 pub use holding::{Carry, JustReleased, MET_WHEN_THERE, hold, let_go, pull_velocity, push, put};

@@ -96,6 +96,12 @@ pub fn nearest<'a>(
     })
 }
 
+/// Depth of a body at a pose in obstacles, in units: that of its deepest part; 0 if it touches none.
+pub fn depth(body: &[Convex], at: Pose, obstacles: &[Convex]) -> f32 {
+    let depths = nearest(body, at, obstacles, 0.0).map(|nearest| -nearest.distance);
+    depths.fold(0.0, f32::max)
+}
+
 /// A pose as Rapier has it.
 pub fn to_rapier(pose: Pose) -> rapier::Pose {
     rapier::Pose::from_parts(pose.location, pose.rotation)
