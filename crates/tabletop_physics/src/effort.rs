@@ -42,6 +42,9 @@ const SPEED_TO_HANDS: f32 = 1.0;
 /// The same of a body that is near other things, too: Rapier would forget its contact with what it is leaving.
 const SPEED_TO_HANDS_BESIDE_OTHERS: f32 = 12.0;
 
+/// Angular speed, in rad/s, up to which that is so: Rapier would not see where the body's edges go.
+const MOST_TURNING: f32 = 1.0;
+
 /// Speed, in units/s, from which collision detection is continuous.
 const SPEED_OF_CCD: f32 = 6.0;
 
@@ -164,7 +167,10 @@ impl Care {
                 true => SPEED_TO_HANDS_BESIDE_OTHERS,
                 false => SPEED_TO_HANDS,
             };
-            let way = match situation.is_near_hand && body.linvel().length() > speed_to_hands {
+            let is_seen_ahead = situation.is_near_hand
+                && body.linvel().length() > speed_to_hands
+                && body.angvel().length() < MOST_TURNING;
+            let way = match is_seen_ahead {
                 true => WAY_TO_HANDS,
                 false => 0.0,
             };

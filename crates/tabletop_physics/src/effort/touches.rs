@@ -74,14 +74,13 @@ impl Touches {
     }
 }
 
-/// Those of these bodies that have contacts, though at a distance, with something that no hand or robot moves.
+/// Those of these bodies that are near something that no hand or robot moves, whether their contact is seen ahead or not.
 fn near_others(engine: &Engine, bodies: &BTreeSet<u32>) -> BTreeSet<u32> {
     if bodies.is_empty() {
         return BTreeSet::new();
     }
     let pairs = engine.narrow_phase.contact_pairs();
-    let near = pairs.filter(|pair| pair.manifolds.iter().any(|it| !it.points.is_empty()));
-    let movers = near
+    let movers = pairs
         .map(|pair| bodies_of(pair, engine.colliders).map(|body| Mover::of(body, engine.bodies)));
     let free = movers.flat_map(|movers| match movers {
         [Mover::Forces(a, _), Mover::Forces(b, _)] => vec![a, b],

@@ -2,7 +2,8 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
-use tabletop_core::{SceneItem, Shape, StepApp as _};
+use tabletop_core::{Hand, Holder, SceneItem, Shape, StepApp as _};
+use tabletop_physics::hold;
 
 use crate::world::*;
 
@@ -172,6 +173,34 @@ fn what_leaves_the_world_is_deleted() {
     assert_eq!(world.poses().len(), 1);
     world.seconds(1.0);
     assert_eq!(world.poses().len(), 0);
+}
+
+#[test]
+fn what_turns_near_a_hand_hardly_enters_the_table() {
+    let bottom = [-2.5, 2.5].map(|x| [-2.5, 2.5].map(|y| Vec3::new(x, y, -1.5)));
+    for number in 0..40 {
+        let height = 1.9 + 0.02 * number as f32;
+        let tilt = Vec3::new(3.0, -3.0, 40.0);
+        let mut world = TestWorld::new([
+            turned("it", Vec3::Z * height, tilt, 3.0, block((5.0, 5.0, 3.0))),
+            object("held", (3.0, 3.0, height), 1.0, block(Vec3::ONE)),
+        ]);
+        let [it, held] = ["it", "held"].map(|id| world.entity(id));
+        hold(world.0.world_mut(), held, Holder::Hand(Hand::Right));
+        *world.0.world_mut().get_mut::<Velocity>(it).unwrap() = Velocity {
+            linear: Vec3::new(3.0, 3.0, 2.0),
+            angular: Vec3::new(4.8, -1.7, 2.1),
+        };
+        for tick in 0..20 {
+            world.0.step(1);
+            let pose = world.pose("it");
+            let corners = bottom.as_flattened().iter();
+            let lowest = corners
+                .map(|&corner| (pose * corner).z)
+                .fold(f32::INFINITY, f32::min);
+            assert!(lowest > -0.1, "{lowest} in tick {tick}, from {height}");
+        }
+    }
 }
 
 #[test]
