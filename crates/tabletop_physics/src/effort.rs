@@ -196,15 +196,17 @@ impl Care {
             (false, true) => HANDLING_SWEEPS,
             (false, false) => SWEEPS,
         };
+        // A body beyond this distance is touched in one point, whatever its shape. The broad phase looks half as far for each of two bodies.
+        // Rapier's own prediction for fast bodies (soft CCD) forgets the contact with what a body is leaving, or sliding along: what presses
+        // it back in the same tick would press it in.
+        let prediction = (landing.max(2.0 * fastest) * engine.parameters.dt)
+            .clamp(PREDICTION, FARTHEST_PREDICTION);
         let mode = Mode {
             sweeps,
-            // A body beyond this distance is touched in one point, whatever its shape. The broad phase looks half as far for each of two bodies.
-            // Rapier's own prediction for fast bodies (soft CCD) forgets the contact with what a body is leaving, or sliding along: what presses
-            // it back in the same tick would press it in.
-            prediction: (landing.max(2.0 * fastest) * engine.parameters.dt)
-                .clamp(PREDICTION, FARTHEST_PREDICTION),
+            prediction,
             recycles: !is_handling && !is_landing,
-            clusters: is_handling,
+            // Among contacts that are seen far ahead, a merged one may lack the corner that touches.
+            clusters: is_handling && prediction <= PREDICTION,
             is_continuous: is_any_fast,
         };
         mode.set(engine.parameters);
