@@ -3,41 +3,7 @@
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// Bodies whose changes Rapier's plugin is about to carry to the engine.
-type ChangedBody = Or<(
-    Changed<RigidBody>,
-    Changed<RigidBodyDisabled>,
-    Changed<GlobalTransform>,
-    Changed<Velocity>,
-    Changed<Sleeping>,
-    Changed<GravityScale>,
-    Changed<Damping>,
-    Changed<LockedAxes>,
-    Changed<Dominance>,
-    Changed<ExternalForce>,
-    Changed<ExternalImpulse>,
-    Changed<AdditionalMassProperties>,
-    Changed<AdditionalSolverIterations>,
-    Changed<Ccd>,
-    Changed<SoftCcd>,
-)>;
-
-/// The same of colliders.
-type ChangedCollider = Or<(
-    Changed<Collider>,
-    Changed<ColliderDisabled>,
-    Changed<ColliderMassProperties>,
-    Changed<CollisionGroups>,
-    Changed<SolverGroups>,
-    Changed<Friction>,
-    Changed<Restitution>,
-    Changed<Sensor>,
-    Changed<ActiveEvents>,
-    Changed<ActiveHooks>,
-    Changed<ActiveCollisionTypes>,
-    Changed<ContactForceEventThreshold>,
-    Changed<ContactSkin>,
-)>;
+use crate::outside::{ChangedBody, ChangedCollider};
 
 /// Notes in the engine what has changed, sorted. The plugin notes it in the order in which Bevy stores entities, which depends on all that ever
 /// happened, undone or not, and the engine wakes bodies and finds their pairs in the order in which they were noted.

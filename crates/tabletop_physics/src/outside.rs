@@ -10,6 +10,42 @@ use bevy::{
 };
 use bevy_rapier3d::prelude::*;
 
+/// Bodies whose changes Rapier's plugin is about to carry to the engine.
+pub(crate) type ChangedBody = Or<(
+    Changed<RigidBody>,
+    Changed<RigidBodyDisabled>,
+    Changed<GlobalTransform>,
+    Changed<Velocity>,
+    Changed<Sleeping>,
+    Changed<GravityScale>,
+    Changed<Damping>,
+    Changed<LockedAxes>,
+    Changed<Dominance>,
+    Changed<ExternalForce>,
+    Changed<ExternalImpulse>,
+    Changed<AdditionalMassProperties>,
+    Changed<AdditionalSolverIterations>,
+    Changed<Ccd>,
+    Changed<SoftCcd>,
+)>;
+
+/// The same of colliders.
+pub(crate) type ChangedCollider = Or<(
+    Changed<Collider>,
+    Changed<ColliderDisabled>,
+    Changed<ColliderMassProperties>,
+    Changed<CollisionGroups>,
+    Changed<SolverGroups>,
+    Changed<Friction>,
+    Changed<Restitution>,
+    Changed<Sensor>,
+    Changed<ActiveEvents>,
+    Changed<ActiveHooks>,
+    Changed<ActiveCollisionTypes>,
+    Changed<ContactForceEventThreshold>,
+    Changed<ContactSkin>,
+)>;
+
 /// The moment after the last step, when all that the engine had changed was written to components.
 #[derive(Resource, Default)]
 pub(crate) struct WrittenBack(Option<Tick>);

@@ -4,7 +4,7 @@ use bevy::{ecs::change_detection::Tick, ecs::system::SystemId, prelude::*};
 use bevy_rapier3d::{plugin::systems::step_simulation, prelude::*};
 use tabletop_core::{RestApp as _, RestingSystems, SimSystems};
 
-use crate::outside::Removals;
+use crate::outside::{ChangedBody, ChangedCollider, Removals};
 
 /// Number of steps after which Rapier's broad phase checks whether its tree is worth tidying up. Any other step in which everything sleeps
 /// only counts.
@@ -78,38 +78,8 @@ fn is_any_body_changed(
         (),
         Or<(
             Changed<Transform>,
-            Changed<GlobalTransform>,
-            Or<(
-                Changed<RigidBody>,
-                Changed<RigidBodyDisabled>,
-                Changed<Velocity>,
-                Changed<Sleeping>,
-                Changed<GravityScale>,
-                Changed<Damping>,
-                Changed<LockedAxes>,
-                Changed<Dominance>,
-                Changed<ExternalForce>,
-                Changed<ExternalImpulse>,
-                Changed<AdditionalMassProperties>,
-                Changed<AdditionalSolverIterations>,
-                Changed<Ccd>,
-                Changed<SoftCcd>,
-            )>,
-            Or<(
-                Changed<Collider>,
-                Changed<ColliderDisabled>,
-                Changed<ColliderMassProperties>,
-                Changed<CollisionGroups>,
-                Changed<SolverGroups>,
-                Changed<Friction>,
-                Changed<Restitution>,
-                Changed<Sensor>,
-                Changed<ActiveEvents>,
-                Changed<ActiveHooks>,
-                Changed<ActiveCollisionTypes>,
-                Changed<ContactForceEventThreshold>,
-                Changed<ContactSkin>,
-            )>,
+            ChangedBody,
+            ChangedCollider,
             Or<(Changed<ImpulseJoint>, Changed<MultibodyJoint>)>,
         )>,
     >,
