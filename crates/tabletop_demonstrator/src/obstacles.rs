@@ -7,6 +7,9 @@ use tabletop_physics::{Convex, depth, nearest};
 /// Depths, in units, that count as touching and not as inside.
 const TOUCHING: f32 = 1e-4;
 
+/// Largest difference of equal depths, in units.
+const SAME_DEPTH: f32 = 1e-5;
+
 /// Least step towards the target near an obstacle, in units: small against the thinnest wall.
 const STEP: f32 = 0.02;
 
@@ -31,25 +34,30 @@ pub(crate) fn leave(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex])
     }
     let Some(out) = pushed_out(held, from, obstacles, &mut Vec::new()) else {
         let (entered, others): (Vec<_>, Vec<_>) = obstacles.iter().cloned().partition(is_entered);
-        let away: Vec<_> = nearest(held, from, &entered, 0.0)
-            .map(|nearest| nearest.away)
-            .collect();
-        let way = clipped(to.location - from.location, &away);
-        let turned = Pose::new(from.location, to.rotation);
-        let goes_deeper = entered.iter().any(|obstacle| {
-            let obstacle = std::slice::from_ref(obstacle);
-            depth(held, turned, obstacle) > depth(held, from, obstacle) + TOUCHING
-        });
-        let rotation = if goes_deeper {
-            from.rotation
-        } else {
-            to.rotation
-        };
-        let along = Pose::new(from.location + way, rotation);
-        return Some(slide(held, from, along, &others));
+        return Some(pinned(held, from, to, &entered, &others));
     };
     let way = (out.location - from.location).clamp_length_max(LEAVING);
     Some(Pose::new(from.location + way, from.rotation))
+}
+
+/// The pose of a pinned object a tick later: towards its target as far as the obstacles that it has not entered allow, but no deeper
+/// into the entered ones; so that nothing presses it through the table by and by.
+fn pinned(held: &[Convex], from: Pose, to: Pose, entered: &[Convex], others: &[Convex]) -> Pose {
+    let away: Vec<_> = nearest(held, from, entered, 0.0)
+        .map(|nearest| nearest.away)
+        .collect();
+    let location = from.location + clipped(to.location - from.location, &away);
+    let is_deeper = |at: &Pose| {
+        entered.iter().any(|obstacle| {
+            let obstacle = std::slice::from_ref(obstacle);
+            depth(held, *at, obstacle) > depth(held, from, obstacle) + SAME_DEPTH
+        })
+    };
+    [to.rotation, from.rotation]
+        .map(|rotation| slide(held, from, Pose::new(location, rotation), others))
+        .into_iter()
+        .find(|at| !is_deeper(at))
+        .unwrap_or(from)
 }
 
 /// The pose without depth: pushed out of all entered obstacles, along the shortest ways. `None` if there is no way
@@ -260,6 +268,15 @@ mod tests {
         assert_eq!(rotation, from.rotation);
         let (rotation, wanted) = target(Vec3::Z * 20.0);
         assert_eq!(rotation, wanted);
+    }
+
+    #[test]
+    fn a_block_that_is_pinned_is_not_pressed_deeper_by_what_touches_it() {
+        let above = cuboid(Vec3::new(20.0, 12.0, 4.0), Vec3::Z * 2.955);
+        let from = Pose::at(Vec3::Z * 0.46);
+        let to = Pose::at(Vec3::new(9.0, 0.0, 3.0));
+        let pose = leave(&unit_block(), from, to, &[table(), above]).unwrap();
+        assert!(pose.location.z > 0.46 - 1e-4, "{pose:?}");
     }
 
     #[test]
