@@ -115,6 +115,16 @@ fn pose(random: &mut Random) -> Pose {
     Pose::new(location, turn)
 }
 
+/// A shape, mostly a simple one: composites cost much more.
+fn any_shape(random: &mut Random) -> Shape {
+    let depth = match random.below(16) {
+        0 => 2,
+        1..=3 => 1,
+        _ => 0,
+    };
+    shape(random, depth)
+}
+
 fn shape(random: &mut Random, depth: usize) -> Shape {
     let color = Rgb::GRAY;
     match random.below(if depth == 0 { 3 } else { 5 }) {
@@ -147,7 +157,7 @@ fn scene(random: &mut Random) -> SceneSpec {
             id,
             pose(random),
             mass(random),
-            shape(random, 2),
+            any_shape(random),
         ))
     });
     SceneSpec {
