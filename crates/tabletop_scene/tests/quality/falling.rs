@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
-use tabletop_core::{Hand, Holder, SceneItem, Shape, StepApp as _};
+use tabletop_core::{Hand, Holder, Pose, SceneItem, Shape, StepApp as _};
 use tabletop_physics::hold;
 
 use crate::world::*;
@@ -137,6 +137,12 @@ fn what_sleeps_and_is_hit_stays_out_of_the_table() {
     }
 }
 
+/// Height, in units, of the lowest point of a box at a pose.
+fn lowest_point(span: Vec3, pose: Pose) -> f32 {
+    let up = pose.rotation.inverse() * Vec3::Z;
+    pose.location.z - up.abs().dot(span / 2.0)
+}
+
 #[test]
 fn a_blow_presses_nothing_light_into_the_table() {
     let half = Vec3::new(0.65, 0.98, 0.9);
@@ -155,8 +161,7 @@ fn a_blow_presses_nothing_light_into_the_table() {
         for tick in 0..90 {
             world.0.step(1);
             let light = world.pose("light");
-            let up = light.rotation.inverse() * Vec3::Z;
-            let lowest = light.location.z - up.abs().dot(half);
+            let lowest = lowest_point(2.0 * half, light);
             let is_on_table = light.location.xy().abs().cmplt(Vec2::new(9.0, 5.0)).all();
             assert!(
                 !is_on_table || lowest > -0.01,
@@ -177,12 +182,12 @@ fn what_leaves_the_world_is_deleted() {
 
 #[test]
 fn what_turns_near_a_hand_hardly_enters_the_table() {
-    let bottom = [-2.5, 2.5].map(|x| [-2.5, 2.5].map(|y| Vec3::new(x, y, -1.5)));
+    let span = Vec3::new(5.0, 5.0, 3.0);
     for number in 0..40 {
         let height = 1.9 + 0.02 * number as f32;
         let tilt = Vec3::new(3.0, -3.0, 40.0);
         let mut world = TestWorld::new([
-            turned("it", Vec3::Z * height, tilt, 3.0, block((5.0, 5.0, 3.0))),
+            turned("it", Vec3::Z * height, tilt, 3.0, block(span)),
             object("held", (3.0, 3.0, height), 1.0, block(Vec3::ONE)),
         ]);
         let [it, held] = ["it", "held"].map(|id| world.entity(id));
@@ -193,12 +198,36 @@ fn what_turns_near_a_hand_hardly_enters_the_table() {
         };
         for tick in 0..20 {
             world.0.step(1);
-            let pose = world.pose("it");
-            let corners = bottom.as_flattened().iter();
-            let lowest = corners
-                .map(|&corner| (pose * corner).z)
-                .fold(f32::INFINITY, f32::min);
+            let lowest = lowest_point(span, world.pose("it"));
             assert!(lowest > -0.1, "{lowest} in tick {tick}, from {height}");
+        }
+    }
+}
+
+#[test]
+fn a_box_near_a_hand_keeps_its_corners_out_of_the_table_while_something_is_fast() {
+    let span = Vec3::new(3.0, 3.0, 2.0);
+    for number in 0..40 {
+        let degrees = number as f32 * Vec3::new(1.2, 2.9, 57.0);
+        let height = -lowest_point(span, Pose::from_degrees(Vec3::ZERO, degrees));
+        let mut world = TestWorld::new([
+            turned("box", Vec3::Z * height, degrees, 3.0, open_box(span, 0.1)),
+            object("held", (3.2, 0.0, height), 1.0, block(Vec3::ONE)),
+            object("fast", (-6.0, 0.0, 50.0), 1.0, sphere(0.5)),
+        ]);
+        let [hit, held, fast] = ["box", "held", "fast"].map(|id| world.entity(id));
+        hold(world.0.world_mut(), held, Holder::Hand(Hand::Right));
+        world.0.step(2);
+        for (object, linear) in [(fast, Vec3::Z * 90.0), (hit, Vec3::new(-1.0, -1.0, -8.0))] {
+            *world.0.world_mut().get_mut::<Velocity>(object).unwrap() = Velocity {
+                linear,
+                angular: Vec3::ZERO,
+            };
+        }
+        for tick in 0..20 {
+            world.0.step(1);
+            let lowest = lowest_point(span, world.pose("box"));
+            assert!(lowest > -0.02, "{lowest} in tick {tick}, turned {degrees}");
         }
     }
 }
