@@ -98,10 +98,9 @@ struct Limb {
 /// The posture of the robot: the frames of its links and the poses of its bodies.
 #[derive(Clone, Debug)]
 pub(crate) struct Posture {
-    positions: Vec<f64>,
+    positions: Positions,
     values: JointValues,
     links: MovingFrames,
-    openings: SmallVec<[f64; 2]>,
     base: Pose,
     bodies: Vec<Pose>,
     end_effectors: Vec<Pose>,
@@ -263,10 +262,9 @@ impl Articulation {
         let mut values = self.model.zero();
         self.set_values(&mut values, positions);
         let mut posture = Posture {
-            positions: positions.to_vec(),
+            positions: Positions::from_slice(positions),
             links: MovingFrames::new(&self.model, values.clone()),
             values,
-            openings: self.openings(positions),
             base,
             bodies: vec![Pose::IDENTITY; self.bodies.len()],
             end_effectors: vec![Pose::IDENTITY; self.limbs.len()],
@@ -281,14 +279,12 @@ impl Articulation {
         if posture.positions.iter().zip(positions).all(is_same) {
             return;
         }
-        posture.positions.clear();
-        posture.positions.extend_from_slice(positions);
+        let before = std::mem::replace(&mut posture.positions, Positions::from_slice(positions));
         self.set_values(&mut posture.values, positions);
         posture.links.move_to(&self.model, &posture.values);
-        let openings = self.openings(positions);
-        let before = std::mem::replace(&mut posture.openings, openings.clone());
-        self.place_moved(posture, |limb| {
-            before[limb.index()].to_bits() != openings[limb.index()].to_bits()
+        self.place_moved(posture, |joint| {
+            let [before, now] = [&before, positions].map(|positions| positions[joint.index()]);
+            before.to_bits() != now.to_bits()
         });
     }
 
@@ -300,18 +296,11 @@ impl Articulation {
         }
     }
 
-    fn openings(&self, positions: &[f64]) -> SmallVec<[f64; 2]> {
-        let limbs = self.layout.limbs.iter();
-        limbs
-            .map(|limb| positions[limb.gripper.joint.index()])
-            .collect()
-    }
-
-    /// Places the bodies whose links have moved, and the fingers whose openings have changed.
-    fn place_moved(&self, posture: &mut Posture, opens: impl Fn(LimbId) -> bool) {
+    /// Places the bodies whose links have moved, and the fingers whose joints have changed.
+    fn place_moved(&self, posture: &mut Posture, has_changed: impl Fn(JointId) -> bool) {
         let Posture {
+            positions,
             links,
-            openings,
             base,
             bodies,
             end_effectors,
@@ -328,13 +317,15 @@ impl Articulation {
                 Carrier::Link(link) if links.has_moved(link) => {
                     *pose = *base * in_units(links.frames()[link]);
                 }
-                Carrier::Gripper(limb, side)
-                    if opens(limb) || links.has_moved(self.limbs[limb.index()].end_effector.0) =>
-                {
-                    let finger = self.finger(limb, side, openings[limb.index()] as f32);
-                    *pose = end_effectors[limb.index()] * finger;
+                Carrier::Gripper(limb, side) => {
+                    let joint = self.layout.limb(limb).gripper.joint;
+                    let end_effector = self.limbs[limb.index()].end_effector.0;
+                    if has_changed(joint) || links.has_moved(end_effector) {
+                        let finger = self.finger(limb, side, positions[joint.index()] as f32);
+                        *pose = end_effectors[limb.index()] * finger;
+                    }
                 }
-                Carrier::Link(_) | Carrier::Gripper(..) => {}
+                Carrier::Link(_) => {}
             }
         }
     }

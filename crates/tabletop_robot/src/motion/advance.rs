@@ -2,7 +2,7 @@
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_rapier3d::{prelude::*, rapier::prelude::RigidBodyHandle};
-use tabletop_core::{LimbId, LimbName, Robot, RobotMode, SimFact};
+use tabletop_core::{LimbId, LimbName, Pose, Robot, RobotMode, SimFact};
 use tabletop_physics::{PhysicsSettings, send};
 
 use crate::{
@@ -133,19 +133,11 @@ pub(crate) fn advance(
     }
     let places = known.places(&mut motion, &robot, &grips);
     for (number, (entity, pose)) in places.into_iter().enumerate() {
-        if passive.is_far(number) {
-            put_asleep(&mut rapier.rigidbody_set, entity, pose);
-            continue;
-        }
-        let Ok(mut transform) = moved.transforms.get_mut(entity) else {
-            continue;
-        };
         let bodies = &mut rapier.rigidbody_set;
-        if transform.translation.distance(pose.location) > JUMP {
-            put(bodies, entity, pose);
-        }
-        if !send(bodies, entity, pose) {
-            transform.set_if_neq(pose.into());
+        if passive.is_far(number) {
+            put_asleep(bodies, entity, pose);
+        } else if let Ok(transform) = moved.transforms.get_mut(entity) {
+            push(bodies, entity, transform, pose);
         }
     }
     *posture = Some(motion.scratch);
@@ -153,6 +145,16 @@ pub(crate) fn advance(
         action.carry_out(&mut commands, &mut facts);
     }
     Ok(())
+}
+
+/// Moves a body to a pose in this tick, and what is in its way with it, unless it jumps.
+fn push(bodies: &mut RapierRigidBodySet, body: Entity, mut transform: Mut<Transform>, pose: Pose) {
+    if transform.translation.distance(pose.location) > JUMP {
+        put(bodies, body, pose);
+    }
+    if !send(bodies, body, pose) {
+        transform.set_if_neq(pose.into());
+    }
 }
 
 /// Sets all velocities to zero.
