@@ -13,6 +13,9 @@ use bevy_rapier3d::{
     rapier::prelude as rapier,
 };
 
+/// Largest difference of equal gaps, in units.
+const SAME_GAP: f32 = 1e-4;
+
 /// Directions in which the search is repeated.
 const DIRECTIONS: [Vec3; 6] = [
     Vec3::X,
@@ -26,8 +29,8 @@ const DIRECTIONS: [Vec3; 6] = [
 /// The nearest points of two solids at these poses, if they are no farther apart than `most`, in units.
 ///
 /// This is what Parry's `contact` finds. But its search, from one direction, gives up on about one in ten thousand solids
-/// that touch a slab near its edge, and takes them for far apart. Where it has not found a plane between them, other
-/// directions are tried.
+/// that touch a slab near its edge, and takes them for far apart; and one in two hundred lying cylinders that touch a slab it takes for deeper or
+/// farther away than they are. Where it has not found a plane between them, or another plane leaves a wider gap, other directions are tried.
 pub fn contact(
     at: &rapier::Pose,
     solid: &dyn rapier::Shape,
@@ -58,6 +61,20 @@ fn search(
     let gap = |direction: Vec3| {
         -direction.dot(CsoPoint::from_shapes(other_at, solid, other, direction).point)
     };
+    let wider = |one: Vec3, another: Vec3| match gap(another) > gap(one) {
+        true => another,
+        false => one,
+    };
+    let between = |own: Vec3, others: Vec3, normal: Vec3| {
+        Contact::new(
+            own,
+            other_at.inverse_transform_point(others),
+            normal,
+            other_at.rotation.inverse() * -normal,
+            (others - own).dot(normal),
+        )
+    };
+    let mut widest = None;
     for start in iter::once(None).chain(DIRECTIONS.map(Some)) {
         let found = contact_support_map_support_map_with_params(
             other_at,
@@ -69,30 +86,48 @@ fn search(
         );
         match found {
             GJKResult::ClosestPoints(own, others, normal) => {
-                return Some(Contact::new(
-                    own,
-                    other_at.inverse_transform_point(others),
-                    normal,
-                    other_at.rotation.inverse() * -normal,
-                    (others - own).dot(normal),
-                ));
+                let contact = between(own, others, normal);
+                let is_found = |direction| (gap(direction) - contact.dist).abs() < SAME_GAP;
+                if contact.dist > 0.0 && is_found(normal) {
+                    return Some(contact);
+                }
+                let before = widest.unwrap_or_else(|| {
+                    let others = DIRECTIONS.map(|direction| other_at.rotation * direction);
+                    let faces = DIRECTIONS.into_iter().chain(others);
+                    faces.fold(Vec3::X, wider)
+                });
+                let direction = wider(before, normal);
+                if is_found(direction) {
+                    return Some(contact);
+                }
+                widest = Some(direction);
             }
             GJKResult::NoIntersection(direction) if gap(direction) > most => return None,
             GJKResult::Intersection | GJKResult::Proximity(_) | GJKResult::NoIntersection(_) => {}
         }
     }
-    None
+    let direction = widest.filter(|direction| gap(*direction) <= most)?;
+    let own = solid.local_support_point(direction);
+    Some(between(own, own + gap(direction) * direction, direction))
 }
 
 #[cfg(test)]
 mod tests {
     use std::f32::consts::TAU;
 
+    use tabletop_core::{Rgb, Shape};
+
     use super::*;
+    use crate::collider;
 
     const HALF_HEIGHT: f32 = 1.0;
     const RADIUS: f32 = 0.6;
     const SLAB: Vec3 = Vec3::new(10.0, 6.0, 2.0);
+
+    /// Kronecker's sequence, of numbers from 0 to 1: as even as chance, and the same every time.
+    fn chances<const N: usize>(i: i32, primes: [f64; N]) -> [f32; N] {
+        primes.map(|prime| (f64::from(i) * prime.sqrt()).fract() as f32)
+    }
 
     /// The distance between the slab and the nearest of some points of a cylinder's rims.
     fn distance(at: &rapier::Pose) -> f32 {
@@ -110,14 +145,38 @@ mod tests {
     }
 
     #[test]
+    fn a_lying_cylinder_is_as_deep_as_its_lowest_point() {
+        let slab = rapier::SharedShape::cuboid(SLAB.x, SLAB.y, SLAB.z);
+        let cylinder = Shape::Cylinder {
+            radius: 0.35,
+            yspan: 0.52,
+            color: Rgb::GRAY,
+        };
+        let cylinder = collider(&cylinder).raw;
+        let lowest = |at: &rapier::Pose| {
+            let cylinder = cylinder.as_support_map().unwrap();
+            cylinder.support_point(at, Vec3::NEG_Z).z
+        };
+        for i in 0..100_000 {
+            let [yaw, roll, x, y, depth] = chances(i, [2.0, 3.0, 5.0, 7.0, 11.0]);
+            let turned = Quat::from_rotation_z(TAU * yaw) * Quat::from_rotation_y(TAU * roll);
+            let turned = rapier::Pose::from_parts(Vec3::ZERO, turned);
+            let depth = 2e-4 * (depth - 0.5);
+            let above = SLAB.z - lowest(&turned) - depth;
+            let at = turned.append_translation(Vec3::new(16.0 * x - 8.0, 9.0 * y - 4.5, above));
+            let found = contact(&at, &*cylinder, &rapier::Pose::IDENTITY, &*slab, 0.1).unwrap();
+            let error = found.dist + depth;
+            assert!(error.abs() < 2e-4, "{error}, {depth} deep at {at:?}");
+        }
+    }
+
+    #[test]
     fn what_is_near_the_edge_of_a_slab_is_found() {
         let slab = rapier::SharedShape::cuboid(SLAB.x, SLAB.y, SLAB.z);
         let cylinder = rapier::SharedShape::cylinder(HALF_HEIGHT, RADIUS);
         let mut near = 0;
         for i in 0..150_000 {
-            // Kronecker's sequence: as even as chance, and the same every time.
-            let [a, b, c, x, y, z] = [2.0_f64, 3.0, 5.0, 7.0, 11.0, 13.0]
-                .map(|prime| (f64::from(i) * prime.sqrt()).fract() as f32);
+            let [a, b, c, x, y, z] = chances(i, [2.0, 3.0, 5.0, 7.0, 11.0, 13.0]);
             let turned = Quat::from_euler(EulerRot::XYZ, TAU * a, TAU * b, TAU * c);
             let place = Vec3::new(20.0 * x - 10.0, 2.0 * y - 7.0, 1.2 * z + 2.0);
             let at = rapier::Pose::from_parts(place, turned);
