@@ -351,7 +351,7 @@ impl TickMotion<'_> {
         to: &Poses,
         is_needed: impl Fn(usize) -> bool,
     ) -> Vec<(usize, SweptSolid)> {
-        let mut solids = Vec::new();
+        let mut solids = Vec::with_capacity(self.articulation.bodies.len());
         for number in self.bodies_of(limb).filter(|number| is_needed(*number)) {
             let parts = &self.articulation.bodies[number].parts;
             let [from, to] = [from, to].map(|poses| poses.bodies[number]);
