@@ -26,12 +26,12 @@ const RECORDED: u64 = 30 * TICKS_PER_SECOND as u64;
 /// Largest depth of a body in the table, or in an immovable object, in units.
 const DEEPEST: f32 = 0.05;
 
-/// Number of ticks for which a body may be deeper after it was hit: the engine takes nine to lift it out of [`DEEPEST_HIT`] at its greatest
+/// Number of ticks for which a body may be deeper after it was hit: the engine takes four to lift it out of [`DEEPEST_HIT`] at its greatest
 /// corrective speed of 3 units/s.
-const HIT: u64 = 10;
+const HIT: u64 = 4;
 
 /// Largest depth of a body that is hit, in units.
-const DEEPEST_HIT: f32 = 0.5;
+const DEEPEST_HIT: f32 = 0.25;
 
 /// Largest number of objects of a scene.
 const OBJECTS: usize = 10;

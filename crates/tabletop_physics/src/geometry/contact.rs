@@ -65,6 +65,11 @@ fn search(
         true => another,
         false => one,
     };
+    let widest_face = || {
+        let others = DIRECTIONS.map(|direction| other_at.rotation * direction);
+        let faces = DIRECTIONS.into_iter().chain(others);
+        faces.fold(Vec3::X, wider)
+    };
     let between = |own: Vec3, others: Vec3, normal: Vec3| {
         Contact::new(
             own,
@@ -74,7 +79,7 @@ fn search(
             (others - own).dot(normal),
         )
     };
-    let mut widest = None;
+    let mut rough = None;
     for start in iter::once(None).chain(DIRECTIONS.map(Some)) {
         let found = contact_support_map_support_map_with_params(
             other_at,
@@ -91,23 +96,17 @@ fn search(
                 if contact.dist > 0.0 && is_found(normal) {
                     return Some(contact);
                 }
-                let before = widest.unwrap_or_else(|| {
-                    let others = DIRECTIONS.map(|direction| other_at.rotation * direction);
-                    let faces = DIRECTIONS.into_iter().chain(others);
-                    faces.fold(Vec3::X, wider)
-                });
-                let direction = wider(before, normal);
+                let direction = wider(widest_face(), normal);
                 if is_found(direction) {
                     return Some(contact);
                 }
-                widest = Some(direction);
+                rough = Some((direction, own));
             }
             GJKResult::NoIntersection(direction) if gap(direction) > most => return None,
             GJKResult::Intersection | GJKResult::Proximity(_) | GJKResult::NoIntersection(_) => {}
         }
     }
-    let direction = widest.filter(|direction| gap(*direction) <= most)?;
-    let own = solid.local_support_point(direction);
+    let (direction, own) = rough.filter(|(direction, _)| gap(*direction) <= most)?;
     Some(between(own, own + gap(direction) * direction, direction))
 }
 
