@@ -54,8 +54,8 @@ fn pinned(held: &[Convex], from: Pose, to: Pose, entered: &[Convex], others: &[C
         })
     };
     [to.rotation, from.rotation]
-        .map(|rotation| slide(held, from, Pose::new(location, rotation), others))
         .into_iter()
+        .map(|rotation| slide(held, from, Pose::new(location, rotation), others))
         .find(|at| !is_deeper(at))
         .unwrap_or(from)
 }

@@ -42,7 +42,7 @@ const SPEED_TO_HANDS: f32 = 1.0;
 /// The same of a body that is near other things, too: Rapier would forget its contact with what it is leaving.
 const SPEED_TO_HANDS_BESIDE_OTHERS: f32 = 12.0;
 
-/// Angular speed, in rad/s, up to which that is so: Rapier would not see where the body's edges go.
+/// Angular speed, in rad/s, from which a body's way is not seen ahead: Rapier would not see where its edges go.
 const MOST_TURNING: f32 = 1.0;
 
 /// Speed, in units/s, from which collision detection is continuous.

@@ -61,14 +61,14 @@ fn search(
     let gap = |direction: Vec3| {
         -direction.dot(CsoPoint::from_shapes(other_at, solid, other, direction).point)
     };
-    let wider = |one: Vec3, another: Vec3| match gap(another) > gap(one) {
-        true => another,
-        false => one,
-    };
-    let widest_face = || {
+    let widest = |normal: (f32, Vec3)| {
         let others = DIRECTIONS.map(|direction| other_at.rotation * direction);
         let faces = DIRECTIONS.into_iter().chain(others);
-        faces.fold(Vec3::X, wider)
+        let gaps = faces.map(|direction| (gap(direction), direction));
+        gaps.fold(normal, |widest, next| match next.0 > widest.0 {
+            true => next,
+            false => widest,
+        })
     };
     let between = |own: Vec3, others: Vec3, normal: Vec3| {
         Contact::new(
@@ -92,22 +92,23 @@ fn search(
         match found {
             GJKResult::ClosestPoints(own, others, normal) => {
                 let contact = between(own, others, normal);
-                let is_found = |direction| (gap(direction) - contact.dist).abs() < SAME_GAP;
-                if contact.dist > 0.0 && is_found(normal) {
+                let is_found = |gap: f32| (gap - contact.dist).abs() < SAME_GAP;
+                let along_normal = gap(normal);
+                if contact.dist > 0.0 && is_found(along_normal) {
                     return Some(contact);
                 }
-                let direction = wider(widest_face(), normal);
-                if is_found(direction) {
+                let (width, direction) = widest((along_normal, normal));
+                if is_found(width) {
                     return Some(contact);
                 }
-                rough = Some((direction, own));
+                rough = Some((width, direction, own));
             }
             GJKResult::NoIntersection(direction) if gap(direction) > most => return None,
             GJKResult::Intersection | GJKResult::Proximity(_) | GJKResult::NoIntersection(_) => {}
         }
     }
-    let (direction, own) = rough.filter(|(direction, _)| gap(*direction) <= most)?;
-    Some(between(own, own + gap(direction) * direction, direction))
+    let (width, direction, own) = rough.filter(|(width, ..)| *width <= most)?;
+    Some(between(own, own + width * direction, direction))
 }
 
 #[cfg(test)]
