@@ -2,6 +2,10 @@
 
 pub(crate) mod advance;
 pub(crate) mod environment;
+mod obstacle;
 pub(crate) mod placement;
-pub(crate) mod sweep;
+mod poses;
+mod push;
+mod sweep;
+pub(crate) mod tick_motion;
 pub(crate) mod view;

@@ -20,7 +20,7 @@ use crate::{
     dynamics::impulse::{ContactLoad, FrictionAxis},
     dynamics::matrix::{Joints, each},
     motion::environment::FreeObject,
-    motion::sweep::TickMotion,
+    motion::tick_motion::TickMotion,
 };
 
 /// Cosine of the largest angle to a direction at which something fixed is straight ahead.

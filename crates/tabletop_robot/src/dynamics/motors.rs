@@ -15,7 +15,7 @@ use crate::{
     dynamics::limb_dynamics::{DynamicsStep, LimbDynamics},
     dynamics::matrix::{Joints, Matrix, each, each_pair},
     dynamics::motor::{Motor, MotorTask, STRETCH},
-    motion::sweep::TickMotion,
+    motion::tick_motion::TickMotion,
 };
 
 /// Share of a motor's torque that slows a joint down before its goal.

@@ -18,7 +18,8 @@ use crate::{
     gripper::grips::Grips,
     motion::{
         environment::Environment,
-        sweep::{Carried, Poses, TickMotion, reach},
+        poses::Poses,
+        tick_motion::{Carried, TickMotion, reach},
     },
 };
 

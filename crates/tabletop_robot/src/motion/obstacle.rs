@@ -1,0 +1,116 @@
+//! What the robot cannot pass.
+
+use bevy_rapier3d::parry::bounding_volume::BoundingVolume;
+use tabletop_core::LimbId;
+
+use crate::{
+    articulation::tree::Positions,
+    clearance::{MARGIN, Owner, SweptSolid, are_near},
+    motion::{
+        poses::{Poses, ROUNDING},
+        tick_motion::{TickMotion, is_of},
+    },
+};
+
+impl TickMotion<'_> {
+    /// An obstacle that an arm is inside of.
+    pub fn is_inside(&mut self, limb: LimbId) -> Option<Owner> {
+        let here = self.positions.clone();
+        let solids = self.solids(limb, &here, &here);
+        let mut immovable = self.environment.immovable.iter();
+        immovable
+            .find(|obstacle| {
+                solids
+                    .iter()
+                    .any(|(_, solid)| solid.depth_in(obstacle) > 0.0)
+            })
+            .map(|obstacle| obstacle.owner)
+    }
+
+    /// The obstacle in the way of an arm between two positions.
+    pub(super) fn obstacle(
+        &mut self,
+        limb: LimbId,
+        from: &Positions,
+        to: &Positions,
+    ) -> Option<Owner> {
+        if !self.is_shown {
+            return None;
+        }
+        let here = self.poses(&self.positions.clone());
+        let [from, to] = [from, to].map(|positions| self.poses(positions));
+        let solids = self.solids_of(limb, &from, &to, |number| {
+            self.may_collide(limb, number, &here, &to)
+        });
+        let outside = solids.iter().find_map(|(_, solid)| {
+            let mut immovable = self.environment.immovable.iter();
+            immovable
+                .find(|obstacle| solid.collides_with(obstacle, solid.give()))
+                .map(|obstacle| obstacle.owner)
+        });
+        outside.or_else(|| self.own_body(limb, &solids, &here))
+    }
+
+    /// True if a body of an arm, or an object it holds, may come near an obstacle on this way.
+    fn may_collide(&self, limb: LimbId, number: usize, here: &Poses, there: &Poses) -> bool {
+        if !self.carried[limb.index()].is_empty() {
+            return true;
+        }
+        let around = &there.around[number];
+        let mut immovable = self.environment.immovable.iter();
+        let mut partners = self.self_collisions.partners(number).iter();
+        immovable.any(|obstacle| are_near(obstacle.bounds(), around))
+            || partners.any(|&other| {
+                let bodies = &self.articulation.bodies;
+                let poses = if is_of(&bodies[other], limb) {
+                    there
+                } else {
+                    here
+                };
+                let reach = bodies[number].radius + bodies[other].radius + MARGIN + ROUNDING;
+                let [at, other_at] = [there.bodies[number], poses.bodies[other]];
+                at.location.distance_squared(other_at.location) < reach * reach
+            })
+    }
+
+    /// The body of the robot that solids of an arm would collide with.
+    fn own_body(
+        &self,
+        limb: LimbId,
+        solids: &[(usize, SweptSolid)],
+        here: &Poses,
+    ) -> Option<Owner> {
+        for (i, (a, solid)) in solids.iter().enumerate() {
+            let met = solids[..i].iter().find(|(b, other)| {
+                self.self_collisions.can_meet(*a, *b) && solid.collides_with(other, 0.0)
+            });
+            if let Some((_, other)) = met {
+                return Some(other.owner);
+            }
+        }
+        let bounds = solids.iter().map(|(_, solid)| *solid.bounds());
+        let bounds = bounds.reduce(|one, other| one.merged(&other))?;
+        for (number, body) in self.articulation.bodies.iter().enumerate() {
+            let around = &here.around[number];
+            if is_of(body, limb) || !are_near(&bounds, around) {
+                continue;
+            }
+            let may_meet = |(a, solid): &(usize, SweptSolid)| {
+                self.self_collisions.can_meet(*a, number) && are_near(solid.bounds(), around)
+            };
+            if !solids.iter().any(may_meet) {
+                continue;
+            }
+            let pose = here.bodies[number];
+            for other in SweptSolid::moving(&body.parts, Owner::Body(number), pose, pose) {
+                let is_met = solids.iter().any(|(a, solid)| {
+                    self.self_collisions.can_meet(*a, number) && solid.collides_with(&other, 0.0)
+                });
+                if is_met {
+                    return Some(other.owner);
+                }
+            }
+        }
+        None
+    }
+}
