@@ -57,48 +57,20 @@ impl Imitator<'_> {
         step: &TaskStep,
         id: &str,
     ) -> Result<Option<String>, PlanFailure> {
-        let goals = candidates(step, self.binding, sight, &self.before)?;
-        let Some(object) = sight.objects.get(id) else {
-            return Ok(None);
-        };
-        let places = goals.first().map(|goal| goal.pose);
-        let solids: Vec<_> = places
-            .into_iter()
-            .chain([object.pose])
-            .flat_map(|pose| object.solids_at(pose))
-            .collect();
-        let done = &self.task.steps[..step.number - 1];
-        let references = self.task.steps[..step.number].iter();
-        let references = references.flat_map(|step| &step.relations);
-        let settled = done
-            .iter()
-            .map(|step| step.object.as_str())
-            .chain(references.filter_map(Relation::object));
-        let arrangement = sight.arrangement();
-        let carriers = [
-            arrangement.supports(id),
-            arrangement.containers(id),
-            arrangement.posts(id),
-        ];
-        let carriers = carriers.concat().into_iter();
-        let settled: Vec<_> = settled
-            .filter_map(|role| self.binding.object(role))
-            .chain(carriers.filter(|carrier| !sight.covers(carrier, id)))
-            .collect();
-        let is_movable = |other: &str, seen: &SeenObject| {
-            let is_jointed = || {
-                sight
-                    .joints
-                    .iter()
-                    .any(|joint| joint.objects.iter().any(|one| one == other))
-            };
-            other != id && !seen.is_fixed && !settled.contains(&other) && !is_jointed()
+        let rooms = self.rooms(sight, step, id)?;
+        let settled = self.settled(sight, step, id);
+        let is_movable = |other: &String, seen: &SeenObject| {
+            let mut joints = sight.joints.iter();
+            other != id
+                && !seen.is_fixed
+                && !settled.contains(other)
+                && !joints.any(|joint| joint.objects.contains(other))
         };
         let gap = |other: &SeenObject| {
             let theirs = other.solids();
-            let gaps = solids
-                .iter()
-                .flat_map(|solid| theirs.iter().map(|other| solid.gap_from_above(other)));
+            let solids = rooms.iter().flatten();
+            let gaps =
+                solids.flat_map(|solid| theirs.iter().map(|other| solid.gap_from_above(other)));
             gaps.fold(f32::INFINITY, f32::min)
         };
         let near = sight
@@ -111,6 +83,43 @@ impl Imitator<'_> {
         Ok(nearest.map(|(_, other)| other.clone()))
     }
 
+    /// The solids of a step's object at its goal, if there is one, and at its place.
+    fn rooms(
+        &self,
+        sight: &Sight,
+        step: &TaskStep,
+        id: &str,
+    ) -> Result<Vec<Vec<PlacedSolid>>, PlanFailure> {
+        let goals = candidates(step, self.binding, sight, &self.before)?;
+        let Some(object) = sight.objects.get(id) else {
+            return Ok(Vec::new());
+        };
+        let goal = goals.first().map(|goal| goal.pose);
+        let poses = goal.into_iter().chain([object.pose]);
+        Ok(poses.map(|pose| object.solids_at(pose)).collect())
+    }
+
+    /// What stays beside a step's object: objects of the steps up to this one, and what carries the object.
+    fn settled(&self, sight: &Sight, step: &TaskStep, id: &str) -> Vec<String> {
+        let steps = &self.task.steps[..step.number];
+        let relations = steps.iter().flat_map(|step| &step.relations);
+        let done = steps[..step.number - 1].iter();
+        let roles = done
+            .map(|step| step.object.as_str())
+            .chain(relations.filter_map(Relation::object));
+        let arrangement = sight.arrangement();
+        let carriers = [
+            arrangement.supports(id),
+            arrangement.containers(id),
+            arrangement.posts(id),
+        ];
+        let carriers = carriers.concat().into_iter();
+        let settled = roles
+            .filter_map(|role| self.binding.object(role))
+            .chain(carriers.filter(|carrier| !sight.covers(carrier, id)));
+        settled.map(str::to_owned).collect()
+    }
+
     /// The lids above an object or its place, and the displacements after which they are no longer.
     pub(super) fn lids(
         &self,
@@ -118,18 +127,12 @@ impl Imitator<'_> {
         step: &TaskStep,
         id: &str,
     ) -> Result<Vec<(String, Vec3)>, PlanFailure> {
-        let goals = candidates(step, self.binding, sight, &self.before)?;
-        let Some(object) = sight.objects.get(id) else {
-            return Ok(Vec::new());
-        };
-        let places = goals.first().map(|goal| goal.pose).into_iter();
-        let places = places.chain([object.pose]);
-        let places: Vec<_> = places.map(|pose| object.solids_at(pose)).collect();
+        let rooms = self.rooms(sight, step, id)?;
         let lids = sight.objects.iter().filter_map(|(other, seen)| {
             let slider = Slider::of(sight, other).filter(|_| other != id)?;
             let covers = |by: Vec3| {
                 let solids = seen.solids_at(Pose::new(seen.pose.location + by, seen.pose.rotation));
-                places.iter().any(|place| is_above(&solids, place))
+                rooms.iter().any(|room| is_above(&solids, room))
             };
             let ends = [slider.travel, 0.0].map(|end| slider.by(end));
             let by = ends.into_iter().find(|by| !covers(*by))?;
