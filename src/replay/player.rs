@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop_core::{
-    Actor, Agent, ClockCommand, CommandSystems, CommandWriter, HandCommand, IssuedCommand, Paused,
-    RecordingCommand, Replaying, RestApp as _, RestingSystems, RobotCommand, ScriptEvent,
+    Actor, Agent, ClockCommand, CommandWriter, HandCommand, IssuedCommand, MechanismSystems,
+    Paused, RecordingCommand, Replaying, RestApp as _, RestingSystems, RobotCommand, ScriptEvent,
     SimCommand, SimFact, SimSystems, SimTick, TickSystems,
 };
 use tabletop_recorder::{Session, SessionCommand};
@@ -165,8 +165,8 @@ pub(crate) fn plugin(app: &mut App) {
         (
             play.before(SimSystems::Load),
             pause_late
-                .after(CommandSystems::Robot)
-                .before(SimSystems::Actuate),
+                .after(MechanismSystems::Obey)
+                .before(MechanismSystems::React),
         )
             .run_if(resource_exists::<Player>)
             .in_set(TickSystems)
@@ -175,7 +175,7 @@ pub(crate) fn plugin(app: &mut App) {
     .wake_after(|player: Option<Res<Player>>, tick: Res<SimTick>| player?.waits_for(*tick));
 }
 
-/// Begins a pause after the tick's commands were carried out.
+/// Begins a pause after the tick's commands were carried out: what undo leaves of a tick are commands to the scene, hands and mechanisms.
 fn pause_late(mut player: ResMut<Player>, mut paused: ResMut<Paused>) {
     if std::mem::take(&mut player.pauses_late) {
         paused.0 = true;

@@ -174,6 +174,60 @@ fn a_screw_that_came_with_a_grasp_is_fastened_again_after_undo() {
 }
 
 #[test]
+fn a_button_comes_up_after_a_pause_in_which_the_hand_over_of_its_tick_was_undone() {
+    let begun = || {
+        let mut demonstration = begun("comes_up");
+        let block = |id: &str, x| {
+            let color = Rgb::GRAY;
+            let span = Vec3::ONE;
+            let pose = Pose::at(Vec3::new(x, 4.0, 0.5));
+            SceneItem::Object(ObjectSpec::new(id, pose, 1.0, Shape::Block { span, color }))
+        };
+        let mut items = mechanisms::items(Vec3::Z * 2.0);
+        items.extend([block("one", -8.0), block("other", -6.0)]);
+        let scene = SceneSpec { items, ..default() };
+        let trigger = MechanismCommand::Trigger {
+            hand: Hand::Right,
+            control: "knob".into(),
+            part: None,
+        };
+        demonstration.act(&[
+            (vec![SceneCommand::Set(Box::new(scene)).into()], 60),
+            (vec![trigger.into(), grasp(Hand::Left, "one")], 1),
+        ]);
+        demonstration
+    };
+    let is_pressed = |demonstration: &Demonstration| {
+        let world = demonstration.app.world();
+        let knob = world.resource::<ObjectIndex>().get("knob").unwrap();
+        let spec = world.get::<ObjectSpec>(knob).unwrap();
+        spec.control("knob").unwrap().state != 0
+    };
+    let mut straight = begun();
+    let pressed = (0..100).map(|_| {
+        straight.tick(&[]);
+        is_pressed(&straight)
+    });
+    let pressed: Vec<_> = pressed.collect();
+    let comes_up = pressed.windows(2).position(|ticks| ticks == [true, false]);
+    let comes_up = comes_up.unwrap() as u64 + 1;
+
+    let mut demonstration = begun();
+    let set_paused = |is_paused| ClockCommand::SetPaused(is_paused).into();
+    demonstration.act(&[(vec![], comes_up)]);
+    assert!(is_pressed(&demonstration));
+    demonstration.tick(&[grasp(Hand::Left, "other")]);
+    assert!(!is_pressed(&demonstration));
+    demonstration.act(&[
+        (vec![set_paused(true)], 1),
+        (vec![HistoryCommand::Undo.into()], 1),
+        (vec![set_paused(false), grasp(Hand::Left, "other")], 20),
+        (vec![RecordingCommand::Finish.into()], 1),
+    ]);
+    assert_replays(&demonstration.folder);
+}
+
+#[test]
 fn what_has_shrunk_in_an_undo_leaves_room() {
     let task = r#"<tabletop xmlns="http://synapse.cs.umd.edu/tabletop-xml">
       <customControl id="dial" location="(0,0,0.5)">

@@ -10,8 +10,9 @@ use bevy::{
 };
 
 use crate::{
-    ActuateSystems, CommandSystems, OrderSystems, Paused, PictureDemand, PictureSystems,
-    RestingSystems, SimBlocked, SimSystems, SimTick, TICKS_PER_SECOND, TickSystems, rest,
+    ActuateSystems, CommandSystems, MechanismSystems, OrderSystems, Paused, PictureDemand,
+    PictureSystems, RestingSystems, SimBlocked, SimSystems, SimTick, TICKS_PER_SECOND, TickSystems,
+    rest,
 };
 
 pub(crate) fn configure(app: &mut App) {
@@ -63,6 +64,12 @@ pub(crate) fn configure(app: &mut App) {
         .configure_sets(
             FixedUpdate,
             CommandSystems::Scene.in_set(SimSystems::Ingest),
+        )
+        .configure_sets(
+            FixedUpdate,
+            (MechanismSystems::Obey, MechanismSystems::React)
+                .chain()
+                .in_set(CommandSystems::Mechanisms),
         )
         .configure_sets(
             FixedUpdate,

@@ -118,7 +118,9 @@ pub use object_index::ObjectIndex;
 pub use operator::{Operator, OperatorError};
 pub use pace::{Pace, PacePlugin, SingleStep};
 pub use paused::Paused;
-pub use phase::{ActuateSystems, CommandSystems, OrderSystems, SimSystems, TickSystems};
+pub use phase::{
+    ActuateSystems, CommandSystems, MechanismSystems, OrderSystems, SimSystems, TickSystems,
+};
 pub use picture::Picture;
 pub use playback::{Playback, PlaybackOrder};
 pub use polyhedron::{MOST_SIDES, Polyhedron, PolyhedronError, ROUND_SIDES};

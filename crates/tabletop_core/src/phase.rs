@@ -59,6 +59,15 @@ pub enum CommandSystems {
     Robot,
 }
 
+/// The parts of [`CommandSystems::Mechanisms`], in order.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum MechanismSystems {
+    /// Commands are carried out.
+    Obey,
+    /// Controls and bonds follow what touches and turns them, not while paused.
+    React,
+}
+
 /// The parts of [`SimSystems::Actuate`], in order.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ActuateSystems {

@@ -50,7 +50,9 @@ mod shears;
 mod wrench;
 
 use bevy::prelude::*;
-use tabletop_core::{Bonds, CommandSystems, RestApp as _, RestingSystems, require};
+use tabletop_core::{
+    Bonds, CommandSystems, MechanismSystems, RestApp as _, RestingSystems, require,
+};
 use tabletop_history::{RollbackApp, is_rolling_back};
 use tabletop_physics::{PhysicsPlugin, take_in};
 
@@ -74,16 +76,20 @@ impl Plugin for MechanismPlugin {
             .add_systems(
                 FixedUpdate,
                 (
-                    settle::settle.run_if(settle::any),
-                    obey::obey,
-                    wrench::turn.run_if(wrench::is_possible),
-                    press::press.run_if(press::is_possible),
-                    button::moved_caps.pipe(button::follow_caps),
-                    shears::cut_links.run_if(shears::are_there),
-                    take_in,
+                    (settle::settle.run_if(settle::any), obey::obey)
+                        .chain()
+                        .in_set(MechanismSystems::Obey),
+                    (
+                        wrench::turn.run_if(wrench::is_possible),
+                        press::press.run_if(press::is_possible),
+                        button::moved_caps.pipe(button::follow_caps),
+                        shears::cut_links.run_if(shears::are_there),
+                    )
+                        .chain()
+                        .in_set(MechanismSystems::React),
+                    take_in.in_set(CommandSystems::Mechanisms),
                 )
                     .chain()
-                    .in_set(CommandSystems::Mechanisms)
                     .in_set(RestingSystems),
             )
             .wake_while(settle::any)
