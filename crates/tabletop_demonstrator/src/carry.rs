@@ -1,19 +1,18 @@
 //! Carrying: the motion of held objects.
 
+use std::cell::OnceCell;
+
 use bevy::prelude::*;
-use bevy_rapier3d::{
-    parry::bounding_volume::{Aabb, BoundingVolume as _},
-    prelude::*,
-    rapier::prelude as rapier,
-};
+use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*, rapier::prelude as rapier};
 use tabletop_core::{Hand, Hands, Joint, Pose, TICK_SECONDS};
 use tabletop_physics::{
-    Carry, Convex, Nearest, convex_parts, depth, nearby, nearest, pull_velocity,
+    Carry, Convex, Nearby, Nearest, convex_parts, nearby, nearest, pull_velocity,
 };
 
 use crate::{
     grasp::CarryTarget,
     obstacles::{leave, slide},
+    pile::{Pile, PiledObject, Resistance},
 };
 
 /// Greatest speeds of a hand: in units/s, and in rad/s for turning.
@@ -65,7 +64,9 @@ pub(crate) fn carry(
             continue;
         };
         let next = advanced(here, target.0);
-        let near = Near::new(&rapier, collider, &joints, here, next);
+        let is_jointed = |object| joints.iter().any(|joint| joint.objects.contains(&object));
+        let shape = collider.shape();
+        let near = Near::new(&rapier, object, shape, &is_jointed, here, next);
         let next = carried(collider, here, next, &near);
         transform.set_if_neq(next.into());
         for neighbour in near.sleeping {
@@ -121,16 +122,14 @@ fn turned(held: &[Convex], here: Pose, rotation: Quat, near: &Near) -> Quat {
 /// A free object that a held one reaches.
 struct Push {
     nearest: Nearest,
-    /// The way, in units, by which it gives way before it is too deep in something.
-    give: f32,
-    /// Its depth in something, in units.
-    depth: f32,
+    resistance: Resistance,
 }
 
 impl Push {
     /// The way, in units, by which it gives way in a tick.
     fn way(&self) -> f32 {
-        self.give.min(FASTEST_PUSH * TICK_SECONDS)
+        let give = self.resistance.give(TOO_DEEP.0);
+        give.min(FASTEST_PUSH * TICK_SECONDS)
     }
 }
 
@@ -138,7 +137,7 @@ impl Push {
 fn slowness(pushes: &[Push]) -> f32 {
     let depths = pushes
         .iter()
-        .map(|push| push.depth.max(-push.nearest.distance));
+        .map(|push| push.resistance.depth.max(-push.nearest.distance));
     let room = TOO_DEEP.1 - depths.fold(0.0, f32::max);
     (room / (TOO_DEEP.1 - TOO_DEEP.0)).clamp(0.0, 1.0)
 }
@@ -181,26 +180,30 @@ fn advanced(here: Pose, target: Pose) -> Pose {
 }
 
 /// The neighbourhood of a carried object's way, as convex parts in the frame of the world.
-struct Near {
+struct Near<'a> {
     /// Obstacles: everything that does not move by itself.
     immovable: Vec<Convex>,
-    /// The same near the free objects, which may be pressed into it.
-    beneath: Vec<Convex>,
     /// Objects that it pushes.
-    free: Vec<FreeNeighbour>,
+    free: Vec<PiledObject>,
     /// The free objects that sleep.
     sleeping: Vec<Entity>,
+    /// The pile of these objects, if they were reached.
+    pile: OnceCell<Pile>,
+    rapier: &'a RapierContext<'a>,
+    carried: Entity,
+    is_jointed: &'a dyn Fn(Entity) -> bool,
 }
 
-impl Near {
+impl<'a> Near<'a> {
     fn new(
-        rapier: &RapierContext,
-        carried: &rapier::Collider,
-        joints: &Query<&Joint>,
+        rapier: &'a RapierContext,
+        carried: Entity,
+        shape: &dyn rapier::Shape,
+        is_jointed: &'a dyn Fn(Entity) -> bool,
         here: Pose,
         next: Pose,
     ) -> Self {
-        let bounds = carried.shape().compute_local_bounding_sphere();
+        let bounds = shape.compute_local_bounding_sphere();
         let radius = bounds.center().length() + bounds.radius();
         // It is pushed out of what it would be turned into.
         let turning = here.rotation.angle_between(next.rotation) * radius;
@@ -211,38 +214,36 @@ impl Near {
         );
         let mut near = Self {
             immovable: Vec::new(),
-            beneath: Vec::new(),
             free: Vec::new(),
             sleeping: Vec::new(),
+            pile: OnceCell::new(),
+            rapier,
+            carried,
+            is_jointed,
         };
-        let mut around_free = None::<Aabb>;
-        for other in nearby(rapier.colliders, rapier.rigidbody_set, way, |_| true) {
-            if other.collider.parent() == carried.parent() {
-                continue;
-            }
+        for other in near.others(way) {
             if !other.body.is_dynamic() {
                 near.immovable.extend(other.parts());
                 continue;
             }
-            let room = other.collider.compute_aabb().loosened(PROBE);
-            around_free = Some(around_free.map_or(room, |all| all.merged(&room)));
-            let is_of_joint = |joint: &Joint| joint.objects.contains(&other.entity);
-            near.free.push(FreeNeighbour {
-                parts: other.parts(),
-                is_jointed: joints.iter().any(is_of_joint),
-            });
+            near.free.push(PiledObject::new(&other, is_jointed));
             if other.body.is_sleeping() {
                 near.sleeping.push(other.entity);
             }
         }
-        if let Some(room) = around_free {
-            for other in nearby(rapier.colliders, rapier.rigidbody_set, room, |_| true) {
-                if other.collider.parent() != carried.parent() && !other.body.is_dynamic() {
-                    near.beneath.extend(other.parts());
-                }
-            }
-        }
         near
+    }
+
+    /// The other bodies in a box.
+    fn others(&self, room: Aabb) -> impl Iterator<Item = Nearby<'a>> + use<'a> {
+        let carried = self.carried;
+        let is_other = move |entity| entity != carried;
+        nearby(
+            self.rapier.colliders,
+            self.rapier.rigidbody_set,
+            room,
+            is_other,
+        )
     }
 
     /// How much farther, in units, a held one at a pose is in free objects than they give way in a tick.
@@ -254,52 +255,22 @@ impl Near {
 
     /// The free objects that a held one at a pose reaches within a step's length, in units.
     fn pushes(&self, held: &[Convex], here: Pose, step: f32) -> Vec<Push> {
-        let of_object = |object: &FreeNeighbour| {
-            let reached: Vec<_> = nearest(held, here, &object.parts, step + MOST_SQUEEZE).collect();
-            let depth = match reached.is_empty() {
-                true => 0.0,
-                false => object.depth(Vec3::ZERO, &self.beneath),
-            };
+        let of_object = |object: &PiledObject| {
+            let entity = object.entity;
+            let reached = nearest(held, here, &object.parts, step + MOST_SQUEEZE);
             let push = |nearest: Nearest| Push {
-                give: object.give(-nearest.away, depth, &self.beneath),
-                depth,
+                resistance: self.pile().resistance(entity, -nearest.away),
                 nearest,
             };
-            reached.into_iter().map(push).collect::<Vec<_>>()
+            reached.map(push).collect::<Vec<_>>()
         };
         self.free.iter().flat_map(of_object).collect()
     }
-}
 
-/// Distance, in units, by which it is tried whether a free object gives way.
-const PROBE: f32 = 0.05;
-
-/// Increase of depth with the way from which a free object does not give way.
-const STEEP: f32 = 0.1;
-
-/// A free object near a carried one.
-struct FreeNeighbour {
-    /// Its convex parts, in the frame of the world.
-    parts: Vec<Convex>,
-    /// True if a joint holds it, perhaps inside another object.
-    is_jointed: bool,
-}
-
-impl FreeNeighbour {
-    /// Depth, in units, of the shifted object in what does not move.
-    fn depth(&self, by: Vec3, immovable: &[Convex]) -> f32 {
-        if self.is_jointed {
-            return 0.0;
-        }
-        depth(&self.parts, Pose::at(by), immovable)
-    }
-
-    /// The way, in units, by which it can be pushed in a direction, from its present depth until it is too deep in something.
-    fn give(&self, direction: Vec3, depth: f32, immovable: &[Convex]) -> f32 {
-        let steepness = (self.depth(direction * PROBE, immovable) - depth) / PROBE;
-        if steepness < STEEP {
-            return f32::INFINITY;
-        }
-        ((TOO_DEEP.0 - depth) / steepness).max(0.0)
+    fn pile(&self) -> &Pile {
+        self.pile.get_or_init(|| {
+            let everywhere = Aabb::new(Vec3::MIN, Vec3::MAX);
+            Pile::of(&self.free, self.others(everywhere), self.is_jointed)
+        })
     }
 }

@@ -43,6 +43,7 @@
 mod carry;
 mod grasp;
 mod obstacles;
+mod pile;
 mod rules;
 
 pub use grasp::CarryTarget;
