@@ -37,6 +37,7 @@ mod geometry;
 mod holding;
 mod order;
 mod outside;
+mod quarantine;
 mod rest;
 mod settings;
 mod short_turn;
@@ -73,6 +74,8 @@ use tabletop_core::{
 };
 use tabletop_history::RollbackApp;
 
+use crate::quarantine::Quarantine;
+
 /// Length to which Rapier scales its tolerances. The parameters are in units; a greater number would only fatten the boxes
 /// in which it looks for contacts.
 const LENGTH_UNIT: f32 = 1.0;
@@ -99,6 +102,7 @@ impl Plugin for PhysicsPlugin {
             .add_message::<MassModifiedEvent>();
         app.init_resource::<Care>()
             .init_resource::<outside::WrittenBack>()
+            .init_resource::<Quarantine>()
             .insert_resource(self.settings)
             .insert_resource(TimestepMode::Fixed {
                 dt: TICK_SECONDS,
@@ -138,6 +142,10 @@ impl Plugin for PhysicsPlugin {
                         .in_set(SimSystems::Physics),
                     RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::StepSimulation),
                     RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::Writeback),
+                    quarantine::let_out
+                        .after(systems::writeback_rigid_bodies)
+                        .after(systems::writeback_mass_properties)
+                        .in_set(PhysicsSet::Writeback),
                     outside::note_written_back
                         .after(PhysicsSet::Writeback)
                         .in_set(SimSystems::Physics),
@@ -167,6 +175,7 @@ impl Plugin for PhysicsPlugin {
             .rollback_component::<JustReleased>()
             .rollback_component::<Carry>()
             .rollback_resource::<Care>()
+            .rollback_resource::<Quarantine>()
             .rollback_state::<PhysicsSnapshot>()
             .derived_component::<Twist>();
     }

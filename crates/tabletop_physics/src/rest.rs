@@ -4,7 +4,10 @@ use bevy::{ecs::change_detection::Tick, ecs::system::SystemId, prelude::*};
 use bevy_rapier3d::{plugin::systems::step_simulation, prelude::*};
 use tabletop_core::{RestApp as _, RestingSystems, SimSystems};
 
-use crate::outside::{ChangedBody, ChangedCollider, Removals};
+use crate::{
+    outside::{ChangedBody, ChangedCollider, Removals},
+    quarantine::Quarantine,
+};
 
 /// Number of steps after which Rapier's broad phase checks whether its tree is worth tidying up. Any other step in which everything sleeps
 /// only counts.
@@ -46,6 +49,7 @@ pub(crate) fn plugin(app: &mut App) {
         .wake_while(is_engine_changed)
         .wake_while(is_any_body_changed)
         .wake_while(is_any_body_removed)
+        .wake_while(Quarantine::changes)
         .at_rest(count_steps);
 }
 

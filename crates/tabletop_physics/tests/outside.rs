@@ -126,3 +126,20 @@ fn what_wakes_in_a_tick_wakes_in_the_order_of_bodies() {
     app.step(1);
     assert_eq!(active(&mut app), bodies);
 }
+
+#[test]
+fn a_body_whose_velocity_is_no_number_stops_and_falls_on() {
+    let (mut app, ball) = app();
+    let height = |app: &App| app.world().get::<Transform>(ball).unwrap().translation.z;
+    let before = height(&app);
+    app.world_mut().get_mut::<Velocity>(ball).unwrap().linear = Vec3::NAN;
+    app.step(1);
+    assert_eq!(height(&app), before);
+    assert_eq!(
+        app.world().get::<Velocity>(ball).unwrap().linear,
+        Vec3::ZERO
+    );
+    app.step(30);
+    let depth = before - height(&app);
+    assert!((10.0..20.0).contains(&depth), "{depth}");
+}
