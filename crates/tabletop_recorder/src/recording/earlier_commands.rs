@@ -117,7 +117,10 @@ impl EarlierCommands {
     /// Adds lines of a session log: what a recording has logged since it started. `None` if that is not known.
     pub(crate) fn append_recorded(&mut self, lines: Option<&[u8]>) {
         match lines {
-            Some(lines) => self.append(lines),
+            Some(lines) => {
+                let count = lines.iter().filter(|&&byte| byte == b'\n').count();
+                self.append(lines, count);
+            }
             None => self.forget(),
         }
     }
@@ -134,7 +137,7 @@ impl EarlierCommands {
     fn append_command(&mut self, command: &SessionCommand) {
         if is_logged(&command.command) {
             match command_line(command) {
-                Ok(line) => self.append(&line),
+                Ok(line) => self.append(&line, 1),
                 Err(error) => {
                     warn!("no recording can be replayed until a scene is set: {error}");
                     self.forget();
@@ -143,11 +146,11 @@ impl EarlierCommands {
         }
     }
 
-    fn append(&mut self, lines: &[u8]) {
+    fn append(&mut self, lines: &[u8], count: usize) {
         if self.lines.len() + lines.len() > MOST_BYTES {
             self.forget();
         } else if self.begin.is_some() {
-            self.count += lines.iter().filter(|&&byte| byte == b'\n').count();
+            self.count += count;
             self.lines.extend_from_slice(lines);
         }
     }
