@@ -6,7 +6,7 @@ mod kit;
 use bevy::prelude::*;
 use bevy_rapier3d::{prelude::Collider, rapier::prelude::SharedShape};
 use kit::Stage;
-use tabletop_core::{Face, Figure, RobotCommand, StepApp};
+use tabletop_core::{Drive, Face, Figure, RobotCommand, RobotJoint, StepApp};
 use tabletop_robot::{Description, DescriptionSource, RobotLink, RobotPlugin};
 
 /// Triangles of every body that is seen, by name.
@@ -135,4 +135,38 @@ fn what_has_no_mesh_is_shown_by_what_it_is_touched_by() {
         .map(|(_, (name, _))| name.as_str())
         .collect();
     assert_eq!(changed, ["left wrist", "right wrist"]);
+}
+
+#[test]
+fn a_link_that_touches_nothing_moves_with_its_arm() {
+    let urdf = include_str!("../../../assets/baxter/baxter.urdf");
+    let touched_by = "<collision>
+      <origin xyz=\"0 0 0.056\"/>
+      <geometry><cylinder radius=\"0.06\" length=\"0.288\"/></geometry>
+    </collision>";
+    assert!(urdf.contains(touched_by));
+    let source = DescriptionSource {
+        path: "my.urdf".into(),
+        urdf: urdf.replacen(touched_by, "", 1),
+        layout: None,
+        reach: None,
+    };
+    let robot = RobotPlugin {
+        description: Some(Description::read(source).unwrap()),
+        ..default()
+    };
+    let turned = |mut stage: Stage| {
+        let drive = Drive::Velocity(1.0);
+        stage.tell(RobotCommand::drive([(RobotJoint::LeftS1, drive)]));
+        stage.app.step(20);
+        let world = stage.app.world_mut();
+        let mut links = world.query::<(&RobotLink, &Transform, Has<Collider>)>();
+        let mut links = links.iter(world);
+        let found = links.find(|(link, ..)| link.name == "left upper forearm");
+        let (_, place, is_touched) = found.unwrap();
+        (*place, is_touched)
+    };
+    let (there, is_touched) = turned(Stage::new());
+    assert!(is_touched);
+    assert_eq!(turned(Stage::with(robot)), (there, false));
 }

@@ -4,6 +4,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::{
     plugin::systems::{init_colliders, init_rigid_bodies},
     prelude::*,
+    rapier::prelude::RigidBodyHandle,
 };
 use tabletop_core::{CarriesHeadCamera, Pose, Robot, Rollback, Table};
 use tabletop_physics::{MET_WHEN_THERE, to_rapier};
@@ -171,9 +172,8 @@ pub(crate) fn put(bodies: &mut RapierRigidBodySet, part: Entity, pose: Pose) {
 }
 
 /// Puts a body that meets nothing at a pose, asleep: the engine leaves it out of its step.
-pub(crate) fn put_asleep(bodies: &mut RapierRigidBodySet, part: Entity, pose: Pose) {
-    let handle = bodies.entity2body().get(&part).copied();
-    if let Some(body) = handle.and_then(|handle| bodies.bodies.get_mut(handle)) {
+pub(crate) fn put_asleep(bodies: &mut RapierRigidBodySet, part: RigidBodyHandle, pose: Pose) {
+    if let Some(body) = bodies.bodies.get_mut(part) {
         body.set_position(to_rapier(pose), false);
         body.sleep();
     }

@@ -28,7 +28,14 @@ const JUMP: f32 = 1.0;
 #[derive(SystemParam)]
 pub(crate) struct MovedBodies<'w, 's> {
     rapier: WriteRapierContext<'w, 's>,
-    transforms: Query<'w, 's, &'static mut Transform>,
+    places: Query<
+        'w,
+        's,
+        (
+            Option<&'static RapierRigidBodyHandle>,
+            &'static mut Transform,
+        ),
+    >,
     sleeping: Query<'w, 's, &'static mut Sleeping>,
 }
 
@@ -133,11 +140,13 @@ pub(crate) fn advance(
     }
     let places = known.places(&mut motion, &robot, &grips);
     for (number, (entity, pose)) in places.into_iter().enumerate() {
+        let Ok((handle, transform)) = moved.places.get_mut(entity) else {
+            continue;
+        };
         let bodies = &mut rapier.rigidbody_set;
-        if passive.is_far(number) {
-            put_asleep(bodies, entity, pose);
-        } else if let Ok(transform) = moved.transforms.get_mut(entity) {
-            push(bodies, entity, transform, pose);
+        match handle {
+            Some(handle) if passive.is_far(number) => put_asleep(bodies, handle.0, pose),
+            _ => push(bodies, entity, transform, pose),
         }
     }
     *posture = Some(motion.scratch);
