@@ -4,7 +4,13 @@
 //! their contacts.
 
 use bevy::prelude::*;
-use bevy_rapier3d::{prelude::*, rapier::prelude::RigidBodyHandle};
+use bevy_rapier3d::{
+    prelude::{
+        RapierContextSimulation, RapierRigidBodyHandle, RapierRigidBodySet, RigidBodyDisabled,
+        Velocity,
+    },
+    rapier::prelude::{RigidBody, RigidBodyHandle, RigidBodyType},
+};
 
 /// The bodies that the engine has disabled.
 #[derive(Resource, Clone, Debug, Default)]
@@ -26,16 +32,24 @@ impl Quarantine {
     }
 }
 
-/// Lets out of quarantine what was there during this step, and notes what has come into it.
+/// Lets out of quarantine what was there during this step, notes what has come into it, and stops what has a velocity that is no number.
 pub(crate) fn let_out(
     mut contexts: Query<(&RapierContextSimulation, &mut RapierRigidBodySet)>,
     mut quarantine: ResMut<Quarantine>,
     disabled: Query<(), With<RigidBodyDisabled>>,
-    mut velocities: Query<&mut Velocity>,
+    mut velocities: Query<(&RapierRigidBodyHandle, &mut Velocity)>,
 ) {
     let Ok((simulation, mut set)) = contexts.single_mut() else {
         return;
     };
+    for (handle, mut velocity) in &mut velocities {
+        if !(velocity.linear.is_finite() && velocity.angular.is_finite()) {
+            *velocity = Velocity::zero();
+            if let Some(body) = set.bodies.get_mut(handle.0) {
+                stop(body);
+            }
+        }
+    }
     let arrived = simulation.pipeline.quarantine().bodies();
     if arrived.is_empty() && quarantine.is_empty() {
         return;
@@ -49,13 +63,44 @@ pub(crate) fn let_out(
             body.wake_up(true);
         }
     }
-    // The engine leaves these to bodies that are moved, whose poses it does not compute.
-    let is_finite =
-        |velocity: &Velocity| velocity.linear.is_finite() && velocity.angular.is_finite();
-    for mut velocity in velocities
-        .iter_mut()
-        .filter(|velocity| !is_finite(velocity))
-    {
-        *velocity = Velocity::zero();
+}
+
+/// Stops a body. The engine looks only at poses, so it keeps a velocity that has not led anywhere yet, and that of a body that is moved.
+fn stop(body: &mut RigidBody) {
+    let kind = body.body_type();
+    // Otherwise only dynamic bodies could be stopped.
+    body.set_body_type(RigidBodyType::Fixed, false);
+    body.set_body_type(kind, false);
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::ecs::system::RunSystemOnce as _;
+    use bevy_rapier3d::rapier::prelude::RigidBodyBuilder;
+
+    use super::*;
+
+    #[test]
+    fn a_body_whose_velocity_is_no_number_is_stopped_before_it_moves() {
+        for kind in [
+            RigidBodyType::Dynamic,
+            RigidBodyType::KinematicPositionBased,
+        ] {
+            let mut world = World::new();
+            world.init_resource::<Quarantine>();
+            let mut set = RapierRigidBodySet::default();
+            let body = RigidBodyBuilder::dynamic().linvel(Vec3::NAN);
+            let handle = set.bodies.insert(body);
+            set.bodies[handle].set_body_type(kind, false);
+            assert!(set.bodies[handle].linvel().is_nan());
+            let engine = world.spawn((RapierContextSimulation::default(), set)).id();
+            let velocity = Velocity::linear(Vec3::NAN);
+            let body = world.spawn((RapierRigidBodyHandle(handle), velocity)).id();
+            world.run_system_once(let_out).unwrap();
+            assert_eq!(world.get::<Velocity>(body), Some(&Velocity::zero()));
+            let set = world.get::<RapierRigidBodySet>(engine).unwrap();
+            let body = &set.bodies[handle];
+            assert_eq!((body.linvel(), body.body_type()), (Vec3::ZERO, kind));
+        }
     }
 }
