@@ -27,7 +27,7 @@ pub(crate) const TOUCHING: f32 = 0.01;
 pub(crate) const SQUEEZE: f32 = 0.05;
 
 /// Depth, in units, to which a free object is squeezed between its pusher and what does not move.
-const PRESSED: f32 = 0.02;
+pub(crate) const PRESSED: f32 = 0.02;
 
 /// The owner of a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,12 +6,14 @@ mod kit;
 use std::f32::consts::PI;
 
 use bevy::prelude::*;
+use bevy_rapier3d::{prelude::Collider, rapier::prelude as rapier};
 use kit::{Stage, block, inside_the_table};
 use proptest::prelude::*;
 use tabletop_core::{
-    Arm, Drive, Hand, HandCommand, HeadCamera, HistoryCommand, Obstacle, Pose, Robot, RobotCommand,
-    RobotJoint, SimFact, StepApp, TICK_SECONDS,
+    Arm, Drive, Hand, HandCommand, HeadCamera, HistoryCommand, ObjectIndex, Obstacle, Pose, Robot,
+    RobotCommand, RobotJoint, SimFact, StepApp, TICK_SECONDS,
 };
+use tabletop_robot::RobotLink;
 
 fn drive(stage: &mut Stage, joint: RobotJoint, drive: Drive) {
     stage.tell(RobotCommand::drive([(joint, drive)]));
@@ -373,6 +375,45 @@ fn an_arm_lets_what_it_crushes_out_of_the_table() {
     stage.app.step(60);
     let height = stage.place("crushed").location.z;
     assert!(height > 0.48, "{height}");
+}
+
+/// Height of the lowest point of the right arm.
+fn lowest(stage: &mut Stage) -> f32 {
+    let world = stage.app.world_mut();
+    let mut links = world.query::<(&RobotLink, &Transform, &Collider)>();
+    let of_arm = links.iter(world);
+    let of_arm = of_arm.filter(|(link, ..)| link.name.contains("right"));
+    let heights = of_arm.map(|(_, place, collider)| {
+        let at = rapier::Pose::from_parts(place.translation, place.rotation);
+        collider.raw.compute_aabb(&at).mins.z
+    });
+    heights.fold(f32::INFINITY, f32::min)
+}
+
+#[test]
+fn an_arm_that_stands_a_little_in_something_does_not_press_it_into_the_table() {
+    let mut stage = Stage::new();
+    drive(&mut stage, RobotJoint::RightGripper, Drive::Position(0.2));
+    let place = Vec3::new(3.0, -3.0, 0.5);
+    stage.reach(Arm::Right, place.with_z(1.2), 0.0);
+    let tip = lowest(&mut stage);
+    for depth in [0.01, 0.02, 0.03, 0.04, 0.045, 0.048, 0.06, 0.1] {
+        let id = format!("{depth} deep");
+        let span = Vec3::new(1.0, 1.0, tip + depth);
+        stage.put(&id, block(span), 1.0, Pose::at(place.with_z(span.z / 2.0)));
+        for tick in 0..60 {
+            stage.app.step(1);
+            let low = stage.place(&id).location.z - span.z / 2.0;
+            assert!(low > -0.03, "tick {tick}: {id}: {low}");
+        }
+        let object = stage
+            .app
+            .world()
+            .resource::<ObjectIndex>()
+            .get(&id)
+            .unwrap();
+        stage.app.world_mut().despawn(object);
+    }
 }
 
 #[test]

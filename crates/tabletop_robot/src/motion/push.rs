@@ -6,7 +6,7 @@ use tabletop_core::LimbId;
 
 use crate::{
     articulation::tree::Positions,
-    clearance::{Owner, SQUEEZE, SweptSolid, are_near, part_left},
+    clearance::{Owner, PRESSED, SweptSolid, are_near, part_left},
     motion::{environment::FreeObject, poses::Poses, tick_motion::TickMotion},
 };
 
@@ -68,7 +68,7 @@ impl TickMotion<'_> {
         }
     }
 
-    /// True if a body is deeper in an object than it could press into it.
+    /// True if a body is deeper in an object than it presses into one that cannot give way.
     pub fn is_inside_object(&self, number: usize, poses: &Poses) -> bool {
         let around = &poses.around[number];
         let parts = &self.articulation.bodies[number].parts;
@@ -76,7 +76,7 @@ impl TickMotion<'_> {
         let solids: Vec<_> = SweptSolid::moving(parts, Owner::Body(number), pose, pose).collect();
         let is_entered = |thing: &SweptSolid| {
             are_near(thing.bounds(), around)
-                && solids.iter().any(|solid| solid.depth_in(thing) > SQUEEZE)
+                && solids.iter().any(|solid| solid.depth_in(thing) > PRESSED)
         };
         let environment = &self.environment;
         let mut free = environment.free.iter().flat_map(FreeObject::solids);
