@@ -46,6 +46,25 @@ pub(crate) type ChangedCollider = Or<(
     Changed<ContactSkin>,
 )>;
 
+/// What only bodies of other apps have: one question for all of it is answered at once where there is none.
+type ChangedExtra = Or<(
+    Changed<LockedAxes>,
+    Changed<Dominance>,
+    Changed<ExternalForce>,
+    Changed<ExternalImpulse>,
+    Changed<AdditionalMassProperties>,
+    Changed<AdditionalSolverIterations>,
+    Changed<ColliderDisabled>,
+    Changed<CollisionGroups>,
+    Changed<SolverGroups>,
+    Changed<Sensor>,
+    Changed<ActiveEvents>,
+    Changed<ActiveHooks>,
+    Changed<ActiveCollisionTypes>,
+    Changed<ContactForceEventThreshold>,
+    Changed<ContactSkin>,
+)>;
+
 /// The moment after the last step, when all that the engine had changed was written to components.
 #[derive(Resource, Default)]
 pub(crate) struct WrittenBack(Option<Tick>);
@@ -73,10 +92,10 @@ pub(crate) fn has_changed(
     *removed_since == Some(since) || watches.see_a_change(world, since, now.this_run())
 }
 
-/// Watches for changes, one for each component that Rapier's plugin carries to the engine.
+/// Watches for changes of the components that Rapier's plugin carries to the engine.
 pub(crate) struct Watches(Vec<Watch>);
 
-/// True if a component has changed after the first of these moments.
+/// True if one of its components has changed after the first of these moments.
 type Watch = Box<dyn FnMut(&World, Tick, Tick) -> bool + Send + Sync>;
 
 impl FromWorld for Watches {
@@ -91,28 +110,14 @@ impl FromWorld for Watches {
             .watch::<Changed<RigidBodyDisabled>>(world)
             .watch::<Changed<GravityScale>>(world)
             .watch::<Changed<Damping>>(world)
-            .watch::<Changed<LockedAxes>>(world)
-            .watch::<Changed<Dominance>>(world)
-            .watch::<Changed<ExternalForce>>(world)
-            .watch::<Changed<ExternalImpulse>>(world)
-            .watch::<Changed<AdditionalMassProperties>>(world)
-            .watch::<Changed<AdditionalSolverIterations>>(world)
             .watch::<Changed<Ccd>>(world)
             .watch::<Changed<SoftCcd>>(world)
+            .watch::<ChangedExtra>(world)
             .watch::<Changed<Collider>>(world)
-            .watch::<Changed<ColliderDisabled>>(world)
             .watch::<Changed<ColliderMassProperties>>(world)
             .watch::<Changed<ColliderScale>>(world)
-            .watch::<Changed<CollisionGroups>>(world)
-            .watch::<Changed<SolverGroups>>(world)
             .watch::<Changed<Friction>>(world)
             .watch::<Changed<Restitution>>(world)
-            .watch::<Changed<Sensor>>(world)
-            .watch::<Changed<ActiveEvents>>(world)
-            .watch::<Changed<ActiveHooks>>(world)
-            .watch::<Changed<ActiveCollisionTypes>>(world)
-            .watch::<Changed<ContactForceEventThreshold>>(world)
-            .watch::<Changed<ContactSkin>>(world)
             .watch::<Changed<ImpulseJoint>>(world)
             .watch::<Changed<MultibodyJoint>>(world);
         watches

@@ -18,6 +18,7 @@ pub(crate) fn sense_contacts(
     grips: Res<Grips>,
     tables: Query<Entity, With<Table>>,
     index: Res<ObjectIndex>,
+    handles: Query<&RapierColliderHandle>,
     rapier: ReadRapierContext,
     mut robot: ResMut<Robot>,
 ) {
@@ -37,7 +38,7 @@ pub(crate) fn sense_contacts(
         let things: Vec<_> = things.collect();
         let mut touched = Vec::new();
         for (body, part) in articulation.bodies.iter().zip(&parts.0) {
-            let Some(&part) = rapier.colliders.entity2collider().get(part) else {
+            let Ok(&RapierColliderHandle(part)) = handles.get(*part) else {
                 continue;
             };
             touched.clear();

@@ -38,9 +38,10 @@ pub(crate) fn contact_loads(
     if motion.environment.free.is_empty() || !motion.is_shown {
         return Vec::new();
     }
-    let here = motion.positions.clone();
-    let solids = motion.solids(limb, &here, &here);
-    motion.articulation.update(&mut motion.scratch, &here);
+    let solids = motion.solids(limb);
+    motion
+        .articulation
+        .update(&mut motion.scratch, &motion.positions);
     let axes = motion.articulation.axes(limb, &motion.scratch);
     let to_robot = in_meters(motion.base).inverse();
     let mut touches = Vec::new();

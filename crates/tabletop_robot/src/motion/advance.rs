@@ -70,7 +70,7 @@ pub(crate) fn advance(
     let here = known.posture(&robot, posture.take());
     let mut motion = known.motion(&robot, &grips, &rapier, here);
     motion.inside.clone_from(&inside);
-    let start = motion.poses(&motion.positions.clone());
+    let start = motion.here();
     let pulls = is_dynamic.then(|| {
         motors.look(layout, &robot);
         motors.pull(&mut motion, &targets, settings.gravity, |motion, limb| {

@@ -15,8 +15,7 @@ use crate::{
 impl TickMotion<'_> {
     /// An obstacle that an arm is inside of.
     pub fn is_inside(&mut self, limb: LimbId) -> Option<Owner> {
-        let here = self.positions.clone();
-        let solids = self.solids(limb, &here, &here);
+        let solids = self.solids(limb);
         let mut immovable = self.environment.immovable.iter();
         immovable
             .find(|obstacle| {
@@ -27,20 +26,14 @@ impl TickMotion<'_> {
             .map(|obstacle| obstacle.owner)
     }
 
-    /// The obstacle in the way of an arm between two positions.
-    pub(super) fn obstacle(
-        &mut self,
-        limb: LimbId,
-        from: &Positions,
-        to: &Positions,
-    ) -> Option<Owner> {
+    /// The obstacle in the way of an arm to some positions.
+    pub(super) fn obstacle(&mut self, limb: LimbId, there: &Positions) -> Option<Owner> {
         if !self.is_shown {
             return None;
         }
-        let here = self.poses(&self.positions.clone());
-        let [from, to] = [from, to].map(|positions| self.poses(positions));
-        let solids = self.solids_of(limb, &from, &to, |number| {
-            self.may_collide(limb, number, &here, &to)
+        let (here, there) = (self.here(), self.poses(there));
+        let solids = self.solids_of(limb, &here, &there, |number| {
+            self.may_collide(limb, number, &here, &there)
         });
         let outside = solids.iter().find_map(|(_, solid)| {
             let mut immovable = self.environment.immovable.iter();

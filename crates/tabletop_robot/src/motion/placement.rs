@@ -54,7 +54,7 @@ pub(crate) fn pass_through_objects(
     let mut rapier = rapier.single_mut()?;
     let posture = known.posture(&robot, None);
     let mut motion = known.motion(&robot, &grips, &rapier, posture);
-    let here = motion.poses(&motion.positions.clone());
+    let here = motion.here();
     let bodies = &known.articulation.bodies;
     let crushing: Vec<_> = robot
         .contacts

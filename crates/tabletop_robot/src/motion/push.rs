@@ -19,7 +19,7 @@ impl TickMotion<'_> {
         if self.environment.free.is_empty() {
             return (1.0, None);
         }
-        let [here, there] = [&self.positions.clone(), there].map(|at| self.poses(at));
+        let (here, there) = (self.here(), self.poses(there));
         let mut solids = self.solids_of(limb, &here, &there, |number| {
             let way = here.around[number].merged(&there.around[number]);
             let mut free = self.environment.free.iter();
@@ -85,6 +85,9 @@ impl TickMotion<'_> {
 
     /// True if a body comes near no free object on its way from some poses to others.
     pub fn is_far(&self, number: usize, from: &Poses, to: &Poses) -> bool {
+        if self.environment.free.is_empty() {
+            return true;
+        }
         let way = from.around[number].merged(&to.around[number]);
         let [from, to] = [from, to].map(|poses| poses.bodies[number]);
         let parts = &self.articulation.bodies[number].parts;
@@ -98,7 +101,7 @@ impl TickMotion<'_> {
 
     /// True if a solid of an arm is near this box at present.
     pub fn is_near(&mut self, limb: LimbId, bounds: &Aabb) -> bool {
-        let here = self.poses(&self.positions.clone());
+        let here = self.here();
         let may_be_near = |number: usize| are_near(&here.around[number], bounds);
         let solids = self.solids_of(limb, &here, &here, may_be_near);
         solids

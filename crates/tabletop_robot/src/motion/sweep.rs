@@ -50,11 +50,7 @@ impl TickMotion<'_> {
         let jumps = setpoints
             .iter()
             .any(|setpoint| matches!(setpoint, Setpoint::Jump(_)));
-        if jumps
-            && self
-                .obstacle(limb, &self.positions.clone(), &there)
-                .is_none()
-        {
+        if jumps && self.obstacle(limb, &there).is_none() {
             self.positions = there;
             return;
         }
@@ -122,20 +118,20 @@ impl TickMotion<'_> {
     fn sweep(&mut self, limb: LimbId, there: Positions) -> Option<Owner> {
         let start = self.positions.clone();
         let between = |part: f64| lerp(&start, &there, part);
-        let steps = (self.way(limb, &start, &there) / STEP)
+        let steps = (self.way(limb, &there) / STEP)
             .ceil()
             .clamp(1.0, MOST_STEPS);
         for step in 1..=steps as u32 {
             let ahead = f64::from(step) / f64::from(steps);
-            let Some(mut obstacle) = self.obstacle(limb, &self.positions.clone(), &between(ahead))
-            else {
-                self.positions = between(ahead);
+            let next = between(ahead);
+            let Some(mut obstacle) = self.obstacle(limb, &next) else {
+                self.positions = next;
                 continue;
             };
             let (mut free, mut blocked) = (f64::from(step - 1) / f64::from(steps), ahead);
             for _ in 0..HALVINGS {
                 let middle = (free + blocked) / 2.0;
-                match self.obstacle(limb, &self.positions.clone(), &between(middle)) {
+                match self.obstacle(limb, &between(middle)) {
                     None => free = middle,
                     Some(nearer) => (blocked, obstacle) = (middle, nearer),
                 }
@@ -146,11 +142,11 @@ impl TickMotion<'_> {
         None
     }
 
-    /// Approximate distance that the bodies of an arm go between two positions, in units.
-    fn way(&mut self, limb: LimbId, from: &Positions, to: &Positions) -> f32 {
-        let [from, to] = [from, to].map(|positions| self.poses(positions));
+    /// Approximate distance that the bodies of an arm go to some positions, in units.
+    fn way(&mut self, limb: LimbId, there: &Positions) -> f32 {
+        let (here, there) = (self.here(), self.poses(there));
         self.bodies_of(limb)
-            .map(|number| (from.bodies[number], to.bodies[number]))
+            .map(|number| (here.bodies[number], there.bodies[number]))
             .map(|(from, to)| {
                 from.location.distance(to.location) + from.rotation.angle_between(to.rotation)
             })

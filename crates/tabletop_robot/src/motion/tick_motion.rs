@@ -64,7 +64,15 @@ pub(crate) struct TickMotion<'a> {
 impl TickMotion<'_> {
     /// Pose of an end effector.
     pub fn end_effector(&mut self, limb: LimbId) -> Pose {
-        self.poses(&self.positions.clone()).end_effectors[limb.index()]
+        self.here().end_effectors[limb.index()]
+    }
+
+    /// Poses of the robot at its present positions.
+    pub fn here(&mut self) -> Rc<Poses> {
+        let positions = std::mem::take(&mut self.positions);
+        let here = self.poses(&positions);
+        self.positions = positions;
+        here
     }
 
     /// Poses of the robot. The last few answers are remembered, because most are asked for several times.
@@ -89,15 +97,10 @@ impl TickMotion<'_> {
             .map(|(number, _)| number)
     }
 
-    /// The solids of an arm and of the objects it holds, each with the number of the body by which it meets things.
-    pub fn solids(
-        &mut self,
-        limb: LimbId,
-        from: &Positions,
-        to: &Positions,
-    ) -> Vec<(usize, SweptSolid)> {
-        let [from, to] = [from, to].map(|positions| self.poses(positions));
-        self.solids_of(limb, &from, &to, |_| true)
+    /// The solids of an arm and of the objects it holds where they are, each with the number of the body by which it meets things.
+    pub fn solids(&mut self, limb: LimbId) -> Vec<(usize, SweptSolid)> {
+        let here = self.here();
+        self.solids_of(limb, &here, &here, |_| true)
     }
 
     /// The solids of the needed bodies of an arm, and of the objects it holds.

@@ -128,7 +128,7 @@ impl RobotView<'_, '_> {
         robot: &Robot,
         grips: &Grips,
     ) -> Vec<(Entity, Pose)> {
-        let poses = motion.poses(&motion.positions.clone());
+        let poses = motion.here();
         let bodies = self
             .parts
             .0
@@ -175,7 +175,7 @@ impl RobotView<'_, '_> {
         if grips.hold_jointed() {
             return Vec::new();
         }
-        let here = motion.poses(&motion.positions.clone());
+        let here = motion.here();
         let bodies = 0..self.articulation.bodies.len();
         bodies
             .map(|number| motion.is_far(number, before, &here))
