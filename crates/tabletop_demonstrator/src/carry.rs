@@ -207,11 +207,9 @@ impl<'a> Near<'a> {
         let radius = bounds.center().length() + bounds.radius();
         // It is pushed out of what it would be turned into.
         let turning = here.rotation.angle_between(next.rotation) * radius;
-        let reach = radius + turning + 0.1;
-        let way = Aabb::new(
-            here.location.min(next.location) - reach,
-            here.location.max(next.location) + reach,
-        );
+        // What it slides along may turn it anywhere.
+        let reach = radius + turning + here.location.distance(next.location) + 0.1;
+        let way = Aabb::new(here.location - reach, here.location + reach);
         let mut near = Self {
             immovable: Vec::new(),
             free: Vec::new(),

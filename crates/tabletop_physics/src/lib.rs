@@ -38,6 +38,7 @@ mod holding;
 mod order;
 mod outside;
 mod quarantine;
+mod relief;
 mod rest;
 mod settings;
 mod short_turn;
@@ -141,6 +142,10 @@ impl Plugin for PhysicsPlugin {
                         .before(PhysicsSet::StepSimulation)
                         .in_set(SimSystems::Physics),
                     RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::StepSimulation),
+                    relief::relieve
+                        .after(PhysicsSet::StepSimulation)
+                        .before(PhysicsSet::Writeback)
+                        .in_set(SimSystems::Physics),
                     RapierPhysicsPlugin::<NoUserData>::get_systems(PhysicsSet::Writeback),
                     quarantine::let_out
                         .after(systems::writeback_rigid_bodies)

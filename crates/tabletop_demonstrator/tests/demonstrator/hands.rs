@@ -124,6 +124,30 @@ fn a_mouse_jump_of_any_size_never_enters_table_walls_or_the_other_hands_object()
 }
 
 #[test]
+fn what_slides_down_a_slanted_wall_does_not_enter_the_table() {
+    let shape = Shape::Sphere {
+        radius: 0.5,
+        color: Rgb::GRAY,
+    };
+    let slanted = Pose::from_degrees(Vec3::new(2.0, 0.0, 1.6), Vec3::Y * 45.0);
+    let roof = ObjectSpec::new("roof", slanted, 0.0, block((4.0, 4.0, 0.2)));
+    let items = vec![
+        object("ball", (-4.0, 0.0, 0.5), 1.0, shape),
+        SceneItem::Object(roof),
+    ];
+    for start in 0..8 {
+        let mut desk = Desk::new(items.clone());
+        let start = Vec3::new(-4.0 + 0.08 * start as f32, 0.0, 0.65);
+        desk.grasp(Hand::Left, "ball").move_to(Hand::Left, start);
+        desk.step(60).move_to(Hand::Left, start + Vec3::X * 12.0);
+        for _ in 0..20 {
+            let at = desk.step(1).pose("ball").location;
+            assert!(at.z > 0.5 - 1e-3, "{at}");
+        }
+    }
+}
+
+#[test]
 fn a_pushed_block_moves_and_is_not_flung_when_the_hand_lets_go() {
     let mut desk = Desk::new(two_blocks());
     desk.grasp(Hand::Right, "red")
