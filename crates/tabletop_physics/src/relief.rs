@@ -3,15 +3,15 @@
 //! To the solver, a table is as heavy as a hand that presses something on it, and either may win. Here the table always does; the hand then
 //! finds something in its way, and yields.
 
-use std::collections::BTreeMap;
-
 use bevy::prelude::*;
 use bevy_rapier3d::{
+    parry::bounding_volume::Aabb,
     prelude::{
-        RapierColliderHandle, RapierConfiguration, RapierContextColliders, RapierContextSimulation,
-        RapierRigidBodySet, RigidBody,
+        RapierConfiguration, RapierContextColliders, RapierContextJoints, RapierContextSimulation,
+        RapierRigidBodySet,
     },
-    rapier::prelude::{Collider, ColliderHandle, ColliderSet, ContactPair, RigidBodyHandle},
+    rapier::prelude as rapier,
+    rapier::prelude::{Collider, ColliderHandle, ColliderSet, ContactPair, QueryFilter},
 };
 use tabletop_core::Pose;
 
@@ -20,50 +20,57 @@ use crate::geometry::{Convex, convex_parts, nearest};
 /// Depth, in units, that is left to the solver.
 const DEEPEST: f32 = 0.04;
 
+/// Depth, in units, to which a deeper body is lifted: less, so that it is not deeper again by rounding.
+const LIFTED: f32 = 0.035;
+
+/// Length of a step's way, in units, from which on a body may be in something that it did not touch before.
+const QUICK: f32 = 0.01;
+
+/// Distance, in units, of a body's outermost points from its middle, at most, as far as it matters for its turns.
+const REACH: f32 = 2.0;
+
 /// Largest number of shifts after which a body is left where it is: the solids that it is in leave no room.
 const MOST_SHIFTS: usize = 8;
 
-/// Moves every body that is too deep in a fixed one along the shortest way out.
+/// Moves every body that is too deep in fixed ones along the shortest way out.
 pub(crate) fn relieve(
     mut contexts: Query<(
         &RapierConfiguration,
         &RapierContextSimulation,
         &mut RapierContextColliders,
         &mut RapierRigidBodySet,
+        &RapierContextJoints,
     )>,
-    shapes: Query<(&RigidBody, &RapierColliderHandle)>,
+    places: Query<&Transform>,
 ) {
-    let Ok((configuration, simulation, mut colliders, mut set)) = contexts.single_mut() else {
+    let Ok((configuration, simulation, mut colliders, mut set, joints)) = contexts.single_mut()
+    else {
         return;
     };
     if !configuration.physics_pipeline_active {
         return;
     }
-    let fixed = shapes
-        .iter()
-        .filter(|(body, _)| matches!(body, RigidBody::Fixed));
-    let mut ways = BTreeMap::<_, Vec3>::new();
-    for (_, &RapierColliderHandle(fixed)) in fixed {
-        for pair in simulation.narrow_phase.contact_pairs_with(fixed) {
-            if !is_deep(pair, &colliders.colliders) {
-                continue;
-            }
-            let pressed = match pair.collider1 == fixed {
-                true => pair.collider2,
-                false => pair.collider1,
-            };
-            let body = colliders.colliders.get(pressed).and_then(Collider::parent);
-            let way = way_out(pressed, fixed, &colliders.colliders);
-            if let (Some(body), Some(way)) = (body, way) {
-                let longest = ways.entry(body.into_raw_parts()).or_default();
-                *longest = longer(*longest, way);
-            }
-        }
-    }
-    for ((number, generation), way) in ways {
-        let body = RigidBodyHandle::from_raw_parts(number, generation);
-        let body = set.bodies.get_mut(body).filter(|body| body.is_dynamic());
-        let Some(body) = body else {
+    let relief = Relief {
+        simulation,
+        colliders: &colliders.colliders,
+        bodies: &set.bodies,
+        joints: &joints.impulse_joints,
+    };
+    let awake = simulation.islands.active_bodies();
+    let pressed = awake.filter_map(|handle| {
+        let body = relief.bodies.get(handle).filter(|body| body.is_dynamic())?;
+        let before = set
+            .rigid_body_entity(handle)
+            .and_then(|entity| places.get(entity).ok())?;
+        let obstacles = relief.obstacles(handle, body, before);
+        let way = relief.way_out(body, &obstacles)?;
+        Some((handle, way))
+    });
+    let mut pressed: Vec<_> = pressed.collect();
+    // The engine notes changed bodies in the order of their changes; its own order of awake ones depends on what was undone.
+    pressed.sort_unstable_by_key(|(handle, _)| handle.into_raw_parts());
+    for (handle, way) in pressed {
+        let Some(body) = set.bodies.get_mut(handle) else {
             continue;
         };
         body.set_translation(body.translation() + way, true);
@@ -75,56 +82,128 @@ pub(crate) fn relieve(
     }
 }
 
-/// The longer of two ways; of equal ones the same in any order.
-fn longer(one: Vec3, other: Vec3) -> Vec3 {
-    let key = |way: Vec3| [way.length_squared(), way.x, way.y, way.z];
-    match key(one) < key(other) {
-        true => other,
-        false => one,
-    }
+/// Relief for bodies, from the state of the engine after a step.
+struct Relief<'a> {
+    simulation: &'a RapierContextSimulation,
+    colliders: &'a ColliderSet,
+    bodies: &'a rapier::RigidBodySet,
+    joints: &'a rapier::ImpulseJointSet,
 }
 
-/// True if the contacts that a step began with were too deep, or have become so in it: what rolls is soon touched elsewhere.
-fn is_deep(pair: &ContactPair, colliders: &ColliderSet) -> bool {
-    let pose = |collider| colliders.get(collider).map(Collider::position);
-    let (Some(first), Some(second)) = (pose(pair.collider1), pose(pair.collider2)) else {
-        return false;
-    };
-    let mut manifolds = pair.manifolds.iter();
-    manifolds.any(|manifold| {
-        let first = manifold.subshape_pos1().map_or(*first, |part| first * part);
-        let second = manifold
-            .subshape_pos2()
-            .map_or(*second, |part| second * part);
-        let normal = first.rotation * manifold.local_n1;
-        let gap = |own: Vec3, other: Vec3| (second * other - first * own).dot(normal);
-        let mut points = manifold.points.iter();
-        points.any(|point| point.dist.min(gap(point.local_p1, point.local_p2)) < -DEEPEST)
-    })
-}
-
-/// The shortest way, in units, on which a shape leaves another one but for the depth that it may have. `None` if there is none.
-fn way_out(
-    pressed: ColliderHandle,
-    fixed: ColliderHandle,
-    colliders: &ColliderSet,
-) -> Option<Vec3> {
-    let [pressed, fixed] = [pressed, fixed].map(|shape| colliders.get(shape).map(parts));
-    let (pressed, fixed) = (pressed?, fixed?);
-    let mut way = Vec3::ZERO;
-    for _ in 0..MOST_SHIFTS {
-        let deepest = nearest(&pressed, Pose::at(way), &fixed, 0.0)
-            .min_by(|one, other| one.distance.total_cmp(&other.distance))
-            .filter(|nearest| nearest.distance < -DEEPEST);
-        let Some(deepest) = deepest else {
-            return (way != Vec3::ZERO && way.is_finite()).then_some(way);
+impl Relief<'_> {
+    /// The fixed shapes in which a body may be too deep, in the order of their handles. `before` is its pose before the step.
+    fn obstacles(
+        &self,
+        handle: rapier::RigidBodyHandle,
+        body: &rapier::RigidBody,
+        before: &Transform,
+    ) -> Vec<ColliderHandle> {
+        let is_jointed = || self.joints.attached_joints(handle).next().is_some();
+        let mut obstacles = match is_quick(body, before) && !is_jointed() {
+            true => self.fixed_shapes_at(body),
+            // What is held by a joint may be in what holds it: only contacts tell.
+            false => self.deep_contacts(body),
         };
-        way += deepest.away * (-DEEPEST - deepest.distance);
+        obstacles.sort_unstable_by_key(|shape| shape.into_raw_parts());
+        obstacles.dedup();
+        obstacles
     }
-    None
+
+    /// The fixed shapes whose boxes a body's boxes are too deep in.
+    fn fixed_shapes_at(&self, body: &rapier::RigidBody) -> Vec<ColliderHandle> {
+        let shapes = body.colliders().iter();
+        let shapes = shapes.filter_map(|shape| self.colliders.get(*shape));
+        let met = shapes.filter(|shape| !shape.is_sensor()).flat_map(|shape| {
+            let fixed = self.simulation.broad_phase.as_query_pipeline(
+                self.simulation.narrow_phase.query_dispatcher(),
+                self.bodies,
+                self.colliders,
+                QueryFilter::only_fixed()
+                    .exclude_sensors()
+                    .groups(shape.collision_groups()),
+            );
+            let met = fixed.intersect_aabb_conservative(core(&shape.compute_aabb()));
+            met.map(|(shape, _)| shape).collect::<Vec<_>>()
+        });
+        met.collect()
+    }
+
+    /// The fixed shapes whose contacts with a body are too deep.
+    fn deep_contacts(&self, body: &rapier::RigidBody) -> Vec<ColliderHandle> {
+        let shapes = body.colliders().iter();
+        let others = shapes.flat_map(|&shape| {
+            let pairs = self.simulation.narrow_phase.contact_pairs_with(shape);
+            let deep = pairs.filter(|pair| self.is_deep(pair));
+            deep.map(move |pair| match pair.collider1 == shape {
+                true => pair.collider2,
+                false => pair.collider1,
+            })
+        });
+        others.filter(|other| self.is_fixed(*other)).collect()
+    }
+
+    fn is_fixed(&self, shape: ColliderHandle) -> bool {
+        let body = self.colliders.get(shape).and_then(Collider::parent);
+        let body = body.and_then(|body| self.bodies.get(body));
+        body.is_none_or(rapier::RigidBody::is_fixed)
+    }
+
+    /// True if the contacts that a step began with were too deep, or have become so in it: what rolls is soon touched elsewhere.
+    fn is_deep(&self, pair: &ContactPair) -> bool {
+        let pose = |collider| self.colliders.get(collider).map(Collider::position);
+        let (Some(first), Some(second)) = (pose(pair.collider1), pose(pair.collider2)) else {
+            return false;
+        };
+        let mut manifolds = pair.manifolds.iter();
+        manifolds.any(|manifold| {
+            let first = manifold.subshape_pos1().map_or(*first, |part| first * part);
+            let second = manifold
+                .subshape_pos2()
+                .map_or(*second, |part| second * part);
+            let normal = first.rotation * manifold.local_n1;
+            let gap = |own: Vec3, other: Vec3| (second * other - first * own).dot(normal);
+            let mut points = manifold.points.iter();
+            points.any(|point| point.dist.min(gap(point.local_p1, point.local_p2)) < -DEEPEST)
+        })
+    }
+
+    /// The shortest way, in units, on which a body leaves some shapes but for the depth that it may have. `None` if it is no deeper, or if
+    /// there is none.
+    fn way_out(&self, body: &rapier::RigidBody, obstacles: &[ColliderHandle]) -> Option<Vec3> {
+        let pressed = self.parts(body.colliders());
+        let fixed = self.parts(obstacles);
+        let mut way = Vec3::ZERO;
+        for _ in 0..MOST_SHIFTS {
+            let deepest = nearest(&pressed, Pose::at(way), &fixed, 0.0)
+                .min_by(|one, other| one.distance.total_cmp(&other.distance))
+                .filter(|nearest| nearest.distance < -DEEPEST);
+            let Some(deepest) = deepest else {
+                return (way != Vec3::ZERO && way.is_finite()).then_some(way);
+            };
+            way += deepest.away * (-LIFTED - deepest.distance);
+        }
+        None
+    }
+
+    fn parts(&self, shapes: &[ColliderHandle]) -> Vec<Convex> {
+        let shapes = shapes.iter().filter_map(|shape| self.colliders.get(*shape));
+        let parts = shapes.flat_map(|shape| {
+            let at = shape.position();
+            convex_parts(Pose::new(at.translation, at.rotation), shape.shared_shape())
+        });
+        parts.collect()
+    }
 }
 
-fn parts(shape: &Collider) -> Vec<Convex> {
-    let at = shape.position();
-    convex_parts(Pose::new(at.translation, at.rotation), shape.shared_shape())
+/// True if a step has moved a body so far that it may be in something that it did not touch before.
+fn is_quick(body: &rapier::RigidBody, before: &Transform) -> bool {
+    let now = body.position();
+    let way = now.translation.distance(before.translation);
+    way + REACH * now.rotation.angle_between(before.rotation) > QUICK
+}
+
+/// The part of a box that what reaches into is too deep in it; inside out if the box is thin.
+fn core(bounds: &Aabb) -> Aabb {
+    let depth = Vec3::splat(DEEPEST);
+    Aabb::new(bounds.mins + depth, bounds.maxs - depth)
 }
