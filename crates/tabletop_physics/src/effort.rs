@@ -20,6 +20,7 @@ use bevy_rapier3d::{
 use tabletop_core::Held;
 
 pub use engine::Engine;
+pub(crate) use engine::REACH;
 pub(crate) use substeps::{BASE_SUBSTEPS, SUBSTEPS_OF_FREE};
 
 use crate::{holding::JustReleased, settings::PhysicsSettings};

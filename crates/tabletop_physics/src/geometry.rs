@@ -7,6 +7,7 @@ mod pressure;
 mod touch;
 
 pub use contact::contact;
+pub(crate) use convex::placed_parts;
 pub use convex::{Convex, Nearest, convex_parts, depth, nearest, to_rapier};
 pub use nearby::{Nearby, nearby};
 pub use pressure::{Pressure, pressures_on};

@@ -15,7 +15,10 @@ use bevy_rapier3d::{
 };
 use tabletop_core::Pose;
 
-use crate::geometry::{Convex, convex_parts, nearest};
+use crate::{
+    effort::REACH,
+    geometry::{Convex, nearest, placed_parts},
+};
 
 /// Depth, in units, that is left to the solver.
 const DEEPEST: f32 = 0.04;
@@ -25,9 +28,6 @@ const LIFTED: f32 = 0.035;
 
 /// Length of a step's way, in units, from which on a body may be in something that it did not touch before.
 const QUICK: f32 = 0.01;
-
-/// Distance, in units, of a body's outermost points from its middle, at most, as far as it matters for its turns.
-const REACH: f32 = 2.0;
 
 /// Largest number of shifts after which a body is left where it is: the solids that it is in leave no room.
 const MOST_SHIFTS: usize = 8;
@@ -63,6 +63,9 @@ pub(crate) fn relieve(
             .rigid_body_entity(handle)
             .and_then(|entity| places.get(entity).ok())?;
         let obstacles = relief.obstacles(handle, body, before);
+        if obstacles.is_empty() {
+            return None;
+        }
         let way = relief.way_out(body, &obstacles)?;
         Some((handle, way))
     });
@@ -131,15 +134,15 @@ impl Relief<'_> {
     /// The fixed shapes whose contacts with a body are too deep.
     fn deep_contacts(&self, body: &rapier::RigidBody) -> Vec<ColliderHandle> {
         let shapes = body.colliders().iter();
-        let others = shapes.flat_map(|&shape| {
+        let deep = shapes.flat_map(|&shape| {
             let pairs = self.simulation.narrow_phase.contact_pairs_with(shape);
-            let deep = pairs.filter(|pair| self.is_deep(pair));
-            deep.map(move |pair| match pair.collider1 == shape {
-                true => pair.collider2,
-                false => pair.collider1,
-            })
+            let pairs = pairs.map(move |pair| match pair.collider1 == shape {
+                true => (pair, pair.collider2),
+                false => (pair, pair.collider1),
+            });
+            pairs.filter(|(pair, other)| self.is_fixed(*other) && self.is_deep(pair))
         });
-        others.filter(|other| self.is_fixed(*other)).collect()
+        deep.map(|(_, other)| other).collect()
     }
 
     fn is_fixed(&self, shape: ColliderHandle) -> bool {
@@ -187,11 +190,7 @@ impl Relief<'_> {
 
     fn parts(&self, shapes: &[ColliderHandle]) -> Vec<Convex> {
         let shapes = shapes.iter().filter_map(|shape| self.colliders.get(*shape));
-        let parts = shapes.flat_map(|shape| {
-            let at = shape.position();
-            convex_parts(Pose::new(at.translation, at.rotation), shape.shared_shape())
-        });
-        parts.collect()
+        shapes.flat_map(placed_parts).collect()
     }
 }
 

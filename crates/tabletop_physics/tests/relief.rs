@@ -6,6 +6,8 @@ use bevy_rapier3d::{prelude::*, rapier::prelude as rapier};
 use tabletop_core::{TICK_SECONDS, prelude::*};
 use tabletop_physics::{PhysicsPlugin, collider};
 
+const COLOR: Rgb = Rgb::GRAY;
+
 /// A body that moves down at a speed, in units/s.
 #[derive(Component)]
 struct Press(f32);
@@ -16,7 +18,7 @@ fn press(mut presses: Query<(&mut Transform, &Press)>) {
     }
 }
 
-/// How deep, in units, an object is at most in the middle of a fixed slab, while a press is moved down on it and through it. The press begins at `from`.
+/// How deep, in units, an object is at most in the middle of a fixed slab, while a press is moved down on it and through it.
 fn most_depth_under_a_press(shape: Shape, at: Pose, press_from: Vec3, speed: f32) -> f32 {
     let mut app = App::new();
     app.add_plugins((
@@ -27,12 +29,11 @@ fn most_depth_under_a_press(shape: Shape, at: Pose, press_from: Vec3, speed: f32
     .add_systems(FixedUpdate, press.in_set(SimSystems::Actuate))
     .start();
     let span = Vec3::new(8.0, 8.0, 2.0);
-    let color = Rgb::GRAY;
     let slab = ObjectSpec::new(
         "slab",
         Pose::at(Vec3::NEG_Z),
         0.0,
-        Shape::Block { span, color },
+        Shape::Block { span, color: COLOR },
     );
     let lowest = {
         let shape = collider(&shape).raw;
@@ -61,8 +62,6 @@ fn most_depth_under_a_press(shape: Shape, at: Pose, press_from: Vec3, speed: f32
     });
     depths.fold(0.0, f32::max)
 }
-
-const COLOR: Rgb = Rgb::GRAY;
 
 #[test]
 fn nothing_is_pressed_into_what_does_not_move() {

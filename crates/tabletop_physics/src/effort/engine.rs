@@ -5,6 +5,9 @@ use bevy_rapier3d::rapier::prelude::{
     NarrowPhase, RigidBody, RigidBodySet,
 };
 
+/// Distance, in units, of a body's outermost points from its middle, at most, as far as it matters for its turns.
+pub(crate) const REACH: f32 = 2.0;
+
 /// The parts of the engine on which effort depends, and its settings.
 pub struct Engine<'a> {
     /// Settings of all bodies.
@@ -33,7 +36,6 @@ impl Engine<'_> {
 
     /// The same of any of its points.
     pub(crate) fn fastest_point(&self, body: &RigidBody) -> f32 {
-        const REACH: f32 = 2.0;
         self.speed_of_fall(body) + REACH * body.angvel().length()
     }
 }

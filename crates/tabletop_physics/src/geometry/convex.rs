@@ -62,6 +62,15 @@ pub fn convex_parts(pose: Pose, shape: &rapier::SharedShape) -> Vec<Convex> {
     }
 }
 
+/// The convex parts of a collider where it is, in the table's frame.
+pub(crate) fn placed_parts(collider: &rapier::Collider) -> Vec<Convex> {
+    let at = collider.position();
+    convex_parts(
+        Pose::new(at.translation, at.rotation),
+        collider.shared_shape(),
+    )
+}
+
 /// The nearest points of a part of a moving body and an obstacle.
 pub struct Nearest {
     /// Their distance; negative inside.

@@ -6,9 +6,8 @@ use bevy_rapier3d::{
     prelude::*,
     rapier::prelude as rapier,
 };
-use tabletop_core::Pose;
 
-use super::convex::{Convex, convex_parts};
+use super::convex::{Convex, placed_parts};
 
 /// A body that reaches into a box.
 pub struct Nearby<'a> {
@@ -25,11 +24,7 @@ pub struct Nearby<'a> {
 impl Nearby<'_> {
     /// Its convex parts, in the table's frame.
     pub fn parts(&self) -> Vec<Convex> {
-        let at = self.collider.position();
-        convex_parts(
-            Pose::new(at.translation, at.rotation),
-            self.collider.shared_shape(),
-        )
+        placed_parts(self.collider)
     }
 }
 

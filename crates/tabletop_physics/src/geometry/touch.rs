@@ -4,7 +4,7 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use tabletop_core::{Pose, Shape};
 
-use super::convex::{Convex, convex_parts};
+use super::convex::{Convex, convex_parts, placed_parts};
 use crate::bodies::collider;
 
 /// True if an object is within a distance, in units, of a shape at a pose.
@@ -24,9 +24,7 @@ pub fn is_touching(
     let Some(body) = handle.and_then(|handle| colliders.colliders.get(*handle)) else {
         return false;
     };
-    let place = body.position();
-    let place = Pose::new(place.translation, place.rotation);
-    let parts = convex_parts(place, body.shared_shape());
+    let parts = placed_parts(body);
     let others = convex_parts(at, &collider(shape).raw);
     let is_near = |part: &Convex| others.iter().any(|other| part.is_near(other, within));
     parts.iter().any(is_near)
