@@ -14,7 +14,8 @@ use bevy::prelude::*;
 use bevy_rapier3d::{
     prelude::*,
     rapier::prelude::{
-        CCDSolver, ColliderSet, ContactPair, IntegrationParameters, PhysicsPipeline, RigidBodySet,
+        CCDSolver, ColliderSet, ContactPair, IntegrationParameters, PhysicsPipeline, RigidBody,
+        RigidBodySet,
     },
 };
 use tabletop_core::Held;
@@ -59,6 +60,10 @@ const HANDLING_TICKS: u32 = 30;
 /// that it lands on, and the body falls the rest of the way in the next ticks.
 const LANDING_TICKS: u32 = 4;
 
+/// Number of ticks without handling and landings from which low stacks have sweeps of their own. A change of sweeps moves a stack a little, so
+/// what may sleep is to sleep before it.
+const CALM_TICKS: u32 = 30;
+
 /// Numbers of the solver's sweeps over the contacts in a sub-step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Sweeps {
@@ -71,6 +76,12 @@ struct Sweeps {
 /// Sweeps in most ticks. With more plain sweeps, friction would let towers creep.
 const SWEEPS: Sweeps = Sweeps {
     correcting: 8,
+    plain: 1,
+};
+
+/// Sweeps while everything awake stands in low stacks: with the fewest sub-steps they hold those as still.
+const LOW_STACK_SWEEPS: Sweeps = Sweeps {
+    correcting: 12,
     plain: 1,
 };
 
@@ -93,6 +104,8 @@ const LANDING_SWEEPS: Sweeps = Sweeps {
 pub struct Care {
     handling: u32,
     landing: u32,
+    /// The ticks without either, up to [`CALM_TICKS`].
+    calm: u32,
 }
 
 pub(crate) fn spend_effort(
@@ -148,53 +161,51 @@ impl Care {
         let is_handling = self.handling > 0;
 
         let (mut landing, mut fastest, mut is_any_fast) = (0.0f32, 0.0f32, false);
-        let mut changes = Vec::new();
+        let mut awake = Vec::with_capacity(engine.islands.num_active_bodies());
         for handle in engine.islands.active_bodies() {
             let body = &engine.bodies[handle];
             if !body.is_dynamic() {
-                let needed = substeps_of_unmoved(body);
-                if needed != substeps(body) {
-                    changes.push((handle, needed, body.soft_ccd_prediction()));
-                }
+                awake.push((handle, None));
                 continue;
             }
-            let situation = SubstepFactors::of(handle, &engine, &touches);
-            let before = substeps(body);
-            let needed = match is_handling {
-                true => MOST_SUBSTEPS,
-                false => situation.substeps().max(before.saturating_sub(DECAY)),
-            };
-            let speed_to_hands = match situation.is_near_others {
-                true => SPEED_TO_HANDS_BESIDE_OTHERS,
-                false => SPEED_TO_HANDS,
-            };
-            let is_seen_ahead = situation.is_near_hand
-                && body.linvel().length() > speed_to_hands
-                && body.angvel().length() < MOST_TURNING;
-            let way = match is_seen_ahead {
-                true => WAY_TO_HANDS,
-                false => 0.0,
-            };
-            if needed != before || way != body.soft_ccd_prediction() {
-                changes.push((handle, needed, way));
-            }
+            let factors = SubstepFactors::of(handle, &engine, &touches);
             fastest = fastest.max(engine.speed_of_fall(body));
             is_any_fast |= is_handling || engine.fastest_point(body) > SPEED_OF_CCD;
-            if !situation.is_jointed && !situation.is_handled {
+            if !factors.is_jointed && !factors.is_handled {
                 landing = landing.max(landing_speed(&engine, handle));
             }
+            awake.push((handle, Some(factors)));
         }
-        for (handle, substeps, way) in changes {
-            let body = &mut engine.bodies[handle];
-            body.set_additional_solver_iterations(substeps - BASE_SUBSTEPS);
-            body.set_soft_ccd_prediction(way);
-        }
-
         self.landing = ticks_left(self.landing, LANDING_TICKS, landing > 0.0);
         let is_landing = self.landing > 0;
+        self.calm = match is_handling || is_landing {
+            true => 0,
+            false => CALM_TICKS.min(self.calm + 1),
+        };
+        let mut moving = awake.iter().filter_map(|(_, factors)| *factors);
+        let are_low_stacks = self.calm == CALM_TICKS && moving.all(SubstepFactors::is_in_low_stack);
+
+        for (handle, factors) in awake {
+            let body = &engine.bodies[handle];
+            let before = substeps(body);
+            let needed = match factors {
+                None => substeps_of_unmoved(body),
+                Some(_) if is_handling => MOST_SUBSTEPS,
+                Some(_) if are_low_stacks => BASE_SUBSTEPS.max(before.saturating_sub(DECAY)),
+                Some(factors) => factors.substeps().max(before.saturating_sub(DECAY)),
+            };
+            let way = factors.map_or_else(|| body.soft_ccd_prediction(), |it| way_ahead(it, body));
+            if needed != before || way != body.soft_ccd_prediction() {
+                let body = &mut engine.bodies[handle];
+                body.set_additional_solver_iterations(needed - BASE_SUBSTEPS);
+                body.set_soft_ccd_prediction(way);
+            }
+        }
+
         let sweeps = match (is_landing, is_handling) {
             (true, _) => LANDING_SWEEPS,
             (false, true) => HANDLING_SWEEPS,
+            (false, false) if are_low_stacks => LOW_STACK_SWEEPS,
             (false, false) => SWEEPS,
         };
         // A body beyond this distance is touched in one point, whatever its shape. The broad phase looks half as far for each of two bodies.
@@ -211,6 +222,21 @@ impl Care {
             is_continuous: is_any_fast,
         };
         mode.set(engine.parameters);
+    }
+}
+
+/// How far the way of a body to a hand or a link is seen ahead, in units.
+fn way_ahead(factors: SubstepFactors, body: &RigidBody) -> f32 {
+    let speed_to_hands = match factors.is_near_others {
+        true => SPEED_TO_HANDS_BESIDE_OTHERS,
+        false => SPEED_TO_HANDS,
+    };
+    let is_seen_ahead = factors.is_near_hand
+        && body.linvel().length() > speed_to_hands
+        && body.angvel().length() < MOST_TURNING;
+    match is_seen_ahead {
+        true => WAY_TO_HANDS,
+        false => 0.0,
     }
 }
 

@@ -4,8 +4,11 @@ use bevy_rapier3d::rapier::prelude::{RigidBody, RigidBodyHandle};
 
 use super::{engine::Engine, touches::Touches};
 
-/// Number of sub-steps of every body; each has more in addition.
-pub(crate) const BASE_SUBSTEPS: usize = 4;
+/// Number of sub-steps of every body; each has more in addition. Low stacks need no more.
+pub(crate) const BASE_SUBSTEPS: usize = 2;
+
+/// Least number of sub-steps of what is not in a low stack, or of everything while anything else is awake.
+const LEAST_SUBSTEPS: usize = 4;
 
 /// Number of sub-steps of handled bodies.
 pub(crate) const MOST_SUBSTEPS: usize = 36;
@@ -30,6 +33,12 @@ const SUBSTEPS_OF_FAST: usize = 20;
 
 /// Speed, in units/s and rad/s together, from which a body is fast.
 const FAST: f32 = 20.0;
+
+/// Greatest depth of a body in a low stack.
+const LOW: u32 = 5;
+
+/// Speed, in units/s and rad/s together, below which a body of a low stack stands.
+const CALM: f32 = 1.0;
 
 /// The factors that decide a body's number of sub-steps.
 #[derive(Clone, Copy, Debug)]
@@ -69,7 +78,7 @@ impl SubstepFactors {
     pub fn substeps(self) -> usize {
         let by_depth = match self.depth {
             Some(depth) => SUBSTEPS_BY_DEPTH[(depth as usize - 1).min(SUBSTEPS_BY_DEPTH.len() - 1)],
-            None if self.is_jointed => BASE_SUBSTEPS,
+            None if self.is_jointed => LEAST_SUBSTEPS,
             None => SUBSTEPS_OF_FREE,
         };
         let others = [
@@ -81,6 +90,14 @@ impl SubstepFactors {
         ];
         let others = others.into_iter().filter(|(applies, _)| *applies);
         others.fold(by_depth, |most, (_, substeps)| most.max(substeps))
+    }
+
+    /// True if it stands in a low stack of blocks that are about equally heavy.
+    pub fn is_in_low_stack(self) -> bool {
+        self.depth.is_some_and(|depth| depth <= LOW)
+            && self.is_block
+            && self.speed < CALM
+            && !(self.is_uneven || self.is_jointed || self.is_handled)
     }
 }
 
@@ -96,7 +113,7 @@ pub(crate) fn substeps_of_unmoved(body: &RigidBody) -> usize {
         // sub-steps of whichever body has fewer.
         MOST_SUBSTEPS
     } else {
-        BASE_SUBSTEPS
+        LEAST_SUBSTEPS
     }
 }
 
@@ -143,6 +160,42 @@ mod tests {
             ..uneven
         };
         assert_eq!(handled.substeps(), MOST_SUBSTEPS);
+    }
+
+    #[test]
+    fn low_stacks_are_of_even_blocks_that_stand() {
+        let others = [
+            SubstepFactors {
+                depth: None,
+                ..BLOCK
+            },
+            SubstepFactors {
+                depth: Some(LOW + 1),
+                ..BLOCK
+            },
+            SubstepFactors {
+                is_block: false,
+                ..BLOCK
+            },
+            SubstepFactors {
+                is_uneven: true,
+                ..BLOCK
+            },
+            SubstepFactors {
+                is_jointed: true,
+                ..BLOCK
+            },
+            SubstepFactors {
+                is_handled: true,
+                ..BLOCK
+            },
+            SubstepFactors {
+                speed: CALM,
+                ..BLOCK
+            },
+        ];
+        assert!(BLOCK.is_in_low_stack());
+        assert!(!others.into_iter().any(SubstepFactors::is_in_low_stack));
     }
 
     #[test]

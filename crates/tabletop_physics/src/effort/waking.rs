@@ -36,17 +36,20 @@ impl Engine<'_> {
             return Vec::new();
         };
         let dt = self.parameters.dt;
-        let (next, speed) = if body.is_kinematic() {
-            let next = *body.next_position();
-            let way = (next.translation - body.translation()).length();
-            (next, way / dt + body.angvel().length())
-        } else {
-            let next = body.predict_position_using_velocity_and_forces(dt);
-            (next, speed(body))
+        let speed = match body.is_kinematic() {
+            true => {
+                let way = body.next_position().translation - body.translation();
+                way.length() / dt + body.angvel().length()
+            }
+            false => speed(body),
         };
         if speed < SPEED_OF_BLOW {
             return Vec::new();
         }
+        let next = match body.is_kinematic() {
+            true => *body.next_position(),
+            false => body.predict_position_using_velocity_and_forces(dt),
+        };
         let near = self.broad_phase.as_query_pipeline(
             self.narrow_phase.query_dispatcher(),
             self.bodies,

@@ -1,7 +1,7 @@
 //! Objects that must stand still.
 
 use bevy::prelude::*;
-use tabletop_core::{Part, Pose, SceneItem, Shape};
+use tabletop_core::{ObjectSpec, Part, Pose, Random, SceneItem, Shape};
 use tabletop_physics::PhysicsSettings;
 
 use crate::world::*;
@@ -38,6 +38,42 @@ fn a_tower_that_may_not_sleep_stands_still_for_a_minute() {
     world.seconds(60.0);
     let (far, turn) = drift(&world, &tower(10));
     assert!(far < 0.002 && turn < 0.05, "moved {far}, turned {turn}°");
+}
+
+#[test]
+fn crooked_towers_of_five_that_may_not_sleep_stand_still_for_a_minute() {
+    let settings = PhysicsSettings {
+        sleep: false,
+        ..default()
+    };
+    let mut random = Random::new(3);
+    let put: Vec<_> = (0..12)
+        .flat_map(|tower| crooked_tower_of_five(&mut random, tower))
+        .collect();
+    let mut world = TestWorld::with_settings(settings, put.clone());
+    world.seconds(60.0);
+    let (far, turn) = drift(&world, &put);
+    assert!(far < 0.001 && turn < 0.05, "moved {far}, turned {turn}°");
+}
+
+fn crooked_tower_of_five(random: &mut Random, number: usize) -> Vec<SceneItem> {
+    let foot = Vec2::new((number % 4) as f32 - 2.0, (number / 4) as f32 - 1.0) * 3.0;
+    let aside = (-0.15, 0.15);
+    let storeys = (0..5).map(|storey| {
+        let place = foot + Vec2::new(random.between(aside), random.between(aside));
+        let place = place.extend(storey as f32 + 0.5);
+        let mass = random.between((0.9, 1.3));
+        let id = format!("{number}.{storey}");
+        let degrees = Vec3::Z * random.between((0.0, 60.0));
+        let shape = block(Vec3::ONE);
+        SceneItem::Object(ObjectSpec::new(
+            id,
+            Pose::from_degrees(place, degrees),
+            mass,
+            shape,
+        ))
+    });
+    storeys.collect()
 }
 
 #[test]
