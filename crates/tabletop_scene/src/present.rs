@@ -1,15 +1,18 @@
 //! The present state as a scene.
 
+mod marks;
+
 use bevy::prelude::*;
 use tabletop_core::{
-    BondEnd, ChainSpec, Composition, Held, Holder, LidBoxSpec, ObjectIndex, ObjectSpec, Pose,
-    SceneItem, SceneSpec, Shape, Table,
+    ChainSpec, Composition, Held, Holder, LidBoxSpec, ObjectIndex, ObjectSpec, Pose, SceneItem,
+    SceneSpec, Shape, Table,
 };
 
 use crate::{
     Assembly, IdAllocator,
     compound::{Compound, Compounds},
 };
+use marks::{mark_parts, with_ids, with_marks_of_ids};
 
 /// Distance, in units, of a compound's part from where the next load puts it, up to which nothing is reported.
 const UNNOTICED: f32 = 0.01;
@@ -256,57 +259,6 @@ fn sayable(shape: &Shape) -> (Shape, Option<&'static str>) {
         | Composition::Control(_)
         | Composition::BondPoint(_) => (shape.clone(), None),
     }
-}
-
-/// The item with other ids.
-fn with_ids(item: &SceneItem, mut new: impl FnMut(&str) -> String) -> SceneItem {
-    let mut item = item.clone();
-    match &mut item {
-        SceneItem::Object(ObjectSpec { id, .. })
-        | SceneItem::Chain(ChainSpec { id, .. })
-        | SceneItem::LidBox(LidBoxSpec { id, .. }) => *id = new(id),
-        SceneItem::Jointed(jointed) => {
-            for object in &mut jointed.objects {
-                object.id = new(&object.id);
-            }
-        }
-    }
-    item
-}
-
-/// Gives the parts of an item's objects ids that a task file can have.
-fn mark_parts(item: &mut SceneItem) {
-    match item {
-        SceneItem::Object(object) => mark_parts_of(&mut object.shape),
-        SceneItem::Jointed(jointed) => {
-            for object in &mut jointed.objects {
-                mark_parts_of(&mut object.shape);
-            }
-        }
-        SceneItem::Chain(_) | SceneItem::LidBox(_) => {}
-    }
-}
-
-fn mark_parts_of(shape: &mut Shape) {
-    if let Shape::Composite { parts } = shape {
-        for part in parts {
-            part.id = with_marks_of_ids(&part.id);
-            mark_parts_of(&mut part.shape);
-        }
-    }
-    if let Shape::BondPoint(point) = shape
-        && let BondEnd::Guest(guest) = &mut point.end
-    {
-        guest.host = with_marks_of_ids(&guest.host);
-    }
-}
-
-/// The nearest id that a task file can have.
-fn with_marks_of_ids(id: &str) -> String {
-    id.replace(
-        |mark: char| mark != '_' && !mark.is_ascii_alphanumeric(),
-        "_",
-    )
 }
 
 #[cfg(test)]

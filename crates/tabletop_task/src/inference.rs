@@ -5,7 +5,7 @@ use tabletop_recorder::TICKS_PER_FRAME;
 
 use crate::{
     demonstration::{Demonstration, HandAct, HandDeed},
-    symmetry::angle_between,
+    rotation::angle_between,
     track::Track,
 };
 

@@ -8,7 +8,8 @@ use crate::{
     arrangement::{Arrangement, TOUCH},
     demonstration::Demonstration,
     manipulation::{Ending, Manipulation},
-    symmetry::{Symmetry, angle_between},
+    rotation::angle_between,
+    symmetry::Symmetry,
 };
 
 /// A relation that a manipulation establishes. Objects are given by their ids.

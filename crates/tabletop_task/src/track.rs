@@ -2,7 +2,7 @@
 
 use tabletop_core::{Pose, SimTick};
 
-use crate::symmetry::angle_between;
+use crate::rotation::angle_between;
 
 /// The poses of an object over time; each holds until the next one.
 #[derive(Clone, Debug, Default, PartialEq)]
