@@ -1,4 +1,4 @@
-//! Ids of the marks that a task file can have.
+//! Ids that a task file can have.
 
 use tabletop_core::{BondEnd, ChainSpec, LidBoxSpec, ObjectSpec, SceneItem, Shape};
 
