@@ -36,20 +36,18 @@ impl Engine<'_> {
             return Vec::new();
         };
         let dt = self.parameters.dt;
-        let speed = match body.is_kinematic() {
-            true => {
-                let way = body.next_position().translation - body.translation();
+        let target = body.is_kinematic().then(|| *body.next_position());
+        let speed = target.map_or_else(
+            || speed(body),
+            |target| {
+                let way = target.translation - body.translation();
                 way.length() / dt + body.angvel().length()
-            }
-            false => speed(body),
-        };
+            },
+        );
         if speed < SPEED_OF_BLOW {
             return Vec::new();
         }
-        let next = match body.is_kinematic() {
-            true => *body.next_position(),
-            false => body.predict_position_using_velocity_and_forces(dt),
-        };
+        let next = target.unwrap_or_else(|| body.predict_position_using_velocity_and_forces(dt));
         let near = self.broad_phase.as_query_pipeline(
             self.narrow_phase.query_dispatcher(),
             self.bodies,
