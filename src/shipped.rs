@@ -11,7 +11,7 @@ use std::{
 
 use bevy::prelude::*;
 use include_dir::{Dir, include_dir};
-use tabletop_core::{ShippedFile, ShippedFiles, read_regular_text};
+use tabletop_core::{ShippedFile, ShippedFiles, Symlinks, read_regular_text};
 use tabletop_scenario::{Scenario, ScenarioError};
 use tabletop_xml::{ParsedTask, ReadError, TaskReader};
 
@@ -115,7 +115,7 @@ const MOST_BYTES: u64 = 16 << 20;
 pub fn read_text(path: &Path) -> io::Result<String> {
     match shipped_files().find(path) {
         Some(file) => Ok(file.text.to_owned()),
-        None => read_regular_text(path, MOST_BYTES),
+        None => read_regular_text(path, MOST_BYTES, Symlinks::Followed),
     }
 }
 

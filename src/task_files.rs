@@ -6,6 +6,7 @@ use std::{
 };
 
 use bevy::prelude::World;
+use tabletop_core::{Symlinks, read_regular_file};
 
 use crate::{
     scene::{PresentScene, present_scene},
@@ -52,11 +53,8 @@ fn is_task_name(path: &Path) -> bool {
 }
 
 fn is_listed(path: &Path) -> bool {
-    let is_file = |path: &Path| {
-        path.metadata()
-            .is_ok_and(|file| file.is_file() && file.len() <= MAX_FILE_BYTES as u64)
-    };
-    is_task_name(path) && is_file(path) && fs::read(path).is_ok_and(|text| is_task(&text))
+    let read = || read_regular_file(path, MAX_FILE_BYTES as u64, Symlinks::Followed);
+    is_task_name(path) && read().is_ok_and(|text| is_task(&text))
 }
 
 /// Saves the table as a task file, replacing an existing one. Returns what a task file cannot express of it.

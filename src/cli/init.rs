@@ -9,7 +9,7 @@ use std::{
 
 use clap::Args;
 use tabletop::{
-    core::ShippedFile,
+    core::{ShippedFile, Symlinks, read_regular_file},
     shipped::{WORKING_FOLDERS, shipped_files},
 };
 
@@ -77,12 +77,15 @@ pub(super) fn init(args: &InitArgs) -> Result<ExitCode, Failure> {
 }
 
 fn look_at(path: &Path, file: &ShippedFile) -> Result<Existing, Failure> {
-    match fs::read(path) {
+    match read_regular_file(path, file.text.len() as u64, Symlinks::Followed) {
         Ok(bytes) if bytes == file.text.as_bytes() => Ok(Existing::TheSame),
         Ok(_) => Ok(Existing::SomethingElse),
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Existing::Nothing),
-        Err(error) if error.kind() == ErrorKind::IsADirectory => Ok(Existing::SomethingElse),
-        Err(error) => Err(Failure::run(format!("{}: {error}", path.display()))),
+        Err(error) => match error.kind() {
+            ErrorKind::NotFound => Ok(Existing::Nothing),
+            ErrorKind::FileTooLarge => Ok(Existing::SomethingElse),
+            _ if path.exists() && !path.is_file() => Ok(Existing::SomethingElse),
+            _ => Err(Failure::run(format!("{}: {error}", path.display()))),
+        },
     }
 }
 

@@ -17,6 +17,7 @@ use std::{
 use clap::Args;
 use serde_json::{Value, json};
 use tabletop::{
+    core::{Symlinks, read_regular_text},
     multiplication::{Demonstrator, Made, Multiplication, MultiplyError, Variation},
     robot::RobotPlugin,
 };
@@ -92,6 +93,8 @@ fn part(text: &str) -> Result<f32, String> {
 
 /// What a folder of demonstrations was made with, so that others are not mixed with them.
 const MANIFEST: &str = "multiply.json";
+/// The most bytes of it that are read.
+const MOST_BYTES: u64 = 1 << 20;
 /// Prefix of the folders of unfinished demonstrations.
 const PART: &str = ".part-";
 
@@ -142,7 +145,7 @@ fn prepare(args: &MultiplyArgs) -> Result<(), Failure> {
     fs::create_dir_all(&args.out).map_err(failed(&args.out))?;
     let path = args.out.join(MANIFEST);
     let manifest = args.manifest();
-    match fs::read_to_string(&path) {
+    match read_regular_text(&path, MOST_BYTES, Symlinks::Followed) {
         Ok(text) => {
             let known: Option<Value> = serde_json::from_str(&text).ok();
             if known.as_ref() != Some(&manifest) {

@@ -7,6 +7,8 @@ use std::{
     process,
 };
 
+use tabletop::core::{Symlinks, open_regular_file};
+
 /// The file in a temporary folder that is locked as long as its program runs.
 const LOCK: &str = "lock";
 
@@ -78,7 +80,8 @@ fn remove_what_killed_programs_left(parent: &Path, kind: &str) {
 
 /// True if a folder's lock exists and nobody holds it.
 fn is_abandoned(folder: &Path) -> bool {
-    let lock = File::open(folder.join(LOCK)).map(|lock| lock.try_lock());
+    let lock = open_regular_file(&folder.join(LOCK), Symlinks::Refused);
+    let lock = lock.map(|lock| lock.try_lock());
     matches!(lock, Ok(Ok(())))
 }
 

@@ -2,16 +2,24 @@
 
 use std::{
     collections::BTreeSet,
-    fs,
+    fs::{self, File},
+    io::{self, Read as _},
     path::{Path, PathBuf},
 };
 
+use tabletop_core::{Symlinks, open_regular_file};
 use tabletop_recorder::whole_lines;
 use tabletop_task::Requirements;
 
 use super::ReplayError;
 
-/// The first file in which two recordings differ, and the difference.
+/// Number of bytes by which a recorded file is read beyond the length of the replayed one: a difference is told with a line of it.
+const MOST_BEYOND: u64 = 4096;
+
+/// Number of characters of a line that are shown, at most.
+const MOST_SHOWN: usize = 200;
+
+/// The first file in which two recordings differ, and the difference. The second one was made by this program.
 ///
 /// # Errors
 ///
@@ -48,11 +56,14 @@ fn first_that_differs(
     for file in files {
         let name = file.display();
         let (before, after) = (recorded.join(&file), replayed.join(&file));
-        let difference = match (before.exists(), after.exists()) {
+        let difference = match (is_there(&before), is_there(&after)) {
             (true, false) => format!("{name}: was recorded, but is missing in the replay"),
             (false, true) => format!("{name}: was not recorded, but exists in the replay"),
             _ => {
-                let (before, after) = (read(&before)?, read(&after)?);
+                let recorded = open(&before)?;
+                let after = first_bytes(&after, open(&after)?, u64::MAX)?;
+                let most = (after.len() as u64).saturating_add(MOST_BEYOND);
+                let before = first_bytes(&before, recorded, most)?;
                 if is_same(&file, &before, &after) {
                     continue;
                 }
@@ -76,8 +87,13 @@ fn first_difference_of(before: &[u8], after: &[u8]) -> String {
         return "the pictures differ".into();
     };
     let [mut before, mut after] = [before, after].map(|text| text.split_inclusive('\n'));
-    let shown = |line: Option<&str>| match line {
-        Some(line) => format!("`{}`", line.trim_end_matches('\n').replace('\r', "\\r")),
+    let shown = |line: Option<&str>| match line.map(|line| line.trim_end_matches('\n')) {
+        Some(line) => {
+            let end = line.char_indices().nth(MOST_SHOWN).map(|(end, _)| end);
+            let text = line[..end.unwrap_or(line.len())].replace('\r', "\\r");
+            let more = end.map_or("", |_| "…");
+            format!("`{text}{more}`")
+        }
         None => "the end of the file".to_owned(),
     };
     for line in 1.. {
@@ -100,10 +116,7 @@ fn files_in(folder: &Path) -> Result<BTreeSet<PathBuf>, ReplayError> {
     let mut folders = vec![PathBuf::new()];
     while let Some(inner) = folders.pop() {
         let path = folder.join(&inner);
-        let failed = |source| ReplayError::Io {
-            path: path.clone(),
-            source,
-        };
+        let failed = failed(&path);
         for entry in fs::read_dir(&path).map_err(failed)? {
             let entry = entry.map_err(failed)?;
             let name = inner.join(entry.file_name());
@@ -123,9 +136,25 @@ fn files_in(folder: &Path) -> Result<BTreeSet<PathBuf>, ReplayError> {
     Ok(files)
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, ReplayError> {
-    fs::read(path).map_err(|source| ReplayError::Io {
+/// True if there is something of this name, be it a link to nothing.
+fn is_there(path: &Path) -> bool {
+    path.symlink_metadata().is_ok()
+}
+
+fn open(path: &Path) -> Result<File, ReplayError> {
+    open_regular_file(path, Symlinks::Refused).map_err(failed(path))
+}
+
+/// The first bytes of a file, at most this many.
+fn first_bytes(path: &Path, file: File, most: u64) -> Result<Vec<u8>, ReplayError> {
+    let mut bytes = Vec::new();
+    let read = file.take(most).read_to_end(&mut bytes);
+    read.map(|_| bytes).map_err(failed(path))
+}
+
+fn failed(path: &Path) -> impl Fn(io::Error) -> ReplayError + Copy {
+    move |source| ReplayError::Io {
         path: path.to_owned(),
         source,
-    })
+    }
 }

@@ -1,6 +1,10 @@
 //! A file of Rust as far as its arrows to other files go.
 
-use std::collections::BTreeSet;
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::{Path, PathBuf},
+};
 
 /// The names that a file has from elsewhere, those that it defines, and the paths that it spells out.
 #[derive(Default)]
@@ -27,6 +31,34 @@ const TYPES: [&str; 3] = ["struct", "enum", "trait"];
 const ITEMS: [&str; 9] = [
     "struct", "enum", "union", "trait", "type", "fn", "const", "static", "mod",
 ];
+
+/// The files of the program, tests apart, by their paths in this workspace.
+pub fn program() -> Vec<(PathBuf, Source)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files = Vec::new();
+    for entry in fs::read_dir(root.join("crates")).unwrap() {
+        collect(&entry.unwrap().path().join("src"), &mut files);
+    }
+    collect(&root.join("src"), &mut files);
+    let read = |path: PathBuf| {
+        let source = Source::parse(&fs::read_to_string(&path).unwrap());
+        (path.strip_prefix(root).unwrap().to_owned(), source)
+    };
+    files.into_iter().map(read).collect()
+}
+
+/// The files of Rust below a folder that are no tests.
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).into_iter().flatten() {
+        let path = entry.unwrap().path();
+        let stem = path.file_stem().unwrap_or_default();
+        if path.is_dir() {
+            collect(&path, files);
+        } else if path.extension().is_some_and(|it| it == "rs") && stem != "tests" {
+            files.push(path);
+        }
+    }
+}
 
 impl Source {
     pub fn parse(text: &str) -> Self {

@@ -18,6 +18,7 @@ mod replay;
 mod robot;
 mod scenarios;
 mod scripts;
+mod strange_recordings;
 mod strange_scenes;
 mod support;
 mod task_files;

@@ -13,7 +13,6 @@
 use std::{
     collections::{BTreeMap, BTreeSet},
     fmt::{self, Write as _},
-    fs,
     path::{Path, PathBuf},
 };
 
@@ -23,9 +22,11 @@ use serde::{
     Deserialize, Deserializer,
     de::{MapAccess, Visitor},
 };
-use tabletop_core::{Action, KeyBinding, Keymap, RobotLayout, Situation};
+use tabletop_core::{
+    Action, KeyBinding, Keymap, RobotLayout, Situation, Symlinks, read_regular_text,
+};
 
-use crate::{Notices, Preferences, Tone};
+use crate::{Notices, Preferences, Tone, preferences::MOST_BYTES};
 
 /// The file that is read when the program starts. Without this resource it is `keys.ron` of the [`Preferences`], if there is one.
 #[derive(Resource, Clone, Debug, PartialEq, Eq)]
@@ -61,7 +62,7 @@ pub fn read(
     let Some(path) = path.map(Path::to_owned).or_else(own) else {
         return shipped(layout);
     };
-    match fs::read_to_string(&path) {
+    match read_regular_text(&path, MOST_BYTES, Symlinks::Followed) {
         Ok(text) => {
             let (keymap, faults) = parse(&text, layout);
             let faults = faults.into_iter();

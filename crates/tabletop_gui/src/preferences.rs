@@ -9,10 +9,14 @@ use bevy::prelude::*;
 use directories::ProjectDirs;
 use ron::ser::PrettyConfig;
 use serde::{Serialize, de::DeserializeOwned};
+use tabletop_core::{Symlinks, read_regular_text};
 use thiserror::Error;
 
 /// The environment variable that names another folder.
 pub const FOLDER_VARIABLE: &str = "TABLETOP_CONFIG";
+
+/// The most bytes of a file of preferences that are read.
+pub(crate) const MOST_BYTES: u64 = 1 << 20;
 
 /// The folder of the preferences.
 #[derive(Resource, Clone, Debug, PartialEq, Eq)]
@@ -89,7 +93,7 @@ impl Preferences {
         let Some(path) = self.file(concern) else {
             return Ok(None);
         };
-        match fs::read_to_string(&path) {
+        match read_regular_text(&path, MOST_BYTES, Symlinks::Followed) {
             Ok(text) => ron::from_str(&text)
                 .map(Some)
                 .map_err(|error| PreferencesError::Syntax {

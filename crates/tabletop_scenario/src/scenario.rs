@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use ron::{Options, error::SpannedError, extensions::Extensions, value::RawValue};
 use serde::Deserialize;
-use tabletop_core::{RobotLayout, is_shipped, read_regular_text};
+use tabletop_core::{RobotLayout, Symlinks, is_shipped, read_regular_text};
 
 use crate::{ScenarioError, SourceLocation, Step, source::Places};
 
@@ -67,7 +67,7 @@ impl Scenario {
     /// It cannot be read, or its [text](Self::parse) has a fault.
     pub fn read(path: impl Into<PathBuf>) -> Result<Self, ScenarioError> {
         let path = path.into();
-        match read_regular_text(&path, MOST_BYTES) {
+        match read_regular_text(&path, MOST_BYTES, Symlinks::Followed) {
             Ok(text) => Self::parse(path, &text),
             Err(error) => Err(ScenarioError::Unreadable {
                 path,
@@ -183,7 +183,10 @@ fn from_ron<'a, T: Deserialize<'a>>(
         .from_str(text)
         .map_err(|SpannedError { code, span }| ScenarioError::Syntax {
             at: at.followed_by(span.start),
-            what: code.to_string(),
+            what: match code == ron::Error::ExceededRecursionLimit {
+                true => "it is nested too deeply".to_owned(),
+                false => code.to_string(),
+            },
         })
 }
 
@@ -266,6 +269,12 @@ mod tests {
             assert!(error.starts_with(&format!("s.ron:{at}")), "{error}");
             assert!(error.contains(words), "{error}");
         }
+    }
+
+    #[test]
+    fn deep_nesting_is_a_fault() {
+        let error = error(&format!("(steps: [{}", "[".repeat(1_000_000)));
+        assert!(error.ends_with("it is nested too deeply"), "{error}");
     }
 
     #[test]

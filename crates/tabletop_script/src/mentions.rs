@@ -1,9 +1,8 @@
 //! Words in scripts: some of what can be sensed costs time, and most scripts do not mention it.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
+
+use tabletop_core::{Symlinks, read_regular_file};
 
 /// The Python driver, which knows all words, and lies beside scripts that import it.
 const DRIVER: &str = "tabletop.py";
@@ -53,10 +52,9 @@ fn scripts_in(folder: &Path, extension: &str) -> Vec<PathBuf> {
 }
 
 fn contains(script: &Path, words: &[&str]) -> bool {
-    if !fs::metadata(script).is_ok_and(|file| file.is_file() && file.len() <= LARGEST_SCRIPT) {
+    let Ok(text) = read_regular_file(script, LARGEST_SCRIPT, Symlinks::Followed) else {
         return false;
-    }
-    let text = fs::read(script).unwrap_or_default();
+    };
     let comment = match script.extension().is_some_and(|ending| ending == "py") {
         true => b'#',
         false => b'%',

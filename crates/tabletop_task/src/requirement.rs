@@ -3,13 +3,13 @@
 
 use std::{
     collections::BTreeMap,
-    fs,
-    io::ErrorKind,
+    fs::{self, File},
+    io::{ErrorKind, Write as _},
     path::{Path, PathBuf},
 };
 
 use serde::{Deserialize, Serialize};
-use tabletop_core::{ObjectSpec, Rgb};
+use tabletop_core::{ObjectSpec, Rgb, Symlinks, read_regular_text};
 
 use crate::{
     noun::color_name,
@@ -55,6 +55,9 @@ pub enum RequirementError {
     Color(String),
 }
 
+/// The most bytes of their file that are read.
+const MOST_BYTES: u64 = 1 << 20;
+
 /// The property that means "the same object as in another step".
 const SAME: &str = "same";
 
@@ -65,10 +68,10 @@ impl Requirements {
     /// Reads the requirements of a recording; without a file there are none.
     ///
     /// # Errors
-    /// The file cannot be read, or has not the format that [`write`](Self::write) gives it.
+    /// The file is a link, is larger than 1 MiB, cannot be read, or has not the format that [`write`](Self::write) gives it.
     pub fn read(folder: &Path) -> Result<Self, RequirementError> {
         let path = folder.join(Self::FILE);
-        let text = match fs::read_to_string(&path) {
+        let text = match read_regular_text(&path, MOST_BYTES, Symlinks::Refused) {
             Ok(text) => text,
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Self::default()),
             Err(source) => return Err(RequirementError::Io { path, source }),
@@ -92,8 +95,18 @@ impl Requirements {
                 _ => Ok(()),
             };
         }
-        let text = serde_json::to_string_pretty(self).map_err(std::io::Error::from);
-        fs::write(&path, text.map_err(failed)? + "\n").map_err(failed)
+        // What is there may be a link to another file, which is not to be written.
+        let new = folder.join(format!("{}.part", Self::FILE));
+        let replace = || {
+            let text = serde_json::to_string_pretty(self)? + "\n";
+            match fs::remove_file(&new) {
+                Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+                _ => {}
+            }
+            File::create_new(&new)?.write_all(text.as_bytes())?;
+            fs::rename(&new, &path)
+        };
+        replace().map_err(failed)
     }
 
     /// Adds a requirement: `name=value`, `name` for the demonstrated value, `same=STEP`, or `any` for no requirement at all.

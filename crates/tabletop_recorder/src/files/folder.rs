@@ -199,6 +199,15 @@ impl Folder {
         Self::at(&self.undone().pictures(segment), &self.storage)
     }
 
+    /// The folder of what was undone with a segment. It must be there, and no link to another.
+    pub(crate) fn require_undone_segment(&self, segment: u32) -> Result<Self, RecorderError> {
+        let undone_segment = self.undone_segment(segment);
+        for folder in [&self.undone().path, &undone_segment.path] {
+            require_folder(folder).map_err(RecorderError::read(folder))?;
+        }
+        Ok(undone_segment)
+    }
+
     /// Moves text and pictures of a segment to another folder, unless they are already there.
     pub(crate) fn move_segment(&self, segment: u32, to: &Self) -> Result<(), RecorderError> {
         for (from, to) in [

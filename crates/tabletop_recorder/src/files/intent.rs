@@ -9,7 +9,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     error::RecorderError,
-    files::{folder::Folder, json::from_json, storage::is_taken},
+    files::{
+        folder::Folder,
+        json::from_json,
+        limits::{MOST_ROW_BYTES, MOST_SESSION_BYTES},
+        storage::is_taken,
+    },
 };
 
 /// The longest that is read: it holds a few lines of commands.
@@ -71,7 +76,7 @@ impl Intent {
                 before,
                 then,
             } => {
-                let away = folder.undone_segment(*segment);
+                let away = folder.require_undone_segment(*segment)?;
                 for (log, len, lines) in [
                     (folder.session(), before.session, then.as_bytes()),
                     (folder.states(), before.states, &[]),
@@ -86,15 +91,30 @@ impl Intent {
                 before,
                 first_frame,
             } => {
-                let away = folder.undone_segment(*segment);
+                let away = folder.require_undone_segment(*segment)?;
                 folder.remove_pictures(before.segment, *first_frame)?;
                 replace_end(folder, &folder.text(before.segment), before.text, &[])?;
-                for (log, len, end) in [
-                    (folder.session(), before.session, away.session()),
-                    (folder.states(), before.states, away.states()),
-                    (folder.joints(), before.joints, away.joints()),
+                for (log, len, end, most) in [
+                    (
+                        folder.session(),
+                        before.session,
+                        away.session(),
+                        MOST_SESSION_BYTES,
+                    ),
+                    (
+                        folder.states(),
+                        before.states,
+                        away.states(),
+                        MOST_ROW_BYTES,
+                    ),
+                    (
+                        folder.joints(),
+                        before.joints,
+                        away.joints(),
+                        MOST_ROW_BYTES,
+                    ),
                 ] {
-                    let lines = folder.storage().read(&end, u64::MAX);
+                    let lines = folder.storage().read(&end, most);
                     let lines = lines.map_err(RecorderError::read(&end))?;
                     replace_end(folder, &log, len, &lines)?;
                 }

@@ -12,6 +12,8 @@ use std::{
     time::Duration,
 };
 
+use tabletop_core::{Symlinks, open_regular_file, require_regular_file};
+
 /// Number of attempts to get a lock.
 const LOCK_ATTEMPTS: u32 = 100;
 const BETWEEN_LOCK_ATTEMPTS: Duration = Duration::from_millis(5);
@@ -134,7 +136,7 @@ impl Storage {
     /// Opens a file, to be read and written.
     pub(crate) fn open(&self, path: &Path) -> io::Result<StoredFile> {
         self.may()?;
-        require_file(path)?;
+        require_regular_file(path, Symlinks::Refused)?;
         let file = OpenOptions::new().read(true).write(true).open(path)?;
         Ok(self.stored(file))
     }
@@ -142,8 +144,7 @@ impl Storage {
     /// Opens a file, to be read.
     pub(crate) fn open_to_read(&self, path: &Path) -> io::Result<StoredFile> {
         self.may()?;
-        require_file(path)?;
-        Ok(self.stored(File::open(path)?))
+        Ok(self.stored(open_regular_file(path, Symlinks::Refused)?))
     }
 
     fn stored(&self, file: File) -> StoredFile {
@@ -345,16 +346,6 @@ pub(crate) fn require_folder(path: &Path) -> io::Result<()> {
         false => Err(io::Error::new(
             ErrorKind::NotADirectory,
             "it is no folder, and a recording has one there",
-        )),
-    }
-}
-
-fn require_file(path: &Path) -> io::Result<()> {
-    match path.symlink_metadata()?.is_file() {
-        true => Ok(()),
-        false => Err(io::Error::new(
-            ErrorKind::InvalidInput,
-            "it is no file but a link, a folder or a device, and a recording has none there",
         )),
     }
 }

@@ -173,7 +173,10 @@ impl RecordingReader {
             next += 1;
         }
         for number in next.. {
-            let folder = self.folder.undone_segment(number);
+            if !is_taken(self.folder.undone_segment(number).path()) {
+                break;
+            }
+            let folder = self.folder.require_undone_segment(number)?;
             let Some(events) = read_events(&folder, number, CommaStyle::Quoted)? else {
                 break;
             };

@@ -10,6 +10,8 @@ use tabletop_core::{
 };
 use tabletop_recorder::{Occurrence, RecordingReader};
 
+#[cfg(unix)]
+use crate::stage::files_in;
 use crate::stage::{Place, app, block, grasp, location, run, scene};
 
 const LEFT: Hand = Hand::Left;
@@ -296,6 +298,40 @@ fn links_and_devices_are_not_read() {
             assert!(error.contains(file), "{error}");
             fs::remove_file(&path).unwrap();
             fs::write(&path, content).unwrap();
+        }
+    }
+}
+
+/// Else the recovery of an interrupted undo would move files from or to any folder.
+#[cfg(unix)]
+#[test]
+fn what_was_undone_is_not_looked_for_in_other_folders() {
+    let put_away = r#"{"PutAway":{"segment":1,"before":BEFORE,"then":""}}"#;
+    let bring_back = r#"{"BringBack":{"segment":1,"before":BEFORE,"first_frame":0}}"#;
+    let before = r#"{"segment":0,"text":0,"session":0,"states":0,"joints":0}"#;
+    for linked in [".undone", ".undone/1"] {
+        for intent in [None, Some(put_away), Some(bring_back)] {
+            let place = Place::new();
+            let script = [
+                (20, grasp(LEFT, "a")),
+                (40, SimCommand::History(HistoryCommand::Undo)),
+            ];
+            recorded(&place, &script);
+            let [linked, elsewhere] = [place.demo().join(linked), place.path().join("elsewhere")];
+            fs::rename(&linked, &elsewhere).unwrap();
+            std::os::unix::fs::symlink(&elsewhere, &linked).unwrap();
+            if let Some(intent) = intent {
+                let intent = intent.replace("BEFORE", before);
+                fs::write(place.demo().join(".intent.json"), intent).unwrap();
+            }
+            let there = [files_in(&elsewhere), place.tree()];
+            let read = RecordingReader::open(place.demo()).and_then(|read| read.undone());
+            let error = read.unwrap_err().to_string();
+            assert!(
+                error.contains(".undone") && error.contains("no folder"),
+                "{error}"
+            );
+            assert_eq!([files_in(&elsewhere), place.tree()], there);
         }
     }
 }

@@ -7,7 +7,7 @@ use std::{
 };
 
 use bevy::math::Vec3;
-use tabletop_core::{Figure, Rgb, read_regular_file, read_regular_text};
+use tabletop_core::{Figure, Rgb, Symlinks, read_regular_file, read_regular_text};
 use tabletop_kinematics::{Geometry, LinkShape};
 use tabletop_mesh::{MeshFileError, Triangle, read_obj, read_stl};
 
@@ -58,7 +58,10 @@ pub(super) fn figure(
         source,
     };
     if file.ends_with(".shape.json") {
-        return shape(file, &read_regular_text(&path, MOST_BYTES).map_err(failed)?);
+        return shape(
+            file,
+            &read_regular_text(&path, MOST_BYTES, Symlinks::Followed).map_err(failed)?,
+        );
     }
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     let read = match extension.to_str() {
@@ -69,7 +72,7 @@ pub(super) fn figure(
             return Err(failed(io::Error::other(kinds)));
         }
     };
-    let triangles = read_regular_file(&path, MOST_BYTES)
+    let triangles = read_regular_file(&path, MOST_BYTES, Symlinks::Followed)
         .and_then(|bytes| read(&bytes, MOST_TRIANGLES).map_err(io::Error::other))
         .map_err(failed)?;
     let hull = welded(&triangles, scale);

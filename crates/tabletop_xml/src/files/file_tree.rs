@@ -1,12 +1,11 @@
 //! The files that a task file may name: those in its folder and below.
 
 use std::{
-    fs::{self, File},
     io::{self, Read as _},
     path::{Component, Path, PathBuf},
 };
 
-use tabletop_core::{ShippedFiles, is_shipped};
+use tabletop_core::{ShippedFiles, Symlinks, is_shipped, open_regular_file};
 
 use crate::elements::value::ValueError;
 
@@ -203,12 +202,8 @@ fn folder_of(file: &Path) -> &Path {
 
 /// The bytes of a file on the disk, at most one more than `most`.
 pub(crate) fn read_file(path: &Path, most: usize) -> io::Result<Vec<u8>> {
-    // Opening a pipe would wait for a writer.
-    if !fs::metadata(path)?.is_file() {
-        return Err(io::Error::other("it is not a file"));
-    }
+    let file = open_regular_file(path, Symlinks::Followed)?;
     let mut bytes = Vec::new();
-    let file = File::open(path)?;
     file.take(most as u64 + 1).read_to_end(&mut bytes)?;
     Ok(bytes)
 }

@@ -2,16 +2,18 @@
 
 use std::{
     collections::{BTreeMap, VecDeque},
-    fs::File,
     io::BufReader,
     path::{Path, PathBuf},
 };
 
 use bevy_egui::egui::{ColorImage, Context, TextureHandle, TextureOptions};
-use tabletop_core::{Timeline, TimelinePicture};
+use tabletop_core::{Picture, Symlinks, Timeline, TimelinePicture, open_regular_file};
 
 /// So many pictures are kept.
 const MOST: usize = 64;
+
+/// So many of their pixels are kept, of 4 bytes each; more only if it is one picture.
+const MOST_PIXELS: usize = 1 << 26;
 
 /// Number of pictures that are read in a frame, so that it does not take long.
 const MOST_A_FRAME: usize = 4;
@@ -55,24 +57,34 @@ impl Pictures {
                 .map(|image| context.load_texture(name, image, TextureOptions::LINEAR));
             self.textures.insert(key.clone(), texture);
             self.order.push_back(key.clone());
-            if self.order.len() > MOST
-                && let Some(oldest) = self.order.pop_front()
-            {
-                self.textures.remove(&oldest);
-            }
+            self.forget_the_oldest();
         }
         self.textures.get(&key)?.as_ref()
     }
+
+    fn forget_the_oldest(&mut self) {
+        let pixels = |texture: &TextureHandle| texture.size().into_iter().product::<usize>();
+        let mut kept: usize = self.textures.values().flatten().map(pixels).sum();
+        while self.order.len() > MOST || (kept > MOST_PIXELS && self.order.len() > 1) {
+            let oldest = self.order.pop_front();
+            let texture = oldest.and_then(|oldest| self.textures.remove(&oldest));
+            kept -= texture.flatten().map_or(0, |texture| pixels(&texture));
+        }
+    }
 }
 
-/// A picture of 8 bits a channel, as recordings have them.
+/// A picture of 8 bits a channel and no more pixels than a camera has, as recordings have them.
 #[expect(
     clippy::wildcard_enum_match_arm,
     reason = "pictures of recordings are of these types"
 )]
 fn read(path: &Path) -> Option<ColorImage> {
-    let file = BufReader::new(File::open(path).ok()?);
+    let file = BufReader::new(open_regular_file(path, Symlinks::Refused).ok()?);
     let mut reader = png::Decoder::new(file).read_info().ok()?;
+    let (width, height) = reader.info().size();
+    if u64::from(width) * u64::from(height) > Picture::MOST_PIXELS {
+        return None;
+    }
     let mut pixels = vec![0; reader.output_buffer_size()?];
     let info = reader.next_frame(&mut pixels).ok()?;
     let size = [info.width as usize, info.height as usize];
@@ -82,5 +94,68 @@ fn read(path: &Path) -> Option<ColorImage> {
         png::ColorType::Rgba if is_known => Some(ColorImage::from_rgba_unmultiplied(size, pixels)),
         png::ColorType::Rgb if is_known => Some(ColorImage::from_rgb(size, pixels)),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{fs, process};
+
+    use bevy_egui::egui::Color32;
+
+    use super::*;
+
+    /// A black picture of this size in a file of its own.
+    fn written(name: &str, size: (u32, u32), pixels: &[u8]) -> PathBuf {
+        let path = std::env::temp_dir().join(format!("tabletop_{name}_{}.png", process::id()));
+        let file = fs::File::create(&path).unwrap();
+        let mut encoder = png::Encoder::new(file, size.0, size.1);
+        encoder.set_color(png::ColorType::Rgb);
+        let mut writer = encoder.write_header().unwrap();
+        let complete = writer.write_image_data(pixels);
+        assert_eq!(complete.is_ok(), pixels.len() as u32 == size.0 * size.1 * 3);
+        path
+    }
+
+    #[test]
+    fn pictures_larger_than_those_of_cameras_are_not_read() {
+        let small = written("small", (2, 1), &[0; 6]);
+        let large = written("large", (1 << 30, 1 << 30), &[]);
+        let read = [&small, &large].map(|path| read(path).map(|image| image.size));
+        assert_eq!(read, [Some([2, 1]), None]);
+        for path in [small, large] {
+            fs::remove_file(path).unwrap();
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn pictures_are_not_read_through_links() {
+        let picture = written("linked", (2, 1), &[0; 6]);
+        let link = picture.with_extension("link");
+        std::os::unix::fs::symlink(&picture, &link).unwrap();
+        let read = [&picture, &link].map(|path| read(path).is_some());
+        assert_eq!(read, [true, false]);
+        for path in [picture, link] {
+            fs::remove_file(path).unwrap();
+        }
+    }
+
+    #[test]
+    fn the_pixels_that_are_kept_are_limited() {
+        let context = Context::default();
+        let mut pictures = Pictures::default();
+        for serial in 0..6 {
+            let side = 1 << 12;
+            let image = ColorImage::filled([side, side], Color32::BLACK);
+            let texture = context.load_texture("large", image, TextureOptions::LINEAR);
+            let key = (PathBuf::from("large"), serial);
+            pictures.textures.insert(key.clone(), Some(texture));
+            pictures.order.push_back(key);
+            pictures.forget_the_oldest();
+        }
+        let kept: Vec<_> = pictures.order.iter().map(|(_, serial)| *serial).collect();
+        assert_eq!(kept, [2, 3, 4, 5]);
+        assert_eq!(pictures.textures.len(), 4);
     }
 }
