@@ -80,12 +80,10 @@ fn look_at(path: &Path, file: &ShippedFile) -> Result<Existing, Failure> {
     match read_regular_file(path, file.text.len() as u64, Symlinks::Followed) {
         Ok(bytes) if bytes == file.text.as_bytes() => Ok(Existing::TheSame),
         Ok(_) => Ok(Existing::SomethingElse),
-        Err(error) => match error.kind() {
-            ErrorKind::NotFound => Ok(Existing::Nothing),
-            ErrorKind::FileTooLarge => Ok(Existing::SomethingElse),
-            _ if path.exists() && !path.is_file() => Ok(Existing::SomethingElse),
-            _ => Err(Failure::run(format!("{}: {error}", path.display()))),
-        },
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Existing::Nothing),
+        Err(error) if error.kind() == ErrorKind::FileTooLarge => Ok(Existing::SomethingElse),
+        Err(_) if path.exists() && !path.is_file() => Ok(Existing::SomethingElse),
+        Err(error) => Err(Failure::run(format!("{}: {error}", path.display()))),
     }
 }
 

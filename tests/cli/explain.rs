@@ -7,22 +7,13 @@ use std::{
 
 use serde_json::Value;
 
-use crate::support::{place, scenario, shipped, stderr, stdout, tabletop};
+use crate::support::{
+    place, record, record_shipped, replays_to_the_same_bytes, scenario, shipped, stderr, stdout,
+    tabletop,
+};
 
-/// Records a scenario.
-fn record(scenario: &str, name: &str) -> String {
-    let folder = place(name);
-    let demo = folder.to_str().unwrap().to_owned();
-    let output = tabletop(&["run", scenario, "--record", &demo, "--quiet"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    demo
-}
-
-fn recorded(name: &str) -> String {
-    record(
-        &format!("shipped:scenarios/{name}.ron"),
-        &format!("explain_{name}"),
-    )
+fn recorded(scenario: &str) -> String {
+    record_shipped(scenario, &format!("explain_{scenario}"))
 }
 
 /// Records these steps on the default table: a red block at the right, turned by -15°, a green one at the left, turned by 45°.
@@ -158,10 +149,7 @@ fn original(demo: &str, name: &str, meant: impl Fn(&str) -> bool) -> String {
 #[test]
 fn a_recording_of_the_original_program_is_understood() {
     for scenario in ["stack_three", "swap", "wall"] {
-        let demo = record(
-            &format!("shipped:scenarios/{scenario}.ron"),
-            &format!("explain_events_{scenario}"),
-        );
+        let demo = record_shipped(scenario, &format!("explain_events_{scenario}"));
         let events = original(&demo, &format!("explain_original_{scenario}"), |_| true);
         means_the_same(&demo, &events);
     }
@@ -170,10 +158,7 @@ fn a_recording_of_the_original_program_is_understood() {
 #[test]
 fn what_hands_did_is_seen_in_the_poses() {
     for scenario in ["stack_three", "swap", "wall"] {
-        let demo = record(
-            &format!("shipped:scenarios/{scenario}.ron"),
-            &format!("explain_acts_{scenario}"),
-        );
+        let demo = record_shipped(scenario, &format!("explain_acts_{scenario}"));
         let is_pose = |line: &str| !line.contains(",grasp,") && !line.contains(",release,");
         let poses = original(&demo, &format!("explain_poses_{scenario}"), is_pose);
         means_the_same(&demo, &poses);
@@ -376,7 +361,7 @@ fn table(name: &str, colors: &[&str]) -> PathBuf {
 
 #[test]
 fn requirements_are_kept_and_reported() {
-    let demo = record("shipped:scenarios/stack_three.ron", "explain_required");
+    let demo = record_shipped("stack_three", "explain_required");
     let as_shown = [
         "Green (moved in step 1): as it was shown",
         "Blue (never moved): as it was shown",
@@ -395,8 +380,7 @@ fn requirements_are_kept_and_reported() {
         ],
     );
     // Requirements do not disturb a replay.
-    let output = tabletop(&["replay", &demo, "--verify"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    replays_to_the_same_bytes(&demo);
 
     require(&demo, &["--step", "2", "--remove", "shape"]).unwrap();
     assert_eq!(
@@ -432,7 +416,7 @@ fn requirements_are_kept_and_reported() {
 
 #[test]
 fn objects_of_another_table_take_the_roles() {
-    let demo = record("shipped:scenarios/stack_three.ron", "explain_bound");
+    let demo = record_shipped("stack_three", "explain_bound");
     let same = shipped("tablesetup", "blocks.xml");
     let by_id = [
         "The green block is Green.",

@@ -2,18 +2,13 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use crate::support::{place, stderr, stdout, tabletop};
+use crate::support::{place, record_shipped, replays_to_the_same_bytes, stderr, stdout, tabletop};
 
 /// A recording of a shipped scenario, in a folder of its own.
 pub fn recorded(scenario: &str) -> String {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let number = COUNT.fetch_add(1, Ordering::Relaxed);
-    let demo = place(&format!("imitate_{number}_{scenario}"));
-    let demo = demo.to_str().unwrap().to_owned();
-    let scenario = format!("shipped:scenarios/{scenario}.ron");
-    let output = tabletop(&["run", &scenario, "--record", &demo, "--quiet"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    demo
+    record_shipped(scenario, &format!("imitate_{number}_{scenario}"))
 }
 
 fn is_done(demo: &str, options: &[&str]) {
@@ -129,8 +124,7 @@ fn what_the_robot_does_can_be_replayed() {
     let robot = place("imitate_replayed");
     let robot = robot.to_str().unwrap();
     is_done(&demo, &["--record", robot]);
-    let output = tabletop(&["replay", robot, "--verify"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    replays_to_the_same_bytes(robot);
 }
 
 #[test]
@@ -141,8 +135,7 @@ fn its_hands_see_what_the_robot_does() {
     is_done(&demo, &["--record", folder, "--hand-cameras"]);
     let first = robot.join("0/0.right_hand_camera.png");
     assert!(first.is_file());
-    let output = tabletop(&["replay", folder, "--verify"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    replays_to_the_same_bytes(folder);
 }
 
 #[test]

@@ -2,16 +2,7 @@
 
 use std::{collections::BTreeMap, fs, path::Path};
 
-use crate::support::{place, stderr, stdout, tabletop};
-
-fn recorded(name: &str, scenario: &str) -> String {
-    let demo = place(name);
-    let demo = demo.to_str().unwrap().to_owned();
-    let scenario = format!("shipped:scenarios/{scenario}.ron");
-    let output = tabletop(&["run", &scenario, "--record", &demo, "--quiet"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    demo
-}
+use crate::support::{place, record_shipped, replays_to_the_same_bytes, stderr, stdout, tabletop};
 
 fn multiply(demo: &str, out: &Path, options: &[&str]) -> String {
     let out = out.to_str().unwrap();
@@ -47,7 +38,7 @@ fn explained(demo: &Path) -> String {
 
 #[test]
 fn one_demonstration_becomes_many_that_show_the_same() {
-    let demo = recorded("multiply_same", "stack_three");
+    let demo = record_shipped("stack_three", "multiply_same");
     let out = place("multiply_same_out");
     multiply(&demo, &out, &["--count", "4", "--seed", "3"]);
     let expected = explained(Path::new(&demo));
@@ -60,13 +51,12 @@ fn one_demonstration_becomes_many_that_show_the_same() {
     }
     sessions.dedup();
     assert_eq!(sessions.len(), 4);
-    let replayed = tabletop(&["replay", out.join("0002").to_str().unwrap(), "--verify"]);
-    assert_eq!(replayed.status.code(), Some(0), "{}", stderr(&replayed));
+    replays_to_the_same_bytes(out.join("0002"));
 }
 
 #[test]
 fn the_same_seed_gives_the_same_bytes_and_what_is_there_is_kept() {
-    let demo = recorded("multiply_bytes", "stack_three");
+    let demo = record_shipped("stack_three", "multiply_bytes");
     let [one, other] = ["multiply_bytes_one", "multiply_bytes_other"].map(place);
     let options = ["--colors", "--distractors", "3", "--camera", "1"];
     multiply(&demo, &one, &[&options[..], &["--count", "3"]].concat());
@@ -106,7 +96,7 @@ fn the_same_seed_gives_the_same_bytes_and_what_is_there_is_kept() {
 
 #[test]
 fn demonstrations_of_other_options_are_not_mixed() {
-    let demo = recorded("multiply_mixed", "stack_three");
+    let demo = record_shipped("stack_three", "multiply_mixed");
     let out = place("multiply_mixed_out");
     multiply(&demo, &out, &["--count", "1"]);
     let out = out.to_str().unwrap();
@@ -129,7 +119,7 @@ fn demonstrations_of_other_options_are_not_mixed() {
 
 #[test]
 fn what_is_required_of_an_object_stays_so() {
-    let demo = recorded("multiply_required", "stack_three");
+    let demo = record_shipped("stack_three", "multiply_required");
     let output = tabletop(&["require", &demo, "--step", "2", "color=red"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let out = place("multiply_required_out");
@@ -145,18 +135,17 @@ fn what_is_required_of_an_object_stays_so() {
 
 #[test]
 fn the_robot_can_show_it() {
-    let demo = recorded("multiply_robot", "stack_three");
+    let demo = record_shipped("stack_three", "multiply_robot");
     let out = place("multiply_robot_out");
     multiply(&demo, &out, &["--count", "1", "--robot"]);
     let joints = fs::read_to_string(out.join("0000/joints.csv")).unwrap();
     assert!(joints.lines().count() > 100);
-    let replayed = tabletop(&["replay", out.join("0000").to_str().unwrap(), "--verify"]);
-    assert_eq!(replayed.status.code(), Some(0), "{}", stderr(&replayed));
+    replays_to_the_same_bytes(out.join("0000"));
 }
 
 #[test]
 fn objects_are_narrower_and_as_high() {
-    let demo = recorded("multiply_sizes", "wall");
+    let demo = record_shipped("wall", "multiply_sizes");
     let out = place("multiply_sizes_out");
     multiply(&demo, &out, &["--count", "2", "--sizes", "0.2"]);
     for number in ["0000", "0001"] {
@@ -180,7 +169,7 @@ fn objects_are_narrower_and_as_high() {
 
 #[test]
 fn a_stack_is_shown_with_the_objects_of_another_table() {
-    let demo = recorded("multiply_setup", "stack_three");
+    let demo = record_shipped("stack_three", "multiply_setup");
     let out = place("multiply_setup_out");
     let setup = "shipped:tablesetup/wall-blocks.xml";
     multiply(&demo, &out, &["--count", "1", "--setup", setup]);
@@ -192,7 +181,7 @@ fn a_stack_is_shown_with_the_objects_of_another_table() {
 
 #[test]
 fn the_light_differs_and_nothing_else_does() {
-    let demo = recorded("multiply_light", "stack_three");
+    let demo = record_shipped("stack_three", "multiply_light");
     let [plain, lit, same] = [
         "multiply_light_plain",
         "multiply_light_lit",
@@ -223,13 +212,12 @@ fn the_light_differs_and_nothing_else_does() {
     }
     let folder = place("multiply_light_lit_again");
     multiply(&demo, &folder, &["--count", "1", "--light", "0.3"]);
-    let replayed = tabletop(&["replay", folder.join("0000").to_str().unwrap(), "--verify"]);
-    assert_eq!(replayed.status.code(), Some(0), "{}", stderr(&replayed));
+    replays_to_the_same_bytes(folder.join("0000"));
 }
 
 #[test]
 fn the_robot_shows_it_with_the_pictures_of_its_hands() {
-    let demo = recorded("multiply_hand_cameras", "stack_three");
+    let demo = record_shipped("stack_three", "multiply_hand_cameras");
     let out = place("multiply_hand_cameras_out");
     let options = [
         "--count",
@@ -246,13 +234,12 @@ fn the_robot_shows_it_with_the_pictures_of_its_hands() {
     assert!(frames > 20, "{frames}");
     assert_eq!(of(".right_hand_camera.png"), frames);
     assert_eq!(of(".png"), 3 * frames);
-    let replayed = tabletop(&["replay", out.join("0000").to_str().unwrap(), "--verify"]);
-    assert_eq!(replayed.status.code(), Some(0), "{}", stderr(&replayed));
+    replays_to_the_same_bytes(out.join("0000"));
 }
 
 #[test]
 fn no_hand_has_a_camera_without_a_robot() {
-    let demo = recorded("multiply_no_hands", "stack_three");
+    let demo = record_shipped("stack_three", "multiply_no_hands");
     let out = place("multiply_no_hands_out");
     let out = out.to_str().unwrap();
     let output = tabletop(&["multiply", &demo, "--out", out, "--hand-cameras"]);

@@ -7,26 +7,14 @@ use std::{
 
 #[cfg(unix)]
 use crate::support::small_files;
-use crate::support::{command, place, scenario, shipped, stderr, tabletop};
-
-/// A recording of a scenario, in a folder of this name.
-fn record(scenario: &Path, name: &str) -> PathBuf {
-    let folder = place(name);
-    let [scenario, into] = [scenario, &folder].map(|path| path.to_str().unwrap());
-    let output = tabletop(&["run", scenario, "--record", into]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    folder
-}
+use crate::support::{
+    command, place, record, record_shipped, replays_to_the_same_bytes, scenario, shipped, stderr,
+    tabletop,
+};
 
 /// A recording of a shipped scenario.
-fn recording(name: &str, folder: &str) -> PathBuf {
-    record(&shipped("scenarios", &format!("{name}.ron")), folder)
-}
-
-fn replays_to_the_same_bytes(recording: &Path) {
-    let output = tabletop(&["replay", recording.to_str().unwrap(), "--verify"]);
-    let name = recording.display();
-    assert_eq!(output.status.code(), Some(0), "{name}: {}", stderr(&output));
+fn recording(scenario: &str, folder: &str) -> PathBuf {
+    record_shipped(scenario, folder).into()
 }
 
 #[test]
@@ -230,8 +218,8 @@ fn what_hands_did_before_the_start_is_done_again() {
             steps = steps.replace(word, &format!("shipped:tablesetup/{file}"));
         }
         let scenario = scenario(&format!("replay_{name}.ron"), &steps);
-        let folder = record(&scenario, &format!("replay_{name}"));
-        replays_to_the_same_bytes(&folder);
+        let scenario = scenario.to_str().unwrap();
+        replays_to_the_same_bytes(record(scenario, &format!("replay_{name}")));
     }
 }
 

@@ -11,18 +11,13 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crate::support::{command, place, stderr, stdout, tabletop};
+use crate::support::{command, place, record_shipped, stderr, stdout};
 
 /// The program must end within this time.
 const DEADLINE: Duration = Duration::from_secs(60);
 
 fn recorded(name: &str) -> PathBuf {
-    let demo = place(name);
-    let into = demo.to_str().unwrap();
-    let scenario = "shipped:scenarios/red_on_blue.ron";
-    let output = tabletop(&["run", scenario, "--record", into, "--quiet"]);
-    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    demo
+    record_shipped("red_on_blue", name).into()
 }
 
 /// Runs the program, which must not wait for what never comes.

@@ -52,6 +52,30 @@ pub fn place(name: &str) -> PathBuf {
     path
 }
 
+/// Records a scenario into a place of this name.
+pub fn record(scenario: &str, name: &str) -> String {
+    let demo = place(name).to_str().unwrap().to_owned();
+    let output = tabletop(&["run", scenario, "--record", &demo, "--quiet"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    demo
+}
+
+/// Records a shipped scenario into a place of this name.
+pub fn record_shipped(scenario: &str, name: &str) -> String {
+    record(&format!("shipped:scenarios/{scenario}.ron"), name)
+}
+
+pub fn replays_to_the_same_bytes(recording: impl AsRef<Path>) {
+    let recording = recording.as_ref().to_str().unwrap();
+    let output = tabletop(&["replay", recording, "--verify"]);
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{recording}: {}",
+        stderr(&output)
+    );
+}
+
 /// A file of the package, by its name in this folder.
 pub fn shipped(folder: &str, name: &str) -> PathBuf {
     path::absolute(Path::new(folder).join(name)).unwrap()

@@ -79,6 +79,8 @@ fn code(line: &[u8], comment: u8) -> &[u8] {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]
