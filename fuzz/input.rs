@@ -46,6 +46,13 @@ impl Inputs {
         })
     }
 
+    /// What inputs begin as.
+    #[cfg(test)]
+    pub fn corpus(&self) -> impl Iterator<Item = &[u8]> {
+        let texts = self.material.iter();
+        texts.flat_map(|texts| texts.corpus.iter().map(Vec::as_slice))
+    }
+
     pub fn input(&self, number: u64) -> Vec<u8> {
         let mut random = Random::new(self.seed, number);
         match &self.material {

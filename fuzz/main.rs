@@ -77,3 +77,23 @@ fn try_file(target: &str, file: &str) -> Result<ExitCode, String> {
 fn number<T: std::str::FromStr>(text: &str) -> Result<T, String> {
     text.parse().map_err(|_| format!("`{text}` is no number"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Number of inputs of each target that every run of the tests tries.
+    const TRIED: u64 = 200;
+
+    #[test]
+    fn every_target_takes_its_inputs() {
+        for target in &Target::ALL {
+            let inputs = Inputs::of(target, 0).unwrap();
+            let mut take = (target.start)();
+            inputs.corpus().for_each(&mut take);
+            for number in 0..TRIED {
+                take(&inputs.input(number));
+            }
+        }
+    }
+}

@@ -1,6 +1,9 @@
 //! Targets of inputs.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use bevy::math::DVec3;
 use tabletop::{
@@ -9,11 +12,13 @@ use tabletop::{
     kinematics::RobotModel,
     mesh::{read_obj, read_stl},
     prelude::*,
-    recorder::Session,
+    recorder::{RecordingReader, Session},
     replay::Replay,
     robot::look::read_shape,
     scenario::Scenario,
     script::engine::protocol::Arrays,
+    shown_task::shown_task,
+    task::{Requirements, Task},
 };
 
 use crate::scenes;
@@ -55,7 +60,7 @@ const fn target(
 }
 
 impl Target {
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 15] = [
         target("task", || each(task), &["tablesetup"], ".xml", "task.txt"),
         target(
             "scenario",
@@ -71,6 +76,16 @@ impl Target {
             &["fuzz/corpus/session"],
             ".jsonl",
             "session.txt",
+        ),
+        target("events", || each(events), &[], ".txt", "recording.txt"),
+        target("rows", || each(rows), &[], ".csv", "recording.txt"),
+        target("intent", || each(intent), &[], ".json", "recording.txt"),
+        target(
+            "requirements",
+            start_requirements,
+            &[],
+            ".json",
+            "recording.txt",
         ),
         target("urdf", || each(urdf), &["assets"], ".urdf", "urdf.txt"),
         target(
@@ -128,19 +143,99 @@ fn replay(bytes: &[u8]) {
     if Session::parse("session.jsonl", &String::from_utf8_lossy(bytes)).is_err() {
         return;
     }
-    let folder = std::env::temp_dir().join(format!("tabletop_fuzz_{}", std::process::id()));
-    let written = fs::create_dir_all(folder.join("0"))
-        .and_then(|()| fs::write(folder.join("session.jsonl"), bytes))
-        .and_then(|()| {
-            let mut logs = ["0.txt", "states.csv", "joints.csv"].into_iter();
-            logs.try_for_each(|log| fs::write(folder.join(log), ""))
-        });
-    written.expect("a folder for temporary files can be written");
+    let folder = written(&[
+        ("session.jsonl", bytes),
+        ("0.txt", b""),
+        ("states.csv", b""),
+        ("joints.csv", b""),
+    ]);
     if let Ok(replay) = Replay::read(&folder) {
         let mut app = headless_app_with(replay.plugins());
         replay.play_in(&mut app);
         app.step(60);
     }
+}
+
+/// A folder with these files alone.
+fn written(files: &[(&str, &[u8])]) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("tabletop_fuzz_{}", std::process::id()));
+    let _not_there = fs::remove_dir_all(&folder);
+    for (name, bytes) in files {
+        let path = folder.join(name);
+        let made = path.parent().map_or(Ok(()), fs::create_dir_all);
+        made.and_then(|()| fs::write(path, bytes))
+            .expect("a folder for temporary files can be written");
+    }
+    folder
+}
+
+/// A recording in which a hand puts one block on another, without its states.
+const RECORDING: [(&str, &[u8]); 4] = [
+    ("session.jsonl", include_bytes!("recording/session.jsonl")),
+    ("0.txt", include_bytes!("recording/0.txt")),
+    ("1.txt", include_bytes!("recording/1.txt")),
+    ("2.txt", include_bytes!("recording/2.txt")),
+];
+
+/// The same with further files.
+fn recording_with(files: &[(&str, &[u8])]) -> PathBuf {
+    written(&[&RECORDING[..], files].concat())
+}
+
+/// Events of a recording of the original program, a blank line between two segments, of which the task is understood.
+fn events(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    let segments = text.split("\n\n").enumerate();
+    let named: Vec<_> = segments
+        .map(|(number, text)| (format!("{number}.txt"), text.as_bytes()))
+        .collect();
+    let files: Vec<_> = named.iter().map(|(name, text)| (&**name, *text)).collect();
+    understand(&written(&files));
+}
+
+/// States of a recording, of which the task is understood; the same bytes as its joints.
+fn rows(bytes: &[u8]) {
+    let folder = recording_with(&[("states.csv", bytes), ("joints.csv", bytes)]);
+    understand(&folder);
+    let _joints = RecordingReader::open(&folder).and_then(|recording| recording.joints());
+}
+
+fn understand(folder: &Path) {
+    if let Ok(task) = Task::read(folder) {
+        let shown = shown_task(folder, &task, &Requirements::default(), None);
+        let mut steps = shown.steps.iter();
+        assert!(steps.all(|step| !step.sentence.is_empty()));
+    }
+}
+
+/// What a program that was killed was about to do with a recording.
+fn intent(bytes: &[u8]) {
+    let folder = recording_with(&[
+        ("states.csv", b"tick,id\n31,A\n"),
+        ("joints.csv", b"tick,joint\n"),
+        (".undone/3/session.jsonl", b"{\"segment\":3,\"tick\":60}\n"),
+        (".undone/3/states.csv", b""),
+        (".undone/3/joints.csv", b""),
+        (".undone/3/3.txt", b"4,grasp,LeftHand,A\n"),
+        (".intent.json", bytes),
+    ]);
+    let recording = RecordingReader::open(&folder);
+    let _undone = recording.and_then(|recording| recording.undone());
+}
+
+/// Requirements on the objects of a task, with which it is told.
+fn start_requirements() -> Box<dyn FnMut(&[u8])> {
+    let states = include_bytes!("corpus/rows/small.csv");
+    let task = Task::read(recording_with(&[("states.csv", states)]));
+    let task = task.expect("the recording of the fuzzer can be read");
+    Box::new(move |bytes| {
+        let folder = written(&[("task.json", bytes)]);
+        if let Ok(requirements) = Requirements::read(&folder) {
+            let mut task = task.clone();
+            task.phrase(&requirements);
+            let _shown = shown_task(&folder, &task, &requirements, None);
+        }
+    })
 }
 
 /// A description, whose robot then has its weights asked for.
