@@ -19,6 +19,9 @@ const MOST_BEYOND: u64 = 4096;
 /// Number of characters of a line that are shown, at most.
 const MOST_SHOWN: usize = 200;
 
+/// Number of those that are before the difference, in a line that is not shown in full.
+const SHOWN_BEFORE: usize = 50;
+
 /// The first file in which two recordings differ, and the difference. The second one was made by this program.
 ///
 /// # Errors
@@ -39,8 +42,7 @@ pub(super) fn first_before_cut(
 ) -> Result<Option<String>, ReplayError> {
     let files = files_in(recorded)?;
     first_that_differs(files, [recorded, replayed], |file, before, after| {
-        let is_picture = file.extension().is_some_and(|extension| extension == "png");
-        after.starts_with(match is_picture {
+        after.starts_with(match is_picture(file) {
             true => before,
             false => whole_lines(before),
         })
@@ -67,7 +69,10 @@ fn first_that_differs(
                 if is_same(&file, &before, &after) {
                     continue;
                 }
-                format!("{name}: {}", first_difference_of(&before, &after))
+                match is_picture(&file) {
+                    true => format!("{name}: the pictures differ"),
+                    false => format!("{name}: {}", first_difference_of(&before, &after)),
+                }
             }
         };
         return Ok(Some(difference));
@@ -81,32 +86,47 @@ fn is_for_the_program_alone(file: &Path) -> bool {
     name.starts_with('.') || name.ends_with(".part")
 }
 
-/// The difference between two files: line and texts, or for pictures just that they differ.
+fn is_picture(file: &Path) -> bool {
+    file.extension().is_some_and(|extension| extension == "png")
+}
+
+/// The difference between two texts: the number of the first line that differs, and what differs in it.
 fn first_difference_of(before: &[u8], after: &[u8]) -> String {
-    let (Ok(before), Ok(after)) = (std::str::from_utf8(before), std::str::from_utf8(after)) else {
-        return "the pictures differ".into();
-    };
-    let [mut before, mut after] = [before, after].map(|text| text.split_inclusive('\n'));
-    let shown = |line: Option<&str>| match line.map(|line| line.trim_end_matches('\n')) {
-        Some(line) => {
-            let end = line.char_indices().nth(MOST_SHOWN).map(|(end, _)| end);
-            let text = line[..end.unwrap_or(line.len())].replace('\r', "\\r");
-            let more = end.map_or("", |_| "…");
-            format!("`{text}{more}`")
-        }
-        None => "the end of the file".to_owned(),
-    };
-    for line in 1.. {
+    let [mut before, mut after] =
+        [before, after].map(|text| text.split_inclusive(|byte| *byte == b'\n'));
+    for number in 1.. {
         let (was, is) = (before.next(), after.next());
         if was != is || was.is_none() {
-            return format!(
-                "line {line}: recorded {}, replayed {}",
-                shown(was),
-                shown(is)
-            );
+            let [was, is] = excerpts([was, is]);
+            return format!("line {number}: recorded {was}, replayed {is}");
         }
     }
     String::new()
+}
+
+/// What is shown of two lines: all, or if one is long, of both what is around the first difference.
+fn excerpts(lines: [Option<&[u8]>; 2]) -> [String; 2] {
+    let lines = lines.map(|line| {
+        let text = String::from_utf8_lossy(line?);
+        let text = text.trim_end_matches('\n').replace('\r', "\\r");
+        Some(text.chars().collect::<Vec<_>>())
+    });
+    let [was, is] = lines.each_ref().map(|line| line.iter().flatten());
+    let longest = was.clone().count().max(is.clone().count());
+    let from = match longest > MOST_SHOWN {
+        true => was.zip(is).take_while(|(was, is)| was == is).count(),
+        false => 0,
+    };
+    let from = from.saturating_sub(SHOWN_BEFORE);
+    lines.map(|line| match line {
+        Some(line) => {
+            let shown: String = line.iter().skip(from).take(MOST_SHOWN).collect();
+            let ellipsis = |is_left_out| if is_left_out { "…" } else { "" };
+            let (before, after) = (ellipsis(from > 0), ellipsis(line.len() > from + MOST_SHOWN));
+            format!("`{before}{shown}{after}`")
+        }
+        None => "the end of the file".to_owned(),
+    })
 }
 
 /// The files that a recorder writes to a recording's folder, relative to it, in alphabetical order; without those that are for the
@@ -156,5 +176,48 @@ fn failed(path: &Path) -> impl Fn(io::Error) -> ReplayError + Copy {
     move |source| ReplayError::Io {
         path: path.to_owned(),
         source,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_line_that_differs_is_shown() {
+        for (before, after, difference) in [
+            ("a\nb\n", "a\nc\n", "line 2: recorded `b`, replayed `c`"),
+            ("a\r\n", "a\n", "line 1: recorded `a\\r`, replayed `a`"),
+            (
+                "a\n",
+                "a\nb\n",
+                "line 2: recorded the end of the file, replayed `b`",
+            ),
+            ("a", "a\n", "line 1: recorded `a`, replayed `a`"),
+        ] {
+            let found = first_difference_of(before.as_bytes(), after.as_bytes());
+            assert_eq!(found, difference);
+        }
+        let found = first_difference_of(b"\xff\n", b"\xfe\n");
+        assert_eq!(found, "line 1: recorded `\u{fffd}`, replayed `\u{fffd}`");
+    }
+
+    #[test]
+    fn a_long_line_is_shown_around_the_difference() {
+        let [before, after] =
+            ["1", "2"].map(|it| format!("{}{it}{}", "ä".repeat(300), "b".repeat(300)));
+        let found = first_difference_of(before.as_bytes(), after.as_bytes());
+        let shown = |it| format!("`…{}{it}{}…`", "ä".repeat(50), "b".repeat(149));
+        let [before, after] = ["1", "2"].map(shown);
+        assert_eq!(
+            found,
+            format!("line 1: recorded {before}, replayed {after}")
+        );
+        let found = first_difference_of(&[b'a'; 1000], b"");
+        let shown = format!("`{}…`", "a".repeat(200));
+        assert_eq!(
+            found,
+            format!("line 1: recorded {shown}, replayed the end of the file")
+        );
     }
 }
