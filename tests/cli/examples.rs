@@ -10,12 +10,16 @@ use tabletop::{
     camera::Camera,
     core::{Agent, HeadCamera, Markers, ScriptCommand, ScriptEvent},
     prelude::*,
+    recorder::RecorderPlugin,
     scenario::{Outcome, Program, Scenario, ScenarioRun},
     script::{EngineChoice, ScriptPlugin, ScriptSettings},
     shipped::read_task,
 };
 
-use crate::{scripts::copy_of_matlab, support::shipped};
+use crate::{
+    scripts::copy_of_matlab,
+    support::{place, shipped},
+};
 
 /// A simulator whose robot is driven by an example.
 struct Stage {
@@ -33,8 +37,12 @@ impl Stage {
             agent: Some(copy_of_matlab(pair)),
             ..default()
         };
+        let recorder = RecorderPlugin {
+            folder: place(&format!("examples_{pair}")),
+            ..default()
+        };
         let plugins = TabletopSimPlugins.build().set(ScriptPlugin { settings });
-        let mut app = headless_app_with(plugins);
+        let mut app = headless_app_with(plugins.set(recorder));
         if let Some(name) = scenario {
             let scenario = Scenario::read(shipped("tests/scripts", name)).unwrap();
             let read = |file: &Path| Ok(read_task(file).map_err(|error| error.to_string())?.scene);
