@@ -11,7 +11,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crate::support::{command, place, record_shipped, stderr, stdout};
+use crate::support::{command, record_shipped, stderr, stdout};
 
 /// The program must end within this time.
 const DEADLINE: Duration = Duration::from_secs(60);
@@ -42,7 +42,7 @@ fn ended(arguments: &[&str], recording: &Path) -> Output {
 
 /// Puts a link, a device and a pipe in the place of a file in turn, and has the program refuse them.
 fn is_refused_unless_a_file(file: &Path, arguments: &[&str], recording: &Path) {
-    let elsewhere = place("strange_elsewhere");
+    let elsewhere = recording.with_extension("elsewhere");
     match file.exists() {
         true => fs::rename(file, &elsewhere).unwrap(),
         false => fs::write(&elsewhere, r#"{"roles":{}}"#).unwrap(),
