@@ -8,7 +8,7 @@ use std::{
 };
 
 use tabletop_core::{Symlinks, open_regular_file};
-use tabletop_recorder::whole_lines;
+use tabletop_recorder::{is_taken, whole_lines};
 use tabletop_task::Requirements;
 
 use super::ReplayError;
@@ -58,7 +58,7 @@ fn first_that_differs(
     for file in files {
         let name = file.display();
         let (before, after) = (recorded.join(&file), replayed.join(&file));
-        let difference = match (is_there(&before), is_there(&after)) {
+        let difference = match (is_taken(&before), is_taken(&after)) {
             (true, false) => format!("{name}: was recorded, but is missing in the replay"),
             (false, true) => format!("{name}: was not recorded, but exists in the replay"),
             _ => {
@@ -154,11 +154,6 @@ fn files_in(folder: &Path) -> Result<BTreeSet<PathBuf>, ReplayError> {
         }
     }
     Ok(files)
-}
-
-/// True if there is something of this name, be it a link to nothing.
-fn is_there(path: &Path) -> bool {
-    path.symlink_metadata().is_ok()
 }
 
 fn open(path: &Path) -> Result<File, ReplayError> {

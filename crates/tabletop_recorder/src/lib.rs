@@ -43,7 +43,7 @@ pub use files::{
     session::{
         Session, SessionCommand, SessionHeader, SessionObject, SessionScene, SessionSettings,
     },
-    storage::{Storage, StorageFault},
+    storage::{Storage, StorageFault, is_taken},
 };
 pub use reading::{
     event::{Occurrence, RecordedEvent},

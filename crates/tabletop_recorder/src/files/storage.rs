@@ -328,7 +328,7 @@ impl StoredFile {
 }
 
 /// True if there is something of this name, be it a link to nothing.
-pub(crate) fn is_taken(path: &Path) -> bool {
+pub fn is_taken(path: &Path) -> bool {
     path.symlink_metadata().is_ok()
 }
 
