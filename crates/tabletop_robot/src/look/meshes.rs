@@ -58,10 +58,8 @@ pub(super) fn figure(
         source,
     };
     if file.ends_with(".shape.json") {
-        return shape(
-            file,
-            &read_regular_text(&path, MOST_BYTES, Symlinks::Followed).map_err(failed)?,
-        );
+        let text = read_regular_text(&path, MOST_BYTES, Symlinks::Followed).map_err(failed)?;
+        return shape(file, &text);
     }
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     let read = match extension.to_str() {
