@@ -11,7 +11,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 20] = [
+const RULES: [Rule; 22] = [
     Rule::new("tabletop_core", &[]),
     Rule::new("tabletop_mesh", &["tabletop_core"]),
     Rule::new("tabletop_xml", &["tabletop_core", "tabletop_mesh"]),
@@ -53,6 +53,8 @@ const RULES: [Rule; 20] = [
         "tabletop_planner",
         &["tabletop_core", "tabletop_kinematics", "tabletop_task"],
     ),
+    Rule::new("tabletop_harness", &["tabletop_harness_macro"]),
+    Rule::new("tabletop_harness_macro", &[]),
     Rule::new("tabletop_view", &["tabletop_core"]).with_window(),
     Rule::new("tabletop_gui", &["tabletop_core"]).with_window(),
     Rule::new(
