@@ -1,10 +1,9 @@
-//! The program and the examples of scripts, as a user runs them.
+//! The program, as a user runs it.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod allowed_paths;
 mod anywhere;
 mod element_docs;
-mod examples;
 mod explain;
 mod imitate;
 #[cfg(feature = "window")]
@@ -13,11 +12,10 @@ mod kinematics;
 mod language;
 mod multiply;
 mod originals;
-mod panda;
 mod replay;
 mod robot;
 mod scenarios;
-mod scripts;
+mod script_options;
 mod strange_recordings;
 mod strange_scenes;
 mod support;
