@@ -17,6 +17,7 @@ mod keys;
 mod multiply;
 mod output;
 mod progress;
+mod recorded;
 mod replay;
 mod require;
 mod robot;
@@ -24,7 +25,6 @@ mod robot_options;
 mod run;
 mod script;
 mod soak;
-mod temporary_folder;
 mod terminal;
 mod window;
 

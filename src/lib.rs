@@ -15,6 +15,7 @@
 //! | [`camera`] | the view of the robot's head camera |
 //! | [`recorder`] | recordings on disk |
 //! | [`script`] | users' Matlab, Octave and Python scripts that drive the robot |
+//! | [`storage`] | the user's files: each is replaced, moved and removed by one rule |
 //! | [`task`] | the task that a recording shows |
 //! | [`planner`] | the robot's plan for such a task |
 //! | [`scenario`] | scripted demonstrations, for tests and datasets |
@@ -54,6 +55,7 @@ pub use tabletop_scenario as scenario;
 pub use tabletop_scene as scene;
 pub use tabletop_script as script;
 pub use tabletop_script::engine;
+pub use tabletop_storage as storage;
 pub use tabletop_task as task;
 #[cfg(feature = "window")]
 pub use tabletop_view as view;

@@ -4,31 +4,38 @@
 //! The seed and the number of a demonstration alone decide it, so it does not matter which others were made, or where.
 
 mod beginning;
+mod collection;
+mod fingerprint;
 mod performance;
 mod variation;
 mod way;
 
 pub use beginning::scene_at_beginning;
+pub use collection::{Collection, CollectionError};
 pub use variation::{Variation, with_colors_exchanged};
 
-use std::{fmt, fs, io, path::Path};
+use std::{fmt, io, path::Path};
 
 use bevy::prelude::*;
 use serde_json::json;
 use tabletop_core::{
-    HeadCamera, Random, RecordingCommand, RobotCommand, SceneCommand, SceneSpec, SimFact,
-    StepApp as _, WriteCommand as _,
+    HeadCamera, Random, RecordingCommand, RobotCommand, SceneCommand, SceneSpec, StepApp as _,
+    WriteCommand as _,
 };
 use tabletop_kinematics::ModelError;
 use tabletop_planner::{PlanFailure, RobotBody, imitate};
-use tabletop_recorder::{Durability, HandPictures, RecorderError, RecorderPlugin, RecordingReader};
+use tabletop_recorder::{
+    HandPictures, RecorderError, RecorderPlugin, RecordingReader, finish_recording,
+};
 use tabletop_scene::{IdAllocator, assemble};
+use tabletop_storage::{Storage, Symlinks, read_regular_file};
 use tabletop_task::{Binding, Demonstration, RequirementError, Requirements, Task};
 
 use crate::{
     TabletopSimPlugins, headless_app_with,
     imitation::{AppStage, baxter_body},
 };
+use fingerprint::Fingerprint;
 use performance::perform;
 use variation::Varying;
 
@@ -54,6 +61,8 @@ pub struct Multiplication {
     variation: Variation,
     hand_pictures: HandPictures,
     seed: u64,
+    /// That of the recording's files.
+    recorded: Fingerprint,
 }
 
 /// The result of making one demonstration.
@@ -99,6 +108,10 @@ pub enum MultiplyError {
     },
 }
 
+/// The name of the setting that says of a recording how it was made.
+const MULTIPLIED: &str = "multiplied";
+/// The most bytes of a file of a recording that are read.
+const MOST_BYTES: u64 = 1 << 30;
 /// Number of attempts, each with other places, to make a demonstration.
 const TRIES: u64 = 20;
 /// Number of ticks after which objects on the table are at rest.
@@ -136,6 +149,7 @@ impl Multiplication {
             variation,
             hand_pictures: HandPictures::None,
             seed,
+            recorded: fingerprint_of(recording)?,
         })
     }
 
@@ -182,11 +196,8 @@ impl Multiplication {
                 }
                 Err((step, failure)) => {
                     made.dropped.push(Dropped::Step(step, failure));
-                    let removed = fs::remove_dir_all(folder);
-                    removed.map_err(|source| MultiplyError::Io {
-                        path: folder.to_owned(),
-                        source,
-                    })?;
+                    let removed = Storage::default().remove_folder(folder);
+                    removed.map_err(MultiplyError::io(folder))?;
                 }
             }
         }
@@ -227,15 +238,13 @@ impl Multiplication {
         let light = self.variation.light(random);
         let mut header = serde_json::Map::new();
         header.insert(
-            "multiplied".into(),
+            MULTIPLIED.into(),
             json!({ "seed": self.seed, "number": number, "attempt": attempt }),
         );
         let mut app = headless_app_with(TabletopSimPlugins.build().set(RecorderPlugin {
             folder: folder.to_owned(),
             header,
             hand_pictures: self.hand_pictures.clone(),
-            // Demonstrations lost with the power are made again.
-            durability: Durability::None,
             ..default()
         }));
         let world = app.world_mut();
@@ -250,19 +259,14 @@ impl Multiplication {
         app.world_mut().write_command(RecordingCommand::Start);
         app.step(1);
         let shown = self.act(&mut app, &binding, seed);
-        app.world_mut().write_command(RecordingCommand::Finish);
-        app.step(1);
-        let facts = app.world().resource::<Messages<SimFact>>();
-        let failed = facts.iter_current_update_messages().find_map(|fact| {
-            let SimFact::RecordingFailed { reason, .. } = fact else {
-                return None;
-            };
-            Some(reason.clone())
-        });
-        match failed {
-            Some(reason) => Err(MultiplyError::Record(reason)),
-            None => Ok(shown),
-        }
+        finish_recording(&mut app).map_err(MultiplyError::Record)?;
+        Ok(shown)
+    }
+
+    /// A fingerprint of all that decides the demonstrations besides variation and seed: the recording, its requirements, the objects.
+    pub fn fingerprint(&self) -> String {
+        let scene = serde_json::to_vec(&self.scene).unwrap_or_default();
+        self.recorded.and(&scene).to_string()
     }
 
     fn act(&self, app: &mut App, binding: &Binding, seed: u64) -> Result<(), (usize, PlanFailure)> {
@@ -272,6 +276,32 @@ impl Multiplication {
         let mut stage = AppStage::new(app);
         let imitation = imitate(&mut stage, body, &self.task, binding, seed, |_| {});
         imitation.failure.map_or(Ok(()), Err)
+    }
+}
+
+/// The fingerprint of a recording's files, its pictures apart, and of its requirements.
+fn fingerprint_of(recording: &Path) -> Result<Fingerprint, MultiplyError> {
+    let entries = Storage::default().entries(recording);
+    let files = entries.map_err(MultiplyError::io(recording))?.into_iter();
+    let mut found = Fingerprint::EMPTY;
+    for file in files.filter(|file| file.is_file()) {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        if name.starts_with('.') {
+            continue;
+        }
+        let bytes = read_regular_file(&file, MOST_BYTES, Symlinks::Refused);
+        let bytes = bytes.map_err(MultiplyError::io(&file))?;
+        found = found.and(name.as_bytes()).and(&bytes);
+    }
+    Ok(found)
+}
+
+impl MultiplyError {
+    fn io(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        |source| Self::Io {
+            path: path.to_owned(),
+            source,
+        }
     }
 }
 

@@ -4,6 +4,7 @@ mod difference;
 mod error;
 mod playback;
 mod player;
+mod verify;
 
 pub use difference::first_difference;
 pub use error::ReplayError;
@@ -12,15 +13,16 @@ pub use player::Player;
 
 use std::path::{Path, PathBuf};
 
-use bevy::{app::PluginGroupBuilder, ecs::message::MessageCursor, prelude::*};
+use bevy::{app::PluginGroupBuilder, prelude::*};
 use serde::Deserialize as _;
 use tabletop_core::{
-    Actor, HandCamera, HeadCamera, Reach, RecordingCommand, SimCommand, SimFact, SimTick,
-    StepApp as _, TICKS_PER_SECOND,
+    Actor, HandCamera, HeadCamera, Reach, RecordingCommand, SimCommand, SimTick, StepApp as _,
+    TICKS_PER_SECOND,
 };
 use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
 use tabletop_recorder::{
-    HandPictures, RecorderPlugin, RecordingReader, Session, SessionCommand, TICKS_PER_FRAME,
+    HandPictures, RecorderPlugin, RecordingReader, RecordingReport, Session, SessionCommand,
+    TICKS_PER_FRAME, UnrecordedPlugin, recording_report,
 };
 use tabletop_robot::{Description, DescriptionError, RobotPlugin};
 
@@ -203,7 +205,24 @@ impl Replay {
     ///
     /// # Errors
     /// [`ReplayError::Record`], as with a full disk.
-    pub fn record(&self, recorder: RecorderPlugin, camera: HeadCamera) -> Result<(), ReplayError> {
+    pub fn record(
+        &self,
+        recorder: RecorderPlugin,
+        camera: HeadCamera,
+    ) -> Result<RecordingReport, ReplayError> {
+        self.record_while(recorder, camera, |_| true)
+    }
+
+    /// [`record`](Self::record) as long as this says so of the number of ticks replayed.
+    ///
+    /// # Errors
+    /// As [`record`](Self::record).
+    pub fn record_while(
+        &self,
+        recorder: RecorderPlugin,
+        camera: HeadCamera,
+        goes_on: impl FnMut(u64) -> bool,
+    ) -> Result<RecordingReport, ReplayError> {
         let recorder = RecorderPlugin {
             header: self.session.header.settings.clone(),
             hand_pictures: match recorder.hand_pictures {
@@ -215,16 +234,40 @@ impl Replay {
         let mut app = headless_app_with(self.plugins().set(recorder));
         self.play(Player::recording(&self.session), &mut app);
         app.insert_resource(camera);
-        let mut facts = MessageCursor::default();
-        while !app.world().resource::<Player>().is_over() {
-            app.step(1);
-            for fact in facts.read(app.world().resource::<Messages<SimFact>>()) {
-                if let SimFact::RecordingFailed { reason, .. } = fact {
-                    return Err(ReplayError::Record(reason.clone()));
-                }
+        self.run_while(&mut app, goes_on)
+    }
+
+    /// Replays it without a window and without recording that, as long as this says so of the number of ticks replayed.
+    pub fn simulate_while(&self, goes_on: impl FnMut(u64) -> bool) {
+        let plugins = self.plugins().disable::<RecorderPlugin>();
+        let mut app = headless_app_with(plugins.add(UnrecordedPlugin));
+        self.play_in(&mut app);
+        // Nothing is recorded that could fail.
+        let _report = self.run_while(&mut app, goes_on);
+    }
+
+    /// Number of ticks of a replay: from the first command on which the recording depends to its end.
+    pub fn ticks(&self) -> u64 {
+        self.recording.last_tick().0.saturating_sub(self.begin.0)
+    }
+
+    fn run_while(
+        &self,
+        app: &mut App,
+        mut goes_on: impl FnMut(u64) -> bool,
+    ) -> Result<RecordingReport, ReplayError> {
+        loop {
+            let world = app.world();
+            let report = recording_report(world);
+            if let Some(reason) = report.and_then(|report| report.failure.as_ref()) {
+                return Err(ReplayError::Record(reason.clone()));
             }
+            let replayed = world.resource::<SimTick>().0.saturating_sub(self.begin.0);
+            if world.resource::<Player>().is_over() || !goes_on(replayed) {
+                return Ok(report.cloned().unwrap_or_default());
+            }
+            app.step(1);
         }
-        Ok(())
     }
 }
 

@@ -11,8 +11,9 @@ use std::{
 
 use bevy::prelude::*;
 use include_dir::{Dir, include_dir};
-use tabletop_core::{ShippedFile, ShippedFiles, Symlinks, read_regular_text};
+use tabletop_core::{ShippedFile, ShippedFiles};
 use tabletop_scenario::{Scenario, ScenarioError};
+use tabletop_storage::{Symlinks, read_regular_text};
 use tabletop_xml::{ParsedTask, ReadError, TaskReader};
 
 /// The folders of a working folder.

@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use bevy::{ecs::message::MessageCursor, prelude::*};
+use bevy::prelude::*;
 use tabletop_core::{
     Actor, Arm, ClockCommand, Drive, Hand, HandCommand, Held, HistoryCommand, ObjectIndex,
     ObjectSpec, Pose, Preset, Random, RecordingCommand, Rgb, RobotCommand, RobotJoint,
-    SceneCommand, SceneItem, SceneSpec, Shape, SimCommand, SimFact, StepApp as _, TICKS_PER_SECOND,
-    Table, Twist, WriteCommand as _,
+    SceneCommand, SceneItem, SceneSpec, Shape, SimCommand, StepApp as _, TICKS_PER_SECOND, Table,
+    Twist, WriteCommand as _,
 };
 use tabletop_physics::{Convex, collider, convex_parts, depth};
-use tabletop_recorder::{Durability, RecorderPlugin};
+use tabletop_recorder::{Durability, RecorderPlugin, finish_recording};
 
 use crate::{TabletopSimPlugins, headless_app_with, replay::Replay};
 
@@ -52,7 +52,6 @@ impl Round {
             ..default()
         };
         let mut app = headless_app_with(TabletopSimPlugins.build().set(recorder));
-        let mut facts = MessageCursor::<SimFact>::default();
         give(&mut app, SceneCommand::Set(Box::new(scene(&mut random))));
         for tick in 0..Self::TICKS {
             if tick == BEFORE {
@@ -63,15 +62,9 @@ impl Round {
             }
             app.step(1);
             look(&mut app).map_err(|fault| format!("tick {tick}: {fault}"))?;
-            for fact in facts.read(app.world().resource::<Messages<SimFact>>()) {
-                if let SimFact::RecordingFailed { reason, .. } = fact {
-                    return Err(format!("tick {tick}: the recording ended: {reason}"));
-                }
-            }
         }
         give(&mut app, ClockCommand::SetPaused(false));
-        give(&mut app, RecordingCommand::Finish);
-        app.step(1);
+        finish_recording(&mut app)?;
         drop(app);
         self.replay(&recorded)
     }

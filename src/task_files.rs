@@ -6,7 +6,7 @@ use std::{
 };
 
 use bevy::prelude::World;
-use tabletop_core::{Symlinks, read_regular_file};
+use tabletop_storage::{Storage, Symlinks, read_regular_file};
 
 use crate::{
     scene::{PresentScene, present_scene},
@@ -64,22 +64,8 @@ fn is_listed(path: &Path) -> bool {
 /// The file cannot be written; an existing one is unchanged.
 pub fn save_task(world: &World, path: &Path) -> io::Result<Vec<String>> {
     let PresentScene { scene, unsaid } = present_scene(world);
-    replace(path, write(&scene).as_bytes())?;
+    Storage::default().replace(path, write(&scene).as_bytes())?;
     Ok(unsaid)
-}
-
-/// Replaces a file by another as a whole, or not at all.
-fn replace(path: &Path, text: &[u8]) -> io::Result<()> {
-    // Replaces the file, not the link to it.
-    let path = path.canonicalize().unwrap_or(path.to_owned());
-    let mut new = path.clone().into_os_string();
-    new.push(".new");
-    let new = PathBuf::from(new);
-    fs::write(&new, text)
-        .and_then(|()| fs::rename(&new, &path))
-        .inspect_err(|_| {
-            let _was_not_written = fs::remove_file(&new);
-        })
 }
 
 #[cfg(test)]
@@ -184,18 +170,5 @@ mod tests {
             let there: Vec<_> = objects.map(|spec| spec.id.clone()).collect();
             assert_eq!(ids(&first), there, "{}", file.display());
         }
-    }
-
-    #[test]
-    fn what_cannot_be_written_leaves_what_was_there() {
-        let folder = TestFolder::new("task-files-kept");
-        let path = folder.join("kept.xml");
-        fs::write(&path, "old").unwrap();
-        fs::create_dir(folder.join("kept.xml.new")).unwrap();
-        assert!(replace(&path, b"new").is_err());
-        assert_eq!(fs::read(&path).unwrap(), b"old");
-        fs::remove_dir(folder.join("kept.xml.new")).unwrap();
-        replace(&path, b"new").unwrap();
-        assert_eq!(fs::read(&path).unwrap(), b"new");
     }
 }

@@ -5,9 +5,9 @@ use std::{path::PathBuf, process::ExitCode};
 use bevy::{math::Vec3, prelude::*};
 use clap::Args;
 use tabletop::{
-    core::{HeadCamera, Pose, SimTick, StepApp as _},
+    core::{HeadCamera, Pose, SimTick, StepApp as _, TICKS_PER_SECOND},
     headless_app_with,
-    recorder::{Channels, Durability, RecorderPlugin},
+    recorder::{Channels, RecorderPlugin, RecordingReport},
     replay::{Player, Replay},
     script::ScriptPlugin,
 };
@@ -17,12 +17,16 @@ use super::{
     allowed_paths::AllowedPaths,
     duration::{seconds, ticks},
     hand_cameras::HandCameraOption,
+    progress::ProgressLine,
+    recorded::say_moved_aside,
     robot_options::{EngineOptions, script},
     script::{Script, headless_settings},
-    temporary_folder::TemporaryFolder,
     terminal::{say, show_warnings},
     window,
 };
+
+/// Number of simulated seconds from which on the length of a replay is said.
+const LONG: u64 = 3600;
 
 #[derive(Args)]
 #[command(mut_group("EngineOptions", |options| options.requires("script")))]
@@ -137,19 +141,33 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     if let Some(script) = &args.script {
         return watch(&replay, script, args);
     }
-    let (_temporary, out, durability) = match &args.out {
-        Some(out) => (None, out.clone(), Durability::AtFinish),
+    say_if_long(&replay);
+    let mut progress = ProgressLine::new(in_seconds(replay.ticks()), " simulated s");
+    let mut goes_on = |ticks| {
+        progress.reach(in_seconds(ticks), "");
+        true
+    };
+    let mut report = RecordingReport::default();
+    let difference = match &args.out {
+        None if args.verify => replay.verify(goes_on).map_err(Failure::run),
         None => {
-            let temporary = TemporaryFolder::new("tabletop-replay").map_err(Failure::run)?;
-            let out = temporary.path().join("replayed");
-            (Some(temporary), out, Durability::None)
+            replay.simulate_while(goes_on);
+            Ok(None)
+        }
+        Some(out) => {
+            let (recorder, camera) = args.pictures.recorder(&replay, out.clone())?;
+            let recorded = replay.record_while(recorder, camera, &mut goes_on);
+            recorded.map_err(Failure::run).and_then(|recorded| {
+                report = recorded;
+                match args.verify {
+                    true => replay.first_difference(out).map_err(Failure::input),
+                    false => Ok(None),
+                }
+            })
         }
     };
-    let recorded = args.pictures.record(&replay, out.clone(), durability);
-    let difference = recorded.and_then(|()| match args.verify {
-        true => replay.first_difference(&out).map_err(Failure::input),
-        false => Ok(None),
-    });
+    progress.end();
+    say_moved_aside(&report);
     let Some(difference) = difference? else {
         return Ok(ExitCode::SUCCESS);
     };
@@ -178,13 +196,28 @@ fn watch(replay: &Replay, script: &str, args: &ReplayArgs) -> Result<ExitCode, F
     acted.and(Ok(ExitCode::SUCCESS))
 }
 
+/// Says of a replay that takes long how long it is.
+fn say_if_long(replay: &Replay) {
+    let seconds = in_seconds(replay.ticks());
+    if seconds >= LONG {
+        let (folder, hours) = (replay.folder().display(), seconds as f64 / 3600.0);
+        say(format_args!(
+            "tabletop: {folder}: {hours:.1} hours of simulated time are replayed"
+        ));
+    }
+}
+
+fn in_seconds(ticks: u64) -> u64 {
+    ticks / u64::from(TICKS_PER_SECOND)
+}
+
 impl PictureArgs {
-    fn record(
+    /// The recorder of a replay, and its camera.
+    fn recorder(
         &self,
         replay: &Replay,
-        into: PathBuf,
-        durability: Durability,
-    ) -> Result<(), Failure> {
+        folder: PathBuf,
+    ) -> Result<(RecorderPlugin, HeadCamera), Failure> {
         let mut camera = replay.camera();
         if let Some((width, height)) = self.render {
             (camera.width, camera.height) = (width, height);
@@ -207,12 +240,11 @@ impl PictureArgs {
             hand_cameras: self.hand_cameras,
         };
         let recorder = RecorderPlugin {
-            folder: into,
+            folder,
             channels,
             hand_pictures: asked.of(replay.robot())?,
-            durability,
             ..default()
         };
-        replay.record(recorder, camera).map_err(Failure::run)
+        Ok((recorder, camera))
     }
 }

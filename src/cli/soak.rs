@@ -3,11 +3,10 @@
 use std::{fs, path::Path, process::ExitCode, time::Instant};
 
 use clap::Args;
-use tabletop::{core::TICKS_PER_SECOND, soak::Round};
+use tabletop::{core::TICKS_PER_SECOND, soak::Round, storage::TemporaryFolder};
 
 use super::{
     Failure,
-    temporary_folder::TemporaryFolder,
     terminal::{say, show_warnings},
 };
 
@@ -34,24 +33,22 @@ fn hours(text: &str) -> Result<f64, String> {
 
 pub(super) fn soak(args: &SoakArgs) -> Result<ExitCode, Failure> {
     show_warnings();
-    let temporary = TemporaryFolder::new("tabletop-soak").map_err(Failure::run)?;
     let round_hours = Round::TICKS as f64 / f64::from(TICKS_PER_SECOND) / 3600.0;
     let rounds = (args.hours / round_hours).ceil().max(1.0) as u64;
     let mut said = Instant::now();
     let mut memory = Vec::new();
     for number in 0..rounds {
+        let temporary = TemporaryFolder::new("tabletop-soak").map_err(Failure::run)?;
         let round = Round {
             seed: args.seed.wrapping_add(number),
-            folder: temporary.path().join("round"),
+            folder: temporary.path().to_owned(),
         };
-        fs::create_dir(&round.folder).map_err(Failure::run)?;
         round.run().map_err(|fault| {
             let seed = round.seed;
             Failure::run(format!(
                 "{fault}; to see it: tabletop soak --seed {seed} --hours 0"
             ))
         })?;
-        fs::remove_dir_all(&round.folder).map_err(Failure::run)?;
         memory.push(memory_now());
         if said.elapsed().as_secs() >= 60 || number + 1 == rounds {
             said = Instant::now();

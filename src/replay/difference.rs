@@ -7,8 +7,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use tabletop_core::{Symlinks, open_regular_file};
-use tabletop_recorder::{is_taken, whole_lines};
+use tabletop_recorder::whole_lines;
+use tabletop_storage::{Symlinks, is_taken, open_regular_file};
 use tabletop_task::Requirements;
 
 use super::ReplayError;
@@ -154,6 +154,16 @@ fn files_in(folder: &Path) -> Result<BTreeSet<PathBuf>, ReplayError> {
         }
     }
     Ok(files)
+}
+
+/// Number of bytes of these files.
+pub(super) fn bytes_in(folder: &Path) -> Result<u64, ReplayError> {
+    let bytes = |file: PathBuf| {
+        let path = folder.join(file);
+        let found = path.symlink_metadata().map_err(failed(&path))?;
+        Ok(found.len())
+    };
+    files_in(folder)?.into_iter().map(bytes).sum()
 }
 
 fn open(path: &Path) -> Result<File, ReplayError> {

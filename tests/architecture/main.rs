@@ -11,10 +11,14 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 20] = [
+const RULES: [Rule; 21] = [
+    Rule::new("tabletop_storage", &[]),
     Rule::new("tabletop_core", &[]),
     Rule::new("tabletop_mesh", &["tabletop_core"]),
-    Rule::new("tabletop_xml", &["tabletop_core", "tabletop_mesh"]),
+    Rule::new(
+        "tabletop_xml",
+        &["tabletop_core", "tabletop_mesh", "tabletop_storage"],
+    ),
     Rule::new("tabletop_history", &["tabletop_core"]),
     Rule::new("tabletop_physics", &["tabletop_core", "tabletop_history"]).with_rapier(),
     Rule::new(
@@ -40,21 +44,28 @@ const RULES: [Rule; 20] = [
             "tabletop_kinematics",
             "tabletop_mesh",
             "tabletop_physics",
+            "tabletop_storage",
         ],
     )
     .with_rapier(),
     Rule::new("tabletop_engine", &[]),
-    Rule::new("tabletop_script", &["tabletop_core", "tabletop_engine"]),
+    Rule::new(
+        "tabletop_script",
+        &["tabletop_core", "tabletop_engine", "tabletop_storage"],
+    ),
     Rule::new("tabletop_camera", &["tabletop_core", "tabletop_history"]),
-    Rule::new("tabletop_recorder", &["tabletop_core"]),
-    Rule::new("tabletop_scenario", &["tabletop_core"]),
-    Rule::new("tabletop_task", &["tabletop_core", "tabletop_recorder"]),
+    Rule::new("tabletop_recorder", &["tabletop_core", "tabletop_storage"]),
+    Rule::new("tabletop_scenario", &["tabletop_core", "tabletop_storage"]),
+    Rule::new(
+        "tabletop_task",
+        &["tabletop_core", "tabletop_recorder", "tabletop_storage"],
+    ),
     Rule::new(
         "tabletop_planner",
         &["tabletop_core", "tabletop_kinematics", "tabletop_task"],
     ),
     Rule::new("tabletop_view", &["tabletop_core"]).with_window(),
-    Rule::new("tabletop_gui", &["tabletop_core"]).with_window(),
+    Rule::new("tabletop_gui", &["tabletop_core", "tabletop_storage"]).with_window(),
     Rule::new(
         "tabletop",
         &[
@@ -72,6 +83,7 @@ const RULES: [Rule; 20] = [
             "tabletop_camera",
             "tabletop_recorder",
             "tabletop_scenario",
+            "tabletop_storage",
             "tabletop_task",
             "tabletop_planner",
             "tabletop_view",

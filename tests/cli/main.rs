@@ -7,6 +7,7 @@ mod element_docs;
 mod examples;
 mod explain;
 mod imitate;
+mod kept;
 #[cfg(feature = "window")]
 mod keys;
 mod kinematics;

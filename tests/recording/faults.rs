@@ -11,9 +11,10 @@ use tabletop::{
     core::{Drive, HeadCamera, ScriptCommand},
     headless_app_with,
     prelude::*,
-    recorder::{Durability, RecorderPlugin, SessionCommand, Storage, StorageFault},
+    recorder::{Durability, RecorderPlugin, SessionCommand},
     replay::Replay,
     script::{EngineChoice, EngineKind, ScriptPlugin, ScriptSettings},
+    storage::{Storage, StorageFault},
 };
 
 use crate::demonstration::fresh_folder_in_memory;
@@ -72,6 +73,7 @@ fn try_faults(name: &str, calls: Calls, record: impl Fn(RecorderPlugin)) {
             let folder = fresh_folder_in_memory(name);
             // An earlier recording, which must not be lost.
             fs::create_dir_all(folder.join("demo")).unwrap();
+            fs::write(folder.join("demo/session.jsonl"), "{\"format\":4}\n").unwrap();
             fs::write(folder.join("demo/note"), "earlier").unwrap();
             record(recorder(&folder, Storage::with_fault(fault, call)));
             match check(&folder) {

@@ -130,6 +130,8 @@ pub enum SimFact {
         cause: CommandId,
         /// Its folder.
         folder: PathBuf,
+        /// The folder of the earlier recording that was in its place.
+        moved_aside: Option<PathBuf>,
     },
     /// A recording has ended properly.
     RecordingFinished {

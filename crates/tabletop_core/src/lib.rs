@@ -60,7 +60,6 @@ mod ray;
 mod reach;
 mod recording;
 mod reflection;
-mod regular_file;
 mod requirement;
 mod rest;
 mod robot;
@@ -129,9 +128,6 @@ pub use preset::Preset;
 pub use random::Random;
 pub use reach::Reach;
 pub use recording::{History, OpenRecording, Recording, Replaying};
-pub use regular_file::{
-    Symlinks, open_regular_file, read_regular_file, read_regular_text, require_regular_file,
-};
 pub use requirement::require;
 pub use rest::{RestApp, RestingSystems, Upkeep};
 pub use robot::{

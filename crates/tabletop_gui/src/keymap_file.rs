@@ -22,9 +22,8 @@ use serde::{
     Deserialize, Deserializer,
     de::{MapAccess, Visitor},
 };
-use tabletop_core::{
-    Action, KeyBinding, Keymap, RobotLayout, Situation, Symlinks, read_regular_text,
-};
+use tabletop_core::{Action, KeyBinding, Keymap, RobotLayout, Situation};
+use tabletop_storage::{Symlinks, read_regular_text};
 
 use crate::{Notices, Preferences, Tone, preferences::MOST_BYTES};
 

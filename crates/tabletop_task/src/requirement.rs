@@ -3,13 +3,13 @@
 
 use std::{
     collections::BTreeMap,
-    fs::{self, File},
-    io::{ErrorKind, Write as _},
+    io::ErrorKind,
     path::{Path, PathBuf},
 };
 
 use serde::{Deserialize, Serialize};
-use tabletop_core::{ObjectSpec, Rgb, Symlinks, read_regular_text};
+use tabletop_core::{ObjectSpec, Rgb};
+use tabletop_storage::{Storage, Symlinks, read_regular_text};
 
 use crate::{
     noun::color_name,
@@ -89,24 +89,16 @@ impl Requirements {
             path: path.clone(),
             source,
         };
+        let storage = Storage::default();
         if self.roles.is_empty() {
-            return match fs::remove_file(&path) {
+            return match storage.remove_file(&path) {
                 Err(error) if error.kind() != ErrorKind::NotFound => Err(failed(error)),
                 _ => Ok(()),
             };
         }
-        // What is there may be a link to another file, which is not to be written.
-        let new = folder.join(format!("{}.part", Self::FILE));
-        let replace = || {
-            let text = serde_json::to_string_pretty(self)? + "\n";
-            match fs::remove_file(&new) {
-                Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
-                _ => {}
-            }
-            File::create_new(&new)?.write_all(text.as_bytes())?;
-            fs::rename(&new, &path)
-        };
-        replace().map_err(failed)
+        let text = serde_json::to_string_pretty(self).map_err(|error| failed(error.into()))?;
+        let written = storage.replace_name(&path, format!("{text}\n").as_bytes());
+        written.map_err(failed)
     }
 
     /// Adds a requirement: `name=value`, `name` for the demonstrated value, `same=STEP`, or `any` for no requirement at all.

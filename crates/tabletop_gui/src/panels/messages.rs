@@ -84,6 +84,15 @@ fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
             SimFact::Refused { reason, .. } | SimFact::RecordingFailed { reason, .. } => {
                 notices.add(Tone::Fault, reason);
             }
+            SimFact::RecordingStarted {
+                folder,
+                moved_aside: Some(aside),
+                ..
+            } => {
+                let (folder, aside) = (folder.display(), aside.display());
+                let text = format!("{folder}: the earlier recording there is now {aside}");
+                notices.add(Tone::Event, &text);
+            }
             SimFact::ObjectCreated { .. }
             | SimFact::ObjectDeleted { .. }
             | SimFact::SegmentBegun { .. }

@@ -453,6 +453,7 @@ mod tests {
         app.world_mut().write_message(SimFact::RecordingStarted {
             cause: tabletop_core::CommandId(0),
             folder: "demo".into(),
+            moved_aside: None,
         });
         app.update();
         app.insert_resource(SimTick(131));
