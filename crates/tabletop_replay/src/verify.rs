@@ -4,7 +4,7 @@ use bevy::prelude::default;
 use tabletop_recorder::{Durability, RecorderPlugin};
 use tabletop_storage::{Storage, TemporaryFolder};
 
-use super::{Replay, ReplayError, difference::bytes_in};
+use crate::{Replay, ReplayError, difference::bytes_in};
 
 /// Number of bytes that a replay may write beyond those of the recording. What was cut off is missing there.
 const MOST_BEYOND: u64 = 64 << 20;

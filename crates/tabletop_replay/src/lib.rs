@@ -1,4 +1,4 @@
-//! Replays of recordings.
+//! Recordings, simulated again: replays, their verification, and any moment of a recording.
 
 mod difference;
 mod error;
@@ -25,8 +25,7 @@ use tabletop_recorder::{
     TICKS_PER_FRAME, UnrecordedPlugin, recording_report,
 };
 use tabletop_robot::{Description, DescriptionError, RobotPlugin};
-
-use crate::{
+use tabletop_sim::{
     TabletopSimPlugins, headless_app_with,
     settings::{PHYSICS, ROBOT, RobotSettings, Settings},
 };

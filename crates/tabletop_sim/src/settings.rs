@@ -12,21 +12,24 @@ use tabletop_physics::PhysicsSettings;
 use tabletop_recorder::SessionSettings;
 use tabletop_robot::{Description, DescriptionError, DescriptionSource, RobotPlugin};
 
-/// Names of the settings in a session log.
-pub(crate) const PHYSICS: &str = "physics";
-pub(crate) const ROBOT: &str = "robot";
+/// The name of the physics in a session log.
+pub const PHYSICS: &str = "physics";
+/// The name of the robot in a session log.
+pub const ROBOT: &str = "robot";
 const TASK_FILE: &str = "task_file";
 
 /// The settings with which a world must be made to go through the same states.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Settings {
-    pub(crate) physics: PhysicsSettings,
-    pub(crate) robot: RobotSettings,
+pub struct Settings {
+    /// Gravity, friction and the like.
+    pub physics: PhysicsSettings,
+    /// The robot at the table.
+    pub robot: RobotSettings,
 }
 
 impl Settings {
     /// The settings of a world.
-    pub(crate) fn of(world: &World) -> Self {
+    pub fn of(world: &World) -> Self {
         let robot = world.get_resource::<Robot>();
         let description = world.get_resource::<Description>();
         Self {
@@ -44,7 +47,7 @@ impl Settings {
     }
 
     /// The first setting that differs from another world's, with both values.
-    pub(crate) fn first_difference(&self, here: &Self) -> Option<String> {
+    pub fn first_difference(&self, here: &Self) -> Option<String> {
         let [recorded, here] = [self, here].map(|settings| value(settings).ok());
         first_difference("settings", &recorded?, &here?)
     }
@@ -72,7 +75,7 @@ fn first_difference(name: &str, recorded: &Value, here: &Value) -> Option<String
 
 /// The robot at the table.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(crate) struct RobotSettings {
+pub struct RobotSettings {
     mode: RobotMode,
     /// Its description, if it is not the robot inside the program.
     description: Option<DescriptionSource>,

@@ -11,7 +11,7 @@ use tabletop_recorder::whole_lines;
 use tabletop_storage::{Symlinks, is_taken, open_regular_file};
 use tabletop_task::Requirements;
 
-use super::ReplayError;
+use crate::ReplayError;
 
 /// Number of bytes by which a recorded file is read beyond the length of the replayed one: a difference is told with a line of it.
 const MOST_BEYOND: u64 = 4096;

@@ -6,7 +6,7 @@ use bevy::{
 };
 use tabletop_core::StepApp as _;
 
-use crate::TabletopSimPlugins;
+use crate::plugins::TabletopSimPlugins;
 
 /// A started simulator without window, ready to be [stepped](tabletop_core::StepApp::step). It runs on one thread; a
 /// second one helps to draw pictures.

@@ -94,7 +94,7 @@ fn shown_role(role: &Role, requirements: &Requirements) -> ShownRole {
 }
 
 /// The value of a role's property: a colour by its name.
-pub(crate) fn value(role: &Role, name: &str) -> String {
+pub fn value(role: &Role, name: &str) -> String {
     let value = property(&role.shown, name).unwrap_or_default();
     if name == "color" {
         let mut names = NAMED_COLORS.iter();

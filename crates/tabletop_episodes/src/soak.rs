@@ -12,7 +12,8 @@ use tabletop_core::{
 use tabletop_physics::{Convex, collider, convex_parts, depth};
 use tabletop_recorder::{Durability, RecorderPlugin, finish_recording};
 
-use crate::{TabletopSimPlugins, headless_app_with, replay::Replay};
+use tabletop_replay::Replay;
+use tabletop_sim::{TabletopSimPlugins, headless_app_with};
 
 /// Number of ticks of a round before its recording begins.
 const BEFORE: u64 = 30 * TICKS_PER_SECOND as u64;

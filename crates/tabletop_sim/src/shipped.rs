@@ -21,11 +21,11 @@ pub const WORKING_FOLDERS: [&str; 5] = ["tablesetup", "matlab", "scenarios", "py
 
 /// Their contents.
 static CONTENTS: [Dir; WORKING_FOLDERS.len()] = [
-    include_dir!("$CARGO_MANIFEST_DIR/tablesetup"),
-    include_dir!("$CARGO_MANIFEST_DIR/matlab"),
-    include_dir!("$CARGO_MANIFEST_DIR/scenarios"),
-    include_dir!("$CARGO_MANIFEST_DIR/python"),
-    include_dir!("$CARGO_MANIFEST_DIR/learners"),
+    include_dir!("$CARGO_MANIFEST_DIR/../../tablesetup"),
+    include_dir!("$CARGO_MANIFEST_DIR/../../matlab"),
+    include_dir!("$CARGO_MANIFEST_DIR/../../scenarios"),
+    include_dir!("$CARGO_MANIFEST_DIR/../../python"),
+    include_dir!("$CARGO_MANIFEST_DIR/../../learners"),
 ];
 
 /// The endings of their files; other files that a script may have left there are not shipped.
@@ -35,7 +35,7 @@ macro_rules! asset {
     ($path:literal) => {
         ShippedFile {
             path: concat!("assets/", $path),
-            text: include_str!(concat!("../assets/", $path)),
+            text: include_str!(concat!("../../../assets/", $path)),
         }
     };
 }
@@ -134,12 +134,17 @@ mod tests {
 
     use super::*;
 
+    fn root() -> PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+    }
+
     #[test]
     fn every_file_of_the_working_folders_is_shipped_as_it_is() {
+        let root = root();
         for folder in WORKING_FOLDERS {
-            let mut paths: Vec<_> = fs::read_dir(folder)
+            let mut paths: Vec<_> = fs::read_dir(root.join(folder))
                 .unwrap()
-                .map(|entry| entry.unwrap().path())
+                .map(|entry| Path::new(folder).join(entry.unwrap().file_name()))
                 .filter(|path| {
                     let ending = path.extension().and_then(|ending| ending.to_str());
                     ending.is_some_and(|ending| ENDINGS.contains(&ending))
@@ -148,10 +153,13 @@ mod tests {
             paths.sort();
             let shipped: Vec<_> = shipped_files().in_folder(folder).collect();
             let listed: Vec<_> = shipped.iter().map(|file| Path::new(file.path)).collect();
-            assert_eq!(listed, paths, "touch src/shipped.rs after a new file");
+            assert_eq!(
+                listed, paths,
+                "touch crates/tabletop_sim/src/shipped.rs after a new file"
+            );
             for file in shipped {
                 assert_eq!(
-                    fs::read_to_string(file.path).unwrap(),
+                    fs::read_to_string(root.join(file.path)).unwrap(),
                     file.text,
                     "{}",
                     file.path
@@ -185,8 +193,8 @@ mod tests {
 
     #[test]
     fn a_file_of_the_folder_is_what_its_path_says() {
-        let path = Path::new("tablesetup/default.xml");
-        assert_eq!(true_path(path), path);
+        let path = root().join("tablesetup/default.xml");
+        assert_eq!(true_path(&path), path);
         let shipped = Path::new("shipped:tablesetup/default.xml");
         assert_eq!(true_path(shipped), shipped);
         let missing = Path::new("tablesetup/missing.xml");

@@ -31,10 +31,9 @@ use tabletop_scene::{IdAllocator, assemble};
 use tabletop_storage::{Storage, Symlinks, read_regular_file};
 use tabletop_task::{Binding, Demonstration, RequirementError, Requirements, Task};
 
-use crate::{
-    TabletopSimPlugins, headless_app_with,
-    imitation::{AppStage, baxter_body},
-};
+use tabletop_sim::{TabletopSimPlugins, headless_app_with};
+
+use crate::imitation::{AppStage, baxter_body};
 use fingerprint::Fingerprint;
 use performance::perform;
 use variation::Varying;

@@ -18,7 +18,7 @@ use tabletop_robot::Description;
 use tabletop_xml::AllowedFolders;
 
 use super::{Player, Replay, player};
-use crate::settings::Settings;
+use tabletop_sim::settings::Settings;
 
 /// Time of a frame that is spent on going to a moment, so that pictures keep coming.
 const BUDGET: Duration = Duration::from_millis(40);

@@ -6,12 +6,9 @@ use std::{
 };
 
 use bevy::prelude::World;
+use tabletop_scene::{PresentScene, present_scene};
 use tabletop_storage::{Storage, Symlinks, read_regular_file};
-
-use crate::{
-    scene::{PresentScene, present_scene},
-    xml::{MAX_FILE_BYTES, is_task, write},
-};
+use tabletop_xml::{MAX_FILE_BYTES, is_task, write};
 
 /// The folder of the task files that the window lists, in the working folder.
 pub const TASK_FOLDER: &str = "tablesetup";
@@ -21,10 +18,10 @@ pub const TASK_FOLDER: &str = "tablesetup";
 ///
 /// ```
 /// use std::path::Path;
-/// use tabletop::task_files::{TASK_FOLDER, task_files};
+/// use tabletop_sim::task_files::{TASK_FOLDER, task_files};
 ///
-/// let files = task_files(Path::new(TASK_FOLDER));
-/// assert!(files.contains(&Path::new(TASK_FOLDER).join("default.xml")));
+/// let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(TASK_FOLDER);
+/// assert!(task_files(&folder).contains(&folder.join("default.xml")));
 /// ```
 pub fn task_files(folder: &Path) -> Vec<PathBuf> {
     let Ok(found) = fs::read_dir(folder) else {
@@ -40,8 +37,7 @@ pub fn task_files(folder: &Path) -> Vec<PathBuf> {
 }
 
 /// True if a file is a task file to be listed, by its name and its content.
-#[cfg(feature = "window")]
-pub(crate) fn is_task_file(path: &Path, text: &[u8]) -> bool {
+pub fn is_task_file(path: &Path, text: &[u8]) -> bool {
     is_task_name(path) && is_task(text)
 }
 
@@ -74,16 +70,16 @@ mod tests {
     use tabletop_core::prelude::*;
 
     use super::*;
-    use crate::{
-        headless_app,
-        scene::{IdAllocator, assemble},
-        test_folder::TestFolder,
-        xml::read_task,
-    };
+    use tabletop_scene::{IdAllocator, assemble};
+    use tabletop_storage::TemporaryFolder;
+    use tabletop_xml::read_task;
+
+    use crate::headless::headless_app;
 
     #[test]
     fn task_files_are_listed_by_name_and_templates_are_not() {
-        let folder = TestFolder::new("task-files-listed");
+        let temporary = TemporaryFolder::new("tabletop-task-files-listed").unwrap();
+        let folder = temporary.path();
         let task = "<tabletop xmlns='http://synapse.cs.umd.edu/tabletop-xml'/>";
         for (name, text) in [
             ("b.xml", task),
@@ -96,10 +92,10 @@ mod tests {
             ("notes.txt", task),
             ("none.xml", ""),
         ] {
-            folder.write(name, text);
+            fs::write(folder.join(name), text).unwrap();
         }
         fs::create_dir(folder.join("folder.xml")).unwrap();
-        let files = task_files(&folder);
+        let files = task_files(folder);
         let names: Vec<_> = files.iter().map(|path| path.file_name().unwrap()).collect();
         assert_eq!(names, ["a.xml", "b.xml", "faulty.xml"]);
         assert_eq!(task_files(&folder.join("missing")), Vec::<PathBuf>::new());
@@ -140,10 +136,12 @@ mod tests {
 
     #[test]
     fn a_saved_scene_is_the_same_when_it_is_loaded() {
-        let folder = TestFolder::new("task-files-saved");
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let temporary = TemporaryFolder::new("tabletop-task-files-saved").unwrap();
+        let folder = temporary.path();
         let path = folder.join("saved.xml");
-        std::fs::copy("tablesetup/cup.stl", folder.join("cup.stl")).unwrap();
-        for file in task_files(Path::new(TASK_FOLDER)) {
+        fs::copy(root.join("tablesetup/cup.stl"), folder.join("cup.stl")).unwrap();
+        for file in task_files(&root.join(TASK_FOLDER)) {
             let mut app = headless_app();
             app.world_mut()
                 .write_command(SceneCommand::Load(file.clone()));

@@ -1,0 +1,6 @@
+//! Whole episodes, each in a world of its own: imitation of a recording, multiplication of a demonstration, hours of random acts.
+
+pub mod imitation;
+pub mod multiplication;
+pub mod shown_task;
+pub mod soak;
