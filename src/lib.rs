@@ -43,7 +43,7 @@
 pub use tabletop_camera as camera;
 pub use tabletop_core as core;
 pub use tabletop_demonstrator as demonstrator;
-pub use tabletop_episodes::{imitation, multiplication, shown_task, soak};
+pub use tabletop_episodes::{imitation, multiplication, scene_at_beginning, shown_task, soak};
 #[cfg(feature = "window")]
 pub use tabletop_gui as gui;
 pub use tabletop_history as history;

@@ -20,10 +20,11 @@ use tabletop::{
     },
     robot::{Description, RobotPlugin},
     scene::{IdAllocator, assemble},
+    scene_at_beginning,
     task::{Requirements, Task},
 };
 use tabletop_core::{
-    RecordingCommand, RobotCommand, SceneCommand, SceneSpec, SimCommand, SimTick, StepApp as _,
+    RecordingCommand, RobotCommand, SceneCommand, SceneSpec, SimTick, StepApp as _,
     TICKS_PER_SECOND, WriteCommand as _,
 };
 
@@ -147,8 +148,8 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
     Ok(ExitCode::from(u8::from(!is_done)))
 }
 
-/// The last scene that was put on the table before a recording.
-pub(super) fn scene_of(recording: &Path) -> Result<SceneSpec, Failure> {
+/// The scene with which a recording begins.
+fn scene_of(recording: &Path) -> Result<SceneSpec, Failure> {
     let unknown = || {
         Failure::input(
             "the recording does not say which scene it began with; name one with --setup",
@@ -159,14 +160,7 @@ pub(super) fn scene_of(recording: &Path) -> Result<SceneSpec, Failure> {
         return Err(unknown());
     }
     let recording = RecordingReader::open(recording).map_err(Failure::input)?;
-    let commands = recording.session().earlier.iter().rev();
-    let mut scenes = commands.filter_map(|command| {
-        let SimCommand::Scene(SceneCommand::Set(scene)) = &command.command else {
-            return None;
-        };
-        Some((**scene).clone())
-    });
-    scenes.next().ok_or_else(unknown)
+    scene_at_beginning(recording.session()).ok_or_else(unknown)
 }
 
 struct Attempt<'a> {

@@ -3,14 +3,12 @@
 //!
 //! The seed and the number of a demonstration alone decide it, so it does not matter which others were made, or where.
 
-mod beginning;
 mod collection;
 mod fingerprint;
 mod performance;
 mod variation;
 mod way;
 
-pub use beginning::scene_at_beginning;
 pub use collection::{Collection, CollectionError};
 pub use variation::{Variation, with_colors_exchanged};
 
@@ -33,7 +31,10 @@ use tabletop_task::{Binding, Demonstration, RequirementError, Requirements, Task
 
 use tabletop_sim::{TabletopSimPlugins, headless_app_with};
 
-use crate::imitation::{AppStage, baxter_body};
+use crate::{
+    beginning::scene_at_beginning,
+    imitation::{AppStage, baxter_body},
+};
 use fingerprint::Fingerprint;
 use performance::perform;
 use variation::Varying;

@@ -12,7 +12,7 @@ use tabletop_recorder::RecordingReader;
 use tabletop_task::{Demonstration, Requirements, Role, Task};
 
 use crate::{
-    multiplication::scene_at_beginning,
+    scene_at_beginning,
     shown_task::{shown_task, value},
 };
 
