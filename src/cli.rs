@@ -17,6 +17,7 @@ mod keys;
 mod multiply;
 mod output;
 mod progress;
+mod range;
 mod replay;
 mod require;
 mod robot;

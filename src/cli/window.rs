@@ -11,7 +11,8 @@ use tabletop::{replay::Replay, script::ScriptSettings};
 use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
-    duration::seconds,
+    duration::SECONDS,
+    range::SEEDS,
     robot_options::{EngineOptions, RobotOptions, script},
     run,
     terminal::say,
@@ -28,14 +29,14 @@ pub(super) struct WindowArgs {
     #[cfg(feature = "window")]
     #[arg(long, value_name = "FILE")]
     keys: Option<PathBuf>,
-    /// The seed of the colours and places of presets
-    #[arg(long, value_name = "N", default_value = "5566")]
+    /// The seed of the colours and places of presets, from 0 to 18446744073709551615
+    #[arg(long, value_name = "N", default_value = "5566", value_parser = SEEDS, allow_negative_numbers = true)]
     seed: u64,
     /// Save a picture of the window to this PNG file, and quit
     #[arg(long, value_name = "FILE")]
     screenshot: Option<PathBuf>,
-    /// When to take the picture, in seconds of simulated time
-    #[arg(long, value_name = "S", default_value = "1", value_parser = seconds, allow_negative_numbers = true, requires = "screenshot")]
+    /// When to take the picture, from 0 to 31622400 seconds of simulated time
+    #[arg(long, value_name = "S", default_value = "1", value_parser = SECONDS, allow_negative_numbers = true, requires = "screenshot")]
     after: f64,
     /// The scripts that the key M starts: `matlab` (those that matlab/agentBehavior.m names), `matlab:FOLDER`, `octave:FOLDER`,
     /// `matlab:FOLDER#reach` (reachInit.m and reachCallback.m), `python:FILE`, or `other:FILE`, which the driver runs that `--engine` names

@@ -14,6 +14,7 @@ mod language;
 mod multiply;
 mod originals;
 mod panda;
+mod ranges;
 mod replay;
 mod robot;
 mod scenarios;
