@@ -14,6 +14,7 @@ mod imitate;
 mod init;
 #[cfg(feature = "window")]
 mod keys;
+mod man;
 mod multiply;
 mod output;
 mod progress;
@@ -81,6 +82,10 @@ enum Command {
     ///
     /// For bash: tabletop completions bash > ~/.local/share/bash-completion/completions/tabletop
     Completions(completions::CompletionsArgs),
+    /// Print the manual page
+    ///
+    /// For `man tabletop`: tabletop man > ~/.local/share/man/man1/tabletop.1
+    Man,
 }
 
 /// The end of the long help.
@@ -123,6 +128,7 @@ pub fn main() -> ExitCode {
         Some(Command::Init(args)) => init::init(&args),
         Some(Command::Soak(args)) => soak::soak(&args),
         Some(Command::Completions(args)) => completions::completions(&args, &mut Cli::command()),
+        Some(Command::Man) => man::man(Cli::command()),
         None => window::open(cli.window),
     };
     result.unwrap_or_else(|failure| {

@@ -11,6 +11,7 @@ mod imitate;
 mod keys;
 mod kinematics;
 mod language;
+mod man;
 mod multiply;
 mod originals;
 mod panda;
