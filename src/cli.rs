@@ -1,6 +1,7 @@
 //! The command line and its exit codes: 0 done, 1 the run failed, 2 wrong usage or input.
 
 mod allowed_paths;
+mod arguments;
 mod check;
 mod completions;
 #[cfg(feature = "window")]
@@ -30,7 +31,7 @@ mod temporary_folder;
 mod terminal;
 mod window;
 
-use std::process::ExitCode;
+use std::{env, process::ExitCode};
 
 use clap::{CommandFactory as _, Parser, Subcommand};
 
@@ -43,7 +44,7 @@ use terminal::say;
 /// Without a command, opens a window in which you show a task by moving objects on a table with the mouse, and drive a robot by hand
 /// or by scripts. The commands do the same without a window, many times faster than real time and with the same result.
 #[derive(Parser)]
-#[command(version, after_long_help = MANUAL)]
+#[command(version, after_long_help = MANUAL, bin_name = "tabletop")]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -113,7 +114,10 @@ Exit codes:
 
 /// Reads the command line and carries it out.
 pub fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli: Cli = match arguments::read(env::args_os()) {
+        Ok(cli) => cli,
+        Err(code) => return code,
+    };
     let result = match cli.command {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),

@@ -24,3 +24,4 @@ mod strange_recordings;
 mod strange_scenes;
 mod support;
 mod task_files;
+mod usage;
