@@ -138,7 +138,7 @@ impl EngineOptions {
     /// The settings of the script bridge. `script` is the value of `--script`: a language, and after a colon the place of the scripts.
     ///
     /// # Errors
-    /// The engine does not exist, or does not run this language.
+    /// The engine does not exist, or does not run this language; or the scripts do not exist.
     pub fn settings(&self, script: Option<&str>) -> Result<ScriptSettings, Failure> {
         let mut settings = ScriptSettings {
             shipped: shipped_files().clone(),
@@ -164,7 +164,9 @@ impl EngineOptions {
         } else if let Some(engine) = &self.engine {
             settings.engine = parse(engine);
         }
-        if script.is_some() || self.engine.is_some() {
+        if script.is_some() {
+            check_scripts(&settings)?;
+        } else if self.engine.is_some() {
             settings.engine_config().map_err(Failure::input)?;
         }
         if self.no_objects {
@@ -250,7 +252,7 @@ fn runs(kind: EngineKind, language: &str) -> bool {
 }
 
 /// Checks that there are scripts in the place of these settings, as far as that is known before the engine starts.
-pub(super) fn check_scripts(settings: &ScriptSettings) -> Result<(), Failure> {
+fn check_scripts(settings: &ScriptSettings) -> Result<(), Failure> {
     let config = settings.engine_config().map_err(Failure::input)?;
     match config.fault() {
         None => Ok(()),

@@ -25,3 +25,5 @@ mod strange_scenes;
 mod support;
 mod task_files;
 mod usage;
+#[cfg(feature = "window")]
+mod window;
