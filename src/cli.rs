@@ -4,6 +4,7 @@ mod allowed_paths;
 mod arguments;
 mod check;
 mod completions;
+mod cut_off;
 #[cfg(feature = "window")]
 mod display;
 mod duration;

@@ -54,7 +54,6 @@ pub(super) fn require(args: &RequireArgs) -> Result<ExitCode, Failure> {
         change(&mut requirements, &task, role, args)?;
         requirements.write(&args.recording).map_err(Failure::run)?;
     }
-    let (task, _) = read(&args.recording, &Furniture::default())?;
     let lines = task.roles.iter().map(|role| {
         let required = match requirements.roles.get(&role.id) {
             None => "as it was shown".to_owned(),

@@ -3,6 +3,7 @@
 
 mod allowed_paths;
 mod anywhere;
+mod cut_off;
 mod element_docs;
 mod examples;
 mod explain;
