@@ -34,10 +34,13 @@ use super::{
     explain::{furniture, read},
     faultless::read_faultless_task,
     hand_cameras::HandCameraOption,
+    range::{NumberRange, SEEDS},
     recorded::{self, say_moved_aside},
     robot_options::RobotChoice,
     terminal::{say, show_warnings},
 };
+
+const TRIALS: NumberRange<u64> = NumberRange::whole(1, 100_000);
 
 #[derive(Args)]
 #[command(mut_group("HandCameraOption", |options| options.requires("record")))]
@@ -50,11 +53,11 @@ pub(super) struct ImitateArgs {
     setup: Option<PathBuf>,
     #[command(flatten)]
     allowed: AllowedPaths,
-    /// Put everything at random places within reach, which this number decides
-    #[arg(long, value_name = "N")]
+    /// Put everything at random places within reach, which this number from 0 to 18446744073709551615 decides
+    #[arg(long, value_name = "N", value_parser = SEEDS, allow_negative_numbers = true)]
     seed: Option<u64>,
-    /// Do this many trials, with random places by the seeds from `--seed` (or 0) on, and print their results
-    #[arg(long, value_name = "N")]
+    /// Do this many trials, from 1 to 100000, with random places by the seeds from `--seed` (or 0) on, and print their results
+    #[arg(long, value_name = "N", value_parser = TRIALS, allow_negative_numbers = true)]
     trials: Option<u64>,
     /// Exchange the colours of objects, as the seed decides
     #[arg(long)]

@@ -18,15 +18,18 @@ use clap::Args;
 use serde_json::{Value, json};
 use tabletop::{
     multiplication::{Collection, CollectionError, Demonstrator, Made, Multiplication, Variation},
+    recorder::RecordingReader,
     robot::RobotPlugin,
 };
 
 use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
+    cut_off::say_if_cut_off,
     faultless::read_faultless_task,
     hand_cameras::HandCameraOption,
     progress::ProgressLine,
+    range::{NumberRange, SEEDS},
     terminal::{say, show_warnings},
 };
 
@@ -36,14 +39,14 @@ pub(super) struct MultiplyArgs {
     /// The recording's folder
     #[arg(value_name = "DIR")]
     recording: PathBuf,
-    /// Number of demonstrations to make
-    #[arg(long, value_name = "N", default_value_t = 100)]
+    /// Number of demonstrations to make, from 1 to 1000000
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = COUNTS, allow_negative_numbers = true)]
     count: u64,
     /// The folder for them, each in a folder of its number; existing ones are kept
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// The seed of places and all other differences [default: 0]
-    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    /// The seed of places and all other differences, from 0 to 18446744073709551615 [default: 0]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = SEEDS, allow_negative_numbers = true)]
     seed: u64,
     /// Let the robot demonstrate instead of the hand
     #[arg(long)]
@@ -51,44 +54,35 @@ pub(super) struct MultiplyArgs {
     /// Give the objects other colours, as far as the requirements allow
     #[arg(long)]
     colors: bool,
-    /// Make blocks and cylinders narrower by up to this part of their widths, as far as what is required of them allows
-    #[arg(long, value_name = "PART", value_parser = part, default_value_t = 0.0, hide_default_value = true)]
+    /// Make blocks and cylinders narrower by up to this part of their widths, from 0 to 0.5, as far as what is required of them allows
+    #[arg(long, value_name = "PART", value_parser = PARTS, allow_negative_numbers = true, default_value_t = 0.0, hide_default_value = true)]
     sizes: f32,
     /// The task file with the objects to do it with [default: the scene of the recording]
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
     #[command(flatten)]
     allowed: AllowedPaths,
-    /// Put up to so many other objects around
-    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    /// Put up to so many other objects around, from 0 to 50
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = DISTRACTORS, allow_negative_numbers = true)]
     distractors: u32,
-    /// Move the head camera by up to this many units, and turn it by up to 2° per unit
-    #[arg(long, value_name = "UNITS", value_parser = length, default_value_t = 0.0, hide_default_value = true)]
+    /// Move the head camera by up to this many units, from 0 to 10, and turn it by up to 2° per unit
+    #[arg(long, value_name = "UNITS", value_parser = LENGTHS, allow_negative_numbers = true, default_value_t = 0.0, hide_default_value = true)]
     camera: f32,
-    /// Let brightness, direction and colour of the light in the pictures differ by up to this part
-    #[arg(long, value_name = "PART", value_parser = part, default_value_t = 0.0, hide_default_value = true)]
+    /// Let brightness, direction and colour of the light in the pictures differ by up to this part, from 0 to 0.5
+    #[arg(long, value_name = "PART", value_parser = PARTS, allow_negative_numbers = true, default_value_t = 0.0, hide_default_value = true)]
     light: f32,
     #[command(flatten)]
     hand_cameras: HandCameraOption,
-    /// Number of demonstrations made at a time [default: the number of cores]
-    #[arg(long, value_name = "N")]
+    /// Number of demonstrations made at a time, from 1 to 256 [default: the number of cores]
+    #[arg(long, value_name = "N", value_parser = JOBS, allow_negative_numbers = true)]
     jobs: Option<usize>,
 }
 
-/// Reads a length of 0 to 10 units.
-fn length(text: &str) -> Result<f32, String> {
-    let length = text.parse().ok();
-    length
-        .filter(|length| (0.0..=10.0).contains(length))
-        .ok_or_else(|| "expected 0 to 10 units".into())
-}
-
-/// Reads a part of 0 to 0.5.
-fn part(text: &str) -> Result<f32, String> {
-    let part = text.parse().ok();
-    part.filter(|part| (0.0..=0.5).contains(part))
-        .ok_or_else(|| "expected 0 to 0.5".into())
-}
+const COUNTS: NumberRange<u64> = NumberRange::whole(1, 1_000_000);
+const PARTS: NumberRange<f32> = NumberRange::decimal(0.0, 0.5);
+const DISTRACTORS: NumberRange<u32> = NumberRange::whole(0, 50);
+const LENGTHS: NumberRange<f32> = NumberRange::decimal(0.0, 10.0).of("units");
+const JOBS: NumberRange<usize> = NumberRange::whole(1, 256);
 
 /// Makes the demonstrations. Exit code 1 if some could not be made.
 pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
@@ -105,7 +99,9 @@ pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
         light: args.light,
     };
     let hand_pictures = args.hand_cameras.of(&RobotPlugin::default())?;
-    let multiplication = Multiplication::of(&args.recording, demonstrator, variation, args.seed)
+    let recording = RecordingReader::open(&args.recording).map_err(Failure::input)?;
+    say_if_cut_off(&recording, "multiplied");
+    let multiplication = Multiplication::of(&recording, demonstrator, variation, args.seed)
         .map_err(Failure::input)?;
     let multiplication = match &args.setup {
         Some(setup) => {

@@ -8,16 +8,19 @@ use tabletop::task::{Furniture, Requirements, Role, Task};
 use super::{
     Failure,
     explain::{print, read},
+    range::NumberRange,
     terminal::show_warnings,
 };
+
+const STEPS: NumberRange<usize> = NumberRange::whole(1, 1_000_000);
 
 #[derive(Args)]
 pub(super) struct RequireArgs {
     /// The recording's folder
     #[arg(value_name = "DIR")]
     recording: PathBuf,
-    /// The step whose object is meant; without it, all requirements are listed
-    #[arg(long, value_name = "N")]
+    /// The step whose object is meant, from 1 to 1000000; without it, all requirements are listed
+    #[arg(long, value_name = "N", value_parser = STEPS, allow_negative_numbers = true)]
     step: Option<usize>,
     /// The reference to which the step's object is put, instead of the object itself
     #[arg(long, requires = "step")]
@@ -51,7 +54,6 @@ pub(super) fn require(args: &RequireArgs) -> Result<ExitCode, Failure> {
         change(&mut requirements, &task, role, args)?;
         requirements.write(&args.recording).map_err(Failure::run)?;
     }
-    let (task, _) = read(&args.recording, &Furniture::default())?;
     let lines = task.roles.iter().map(|role| {
         let required = match requirements.roles.get(&role.id) {
             None => "as it was shown".to_owned(),

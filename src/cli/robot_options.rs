@@ -6,7 +6,7 @@ use std::{
 };
 
 use bevy::prelude::*;
-use clap::Args;
+use clap::{Args, builder::TypedValueParser as _};
 use tabletop::{
     core::{LayoutFile, RobotCommand, RobotMode, WriteCommand as _},
     robot::{Description, DescriptionSource, RobotPlugin},
@@ -16,7 +16,7 @@ use tabletop::{
     shipped::{self, shipped_files, true_path},
 };
 
-use super::Failure;
+use super::{Failure, range::NumberRange};
 
 /// The choice of the robot and its mode.
 #[derive(Args, Clone)]
@@ -110,17 +110,24 @@ fn is_beside(path: &Path) -> bool {
 /// The language of scripts that a user's own driver runs.
 const OTHER: &str = "other";
 
+/// Periods from one picture for a script to the next.
+const PERIODS: NumberRange<u64> = NumberRange::whole(1, 1_000_000_000).of("ticks");
+
+/// Times for a call of a script, up to a day.
+const PATIENCE: NumberRange<f64> = NumberRange::decimal(0.01, 24.0 * 3600.0).of("seconds");
+
 #[derive(Args, Clone)]
 pub(super) struct EngineOptions {
     /// The engine of the script: `matlab`, `octave`, `python`, `auto`, or the path of a program; with `--script other`, of its driver
     /// [default: TABLETOP_ENGINE, or auto]
     #[arg(long, value_name = "ENGINE")]
     engine: Option<String>,
-    /// Number of ticks, 60 a second, from one picture for the script to the next [default: 15]
-    #[arg(long, value_name = "N", value_parser = ticks, allow_negative_numbers = true)]
+    /// Number of ticks, 60 a second, from one picture for the script to the next, from 1 to 1000000000 [default: 15]
+    #[arg(long, value_name = "N", value_parser = PERIODS, allow_negative_numbers = true)]
     picture_every: Option<u64>,
-    /// Number of seconds that init and each call of the callback may take before the engine is ended [default: 120 and 30]
-    #[arg(long, value_name = "S", value_parser = patience, allow_negative_numbers = true)]
+    /// Number of seconds, from 0.01 to 86400, that init and each call of the callback may take before the engine is ended
+    /// [default: 120 and 30]
+    #[arg(long, value_name = "S", value_parser = PATIENCE.map(Duration::from_secs_f64), allow_negative_numbers = true)]
     script_timeout: Option<Duration>,
     /// Give the script only the head camera and the joints, without `sensor.objects`, `contacts` and `held`
     #[arg(long)]
@@ -131,7 +138,7 @@ impl EngineOptions {
     /// The settings of the script bridge. `script` is the value of `--script`: a language, and after a colon the place of the scripts.
     ///
     /// # Errors
-    /// The engine does not exist, or does not run this language.
+    /// The engine does not exist, or does not run this language; or the scripts do not exist.
     pub fn settings(&self, script: Option<&str>) -> Result<ScriptSettings, Failure> {
         let mut settings = ScriptSettings {
             shipped: shipped_files().clone(),
@@ -157,7 +164,9 @@ impl EngineOptions {
         } else if let Some(engine) = &self.engine {
             settings.engine = parse(engine);
         }
-        if script.is_some() || self.engine.is_some() {
+        if script.is_some() {
+            check_scripts(&settings)?;
+        } else if self.engine.is_some() {
             settings.engine_config().map_err(Failure::input)?;
         }
         if self.no_objects {
@@ -243,7 +252,7 @@ fn runs(kind: EngineKind, language: &str) -> bool {
 }
 
 /// Checks that there are scripts in the place of these settings, as far as that is known before the engine starts.
-pub(super) fn check_scripts(settings: &ScriptSettings) -> Result<(), Failure> {
+fn check_scripts(settings: &ScriptSettings) -> Result<(), Failure> {
     let config = settings.engine_config().map_err(Failure::input)?;
     match config.fault() {
         None => Ok(()),
@@ -254,22 +263,6 @@ pub(super) fn check_scripts(settings: &ScriptSettings) -> Result<(), Failure> {
 fn parse(engine: &str) -> EngineChoice {
     let Ok(choice) = engine.parse();
     choice
-}
-
-/// Reads a number of ticks, at least one.
-fn ticks(text: &str) -> Result<u64, String> {
-    let ticks = text.parse().ok().filter(|ticks| *ticks > 0);
-    ticks.ok_or_else(|| "expected a whole number of ticks, 1 or more".to_owned())
-}
-
-/// Reads a time of a hundredth of a second to a day.
-fn patience(text: &str) -> Result<Duration, String> {
-    const DAY: f64 = 24.0 * 3600.0;
-    text.parse()
-        .ok()
-        .filter(|seconds| (0.01..=DAY).contains(seconds))
-        .map(Duration::from_secs_f64)
-        .ok_or_else(|| format!("expected a number of seconds from 0.01 to {DAY}"))
 }
 
 /// The value of `--script`.

@@ -31,10 +31,11 @@ use tabletop_scenario::{Outcome, Program, ScenarioRun};
 use super::{
     Failure, Output, WRONG_INPUT,
     allowed_paths::AllowedPaths,
-    duration::{pass, seconds, ticks},
+    duration::{SECONDS, pass, ticks},
     explain::read,
     faultless::read_faultless_task,
     hand_cameras::HandCameraOption,
+    range::SEEDS,
     recorded::{self, say_moved_aside},
     robot_options::{EngineOptions, RobotOptions, script},
     script::{Script, headless_settings},
@@ -56,13 +57,15 @@ pub(super) struct RunArgs {
     setup: Option<PathBuf>,
     #[command(flatten)]
     allowed: AllowedPaths,
-    /// Number of seconds to simulate [default: 10]; a scenario fails if it takes longer [default: 600]
-    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    /// Number of seconds to simulate, from 0 to 31622400 [default: 10]; a scenario fails if it takes longer [default: 600]
+    #[arg(long, value_name = "S", value_parser = SECONDS, allow_negative_numbers = true)]
     seconds: Option<f64>,
-    /// The seed of a scenario's random places [default: 0]
+    /// The seed of a scenario's random places, from 0 to 18446744073709551615 [default: 0]
     #[arg(
         long,
         value_name = "N",
+        value_parser = SEEDS,
+        allow_negative_numbers = true,
         default_value = "0",
         requires = "scenario",
         hide_default_value = true

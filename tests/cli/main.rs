@@ -3,6 +3,7 @@
 
 mod allowed_paths;
 mod anywhere;
+mod cut_off;
 mod element_docs;
 mod examples;
 mod explain;
@@ -12,9 +13,11 @@ mod kept;
 mod keys;
 mod kinematics;
 mod language;
+mod man;
 mod multiply;
 mod originals;
 mod panda;
+mod ranges;
 mod replay;
 mod robot;
 mod scenarios;
@@ -23,3 +26,6 @@ mod strange_recordings;
 mod strange_scenes;
 mod support;
 mod task_files;
+mod usage;
+#[cfg(feature = "window")]
+mod window;

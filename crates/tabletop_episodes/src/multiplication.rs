@@ -123,19 +123,18 @@ impl Multiplication {
     /// # Errors
     /// It cannot be read, or shows no task.
     pub fn of(
-        recording: &Path,
+        recording: &RecordingReader,
         demonstrator: Demonstrator,
         variation: Variation,
         seed: u64,
     ) -> Result<Self, MultiplyError> {
-        let reader = RecordingReader::open(recording)?;
-        let shown = Demonstration::of(&reader)?;
+        let shown = Demonstration::of(recording)?;
         let task = Task::of(&shown);
         if task.steps.is_empty() {
             return Err(MultiplyError::NoTask);
         }
-        let requirements = Requirements::read(recording)?;
-        let scene = scene_at_beginning(reader.session()).ok_or(MultiplyError::NoScene)?;
+        let requirements = Requirements::read(recording.folder())?;
+        let scene = scene_at_beginning(recording.session()).ok_or(MultiplyError::NoScene)?;
         let body = match demonstrator {
             Demonstrator::Hand => None,
             Demonstrator::Robot => Some(baxter_body(&scene.table)?),
@@ -149,7 +148,7 @@ impl Multiplication {
             variation,
             hand_pictures: HandPictures::None,
             seed,
-            recorded: fingerprint_of(recording)?,
+            recorded: fingerprint_of(recording.folder())?,
         })
     }
 
