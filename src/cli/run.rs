@@ -13,8 +13,8 @@ use serde_json::json;
 use tabletop::{
     TabletopSimPlugins,
     core::{
-        RestingSystems, SceneCommand, SceneSpec, SimFact, SimTick, StepApp as _, TICKS_PER_SECOND,
-        WriteCommand as _,
+        RestingSystems, RobotFact, SceneCommand, SceneSpec, SimFact, SimTick, StepApp as _,
+        TICKS_PER_SECOND, WriteCommand as _,
     },
     final_state, headless_app_with,
     recorder::{RecorderPlugin, UnrecordedPlugin},
@@ -250,28 +250,15 @@ fn report_what_stops_the_robot(
 
 fn stops_the_robot(fact: &SimFact) -> bool {
     match fact {
-        SimFact::ArmBlocked { .. } | SimFact::GripRefused { .. } => true,
-        SimFact::TaskLoaded { .. }
-        | SimFact::ObjectCreated { .. }
-        | SimFact::ObjectDeleted { .. }
-        | SimFact::SegmentBegun { .. }
-        | SimFact::Triggered { .. }
-        | SimFact::ControlChanged { .. }
-        | SimFact::PointedTo { .. }
-        | SimFact::Fastened { .. }
-        | SimFact::Loosened { .. }
-        | SimFact::Cut { .. }
-        | SimFact::Grasped { .. }
-        | SimFact::Released { .. }
-        | SimFact::Destroyed { .. }
-        | SimFact::RecordingStarted { .. }
-        | SimFact::RecordingFinished { .. }
-        | SimFact::RecordingFailed { .. }
-        | SimFact::Undone { .. }
-        | SimFact::Redone { .. }
-        | SimFact::RobotShown { .. }
-        | SimFact::GripMade { .. }
-        | SimFact::GripReleased { .. }
+        SimFact::Robot(RobotFact::ArmBlocked { .. } | RobotFact::GripRefused { .. }) => true,
+        SimFact::Scene(_)
+        | SimFact::History(_)
+        | SimFact::Mechanism(_)
+        | SimFact::Hand(_)
+        | SimFact::Recording(_)
+        | SimFact::Robot(
+            RobotFact::Shown { .. } | RobotFact::GripMade { .. } | RobotFact::GripReleased { .. },
+        )
         | SimFact::Refused { .. } => false,
     }
 }

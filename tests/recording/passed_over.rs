@@ -184,9 +184,9 @@ fn what_is_passed_over_leaves_no_trace() {
 /// The facts without the folders of recordings.
 fn without_folders(facts: &[SimFact]) -> Vec<String> {
     let facts = facts.iter().map(|fact| {
-        if let SimFact::RecordingStarted { cause, .. } = fact {
+        if let SimFact::Recording(RecordingFact::Started { cause, .. }) = fact {
             format!("started {cause:?}")
-        } else if let SimFact::RecordingFinished { cause, .. } = fact {
+        } else if let SimFact::Recording(RecordingFact::Finished { cause, .. }) = fact {
             format!("finished {cause:?}")
         } else {
             format!("{fact:?}")

@@ -9,8 +9,8 @@ use bevy::{app::FixedMain, ecs::system::SystemState, prelude::*};
 use tabletop_core::{
     Act, Actor, ClockCommand, HeadCamera, IssuedCommand, Manipulator, Markers, OpenRecording,
     Paused, Playback, PlaybackOrder, Recording, Replaying, RestApp as _, RestingSystems,
-    SceneCommand, SimCommand, SimFact, SimTick, TICKS_PER_SECOND, Timeline, TimelineGrip,
-    WriteCommand as _,
+    SceneCommand, SceneFact, SimCommand, SimFact, SimTick, TICKS_PER_SECOND, Timeline,
+    TimelineGrip, WriteCommand as _,
 };
 use tabletop_history::{KeepRemoved, WorldSnapshot, drop_removed};
 use tabletop_recorder::set_earlier_commands;
@@ -108,7 +108,7 @@ fn remember_beginning(world: &mut World) {
 
 fn note_task(mut facts: MessageReader<SimFact>, mut fresh: ResMut<FreshTask>) {
     for fact in facts.read() {
-        if let SimFact::TaskLoaded { path, .. } = fact {
+        if let SimFact::Scene(SceneFact::TaskLoaded { path, .. }) = fact {
             fresh.0.clone_from(path);
         }
     }

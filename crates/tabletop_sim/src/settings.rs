@@ -6,7 +6,8 @@ use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tabletop_core::{
-    Reach, RestingSystems, Robot, RobotMode, SimFact, SimSystems, TickSystems, is_shipped,
+    Reach, RestingSystems, Robot, RobotMode, SceneFact, SimFact, SimSystems, TickSystems,
+    is_shipped,
 };
 use tabletop_physics::PhysicsSettings;
 use tabletop_recorder::SessionSettings;
@@ -129,7 +130,7 @@ fn value(settings: &impl Serialize) -> serde_json::Result<Value> {
 
 fn note_task_file(mut facts: MessageReader<SimFact>, mut settings: ResMut<SessionSettings>) {
     for fact in facts.read() {
-        if let SimFact::TaskLoaded { path, .. } = fact {
+        if let SimFact::Scene(SceneFact::TaskLoaded { path, .. }) = fact {
             let path = path.to_string_lossy();
             settings.0.insert(TASK_FILE.into(), path.into());
         }

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use bevy::prelude::*;
 use tabletop_core::{
     CommandId, CommandKind as _, Hand, HandImages, Hands, IssuedCommand, Paused, PictureDemand,
-    Recording, RecordingCommand, SensorImage, SimFact, SimTick, TICKS_PER_SECOND, Timeline,
-    TimelineStage,
+    Recording, RecordingCommand, RecordingFact, SensorImage, SimFact, SimTick, TICKS_PER_SECOND,
+    Timeline, TimelineStage,
 };
 
 use crate::{
@@ -92,11 +92,11 @@ impl Recorder {
             to: to.clone(),
         });
         self.report.moved_aside.extend(moved);
-        Ok(SimFact::RecordingStarted {
+        Ok(SimFact::Recording(RecordingFact::Started {
             cause,
             folder,
             moved_aside,
-        })
+        }))
     }
 }
 
@@ -276,7 +276,10 @@ impl Recorder {
             Ok(Some((cause, commands))) => {
                 if let Some(episode) = self.end(Some(&commands), recording) {
                     let folder = episode.folder().to_owned();
-                    facts.write(SimFact::RecordingFinished { cause, folder });
+                    facts.write(SimFact::Recording(RecordingFact::Finished {
+                        cause,
+                        folder,
+                    }));
                 }
             }
             Err(error) => self.stop_on_error(Err(error), recording, facts),
@@ -287,11 +290,11 @@ impl Recorder {
     fn fail(&mut self, cause: Option<CommandId>, folder: PathBuf, reason: String) -> SimFact {
         error!("{reason}");
         self.report.failure = Some(reason.clone());
-        SimFact::RecordingFailed {
+        SimFact::Recording(RecordingFact::Failed {
             cause,
             folder,
             reason,
-        }
+        })
     }
 
     /// Ends the recording, of which these are the lines of its commands, and returns it.

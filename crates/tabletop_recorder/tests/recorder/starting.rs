@@ -2,7 +2,9 @@
 
 use std::fs;
 
-use tabletop_core::{CommandId, Recording, RecordingCommand, SimCommand, SimFact, StepApp as _};
+use tabletop_core::{
+    CommandId, Recording, RecordingCommand, RecordingFact, SimCommand, SimFact, StepApp as _,
+};
 use tabletop_recorder::{
     RecorderPlugin, RecordingReport, Session, finish_recording, recording_report,
 };
@@ -20,11 +22,11 @@ fn start_and_finish_tell_what_they_do() {
         &[(0, SimCommand::Recording(RecordingCommand::Start))],
     );
     let cause = CommandId(0);
-    let started = SimFact::RecordingStarted {
+    let started = SimFact::Recording(RecordingFact::Started {
         cause,
         folder,
         moved_aside: None,
-    };
+    });
     assert_eq!(heard(&mut app), [started]);
     assert!(app.world().resource::<Recording>().0);
 
@@ -43,7 +45,7 @@ fn start_and_finish_tell_what_they_do() {
     );
     let folder = place.demo();
     let cause = CommandId(2);
-    let finished = SimFact::RecordingFinished { cause, folder };
+    let finished = SimFact::Recording(RecordingFact::Finished { cause, folder });
     assert_eq!(heard(&mut app), [finished]);
     assert!(!app.world().resource::<Recording>().0);
 
@@ -81,7 +83,7 @@ fn a_recording_whose_folder_cannot_be_made_fails() {
         &[(0, SimCommand::Recording(RecordingCommand::Start))],
     );
     let facts = heard(&mut app);
-    let [SimFact::RecordingFailed { folder, reason, .. }] = &facts[..] else {
+    let [SimFact::Recording(RecordingFact::Failed { folder, reason, .. })] = &facts[..] else {
         panic!("{facts:?}");
     };
     assert_eq!(*folder, *"/dev/null/demo");
