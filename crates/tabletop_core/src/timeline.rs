@@ -219,6 +219,7 @@ impl fmt::Display for Act {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Hand, LimbName};
 
     fn timeline() -> Timeline {
         let segment = |start| TimelineSegment {
