@@ -60,8 +60,8 @@ pub use tabletop_scene as scene;
 pub use tabletop_script as script;
 pub use tabletop_script::engine;
 pub use tabletop_sim::{
-    RecordedSettingsPlugin, ShippedFilesPlugin, TabletopSimPlugins, final_state, headless_app,
-    headless_app_with, scene_dump, shipped, task_files,
+    RecordedSettingsPlugin, ResetPlugin, ShippedFilesPlugin, TabletopSimPlugins, final_state,
+    headless_app, headless_app_with, reset, scene_dump, shipped, task_files,
 };
 pub use tabletop_storage as storage;
 pub use tabletop_task as task;

@@ -7,10 +7,9 @@ use std::{
 
 use bevy::{app::FixedMain, ecs::system::SystemState, prelude::*};
 use tabletop_core::{
-    Act, Actor, ClockCommand, HeadCamera, IssuedCommand, Manipulator, Markers, OpenRecording,
-    Paused, Playback, PlaybackOrder, Recording, Replaying, RestApp as _, RestingSystems,
-    SceneCommand, SceneFact, SimCommand, SimFact, SimTick, TICKS_PER_SECOND, Timeline,
-    TimelineGrip, WriteCommand as _,
+    Act, Actor, ClockCommand, IssuedCommand, Manipulator, OpenRecording, Paused, Playback,
+    PlaybackOrder, Recording, Replaying, RestApp as _, RestingSystems, SceneCommand, SceneFact,
+    SimCommand, SimFact, SimTick, TICKS_PER_SECOND, Timeline, TimelineGrip, WriteCommand as _,
 };
 use tabletop_history::{KeepRemoved, WorldSnapshot, drop_removed};
 use tabletop_recorder::set_earlier_commands;
@@ -18,7 +17,7 @@ use tabletop_robot::Description;
 use tabletop_xml::AllowedFolders;
 
 use super::{Player, Replay, player};
-use tabletop_sim::settings::Settings;
+use tabletop_sim::{reset, settings::Settings};
 
 /// Time of a frame that is spent on going to a moment, so that pictures keep coming.
 const BUDGET: Duration = Duration::from_millis(40);
@@ -42,7 +41,6 @@ impl Plugin for PlaybackPlugin {
     fn build(&self, app: &mut App) {
         app.insert_resource(FreshTask(self.task.clone()))
             .add_plugins(player::plugin)
-            .add_systems(PostStartup, remember_beginning)
             .add_systems(
                 FixedLast,
                 (note_keyframe, note_grips)
@@ -62,13 +60,6 @@ impl Plugin for PlaybackPlugin {
 /// The task file to load when a recording is closed.
 #[derive(Resource)]
 struct FreshTask(PathBuf);
-
-/// The world before its first tick.
-#[derive(Resource)]
-struct InitialWorld {
-    world: WorldSnapshot,
-    camera: Option<HeadCamera>,
-}
 
 /// The open recording.
 #[derive(Resource)]
@@ -96,14 +87,6 @@ struct PlayheadTarget {
     tick: SimTick,
     /// True if the simulation then stands still.
     stops: bool,
-}
-
-fn remember_beginning(world: &mut World) {
-    let beginning = InitialWorld {
-        world: WorldSnapshot::take(world),
-        camera: world.get_resource().copied(),
-    };
-    world.insert_resource(beginning);
 }
 
 fn note_task(mut facts: MessageReader<SimFact>, mut fresh: ResMut<FreshTask>) {
@@ -182,18 +165,7 @@ fn try_open(world: &mut World, folder: PathBuf) -> Result<(), String> {
 /// Restores the world to before its first tick, and closes the open recording.
 fn begin_anew(world: &mut World) {
     put_away(world);
-    world.resource_mut::<Messages<IssuedCommand>>().clear();
-    world.resource_scope(|world, beginning: Mut<InitialWorld>| {
-        beginning.world.restore(world);
-        if let Some(camera) = beginning.camera {
-            world.insert_resource(camera);
-        }
-    });
-    world.insert_resource(Paused(false));
-    world.insert_resource(Markers::default());
-    let tick = *world.resource::<SimTick>();
-    set_earlier_commands(world, tick, &[]);
-    drop_removed(world);
+    reset(world);
 }
 
 /// Forgets the open recording, and leaves the world unchanged.

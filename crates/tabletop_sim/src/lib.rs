@@ -14,6 +14,7 @@
 pub mod final_state;
 mod headless;
 mod plugins;
+mod reset;
 pub mod scene_dump;
 pub mod settings;
 pub mod shipped;
@@ -21,5 +22,6 @@ pub mod task_files;
 
 pub use headless::{headless_app, headless_app_with};
 pub use plugins::TabletopSimPlugins;
+pub use reset::{ResetPlugin, reset};
 pub use settings::RecordedSettingsPlugin;
 pub use shipped::ShippedFilesPlugin;

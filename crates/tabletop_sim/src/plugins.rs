@@ -14,11 +14,11 @@ use tabletop_scene::ScenePlugin;
 use tabletop_script::ScriptPlugin;
 use tabletop_xml::XmlPlugin;
 
-use crate::{settings::RecordedSettingsPlugin, shipped::ShippedFilesPlugin};
+use crate::{reset::ResetPlugin, settings::RecordedSettingsPlugin, shipped::ShippedFilesPlugin};
 
 /// The simulator without display: [`CorePlugin`], [`HistoryPlugin`], [`XmlPlugin`], [`PhysicsPlugin`], [`ScenePlugin`],
 /// [`DemonstratorPlugin`], [`MechanismPlugin`], [`RobotPlugin`], [`CameraPlugin`], [`RecorderPlugin`], [`ScriptPlugin`],
-/// [`ScenarioPlugin`], [`RecordedSettingsPlugin`] and [`ShippedFilesPlugin`].
+/// [`ScenarioPlugin`], [`RecordedSettingsPlugin`], [`ShippedFilesPlugin`] and [`ResetPlugin`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TabletopSimPlugins;
 
@@ -39,5 +39,6 @@ impl PluginGroup for TabletopSimPlugins {
             .add(ScenarioPlugin)
             .add(RecordedSettingsPlugin)
             .add(ShippedFilesPlugin)
+            .add(ResetPlugin)
     }
 }
