@@ -261,4 +261,18 @@ fn paths_need_not_be_unicode() {
     ]
     .concat());
     run(&[&[text("run"), text("--seconds"), text("0.1")], &options[..]].concat());
+    let robot = name(b"\xfb");
+    fs::create_dir(&robot).unwrap();
+    for file in ["panda.urdf", "robot.ron"] {
+        fs::copy(format!("assets/panda/{file}"), robot.join(file)).unwrap();
+    }
+    let (robot, demo) = (robot.join("robot.ron"), name(b"\xfa"));
+    let options = [
+        text("--robot"),
+        robot.as_os_str(),
+        text("--record"),
+        demo.as_os_str(),
+    ];
+    run(&[&[text("run"), scenario.as_os_str()], &options[..]].concat());
+    run(&[text("replay"), demo.as_os_str(), text("--verify")]);
 }
