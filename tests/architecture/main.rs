@@ -11,7 +11,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 24] = [
+const RULES: [Rule; 26] = [
     Rule::new("tabletop_storage", &[]),
     Rule::new("tabletop_core", &[]),
     Rule::new("tabletop_mesh", &["tabletop_core"]),
@@ -112,6 +112,8 @@ const RULES: [Rule; 24] = [
             "tabletop_task",
         ],
     ),
+    Rule::new("tabletop_harness", &["tabletop_harness_macro"]),
+    Rule::new("tabletop_harness_macro", &[]),
     Rule::new("tabletop_view", &["tabletop_core"]).with_window(),
     Rule::new("tabletop_gui", &["tabletop_core", "tabletop_storage"]).with_window(),
     Rule::new(

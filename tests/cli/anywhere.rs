@@ -92,26 +92,6 @@ fn a_shipped_scenario_is_recorded_with_its_true_name_and_replayed_elsewhere() {
 }
 
 #[test]
-fn shipped_scripts_run_in_a_temporary_folder() {
-    for (script, said) in [
-        ("octave", "minJointAngles"),
-        ("python", "jointAngles"),
-        ("python:python/example.py", "jointAngles"),
-    ] {
-        let output = run_in(
-            &folder("script"),
-            &["run", "--script", script, "--seconds", "0.2"],
-        );
-        succeeded(&output);
-        let printed = stderr(&output);
-        assert!(printed.contains(said), "{script}: {printed}");
-        assert!(printed.contains("in a temporary folder"), "{printed}");
-    }
-    let output = run_in(&folder("script"), &["run", "--script", "octave:mine"]);
-    assert_eq!(output.status.code(), Some(2));
-}
-
-#[test]
 fn a_working_folder_is_written_and_used() {
     let folder = folder("init");
     let written = run_in(&folder, &["init", "work"]);

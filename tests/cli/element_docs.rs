@@ -1,4 +1,4 @@
-//! What `docs/task-files.md` says of the elements of task files: all that the schema has, which the reader knows (`schema.rs` of `tabletop_xml`).
+//! What `docs/task-files.md` says of the elements of task files: all that the schema has, which the reader knows (`tests/schema` of `tabletop_xml`).
 
 use std::{
     collections::{BTreeMap, BTreeSet},

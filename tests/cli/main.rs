@@ -1,11 +1,10 @@
-//! The program and the examples of scripts, as a user runs them.
+//! The program, as a user runs it.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod allowed_paths;
 mod anywhere;
 mod cut_off;
 mod element_docs;
-mod examples;
 mod explain;
 mod imitate;
 mod kept;
@@ -16,12 +15,11 @@ mod language;
 mod man;
 mod multiply;
 mod originals;
-mod panda;
 mod ranges;
 mod replay;
 mod robot;
 mod scenarios;
-mod scripts;
+mod script_options;
 mod strange_recordings;
 mod strange_scenes;
 mod support;

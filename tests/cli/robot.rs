@@ -109,24 +109,3 @@ fn a_recording_with_another_robot_is_replayed_with_it() {
     let replayed = tabletop(&["replay", folder, "--verify"]);
     assert_eq!(replayed.status.code(), Some(0), "{}", stderr(&replayed));
 }
-
-#[test]
-fn a_script_that_never_ends_is_ended() {
-    let folder = place("endless");
-    fs::create_dir_all(&folder).unwrap();
-    for (file, text) in [
-        (
-            "agentBehavior.m",
-            "function [init, callback] = agentBehavior()\ninit = @endlessInit; callback = @endlessCallback;\nend\n",
-        ),
-        ("endlessInit.m", "aux.drawMarkers = [0 0 1];\n"),
-        ("endlessCallback.m", "while true, end\n"),
-    ] {
-        fs::write(folder.join(file), text).unwrap();
-    }
-    let script = format!("octave:{}", folder.display());
-    let output = tabletop(&["run", "--script", &script, "--script-timeout", "0.5"]);
-    assert_eq!(output.status.code(), Some(1));
-    let words = stderr(&output);
-    assert!(words.contains("within 0.5 s"), "{words}");
-}

@@ -8,12 +8,11 @@ use std::{
 
 use bevy::prelude::*;
 use tabletop::{
-    core::{Drive, HeadCamera, ScriptCommand},
+    core::{Drive, HeadCamera},
     headless_app_with,
     prelude::*,
-    recorder::{Durability, RecorderPlugin, SessionCommand},
+    recorder::{Durability, RecorderPlugin},
     replay::Replay,
-    script::{EngineChoice, EngineKind, ScriptPlugin, ScriptSettings},
     storage::{Storage, StorageFault},
 };
 
@@ -193,56 +192,22 @@ fn with_another_scene(calls: Calls) {
     try_faults("fault_scene", calls, |recorder| record(&acts, recorder));
 }
 
-/// A script's acts are repeated by the replay, with the same calls.
+/// The replay of what a script did: a command in every tick. It makes the same calls as the recording.
 fn with_a_script(calls: Calls) {
     let place = fresh_folder_in_memory("fault_script_once");
-    fs::create_dir_all(&place).unwrap();
-    let script = place.join("robot.py");
-    fs::write(&script, SCRIPT).unwrap();
-    let settings = ScriptSettings {
-        agent: Some(script),
-        engine: EngineChoice::Kind(EngineKind::Python),
-        ..default()
-    };
-    let once = RecorderPlugin {
-        folder: place.join("demo"),
-        durability: Durability::None,
-        ..default()
-    };
-    let plugins = TabletopSimPlugins.build().set(once);
-    let mut app = headless_app_with(plugins.set(ScriptPlugin { settings }));
-    app.insert_resource(small_camera());
-    let world = app.world_mut();
-    world.write_command(task("default.xml"));
-    world.write_message(ScriptCommand::Start);
-    app.step(5);
-    app.world_mut().write_command(RecordingCommand::Start);
-    app.step(20);
-    app.world_mut().write_command(RecordingCommand::Finish);
-    app.step(1);
-    drop(app);
+    let joints = RobotJoint::of_arm(Arm::Left).map(|joint| (joint, Drive::Velocity(0.2)));
+    let call = (vec![RobotCommand::drive(joints).into()], 1);
+    let mut acts = vec![(vec![task("default.xml"), RecordingCommand::Start.into()], 1)];
+    acts.extend(vec![call; 20]);
+    acts.push((vec![RecordingCommand::Finish.into()], 1));
+    record(&acts, recorder(&place, Storage::default()));
     let replay = Replay::read(place.join("demo")).unwrap();
-    let is_drive = |command: &SessionCommand| {
-        matches!(command.command, SimCommand::Robot(RobotCommand::Drive(_)))
-    };
-    let drives = replay
-        .recording()
-        .session()
-        .commands
-        .iter()
-        .filter(|it| is_drive(it));
-    assert!(drives.count() > 10, "the script does not drive the robot");
     try_faults("fault_script", calls, |recorder| {
         // A recording that fails ends the replay, too.
         let _ = replay.record(recorder, replay.camera());
     });
     fs::remove_dir_all(place).unwrap();
 }
-
-const SCRIPT: &str = "def init(aux): pass
-def callback(sensor, motor, aux):
-    motor.jointVelocities = [[0.2] * 7] * 2
-";
 
 /// Of every recording some calls, others for each.
 #[test]

@@ -18,6 +18,5 @@ mod rest;
 mod robot;
 mod rollback;
 mod settings;
-mod slow_script;
 mod undo;
 mod window;

@@ -22,7 +22,7 @@ use tabletop::{
 };
 
 use crate::{
-    demonstration::Demonstration,
+    demonstration::{Demonstration, fresh_folder},
     random::{Random, scene, script},
 };
 
@@ -152,13 +152,32 @@ fn nothing_that_a_random_demonstration_changes_is_forgotten() {
 
 #[test]
 fn nothing_that_a_shipped_scenario_changes_is_forgotten() {
+    watch_scenarios("kinematic", RobotMode::Kinematic, |_| true);
+}
+
+#[test]
+fn nothing_that_motors_change_is_forgotten() {
+    watch_scenarios("motors", RobotMode::Dynamic, |scenario| {
+        scenario.contains("Robot(")
+    });
+}
+
+#[test]
+#[ignore = "takes a minute"]
+fn nothing_that_motors_change_in_any_scenario_is_forgotten() {
+    watch_scenarios("all_motors", RobotMode::Dynamic, |scenario| {
+        !scenario.contains("Robot(")
+    });
+}
+
+/// Performs the shipped scenarios whose text is chosen.
+fn watch_scenarios(name: &str, mode: RobotMode, is_chosen: impl Fn(&str) -> bool) {
     let mut forgotten = BTreeSet::new();
     for entry in fs::read_dir("scenarios").unwrap() {
         let path = entry.unwrap().path();
-        if path.extension().is_some_and(|ending| ending == "ron") {
-            for mode in [RobotMode::Kinematic, RobotMode::Dynamic] {
-                perform(&path, mode, &mut forgotten);
-            }
+        let is_scenario = path.extension().is_some_and(|ending| ending == "ron");
+        if is_scenario && is_chosen(&fs::read_to_string(&path).unwrap()) {
+            perform(name, &path, mode, &mut forgotten);
         }
     }
     assert!(
@@ -180,16 +199,15 @@ fn panda() -> Description {
 }
 
 /// Performs a scenario.
-fn perform(path: &Path, mode: RobotMode, forgotten: &mut BTreeSet<String>) {
+fn perform(name: &str, path: &Path, mode: RobotMode, forgotten: &mut BTreeSet<String>) {
     let text = fs::read_to_string(path).unwrap();
     let scenario = Scenario::parse(path, &text).unwrap();
     let read = |path: &Path| Ok(read_task(path).unwrap().scene);
     let program = Program::new(&scenario, read, 0).unwrap();
     let recorder = RecorderPlugin {
-        folder: Path::new(env!("CARGO_TARGET_TMPDIR")).join("watched_scenario"),
+        folder: fresh_folder(&format!("watched_{name}")),
         ..default()
     };
-    let _not_there = fs::remove_dir_all(&recorder.folder);
     let is_of_panda = path.ends_with("panda_stack.ron");
     let robot = RobotPlugin {
         mode,

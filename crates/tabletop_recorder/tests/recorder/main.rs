@@ -3,7 +3,6 @@
 
 mod faults;
 mod files;
-mod full_disk;
 mod hand_pictures;
 mod kill;
 mod reading;

@@ -1,0 +1,70 @@
+//! The tools that tests need.
+
+use std::{
+    env,
+    ffi::OsStr,
+    fmt, fs,
+    path::Path,
+    process::{self, Command, Stdio},
+};
+
+/// Something that tests need and not every machine has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Prerequisite {
+    /// GNU Octave, as `octave-cli`.
+    Octave,
+    /// Python 3, as `python3`.
+    Python,
+    /// Perl, as `perl`.
+    Perl,
+    /// The validator `xmllint` of libxml2.
+    Xmllint,
+    /// The right to mount a disk in memory, which the root user of Linux has.
+    Mounting,
+}
+
+impl Prerequisite {
+    /// True if this machine has it.
+    pub fn is_met(self) -> bool {
+        match self {
+            Self::Octave => succeeds("octave-cli", ["--version"]),
+            Self::Python => succeeds("python3", ["--version"]),
+            Self::Perl => succeeds("perl", ["-v"]),
+            Self::Xmllint => succeeds("xmllint", ["--version"]),
+            Self::Mounting => mounts(),
+        }
+    }
+}
+
+impl fmt::Display for Prerequisite {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Octave => "GNU Octave (octave-cli)",
+            Self::Python => "Python 3 (python3)",
+            Self::Perl => "Perl (perl)",
+            Self::Xmllint => "xmllint",
+            Self::Mounting => "the right to mount a disk",
+        })
+    }
+}
+
+fn succeeds(program: &str, arguments: impl IntoIterator<Item: AsRef<OsStr>>) -> bool {
+    let mut command = Command::new(program);
+    command.args(arguments).stdin(Stdio::null());
+    command.output().is_ok_and(|output| output.status.success())
+}
+
+fn mounts() -> bool {
+    let disk = env::temp_dir().join(format!("tabletop-disk-{}", process::id()));
+    let is_mounted = fs::create_dir(&disk).is_ok() && mount(&disk);
+    if is_mounted {
+        succeeds("umount", [&disk]);
+    }
+    drop(fs::remove_dir(&disk));
+    is_mounted
+}
+
+fn mount(disk: &Path) -> bool {
+    let arguments = ["-t", "tmpfs", "-o", "size=64k", "tmpfs"].map(OsStr::new);
+    succeeds("mount", arguments.into_iter().chain([disk.as_os_str()]))
+}
