@@ -114,7 +114,7 @@ pub(super) fn read(
     furniture: &Furniture,
 ) -> Result<(Task, Requirements), Failure> {
     let mut task = Task::read_with(recording, furniture).map_err(Failure::input)?;
-    let requirements = Requirements::read(recording).map_err(Failure::input)?;
+    let requirements = Requirements::read_for(&task, recording).map_err(Failure::input)?;
     task.phrase(&requirements);
     Ok((task, requirements))
 }

@@ -15,6 +15,7 @@ mod multiply;
 mod originals;
 mod panda;
 mod replay;
+mod require;
 mod robot;
 mod scenarios;
 mod scripts;
