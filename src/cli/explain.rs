@@ -116,7 +116,7 @@ pub(super) fn read(
 ) -> Result<(Task, Requirements), Failure> {
     let shown = read_demonstration(recording, furniture).map_err(Failure::input)?;
     let mut task = Task::of(&shown);
-    let requirements = Requirements::read(recording).map_err(Failure::input)?;
+    let requirements = Requirements::read_for(&task, recording).map_err(Failure::input)?;
     task.phrase(&requirements);
     Ok((task, requirements))
 }

@@ -36,8 +36,11 @@ pub(super) struct RequireArgs {
 /// Prints or changes the requirements on the objects of a recording.
 pub(super) fn require(args: &RequireArgs) -> Result<ExitCode, Failure> {
     show_warnings();
-    let (task, mut requirements) = read(&args.recording, &Furniture::default())?;
     if let Some(number) = args.step {
+        let task = Task::read(&args.recording).map_err(Failure::input)?;
+        // A requirement that can never hold is read, so that it can be removed.
+        let requirements = Requirements::read(&args.recording);
+        let mut requirements = requirements.map_err(Failure::input)?;
         let step = task
             .step(number)
             .ok_or_else(|| Failure::input(format!("the demonstration has no step {number}")))?;
@@ -54,6 +57,7 @@ pub(super) fn require(args: &RequireArgs) -> Result<ExitCode, Failure> {
         change(&mut requirements, &task, role, args)?;
         requirements.write(&args.recording).map_err(Failure::run)?;
     }
+    let (task, requirements) = read(&args.recording, &Furniture::default())?;
     let lines = task.roles.iter().map(|role| {
         let required = match requirements.roles.get(&role.id) {
             None => "as it was shown".to_owned(),

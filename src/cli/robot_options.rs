@@ -8,7 +8,7 @@ use std::{
 use bevy::prelude::*;
 use clap::{Args, builder::TypedValueParser as _};
 use tabletop::{
-    core::{LayoutFile, RobotCommand, RobotMode, WriteCommand as _},
+    core::{LayoutFile, Reach, RobotCommand, RobotMode, WriteCommand as _},
     robot::{Description, DescriptionSource, RobotPlugin},
     script::{
         ENGINE_VARIABLE, EngineChoice, EngineKind, EngineLocator, FieldPolicy, ScriptSettings,
@@ -79,11 +79,14 @@ pub(super) fn describe(path: &Path) -> Result<Description, Failure> {
     let source = match path.extension().is_some_and(|extension| extension == "ron") {
         true => {
             let file = LayoutFile::read(&text).map_err(|error| at(path, &error))?;
-            if !is_beside(Path::new(&file.urdf)) {
-                let problem = format!("its URDF {} is not in its folder or below", file.urdf);
+            let urdf = path.with_file_name(&file.urdf);
+            if !is_beside(Path::new(&file.urdf)) || is_linked_away(path, &urdf) {
+                let problem = format!(
+                    "its URDF {} leads out of its folder; expected a file there or below",
+                    file.urdf
+                );
                 return Err(at(path, &problem));
             }
-            let urdf = path.with_file_name(&file.urdf);
             DescriptionSource {
                 urdf: read(&urdf)?,
                 path: true_path(&urdf),
@@ -105,6 +108,12 @@ pub(super) fn describe(path: &Path) -> Result<Description, Failure> {
 fn is_beside(path: &Path) -> bool {
     let mut components = path.components();
     components.all(|component| matches!(component, Component::Normal(_) | Component::CurDir))
+}
+
+/// True if links lead from a file beside a `robot.ron` to another folder. A missing file is left to its reader.
+fn is_linked_away(robot: &Path, file: &Path) -> bool {
+    let is_on_disk = shipped_files().find(file).is_none() && file.exists();
+    is_on_disk && !Reach::of(robot.parent()).contains(file)
 }
 
 /// The language of scripts that a user's own driver runs.

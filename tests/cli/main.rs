@@ -17,6 +17,7 @@ mod multiply;
 mod originals;
 mod ranges;
 mod replay;
+mod require;
 mod robot;
 mod scenarios;
 mod script_options;

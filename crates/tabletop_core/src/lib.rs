@@ -79,7 +79,7 @@ mod user;
 
 pub use agent::{Agent, ScriptCommand, ScriptEvent, SimBlocked};
 pub use bond::{Bond, BondEnd, BondPoint, Bonds, GuestPoint, HostPoint, TightnessStep};
-pub use bounds::Bounds;
+pub use bounds::{Bounds, PAIR_GAP};
 pub use clock::StepApp;
 pub use color::{ColorError, NAMED_COLORS, Rgb};
 pub use command::{

@@ -133,7 +133,7 @@ impl Multiplication {
         if task.steps.is_empty() {
             return Err(MultiplyError::NoTask);
         }
-        let requirements = Requirements::read(recording.folder())?;
+        let requirements = Requirements::read_for(&task, recording.folder())?;
         let scene = scene_at_beginning(recording.session()).ok_or(MultiplyError::NoScene)?;
         let body = match demonstrator {
             Demonstrator::Hand => None,

@@ -359,16 +359,9 @@ fn obstacles(step: &TaskStep, sight: &Sight, id: &str) -> Vec<PlacedSolid> {
     if matches!(step.relations.first(), Some(Relation::Slid { .. })) {
         return Vec::new();
     }
-    let mut carried = vec![id.to_owned()];
-    let mut next = 0;
-    while next < carried.len() {
-        let above = sight.above(&carried[next]);
-        let new = above.into_iter().filter(|id| !carried.contains(id));
-        let new: Vec<_> = new.collect();
-        carried.extend(new);
-        next += 1;
-    }
-    let others = sight.objects.iter().filter(|(id, _)| !carried.contains(id));
+    let carried = sight.stack_above(id);
+    let is_obstacle = |other: &String| other != id && !carried.contains(other);
+    let others = sight.objects.iter().filter(|(other, _)| is_obstacle(other));
     others.flat_map(|(_, other)| other.solids()).collect()
 }
 
