@@ -230,6 +230,7 @@ fn start_requirements() -> Box<dyn FnMut(&[u8])> {
     let task = task.expect("the recording of the fuzzer can be read");
     Box::new(move |bytes| {
         let folder = written(&[("task.json", bytes)]);
+        let _checked = Requirements::read_for(&task, &folder);
         if let Ok(requirements) = Requirements::read(&folder) {
             let mut task = task.clone();
             task.phrase(&requirements);

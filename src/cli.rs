@@ -1,8 +1,10 @@
 //! The command line and its exit codes: 0 done, 1 the run failed, 2 wrong usage or input.
 
 mod allowed_paths;
+mod arguments;
 mod check;
 mod completions;
+mod cut_off;
 #[cfg(feature = "window")]
 mod display;
 mod duration;
@@ -14,9 +16,12 @@ mod imitate;
 mod init;
 #[cfg(feature = "window")]
 mod keys;
+mod man;
 mod multiply;
 mod output;
 mod progress;
+mod range;
+mod recorded;
 mod replay;
 mod require;
 mod robot;
@@ -24,11 +29,10 @@ mod robot_options;
 mod run;
 mod script;
 mod soak;
-mod temporary_folder;
 mod terminal;
 mod window;
 
-use std::process::ExitCode;
+use std::{env, process::ExitCode};
 
 use clap::{CommandFactory as _, Parser, Subcommand};
 
@@ -41,7 +45,7 @@ use terminal::say;
 /// Without a command, opens a window in which you show a task by moving objects on a table with the mouse, and drive a robot by hand
 /// or by scripts. The commands do the same without a window, many times faster than real time and with the same result.
 #[derive(Parser)]
-#[command(version, after_long_help = MANUAL)]
+#[command(version, after_long_help = MANUAL, bin_name = "tabletop")]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -80,6 +84,10 @@ enum Command {
     ///
     /// For bash: tabletop completions bash > ~/.local/share/bash-completion/completions/tabletop
     Completions(completions::CompletionsArgs),
+    /// Print the manual page
+    ///
+    /// For `man tabletop`: tabletop man > ~/.local/share/man/man1/tabletop.1
+    Man,
 }
 
 /// The end of the long help.
@@ -107,7 +115,10 @@ Exit codes:
 
 /// Reads the command line and carries it out.
 pub fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli: Cli = match arguments::read(env::args_os()) {
+        Ok(cli) => cli,
+        Err(code) => return code,
+    };
     let result = match cli.command {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Replay(args)) => replay::run(&args),
@@ -122,6 +133,7 @@ pub fn main() -> ExitCode {
         Some(Command::Init(args)) => init::init(&args),
         Some(Command::Soak(args)) => soak::soak(&args),
         Some(Command::Completions(args)) => completions::completions(&args, &mut Cli::command()),
+        Some(Command::Man) => man::man(Cli::command()),
         None => window::open(cli.window),
     };
     result.unwrap_or_else(|failure| {

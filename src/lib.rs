@@ -15,7 +15,10 @@
 //! | [`camera`] | the view of the robot's head camera |
 //! | [`recorder`] | recordings on disk |
 //! | [`script`] | users' Matlab, Octave and Python scripts that drive the robot |
+//! | [`storage`] | the user's files: each is replaced, moved and removed by one rule |
 //! | [`task`] | the task that a recording shows |
+//! | [`replay`] | recordings, simulated again |
+//! | [`imitation`], [`multiplication`] | whole episodes in worlds of their own |
 //! | [`planner`] | the robot's plan for such a task |
 //! | [`scenario`] | scripted demonstrations, for tests and datasets |
 //!
@@ -40,6 +43,7 @@
 pub use tabletop_camera as camera;
 pub use tabletop_core as core;
 pub use tabletop_demonstrator as demonstrator;
+pub use tabletop_episodes::{imitation, multiplication, scene_at_beginning, shown_task, soak};
 #[cfg(feature = "window")]
 pub use tabletop_gui as gui;
 pub use tabletop_history as history;
@@ -49,36 +53,28 @@ pub use tabletop_mesh as mesh;
 pub use tabletop_physics as physics;
 pub use tabletop_planner as planner;
 pub use tabletop_recorder as recorder;
+pub use tabletop_replay as replay;
 pub use tabletop_robot as robot;
 pub use tabletop_scenario as scenario;
 pub use tabletop_scene as scene;
 pub use tabletop_script as script;
 pub use tabletop_script::engine;
+pub use tabletop_sim::{
+    RecordedSettingsPlugin, ResetPlugin, ShippedFilesPlugin, TabletopSimPlugins, final_state,
+    headless_app, headless_app_with, reset, scene_dump, shipped, task_files,
+};
+pub use tabletop_storage as storage;
 pub use tabletop_task as task;
 #[cfg(feature = "window")]
 pub use tabletop_view as view;
 pub use tabletop_xml as xml;
 
-pub mod final_state;
-mod headless;
-pub mod imitation;
-pub mod multiplication;
-pub mod replay;
-pub mod scene_dump;
-mod settings;
-pub mod shipped;
-pub mod shown_task;
-pub mod soak;
-pub mod task_files;
-#[cfg(test)]
+#[cfg(all(test, feature = "window"))]
 mod test_folder;
 #[cfg(feature = "window")]
 pub mod window;
 
-pub use headless::{headless_app, headless_app_with};
-pub use settings::RecordedSettingsPlugin;
-pub use shipped::ShippedFilesPlugin;
-
+#[cfg(feature = "window")]
 use bevy::{app::PluginGroupBuilder, prelude::*};
 
 /// The types that most users of the simulator need.
@@ -90,36 +86,6 @@ pub mod prelude {
     };
     #[doc(hidden)]
     pub use tabletop_core::prelude::*;
-}
-
-/// The simulator without display: [`CorePlugin`](core::CorePlugin), [`HistoryPlugin`](history::HistoryPlugin), [`XmlPlugin`](xml::XmlPlugin),
-/// [`PhysicsPlugin`](physics::PhysicsPlugin), [`ScenePlugin`](scene::ScenePlugin),
-/// [`DemonstratorPlugin`](demonstrator::DemonstratorPlugin), [`MechanismPlugin`](mechanism::MechanismPlugin),
-/// [`RobotPlugin`](robot::RobotPlugin), [`CameraPlugin`](camera::CameraPlugin),
-/// [`RecorderPlugin`](recorder::RecorderPlugin), [`ScriptPlugin`](script::ScriptPlugin),
-/// [`ScenarioPlugin`](scenario::ScenarioPlugin), [`RecordedSettingsPlugin`] and
-/// [`ShippedFilesPlugin`].
-#[derive(Clone, Copy, Debug, Default)]
-pub struct TabletopSimPlugins;
-
-impl PluginGroup for TabletopSimPlugins {
-    fn build(self) -> PluginGroupBuilder {
-        PluginGroupBuilder::start::<Self>()
-            .add(core::CorePlugin::default())
-            .add(history::HistoryPlugin::default())
-            .add(xml::XmlPlugin)
-            .add(physics::PhysicsPlugin::default())
-            .add(scene::ScenePlugin)
-            .add(demonstrator::DemonstratorPlugin)
-            .add(mechanism::MechanismPlugin)
-            .add(robot::RobotPlugin::default())
-            .add(camera::CameraPlugin)
-            .add(recorder::RecorderPlugin::default())
-            .add(script::ScriptPlugin::default())
-            .add(scenario::ScenarioPlugin)
-            .add(RecordedSettingsPlugin)
-            .add(ShippedFilesPlugin)
-    }
 }
 
 /// The window on a simulation, beside Bevy's `DefaultPlugins`: [`ViewPlugin`](view::ViewPlugin) shows the world,

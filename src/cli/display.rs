@@ -5,6 +5,16 @@ use std::num::NonZeroU32;
 use clap::{ArgAction, Args};
 use tabletop::window::{Antialiasing, DisplayOptions, Resolution};
 
+use super::range::NumberRange;
+
+const REFRESH_RATES: NumberRange<NonZeroU32> = NumberRange::whole(
+    NonZeroU32::MIN,
+    NonZeroU32::new(1000).expect("it is not zero"),
+)
+.of("Hz");
+
+const COLOR_DEPTHS: NumberRange<u16> = NumberRange::whole(1, 128).of("bits");
+
 /// Missing options are as chosen in the display settings of the last run.
 #[derive(Args)]
 #[command(next_help_heading = "Display")]
@@ -15,7 +25,7 @@ pub(super) struct DisplayArgs {
     /// Do not ask for them; so does each of the following
     #[arg(long)]
     no_settings: bool,
-    /// The size of the window in points (pixels, if the desktop is not scaled), or with --fullscreen that of the screen in pixels
+    /// The size of the window in points (pixels, if the desktop is not scaled), or with --fullscreen that of the screen in pixels; sides from 1 to 16384
     #[arg(long, value_name = "WIDTHxHEIGHT")]
     resolution: Option<Resolution>,
     /// Fill the screen
@@ -27,11 +37,11 @@ pub(super) struct DisplayArgs {
     /// Wait for the screen, so that no picture is torn
     #[arg(long, value_name = "on|off", value_parser = on_or_off, action = ArgAction::Set)]
     vsync: Option<bool>,
-    /// Pictures a second, at most
-    #[arg(long, value_name = "HZ")]
+    /// Pictures a second, at most: from 1 to 1000
+    #[arg(long, value_name = "HZ", value_parser = REFRESH_RATES, allow_negative_numbers = true)]
     refresh: Option<NonZeroU32>,
-    /// Bits of a pixel's colour, with --fullscreen
-    #[arg(long, value_name = "BITS", requires = "fullscreen")]
+    /// Bits of a pixel's colour, from 1 to 128, with --fullscreen
+    #[arg(long, value_name = "BITS", value_parser = COLOR_DEPTHS, allow_negative_numbers = true, requires = "fullscreen")]
     color_depth: Option<u16>,
     /// Smooth edges: off, 2, 4 or 8
     #[arg(long, value_name = "N")]

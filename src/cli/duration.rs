@@ -3,14 +3,11 @@
 use bevy::prelude::*;
 use tabletop::core::{ClockCommand, StepApp as _, TICKS_PER_SECOND, WriteCommand as _};
 
-/// Reads a time of 0 to a year.
-pub(super) fn seconds(text: &str) -> Result<f64, String> {
-    const YEAR: f64 = 366.0 * 24.0 * 3600.0;
-    text.parse()
-        .ok()
-        .filter(|seconds| (0.0..=YEAR).contains(seconds))
-        .ok_or_else(|| format!("expected a number of seconds from 0 to {YEAR}"))
-}
+use super::range::NumberRange;
+
+/// Durations up to a year.
+pub(super) const SECONDS: NumberRange<f64> =
+    NumberRange::decimal(0.0, 366.0 * 24.0 * 3600.0).of("seconds");
 
 /// The ticks in a number of seconds.
 pub(super) fn ticks(seconds: f64) -> u64 {

@@ -8,14 +8,15 @@ use std::{
 use clap::Args;
 use serde_json::json;
 use tabletop::{
+    recorder::{RecorderError, RecordingReader, TICKS_PER_FRAME, read_original},
     scene::{IdAllocator, assemble},
-    task::{DetourKind, Furniture, Requirements, Role, Task, TaskStep},
+    task::{Demonstration, DetourKind, Furniture, Requirements, Role, Task, TaskStep},
 };
 use tabletop_core::{SceneSpec, TICKS_PER_SECOND};
 
 use super::{
-    Failure, Output, allowed_paths::AllowedPaths, faultless::read_faultless_task,
-    terminal::show_warnings,
+    Failure, Output, allowed_paths::AllowedPaths, cut_off::say_if_cut_off,
+    faultless::read_faultless_task, terminal::show_warnings,
 };
 
 #[derive(Args)]
@@ -108,15 +109,29 @@ pub(super) fn furniture(scene: &SceneSpec) -> Furniture {
     }
 }
 
-/// The task of a recording, with its requirements in its sentences.
+/// The task of a recording, with its requirements in its sentences. A recording that was cut off is reported.
 pub(super) fn read(
     recording: &Path,
     furniture: &Furniture,
 ) -> Result<(Task, Requirements), Failure> {
-    let mut task = Task::read_with(recording, furniture).map_err(Failure::input)?;
-    let requirements = Requirements::read(recording).map_err(Failure::input)?;
+    let shown = read_demonstration(recording, furniture).map_err(Failure::input)?;
+    let mut task = Task::of(&shown);
+    let requirements = Requirements::read_for(&task, recording).map_err(Failure::input)?;
     task.phrase(&requirements);
     Ok((task, requirements))
+}
+
+fn read_demonstration(
+    recording: &Path,
+    furniture: &Furniture,
+) -> Result<Demonstration, RecorderError> {
+    if let Some(segments) = read_original(recording)? {
+        let shown = Demonstration::of_events(&segments, TICKS_PER_FRAME, furniture);
+        return Ok(shown);
+    }
+    let recording = RecordingReader::open(recording)?;
+    say_if_cut_off(&recording, "explained");
+    Demonstration::of(&recording)
 }
 
 /// A step with its number, and the steps that must come before it unless that is just the previous one.

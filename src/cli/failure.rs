@@ -1,6 +1,8 @@
 //! Failures that end the program early.
 
-use std::fmt;
+use std::{fmt, io, path::Path};
+
+use super::terminal::say;
 
 /// Wrong usage or input.
 pub(super) const WRONG_INPUT: u8 = 2;
@@ -28,6 +30,25 @@ impl Failure {
             message: Some(error.to_string()),
             code: 1,
         }
+    }
+
+    /// A file or folder cannot be read or changed.
+    pub fn at(path: &Path, error: io::Error) -> Self {
+        Self::run(format!("{}: {error}", path.display()))
+    }
+
+    /// The first failure of several parts of a run; the others are reported, unless they only repeat it.
+    pub fn of_all(results: impl IntoIterator<Item = Result<(), Self>>) -> Result<(), Self> {
+        let mut failures = results.into_iter().filter_map(Result::err);
+        let Some(first) = failures.next() else {
+            return Ok(());
+        };
+        let known = first.message.as_deref().unwrap_or_default();
+        let others = failures.filter_map(|failure| failure.message);
+        for other in others.filter(|other| !known.contains(other.as_str())) {
+            say(format_args!("tabletop: {other}"));
+        }
+        Err(first)
     }
 
     /// The run failed, and the reason was already reported.

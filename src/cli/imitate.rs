@@ -14,13 +14,17 @@ use tabletop::{
     imitation::{AppStage, scattered_for},
     multiplication::with_colors_exchanged,
     planner::{Doing, Imitation, RobotBody, imitate},
-    recorder::{HandPictures, RecorderPlugin, RecordingReader, UnrecordedPlugin, read_original},
+    recorder::{
+        HandPictures, RecorderPlugin, RecordingReader, RecordingReport, UnrecordedPlugin,
+        read_original,
+    },
     robot::{Description, RobotPlugin},
     scene::{IdAllocator, assemble},
+    scene_at_beginning,
     task::{Requirements, Task},
 };
 use tabletop_core::{
-    RecordingCommand, RobotCommand, SceneCommand, SceneSpec, SimCommand, SimTick, StepApp as _,
+    RecordingCommand, RobotCommand, SceneCommand, SceneSpec, SimTick, StepApp as _,
     TICKS_PER_SECOND, WriteCommand as _,
 };
 
@@ -30,9 +34,13 @@ use super::{
     explain::{furniture, read},
     faultless::read_faultless_task,
     hand_cameras::HandCameraOption,
+    range::{NumberRange, SEEDS},
+    recorded::{self, say_moved_aside},
     robot_options::RobotChoice,
     terminal::{say, show_warnings},
 };
+
+const TRIALS: NumberRange<u64> = NumberRange::whole(1, 100_000);
 
 #[derive(Args)]
 #[command(mut_group("HandCameraOption", |options| options.requires("record")))]
@@ -45,11 +53,11 @@ pub(super) struct ImitateArgs {
     setup: Option<PathBuf>,
     #[command(flatten)]
     allowed: AllowedPaths,
-    /// Put everything at random places within reach, which this number decides
-    #[arg(long, value_name = "N")]
+    /// Put everything at random places within reach, which this number from 0 to 18446744073709551615 decides
+    #[arg(long, value_name = "N", value_parser = SEEDS, allow_negative_numbers = true)]
     seed: Option<u64>,
-    /// Do this many trials, with random places by the seeds from `--seed` (or 0) on, and print their results
-    #[arg(long, value_name = "N")]
+    /// Do this many trials, from 1 to 100000, with random places by the seeds from `--seed` (or 0) on, and print their results
+    #[arg(long, value_name = "N", value_parser = TRIALS, allow_negative_numbers = true)]
     trials: Option<u64>,
     /// Exchange the colours of objects, as the seed decides
     #[arg(long)]
@@ -66,12 +74,14 @@ pub(super) struct ImitateArgs {
 /// The result of a trial.
 struct Trial {
     seed: Option<u64>,
+    /// `None` if there was no room for everything.
     imitation: Option<Imitation>,
+    report: RecordingReport,
     simulated: f64,
     real: f64,
 }
 
-/// Lets the robot do the task, once or several times. Exit code 1 if it has failed.
+/// Lets the robot do the task, once or several times. Exit code 1 if it has failed, or could not be tried for lack of room.
 pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
     show_warnings();
     let scene = match &args.setup {
@@ -79,6 +89,10 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
         None => scene_of(&args.recording)?,
     };
     let (task, requirements) = read(&args.recording, &furniture(&scene))?;
+    if task.steps.is_empty() {
+        let reason = "the recording moves nothing for good, so there is nothing to imitate";
+        return Err(Failure::input(reason));
+    }
     let robot = args.robot.plugin()?;
     let hand_pictures = args.hand_cameras.of(&robot)?;
     let description = match robot.description.clone() {
@@ -87,13 +101,11 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
     };
     let body = RobotBody::new(&description.layout, description.model, &scene.table);
     let body = body.map_err(Failure::run)?;
-    let seeds: Vec<_> = match (args.trials, args.seed) {
-        (None, seed) => vec![seed],
-        (Some(trials), seed) => {
-            let first = seed.unwrap_or(0);
-            (first..first.saturating_add(trials)).map(Some).collect()
-        }
-    };
+    let first = args.seed.unwrap_or(0);
+    let seeds = (0..args.trials.unwrap_or(1)).map(|trial| match args.trials {
+        None => args.seed,
+        Some(_) => Some(first.wrapping_add(trial)),
+    });
     let is_single = args.trials.is_none();
     let mut trials = Vec::new();
     for seed in seeds {
@@ -125,21 +137,22 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
         trials.push(trial);
     }
     let is_done = trials.iter().all(|trial| {
-        trial
-            .imitation
-            .as_ref()
-            .is_none_or(|it| it.failure.is_none())
+        let imitation = trial.imitation.as_ref();
+        imitation.is_some_and(|it| it.failure.is_none())
     });
     let text = match (&trials[..], is_single) {
         ([trial], true) => single(&task, trial),
         _ => table(&trials),
     };
     Output::Stdout.write(text.as_bytes())?;
+    trials
+        .iter()
+        .for_each(|trial| say_moved_aside(&trial.report));
     Ok(ExitCode::from(u8::from(!is_done)))
 }
 
-/// The last scene that was put on the table before a recording.
-pub(super) fn scene_of(recording: &Path) -> Result<SceneSpec, Failure> {
+/// The scene with which a recording begins.
+fn scene_of(recording: &Path) -> Result<SceneSpec, Failure> {
     let unknown = || {
         Failure::input(
             "the recording does not say which scene it began with; name one with --setup",
@@ -150,14 +163,7 @@ pub(super) fn scene_of(recording: &Path) -> Result<SceneSpec, Failure> {
         return Err(unknown());
     }
     let recording = RecordingReader::open(recording).map_err(Failure::input)?;
-    let commands = recording.session().earlier.iter().rev();
-    let mut scenes = commands.filter_map(|command| {
-        let SimCommand::Scene(SceneCommand::Set(scene)) = &command.command else {
-            return None;
-        };
-        Some((**scene).clone())
-    });
-    scenes.next().ok_or_else(unknown)
+    scene_at_beginning(recording.session()).ok_or_else(unknown)
 }
 
 struct Attempt<'a> {
@@ -183,6 +189,7 @@ impl Attempt<'_> {
             return Ok(Trial {
                 seed: self.seed,
                 imitation: None,
+                report: RecordingReport::default(),
                 simulated: 0.0,
                 real: 0.0,
             });
@@ -237,14 +244,12 @@ impl Attempt<'_> {
             self.seed.unwrap_or(0),
             tell,
         );
-        if self.folder.is_some() {
-            app.world_mut().write_command(RecordingCommand::Finish);
-            app.step(1);
-        }
+        let report = recorded::finish(&mut app)?;
         let ticks = app.world().resource::<SimTick>().0;
         Ok(Trial {
             seed: self.seed,
             imitation: Some(imitation),
+            report,
             simulated: ticks as f64 / f64::from(TICKS_PER_SECOND),
             real: start.elapsed().as_secs_f64(),
         })

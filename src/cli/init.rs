@@ -1,7 +1,6 @@
 //! `tabletop init`: a working folder with the files inside the program, for changing them.
 
 use std::{
-    fs,
     io::ErrorKind,
     path::{Path, PathBuf},
     process::ExitCode,
@@ -9,8 +8,9 @@ use std::{
 
 use clap::Args;
 use tabletop::{
-    core::{ShippedFile, Symlinks, read_regular_file},
+    core::ShippedFile,
     shipped::{WORKING_FOLDERS, shipped_files},
+    storage::{Storage, Symlinks, parent_of, read_regular_file},
 };
 
 use super::{Failure, Output};
@@ -29,7 +29,7 @@ enum Existing {
     SomethingElse,
 }
 
-/// Writes the missing files, unless an existing one differs.
+/// Writes the missing files, each whole or not at all, unless an existing one differs.
 pub(super) fn init(args: &InitArgs) -> Result<ExitCode, Failure> {
     let mut missing = Vec::new();
     let mut differing = Vec::new();
@@ -52,11 +52,12 @@ pub(super) fn init(args: &InitArgs) -> Result<ExitCode, Failure> {
             lines.collect::<String>()
         )));
     }
+    let storage = Storage::default();
     for (path, file) in &missing {
-        let folder = path.parent().unwrap_or(&args.folder);
-        fs::create_dir_all(folder)
-            .and_then(|()| fs::write(path, file.text))
-            .map_err(|error| Failure::run(format!("{}: {error}", path.display())))?;
+        storage
+            .create_folders(parent_of(path))
+            .and_then(|()| storage.write_new(path, file.text.as_bytes()))
+            .map_err(|error| Failure::at(path, error))?;
     }
     for folder in WORKING_FOLDERS {
         let written = missing.iter().filter(|(_, file)| is_in(folder, file));
@@ -83,7 +84,7 @@ fn look_at(path: &Path, file: &ShippedFile) -> Result<Existing, Failure> {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(Existing::Nothing),
         Err(error) if error.kind() == ErrorKind::FileTooLarge => Ok(Existing::SomethingElse),
         Err(_) if path.exists() && !path.is_file() => Ok(Existing::SomethingElse),
-        Err(error) => Err(Failure::run(format!("{}: {error}", path.display()))),
+        Err(error) => Err(Failure::at(path, error)),
     }
 }
 

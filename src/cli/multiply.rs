@@ -2,8 +2,8 @@
 
 use std::{
     collections::BTreeMap,
-    fs,
-    path::{Path, PathBuf},
+    fmt,
+    path::PathBuf,
     process::ExitCode,
     sync::{
         Mutex,
@@ -17,17 +17,19 @@ use std::{
 use clap::Args;
 use serde_json::{Value, json};
 use tabletop::{
-    core::{Symlinks, read_regular_text},
-    multiplication::{Demonstrator, Made, Multiplication, MultiplyError, Variation},
+    multiplication::{Collection, CollectionError, Demonstrator, Made, Multiplication, Variation},
+    recorder::RecordingReader,
     robot::RobotPlugin,
 };
 
 use super::{
     Failure, Output,
     allowed_paths::AllowedPaths,
+    cut_off::say_if_cut_off,
     faultless::read_faultless_task,
     hand_cameras::HandCameraOption,
     progress::ProgressLine,
+    range::{NumberRange, SEEDS},
     terminal::{say, show_warnings},
 };
 
@@ -37,14 +39,14 @@ pub(super) struct MultiplyArgs {
     /// The recording's folder
     #[arg(value_name = "DIR")]
     recording: PathBuf,
-    /// Number of demonstrations to make
-    #[arg(long, value_name = "N", default_value_t = 100)]
+    /// Number of demonstrations to make, from 1 to 1000000
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = COUNTS, allow_negative_numbers = true)]
     count: u64,
     /// The folder for them, each in a folder of its number; existing ones are kept
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// The seed of places and all other differences [default: 0]
-    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    /// The seed of places and all other differences, from 0 to 18446744073709551615 [default: 0]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = SEEDS, allow_negative_numbers = true)]
     seed: u64,
     /// Let the robot demonstrate instead of the hand
     #[arg(long)]
@@ -52,51 +54,35 @@ pub(super) struct MultiplyArgs {
     /// Give the objects other colours, as far as the requirements allow
     #[arg(long)]
     colors: bool,
-    /// Make blocks and cylinders narrower by up to this part of their widths, as far as what is required of them allows
-    #[arg(long, value_name = "PART", value_parser = part, default_value_t = 0.0, hide_default_value = true)]
+    /// Make blocks and cylinders narrower by up to this part of their widths, from 0 to 0.5, as far as what is required of them allows
+    #[arg(long, value_name = "PART", value_parser = PARTS, allow_negative_numbers = true, default_value_t = 0.0, hide_default_value = true)]
     sizes: f32,
     /// The task file with the objects to do it with [default: the scene of the recording]
     #[arg(long, value_name = "FILE")]
     setup: Option<PathBuf>,
     #[command(flatten)]
     allowed: AllowedPaths,
-    /// Put up to so many other objects around
-    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    /// Put up to so many other objects around, from 0 to 50
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = DISTRACTORS, allow_negative_numbers = true)]
     distractors: u32,
-    /// Move the head camera by up to this many units, and turn it by up to 2° per unit
-    #[arg(long, value_name = "UNITS", value_parser = length, default_value_t = 0.0, hide_default_value = true)]
+    /// Move the head camera by up to this many units, from 0 to 10, and turn it by up to 2° per unit
+    #[arg(long, value_name = "UNITS", value_parser = LENGTHS, allow_negative_numbers = true, default_value_t = 0.0, hide_default_value = true)]
     camera: f32,
-    /// Let brightness, direction and colour of the light in the pictures differ by up to this part
-    #[arg(long, value_name = "PART", value_parser = part, default_value_t = 0.0, hide_default_value = true)]
+    /// Let brightness, direction and colour of the light in the pictures differ by up to this part, from 0 to 0.5
+    #[arg(long, value_name = "PART", value_parser = PARTS, allow_negative_numbers = true, default_value_t = 0.0, hide_default_value = true)]
     light: f32,
     #[command(flatten)]
     hand_cameras: HandCameraOption,
-    /// Number of demonstrations made at a time [default: the number of cores]
-    #[arg(long, value_name = "N")]
+    /// Number of demonstrations made at a time, from 1 to 256 [default: the number of cores]
+    #[arg(long, value_name = "N", value_parser = JOBS, allow_negative_numbers = true)]
     jobs: Option<usize>,
 }
 
-/// Reads a length of 0 to 10 units.
-fn length(text: &str) -> Result<f32, String> {
-    let length = text.parse().ok();
-    length
-        .filter(|length| (0.0..=10.0).contains(length))
-        .ok_or_else(|| "expected 0 to 10 units".into())
-}
-
-/// Reads a part of 0 to 0.5.
-fn part(text: &str) -> Result<f32, String> {
-    let part = text.parse().ok();
-    part.filter(|part| (0.0..=0.5).contains(part))
-        .ok_or_else(|| "expected 0 to 0.5".into())
-}
-
-/// What a folder of demonstrations was made with, so that others are not mixed with them.
-const MANIFEST: &str = "multiply.json";
-/// The most bytes of it that are read.
-const MOST_BYTES: u64 = 1 << 20;
-/// Prefix of the folders of unfinished demonstrations.
-const PART: &str = ".part-";
+const COUNTS: NumberRange<u64> = NumberRange::whole(1, 1_000_000);
+const PARTS: NumberRange<f32> = NumberRange::decimal(0.0, 0.5);
+const DISTRACTORS: NumberRange<u32> = NumberRange::whole(0, 50);
+const LENGTHS: NumberRange<f32> = NumberRange::decimal(0.0, 10.0).of("units");
+const JOBS: NumberRange<usize> = NumberRange::whole(1, 256);
 
 /// Makes the demonstrations. Exit code 1 if some could not be made.
 pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
@@ -113,7 +99,9 @@ pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
         light: args.light,
     };
     let hand_pictures = args.hand_cameras.of(&RobotPlugin::default())?;
-    let multiplication = Multiplication::of(&args.recording, demonstrator, variation, args.seed)
+    let recording = RecordingReader::open(&args.recording).map_err(Failure::input)?;
+    say_if_cut_off(&recording, "multiplied");
+    let multiplication = Multiplication::of(&recording, demonstrator, variation, args.seed)
         .map_err(Failure::input)?;
     let multiplication = match &args.setup {
         Some(setup) => {
@@ -124,64 +112,33 @@ pub(super) fn run(args: &MultiplyArgs) -> Result<ExitCode, Failure> {
         None => multiplication,
     };
     let multiplication = multiplication.with_hand_pictures(hand_pictures);
-    prepare(args)?;
+    let manifest = args.manifest(&multiplication);
+    let collection = Collection::open(&args.out, &manifest).map_err(refused)?;
     let start = Instant::now();
-    let missing: Vec<_> = (0..args.count)
-        .filter(|number| !args.folder(*number).is_dir())
-        .collect();
+    let mut missing = Vec::new();
+    for number in 0..args.count {
+        if !collection.holds(number, args.seed).map_err(refused)? {
+            missing.push(number);
+        }
+    }
     let there = args.count - missing.len() as u64;
-    let outcome = make_all(args, &multiplication, &missing)?;
+    let outcome = make_all(args, &multiplication, &collection, &missing);
+    let closed = collection.close().map_err(refused);
+    let outcome = outcome?;
+    closed?;
     let real = start.elapsed().as_secs_f64();
     Output::Stdout.write(outcome.summary(there, real).as_bytes())?;
     Ok(ExitCode::from(u8::from(!outcome.given_up.is_empty())))
 }
 
-/// Prepares the folder: it holds only demonstrations made with the same options, and no unfinished ones.
-fn prepare(args: &MultiplyArgs) -> Result<(), Failure> {
-    let failed = |path: &Path| {
-        let path = path.display().to_string();
-        move |error| Failure::run(format!("{path}: {error}"))
-    };
-    fs::create_dir_all(&args.out).map_err(failed(&args.out))?;
-    let path = args.out.join(MANIFEST);
-    let manifest = args.manifest();
-    match read_regular_text(&path, MOST_BYTES, Symlinks::Followed) {
-        Ok(text) => {
-            let known: Option<Value> = serde_json::from_str(&text).ok();
-            if known.as_ref() != Some(&manifest) {
-                let reason = format!(
-                    "{}: the demonstrations there were made with other options; name a new folder",
-                    path.display()
-                );
-                return Err(Failure::input(reason));
-            }
-        }
-        Err(_) if is_empty(&args.out) => {
-            let text = format!("{manifest:#}\n");
-            fs::write(&path, text).map_err(failed(&path))?;
-        }
-        Err(_) => {
-            let reason = format!(
-                "{}: it holds something else; name a new folder",
-                args.out.display()
-            );
-            return Err(Failure::input(reason));
-        }
+/// The failure of a folder that takes no demonstrations.
+fn refused(error: CollectionError) -> Failure {
+    match error {
+        CollectionError::Io { .. } | CollectionError::InUse(_) => Failure::run(error),
+        CollectionError::OtherManifest(_)
+        | CollectionError::SomethingElse(_)
+        | CollectionError::NoDemonstration(_) => Failure::input(error),
     }
-    for entry in fs::read_dir(&args.out)
-        .map_err(failed(&args.out))?
-        .flatten()
-    {
-        let name = entry.file_name();
-        if name.to_string_lossy().starts_with(PART) {
-            fs::remove_dir_all(entry.path()).map_err(failed(&entry.path()))?;
-        }
-    }
-    Ok(())
-}
-
-fn is_empty(folder: &Path) -> bool {
-    fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_none())
 }
 
 /// The results of all demonstrations.
@@ -200,6 +157,14 @@ impl Tally {
         }
         for reason in &made.dropped {
             *self.dropped.entry(reason.to_string()).or_default() += 1;
+        }
+    }
+
+    /// The number of dropped demonstrations, for the progress line.
+    fn dropped_note(&self) -> String {
+        match self.dropped.values().sum::<u64>() {
+            0 => String::new(),
+            dropped => format!(", {dropped} dropped"),
         }
     }
 
@@ -231,6 +196,7 @@ impl Tally {
 fn make_all(
     args: &MultiplyArgs,
     multiplication: &Multiplication,
+    collection: &Collection,
     missing: &[u64],
 ) -> Result<Tally, Failure> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
@@ -238,8 +204,9 @@ fn make_all(
     let next = AtomicU64::new(0);
     let is_ended = AtomicBool::new(false);
     let outcome = Mutex::new(Tally::default());
-    let mut progress = ProgressLine::new(missing.len() as u64);
-    let (sender, done) = mpsc::channel::<Result<(u64, Made), Failure>>();
+    let mut progress = ProgressLine::new(missing.len() as u64, "");
+    let mut done = 0;
+    let (sender, results) = mpsc::channel::<Result<(u64, Made), Failure>>();
     thread::scope(|scope| {
         for _ in 0..jobs {
             let sender = sender.clone();
@@ -250,7 +217,7 @@ fn make_all(
                     let Some(&number) = missing.get(turn as usize) else {
                         break;
                     };
-                    let made = args.make(multiplication, number);
+                    let made = make(multiplication, collection, number);
                     if sender.send(made.map(|made| (number, made))).is_err() {
                         break;
                     }
@@ -259,12 +226,13 @@ fn make_all(
         }
         drop(sender);
         let mut result = Ok(());
-        for made in done {
+        for made in results {
             match made {
                 Ok((number, made)) => {
                     if let Ok(mut outcome) = outcome.lock() {
                         outcome.note(number, &made);
-                        progress.advance(outcome.dropped.values().sum());
+                        done += 1;
+                        progress.reach(done, &outcome.dropped_note());
                     }
                 }
                 Err(failure) => {
@@ -286,52 +254,39 @@ fn make_all(
     Ok(outcome)
 }
 
+/// Makes one, which appears when it is complete.
+fn make(
+    multiplication: &Multiplication,
+    collection: &Collection,
+    number: u64,
+) -> Result<Made, Failure> {
+    let made = multiplication.make(number, &collection.part(number));
+    let made = made.map_err(|error| Failure::run(named(number, &error)))?;
+    if made.is_kept {
+        let kept = collection.keep(number);
+        kept.map_err(|error| Failure::run(named(number, &error)))?;
+    }
+    Ok(made)
+}
+
 impl MultiplyArgs {
-    fn folder(&self, number: u64) -> PathBuf {
-        self.out.join(format!("{number:04}"))
-    }
-
-    /// Makes one, which appears when it is complete.
-    fn make(&self, multiplication: &Multiplication, number: u64) -> Result<Made, Failure> {
-        let part = self.out.join(format!("{PART}{number:04}"));
-        let made = multiplication.make(number, &part);
-        let made = made.map_err(|error| Failure::run(named(number, &error)))?;
-        if made.is_kept {
-            let folder = self.folder(number);
-            fs::rename(&part, &folder)
-                .map_err(|error| Failure::run(format!("{}: {error}", folder.display())))?;
-        }
-        Ok(made)
-    }
-
-    /// The options that decide the demonstrations, but not their number.
-    fn manifest(&self) -> Value {
-        let mut manifest = json!({
-            "demonstration": self.recording,
+    /// All that decides the demonstrations, but not their number.
+    fn manifest(&self, multiplication: &Multiplication) -> Value {
+        json!({
+            "made_of": multiplication.fingerprint(),
             "program": env!("CARGO_PKG_VERSION"),
             "seed": self.seed,
             "robot": self.robot,
             "colors": self.colors,
+            "sizes": self.sizes,
             "distractors": self.distractors,
             "camera": self.camera,
-        });
-        // What was made before there were these options goes on.
-        if self.sizes > 0.0 {
-            manifest["sizes"] = json!(self.sizes);
-        }
-        if self.light > 0.0 {
-            manifest["light"] = json!(self.light);
-        }
-        if self.hand_cameras.hand_cameras {
-            manifest["hand_cameras"] = json!(true);
-        }
-        if let Some(setup) = &self.setup {
-            manifest["setup"] = json!(setup);
-        }
-        manifest
+            "light": self.light,
+            "hand_cameras": self.hand_cameras.hand_cameras,
+        })
     }
 }
 
-fn named(number: u64, error: &MultiplyError) -> String {
+fn named(number: u64, error: &impl fmt::Display) -> String {
     format!("demonstration {number}: {error}")
 }

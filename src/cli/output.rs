@@ -1,10 +1,11 @@
 //! Destinations of results.
 
 use std::{
-    fs,
     io::{self, ErrorKind, IsTerminal as _, Write as _},
     path::PathBuf,
 };
+
+use tabletop::storage::Storage;
 
 use super::{Failure, terminal::printable};
 
@@ -27,25 +28,15 @@ impl From<std::ffi::OsString> for Output {
 impl Output {
     /// Checks that it can be written, without leaving a trace.
     pub fn check(&self) -> Result<(), Failure> {
-        let Self::File(path) = self else {
-            return Ok(());
-        };
-        // Opening and closing a pipe would signal its end to the reader.
-        if path.exists() && !path.is_file() && !path.is_dir() {
-            return Ok(());
+        match self {
+            Self::Stdout => Ok(()),
+            Self::File(path) => Storage::default()
+                .check_replaceable(path)
+                .map_err(|error| Failure::at(path, error)),
         }
-        let is_new = path.symlink_metadata().is_err();
-        let mut options = fs::OpenOptions::new();
-        let opened = options.append(true).create(true).open(path);
-        opened
-            .and_then(|_| match is_new {
-                true => fs::remove_file(path),
-                false => Ok(()),
-            })
-            .map_err(|error| Failure::run(format!("{}: {error}", path.display())))
     }
 
-    /// Writes everything, or reports the place that could not be written.
+    /// Writes everything, or reports the place that could not be written; a file is then as it was.
     pub fn write(&self, bytes: &[u8]) -> Result<(), Failure> {
         match self {
             Self::Stdout => {
@@ -64,8 +55,9 @@ impl Output {
                     }
                 })
             }
-            Self::File(path) => fs::write(path, bytes)
-                .map_err(|error| Failure::run(format!("{}: {error}", path.display()))),
+            Self::File(path) => Storage::default()
+                .replace(path, bytes)
+                .map_err(|error| Failure::at(path, error)),
         }
     }
 }

@@ -5,9 +5,9 @@ use std::{path::PathBuf, process::ExitCode};
 use bevy::{math::Vec3, prelude::*};
 use clap::Args;
 use tabletop::{
-    core::{HeadCamera, Pose, SimTick, StepApp as _},
+    core::{HeadCamera, Picture, Pose, SimTick, StepApp as _, TICKS_PER_SECOND},
     headless_app_with,
-    recorder::{Channels, Durability, RecorderPlugin},
+    recorder::{Channels, RecorderPlugin, RecordingReport},
     replay::{Player, Replay},
     script::ScriptPlugin,
 };
@@ -15,14 +15,20 @@ use tabletop::{
 use super::{
     Failure,
     allowed_paths::AllowedPaths,
-    duration::{seconds, ticks},
+    cut_off::say_if_cut_off,
+    duration::{SECONDS, ticks},
     hand_cameras::HandCameraOption,
+    progress::ProgressLine,
+    range::NumberRange,
+    recorded::say_moved_aside,
     robot_options::{EngineOptions, script},
     script::{Script, headless_settings},
-    temporary_folder::TemporaryFolder,
     terminal::{say, show_warnings},
     window,
 };
+
+/// Number of simulated seconds from which on the length of a replay is said.
+const LONG: u64 = 3600;
 
 #[derive(Args)]
 #[command(mut_group("EngineOptions", |options| options.requires("script")))]
@@ -46,8 +52,8 @@ pub(super) struct ReplayArgs {
     /// Let a script watch, as `tabletop run --script` lets it act; in the window the key M starts it
     #[arg(long, value_name = "LANGUAGE[:PATH]", value_parser = script, conflicts_with_all = ["verify", "out"])]
     script: Option<String>,
-    /// Time for which the script then acts, in seconds of simulated time [default: 0]
-    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true, requires = "script", conflicts_with = "window")]
+    /// Time for which the script then acts, from 0 to 31622400 seconds of simulated time [default: 0]
+    #[arg(long, value_name = "S", value_parser = SECONDS, allow_negative_numbers = true, requires = "script", conflicts_with = "window")]
     seconds: Option<f64>,
     #[command(flatten)]
     engine: EngineOptions,
@@ -57,17 +63,17 @@ pub(super) struct ReplayArgs {
 #[derive(Args)]
 #[group(multiple = true, conflicts_with_all = ["verify", "window"], requires = "out")]
 struct PictureArgs {
-    /// Make the pictures again at another size
+    /// Make the pictures again at another size, with sides from 1 to 8192 pixels, and 16777216 pixels at most
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
     render: Option<(u32, u32)>,
-    /// Make the pictures again from another place, in units of 10 cm
+    /// Make the pictures again from another place, with coordinates from -1000 to 1000 units of 10 cm
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     camera: Option<Vec3>,
-    /// The point that this camera looks at [default: the centre of the table]
+    /// The point that this camera looks at, with coordinates from -1000 to 1000 [default: the centre of the table]
     #[arg(long, value_name = "X,Y,Z", value_parser = point, requires = "camera", allow_hyphen_values = true)]
     look_at: Option<Vec3>,
-    /// Make the pictures again with this angle of view from top to bottom
-    #[arg(long, value_name = "DEGREES", value_parser = angle_of_view)]
+    /// Make the pictures again with this angle of view from top to bottom, from 1 to 179 degrees
+    #[arg(long, value_name = "DEGREES", value_parser = ANGLES_OF_VIEW, allow_negative_numbers = true)]
     fov: Option<f32>,
     /// Add the pictures of the cameras in the robot's hands
     #[arg(long)]
@@ -80,12 +86,19 @@ struct PictureArgs {
     ids: bool,
 }
 
+/// Sides of pictures, in pixels.
+const SIDES: NumberRange<u32> = NumberRange::whole(1, Picture::MOST_SIDE);
+/// Coordinates of cameras, in units.
+const COORDINATES: NumberRange<f32> = NumberRange::decimal(-1000.0, 1000.0);
+const ANGLES_OF_VIEW: NumberRange<f32> = NumberRange::decimal(1.0, 179.0).of("degrees");
+
 /// Reads a picture size such as `640x480`.
 fn size(text: &str) -> Result<(u32, u32), String> {
-    let size = text
-        .split_once('x')
-        .and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
-    let (width, height) = size.ok_or("expected a width and a height, such as 640x480")?;
+    let sides = text.split_once('x');
+    let sides =
+        sides.and_then(|(width, height)| Some((SIDES.read(width).ok()?, SIDES.read(height).ok()?)));
+    let (width, height) =
+        sides.ok_or_else(|| format!("expected a width and a height {SIDES}, such as 640x480"))?;
     let camera = HeadCamera {
         width,
         height,
@@ -99,36 +112,21 @@ fn size(text: &str) -> Result<(u32, u32), String> {
 
 /// Reads a point such as `0,-8,12.5`.
 fn point(text: &str) -> Result<Vec3, String> {
-    let numbers: Result<Vec<f32>, _> = text
+    let coordinates = text
         .split(',')
-        .map(|number| number.trim().parse())
-        .collect();
-    numbers
+        .map(|number| COORDINATES.read(number.trim()));
+    let coordinates: Result<Vec<f32>, _> = coordinates.collect();
+    coordinates
         .ok()
-        .and_then(|numbers| <[f32; 3]>::try_from(numbers).ok())
+        .and_then(|coordinates| <[f32; 3]>::try_from(coordinates).ok())
         .map(Vec3::from)
-        .filter(|point| point.is_finite())
-        .ok_or_else(|| "expected three numbers, such as 0,-8,12.5".to_owned())
-}
-
-/// Reads an angle of 1 to 179 degrees.
-fn angle_of_view(text: &str) -> Result<f32, String> {
-    text.parse()
-        .ok()
-        .filter(|degrees| (1.0..=179.0).contains(degrees))
-        .ok_or_else(|| "expected an angle of 1 to 179 degrees".to_owned())
+        .ok_or_else(|| format!("expected three numbers {COORDINATES}, such as 0,-8,12.5"))
 }
 
 pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     let replay = Replay::read_allowing(&args.recording, &args.allowed.folders);
     let replay = replay.map_err(Failure::input)?;
-    if let Some(tick) = replay.cut_off_at() {
-        let folder = args.recording.display();
-        say(format_args!(
-            "tabletop: {folder} was cut off in tick {}, and is replayed that far",
-            tick.0
-        ));
-    }
+    say_if_cut_off(replay.recording(), "replayed");
     if args.window {
         let settings = args.engine.settings(args.script.as_deref())?;
         return window::play(replay, settings, args.allowed.folders.clone());
@@ -137,19 +135,33 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     if let Some(script) = &args.script {
         return watch(&replay, script, args);
     }
-    let (_temporary, out, durability) = match &args.out {
-        Some(out) => (None, out.clone(), Durability::AtFinish),
+    say_if_long(&replay);
+    let mut progress = ProgressLine::new(in_seconds(replay.ticks()), " simulated s");
+    let mut goes_on = |ticks| {
+        progress.reach(in_seconds(ticks), "");
+        true
+    };
+    let mut report = RecordingReport::default();
+    let difference = match &args.out {
+        None if args.verify => replay.verify(goes_on).map_err(Failure::run),
         None => {
-            let temporary = TemporaryFolder::new("tabletop-replay").map_err(Failure::run)?;
-            let out = temporary.path().join("replayed");
-            (Some(temporary), out, Durability::None)
+            replay.simulate_while(goes_on);
+            Ok(None)
+        }
+        Some(out) => {
+            let (recorder, camera) = args.pictures.recorder(&replay, out.clone())?;
+            let recorded = replay.record_while(recorder, camera, &mut goes_on);
+            recorded.map_err(Failure::run).and_then(|recorded| {
+                report = recorded;
+                match args.verify {
+                    true => replay.first_difference(out).map_err(Failure::input),
+                    false => Ok(None),
+                }
+            })
         }
     };
-    let recorded = args.pictures.record(&replay, out.clone(), durability);
-    let difference = recorded.and_then(|()| match args.verify {
-        true => replay.first_difference(&out).map_err(Failure::input),
-        false => Ok(None),
-    });
+    progress.end();
+    say_moved_aside(&report);
     let Some(difference) = difference? else {
         return Ok(ExitCode::SUCCESS);
     };
@@ -178,13 +190,28 @@ fn watch(replay: &Replay, script: &str, args: &ReplayArgs) -> Result<ExitCode, F
     acted.and(Ok(ExitCode::SUCCESS))
 }
 
+/// Says of a replay that takes long how long it is.
+fn say_if_long(replay: &Replay) {
+    let seconds = in_seconds(replay.ticks());
+    if seconds >= LONG {
+        let (folder, hours) = (replay.folder().display(), seconds as f64 / 3600.0);
+        say(format_args!(
+            "tabletop: {folder}: {hours:.1} hours of simulated time are replayed"
+        ));
+    }
+}
+
+fn in_seconds(ticks: u64) -> u64 {
+    ticks / u64::from(TICKS_PER_SECOND)
+}
+
 impl PictureArgs {
-    fn record(
+    /// The recorder of a replay, and its camera.
+    fn recorder(
         &self,
         replay: &Replay,
-        into: PathBuf,
-        durability: Durability,
-    ) -> Result<(), Failure> {
+        folder: PathBuf,
+    ) -> Result<(RecorderPlugin, HeadCamera), Failure> {
         let mut camera = replay.camera();
         if let Some((width, height)) = self.render {
             (camera.width, camera.height) = (width, height);
@@ -207,12 +234,11 @@ impl PictureArgs {
             hand_cameras: self.hand_cameras,
         };
         let recorder = RecorderPlugin {
-            folder: into,
+            folder,
             channels,
             hand_pictures: asked.of(replay.robot())?,
-            durability,
             ..default()
         };
-        replay.record(recorder, camera).map_err(Failure::run)
+        Ok((recorder, camera))
     }
 }

@@ -8,16 +8,19 @@ use tabletop::task::{Furniture, Requirements, Role, Task};
 use super::{
     Failure,
     explain::{print, read},
+    range::NumberRange,
     terminal::show_warnings,
 };
+
+const STEPS: NumberRange<usize> = NumberRange::whole(1, 1_000_000);
 
 #[derive(Args)]
 pub(super) struct RequireArgs {
     /// The recording's folder
     #[arg(value_name = "DIR")]
     recording: PathBuf,
-    /// The step whose object is meant; without it, all requirements are listed
-    #[arg(long, value_name = "N")]
+    /// The step whose object is meant, from 1 to 1000000; without it, all requirements are listed
+    #[arg(long, value_name = "N", value_parser = STEPS, allow_negative_numbers = true)]
     step: Option<usize>,
     /// The reference to which the step's object is put, instead of the object itself
     #[arg(long, requires = "step")]
@@ -33,8 +36,11 @@ pub(super) struct RequireArgs {
 /// Prints or changes the requirements on the objects of a recording.
 pub(super) fn require(args: &RequireArgs) -> Result<ExitCode, Failure> {
     show_warnings();
-    let (task, mut requirements) = read(&args.recording, &Furniture::default())?;
     if let Some(number) = args.step {
+        let task = Task::read(&args.recording).map_err(Failure::input)?;
+        // A requirement that can never hold is read, so that it can be removed.
+        let requirements = Requirements::read(&args.recording);
+        let mut requirements = requirements.map_err(Failure::input)?;
         let step = task
             .step(number)
             .ok_or_else(|| Failure::input(format!("the demonstration has no step {number}")))?;
@@ -51,7 +57,7 @@ pub(super) fn require(args: &RequireArgs) -> Result<ExitCode, Failure> {
         change(&mut requirements, &task, role, args)?;
         requirements.write(&args.recording).map_err(Failure::run)?;
     }
-    let (task, _) = read(&args.recording, &Furniture::default())?;
+    let (task, requirements) = read(&args.recording, &Furniture::default())?;
     let lines = task.roles.iter().map(|role| {
         let required = match requirements.roles.get(&role.id) {
             None => "as it was shown".to_owned(),

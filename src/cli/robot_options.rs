@@ -6,9 +6,9 @@ use std::{
 };
 
 use bevy::prelude::*;
-use clap::Args;
+use clap::{Args, builder::TypedValueParser as _};
 use tabletop::{
-    core::{LayoutFile, RobotCommand, RobotMode, WriteCommand as _},
+    core::{LayoutFile, Reach, RobotCommand, RobotMode, WriteCommand as _},
     robot::{Description, DescriptionSource, RobotPlugin},
     script::{
         ENGINE_VARIABLE, EngineChoice, EngineKind, EngineLocator, FieldPolicy, ScriptSettings,
@@ -16,7 +16,7 @@ use tabletop::{
     shipped::{self, shipped_files, true_path},
 };
 
-use super::Failure;
+use super::{Failure, range::NumberRange};
 
 /// The choice of the robot and its mode.
 #[derive(Args, Clone)]
@@ -79,11 +79,14 @@ pub(super) fn describe(path: &Path) -> Result<Description, Failure> {
     let source = match path.extension().is_some_and(|extension| extension == "ron") {
         true => {
             let file = LayoutFile::read(&text).map_err(|error| at(path, &error))?;
-            if !is_beside(Path::new(&file.urdf)) {
-                let problem = format!("its URDF {} is not in its folder or below", file.urdf);
+            let urdf = path.with_file_name(&file.urdf);
+            if !is_beside(Path::new(&file.urdf)) || is_linked_away(path, &urdf) {
+                let problem = format!(
+                    "its URDF {} leads out of its folder; expected a file there or below",
+                    file.urdf
+                );
                 return Err(at(path, &problem));
             }
-            let urdf = path.with_file_name(&file.urdf);
             DescriptionSource {
                 urdf: read(&urdf)?,
                 path: true_path(&urdf),
@@ -107,8 +110,20 @@ fn is_beside(path: &Path) -> bool {
     components.all(|component| matches!(component, Component::Normal(_) | Component::CurDir))
 }
 
+/// True if links lead from a file beside a `robot.ron` to another folder. A missing file is left to its reader.
+fn is_linked_away(robot: &Path, file: &Path) -> bool {
+    let is_on_disk = shipped_files().find(file).is_none() && file.exists();
+    is_on_disk && !Reach::of(robot.parent()).contains(file)
+}
+
 /// The language of scripts that a user's own driver runs.
 const OTHER: &str = "other";
+
+/// Periods from one picture for a script to the next.
+const PERIODS: NumberRange<u64> = NumberRange::whole(1, 1_000_000_000).of("ticks");
+
+/// Times for a call of a script, up to a day.
+const PATIENCE: NumberRange<f64> = NumberRange::decimal(0.01, 24.0 * 3600.0).of("seconds");
 
 #[derive(Args, Clone)]
 pub(super) struct EngineOptions {
@@ -116,11 +131,12 @@ pub(super) struct EngineOptions {
     /// [default: TABLETOP_ENGINE, or auto]
     #[arg(long, value_name = "ENGINE")]
     engine: Option<String>,
-    /// Number of ticks, 60 a second, from one picture for the script to the next [default: 15]
-    #[arg(long, value_name = "N", value_parser = ticks, allow_negative_numbers = true)]
+    /// Number of ticks, 60 a second, from one picture for the script to the next, from 1 to 1000000000 [default: 15]
+    #[arg(long, value_name = "N", value_parser = PERIODS, allow_negative_numbers = true)]
     picture_every: Option<u64>,
-    /// Number of seconds that init and each call of the callback may take before the engine is ended [default: 120 and 30]
-    #[arg(long, value_name = "S", value_parser = patience, allow_negative_numbers = true)]
+    /// Number of seconds, from 0.01 to 86400, that init and each call of the callback may take before the engine is ended
+    /// [default: 120 and 30]
+    #[arg(long, value_name = "S", value_parser = PATIENCE.map(Duration::from_secs_f64), allow_negative_numbers = true)]
     script_timeout: Option<Duration>,
     /// Give the script only the head camera and the joints, without `sensor.objects`, `contacts` and `held`
     #[arg(long)]
@@ -131,7 +147,7 @@ impl EngineOptions {
     /// The settings of the script bridge. `script` is the value of `--script`: a language, and after a colon the place of the scripts.
     ///
     /// # Errors
-    /// The engine does not exist, or does not run this language.
+    /// The engine does not exist, or does not run this language; or the scripts do not exist.
     pub fn settings(&self, script: Option<&str>) -> Result<ScriptSettings, Failure> {
         let mut settings = ScriptSettings {
             shipped: shipped_files().clone(),
@@ -157,7 +173,9 @@ impl EngineOptions {
         } else if let Some(engine) = &self.engine {
             settings.engine = parse(engine);
         }
-        if script.is_some() || self.engine.is_some() {
+        if script.is_some() {
+            check_scripts(&settings)?;
+        } else if self.engine.is_some() {
             settings.engine_config().map_err(Failure::input)?;
         }
         if self.no_objects {
@@ -243,7 +261,7 @@ fn runs(kind: EngineKind, language: &str) -> bool {
 }
 
 /// Checks that there are scripts in the place of these settings, as far as that is known before the engine starts.
-pub(super) fn check_scripts(settings: &ScriptSettings) -> Result<(), Failure> {
+fn check_scripts(settings: &ScriptSettings) -> Result<(), Failure> {
     let config = settings.engine_config().map_err(Failure::input)?;
     match config.fault() {
         None => Ok(()),
@@ -254,22 +272,6 @@ pub(super) fn check_scripts(settings: &ScriptSettings) -> Result<(), Failure> {
 fn parse(engine: &str) -> EngineChoice {
     let Ok(choice) = engine.parse();
     choice
-}
-
-/// Reads a number of ticks, at least one.
-fn ticks(text: &str) -> Result<u64, String> {
-    let ticks = text.parse().ok().filter(|ticks| *ticks > 0);
-    ticks.ok_or_else(|| "expected a whole number of ticks, 1 or more".to_owned())
-}
-
-/// Reads a time of a hundredth of a second to a day.
-fn patience(text: &str) -> Result<Duration, String> {
-    const DAY: f64 = 24.0 * 3600.0;
-    text.parse()
-        .ok()
-        .filter(|seconds| (0.01..=DAY).contains(seconds))
-        .map(Duration::from_secs_f64)
-        .ok_or_else(|| format!("expected a number of seconds from 0.01 to {DAY}"))
 }
 
 /// The value of `--script`.

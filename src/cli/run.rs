@@ -7,14 +7,14 @@ use std::{
     time::Instant,
 };
 
-use bevy::{app::PluginGroupBuilder, ecs::message::MessageCursor, prelude::*};
+use bevy::{app::PluginGroupBuilder, prelude::*};
 use clap::Args;
 use serde_json::json;
 use tabletop::{
     TabletopSimPlugins,
     core::{
-        Recording, RecordingCommand, RestingSystems, SceneCommand, SceneSpec, SimFact, SimTick,
-        StepApp as _, TICKS_PER_SECOND, WriteCommand as _,
+        RestingSystems, RobotFact, SceneCommand, SceneSpec, SimFact, SimTick, StepApp as _,
+        TICKS_PER_SECOND, WriteCommand as _,
     },
     final_state, headless_app_with,
     recorder::{RecorderPlugin, UnrecordedPlugin},
@@ -31,10 +31,12 @@ use tabletop_scenario::{Outcome, Program, ScenarioRun};
 use super::{
     Failure, Output, WRONG_INPUT,
     allowed_paths::AllowedPaths,
-    duration::{pass, seconds, ticks},
+    duration::{SECONDS, pass, ticks},
     explain::read,
     faultless::read_faultless_task,
     hand_cameras::HandCameraOption,
+    range::SEEDS,
+    recorded::{self, say_moved_aside},
     robot_options::{EngineOptions, RobotOptions, script},
     script::{Script, headless_settings},
     terminal::{say, show_warnings},
@@ -55,13 +57,15 @@ pub(super) struct RunArgs {
     setup: Option<PathBuf>,
     #[command(flatten)]
     allowed: AllowedPaths,
-    /// Number of seconds to simulate [default: 10]; a scenario fails if it takes longer [default: 600]
-    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    /// Number of seconds to simulate, from 0 to 31622400 [default: 10]; a scenario fails if it takes longer [default: 600]
+    #[arg(long, value_name = "S", value_parser = SECONDS, allow_negative_numbers = true)]
     seconds: Option<f64>,
-    /// The seed of a scenario's random places [default: 0]
+    /// The seed of a scenario's random places, from 0 to 18446744073709551615 [default: 0]
     #[arg(
         long,
         value_name = "N",
+        value_parser = SEEDS,
+        allow_negative_numbers = true,
         default_value = "0",
         requires = "scenario",
         hide_default_value = true
@@ -117,9 +121,10 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
             let start = Instant::now();
             let script = Script::start(&mut app, args.script.is_some());
             let script = script.run(&mut app, ticks(seconds.unwrap_or(10.0)));
-            args.write_ends(&app)?;
+            let ends = args.write_ends(&app);
             args.sum_up(&true_path(setup), "", &app, start);
-            script.and(Ok(result))
+            Failure::of_all([script, ends])?;
+            Ok(result)
         }
     }
 }
@@ -187,44 +192,31 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     args.tell_task(&mut app, None)?;
     let start = Instant::now();
     let mut script = Script::start(&mut app, args.script.is_some());
-    let mut facts = MessageCursor::<SimFact>::default();
-    let mut has_recorded = false;
     let mut ticks_taken = 0;
     let outcome = loop {
         app.step(1);
         ticks_taken += 1;
-        has_recorded |= facts
-            .read(app.world().resource())
-            .any(|fact| matches!(fact, SimFact::RecordingStarted { .. }));
         if let Err(unheard) = script.listen(&app) {
             break Err(unheard);
         }
         match app.world().resource::<ScenarioRun>().outcome() {
             Outcome::Running => {}
-            Outcome::Done => break Ok(ExitCode::SUCCESS),
-            Outcome::Failed(error) => {
-                say(format_args!("tabletop: {error}"));
-                break Err(Failure::silent());
-            }
+            Outcome::Done => break Ok(()),
+            Outcome::Failed(error) => break Err(Failure::run(error)),
         }
     };
-    let outcome = outcome.and_then(|done| {
+    let outcome = outcome.and_then(|()| {
         if only_prepares {
             script.run_for(&mut app, limit.saturating_sub(ticks_taken))?;
         }
         if script.is_running() {
             say("tabletop: the script was still running when the scenario ended; a Wait at its end gives it more time");
         }
-        Ok(done)
+        Ok(())
     });
     shut_down(app.world_mut());
-    args.write_ends(&app)?;
-    if args.record.is_some() {
-        finish_recording(&mut app);
-        if outcome.is_ok() && !has_recorded {
-            say("tabletop: nothing was recorded: the scenario has no Start");
-        }
-    }
+    let ends = args.write_ends(&app);
+    let recorded = recorded::finish(&mut app);
     let run = app.world().resource::<ScenarioRun>();
     let done = run.steps_done() - usize::from(scenario.setup.is_some()).min(run.steps_done());
     let done = match scenario.steps.len() {
@@ -234,15 +226,13 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     let checks = counted(run.checks_passed(), "check");
     let done = format!("{done} done, {checks} passed; ");
     args.sum_up(&scenario.path, &done, &app, start);
-    outcome.and_then(|done| script.result().and(Ok(done)))
-}
-
-/// Ends the recording that a scenario has not ended.
-fn finish_recording(app: &mut App) {
-    if app.world().resource::<Recording>().0 {
-        app.world_mut().write_command(RecordingCommand::Finish);
-        app.step(1);
+    let report = recorded.as_ref().cloned().unwrap_or_default();
+    if args.record.is_some() && outcome.is_ok() && recorded.is_ok() && report.started == 0 {
+        say("tabletop: nothing was recorded: the scenario has no Start");
     }
+    say_moved_aside(&report);
+    Failure::of_all([outcome, recorded.map(drop), ends, script.result()])?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Reports every obstacle of an arm, and every object that cannot be gripped, once.
@@ -260,28 +250,15 @@ fn report_what_stops_the_robot(
 
 fn stops_the_robot(fact: &SimFact) -> bool {
     match fact {
-        SimFact::ArmBlocked { .. } | SimFact::GripRefused { .. } => true,
-        SimFact::TaskLoaded { .. }
-        | SimFact::ObjectCreated { .. }
-        | SimFact::ObjectDeleted { .. }
-        | SimFact::SegmentBegun { .. }
-        | SimFact::Triggered { .. }
-        | SimFact::ControlChanged { .. }
-        | SimFact::PointedTo { .. }
-        | SimFact::Fastened { .. }
-        | SimFact::Loosened { .. }
-        | SimFact::Cut { .. }
-        | SimFact::Grasped { .. }
-        | SimFact::Released { .. }
-        | SimFact::Destroyed { .. }
-        | SimFact::RecordingStarted { .. }
-        | SimFact::RecordingFinished { .. }
-        | SimFact::RecordingFailed { .. }
-        | SimFact::Undone { .. }
-        | SimFact::Redone { .. }
-        | SimFact::RobotShown { .. }
-        | SimFact::GripMade { .. }
-        | SimFact::GripReleased { .. }
+        SimFact::Robot(RobotFact::ArmBlocked { .. } | RobotFact::GripRefused { .. }) => true,
+        SimFact::Scene(_)
+        | SimFact::History(_)
+        | SimFact::Mechanism(_)
+        | SimFact::Hand(_)
+        | SimFact::Recording(_)
+        | SimFact::Robot(
+            RobotFact::Shown { .. } | RobotFact::GripMade { .. } | RobotFact::GripReleased { .. },
+        )
         | SimFact::Refused { .. } => false,
     }
 }
@@ -302,9 +279,10 @@ fn recording(plugins: PluginGroupBuilder, args: &RunArgs) -> Result<PluginGroupB
     };
     let mut header = serde_json::Map::new();
     let scenario = args.scenario.as_deref().map(true_path);
-    header.insert("scenario".into(), json!(scenario));
+    let text = |path: PathBuf| json!(path.to_string_lossy());
+    header.insert("scenario".into(), json!(scenario.map(text)));
     if let Some(setup) = &args.setup {
-        header.insert("setup".into(), json!(true_path(setup)));
+        header.insert("setup".into(), text(true_path(setup)));
     }
     header.insert("seed".into(), json!(args.seed));
     Ok(plugins.set(RecorderPlugin {
@@ -371,18 +349,14 @@ impl RunArgs {
 
     /// Writes the results of the end of a run.
     fn write_ends(&self, app: &App) -> Result<(), Failure> {
-        if let Some(output) = &self.final_state {
-            write_final_state(app, output)?;
-        }
-        if let Some(output) = &self.final_robot {
-            let mut json = Vec::new();
-            final_state::write_robot(app.world(), &mut json).map_err(Failure::run)?;
-            output.write(&json)?;
-        }
-        if let Some(path) = &self.save {
-            save(app, path)?;
-        }
-        Ok(())
+        let state = self.final_state.as_ref();
+        let robot = self.final_robot.as_ref();
+        let save_to = self.save.as_deref();
+        Failure::of_all([
+            state.map_or(Ok(()), |output| write_final_state(app, output)),
+            robot.map_or(Ok(()), |output| write_final_robot(app, output)),
+            save_to.map_or(Ok(()), |path| save(app, path)),
+        ])
     }
 }
 
@@ -403,6 +377,12 @@ fn counted(count: usize, of_what: &str) -> String {
         1 => format!("1 {of_what}"),
         count => format!("{count} {of_what}s"),
     }
+}
+
+fn write_final_robot(app: &App, output: &Output) -> Result<(), Failure> {
+    let mut json = Vec::new();
+    final_state::write_robot(app.world(), &mut json).map_err(Failure::run)?;
+    output.write(&json)
 }
 
 fn write_final_state(app: &App, output: &Output) -> Result<(), Failure> {

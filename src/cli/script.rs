@@ -9,7 +9,7 @@ use tabletop::{
 use super::{
     Failure,
     duration::pass,
-    robot_options::{EngineOptions, check_scripts},
+    robot_options::EngineOptions,
     terminal::{is_unheard, say},
 };
 
@@ -19,9 +19,6 @@ pub(super) fn headless_settings(
     script: Option<&str>,
 ) -> Result<ScriptSettings, Failure> {
     let mut settings = options.settings(script)?;
-    if script.is_some() {
-        check_scripts(&settings)?;
-    }
     settings.on_event = Some(report);
     Ok(settings)
 }

@@ -3,55 +3,47 @@
 use std::{fs, path::Path, process::ExitCode, time::Instant};
 
 use clap::Args;
-use tabletop::{core::TICKS_PER_SECOND, soak::Round};
+use tabletop::{core::TICKS_PER_SECOND, soak::Round, storage::TemporaryFolder};
 
 use super::{
     Failure,
-    temporary_folder::TemporaryFolder,
+    range::{NumberRange, SEEDS},
     terminal::{say, show_warnings},
 };
 
 /// Largest growth of memory, in bytes, from the first half of the rounds to the last quarter.
 const MOST_GROWTH: u64 = 64 << 20;
 
+const HOURS: NumberRange<f64> = NumberRange::decimal(0.0, 10_000.0).of("hours");
+
 #[derive(Args)]
 pub(super) struct SoakArgs {
-    /// The seed of the random acts
-    #[arg(long, value_name = "N", default_value = "0")]
+    /// The seed of the random acts, from 0 to 18446744073709551615
+    #[arg(long, value_name = "N", default_value = "0", value_parser = SEEDS, allow_negative_numbers = true)]
     seed: u64,
-    /// Number of hours to simulate, not counting replays
-    #[arg(long, value_name = "H", default_value = "1", value_parser = hours)]
+    /// Number of hours to simulate, from 0 to 10000, not counting replays
+    #[arg(long, value_name = "H", default_value = "1", value_parser = HOURS, allow_negative_numbers = true)]
     hours: f64,
-}
-
-fn hours(text: &str) -> Result<f64, String> {
-    const MOST: f64 = 10_000.0;
-    text.parse()
-        .ok()
-        .filter(|hours| (0.0..=MOST).contains(hours))
-        .ok_or_else(|| format!("expected a number of hours from 0 to {MOST}"))
 }
 
 pub(super) fn soak(args: &SoakArgs) -> Result<ExitCode, Failure> {
     show_warnings();
-    let temporary = TemporaryFolder::new("tabletop-soak").map_err(Failure::run)?;
     let round_hours = Round::TICKS as f64 / f64::from(TICKS_PER_SECOND) / 3600.0;
     let rounds = (args.hours / round_hours).ceil().max(1.0) as u64;
     let mut said = Instant::now();
     let mut memory = Vec::new();
     for number in 0..rounds {
+        let temporary = TemporaryFolder::new("tabletop-soak").map_err(Failure::run)?;
         let round = Round {
             seed: args.seed.wrapping_add(number),
-            folder: temporary.path().join("round"),
+            folder: temporary.path().to_owned(),
         };
-        fs::create_dir(&round.folder).map_err(Failure::run)?;
         round.run().map_err(|fault| {
             let seed = round.seed;
             Failure::run(format!(
                 "{fault}; to see it: tabletop soak --seed {seed} --hours 0"
             ))
         })?;
-        fs::remove_dir_all(&round.folder).map_err(Failure::run)?;
         memory.push(memory_now());
         if said.elapsed().as_secs() >= 60 || number + 1 == rounds {
             said = Instant::now();

@@ -6,12 +6,13 @@ use std::{
 };
 
 use clap::Args;
-use tabletop::{replay::Replay, script::ScriptSettings};
+use tabletop::{replay::Replay, script::ScriptSettings, shipped::task_reader};
 
 use super::{
-    Failure, Output,
+    Failure, Output, WRONG_INPUT,
     allowed_paths::AllowedPaths,
-    duration::seconds,
+    duration::SECONDS,
+    range::SEEDS,
     robot_options::{EngineOptions, RobotOptions, script},
     run,
     terminal::say,
@@ -28,14 +29,14 @@ pub(super) struct WindowArgs {
     #[cfg(feature = "window")]
     #[arg(long, value_name = "FILE")]
     keys: Option<PathBuf>,
-    /// The seed of the colours and places of presets
-    #[arg(long, value_name = "N", default_value = "5566")]
+    /// The seed of the colours and places of presets, from 0 to 18446744073709551615
+    #[arg(long, value_name = "N", default_value = "5566", value_parser = SEEDS, allow_negative_numbers = true)]
     seed: u64,
     /// Save a picture of the window to this PNG file, and quit
     #[arg(long, value_name = "FILE")]
     screenshot: Option<PathBuf>,
-    /// When to take the picture, in seconds of simulated time
-    #[arg(long, value_name = "S", default_value = "1", value_parser = seconds, allow_negative_numbers = true, requires = "screenshot")]
+    /// When to take the picture, from 0 to 31622400 seconds of simulated time
+    #[arg(long, value_name = "S", default_value = "1", value_parser = SECONDS, allow_negative_numbers = true, requires = "screenshot")]
     after: f64,
     /// The scripts that the key M starts: `matlab` (those that matlab/agentBehavior.m names), `matlab:FOLDER`, `octave:FOLDER`,
     /// `matlab:FOLDER#reach` (reachInit.m and reachCallback.m), `python:FILE`, or `other:FILE`, which the driver runs that `--engine` names
@@ -57,15 +58,34 @@ pub(super) struct WindowArgs {
     display: super::display::DisplayArgs,
 }
 
+impl WindowArgs {
+    /// Reads the files that are named, before there is a window. Faults of the task file are reported in the window and do not close it, but
+    /// a picture of what is left of the scene gives exit code 2.
+    fn read_files(&self) -> Result<ExitCode, Failure> {
+        #[cfg(feature = "window")]
+        if let Some(keys) = &self.keys {
+            tabletop_gui::keymap_file::read_text(keys).map_err(Failure::input)?;
+        }
+        let reader = task_reader().allowing(&self.allowed.folders);
+        let task = reader.read(&self.setup).map_err(Failure::input)?;
+        Ok(match task.faults.is_empty() || self.screenshot.is_none() {
+            true => ExitCode::SUCCESS,
+            false => ExitCode::from(WRONG_INPUT),
+        })
+    }
+}
+
 #[cfg(feature = "window")]
 pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
     use tabletop::window::{self, ScreenshotAt, Show, WindowOptions};
 
+    let result = args.read_files()?;
     let mut display = args.display.options();
     if args.screenshot.is_some() {
         display.ask.get_or_insert(false);
     }
     let robot = args.robot.plugin()?;
+    let takes_picture = args.screenshot.is_some();
     let options = WindowOptions {
         show: Show::Task(args.setup.clone()),
         allowed: args.allowed.folders.clone(),
@@ -82,10 +102,14 @@ pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
         }),
         widgets: args.widgets,
     };
-    window::run(options).map(exit_code).or_else(|no_window| {
-        say(format_args!("tabletop: {no_window}"));
-        run_instead(&args.setup, &args.allowed.folders)
-    })
+    match window::run(options) {
+        Ok(exit) => Ok(exit_code(exit, result)),
+        Err(no_window) if takes_picture => Err(Failure::run(no_window)),
+        Err(no_window) => {
+            say(format_args!("tabletop: {no_window}"));
+            run_instead(&args.setup, &args.allowed.folders)
+        }
+    }
 }
 
 /// Plays a recording.
@@ -117,13 +141,15 @@ pub(super) fn play(
         screenshot: None,
         widgets: None,
     };
-    window::run(options).map(exit_code).map_err(Failure::run)
+    let exit = window::run(options).map_err(Failure::run)?;
+    Ok(exit_code(exit, ExitCode::SUCCESS))
 }
 
+/// The exit code of a window, which is this one if nothing has failed in it.
 #[cfg(feature = "window")]
-fn exit_code(exit: bevy::app::AppExit) -> ExitCode {
+fn exit_code(exit: bevy::app::AppExit, result: ExitCode) -> ExitCode {
     match exit {
-        bevy::app::AppExit::Success => ExitCode::SUCCESS,
+        bevy::app::AppExit::Success => result,
         bevy::app::AppExit::Error(code) => ExitCode::from(code.get()),
     }
 }
@@ -133,6 +159,12 @@ const NO_WINDOW: &str = "this program was built without a window (feature `windo
 
 #[cfg(not(feature = "window"))]
 pub(super) fn open(args: WindowArgs) -> Result<ExitCode, Failure> {
+    args.read_files()?;
+    args.robot.plugin()?;
+    args.engine.settings(args.script.as_deref())?;
+    if args.screenshot.is_some() {
+        return Err(Failure::run(NO_WINDOW));
+    }
     say(format_args!("tabletop: {NO_WINDOW}"));
     run_instead(&args.setup, &args.allowed.folders)
 }

@@ -134,7 +134,8 @@ mod tests {
     };
 
     use tabletop_core::{
-        CommandId, CorePlugin, IssuedCommand, Recording, ShippedFile, SimCommand, SimFact,
+        CommandId, CorePlugin, IssuedCommand, Recording, SceneFact, ShippedFile, SimCommand,
+        SimFact,
     };
     use tabletop_gui::{Browser, Preferences};
 
@@ -296,11 +297,12 @@ mod tests {
         let path = folder.join("task.xml");
         app.world_mut().resource_mut::<Files>().reloads = reloads;
         app.world_mut().resource_mut::<Recording>().0 = is_recording;
-        app.world_mut().write_message(SimFact::TaskLoaded {
-            cause: CommandId(0),
-            path: path.clone(),
-            faults: Vec::new(),
-        });
+        app.world_mut()
+            .write_message(SimFact::Scene(SceneFact::TaskLoaded {
+                cause: CommandId(0),
+                path: path.clone(),
+                faults: Vec::new(),
+            }));
         app.update();
         fs::write(&path, text).unwrap();
         app.world_mut().run_system_cached(reload::reload).unwrap();

@@ -11,6 +11,7 @@ use bevy::{
     render::view::screenshot::{Screenshot, ScreenshotCaptured},
 };
 use tabletop_core::{SimTick, TICKS_PER_SECOND};
+use tabletop_storage::Storage;
 
 /// Number of frames after which everything on the table is certainly drawn.
 const WARM_UP_FRAMES: u32 = 5;
@@ -18,7 +19,7 @@ const WARM_UP_FRAMES: u32 = 5;
 /// A picture of the window at a simulated time. When it is written, the program ends.
 #[derive(Resource, Clone, Debug, PartialEq)]
 pub struct ScreenshotAt {
-    /// The file. The name's ending gives the format: `.png`.
+    /// The PNG file.
     pub path: PathBuf,
     /// Number of seconds of simulated time.
     pub seconds: f32,
@@ -59,7 +60,14 @@ fn save_and_exit(path: PathBuf) -> impl FnMut(On<ScreenshotCaptured>, MessageWri
 
 fn save(picture: &Image, path: &Path) -> Result<(), Box<dyn Error>> {
     // The window's transparency has no meaning.
-    picture.clone().try_into_dynamic()?.to_rgb8().save(path)?;
+    let rgb = picture.clone().try_into_dynamic()?.to_rgb8();
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, rgb.width(), rgb.height());
+    encoder.set_color(png::ColorType::Rgb);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&rgb)?;
+    writer.finish()?;
+    Storage::default().replace(path, &bytes)?;
     Ok(())
 }
 

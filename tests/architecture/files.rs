@@ -1,5 +1,5 @@
-//! Files are opened in few places, which make sure of what they open: a pipe could wait for ever, a device never end, and a stranger's link
-//! lead to any file.
+//! Files are opened and changed in few places: those that open make sure of what they open (a pipe could wait for ever, a device never end, a
+//! stranger's link lead to any file), and those that change keep the rules of `SECURITY.md`.
 
 use std::collections::BTreeSet;
 
@@ -13,35 +13,71 @@ const OPENERS: [[&str; 2]; 4] = [
     ["fs", "read_to_string"],
 ];
 
-/// The files that call them. All others ask `tabletop_core` for a regular file.
-const PLACES: [&str; 9] = [
-    "crates/tabletop_core/src/regular_file.rs",
+/// The files that call them. All others ask `tabletop_storage` for a regular file.
+const OPENING: [&str; 7] = [
     "crates/tabletop_engine/src/regular_file.rs",
     // What the system tells of processes.
     "crates/tabletop_engine/src/worker/descendants.rs",
     // Files of an engine's own folder.
     "crates/tabletop_engine/src/worker/exchange_folder.rs",
     "crates/tabletop_engine/src/worker/trigger_file.rs",
-    // The folder around a recording, to lock it.
-    "crates/tabletop_recorder/src/files/folder.rs",
-    "crates/tabletop_recorder/src/files/storage.rs",
-    // The file that the user names for what is printed.
-    "src/cli/output.rs",
+    "crates/tabletop_storage/src/regular_file.rs",
+    "crates/tabletop_storage/src/storage.rs",
     // What the system tells of the program's memory.
     "src/cli/soak.rs",
 ];
 
+/// The ends of the paths of functions that create, replace, rename or remove.
+const CHANGERS: [[&str; 2]; 14] = [
+    ["DirBuilder", "new"],
+    ["File", "create"],
+    ["File", "create_new"],
+    ["fs", "copy"],
+    ["fs", "create_dir"],
+    ["fs", "create_dir_all"],
+    ["fs", "hard_link"],
+    ["fs", "remove_dir"],
+    ["fs", "remove_dir_all"],
+    ["fs", "remove_file"],
+    ["fs", "rename"],
+    ["fs", "set_permissions"],
+    ["fs", "write"],
+    ["OpenOptions", "new"],
+];
+
+/// The files that call them. All others ask a `Storage` of `tabletop_storage`.
+const CHANGING: [&str; 7] = [
+    // An engine's own folder, of a random name, in memory.
+    "crates/tabletop_engine/src/private_folder.rs",
+    "crates/tabletop_engine/src/regular_file.rs",
+    "crates/tabletop_engine/src/worker/exchange_folder.rs",
+    "crates/tabletop_engine/src/worker/trigger_file.rs",
+    "crates/tabletop_storage/src/storage.rs",
+    "crates/tabletop_storage/src/whole_file.rs",
+    // The folder of a test.
+    "src/test_folder.rs",
+];
+
+/// The files that call one of these functions.
+fn callers(functions: &[[&str; 2]]) -> BTreeSet<String> {
+    let calls = |path: &Vec<String>| {
+        functions
+            .iter()
+            .any(|function| path.ends_with(&function.map(String::from)))
+    };
+    program()
+        .into_iter()
+        .filter(|(_, source)| source.paths.iter().any(calls))
+        .map(|(file, _)| file.display().to_string())
+        .collect()
+}
+
 #[test]
 fn few_places_open_files() {
-    let opens = |path: &Vec<String>| {
-        OPENERS
-            .iter()
-            .any(|opener| path.ends_with(&opener.map(String::from)))
-    };
-    let places: BTreeSet<_> = program()
-        .into_iter()
-        .filter(|(_, source)| source.paths.iter().any(opens))
-        .map(|(file, _)| file.display().to_string())
-        .collect();
-    assert_eq!(places, PLACES.map(String::from).into());
+    assert_eq!(callers(&OPENERS), OPENING.map(String::from).into());
+}
+
+#[test]
+fn few_places_change_files() {
+    assert_eq!(callers(&CHANGERS), CHANGING.map(String::from).into());
 }

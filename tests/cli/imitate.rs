@@ -192,3 +192,43 @@ fn a_high_box_is_opened_filled_and_closed_from_beside() {
     // Here the block has to lean on its way over the rim.
     is_done(&demo, &["--seed", "3"]);
 }
+
+#[test]
+fn objects_that_stand_on_each_other_are_no_endless_tower() {
+    let folder = place("imitate_interlocked");
+    std::fs::create_dir(&folder).unwrap();
+    let (setup, shown) = (folder.join("steps.xml"), folder.join("steps.ron"));
+    // Each has its upper block on the other's lower one.
+    let interlocked = |id: &str, degrees: u16| {
+        format!(
+            r#"<composite id="{id}" location="(0,-2,0)" rotation="(0,0,{degrees})">
+                 <block location="(-0.82,0,0.5)" xspan="1.6" yspan="0.8"/>
+                 <block location="(0.52,0,1.5)" yspan="0.8"/>
+               </composite>"#
+        )
+    };
+    let objects = format!(
+        r#"<tabletop xmlns="http://synapse.cs.umd.edu/tabletop-xml">{}{}</tabletop>"#,
+        interlocked("First", 0),
+        interlocked("Second", 180)
+    );
+    let steps = r#"(setup: "steps.xml", steps: [
+        WaitUntilRest(2), Start, Grasp("First"), Glide(to: (0, -4, 0), seconds: 1.5), WaitUntilThere(1), Release,
+        WaitUntilRest(3), Finish,
+    ])"#;
+    std::fs::write(&setup, objects).unwrap();
+    std::fs::write(&shown, steps).unwrap();
+    let demo = folder.join("demo");
+    let [shown, demo] = [&shown, &demo].map(|path| path.to_str().unwrap());
+    let output = tabletop(&["run", shown, "--record", demo, "--quiet"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    for command in [&["imitate", demo][..], &["imitate", demo, "--seed", "1"]] {
+        let output = tabletop(command);
+        let reported = stdout(&output) + &stderr(&output);
+        assert!(output.status.code().is_some(), "{reported}");
+        assert!(
+            reported.contains("Done: ") || reported.contains("failed ("),
+            "{reported}"
+        );
+    }
+}

@@ -3,16 +3,21 @@
 
 mod allowed_paths;
 mod anywhere;
+mod cut_off;
 mod element_docs;
 mod explain;
 mod imitate;
+mod kept;
 #[cfg(feature = "window")]
 mod keys;
 mod kinematics;
 mod language;
+mod man;
 mod multiply;
 mod originals;
+mod ranges;
 mod replay;
+mod require;
 mod robot;
 mod scenarios;
 mod script_options;
@@ -20,3 +25,6 @@ mod strange_recordings;
 mod strange_scenes;
 mod support;
 mod task_files;
+mod usage;
+#[cfg(feature = "window")]
+mod window;

@@ -66,8 +66,10 @@ fn the_same_seed_gives_the_same_bytes_and_what_is_there_is_kept() {
         &[&options[..], &["--count", "1", "--jobs", "1"]].concat(),
     );
     // As if the program had been killed.
-    fs::create_dir(other.join(".part-0001")).unwrap();
-    fs::write(other.join(".part-0001/session.jsonl"), "{").unwrap();
+    let left = other.join(".making-1");
+    fs::create_dir_all(left.join("0001")).unwrap();
+    fs::write(left.join(".tabletop-lock"), "").unwrap();
+    fs::write(left.join("0001/session.jsonl"), "{").unwrap();
     let kept = fs::metadata(other.join("0000/states.csv"))
         .unwrap()
         .modified()

@@ -109,3 +109,40 @@ fn a_recording_with_another_robot_is_replayed_with_it() {
     let replayed = tabletop(&["replay", folder, "--verify"]);
     assert_eq!(replayed.status.code(), Some(0), "{}", stderr(&replayed));
 }
+
+#[cfg(unix)]
+#[test]
+fn a_description_reaches_no_urdf_outside_of_its_folder() {
+    use std::os::unix::fs::symlink;
+
+    let place = place("robot_reach");
+    let robot = place.join("robot");
+    fs::create_dir_all(robot.join("urdf")).unwrap();
+    let panda = |file: &str| fs::read_to_string(shipped("assets/panda", file)).unwrap();
+    for inside in ["real.urdf", "urdf/deep.urdf", "../secret.urdf"] {
+        fs::write(robot.join(inside), panda("panda.urdf")).unwrap();
+    }
+    symlink("real.urdf", robot.join("other.urdf")).unwrap();
+    symlink("../secret.urdf", robot.join("link.urdf")).unwrap();
+    symlink("..", robot.join("up")).unwrap();
+    let absolute = place.join("secret.urdf");
+    let layout = robot.join("robot.ron");
+    for (urdf, code, words) in [
+        ("real.urdf", 0, ""),
+        ("urdf/deep.urdf", 0, ""),
+        ("other.urdf", 0, ""),
+        ("link.urdf", 2, "leads out of its folder"),
+        ("up/secret.urdf", 2, "leads out of its folder"),
+        ("../secret.urdf", 2, "leads out of its folder"),
+        (absolute.to_str().unwrap(), 2, "leads out of its folder"),
+        ("missing.urdf", 2, "No such file"),
+    ] {
+        let named = format!("urdf: \"{urdf}\"");
+        let text = panda("robot.ron").replace("urdf: \"panda.urdf\"", &named);
+        fs::write(&layout, text).unwrap();
+        let output = tabletop(&["keys", "--robot", layout.to_str().unwrap()]);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(code), "{urdf}: {said}");
+        assert!(said.contains(words), "{urdf}: {said}");
+    }
+}

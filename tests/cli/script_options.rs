@@ -20,14 +20,14 @@ fn wrong_options_are_reported() {
         (&["run", "--no-objects"], "--script"),
         (&["run", "--picture-every", "2"], "--script"),
         (&["run", "--script-timeout", "2"], "--script"),
-        (&["run", "--seconds", "-1"], "expected a number of seconds"),
+        (&["run", "--seconds", "-1"], "expected a number from 0 to"),
         (
             &["run", "--script", SCRIPT, "--script-timeout", "-1"],
-            "expected a number of seconds",
+            "expected a number from 0.01 to 86400 seconds",
         ),
         (
             &["run", "--script", SCRIPT, "--picture-every", "-1"],
-            "expected a whole number of ticks",
+            "expected a whole number from 1 to 1000000000 ticks",
         ),
         (
             &["--engine", "/nonexistent"],

@@ -11,8 +11,9 @@ use tabletop::{
     core::{Drive, HeadCamera},
     headless_app_with,
     prelude::*,
-    recorder::{Durability, RecorderPlugin, Storage, StorageFault},
+    recorder::{Durability, RecorderPlugin},
     replay::Replay,
+    storage::{Storage, StorageFault},
 };
 
 use crate::demonstration::fresh_folder_in_memory;
@@ -71,6 +72,7 @@ fn try_faults(name: &str, calls: Calls, record: impl Fn(RecorderPlugin)) {
             let folder = fresh_folder_in_memory(name);
             // An earlier recording, which must not be lost.
             fs::create_dir_all(folder.join("demo")).unwrap();
+            fs::write(folder.join("demo/session.jsonl"), "{\"format\":4}\n").unwrap();
             fs::write(folder.join("demo/note"), "earlier").unwrap();
             record(recorder(&folder, Storage::with_fault(fault, call)));
             match check(&folder) {

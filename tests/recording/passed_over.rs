@@ -194,9 +194,9 @@ fn compare_with_every_tick(name: &str, seeds: Range<u64>) {
 /// The facts without the folders of recordings.
 fn without_folders(facts: &[SimFact]) -> Vec<String> {
     let facts = facts.iter().map(|fact| {
-        if let SimFact::RecordingStarted { cause, .. } = fact {
+        if let SimFact::Recording(RecordingFact::Started { cause, .. }) = fact {
             format!("started {cause:?}")
-        } else if let SimFact::RecordingFinished { cause, .. } = fact {
+        } else if let SimFact::Recording(RecordingFact::Finished { cause, .. }) = fact {
             format!("finished {cause:?}")
         } else {
             format!("{fact:?}")

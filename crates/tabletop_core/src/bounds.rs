@@ -2,6 +2,10 @@
 
 use bevy::prelude::*;
 
+/// Gap, in units, below which the physics keeps two solids in mind as a pair: contacts are predicted so far, and the boxes in which the
+/// engine looks for pairs are a little larger.
+pub const PAIR_GAP: f32 = 0.28;
+
 /// An upright cuboid, in units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
@@ -41,6 +45,11 @@ impl Bounds {
         depth.min_element() > distance
     }
 
+    /// True if the gap between the two, along each axis, is less than [`PAIR_GAP`].
+    pub fn is_near(self, other: Self) -> bool {
+        self.overlaps(other, -PAIR_GAP)
+    }
+
     /// Distance by which another one stands out of this one.
     pub fn distance_out(self, other: Self) -> f32 {
         (self.low - other.low)
@@ -70,6 +79,8 @@ mod tests {
         let into = Bounds::around(Vec3::X * 0.9, Vec3::splat(0.5));
         assert!(unit.overlaps(into, 0.05) && into.overlaps(unit, 0.05));
         assert!(!unit.overlaps(into, 0.2) && !unit.overlaps(beside, 0.0));
+        let farther = Bounds::around(Vec3::X * 1.3, Vec3::splat(0.5));
+        assert!(unit.is_near(beside) && unit.is_near(unit) && !unit.is_near(farther));
         assert!(unit.is_below(Vec3::Z * 9.0) && !unit.is_below(Vec3::X));
     }
 }

@@ -6,9 +6,33 @@ use bevy::prelude::*;
 
 use crate::{Bond, CommandId, Hand, LimbName, Obstacle, Operator};
 
-/// An event of this tick.
+/// An event of this tick. They are nested by the part that reports them, as commands are by the part that carries them out.
 #[derive(Message, Clone, Debug, PartialEq)]
 pub enum SimFact {
+    /// An event of the scene.
+    Scene(SceneFact),
+    /// An event of the history of a recording.
+    History(HistoryFact),
+    /// An event of a hand.
+    Hand(HandFact),
+    /// An event of a control, a bond or scissors.
+    Mechanism(MechanismFact),
+    /// An event of a recording.
+    Recording(RecordingFact),
+    /// An event of the robot.
+    Robot(RobotFact),
+    /// A command, or another request, was not carried out.
+    Refused {
+        /// The command that was refused, if it was one.
+        cause: Option<CommandId>,
+        /// The request, and the reason for the refusal.
+        reason: String,
+    },
+}
+
+/// An event of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SceneFact {
     /// A task file was read. Its scene is on the table in this tick, but for the faulty elements.
     TaskLoaded {
         /// The command that caused it.
@@ -34,11 +58,31 @@ pub enum SimFact {
         /// Its id.
         id: String,
     },
+}
+
+/// An event of the history of a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub enum HistoryFact {
     /// A hand is about to act: a new segment of the recording begins.
     SegmentBegun {
         /// The command that caused it.
         cause: CommandId,
     },
+    /// The world, its tick included, is back where the recording's last segment began.
+    Undone {
+        /// The command that caused it.
+        cause: CommandId,
+    },
+    /// The world, its tick included, is back where the segment was undone.
+    Redone {
+        /// The command that caused it.
+        cause: CommandId,
+    },
+}
+
+/// An event of a hand.
+#[derive(Clone, Debug, PartialEq)]
+pub enum HandFact {
     /// A hand has taken an object.
     Grasped {
         /// The command that caused it.
@@ -57,7 +101,7 @@ pub enum SimFact {
         /// Id of the object.
         id: String,
     },
-    /// A hand has removed an object; its [`ObjectDeleted`](Self::ObjectDeleted) comes before this.
+    /// A hand has removed an object; its [`ObjectDeleted`](SceneFact::ObjectDeleted) comes before this.
     Destroyed {
         /// The command that caused it.
         cause: CommandId,
@@ -66,6 +110,11 @@ pub enum SimFact {
         /// Id of the object.
         id: String,
     },
+}
+
+/// An event of a control, a bond or scissors.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MechanismFact {
     /// A control was operated.
     Triggered {
         /// The command that caused it, if one did.
@@ -113,7 +162,7 @@ pub enum SimFact {
         /// The bond with its new tightness.
         bond: Bond,
     },
-    /// A link of a chain was cut; its [`ObjectDeleted`](Self::ObjectDeleted) comes after.
+    /// A link of a chain was cut; its [`ObjectDeleted`](SceneFact::ObjectDeleted) comes after.
     Cut {
         /// The command that it came of, if it came of one.
         cause: Option<CommandId>,
@@ -124,22 +173,29 @@ pub enum SimFact {
         /// Id of the link.
         link: String,
     },
+}
+
+/// An event of a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RecordingFact {
     /// A recording has begun.
-    RecordingStarted {
+    Started {
         /// The command that caused it.
         cause: CommandId,
         /// Its folder.
         folder: PathBuf,
+        /// The folder of the earlier recording that was in its place.
+        moved_aside: Option<PathBuf>,
     },
     /// A recording has ended properly.
-    RecordingFinished {
+    Finished {
         /// The command that caused it.
         cause: CommandId,
         /// Its folder.
         folder: PathBuf,
     },
     /// A recording could not begin or go on. What was written before stays.
-    RecordingFailed {
+    Failed {
         /// The command that caused it, if one did.
         cause: Option<CommandId>,
         /// Its folder.
@@ -147,18 +203,13 @@ pub enum SimFact {
         /// The fault, and what the user can do.
         reason: String,
     },
-    /// The world, its tick included, is back where the recording's last segment began.
-    Undone {
-        /// The command that caused it.
-        cause: CommandId,
-    },
-    /// The world, its tick included, is back where the segment was undone.
-    Redone {
-        /// The command that caused it.
-        cause: CommandId,
-    },
+}
+
+/// An event of the robot.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RobotFact {
     /// The robot was put at the table, or taken away.
-    RobotShown {
+    Shown {
         /// The command that caused it.
         cause: CommandId,
         /// True if it now stands there.
@@ -194,11 +245,40 @@ pub enum SimFact {
         /// The obstacle.
         by: Obstacle,
     },
-    /// A command, or another request, was not carried out.
-    Refused {
-        /// The command that was refused, if it was one.
-        cause: Option<CommandId>,
-        /// The request, and the reason for the refusal.
-        reason: String,
-    },
+}
+
+impl From<SceneFact> for SimFact {
+    fn from(fact: SceneFact) -> Self {
+        Self::Scene(fact)
+    }
+}
+
+impl From<HistoryFact> for SimFact {
+    fn from(fact: HistoryFact) -> Self {
+        Self::History(fact)
+    }
+}
+
+impl From<HandFact> for SimFact {
+    fn from(fact: HandFact) -> Self {
+        Self::Hand(fact)
+    }
+}
+
+impl From<MechanismFact> for SimFact {
+    fn from(fact: MechanismFact) -> Self {
+        Self::Mechanism(fact)
+    }
+}
+
+impl From<RecordingFact> for SimFact {
+    fn from(fact: RecordingFact) -> Self {
+        Self::Recording(fact)
+    }
+}
+
+impl From<RobotFact> for SimFact {
+    fn from(fact: RobotFact) -> Self {
+        Self::Robot(fact)
+    }
 }

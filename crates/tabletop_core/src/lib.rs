@@ -31,13 +31,13 @@ mod fastening;
 mod figure;
 mod hand;
 mod hand_camera;
-mod holder;
 mod idle;
 mod joint;
 mod jointed;
 mod keymap;
 mod light;
 pub mod limits;
+mod manipulator;
 mod mechanism;
 mod mesh;
 mod mount;
@@ -60,7 +60,6 @@ mod ray;
 mod reach;
 mod recording;
 mod reflection;
-mod regular_file;
 mod requirement;
 mod rest;
 mod robot;
@@ -80,7 +79,7 @@ mod user;
 
 pub use agent::{Agent, ScriptCommand, ScriptEvent, SimBlocked};
 pub use bond::{Bond, BondEnd, BondPoint, Bonds, GuestPoint, HostPoint, TightnessStep};
-pub use bounds::Bounds;
+pub use bounds::{Bounds, PAIR_GAP};
 pub use clock::StepApp;
 pub use color::{ColorError, NAMED_COLORS, Rgb};
 pub use command::{
@@ -93,12 +92,13 @@ pub use control::{
     lights::{IndicatorLights, LightState},
     switch::{Side, ToggleSwitch},
 };
-pub use fact::SimFact;
+pub use fact::{
+    HandFact, HistoryFact, MechanismFact, RecordingFact, RobotFact, SceneFact, SimFact,
+};
 pub use fastening::Turn;
 pub use figure::{CarriesHeadCamera, Figure, Triangles};
 pub use hand::{Hand, Hands};
 pub use hand_camera::{HandCamera, HandCameras, HandImages};
-pub use holder::{Held, Holder};
 pub use idle::Idle;
 pub use joint::{Joint, JointKind, JointSpec};
 pub use jointed::{JointMotion, JointedSpec};
@@ -107,6 +107,7 @@ pub use keymap::{
     Modifiers, Situation, Way, was_struck,
 };
 pub use light::{LIGHT, Light};
+pub use manipulator::{Held, Manipulator};
 pub use mechanism::{PlacedPart, TouchedSurface};
 pub use mesh::{MeshError, MeshSpec};
 pub use navigation::{CameraMotion, CameraView, Steering};
@@ -129,9 +130,6 @@ pub use preset::Preset;
 pub use random::Random;
 pub use reach::Reach;
 pub use recording::{History, OpenRecording, Recording, Replaying};
-pub use regular_file::{
-    Symlinks, open_regular_file, read_regular_file, read_regular_text, require_regular_file,
-};
 pub use requirement::require;
 pub use rest::{RestApp, RestingSystems, Upkeep};
 pub use robot::{
@@ -152,7 +150,7 @@ pub use shown_task::{
 pub use solid::{Primitive, Solid};
 pub use tick::{SimTick, TICK_SECONDS, TICKS_PER_SECOND};
 pub use timeline::{
-    Act, Manipulator, Timeline, TimelineGrip, TimelinePicture, TimelineSegment, TimelineStage, Verb,
+    Act, Timeline, TimelineGrip, TimelinePicture, TimelineSegment, TimelineStage, Verb,
 };
 pub use turn::{turn_about, turn_about_x, turn_about_y, turn_about_z};
 pub use twist::Twist;
@@ -164,10 +162,11 @@ use bevy::prelude::*;
 pub mod prelude {
     #[doc(hidden)]
     pub use crate::{
-        Actor, Arm, ClockCommand, CommandWriter, CorePlugin, Drive, Hand, HandCommand, Hands,
-        HistoryCommand, IssuedCommand, MechanismCommand, ObjectIndex, ObjectSpec, Paused, Pose,
-        Preset, RecordingCommand, Rgb, Robot, RobotCommand, RobotJoint, SceneCommand, SceneItem,
-        SceneSpec, Shape, SimCommand, SimFact, SimSystems, SimTick, StepApp, Table, WriteCommand,
+        Actor, Arm, ClockCommand, CommandWriter, CorePlugin, Drive, Hand, HandCommand, HandFact,
+        Hands, HistoryCommand, HistoryFact, IssuedCommand, MechanismCommand, MechanismFact,
+        ObjectIndex, ObjectSpec, Paused, Pose, Preset, RecordingCommand, RecordingFact, Rgb, Robot,
+        RobotCommand, RobotFact, RobotJoint, SceneCommand, SceneFact, SceneItem, SceneSpec, Shape,
+        SimCommand, SimFact, SimSystems, SimTick, StepApp, Table, WriteCommand,
     };
 }
 

@@ -11,6 +11,25 @@ use bevy::prelude::*;
 use crate::{BondEnd, BondPoint, Control, ControlKind, Part, Pose, Rgb, Shape};
 
 impl Shape {
+    /// All names of shapes.
+    pub const NAMES: [&'static str; 15] = [
+        "block",
+        "cylinder",
+        "sphere",
+        "box",
+        "frustum",
+        "ring",
+        "custom",
+        "composite",
+        "lid",
+        "toggleSwitch",
+        "pushButton",
+        "indicatorLights",
+        "customControl",
+        "guestBondPoint",
+        "hostBondPoint",
+    ];
+
     /// The name of this shape's element in a task file, or its name in recordings.
     pub const fn name(&self) -> &'static str {
         match self {

@@ -4,7 +4,7 @@ use std::{fmt, path::PathBuf};
 
 use bevy::prelude::*;
 
-use crate::{Hand, LimbName, Operator, Rgb, SimFact, SimTick};
+use crate::{HandFact, Manipulator, MechanismFact, Operator, Rgb, RobotFact, SimFact, SimTick};
 
 /// The timeline of the recording that is being made, was made last, or is open. The recorder or the replayer fills it in.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
@@ -81,15 +81,6 @@ pub struct Act {
     pub object: Option<String>,
 }
 
-/// A hand or a gripper.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Manipulator {
-    /// A hand of the demonstrator.
-    Hand(Hand),
-    /// A gripper of the robot.
-    Gripper(LimbName),
-}
-
 /// A kind of act on an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verb {
@@ -139,51 +130,59 @@ impl Act {
     /// The act that a fact reports, if it reports one.
     pub fn of(fact: &SimFact) -> Option<Self> {
         let (manipulator, verb, id) = match fact {
-            SimFact::Grasped { hand, id, .. } => (Manipulator::Hand(*hand), Verb::Grasp, id),
-            SimFact::Released { hand, id, .. } => (Manipulator::Hand(*hand), Verb::Release, id),
-            SimFact::Destroyed { hand, id, .. } => (Manipulator::Hand(*hand), Verb::Destroy, id),
-            SimFact::Triggered {
+            SimFact::Hand(HandFact::Grasped { hand, id, .. }) => {
+                (Manipulator::Hand(*hand), Verb::Grasp, id)
+            }
+            SimFact::Hand(HandFact::Released { hand, id, .. }) => {
+                (Manipulator::Hand(*hand), Verb::Release, id)
+            }
+            SimFact::Hand(HandFact::Destroyed { hand, id, .. }) => {
+                (Manipulator::Hand(*hand), Verb::Destroy, id)
+            }
+            SimFact::Mechanism(MechanismFact::Triggered {
                 by: Operator::Hand(hand),
                 control,
                 ..
-            } => (Manipulator::Hand(*hand), Verb::Trigger, control),
-            SimFact::PointedTo { hand, part, .. } => {
+            }) => (Manipulator::Hand(*hand), Verb::Trigger, control),
+            SimFact::Mechanism(MechanismFact::PointedTo { hand, part, .. }) => {
                 (Manipulator::Hand(*hand), Verb::PointTo, part)
             }
-            SimFact::Fastened {
+            SimFact::Mechanism(MechanismFact::Fastened {
                 by: Operator::Hand(hand),
                 bond,
                 ..
-            } => (Manipulator::Hand(*hand), Verb::Fasten, &bond.guest),
-            SimFact::Loosened {
+            }) => (Manipulator::Hand(*hand), Verb::Fasten, &bond.guest),
+            SimFact::Mechanism(MechanismFact::Loosened {
                 by: Operator::Hand(hand),
                 bond,
                 ..
-            } => (Manipulator::Hand(*hand), Verb::Loosen, &bond.guest),
-            SimFact::Cut {
+            }) => (Manipulator::Hand(*hand), Verb::Loosen, &bond.guest),
+            SimFact::Mechanism(MechanismFact::Cut {
                 by: Operator::Hand(hand),
                 link,
                 ..
-            } => (Manipulator::Hand(*hand), Verb::Cut, link),
-            SimFact::GripMade { arm, id } => (Manipulator::Gripper(*arm), Verb::Grasp, id),
-            SimFact::GripReleased { arm, id } => (Manipulator::Gripper(*arm), Verb::Release, id),
-            SimFact::TaskLoaded { .. }
-            | SimFact::Triggered { .. }
-            | SimFact::ControlChanged { .. }
-            | SimFact::Fastened { .. }
-            | SimFact::Loosened { .. }
-            | SimFact::Cut { .. }
-            | SimFact::ObjectCreated { .. }
-            | SimFact::ObjectDeleted { .. }
-            | SimFact::SegmentBegun { .. }
-            | SimFact::RecordingStarted { .. }
-            | SimFact::RecordingFinished { .. }
-            | SimFact::RecordingFailed { .. }
-            | SimFact::Undone { .. }
-            | SimFact::Redone { .. }
-            | SimFact::RobotShown { .. }
-            | SimFact::GripRefused { .. }
-            | SimFact::ArmBlocked { .. }
+            }) => (Manipulator::Hand(*hand), Verb::Cut, link),
+            SimFact::Robot(RobotFact::GripMade { arm, id }) => {
+                (Manipulator::Gripper(*arm), Verb::Grasp, id)
+            }
+            SimFact::Robot(RobotFact::GripReleased { arm, id }) => {
+                (Manipulator::Gripper(*arm), Verb::Release, id)
+            }
+            SimFact::Scene(_)
+            | SimFact::Mechanism(
+                MechanismFact::Triggered { .. }
+                | MechanismFact::ControlChanged { .. }
+                | MechanismFact::Fastened { .. }
+                | MechanismFact::Loosened { .. }
+                | MechanismFact::Cut { .. },
+            )
+            | SimFact::History(_)
+            | SimFact::Recording(_)
+            | SimFact::Robot(
+                RobotFact::Shown { .. }
+                | RobotFact::GripRefused { .. }
+                | RobotFact::ArmBlocked { .. },
+            )
             | SimFact::Refused { .. } => return None,
         };
         Some(Self {
@@ -210,15 +209,6 @@ impl Verb {
     }
 }
 
-impl fmt::Display for Manipulator {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Hand(hand) => write!(f, "{hand}"),
-            Self::Gripper(arm) => write!(f, "{} gripper", arm),
-        }
-    }
-}
-
 impl fmt::Display for Act {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let object = self.object.as_deref().unwrap_or("what it held");
@@ -229,6 +219,7 @@ impl fmt::Display for Act {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Hand, LimbName};
 
     fn timeline() -> Timeline {
         let segment = |start| TimelineSegment {

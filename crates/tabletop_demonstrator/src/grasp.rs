@@ -2,8 +2,8 @@
 
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
-    Cause, CommandId, Hand, HandCommand, Hands, Held, Holder, IssuedCommand, ObjectIndex,
-    ObjectSpec, Paused, Pose, SimFact, carry_out, turn_about,
+    Cause, CommandId, Hand, HandCommand, HandFact, Hands, Held, IssuedCommand, Manipulator,
+    ObjectIndex, ObjectSpec, Paused, Pose, SimFact, carry_out, turn_about,
 };
 use tabletop_history::begin_segment;
 use tabletop_physics::{Carry, hold, let_go, remove_object};
@@ -85,17 +85,17 @@ fn grasp(world: &mut World, cause: CommandId, hand: Hand, id: &str) -> Result<()
     }
 
     begin_segment(world, cause);
-    hold(world, object, Holder::Hand(hand));
+    hold(world, object, Manipulator::Hand(hand));
     let here = world
         .get::<Transform>(object)
         .map_or(Pose::IDENTITY, Pose::from);
     world.entity_mut(object).insert(CarryTarget(here));
     world.resource_mut::<Hands>().set_held(hand, Some(object));
-    world.write_message(SimFact::Grasped {
+    world.write_message(SimFact::Hand(HandFact::Grasped {
         cause,
         hand,
         id: id.to_owned(),
-    });
+    }));
     Ok(())
 }
 
@@ -108,7 +108,7 @@ fn release(world: &mut World, cause: CommandId, hand: Hand) {
     world.entity_mut(object).remove::<CarryTarget>();
     let_go(world, object);
     let cause = Some(cause);
-    world.write_message(SimFact::Released { cause, hand, id });
+    world.write_message(SimFact::Hand(HandFact::Released { cause, hand, id }));
 }
 
 fn destroy(world: &mut World, cause: CommandId, hand: Hand) -> Result<(), String> {
@@ -119,7 +119,7 @@ fn destroy(world: &mut World, cause: CommandId, hand: Hand) -> Result<(), String
     world.resource_mut::<Hands>().set_held(hand, None);
     world.entity_mut(object).remove::<CarryTarget>();
     remove_object(world, object);
-    world.write_message(SimFact::Destroyed { cause, hand, id });
+    world.write_message(SimFact::Hand(HandFact::Destroyed { cause, hand, id }));
     Ok(())
 }
 
@@ -174,11 +174,11 @@ pub(crate) fn note_lost(
     };
     hands.set_held(hand, None);
     if let Ok(spec) = objects.get(remove.entity) {
-        facts.write(SimFact::Released {
+        facts.write(SimFact::Hand(HandFact::Released {
             cause: cause.0,
             hand,
             id: spec.id.clone(),
-        });
+        }));
     }
 }
 

@@ -77,8 +77,8 @@ pub(crate) struct Console {
 struct LineQueue {
     waiting: VecDeque<ConsoleLine>,
     waiting_bytes: usize,
-    /// The last lines of the standard error that nobody has fetched.
-    last_errors: VecDeque<String>,
+    /// The last lines of the standard error that nobody has fetched, each with whether it waits.
+    last_errors: VecDeque<(String, bool)>,
     left_out: u64,
     noted: Option<Instant>,
     second: Option<Instant>,
@@ -124,10 +124,17 @@ impl Console {
     /// The last lines of the standard error that nobody has fetched. Nobody will.
     pub(crate) fn take_last_errors(&self) -> String {
         self.with(|lines| {
-            let words: Vec<_> = lines.last_errors.drain(..).collect();
-            let reported =
-                |line: &ConsoleLine| line.stream == Stream::Error && words.contains(&line.text);
-            lines.waiting.retain(|line| !reported(line));
+            let last: Vec<_> = lines.last_errors.drain(..).collect();
+            let is_error = |line: &ConsoleLine| line.stream == Stream::Error;
+            let waiting = lines.waiting.iter().filter(|line| is_error(line)).count();
+            let taken = last.iter().filter(|(_, waits)| *waits).count();
+            let mut kept = waiting.saturating_sub(taken);
+            lines.waiting.retain(|line| {
+                let stays = !is_error(line) || kept > 0;
+                kept -= usize::from(is_error(line) && stays);
+                stays
+            });
+            let words: Vec<_> = last.into_iter().map(|(text, _)| text).collect();
             words.join("\n")
         })
     }
@@ -157,7 +164,7 @@ impl LineQueue {
             if self.last_errors.len() >= LAST_ERRORS {
                 self.last_errors.pop_front();
             }
-            self.last_errors.push_back(text.clone());
+            self.last_errors.push_back((text.clone(), !full));
         }
         if full {
             self.left_out += 1;
@@ -379,6 +386,33 @@ mod tests {
         console.push(Stream::Out, b"result");
         assert_eq!(console.take_last_errors(), "unseen");
         assert_eq!(console.drain().len(), 1);
+    }
+
+    #[test]
+    fn of_equal_errors_only_the_last_are_reported_with_the_end() {
+        let console = Console::new(ConsoleLimit::Readable);
+        for _ in 0..50 {
+            console.push(Stream::Error, b"again");
+        }
+        console.push(Stream::Out, b"result");
+        let reported = console.take_last_errors();
+        assert_eq!(reported.lines().count(), LAST_ERRORS);
+        assert_eq!(console.drain().len(), 50 - LAST_ERRORS + 1);
+    }
+
+    #[test]
+    fn all_that_does_not_fit_is_counted() {
+        let console = Console::new(ConsoleLimit::Whole);
+        for _ in 0..300 {
+            console.push(Stream::Out, &[b'x'; 1 << 18]);
+        }
+        let lines = console.drain();
+        let left_out = 301 - lines.len();
+        assert!(left_out > 10, "{left_out}");
+        assert_eq!(
+            notes(&lines),
+            [format!("({left_out} more lines were left out)")]
+        );
     }
 
     #[test]

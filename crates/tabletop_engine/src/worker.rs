@@ -144,10 +144,11 @@ impl Running {
         for (output, stream) in self.process.outputs().zip([Stream::Out, Stream::Error]) {
             let console = self.worker.console.clone();
             let inbox = self.worker.own_inbox.clone();
+            let kind = self.worker.config.engine.kind;
             self.open_outputs += 1;
             thread::Builder::new()
                 .name("script output".into())
-                .spawn(move || read_output(output, stream, &console, &inbox))
+                .spawn(move || read_output(output, stream, kind, &console, &inbox))
                 .map_err(|error| EngineError::Start {
                     engine: "a thread".into(),
                     reason: error.to_string(),

@@ -22,9 +22,8 @@ use serde::{
     Deserialize, Deserializer,
     de::{MapAccess, Visitor},
 };
-use tabletop_core::{
-    Action, KeyBinding, Keymap, RobotLayout, Situation, Symlinks, read_regular_text,
-};
+use tabletop_core::{Action, KeyBinding, Keymap, RobotLayout, Situation};
+use tabletop_storage::{Symlinks, read_regular_text};
 
 use crate::{Notices, Preferences, Tone, preferences::MOST_BYTES};
 
@@ -62,18 +61,24 @@ pub fn read(
     let Some(path) = path.map(Path::to_owned).or_else(own) else {
         return shipped(layout);
     };
-    match read_regular_text(&path, MOST_BYTES, Symlinks::Followed) {
+    match read_text(&path) {
         Ok(text) => {
             let (keymap, faults) = parse(&text, layout);
             let faults = faults.into_iter();
             let located = faults.map(|fault| format!("{}:{fault}", path.display()));
             (keymap, located.collect())
         }
-        Err(error) => {
-            let fault = format!("{}: {error}", path.display());
-            (Keymap::of(layout), vec![fault])
-        }
+        Err(fault) => (Keymap::of(layout), vec![fault]),
     }
+}
+
+/// The text of a keymap.
+///
+/// # Errors
+/// It cannot be read; the path is named.
+pub fn read_text(path: &Path) -> Result<String, String> {
+    let text = read_regular_text(path, MOST_BYTES, Symlinks::Followed);
+    text.map_err(|error| format!("{}: {error}", path.display()))
 }
 
 /// The keys of a robot as they are shipped, and those of its joints that have another meaning already.

@@ -1,7 +1,7 @@
 //! Preferences of a user between runs: RON files in the platform's configuration folder, one for each concern.
 
 use std::{
-    env, fs, io,
+    env, io,
     path::{Path, PathBuf},
 };
 
@@ -9,7 +9,7 @@ use bevy::prelude::*;
 use directories::ProjectDirs;
 use ron::ser::PrettyConfig;
 use serde::{Serialize, de::DeserializeOwned};
-use tabletop_core::{Symlinks, read_regular_text};
+use tabletop_storage::{Storage, Symlinks, read_regular_text};
 use thiserror::Error;
 
 /// The environment variable that names another folder.
@@ -123,16 +123,17 @@ impl Preferences {
 
 /// Writes all of a file, or leaves the old one.
 pub(crate) fn replace(path: &Path, text: &str) -> io::Result<()> {
+    let storage = Storage::default();
     if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder)?;
+        storage.create_folders(folder)?;
     }
-    let new = path.with_added_extension("new");
-    fs::write(&new, text)?;
-    fs::rename(&new, path)
+    storage.replace(path, text.as_bytes())
 }
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
     use serde::Deserialize;
 

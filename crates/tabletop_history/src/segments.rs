@@ -7,7 +7,7 @@ use bevy::{
     prelude::*,
 };
 use tabletop_core::{
-    CommandId, History, HistoryCommand, IssuedCommand, Recording, SimFact, carry_out,
+    CommandId, History, HistoryCommand, HistoryFact, IssuedCommand, Recording, SimFact, carry_out,
 };
 
 use crate::{
@@ -77,7 +77,7 @@ impl Segments {
 /// Reports that a hand is about to act because of a command. While a recording runs, the world before the act is kept, so that it can be
 /// undone. Without [`HistoryPlugin`](crate::HistoryPlugin), nothing is kept.
 pub fn begin_segment(world: &mut World, cause: CommandId) {
-    world.write_message(SimFact::SegmentBegun { cause });
+    world.write_message(SimFact::History(HistoryFact::SegmentBegun { cause }));
     if !world.resource::<Recording>().0 || !world.contains_resource::<Segments>() {
         return;
     }
@@ -119,7 +119,7 @@ fn undo(world: &mut World, cause: CommandId) -> Result<SimFact, String> {
     restore(world, &begin);
     let undone = Undone { begin, end };
     world.resource_mut::<Segments>().redoable.push(undone);
-    Ok(SimFact::Undone { cause })
+    Ok(SimFact::History(HistoryFact::Undone { cause }))
 }
 
 fn redo(world: &mut World, cause: CommandId) -> Result<SimFact, String> {
@@ -128,7 +128,7 @@ fn redo(world: &mut World, cause: CommandId) -> Result<SimFact, String> {
     };
     restore(world, &end);
     world.resource_mut::<Segments>().undoable.push_back(begin);
-    Ok(SimFact::Redone { cause })
+    Ok(SimFact::History(HistoryFact::Redone { cause }))
 }
 
 /// The present world, sharing unchanged state with the last snapshot.

@@ -2,8 +2,8 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Bond, Bonds, CommandId, Held, HostPoint, Joint, JointKind, ObjectIndex, ObjectSpec, Operator,
-    Pose, Rollback, SimFact, Turn,
+    Bond, Bonds, CommandId, Held, HostPoint, Joint, JointKind, MechanismFact, ObjectIndex,
+    ObjectSpec, Operator, Pose, Rollback, SimFact, Turn,
 };
 use tabletop_physics::{hold, put, remove_joint, take_in};
 
@@ -112,8 +112,8 @@ pub(crate) fn take_turn(
     let mut network = Network::of(world);
     have_effect(world, &mut network, &bond);
     world.write_message(match turn {
-        Turn::Tighter => SimFact::Fastened { cause, by, bond },
-        Turn::Looser => SimFact::Loosened { cause, by, bond },
+        Turn::Tighter => SimFact::Mechanism(MechanismFact::Fastened { cause, by, bond }),
+        Turn::Looser => SimFact::Mechanism(MechanismFact::Loosened { cause, by, bond }),
     });
     network.take_effect(world, true);
     Ok(())

@@ -2,8 +2,8 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Joint, JointKind, ObjectIndex, ObjectSpec, Operator, Paused, Pose, PushButton, Robot,
-    RobotLayout, Shape, SimFact,
+    Joint, JointKind, MechanismFact, ObjectIndex, ObjectSpec, Operator, Paused, Pose, PushButton,
+    Robot, RobotLayout, Shape, SimFact,
 };
 use tabletop_physics::{pressures_on, push};
 
@@ -70,7 +70,11 @@ pub(crate) fn follow_caps(In(moved): In<Vec<MovedCap>>, world: &mut World) {
         if is_pressed && let Some(by) = presser(world, cap) {
             let control = control.clone();
             let cause = None;
-            world.write_message(SimFact::Triggered { cause, by, control });
+            world.write_message(SimFact::Mechanism(MechanismFact::Triggered {
+                cause,
+                by,
+                control,
+            }));
         }
         let mut network = Network::of(world);
         network.press(&control, is_pressed);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Cause, Change, Control, ControlKind, ObjectIndex, ObjectSpec, PressMode, SimFact,
+    Cause, Change, Control, ControlKind, MechanismFact, ObjectIndex, ObjectSpec, PressMode, SimFact,
 };
 use tabletop_physics::{remove_object, reshape};
 
@@ -150,11 +150,11 @@ impl Network {
             };
             let state = control.state_name();
             if is_reported && state != *before {
-                world.write_message(SimFact::ControlChanged {
+                world.write_message(SimFact::Mechanism(MechanismFact::ControlChanged {
                     cause,
                     control: id.clone(),
                     state,
-                });
+                }));
             }
         }
         for (object, spec) in self.objects {

@@ -2,8 +2,8 @@
 
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
-    CommandId, ControlKind, Hand, IssuedCommand, MechanismCommand, ObjectIndex, ObjectSpec,
-    Operator, Paused, SimFact, Turn, carry_out,
+    CommandId, ControlKind, Hand, IssuedCommand, MechanismCommand, MechanismFact, ObjectIndex,
+    ObjectSpec, Operator, Paused, SimFact, Turn, carry_out,
 };
 use tabletop_history::begin_segment;
 
@@ -79,11 +79,11 @@ pub(crate) fn trigger(
     control: &str,
     next: u32,
 ) {
-    world.write_message(SimFact::Triggered {
+    world.write_message(SimFact::Mechanism(MechanismFact::Triggered {
         cause,
         by,
         control: control.to_owned(),
-    });
+    }));
     let mut network = Network::of(world);
     if let Ok(ControlKind::PushButton(_)) = network.control(control).map(|control| &control.kind) {
         button::push_cap(world, control);
@@ -105,11 +105,11 @@ fn point_to(world: &mut World, cause: CommandId, hand: Hand, target: &str) -> Re
         .map(|spec| spec.id.clone())
         .ok_or_else(|| format!("{hand} cannot point to `{target}`: there is no such object"))?;
     begin_segment(world, cause);
-    world.write_message(SimFact::PointedTo {
+    world.write_message(SimFact::Mechanism(MechanismFact::PointedTo {
         cause,
         hand,
         part: target.to_owned(),
         object,
-    });
+    }));
     Ok(())
 }

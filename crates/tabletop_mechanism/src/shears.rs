@@ -2,8 +2,8 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Bounds, Cause, CommandId, Hand, Held, Holder, Joint, JointKind, ObjectIndex, ObjectSpec,
-    Operator, Paused, Pose, Robot, RobotLayout, Shape, SimFact, SimTick,
+    Bounds, Cause, CommandId, Hand, Held, Joint, JointKind, Manipulator, MechanismFact,
+    ObjectIndex, ObjectSpec, Operator, Paused, Pose, Robot, RobotLayout, Shape, SimFact, SimTick,
 };
 use tabletop_history::begin_segment;
 use tabletop_physics::{is_touching, pressures_on, push, remove_object};
@@ -119,12 +119,12 @@ pub(crate) fn cut_links(world: &mut World) {
             let (cause, by) = who_closes(world, entity, joint);
             let blade = world.get::<ObjectSpec>(joint.objects[0]);
             let blade = blade.map_or_else(String::new, |blade| blade.id.clone());
-            world.write_message(SimFact::Cut {
+            world.write_message(SimFact::Mechanism(MechanismFact::Cut {
                 cause,
                 by,
                 blade,
                 link,
-            });
+            }));
             world.insert_resource(Cause(cause));
             remove_object(world, object);
             world.insert_resource(Cause(None));
@@ -141,8 +141,8 @@ fn who_closes(world: &mut World, entity: Entity, joint: Joint) -> (Option<Comman
     }
     let held = |blade: &Entity| world.get::<Held>(*blade).map(|held| held.by);
     match joint.objects.iter().find_map(held) {
-        Some(Holder::Hand(hand)) => return (None, Operator::Hand(hand)),
-        Some(Holder::Gripper(limb)) => return (None, Operator::Limb(limb)),
+        Some(Manipulator::Hand(hand)) => return (None, Operator::Hand(hand)),
+        Some(Manipulator::Gripper(limb)) => return (None, Operator::Limb(limb)),
         None => {}
     }
     let layout = world.resource::<RobotLayout>();

@@ -126,9 +126,12 @@ fn states_are_passed_on_when_a_scene_is_set_and_nothing_is_reported() {
     ]);
     assert_eq!(state(&app, "light"), 1);
     let facts = app.world().resource::<Messages<SimFact>>();
-    let changes = facts
-        .iter_current_update_messages()
-        .filter(|fact| matches!(fact, SimFact::ControlChanged { .. }));
+    let changes = facts.iter_current_update_messages().filter(|fact| {
+        matches!(
+            fact,
+            SimFact::Mechanism(MechanismFact::ControlChanged { .. })
+        )
+    });
     assert_eq!(changes.count(), 0);
 }
 
@@ -402,8 +405,10 @@ fn wrench(app: &mut App, from: f32, to: f32) -> Vec<u32> {
         let angle = from + (to - from) * f32::from(number) / 30.0;
         let gripper = Pose::from_degrees(Vec3::Z, Vec3::Z * angle);
         for fact in grip(app, "screw", gripper) {
-            if let SimFact::Fastened { cause, by, bond } | SimFact::Loosened { cause, by, bond } =
-                fact
+            if let SimFact::Mechanism(
+                MechanismFact::Fastened { cause, by, bond }
+                | MechanismFact::Loosened { cause, by, bond },
+            ) = fact
             {
                 assert_eq!(cause, None);
                 let limb = app.world().resource::<RobotLayout>().limbs[0].name;

@@ -102,7 +102,7 @@ fn triggers(app: &mut App, ticks: u32) -> Vec<(Operator, String)> {
         app.step(1);
         let facts = app.world().resource::<Messages<SimFact>>();
         for fact in facts.get_cursor().read(facts) {
-            if let SimFact::Triggered { by, control, .. } = fact {
+            if let SimFact::Mechanism(MechanismFact::Triggered { by, control, .. }) = fact {
                 triggers.push((by.clone(), control.clone()));
             }
         }

@@ -6,6 +6,7 @@
 mod care;
 mod depth;
 mod engine;
+mod foresight;
 mod landing;
 mod mode;
 mod substeps;

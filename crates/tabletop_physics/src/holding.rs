@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Held, Holder, Joint, ObjectSpec, Pose, SimTick, TICK_SECONDS};
+use tabletop_core::{Held, Joint, Manipulator, ObjectSpec, Pose, SimTick, TICK_SECONDS};
 
 use crate::short_turn::short_turn;
 
@@ -41,7 +41,7 @@ pub enum Carry {
 }
 
 /// Gives an object to a holder. Returns how it is carried.
-pub fn hold(world: &mut World, object: Entity, by: Holder) -> Carry {
+pub fn hold(world: &mut World, object: Entity, by: Manipulator) -> Carry {
     let is_jointed = world
         .query::<&Joint>()
         .iter(world)

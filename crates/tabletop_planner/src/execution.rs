@@ -141,6 +141,8 @@ impl Execution {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use tabletop_core::{RobotLayout, TICK_SECONDS, Table};
     use tabletop_kinematics::baxter;
 
@@ -194,6 +196,7 @@ mod tests {
             steps: Vec::new(),
             detours: Vec::new(),
             operations: Vec::new(),
+            vocabulary: BTreeMap::new(),
         }
     }
 

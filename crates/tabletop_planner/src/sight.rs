@@ -1,6 +1,6 @@
 //! The world as it is seen.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use bevy::math::Vec3;
 use tabletop_core::{JointSpec, Pose, Shape, Table};
@@ -107,12 +107,26 @@ impl Sight {
         occupant.map(|(other, _)| other.clone())
     }
 
-    /// Ids of the objects that stand directly on an object.
-    pub fn above(&self, id: &str) -> Vec<String> {
+    /// Ids of the objects that stand on an object, directly or on each other. Each comes before the one it stands on; of objects that
+    /// stand on each other in turn, one comes first.
+    pub fn stack_above(&self, id: &str) -> Vec<String> {
         let arrangement = self.arrangement();
-        let others = self.objects.keys();
-        let above = others.filter(|other| arrangement.supports(other).contains(&id));
-        above.cloned().collect()
+        let above = |id: &str| arrangement.standing_on(id).into_iter();
+        let mut visited = BTreeSet::from([id]);
+        let mut stack = Vec::new();
+        // From the object upwards, with what is yet to be visited above each.
+        let mut way = vec![(id, above(id))];
+        while let Some((below, unvisited)) = way.last_mut() {
+            match unvisited.find(|other| visited.insert(other)) {
+                Some(other) => way.push((other, above(other))),
+                None => {
+                    stack.push((*below).to_owned());
+                    way.pop();
+                }
+            }
+        }
+        stack.retain(|other| other != id);
+        stack
     }
 }
 
@@ -135,4 +149,80 @@ pub(crate) fn heights(solids: &[PlacedSolid]) -> [f32; 2] {
 /// Angle by which an orientation leans from another one about level axes, in rad.
 pub(crate) fn lean(rotation: bevy::math::Quat) -> f32 {
     (rotation * Vec3::Z).angle_between(Vec3::Z)
+}
+
+#[cfg(test)]
+mod tests {
+    use tabletop_core::{Part, Rgb};
+
+    use super::*;
+
+    fn block(span: Vec3) -> Shape {
+        let color = Rgb::RED;
+        Shape::Block { span, color }
+    }
+
+    /// Two cubes, of which the second is beside the first and one higher.
+    fn step() -> Shape {
+        let cube = |x: f32, z: f32| Part::new("", Pose::at(Vec3::new(x, 0.0, z)), block(Vec3::ONE));
+        Shape::Composite {
+            parts: vec![cube(-0.51, 0.5), cube(0.51, 1.51)],
+        }
+    }
+
+    fn sight(objects: &[(&str, Shape, Pose)]) -> Sight {
+        let objects = objects.iter().map(|(id, shape, pose)| {
+            let seen = SeenObject {
+                shape: shape.clone(),
+                pose: *pose,
+                is_fixed: false,
+            };
+            ((*id).to_owned(), seen)
+        });
+        Sight {
+            objects: objects.collect(),
+            ..Sight::default()
+        }
+    }
+
+    fn at(x: f32, z: f32) -> Pose {
+        Pose::at(Vec3::new(x, 0.0, z))
+    }
+
+    #[test]
+    fn what_stands_on_an_object_comes_from_the_top() {
+        let bar = block(Vec3::new(3.0, 1.0, 1.0));
+        let cube = block(Vec3::ONE);
+        // The bar leans on a tower and on a pillar, both on the base.
+        let sight = sight(&[
+            ("a base", block(Vec3::new(5.0, 1.0, 1.0)), at(0.0, 0.5)),
+            ("a pillar", block(Vec3::new(1.0, 1.0, 2.0)), at(-1.0, 2.0)),
+            ("b tower", cube.clone(), at(1.0, 1.5)),
+            ("c tower", cube.clone(), at(1.0, 2.5)),
+            ("bar", bar, at(0.0, 3.5)),
+            ("beside", cube, at(4.0, 0.5)),
+        ]);
+        let expected = ["bar", "a pillar", "c tower", "b tower"];
+        assert_eq!(sight.stack_above("a base"), expected);
+        assert!(sight.stack_above("bar").is_empty());
+        assert!(sight.stack_above("nothing").is_empty());
+    }
+
+    #[test]
+    fn objects_that_stand_on_each_other_come_once() {
+        let turned = Pose::new(
+            Vec3::ZERO,
+            bevy::math::Quat::from_rotation_z(std::f32::consts::PI),
+        );
+        let sight = sight(&[
+            ("a", step(), Pose::IDENTITY),
+            ("b", step(), turned),
+            ("lid", block(Vec3::new(2.0, 1.0, 0.5)), at(0.0, 2.26)),
+        ]);
+        assert_eq!(sight.arrangement().supports("a"), ["b"]);
+        assert_eq!(sight.arrangement().supports("b"), ["a"]);
+        assert_eq!(sight.stack_above("a"), ["lid", "b"]);
+        assert_eq!(sight.stack_above("b"), ["lid", "a"]);
+        assert_eq!(sight.stack_above("lid"), [""; 0]);
+    }
 }

@@ -26,6 +26,22 @@ pub enum RecorderError {
         /// The folder.
         folder: PathBuf,
     },
+    /// Something else than a recording is in the folder.
+    #[error(
+        "{folder} holds something else than a recording, and stays as it is; record into a new folder"
+    )]
+    NoRecording {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The folder has lost its place while a recording was made in it.
+    #[error(
+        "{folder} was renamed, replaced or removed during the recording; leave it in its place until the recording is finished"
+    )]
+    Displaced {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// A file has the name that the folder is to have.
     #[error("{path} is a file; record into a folder")]
     NoFolder {

@@ -43,7 +43,6 @@ pub use files::{
     session::{
         Session, SessionCommand, SessionHeader, SessionObject, SessionScene, SessionSettings,
     },
-    storage::{Storage, StorageFault, is_taken},
 };
 pub use reading::{
     event::{Occurrence, RecordedEvent},
@@ -53,7 +52,11 @@ pub use reading::{
     segment::{RecordedFrame, RecordedSegment},
 };
 pub use recording::{
-    recorder::set_earlier_commands, recorder_plugin::RecorderPlugin, unrecorded::UnrecordedPlugin,
+    finish::{finish_recording, recording_report},
+    recorder::set_earlier_commands,
+    recorder_plugin::RecorderPlugin,
+    report::{MovedAside, RecordingReport},
+    unrecorded::UnrecordedPlugin,
 };
 
 /// The names that most users of this crate need.

@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 use tabletop_core::Reach;
 
 /// The files that a robot was read from.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DescriptionSource {
     /// Path of the URDF, beside which its meshes are.
+    #[serde(serialize_with = "as_text")]
     pub path: PathBuf,
     /// Content of the URDF.
     pub urdf: String,
@@ -30,4 +31,9 @@ impl DescriptionSource {
     pub(crate) fn reaches(&self, file: &Path) -> bool {
         self.reach.as_ref().is_none_or(|reach| reach.contains(file))
     }
+}
+
+/// Recordings are text: bytes of a path that are no Unicode are replaced there, and its meshes are not found in a replay.
+fn as_text<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&path.display())
 }

@@ -7,7 +7,7 @@ use bevy::prelude::*;
 use kit::{Stage, block};
 use tabletop_core::{
     Arm, Drive, HandCommand, LidBoxSpec, ObjectIndex, Part, Pose, Rgb, Robot, RobotCommand,
-    RobotJoint, RobotMode, SceneCommand, SceneItem, SceneSpec, Shape, SimFact, StepApp,
+    RobotFact, RobotJoint, RobotMode, SceneCommand, SceneItem, SceneSpec, Shape, SimFact, StepApp,
 };
 use tabletop_robot::STEEPEST_GRIP;
 
@@ -39,17 +39,21 @@ fn grip_facts(facts: Vec<SimFact>) -> Vec<SimFact> {
     let is_grip = |fact: &SimFact| {
         matches!(
             fact,
-            SimFact::GripMade { .. } | SimFact::GripRefused { .. } | SimFact::GripReleased { .. }
+            SimFact::Robot(
+                RobotFact::GripMade { .. }
+                    | RobotFact::GripRefused { .. }
+                    | RobotFact::GripReleased { .. }
+            )
         )
     };
     facts.into_iter().filter(is_grip).collect()
 }
 
 fn made() -> Vec<SimFact> {
-    vec![SimFact::GripMade {
+    vec![SimFact::Robot(RobotFact::GripMade {
         arm: ARM.name(),
         id: "thing".into(),
-    }]
+    })]
 }
 
 fn unit_block() -> Shape {
@@ -76,7 +80,7 @@ fn a_block_is_held_lifted_carried_and_let_go_of() {
     )]));
     let facts = grip_facts(stage.facts_of(120));
     assert!(
-        matches!(facts[..], [SimFact::GripReleased { .. }]),
+        matches!(facts[..], [SimFact::Robot(RobotFact::GripReleased { .. })]),
         "{facts:?}"
     );
     assert!(stage.place("thing").location.z < 1.0);
@@ -133,7 +137,7 @@ fn what_cannot_turn_is_refused_by_the_angle_of_figure_11() {
     stage.app.step(5);
     let facts = grip_facts(close(&mut stage));
     assert!(
-        matches!(facts[..], [SimFact::GripRefused { angle, .. }] if angle > STEEPEST_GRIP),
+        matches!(facts[..], [SimFact::Robot(RobotFact::GripRefused { angle, .. })] if angle > STEEPEST_GRIP),
         "{facts:?}"
     );
     assert!(stage.robot().limb(ARM).holds.is_empty());
@@ -261,10 +265,10 @@ fn a_block_as_wide_as_the_gripper_is_taken_carried_and_put_down() {
             RobotJoint::gripper(ARM),
             Drive::Toward(2.0),
         )]));
-        let released = SimFact::GripReleased {
+        let released = SimFact::Robot(RobotFact::GripReleased {
             arm: ARM.name(),
             id: "thing".into(),
-        };
+        });
         assert_eq!(grip_facts(stage.facts_of(60)), [released], "{mode:?}");
         let away = (stage.place("thing").location - put).length();
         assert!(away < 0.005, "{mode:?}: {away}");
@@ -350,7 +354,7 @@ fn a_hand_takes_an_object_out_of_a_gripper() {
     });
     let facts = grip_facts(stage.facts_of(2));
     assert!(
-        matches!(facts[..], [SimFact::GripReleased { .. }]),
+        matches!(facts[..], [SimFact::Robot(RobotFact::GripReleased { .. })]),
         "{facts:?}"
     );
     assert!(stage.robot().limb(ARM).holds.is_empty());
@@ -363,10 +367,10 @@ fn hiding_the_robot_lets_go_of_what_it_holds() {
     stage.reach(ARM, Vec3::new(3.0, -2.0, 2.0), 0.0);
     let cause = stage.tell(RobotCommand::Show(false));
     let facts = stage.facts_of(120);
-    assert!(facts.contains(&SimFact::RobotShown {
+    assert!(facts.contains(&SimFact::Robot(RobotFact::Shown {
         cause,
         shown: false
-    }));
+    })));
     assert!((stage.place("thing").location.z - 0.5).abs() < 0.02);
 }
 
@@ -414,7 +418,7 @@ fn a_lid_is_pulled_open_by_its_handle() {
     stage.reach(ARM, Vec3::new(before.x, -2.0, 2.65), 0.0);
     let facts = grip_facts(close(&mut stage));
     assert!(
-        matches!(&facts[..], [SimFact::GripMade { id, .. }] if *id == lid),
+        matches!(&facts[..], [SimFact::Robot(RobotFact::GripMade { id, .. })] if *id == lid),
         "{facts:?}"
     );
     stage.reach(ARM, Vec3::new(before.x - 1.0, -2.0, 2.65), 0.0);

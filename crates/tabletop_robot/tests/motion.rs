@@ -11,7 +11,7 @@ use kit::{Stage, block, inside_the_table};
 use proptest::prelude::*;
 use tabletop_core::{
     Arm, Drive, Hand, HandCommand, HeadCamera, HistoryCommand, ObjectIndex, Obstacle, Pose, Robot,
-    RobotCommand, RobotJoint, SimFact, StepApp, TICK_SECONDS,
+    RobotCommand, RobotFact, RobotJoint, SimFact, StepApp, TICK_SECONDS,
 };
 use tabletop_robot::RobotLink;
 
@@ -79,7 +79,7 @@ fn an_arm_that_went_into_the_table_while_hidden_is_home_when_shown() {
     assert!(!inside_the_table(&mut stage).is_empty());
     stage.tell(RobotCommand::Show(true));
     let facts = stage.facts_of(2);
-    let blocked = |fact: &SimFact| matches!(fact, SimFact::ArmBlocked { arm, .. } if *arm == Arm::Left.name());
+    let blocked = |fact: &SimFact| matches!(fact, SimFact::Robot(RobotFact::ArmBlocked { arm, .. }) if *arm == Arm::Left.name());
     assert!(facts.iter().any(blocked), "{facts:?}");
     assert!(inside_the_table(&mut stage).is_empty());
     let robot = stage.robot();
@@ -99,10 +99,10 @@ fn an_arm_stops_at_the_table_and_says_so_once() {
         drive(&mut stage, RobotJoint::RightS1, Drive::Velocity(1.0));
         facts.extend(stage.facts_of(1));
     }
-    let blocked = SimFact::ArmBlocked {
+    let blocked = SimFact::Robot(RobotFact::ArmBlocked {
         arm: Arm::Right.name(),
         by: Obstacle::Table,
-    };
+    });
     assert_eq!(facts, [blocked]);
     let tip = stage.robot().limb(Arm::Right).end_effector * Vec3::new(0.0, 0.0, -0.75);
     assert!((0.0..0.3).contains(&tip.z), "{tip}");
@@ -132,7 +132,7 @@ fn an_arm_stops_at_a_fixed_object_and_pushes_a_free_one() {
         let facts = stage.facts_of(200);
         let is_blocked = facts
             .iter()
-            .any(|fact| matches!(fact, SimFact::ArmBlocked { by: Obstacle::Object(id), .. } if id == "thing"));
+            .any(|fact| matches!(fact, SimFact::Robot(RobotFact::ArmBlocked { by: Obstacle::Object(id), .. }) if id == "thing"));
         assert_eq!(is_blocked, !moves, "{facts:?}");
         let place = stage.place("thing").location;
         assert_eq!(place.x > 5.0, moves, "{place}");
@@ -176,7 +176,7 @@ fn the_arms_do_not_enter_each_other() {
     });
     let facts = stage.facts_of(300);
     let is_blocked = facts.iter().any(
-        |fact| matches!(fact, SimFact::ArmBlocked { arm, by: Obstacle::Link(link) } if *arm == Arm::Left.name() && link.contains("right")),
+        |fact| matches!(fact, SimFact::Robot(RobotFact::ArmBlocked { arm, by: Obstacle::Link(link) }) if *arm == Arm::Left.name() && link.contains("right")),
     );
     assert!(is_blocked, "{facts:?}");
 }

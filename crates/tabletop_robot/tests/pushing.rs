@@ -9,7 +9,8 @@ use kit::{
     motors::{ARM, SECOND, check_limits, drive, effort},
 };
 use tabletop_core::{
-    Drive, Obstacle, Pose, Robot, RobotCommand, RobotJoint, SimFact, StepApp, TICK_SECONDS,
+    Drive, Obstacle, Pose, Robot, RobotCommand, RobotFact, RobotJoint, SimFact, StepApp,
+    TICK_SECONDS,
 };
 
 #[test]
@@ -39,10 +40,10 @@ fn a_swing_into_a_fixed_block_stops_there_within_the_efforts() {
     }
     assert!(fastest > 10.0, "{fastest} units/s");
     assert!(strongest > 40.0, "it pressed: {strongest} N m");
-    let blocked = SimFact::ArmBlocked {
+    let blocked = SimFact::Robot(RobotFact::ArmBlocked {
         arm: ARM.name(),
         by: Obstacle::Object("wall".into()),
-    };
+    });
     assert_eq!(facts, [blocked]);
 }
 
@@ -120,10 +121,10 @@ fn a_light_block_is_pushed_and_a_heavy_one_stalls_the_arm() {
     assert!(heavy.block < 0.01, "the heavy block came {}", heavy.block);
     assert!(heavy.hand < 2.0, "the hand came {}", heavy.hand);
     assert_eq!(heavy.strongest, 1.0);
-    let blocked = SimFact::ArmBlocked {
+    let blocked = SimFact::Robot(RobotFact::ArmBlocked {
         arm: ARM.name(),
         by: Obstacle::Object("thing".into()),
-    };
+    });
     assert_eq!(heavy.facts, [blocked]);
 }
 

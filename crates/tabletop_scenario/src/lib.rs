@@ -59,7 +59,7 @@ pub mod prelude {
 use bevy::prelude::*;
 use tabletop_core::{
     Actor, Bonds, CommandId, CommandWriter, Hands, ObjectIndex, ObjectSpec, OrderSystems, Paused,
-    Pose, RestApp as _, RestingSystems, Robot, RobotLayout, SimFact, Table,
+    Pose, RecordingFact, RestApp as _, RestingSystems, Robot, RobotLayout, SimFact, Table,
 };
 
 use crate::seen::{ScenarioObject, Seen};
@@ -107,7 +107,7 @@ fn take_due_steps(
 ) {
     let mut refusal = None;
     for fact in facts.read() {
-        if let SimFact::RecordingFailed { reason, .. } = fact {
+        if let SimFact::Recording(RecordingFact::Failed { reason, .. }) = fact {
             run.give_up(reason.clone());
         }
         if let SimFact::Refused {

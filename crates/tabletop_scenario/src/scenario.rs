@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use ron::{Options, error::SpannedError, extensions::Extensions, value::RawValue};
 use serde::Deserialize;
-use tabletop_core::{RobotLayout, Symlinks, is_shipped, read_regular_text};
+use tabletop_core::{RobotLayout, is_shipped};
+use tabletop_storage::{Symlinks, read_regular_text};
 
 use crate::{ScenarioError, SourceLocation, Step, source::Places};
 

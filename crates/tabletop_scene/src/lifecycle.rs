@@ -8,8 +8,8 @@ use bevy::{
     prelude::*,
 };
 use tabletop_core::{
-    Cause, Held, IssuedCommand, Joint, ObjectIndex, ObjectSpec, SceneCommand, SceneSpec, SimFact,
-    Table, carry_out,
+    Cause, Held, IssuedCommand, Joint, ObjectIndex, ObjectSpec, SceneCommand, SceneFact, SceneSpec,
+    SimFact, Table, carry_out,
 };
 use tabletop_history::Parked;
 use tabletop_physics::{remove_object, renew_if_empty};
@@ -28,11 +28,11 @@ pub(crate) fn note_created(
 ) -> Result {
     let id = &objects.get(add.entity)?.id;
     index.insert(id, add.entity);
-    facts.write(SimFact::ObjectCreated {
+    facts.write(SimFact::Scene(SceneFact::ObjectCreated {
         cause: cause.0,
         id: id.clone(),
         object: add.entity,
-    });
+    }));
     Ok(())
 }
 
@@ -82,10 +82,10 @@ pub(crate) struct Forget<'w> {
 impl Forget<'_> {
     fn object(&mut self, spec: &ObjectSpec) {
         self.index.remove(&spec.id);
-        self.facts.write(SimFact::ObjectDeleted {
+        self.facts.write(SimFact::Scene(SceneFact::ObjectDeleted {
             cause: self.cause.0,
             id: spec.id.clone(),
-        });
+        }));
     }
 }
 
@@ -181,7 +181,7 @@ pub(crate) fn remove_fallen(
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Holder, prelude::*};
+    use tabletop_core::{Manipulator, prelude::*};
 
     use super::*;
     use crate::test_app::test_app;
@@ -231,7 +231,7 @@ mod tests {
         let held = app.world().resource::<ObjectIndex>().get("a");
         let held = held.unwrap();
         app.world_mut().entity_mut(held).insert(Held {
-            by: Holder::Hand(Hand::Left),
+            by: Manipulator::Hand(Hand::Left),
         });
         app.world_mut().write_command(scene(&["a"]));
         app.step(1);
@@ -249,8 +249,10 @@ mod tests {
             let causes: Vec<_> = facts
                 .drain()
                 .map(|fact| {
-                    let (SimFact::ObjectCreated { cause, .. }
-                    | SimFact::ObjectDeleted { cause, .. }) = fact
+                    let SimFact::Scene(
+                        SceneFact::ObjectCreated { cause, .. }
+                        | SceneFact::ObjectDeleted { cause, .. },
+                    ) = fact
                     else {
                         panic!("{fact:?}");
                     };
@@ -272,7 +274,10 @@ mod tests {
         let facts: Vec<_> = facts.iter_current_update_messages().collect();
         assert!(matches!(
             facts[..],
-            [SimFact::ObjectCreated { .. }, SimFact::ObjectDeleted { .. }]
+            [
+                SimFact::Scene(SceneFact::ObjectCreated { .. }),
+                SimFact::Scene(SceneFact::ObjectDeleted { .. })
+            ]
         ));
     }
 }

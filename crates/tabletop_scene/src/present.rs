@@ -4,8 +4,8 @@ mod marks;
 
 use bevy::prelude::*;
 use tabletop_core::{
-    ChainSpec, Composition, Held, Holder, LidBoxSpec, ObjectIndex, ObjectSpec, Pose, SceneItem,
-    SceneSpec, Shape, Table,
+    ChainSpec, Composition, Held, LidBoxSpec, Manipulator, ObjectIndex, ObjectSpec, Pose,
+    SceneItem, SceneSpec, Shape, Table,
 };
 
 use crate::{
@@ -199,7 +199,7 @@ impl Inventory<'_> {
 
     fn note_holder(&mut self, object: Entity) {
         let holder = self.world.get::<Held>(object).map(|held| held.by);
-        if let (Some(Holder::Hand(hand)), Some(spec)) = (holder, self.spec(object)) {
+        if let (Some(Manipulator::Hand(hand)), Some(spec)) = (holder, self.spec(object)) {
             let unsaid = format!(
                 "a task file has no hands: `{}`, which {hand} holds, is saved as released",
                 spec.id
@@ -468,7 +468,7 @@ mod tests {
     fn what_a_hand_holds_is_saved_as_let_go() {
         let mut app = app(vec![block("a", 0.0)]);
         let held = object(&app, "a");
-        let by = Holder::Hand(Hand::Left);
+        let by = Manipulator::Hand(Hand::Left);
         app.world_mut().entity_mut(held).insert(Held { by });
         let present = present_scene(app.world());
         assert_eq!(present.scene.items.len(), 1);

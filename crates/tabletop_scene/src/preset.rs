@@ -216,7 +216,7 @@ fn cuboid(span: Vec3, pose: Pose) -> Convex {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Hand, Holder, StepApp as _, prelude::*};
+    use tabletop_core::{Hand, Manipulator, StepApp as _, prelude::*};
 
     use super::*;
     use crate::test_app::test_app;
@@ -349,7 +349,7 @@ mod tests {
         for seed in 0..20 {
             let mut app = app();
             let held = Held {
-                by: Holder::Hand(Hand::Left),
+                by: Manipulator::Hand(Hand::Left),
             };
             app.world_mut()
                 .spawn((Transform::from(wall.pose), wall.clone(), held));

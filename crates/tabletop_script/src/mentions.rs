@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use tabletop_core::{Symlinks, read_regular_file};
+use tabletop_storage::{Symlinks, read_regular_file};
 
 /// The Python driver, which knows all words, and lies beside scripts that import it.
 const DRIVER: &str = "tabletop.py";

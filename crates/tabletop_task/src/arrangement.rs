@@ -71,6 +71,15 @@ impl Arrangement {
         supports.into_iter().map(|(_, id)| id).collect()
     }
 
+    /// The objects that stand directly on an object, in the order of their ids.
+    pub fn standing_on(&self, id: &str) -> Vec<&str> {
+        let Some(support) = self.get(id) else {
+            return Vec::new();
+        };
+        let above = self.others(id).filter(|(_, other)| other.rests_on(support));
+        above.map(|(other, _)| other).collect()
+    }
+
     /// True if an object touches the table's top.
     pub fn is_on_table(&self, id: &str) -> bool {
         self.get(id)
@@ -244,6 +253,8 @@ mod tests {
         assert_eq!(arrangement.supports("beside"), ["b"]);
         assert!(arrangement.supports("past").is_empty());
         assert!(arrangement.supports("a").is_empty());
+        assert_eq!(arrangement.standing_on("b"), ["beside", "top"]);
+        assert!(arrangement.standing_on("top").is_empty());
         assert!(arrangement.is_on_table("a") && !arrangement.is_on_table("top"));
     }
 

@@ -3,6 +3,46 @@
 use bevy::math::Vec3;
 use tabletop_core::{ObjectSpec, Rgb, Shape};
 
+/// The lengths that define shapes.
+pub(crate) const LENGTHS: [&str; 8] = [
+    "xspan",
+    "yspan",
+    "zspan",
+    "radius",
+    "radiusTop",
+    "radiusBottom",
+    "radiusOuter",
+    "radiusInner",
+];
+
+/// The kind of values that a property has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PropertyKind {
+    Id,
+    Shape,
+    Color,
+    /// All lengths of a shape.
+    Size,
+    Length,
+    Mass,
+    /// Whatever a task file says.
+    Description,
+}
+
+impl PropertyKind {
+    pub fn of(name: &str) -> Self {
+        match name {
+            "id" => Self::Id,
+            "shape" => Self::Shape,
+            "color" => Self::Color,
+            "size" => Self::Size,
+            "mass" => Self::Mass,
+            name if LENGTHS.contains(&name) => Self::Length,
+            _ => Self::Description,
+        }
+    }
+}
+
 /// The properties of an object as names and values: `id`, `shape`, `color` if it has just one, `size`, the lengths of its shape
 /// (`xspan`, `radius`, ...), `mass`, then its descriptions.
 pub fn properties(spec: &ObjectSpec) -> Vec<(String, String)> {
@@ -103,33 +143,66 @@ fn around(shape: &Shape) -> Vec3 {
 /// True if a property has the wanted value: a colour by its name or `#rrggbb`, a number within 1 %, a range `1..2`, lengths
 /// with `x` between them, or else a text, in upper or lower case.
 pub fn has_value(name: &str, value: &str, wanted: &str) -> bool {
-    if name == "color" {
-        let [Ok(value), Ok(color)] = [value, wanted].map(str::parse::<Rgb>) else {
-            return false;
-        };
-        let is_named = !wanted.trim().starts_with('#');
-        return value.to_bytes() == color.to_bytes()
-            || (is_named && crate::noun::color_name(value) == crate::noun::color_name(color));
+    match PropertyKind::of(name) {
+        PropertyKind::Color => has_color(value, wanted),
+        PropertyKind::Id | PropertyKind::Shape => is_same_text(value, wanted),
+        PropertyKind::Size
+        | PropertyKind::Length
+        | PropertyKind::Mass
+        | PropertyKind::Description => has_numbers(value, wanted),
     }
-    if let (Some((least, most)), Ok(value)) = (wanted.split_once(".."), value.parse::<f32>()) {
-        let bound = |text: &str, open: f32| match text.trim() {
-            "" => Some(open),
-            text => text.parse().ok(),
-        };
-        return bound(least, f32::NEG_INFINITY).is_some_and(|least| least <= value)
-            && bound(most, f32::INFINITY).is_some_and(|most| value <= most);
-    }
-    let numbers = |text: &str| {
-        let parts: Result<Vec<f32>, _> = text.split('x').map(|part| part.trim().parse()).collect();
-        parts.ok()
+}
+
+fn has_color(value: &str, wanted: &str) -> bool {
+    let [Ok(value), Ok(color)] = [value, wanted].map(str::parse::<Rgb>) else {
+        return false;
     };
+    let is_named = !wanted.trim().starts_with('#');
+    value.to_bytes() == color.to_bytes()
+        || (is_named && crate::noun::color_name(value) == crate::noun::color_name(color))
+}
+
+fn has_numbers(value: &str, wanted: &str) -> bool {
+    if let (Some((least, most)), Ok(value)) = (range(wanted), value.parse::<f32>()) {
+        return (least..=most).contains(&value);
+    }
     match (numbers(value), numbers(wanted)) {
         (Some(a), Some(b)) => {
             let is_near = |(a, b): (&f32, &f32)| (a - b).abs() <= 0.01 * b.abs().max(1e-3);
             a.len() == b.len() && a.iter().zip(&b).all(is_near)
         }
-        _ => value.eq_ignore_ascii_case(wanted.trim()),
+        _ => is_same_text(value, wanted),
     }
+}
+
+/// True if two texts are the same in upper or lower case.
+pub(crate) fn is_same_text(a: &str, b: &str) -> bool {
+    a.trim().eq_ignore_ascii_case(b.trim())
+}
+
+/// The numbers of a text with `x` between them.
+pub(crate) fn numbers(text: &str) -> Option<Vec<f32>> {
+    text.split('x').map(number).collect()
+}
+
+/// The bounds of a range `1..2`, which may be open.
+pub(crate) fn range(text: &str) -> Option<(f32, f32)> {
+    let (least, most) = text.split_once("..")?;
+    let bound = |text: &str, open: f32| match text.trim() {
+        "" => Some(open),
+        text => number(text),
+    };
+    Some((
+        bound(least, f32::NEG_INFINITY)?,
+        bound(most, f32::INFINITY)?,
+    ))
+}
+
+fn number(text: &str) -> Option<f32> {
+    text.trim()
+        .parse()
+        .ok()
+        .filter(|number: &f32| number.is_finite())
 }
 
 #[cfg(test)]
@@ -153,6 +226,11 @@ mod tests {
             ("size", "2x2x1", "2.0x2.0x1.0", true),
             ("size", "2x2x1", "2x2", false),
             ("use", "Tool", "tool", true),
+            ("use", " tool ", "tool", true),
+            ("weight", "2", "1..3", true),
+            ("id", "100", "101", false),
+            ("id", "2", "1..3", false),
+            ("id", "Red", "red", true),
         ] {
             assert_eq!(
                 has_value(name, value, wanted),

@@ -3,16 +3,17 @@
 
 use std::{
     collections::BTreeMap,
-    fs::{self, File},
-    io::{ErrorKind, Write as _},
+    io::ErrorKind,
     path::{Path, PathBuf},
 };
 
 use serde::{Deserialize, Serialize};
-use tabletop_core::{ObjectSpec, Rgb, Symlinks, read_regular_text};
+use tabletop_core::{ObjectSpec, Rgb};
+use tabletop_storage::{Storage, Symlinks, read_regular_text};
 
 use crate::{
     noun::color_name,
+    possibility::{Impossible, SAME},
     property::{has_value, property},
     role::Role,
     task::Task,
@@ -41,8 +42,20 @@ pub enum RequirementError {
         path: PathBuf,
         source: serde_json::Error,
     },
-    #[error("the demonstration has no step {0}")]
-    NoStep(usize),
+    #[error("{path}: {role}: {reason}", path = .path.display())]
+    OfRole {
+        path: PathBuf,
+        role: String,
+        reason: Impossible,
+    },
+    #[error("{path}: the demonstration has no object `{role}`; expected one of {known}", path = .path.display())]
+    NoRole {
+        path: PathBuf,
+        role: String,
+        known: String,
+    },
+    #[error(transparent)]
+    Impossible(#[from] Impossible),
     #[error(
         "`{text}` is no requirement: expected `name=value`, the name of a property that {noun} has ({known}), or `any`"
     )]
@@ -51,15 +64,10 @@ pub enum RequirementError {
         noun: String,
         known: String,
     },
-    #[error("`{0}` is not a colour")]
-    Color(String),
 }
 
 /// The most bytes of their file that are read.
 const MOST_BYTES: u64 = 1 << 20;
-
-/// The property that means "the same object as in another step".
-const SAME: &str = "same";
 
 impl Requirements {
     /// The name of their file in a recording's folder.
@@ -79,6 +87,33 @@ impl Requirements {
         serde_json::from_str(&text).map_err(|source| RequirementError::File { path, source })
     }
 
+    /// [Reads](Self::read) the requirements of a recording that shows this task.
+    ///
+    /// # Errors
+    /// As of [`read`](Self::read); or no object can meet a requirement, or it is on no object of the demonstration.
+    pub fn read_for(task: &Task, folder: &Path) -> Result<Self, RequirementError> {
+        let all = Self::read(folder)?;
+        let path = || folder.join(Self::FILE);
+        for (role, required) in &all.roles {
+            if !task.knows("id", role) {
+                let ids = task.roles.iter().map(|role| role.id.as_str());
+                return Err(RequirementError::NoRole {
+                    path: path(),
+                    role: role.clone(),
+                    known: ids.collect::<Vec<_>>().join(", "),
+                });
+            }
+            let mut required = required.iter();
+            let checked = required.try_for_each(|(name, value)| task.check(name, value));
+            checked.map_err(|reason| RequirementError::OfRole {
+                path: path(),
+                role: role.clone(),
+                reason,
+            })?;
+        }
+        Ok(all)
+    }
+
     /// Writes the requirements to a recording's folder; if there are none, the file is removed.
     ///
     /// # Errors
@@ -89,30 +124,22 @@ impl Requirements {
             path: path.clone(),
             source,
         };
+        let storage = Storage::default();
         if self.roles.is_empty() {
-            return match fs::remove_file(&path) {
+            return match storage.remove_file(&path) {
                 Err(error) if error.kind() != ErrorKind::NotFound => Err(failed(error)),
                 _ => Ok(()),
             };
         }
-        // What is there may be a link to another file, which is not to be written.
-        let new = folder.join(format!("{}.part", Self::FILE));
-        let replace = || {
-            let text = serde_json::to_string_pretty(self)? + "\n";
-            match fs::remove_file(&new) {
-                Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
-                _ => {}
-            }
-            File::create_new(&new)?.write_all(text.as_bytes())?;
-            fs::rename(&new, &path)
-        };
-        replace().map_err(failed)
+        let text = serde_json::to_string_pretty(self).map_err(|error| failed(error.into()))?;
+        let written = storage.replace_name(&path, format!("{text}\n").as_bytes());
+        written.map_err(failed)
     }
 
     /// Adds a requirement: `name=value`, `name` for the demonstrated value, `same=STEP`, or `any` for no requirement at all.
     ///
     /// # Errors
-    /// The object has no such property, or there is no such value or step.
+    /// The object has no such property, or no object can have the value.
     pub fn add(&mut self, task: &Task, role: &Role, text: &str) -> Result<(), RequirementError> {
         if text == "any" {
             self.roles.insert(role.id.clone(), BTreeMap::new());
@@ -129,25 +156,32 @@ impl Requirements {
                 known: known.join(", "),
             }
         };
-        let (name, value) = match text.split_once('=') {
+        match text.split_once('=') {
             Some((name, value)) if !name.trim().is_empty() => {
-                (name.trim().to_owned(), value.trim().to_owned())
+                self.require(task, role, name.trim(), value.trim())
             }
-            Some(_) => return Err(unknown()),
+            Some(_) => Err(unknown()),
             None => {
                 let value = property(&role.shown, text).ok_or_else(unknown)?;
-                (text.to_owned(), value)
+                self.require(task, role, text, &value)
             }
-        };
-        if name == "color" && value.parse::<Rgb>().is_err() {
-            return Err(RequirementError::Color(value));
         }
-        if name == SAME {
-            let step = value.parse().map_err(|_| unknown())?;
-            task.step(step).ok_or(RequirementError::NoStep(step))?;
-        }
+    }
+
+    /// Requires a value of a property.
+    ///
+    /// # Errors
+    /// No object can have it.
+    pub fn require(
+        &mut self,
+        task: &Task,
+        role: &Role,
+        name: &str,
+        value: &str,
+    ) -> Result<(), RequirementError> {
+        task.check(name, value)?;
         let of_role = self.roles.entry(role.id.clone()).or_default();
-        of_role.insert(name, value);
+        of_role.insert(name.to_owned(), value.to_owned());
         Ok(())
     }
 

@@ -1,5 +1,7 @@
 //! Tasks.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use serde::{Deserialize, Serialize};
 use tabletop_core::{JointSpec, Table};
 
@@ -21,6 +23,9 @@ pub struct Task {
     /// Objects that were operated, pointed to, fastened and loosened, in the order of the demonstration.
     #[serde(default)]
     pub operations: Vec<Operation>,
+    /// Ids, shapes and descriptions of all objects of the demonstration: the values of each of these properties.
+    #[serde(default)]
+    pub vocabulary: BTreeMap<String, BTreeSet<String>>,
 }
 
 impl Task {

@@ -1,6 +1,9 @@
 //! The inference of a task from a demonstration.
 
-use std::path::Path;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
 
 use tabletop_recorder::RecorderError;
 
@@ -74,6 +77,7 @@ impl Task {
             steps,
             detours,
             operations: shown.operations.clone(),
+            vocabulary: vocabulary(shown),
         };
         task.phrase(&Requirements::default());
         task
@@ -85,6 +89,18 @@ fn tipping(shown: &Demonstration, manipulation: &Manipulation) -> Option<Tipping
     let is_released = manipulation.ending == Ending::Released;
     let object = shown.named(&manipulation.object).filter(|_| is_released)?;
     Tipping::of(&object.spec.shape, manipulation.from, manipulation.to)
+}
+
+fn vocabulary(shown: &Demonstration) -> BTreeMap<String, BTreeSet<String>> {
+    let mut all = BTreeMap::<String, BTreeSet<String>>::new();
+    for object in &shown.objects {
+        let id = [("id", object.spec.id.as_str())];
+        for (name, value) in id.into_iter().chain(object.spec.all_descriptions()) {
+            let values = all.entry(name.to_owned()).or_default();
+            values.insert(value.to_owned());
+        }
+    }
+    all
 }
 
 /// The roles of these steps.

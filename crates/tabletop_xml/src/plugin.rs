@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use bevy::prelude::*;
 use tabletop_core::{
-    IssuedCommand, RestingSystems, SceneCommand, SceneSpec, ShippedFile, ShippedFiles, SimCommand,
-    SimFact, SimSystems,
+    IssuedCommand, RestingSystems, SceneCommand, SceneFact, SceneSpec, ShippedFile, ShippedFiles,
+    SimCommand, SimFact, SimSystems,
 };
 
 use crate::{ParsedTask, ReadError, TaskReader};
 
 /// Carries out [`SceneCommand::Load`]: in [`SimSystems::Load`] the command becomes a [`SceneCommand::Set`] with
-/// the content of the file, at the same place of the order, and a [`SimFact::TaskLoaded`] reports its faults, which are
+/// the content of the file, at the same place of the order, and a [`SceneFact::TaskLoaded`] reports its faults, which are
 /// also logged. A file that cannot be read gives an empty table; a missing one may be among the [`ShippedFiles`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct XmlPlugin;
@@ -47,11 +47,11 @@ fn load_tasks(
             let (scene, faults) = scene_and_faults(task);
             *command = SimCommand::Scene(SceneCommand::Set(Box::new(scene)));
             let cause = *id;
-            facts.write(SimFact::TaskLoaded {
+            facts.write(SimFact::Scene(SceneFact::TaskLoaded {
                 cause,
                 path,
                 faults,
-            });
+            }));
         }
     }
 }
@@ -138,11 +138,11 @@ mod tests {
         };
         assert_eq!((scene.table.xspan, scene.items.len()), (8.0, 1));
         let [
-            SimFact::TaskLoaded {
+            SimFact::Scene(SceneFact::TaskLoaded {
                 cause: CommandId(1),
                 path: loaded,
                 faults,
-            },
+            }),
         ] = seen.facts.as_slice()
         else {
             panic!("{:?}", seen.facts);
@@ -170,11 +170,11 @@ mod tests {
         let seen = app.world().resource::<SeenMessages>();
         assert_eq!(
             seen.facts,
-            [SimFact::TaskLoaded {
+            [SimFact::Scene(SceneFact::TaskLoaded {
                 cause: CommandId(0),
                 path: CUBE.name(),
                 faults: Vec::new(),
-            }]
+            })]
         );
         assert!(
             matches!(&seen.commands[..], [SimCommand::Scene(SceneCommand::Set(scene))] if scene.table.xspan == 8.0)
@@ -202,7 +202,7 @@ mod tests {
             seen.commands,
             [SimCommand::Scene(SceneCommand::Set(Box::default()))]
         );
-        let [SimFact::TaskLoaded { faults, .. }] = seen.facts.as_slice() else {
+        let [SimFact::Scene(SceneFact::TaskLoaded { faults, .. })] = seen.facts.as_slice() else {
             panic!("{:?}", seen.facts);
         };
         assert!(

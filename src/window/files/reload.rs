@@ -7,7 +7,7 @@ use std::{
 
 use bevy::{prelude::*, time::common_conditions::on_real_timer};
 use tabletop_core::{
-    Actor, CommandWriter, OpenRecording, Recording, Replaying, SceneCommand, SimFact,
+    Actor, CommandWriter, OpenRecording, Recording, Replaying, SceneCommand, SceneFact, SimFact,
 };
 use tabletop_gui::{Files, Notices, Preferences, Tone};
 
@@ -117,7 +117,7 @@ fn note_loaded(
     mut watch: ResMut<Watch>,
 ) {
     for fact in facts.read() {
-        if let SimFact::TaskLoaded { path, .. } = fact {
+        if let SimFact::Scene(SceneFact::TaskLoaded { path, .. }) = fact {
             let files = match task_reader().allowing(&allowed.0).read(path) {
                 Ok(task) => task.files,
                 Err(_) => vec![path.clone()],

@@ -12,7 +12,7 @@ use tabletop_recorder::RecordingReader;
 use tabletop_task::{Demonstration, Requirements, Role, Task};
 
 use crate::{
-    multiplication::scene_at_beginning,
+    scene_at_beginning,
     shown_task::{shown_task, value},
 };
 
@@ -42,10 +42,11 @@ impl Lesson {
         let said = |error: &dyn std::fmt::Display| error.to_string();
         let recording = RecordingReader::open(folder).map_err(|error| said(&error))?;
         let shown = Demonstration::of(&recording).map_err(|error| said(&error))?;
-        let requirements = Requirements::read(folder).map_err(|error| said(&error))?;
+        let task = Task::of(&shown);
+        let requirements = Requirements::read_for(&task, folder).map_err(|error| said(&error))?;
         Ok(Self {
             folder: folder.to_owned(),
-            task: Task::of(&shown),
+            task,
             requirements,
             scene: scene_at_beginning(recording.session()),
         })
@@ -130,9 +131,11 @@ impl Understood {
                 lesson.requirements.remove(&role, Some(property));
                 return Ok(());
             }
-            let requirement = format!("{property}={}", value(&role, property));
-            let added = lesson.requirements.add(&lesson.task, &role, &requirement);
-            added.map_err(|error| error.to_string())
+            let value = value(&role, property);
+            let required = lesson
+                .requirements
+                .require(&lesson.task, &role, property, &value);
+            required.map_err(|error| error.to_string())
         })
     }
 

@@ -1,8 +1,8 @@
 //! Commands to the scene.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 use crate::{Preset, SceneSpec};
 
@@ -11,7 +11,7 @@ use crate::{Preset, SceneSpec};
 pub enum SceneCommand {
     /// Read this task file and [set its scene](Self::Set). In [`SimSystems::Load`](crate::SimSystems::Load) it becomes that
     /// command, so a recording holds the file's content.
-    Load(PathBuf),
+    Load(#[serde(serialize_with = "as_text")] PathBuf),
     /// Clear the table and put this scene on it.
     Set(Box<SceneSpec>),
     /// Remove every object from the table that no hand holds.
@@ -23,4 +23,9 @@ pub enum SceneCommand {
         /// The seed of their colours and place: the same seed makes the same objects in the same world.
         seed: u64,
     },
+}
+
+/// Recordings are text: bytes of a path that are no Unicode are replaced there.
+fn as_text<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&path.display())
 }

@@ -83,11 +83,11 @@ impl Desk {
 #[expect(clippy::wildcard_enum_match_arm, reason = "other facts are of no hand")]
 fn line(fact: &SimFact) -> String {
     match fact {
-        SimFact::SegmentBegun { .. } => "segment".into(),
-        SimFact::Grasped { hand, id, .. } => format!("{hand} grasps {id}"),
-        SimFact::Released { hand, id, .. } => format!("{hand} releases {id}"),
-        SimFact::Destroyed { hand, id, .. } => format!("{hand} destroys {id}"),
-        SimFact::ObjectDeleted { id, .. } => format!("{id} is gone"),
+        SimFact::History(HistoryFact::SegmentBegun { .. }) => "segment".into(),
+        SimFact::Hand(HandFact::Grasped { hand, id, .. }) => format!("{hand} grasps {id}"),
+        SimFact::Hand(HandFact::Released { hand, id, .. }) => format!("{hand} releases {id}"),
+        SimFact::Hand(HandFact::Destroyed { hand, id, .. }) => format!("{hand} destroys {id}"),
+        SimFact::Scene(SceneFact::ObjectDeleted { id, .. }) => format!("{id} is gone"),
         SimFact::Refused { reason, .. } => format!("refused: {reason}"),
         other => format!("{other:?}"),
     }

@@ -353,14 +353,14 @@ fn what_a_hand_does_names_the_command_that_it_came_of() {
     assert_eq!(
         facts,
         [
-            SimFact::SegmentBegun { cause },
-            SimFact::Released {
+            SimFact::History(HistoryFact::SegmentBegun { cause }),
+            SimFact::Hand(HandFact::Released {
                 cause: Some(cause),
                 hand: Hand::Left,
                 id: id.clone(),
-            },
-            SimFact::SegmentBegun { cause },
-            SimFact::Grasped { cause, hand, id },
+            }),
+            SimFact::History(HistoryFact::SegmentBegun { cause }),
+            SimFact::Hand(HandFact::Grasped { cause, hand, id }),
         ]
     );
 }

@@ -4,33 +4,57 @@ use crate::octave::stubs;
 
 /// Looks through the lines of the standard error.
 #[derive(Debug, Default)]
-pub(crate) struct WarningStack {
-    /// The line before the places, while there has been none of the script's.
-    title: Option<Vec<u8>>,
-    listing: bool,
+pub(crate) enum WarningStack {
+    /// There is no list of places.
+    #[default]
+    Absent,
+    /// This line may begin a list.
+    Begun(Vec<u8>),
+    /// The list that this line has begun has had places in the driver only.
+    OfDriver(Vec<u8>),
+    /// The list has had places in the script.
+    OfScript,
 }
 
 impl WarningStack {
-    /// Takes a line and calls `each` with the rest of it.
+    /// Takes a line and calls `each` with what is to be shown.
     pub(crate) fn feed(&mut self, line: &[u8], mut each: impl FnMut(&[u8])) {
+        let before = std::mem::take(self);
         if line.ends_with(b": called from") {
-            self.title = Some(line.to_owned());
-            self.listing = true;
+            before.finish(each);
+            *self = Self::Begun(line.to_owned());
             return;
         }
-        let function = function(line).filter(|_| self.listing);
-        if function.is_some_and(is_of_driver) {
-            return;
+        match (before, function(line)) {
+            (Self::Begun(title) | Self::OfDriver(title), Some(function)) => {
+                if is_of_driver(function) {
+                    *self = Self::OfDriver(title);
+                } else {
+                    each(&title);
+                    each(line);
+                    *self = Self::OfScript;
+                }
+            }
+            (Self::OfScript, Some(function)) => {
+                if !is_of_driver(function) {
+                    each(line);
+                }
+                *self = Self::OfScript;
+            }
+            // An empty line ends a list.
+            (Self::OfDriver(_) | Self::OfScript, None) if line.is_empty() => {}
+            (before @ (Self::Absent | Self::Begun(_) | Self::OfDriver(_) | Self::OfScript), _) => {
+                before.finish(&mut each);
+                each(line);
+            }
         }
-        if function.is_some()
-            && let Some(title) = self.title.take()
-        {
-            each(&title);
-        }
-        let after = self.listing && line.is_empty();
-        self.listing &= function.is_some();
-        if !after {
-            each(line);
+    }
+
+    /// Calls `each` with the line that was kept because it might have begun a list.
+    pub(crate) fn finish(self, mut each: impl FnMut(&[u8])) {
+        match self {
+            Self::Begun(title) => each(&title),
+            Self::Absent | Self::OfDriver(_) | Self::OfScript => {}
         }
     }
 }
@@ -59,6 +83,7 @@ mod tests {
                 all.push(String::from_utf8_lossy(line).into_owned());
             });
         }
+        frames.finish(|line| all.push(String::from_utf8_lossy(line).into_owned()));
         all
     }
 
@@ -75,5 +100,16 @@ mod tests {
             ["warning: called from", theirs, "more"]
         );
         assert_eq!(left(&[own, theirs]), [own, theirs]);
+    }
+
+    #[test]
+    fn a_line_that_begins_no_list_is_shown() {
+        for lines in [
+            &["he was: called from", "", "more"][..],
+            &["a: called from", "b: called from", "    c"],
+            &["a: called from"],
+        ] {
+            assert_eq!(left(lines), lines);
+        }
     }
 }

@@ -4,6 +4,7 @@ use std::{io::Read, sync::mpsc::Sender};
 
 use crate::{
     console::{Console, OutputPiece, Stream},
+    kind::EngineKind,
     octave::warning_stack::WarningStack,
     worker::signal::Signal,
 };
@@ -12,13 +13,18 @@ use crate::{
 pub(crate) fn read_output(
     mut output: impl Read,
     stream: Stream,
+    kind: EngineKind,
     console: &Console,
     inbox: &Sender<Signal>,
 ) {
+    let warns_with_places = match kind {
+        EngineKind::Octave | EngineKind::Matlab => stream == Stream::Error,
+        EngineKind::Python | EngineKind::Driver => false,
+    };
     let mut splitter = console.splitter();
     let mut frames = WarningStack::default();
     let mut each = |piece: OutputPiece| match piece {
-        OutputPiece::Text(text) if stream == Stream::Error => {
+        OutputPiece::Text(text) if warns_with_places => {
             frames.feed(text, |line| console.push(stream, line));
         }
         OutputPiece::Text(text) => console.push(stream, text),
@@ -31,6 +37,9 @@ pub(crate) fn read_output(
                 drop(inbox.send(Signal::Done(seq)));
             } else if let Some(note) = mark.strip_prefix(b"note ") {
                 console.push(Stream::Note, note);
+            } else {
+                // The script has printed the control character.
+                console.push(stream, mark);
             }
         }
     };
@@ -41,6 +50,7 @@ pub(crate) fn read_output(
         splitter.feed(buffer.get(..count).unwrap_or_default(), &mut each);
     }
     splitter.finish(each);
+    frames.finish(|line| console.push(stream, line));
     console.finish();
     drop(inbox.send(Signal::Closed));
 }

@@ -50,7 +50,7 @@ impl FromStr for Resolution {
             })
             .filter(|size| (1..=MOST).contains(&size.width) && (1..=MOST).contains(&size.height))
             .ok_or_else(|| {
-                format!("expected a width and a height of 1 to {MOST}, such as 1280x800")
+                format!("expected a width and a height from 1 to {MOST}, such as 1280x800")
             })
     }
 }

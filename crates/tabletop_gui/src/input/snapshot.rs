@@ -1,9 +1,7 @@
 //! The head view as a file (report section 5): the head camera's picture of the next tick, at its own size.
 
 use std::{
-    fs::{self, File},
-    io::{self, Write as _},
-    iter,
+    io, iter,
     path::{Path, PathBuf},
 };
 
@@ -16,6 +14,7 @@ use tabletop_core::{
     OrderSystems, Picture, PictureDemand, RestApp as _, RestingSystems, SensorImage, SimSystems,
     SimTick,
 };
+use tabletop_storage::Storage;
 
 use crate::panels::messages::{Notices, Tone};
 
@@ -132,15 +131,8 @@ fn write_new(path: &Path, bytes: &[u8]) -> io::Result<PathBuf> {
     for path in iter::once(path.to_owned()).chain(numbered) {
         let reported =
             |error: io::Error| io::Error::new(error.kind(), format!("{}: {error}", path.display()));
-        match File::create_new(&path) {
-            Ok(mut file) => {
-                file.write_all(bytes).map_err(|error| {
-                    // Half a picture is none.
-                    let _removed = fs::remove_file(&path);
-                    reported(error)
-                })?;
-                return Ok(path);
-            }
+        match Storage::default().write_new(&path, bytes) {
+            Ok(()) => return Ok(path),
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(reported(error)),
         }
@@ -155,6 +147,8 @@ fn name(time: Timestamp) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::fs::{self, File};
+
     use super::*;
     use bevy::time::TimeUpdateStrategy;
     use std::time::Duration;

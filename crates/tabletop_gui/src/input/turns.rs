@@ -1,7 +1,7 @@
 //! The turns of each hand's object about each axis of the world, which the rotation sliders show.
 
 use bevy::prelude::*;
-use tabletop_core::{Hand, HandCommand, SimFact};
+use tabletop_core::{Hand, HandCommand, HandFact, HistoryFact, SimFact};
 
 /// Greatest angle that a slider shows, in degrees, to either side.
 pub(crate) const MAX_DEGREES: i32 = 180;
@@ -42,28 +42,19 @@ pub(crate) fn plugin(app: &mut App) {
 fn begin_anew(mut facts: MessageReader<SimFact>, mut turns: ResMut<TurnSums>) {
     for fact in facts.read() {
         match fact {
-            SimFact::Grasped { hand, .. }
-            | SimFact::Released { hand, .. }
-            | SimFact::Destroyed { hand, .. } => turns.0[*hand as usize] = [0; 3],
-            SimFact::Undone { .. } | SimFact::Redone { .. } => *turns = TurnSums::default(),
-            SimFact::TaskLoaded { .. }
-            | SimFact::ObjectCreated { .. }
-            | SimFact::ObjectDeleted { .. }
-            | SimFact::SegmentBegun { .. }
-            | SimFact::Triggered { .. }
-            | SimFact::ControlChanged { .. }
-            | SimFact::PointedTo { .. }
-            | SimFact::Fastened { .. }
-            | SimFact::Loosened { .. }
-            | SimFact::Cut { .. }
-            | SimFact::RecordingStarted { .. }
-            | SimFact::RecordingFinished { .. }
-            | SimFact::RecordingFailed { .. }
-            | SimFact::RobotShown { .. }
-            | SimFact::GripMade { .. }
-            | SimFact::GripRefused { .. }
-            | SimFact::GripReleased { .. }
-            | SimFact::ArmBlocked { .. }
+            SimFact::Hand(
+                HandFact::Grasped { hand, .. }
+                | HandFact::Released { hand, .. }
+                | HandFact::Destroyed { hand, .. },
+            ) => turns.0[*hand as usize] = [0; 3],
+            SimFact::History(HistoryFact::Undone { .. } | HistoryFact::Redone { .. }) => {
+                *turns = TurnSums::default()
+            }
+            SimFact::Scene(_)
+            | SimFact::History(HistoryFact::SegmentBegun { .. })
+            | SimFact::Mechanism(_)
+            | SimFact::Recording(_)
+            | SimFact::Robot(_)
             | SimFact::Refused { .. } => {}
         }
     }
@@ -113,16 +104,18 @@ mod tests {
         turns.turn_to(Hand::Left, 0, 10);
         turns.turn_to(Hand::Right, 2, 20);
         let cause = CommandId(0);
-        app.world_mut().write_message(SimFact::Grasped {
-            cause,
-            hand: Hand::Left,
-            id: "red".into(),
-        });
+        app.world_mut()
+            .write_message(SimFact::Hand(HandFact::Grasped {
+                cause,
+                hand: Hand::Left,
+                id: "red".into(),
+            }));
         app.update();
         let turns = *app.world().resource::<TurnSums>();
         assert_eq!(turns.of(Hand::Left), [0; 3]);
         assert_eq!(turns.of(Hand::Right), [0, 0, 20]);
-        app.world_mut().write_message(SimFact::Undone { cause });
+        app.world_mut()
+            .write_message(SimFact::History(HistoryFact::Undone { cause }));
         app.update();
         assert_eq!(*app.world().resource::<TurnSums>(), TurnSums::default());
     }

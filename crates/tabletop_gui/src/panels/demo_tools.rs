@@ -9,8 +9,8 @@ use bevy_egui::{
     egui::{self, Color32, Ui},
 };
 use tabletop_core::{
-    Action, Actor, CommandWriter, Hand, HandCommand, Hands, History, HistoryCommand, Keymap,
-    ObjectSpec, Recording, RecordingCommand, SimCommand, SimFact,
+    Action, Actor, CommandWriter, Hand, HandCommand, HandFact, Hands, History, HistoryCommand,
+    Keymap, ObjectSpec, Recording, RecordingCommand, SimCommand, SimFact,
 };
 
 use crate::{
@@ -47,7 +47,7 @@ fn open_at_first_grasp(
 ) {
     let has_grasped = facts
         .read()
-        .any(|fact| matches!(fact, SimFact::Grasped { .. }));
+        .any(|fact| matches!(fact, SimFact::Hand(HandFact::Grasped { .. })));
     if has_grasped && !*is_done {
         panels.set_open(Panel::DemonstrationTools, true);
         *is_done = true;

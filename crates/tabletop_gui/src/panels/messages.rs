@@ -12,7 +12,7 @@ use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{self, Label, RichText, ScrollArea, TextStyle, Ui},
 };
-use tabletop_core::SimFact;
+use tabletop_core::{RecordingFact, SceneFact, SimFact};
 
 use crate::{
     panels::{Panel, Panels},
@@ -76,35 +76,30 @@ pub(crate) fn plugin(app: &mut App) {
 fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
     for fact in facts.read() {
         match fact {
-            SimFact::TaskLoaded { faults, .. } => {
+            SimFact::Scene(SceneFact::TaskLoaded { faults, .. }) => {
                 faults
                     .iter()
                     .for_each(|fault| notices.add(Tone::Fault, fault));
             }
-            SimFact::Refused { reason, .. } | SimFact::RecordingFailed { reason, .. } => {
+            SimFact::Refused { reason, .. }
+            | SimFact::Recording(RecordingFact::Failed { reason, .. }) => {
                 notices.add(Tone::Fault, reason);
             }
-            SimFact::ObjectCreated { .. }
-            | SimFact::ObjectDeleted { .. }
-            | SimFact::SegmentBegun { .. }
-            | SimFact::Triggered { .. }
-            | SimFact::ControlChanged { .. }
-            | SimFact::PointedTo { .. }
-            | SimFact::Fastened { .. }
-            | SimFact::Loosened { .. }
-            | SimFact::Cut { .. }
-            | SimFact::Grasped { .. }
-            | SimFact::Released { .. }
-            | SimFact::Destroyed { .. }
-            | SimFact::RecordingStarted { .. }
-            | SimFact::RecordingFinished { .. }
-            | SimFact::Undone { .. }
-            | SimFact::Redone { .. }
-            | SimFact::RobotShown { .. }
-            | SimFact::GripMade { .. }
-            | SimFact::GripRefused { .. }
-            | SimFact::GripReleased { .. }
-            | SimFact::ArmBlocked { .. } => {}
+            SimFact::Recording(RecordingFact::Started {
+                folder,
+                moved_aside: Some(aside),
+                ..
+            }) => {
+                let (folder, aside) = (folder.display(), aside.display());
+                let text = format!("{folder}: the earlier recording there is now {aside}");
+                notices.add(Tone::Event, &text);
+            }
+            SimFact::Scene(SceneFact::ObjectCreated { .. } | SceneFact::ObjectDeleted { .. })
+            | SimFact::History(_)
+            | SimFact::Mechanism(_)
+            | SimFact::Hand(_)
+            | SimFact::Recording(RecordingFact::Started { .. } | RecordingFact::Finished { .. })
+            | SimFact::Robot(_) => {}
         }
     }
 }
@@ -237,16 +232,16 @@ mod tests {
         };
         for fact in [
             refused("no such object"),
-            SimFact::TaskLoaded {
+            SimFact::Scene(SceneFact::TaskLoaded {
                 cause: CommandId(0),
                 path: "a.xml".into(),
                 faults: vec!["a.xml:1:2: one".into(), "a.xml:3:4: two".into()],
-            },
+            }),
             refused("no such object"),
-            SimFact::ObjectDeleted {
+            SimFact::Scene(SceneFact::ObjectDeleted {
                 cause: None,
                 id: "x".into(),
-            },
+            }),
         ] {
             app.world_mut().write_message(fact);
             app.update();

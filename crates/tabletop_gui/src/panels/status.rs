@@ -8,7 +8,7 @@ use bevy_egui::{
     egui::{Label, RichText, Ui},
 };
 use tabletop_core::{
-    Agent, History, Paused, Recording, Replaying, SimFact, SimTick, TICKS_PER_SECOND,
+    Agent, History, Paused, Recording, RecordingFact, Replaying, SimFact, SimTick, TICKS_PER_SECOND,
 };
 
 use crate::{
@@ -130,7 +130,7 @@ struct Take {
 
 fn follow_recording(mut facts: MessageReader<SimFact>, tick: Res<SimTick>, mut take: ResMut<Take>) {
     for fact in facts.read() {
-        if let SimFact::RecordingStarted { folder, .. } = fact {
+        if let SimFact::Recording(RecordingFact::Started { folder, .. }) = fact {
             *take = Take {
                 folder: folder.clone(),
                 began: *tick,
@@ -450,10 +450,12 @@ mod tests {
             .init_resource::<Take>()
             .add_systems(Update, follow_recording);
         app.insert_resource(SimTick(100));
-        app.world_mut().write_message(SimFact::RecordingStarted {
-            cause: tabletop_core::CommandId(0),
-            folder: "demo".into(),
-        });
+        app.world_mut()
+            .write_message(SimFact::Recording(RecordingFact::Started {
+                cause: tabletop_core::CommandId(0),
+                folder: "demo".into(),
+                moved_aside: None,
+            }));
         app.update();
         app.insert_resource(SimTick(131));
         let mut film = |recording, replaying, undoable| {

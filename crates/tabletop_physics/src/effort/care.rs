@@ -92,7 +92,8 @@ impl Care {
                 body.set_soft_ccd_prediction(way);
             }
         }
-        let mode = self.mode(motion, are_low_stacks, engine.parameters.dt);
+        let prediction = engine.affordable(motion.prediction(engine.parameters.dt));
+        let mode = self.mode(motion, are_low_stacks, prediction);
         mode.set(engine.parameters);
     }
 
@@ -118,18 +119,13 @@ impl Care {
         self.landing > 0
     }
 
-    fn mode(self, motion: Motion, are_low_stacks: bool, dt: f32) -> Mode {
+    fn mode(self, motion: Motion, are_low_stacks: bool, prediction: f32) -> Mode {
         let sweeps = match (self.is_landing(), self.is_handling()) {
             (true, _) => LANDING_SWEEPS,
             (false, true) => HANDLING_SWEEPS,
             (false, false) if are_low_stacks => LOW_STACK_SWEEPS,
             (false, false) => SWEEPS,
         };
-        // A body beyond this distance is touched in one point, whatever its shape. The broad phase looks half as far for each of two bodies.
-        // Rapier's own prediction for fast bodies (soft CCD) forgets the contact with what a body is leaving, or sliding along: what presses
-        // it back in the same tick would press it in.
-        let prediction =
-            (motion.landing.max(2.0 * motion.fall) * dt).clamp(PREDICTION, FARTHEST_PREDICTION);
         let fastest_point = motion.fastest_point;
         Mode {
             sweeps,
@@ -154,6 +150,13 @@ struct Motion {
 }
 
 impl Motion {
+    /// Distance at which contacts are to be predicted. A body beyond it is touched in one point, whatever its shape. The broad phase looks
+    /// half as far for each of two bodies. Rapier's own prediction for fast bodies (soft CCD) forgets the contact with what a body is
+    /// leaving, or sliding along: what presses it back in the same tick would press it in.
+    fn prediction(self, dt: f32) -> f32 {
+        (self.landing.max(2.0 * self.fall) * dt).clamp(PREDICTION, FARTHEST_PREDICTION)
+    }
+
     fn add(&mut self, engine: &Engine, handle: RigidBodyHandle, factors: SubstepFactors) {
         let body = &engine.bodies[handle];
         let point = engine.fastest_point(body);

@@ -148,9 +148,28 @@ impl Imitator<'_> {
         id: &str,
         i: usize,
     ) -> Result<(), PlanFailure> {
-        for above in stage.sight().above(id) {
-            self.clear(stage, &above, i)?;
-        }
+        self.clear_above(stage, id, i)?;
+        self.clear_alone(stage, id, i)
+    }
+
+    /// Moves out of the way what stands on something.
+    pub(super) fn clear_above(
+        &mut self,
+        stage: &mut dyn PlanningStage,
+        id: &str,
+        i: usize,
+    ) -> Result<(), PlanFailure> {
+        let stack = stage.sight().stack_above(id);
+        let mut stack = stack.iter();
+        stack.try_for_each(|above| self.clear_alone(stage, above, i))
+    }
+
+    fn clear_alone(
+        &mut self,
+        stage: &mut dyn PlanningStage,
+        id: &str,
+        i: usize,
+    ) -> Result<(), PlanFailure> {
         let sight = stage.sight().clone();
         self.remember(&sight, id);
         let near = sight

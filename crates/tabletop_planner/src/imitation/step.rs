@@ -34,9 +34,7 @@ impl Imitator<'_> {
             .objects
             .get(id)
             .ok_or_else(|| PlanFailure::Gone(id.to_owned()))?;
-        for above in sight.above(id) {
-            self.clear(stage, &above, i)?;
-        }
+        self.clear_above(stage, id, i)?;
         match step.relations.first() {
             Some(Relation::Slid {
                 object: holder,

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::files::{
-    channels::Channels, durability::Durability, hand_pictures::HandPictures, storage::Storage,
-};
+use tabletop_storage::Storage;
+
+use crate::files::{channels::Channels, durability::Durability, hand_pictures::HandPictures};
 
 /// The destination of recordings: their folder and files.
 #[derive(Clone, Debug)]

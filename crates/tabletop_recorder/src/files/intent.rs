@@ -6,6 +6,7 @@
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use tabletop_storage::is_taken;
 
 use crate::{
     error::RecorderError,
@@ -13,7 +14,6 @@ use crate::{
         folder::Folder,
         json::from_json,
         limits::{MOST_ROW_BYTES, MOST_SESSION_BYTES},
-        storage::is_taken,
     },
 };
 
@@ -127,7 +127,7 @@ impl Intent {
             } => {
                 let path = folder.session();
                 let file = folder.storage().open_to_read(&path);
-                let len = file.and_then(|file| file.len());
+                let len = file.and_then(|file| file.byte_count());
                 if len.map_err(RecorderError::read(&path))? < *session {
                     replace_end(folder, &folder.text(before.segment), before.text, &[])?;
                     replace_end(folder, &path, before.session, &[])?;
@@ -184,7 +184,7 @@ pub(crate) fn fulfil_what_was_left(folder: &Folder) -> Result<(), RecorderError>
 fn replace_end(folder: &Folder, path: &Path, len: u64, lines: &[u8]) -> Result<(), RecorderError> {
     let replace = || {
         let mut file = folder.storage().open(path)?;
-        if file.len()? < len {
+        if file.byte_count()? < len {
             return Err(std::io::ErrorKind::UnexpectedEof.into());
         }
         file.cut(len)?;

@@ -5,10 +5,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use crate::{
-    error::RecorderError,
-    files::storage::{Storage, StoredFile},
-};
+use tabletop_storage::{Storage, StoredFile};
+
+use crate::error::RecorderError;
 
 /// A file that grows by whole lines. What is appended is with the operating system when the call returns, so it outlives
 /// the program; what cannot be appended whole is not in the file.
@@ -43,6 +42,12 @@ impl LogFile {
     pub(crate) fn lock(&self) {
         // Nobody else can have it: who starts a recording keeps the others off the folder.
         let _is_free = self.file.try_lock();
+    }
+
+    /// True if the file is still at its path.
+    pub(crate) fn is_in_place(&self) -> Result<bool, RecorderError> {
+        let found = self.file.is_at(&self.path);
+        found.map_err(RecorderError::read(&self.path))
     }
 
     pub(crate) fn len(&self) -> u64 {

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use tabletop_storage::is_taken;
+
 use crate::{
     error::RecorderError,
     files::{
@@ -12,9 +14,9 @@ use crate::{
         joints,
         json::to_json_line,
         log_file::LogFile,
+        new_recording::NewRecording,
         session::{SessionHeader, SessionScene},
         states,
-        storage::is_taken,
     },
 };
 
@@ -39,7 +41,7 @@ impl RecordingFiles {
         header: &SessionHeader,
         scene: &SessionScene,
         earlier_commands: &[u8],
-    ) -> Result<Self, RecorderError> {
+    ) -> Result<NewRecording<Self>, RecorderError> {
         let fill = |folder: &Folder| fill(folder, header, scene, earlier_commands);
         let Destination {
             folder: path,
@@ -47,13 +49,13 @@ impl RecordingFiles {
             durability,
             ..
         } = destination;
-        let files = Folder::create(path, storage, fill, |folder, lengths| {
+        let new = NewRecording::of(path, storage, fill, |folder, lengths| {
             Self::open(folder, *durability, lengths)
         })?;
         if *durability != Durability::None {
-            files.folder.sync_name()?;
+            new.opened.folder.sync_name()?;
         }
-        Ok(files)
+        Ok(new)
     }
 
     fn open(
@@ -75,6 +77,16 @@ impl RecordingFiles {
         })
     }
 
+    /// Makes sure that the folder is still in its place: what is written to its files would be elsewhere otherwise.
+    pub(crate) fn require_in_place(&self) -> Result<(), RecorderError> {
+        match self.session.is_in_place()? {
+            true => Ok(()),
+            false => Err(RecorderError::Displaced {
+                folder: self.folder.path().to_owned(),
+            }),
+        }
+    }
+
     pub(crate) fn lengths(&self) -> Lengths {
         Lengths {
             segment: self.segment,
@@ -86,6 +98,7 @@ impl RecordingFiles {
     }
 
     pub(crate) fn begin_segment(&mut self) -> Result<(), RecorderError> {
+        self.require_in_place()?;
         let segment = self.segment + 1;
         self.folder.create_inner(&self.folder.pictures(segment))?;
         self.text = LogFile::create(self.folder.storage(), self.folder.text(segment))?;
@@ -95,6 +108,7 @@ impl RecordingFiles {
 
     /// Puts away the present segment, before which the files had these lengths. The session log goes on with these lines.
     pub(crate) fn put_away(&mut self, before: Lengths, then: &[u8]) -> Result<(), RecorderError> {
+        self.require_in_place()?;
         let away = self.folder.undone_segment(self.segment);
         self.folder.create_inner(away.path())?;
         for (log, len, end) in [
@@ -126,6 +140,7 @@ impl RecordingFiles {
         first_frame: u64,
         end: Lengths,
     ) -> Result<(), RecorderError> {
+        self.require_in_place()?;
         let segment = end.segment;
         let intent = Intent::BringBack {
             segment,
@@ -189,6 +204,7 @@ impl RecordingFiles {
 
     /// Begins the end of the recording: until [`finish`](Self::finish) has succeeded, everything written is taken back.
     pub(crate) fn begin_end(&self, first_frame: u64, line: &[u8]) -> Result<Intent, RecorderError> {
+        self.require_in_place()?;
         let before = self.lengths();
         let intent = Intent::Finish {
             before,

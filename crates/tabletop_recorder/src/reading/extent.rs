@@ -3,6 +3,7 @@
 use std::{io, path::Path};
 
 use tabletop_core::{RecordingCommand, SimCommand, SimTick};
+use tabletop_storage::is_taken;
 
 use crate::{
     error::RecorderError,
@@ -14,7 +15,6 @@ use crate::{
         log_file::{read_whole_lines, whole_lines},
         session::Session,
         states,
-        storage::is_taken,
     },
 };
 
@@ -95,7 +95,7 @@ fn last_tick_in(end: &[u8], columns: usize) -> Option<u64> {
 
 fn end_of(folder: &Folder, path: &Path) -> io::Result<Vec<u8>> {
     let mut file = folder.storage().open_to_read(path)?;
-    let length = file.len()?;
+    let length = file.byte_count()?;
     file.read_from(length.saturating_sub(LONGEST_LINE), 2 * LONGEST_LINE)
 }
 

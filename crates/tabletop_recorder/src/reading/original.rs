@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use tabletop_core::SimTick;
+use tabletop_storage::is_taken;
 
 use crate::{
     error::RecorderError,
-    files::{folder::Folder, frame::TICKS_PER_FRAME, storage::is_taken},
+    files::{folder::Folder, frame::TICKS_PER_FRAME},
     reading::{
         event::CommaStyle,
         recording_reader::read_events,

@@ -6,6 +6,7 @@ use std::{
 };
 
 use tabletop_core::{JointName, JointState, SimTick, Timeline, TimelinePicture, TimelineStage};
+use tabletop_storage::is_taken;
 
 use crate::{
     error::RecorderError,
@@ -17,7 +18,6 @@ use crate::{
         log_file::read_whole_lines,
         segment_mark::SegmentMark,
         session::{Session, SessionHeader},
-        storage::is_taken,
     },
     reading::{
         event::{self, CommaStyle, RecordedEvent},

@@ -21,6 +21,7 @@ use crate::{
         channels::Channels,
         destination::Destination,
         frame::FrameClock,
+        new_recording::NewRecording,
         recording_files::RecordingFiles,
         session::{SessionHeader, SessionScene},
     },
@@ -80,11 +81,13 @@ impl Episode {
         header: &SessionHeader,
         scene: &SessionScene,
         earlier: &EarlierCommands,
-    ) -> Result<Self, RecorderError> {
-        let files = RecordingFiles::create(destination, header, scene, earlier.lines())?;
+    ) -> Result<NewRecording<Self>, RecorderError> {
+        let lines = earlier.lines();
+        let new = RecordingFiles::create(destination, header, scene, lines)?;
+        let files = new.opened;
         let objects = scene.objects.iter().map(|object| object.spec.clone());
         let start = SimTick(header.start_tick);
-        Ok(Self {
+        let opened = Self {
             clock: FrameClock { start },
             head: files.session.len(),
             files,
@@ -102,6 +105,10 @@ impl Episode {
             undoable: Vec::new(),
             redoable: Vec::new(),
             pictures: 0,
+        };
+        Ok(NewRecording {
+            opened,
+            moved_aside: new.moved_aside,
         })
     }
 

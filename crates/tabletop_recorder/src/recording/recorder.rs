@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use bevy::prelude::*;
 use tabletop_core::{
     CommandId, CommandKind as _, Hand, HandImages, Hands, IssuedCommand, Paused, PictureDemand,
-    Recording, RecordingCommand, SensorImage, SimFact, SimTick, TICKS_PER_SECOND, Timeline,
-    TimelineStage,
+    Recording, RecordingCommand, RecordingFact, SensorImage, SimFact, SimTick, TICKS_PER_SECOND,
+    Timeline, TimelineStage,
 };
 
 use crate::{
@@ -15,9 +15,15 @@ use crate::{
         destination::Destination,
         format::FORMAT,
         frame::TICKS_PER_FRAME,
+        new_recording::NewRecording,
         session::{SessionCommand, SessionHeader},
     },
-    recording::{earlier_commands::EarlierCommands, episode::Episode, stage::RecordedWorld},
+    recording::{
+        earlier_commands::EarlierCommands,
+        episode::Episode,
+        report::{MovedAside, RecordingReport},
+        stage::RecordedWorld,
+    },
 };
 
 /// Why a recording cannot be started.
@@ -34,6 +40,7 @@ pub(crate) struct Recorder {
     /// The command that ends the recording in this tick.
     finish: Option<IssuedCommand>,
     earlier: EarlierCommands,
+    report: RecordingReport,
 }
 
 impl Recorder {
@@ -43,7 +50,12 @@ impl Recorder {
             episode: None,
             finish: None,
             earlier: EarlierCommands::default(),
+            report: RecordingReport::default(),
         }
+    }
+
+    pub(crate) const fn report(&self) -> &RecordingReport {
+        &self.report
     }
 
     fn start(
@@ -66,12 +78,25 @@ impl Recorder {
             settings: stage.settings.0.clone(),
         };
         let scene = stage.scene();
-        let episode = Episode::begin(&self.destination, &header, &scene, &self.earlier)?;
+        let NewRecording {
+            opened: episode,
+            moved_aside,
+        } = Episode::begin(&self.destination, &header, &scene, &self.earlier)?;
         *timeline = episode.timeline();
         self.episode = Some(episode);
         self.finish = None;
         let folder = self.destination.folder.clone();
-        Ok(SimFact::RecordingStarted { cause, folder })
+        self.report.started += 1;
+        let moved = moved_aside.iter().map(|to| MovedAside {
+            from: folder.clone(),
+            to: to.clone(),
+        });
+        self.report.moved_aside.extend(moved);
+        Ok(SimFact::Recording(RecordingFact::Started {
+            cause,
+            folder,
+            moved_aside,
+        }))
     }
 }
 
@@ -109,11 +134,9 @@ pub(crate) fn take_commands(
                         facts.write(started);
                     }
                     Err(error) => {
-                        facts.write(failed(
-                            Some(cause),
-                            recorder.destination.folder.clone(),
-                            format!("no recording was started: {error}"),
-                        ));
+                        let folder = recorder.destination.folder.clone();
+                        let reason = format!("no recording was started: {error}");
+                        facts.write(recorder.fail(Some(cause), folder, reason));
                     }
                 }
             }
@@ -236,7 +259,7 @@ impl Recorder {
             let reason = format!("the recording has ended: {error}");
             let cause = self.finish.as_ref().map(|finish| finish.id);
             if let Some(episode) = self.end(None, recording) {
-                facts.write(failed(cause, episode.abandon(), reason));
+                facts.write(self.fail(cause, episode.abandon(), reason));
             }
         }
     }
@@ -253,11 +276,25 @@ impl Recorder {
             Ok(Some((cause, commands))) => {
                 if let Some(episode) = self.end(Some(&commands), recording) {
                     let folder = episode.folder().to_owned();
-                    facts.write(SimFact::RecordingFinished { cause, folder });
+                    facts.write(SimFact::Recording(RecordingFact::Finished {
+                        cause,
+                        folder,
+                    }));
                 }
             }
             Err(error) => self.stop_on_error(Err(error), recording, facts),
         }
+    }
+
+    /// Nobody may miss that a demonstration is not recorded: it is logged, too.
+    fn fail(&mut self, cause: Option<CommandId>, folder: PathBuf, reason: String) -> SimFact {
+        error!("{reason}");
+        self.report.failure = Some(reason.clone());
+        SimFact::Recording(RecordingFact::Failed {
+            cause,
+            folder,
+            reason,
+        })
     }
 
     /// Ends the recording, of which these are the lines of its commands, and returns it.
@@ -266,16 +303,6 @@ impl Recorder {
         self.earlier.append_recorded(commands);
         recording.0 = false;
         self.episode.take()
-    }
-}
-
-/// Nobody may miss that a demonstration is not recorded: it is logged, too.
-fn failed(cause: Option<CommandId>, folder: PathBuf, reason: String) -> SimFact {
-    error!("{reason}");
-    SimFact::RecordingFailed {
-        cause,
-        folder,
-        reason,
     }
 }
 

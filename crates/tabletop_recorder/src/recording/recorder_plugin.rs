@@ -8,10 +8,12 @@ use tabletop_core::{
     CommandSystems, PictureSystems, RestApp as _, RestingSystems, SimSystems, TickSystems,
 };
 
+use tabletop_storage::Storage;
+
 use crate::{
     files::{
         channels::Channels, destination::Destination, durability::Durability,
-        hand_pictures::HandPictures, session::SessionSettings, storage::Storage,
+        hand_pictures::HandPictures, session::SessionSettings,
     },
     recording::recorder::{
         Recorder, ask_for_picture, pass_over, record, take_commands, ticks_to_frame,
@@ -28,7 +30,7 @@ use crate::{
 /// [`Finish`]: tabletop_core::RecordingCommand::Finish
 #[derive(Clone, Debug)]
 pub struct RecorderPlugin {
-    /// The folder. An existing one is moved aside when a recording starts.
+    /// The folder. An earlier recording is moved aside when one starts; a folder with anything else is refused.
     pub folder: PathBuf,
     /// The initial [settings](SessionSettings).
     pub header: Map<String, Value>,

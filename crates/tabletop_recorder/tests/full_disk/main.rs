@@ -15,7 +15,8 @@ use std::{
 
 use bevy::prelude::App;
 use tabletop_core::{
-    ClockCommand, Hand, HandCommand, Recording, RecordingCommand, SimCommand, SimFact, StepApp as _,
+    ClockCommand, Hand, HandCommand, Recording, RecordingCommand, RecordingFact, SimCommand,
+    SimFact, StepApp as _,
 };
 use tabletop_harness::test_with;
 use tabletop_recorder::Session;
@@ -52,12 +53,14 @@ fn fill(disk: &Path, bytes: usize) {
 /// The report of the one recording that failed.
 fn failure(app: &mut App) -> (PathBuf, String) {
     let mut facts = heard(app);
-    let place = |fact: &SimFact| matches!(fact, SimFact::RecordingFailed { .. });
+    let place = |fact: &SimFact| matches!(fact, SimFact::Recording(RecordingFact::Failed { .. }));
     let failure = facts.iter().position(place).map(|at| facts.remove(at));
-    let ends = |fact: &SimFact| place(fact) || matches!(fact, SimFact::RecordingFinished { .. });
+    let ends = |fact: &SimFact| {
+        place(fact) || matches!(fact, SimFact::Recording(RecordingFact::Finished { .. }))
+    };
     assert!(!facts.iter().any(ends), "{facts:?}");
     match failure {
-        Some(SimFact::RecordingFailed { folder, reason, .. }) => (folder, reason),
+        Some(SimFact::Recording(RecordingFact::Failed { folder, reason, .. })) => (folder, reason),
         _ => panic!("{facts:?}"),
     }
 }

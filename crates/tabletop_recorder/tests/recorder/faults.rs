@@ -15,9 +15,10 @@ use tabletop_core::{
     StepApp as _, WriteCommand as _,
 };
 use tabletop_recorder::{
-    Channels, Durability, HandPictures, RecorderPlugin, RecordingReader, SessionCommand, Storage,
-    StorageFault, whole_lines,
+    Channels, Durability, HandPictures, RecorderPlugin, RecordingReader, SessionCommand,
+    whole_lines,
 };
+use tabletop_storage::{Storage, StorageFault};
 
 use crate::stage::{Place, app_with, files_in, grasp, run, scene};
 
@@ -53,6 +54,8 @@ fn try_every_fault(script: &Script) {
         for fault in StorageFault::ALL {
             let place = Place::in_memory();
             fs::create_dir_all(place.demo()).unwrap();
+            let session = place.demo().join("session.jsonl");
+            fs::write(session, "{\"format\":4}\n").unwrap();
             fs::write(place.demo().join("note"), "an earlier recording").unwrap();
             run(
                 &mut recorder(&place, Storage::with_fault(fault, call), EVERY_TICK),

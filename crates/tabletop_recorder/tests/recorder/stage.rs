@@ -9,10 +9,10 @@ use std::{
 
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
-    CommandId, CorePlugin, Hand, HandCamera, HandCameras, HandCommand, HandImages, Hands,
-    HistoryCommand, IssuedCommand, ObjectIndex, ObjectSpec, Picture, PictureDemand, PictureSystems,
-    Pose, Recording, Rgb, SceneCommand, SceneItem, SceneSpec, SensorImage, Shape, SimCommand,
-    SimFact, SimSystems, SimTick, StepApp as _, WriteCommand as _,
+    CommandId, CorePlugin, Hand, HandCamera, HandCameras, HandCommand, HandFact, HandImages, Hands,
+    HistoryCommand, HistoryFact, IssuedCommand, ObjectIndex, ObjectSpec, Picture, PictureDemand,
+    PictureSystems, Pose, Recording, Rgb, SceneCommand, SceneFact, SceneItem, SceneSpec,
+    SensorImage, Shape, SimCommand, SimFact, SimSystems, SimTick, StepApp as _, WriteCommand as _,
 };
 use tabletop_recorder::RecorderPlugin;
 
@@ -264,11 +264,11 @@ fn act(world: &mut World, reader: &mut SystemState<MessageReader<IssuedCommand>>
                 }
                 begin_segment(world, cause);
                 world.resource_mut::<Hands>().set_held(hand, Some(entity));
-                world.write_message(SimFact::Grasped {
+                world.write_message(SimFact::Hand(HandFact::Grasped {
                     cause,
                     hand,
                     id: object,
-                });
+                }));
             }
             SimCommand::Hand(HandCommand::Release(hand)) => release(world, cause, hand),
             SimCommand::Hand(HandCommand::Destroy(hand)) => {
@@ -279,21 +279,29 @@ fn act(world: &mut World, reader: &mut SystemState<MessageReader<IssuedCommand>>
                 let fact = delete(world, Some(cause), &id);
                 world.write_message(fact);
                 world.resource_mut::<Hands>().set_held(hand, None);
-                world.write_message(SimFact::Destroyed { cause, hand, id });
+                world.write_message(SimFact::Hand(HandFact::Destroyed { cause, hand, id }));
             }
             SimCommand::History(HistoryCommand::Undo) => {
                 let now = moment(world);
                 let mut moments = world.resource_mut::<Moments>();
                 if let Some(before) = moments.undoable.pop() {
                     moments.redoable.push((before.clone(), now));
-                    turn(world, &before, SimFact::Undone { cause });
+                    turn(
+                        world,
+                        &before,
+                        SimFact::History(HistoryFact::Undone { cause }),
+                    );
                 }
             }
             SimCommand::History(HistoryCommand::Redo) => {
                 let mut moments = world.resource_mut::<Moments>();
                 if let Some((before, after)) = moments.redoable.pop() {
                     moments.undoable.push(before);
-                    turn(world, &after, SimFact::Redone { cause });
+                    turn(
+                        world,
+                        &after,
+                        SimFact::History(HistoryFact::Redone { cause }),
+                    );
                 }
             }
             SimCommand::Scene(SceneCommand::Load(_) | SceneCommand::Make { .. })
@@ -319,18 +327,18 @@ fn begin_segment(world: &mut World, cause: CommandId) {
         moments.undoable.push(now);
         moments.redoable.clear();
     }
-    world.write_message(SimFact::SegmentBegun { cause });
+    world.write_message(SimFact::History(HistoryFact::SegmentBegun { cause }));
 }
 
 fn release(world: &mut World, cause: CommandId, hand: Hand) {
     if let Some(id) = held(world, hand) {
         begin_segment(world, cause);
         world.resource_mut::<Hands>().set_held(hand, None);
-        world.write_message(SimFact::Released {
+        world.write_message(SimFact::Hand(HandFact::Released {
             cause: Some(cause),
             hand,
             id,
-        });
+        }));
     }
 }
 
@@ -357,16 +365,16 @@ fn create(world: &mut World, cause: Option<CommandId>, spec: ObjectSpec) -> SimF
     let id = spec.id.clone();
     let object = world.spawn(spec).id();
     world.resource_mut::<ObjectIndex>().insert(&id, object);
-    SimFact::ObjectCreated { cause, id, object }
+    SimFact::Scene(SceneFact::ObjectCreated { cause, id, object })
 }
 
 fn delete(world: &mut World, cause: Option<CommandId>, id: &str) -> SimFact {
     let object = world.resource_mut::<ObjectIndex>().remove(id);
     world.despawn(object.unwrap());
-    SimFact::ObjectDeleted {
+    SimFact::Scene(SceneFact::ObjectDeleted {
         cause,
         id: id.into(),
-    }
+    })
 }
 
 fn moment(world: &World) -> Moment {

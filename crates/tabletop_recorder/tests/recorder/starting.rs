@@ -2,10 +2,15 @@
 
 use std::fs;
 
-use tabletop_core::{CommandId, Recording, RecordingCommand, SimCommand, SimFact, StepApp as _};
-use tabletop_recorder::Session;
+use tabletop_core::{
+    CommandId, Recording, RecordingCommand, RecordingFact, SimCommand, SimFact, StepApp as _,
+};
+use tabletop_recorder::{
+    RecorderPlugin, RecordingReport, Session, finish_recording, recording_report,
+};
+use tabletop_storage::{Storage, StorageFault};
 
-use crate::stage::{Place, app, app_into, heard, run, scene};
+use crate::stage::{Place, app, app_into, app_with, heard, run, scene};
 
 #[test]
 fn start_and_finish_tell_what_they_do() {
@@ -17,7 +22,11 @@ fn start_and_finish_tell_what_they_do() {
         &[(0, SimCommand::Recording(RecordingCommand::Start))],
     );
     let cause = CommandId(0);
-    let started = SimFact::RecordingStarted { cause, folder };
+    let started = SimFact::Recording(RecordingFact::Started {
+        cause,
+        folder,
+        moved_aside: None,
+    });
     assert_eq!(heard(&mut app), [started]);
     assert!(app.world().resource::<Recording>().0);
 
@@ -36,7 +45,7 @@ fn start_and_finish_tell_what_they_do() {
     );
     let folder = place.demo();
     let cause = CommandId(2);
-    let finished = SimFact::RecordingFinished { cause, folder };
+    let finished = SimFact::Recording(RecordingFact::Finished { cause, folder });
     assert_eq!(heard(&mut app), [finished]);
     assert!(!app.world().resource::<Recording>().0);
 
@@ -74,7 +83,7 @@ fn a_recording_whose_folder_cannot_be_made_fails() {
         &[(0, SimCommand::Recording(RecordingCommand::Start))],
     );
     let facts = heard(&mut app);
-    let [SimFact::RecordingFailed { folder, reason, .. }] = &facts[..] else {
+    let [SimFact::Recording(RecordingFact::Failed { folder, reason, .. })] = &facts[..] else {
         panic!("{facts:?}");
     };
     assert_eq!(*folder, *"/dev/null/demo");
@@ -119,13 +128,85 @@ fn of_several_that_start_at_once_one_gets_the_folder_and_nothing_is_left_of_the_
     }
 }
 
+/// Only a folder without a lock stays: one that was just made, or is about to get its name.
+#[cfg(unix)]
 #[test]
-fn what_a_starter_left_that_was_killed_is_gone_with_the_next() {
+fn leftovers_of_a_killed_starter_are_gone_with_the_next() {
+    let mut tried = 0;
+    let mut stayed = 0;
+    for call in 0.. {
+        let place = Place::new();
+        let storage = Storage::with_fault(StorageFault::Killed, call);
+        let killed = RecorderPlugin {
+            folder: place.demo(),
+            storage: storage.clone(),
+            ..RecorderPlugin::default()
+        };
+        run(
+            &mut app_with(killed),
+            &[(0, RecordingCommand::Start.into())],
+        );
+        if storage.calls() <= call {
+            break;
+        }
+        tried += 1;
+        run(&mut app(&place), &[(0, RecordingCommand::Start.into())]);
+        let entries = fs::read_dir(place.path()).unwrap();
+        let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        stayed += names.filter(|name| name.starts_with('.')).count();
+    }
+    assert!(tried > 20, "{tried}");
+    assert_eq!(stayed, 2, "of {tried}");
+}
+
+/// Files that were open go on elsewhere, and pictures would get into another folder.
+#[cfg(unix)]
+#[test]
+fn a_folder_that_loses_its_place_ends_the_recording() {
+    let moved = |place: &Place| fs::rename(place.demo(), place.path().join("moved")).unwrap();
+    let replaced = |place: &Place| {
+        moved(place);
+        fs::create_dir_all(place.demo().join("0")).unwrap();
+    };
+    let removed = |place: &Place| fs::remove_dir_all(place.demo()).unwrap();
+    let displacements: [&dyn Fn(&Place); 3] = [&moved, &replaced, &removed];
+    for (number, displace) in displacements.into_iter().enumerate() {
+        for ticks in [1, 40] {
+            let place = Place::new();
+            let mut app = app(&place);
+            let start = RecordingCommand::Start.into();
+            run(
+                &mut app,
+                &[(0, scene(&["a"])), (0, start), (2, scene(&["b"]))],
+            );
+            displace(&place);
+            app.step(ticks);
+            let error = finish_recording(&mut app).unwrap_err();
+            let reason = "was renamed, replaced or removed during the recording";
+            assert!(error.contains(reason), "{number} {ticks}: {error}");
+            let stays = |name: &str| place.path().join(name).join("session.jsonl").exists();
+            assert_eq!(stays("moved"), number < 2);
+        }
+    }
+}
+
+#[test]
+fn the_report_names_what_was_moved_aside_and_what_has_failed() {
     let place = Place::new();
-    let left = place.path().join(".demo.new-1");
-    fs::create_dir_all(left.join("0")).unwrap();
-    fs::write(left.join("session.jsonl"), "half").unwrap();
     let mut app = app(&place);
+    assert_eq!(finish_recording(&mut app), Ok(RecordingReport::default()));
+    for number in 0..2 {
+        run(&mut app, &[(0, RecordingCommand::Start.into())]);
+        let report = finish_recording(&mut app).unwrap();
+        assert_eq!(report.started, number + 1);
+        assert_eq!(report.moved_aside.len(), number);
+    }
+    let report = recording_report(app.world()).unwrap();
+    let aside = place.path().join("demo-1");
+    assert_eq!(report.moved_aside[0].to, aside);
+    fs::remove_dir_all(place.demo()).unwrap();
+    fs::write(place.demo(), "a file").unwrap();
     run(&mut app, &[(0, RecordingCommand::Start.into())]);
-    assert_eq!(left.exists(), cfg!(not(unix)));
+    let failure = finish_recording(&mut app).unwrap_err();
+    assert!(failure.starts_with("no recording was started"), "{failure}");
 }

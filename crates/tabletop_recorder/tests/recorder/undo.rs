@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use tabletop_core::{
-    ClockCommand, CommandId, Hand, HandCommand, HistoryCommand, RecordingCommand, SimCommand,
-    SimFact, SimTick, StepApp as _, WriteCommand as _,
+    ClockCommand, CommandId, Hand, HandCommand, HistoryCommand, HistoryFact, RecordingCommand,
+    SimCommand, SimFact, SimTick, StepApp as _, WriteCommand as _,
 };
 
 use crate::stage::{Place, app, grasp, run, scene};
@@ -155,9 +155,10 @@ fn a_segment_without_a_logged_command_begins_after_all_of_its_tick() {
     let cause = CommandId(1000);
     app.world_mut().write_command(HandCommand::Select(LEFT));
     app.world_mut()
-        .write_message(SimFact::SegmentBegun { cause });
+        .write_message(SimFact::History(HistoryFact::SegmentBegun { cause }));
     app.step(1);
-    app.world_mut().write_message(SimFact::Undone { cause });
+    app.world_mut()
+        .write_message(SimFact::History(HistoryFact::Undone { cause }));
     let finish = SimCommand::Recording(RecordingCommand::Finish);
     run(&mut app, &[(0, finish)]);
     assert!(place.read("session.jsonl").contains("Select"));
@@ -351,8 +352,10 @@ fn an_undo_of_what_was_never_begun_is_survived() {
         ],
     );
     let cause = CommandId(9);
-    app.world_mut().write_message(SimFact::Undone { cause });
-    app.world_mut().write_message(SimFact::Redone { cause });
+    app.world_mut()
+        .write_message(SimFact::History(HistoryFact::Undone { cause }));
+    app.world_mut()
+        .write_message(SimFact::History(HistoryFact::Redone { cause }));
     run(
         &mut app,
         &[(20, SimCommand::Recording(RecordingCommand::Finish))],

@@ -1,7 +1,7 @@
 //! The robot's presence at the table.
 
 use bevy::prelude::*;
-use tabletop_core::{CommandId, Robot, RobotLayout, SimFact};
+use tabletop_core::{CommandId, Robot, RobotFact, RobotLayout, SimFact};
 
 use crate::{
     articulation::link_entities::{LinkEntities, enable, spawn},
@@ -28,7 +28,7 @@ pub(crate) fn show(world: &mut World, cause: CommandId, show: bool) {
     if let Err(error) = enable(world, show).and_then(|()| place(world, show)) {
         error!("cannot place the robot: {error}");
     }
-    world.write_message(SimFact::RobotShown { cause, shown: show });
+    world.write_message(SimFact::Robot(RobotFact::Shown { cause, shown: show }));
 }
 
 /// Puts the bodies where the joints have them, if there is room.

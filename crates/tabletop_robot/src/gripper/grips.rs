@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
 use tabletop_core::{
-    Bonds, Held, Holder, LimbId, LimbName, ObjectSpec, Pose, Robot, RobotLayout, SimFact,
+    Bonds, Held, LimbId, LimbName, Manipulator, MechanismFact, ObjectSpec, Pose, Robot, RobotFact,
+    RobotLayout, SimFact,
 };
 use tabletop_physics::{Carry, hold, let_go, pull_velocity};
 
@@ -90,14 +91,14 @@ pub(crate) fn take(world: &mut World, limb: LimbId, touched: Touched) {
         return;
     };
     let arm = world.resource::<Grips>().name_of(limb);
-    let carry = hold(world, object, Holder::Gripper(arm));
+    let carry = hold(world, object, Manipulator::Gripper(arm));
     world.resource_mut::<Grips>().held[limb.index()].push(Grip {
         object,
         pose: end_effector.inverse() * here,
         points: touched.points.map(|point| end_effector.inverse() * point),
         is_jointed: carry == Carry::AgainstJoints,
     });
-    world.write_message(SimFact::GripMade { arm, id });
+    world.write_message(SimFact::Robot(RobotFact::GripMade { arm, id }));
 }
 
 /// Releases every object that a gripper holds.
@@ -110,7 +111,7 @@ pub(crate) fn release(world: &mut World, limb: LimbId) {
             continue;
         };
         let_go(world, object);
-        world.write_message(SimFact::GripReleased { arm, id });
+        world.write_message(SimFact::Robot(RobotFact::GripReleased { arm, id }));
     }
 }
 
@@ -140,7 +141,10 @@ pub(crate) fn follow_bonds(
 ) {
     let mut moved = BTreeSet::new();
     for fact in facts.read() {
-        if let SimFact::Fastened { bond, .. } | SimFact::Loosened { bond, .. } = fact {
+        if let SimFact::Mechanism(
+            MechanismFact::Fastened { bond, .. } | MechanismFact::Loosened { bond, .. },
+        ) = fact
+        {
             moved.extend(bonds.connected(&bond.guest));
         }
     }
@@ -174,9 +178,9 @@ pub(crate) fn give_to_hands(
     for limb in grips.limbs() {
         let arm = grips.name_of(limb);
         grips.held[limb.index()].retain(|grip| match taken.get(grip.object) {
-            Ok((spec, held)) if held.by != Holder::Gripper(arm) => {
+            Ok((spec, held)) if held.by != Manipulator::Gripper(arm) => {
                 let id = spec.id.clone();
-                facts.write(SimFact::GripReleased { arm, id });
+                facts.write(SimFact::Robot(RobotFact::GripReleased { arm, id }));
                 false
             }
             _ => true,
@@ -199,10 +203,10 @@ pub(crate) fn note_lost(
         };
         held.remove(place);
         if let Ok(spec) = objects.get(remove.entity) {
-            facts.write(SimFact::GripReleased {
+            facts.write(SimFact::Robot(RobotFact::GripReleased {
                 arm,
                 id: spec.id.clone(),
-            });
+            }));
         }
     }
 }

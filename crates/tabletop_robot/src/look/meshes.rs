@@ -7,9 +7,10 @@ use std::{
 };
 
 use bevy::math::Vec3;
-use tabletop_core::{Figure, Rgb, Symlinks, read_regular_file, read_regular_text};
+use tabletop_core::{Figure, Rgb};
 use tabletop_kinematics::{Geometry, LinkShape};
 use tabletop_mesh::{MeshFileError, Triangle, read_obj, read_stl};
+use tabletop_storage::{Symlinks, read_regular_file, read_regular_text};
 
 use super::{error::LookError, hull::Hull, shape_file::read_shape, shipped::PARTS};
 use crate::source::DescriptionSource;

@@ -2,7 +2,7 @@
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_rapier3d::{prelude::*, rapier::prelude::RigidBodyHandle};
-use tabletop_core::{LimbId, LimbName, Pose, Robot, RobotMode, SimFact};
+use tabletop_core::{LimbId, LimbName, Pose, Robot, RobotFact, RobotMode, SimFact};
 use tabletop_physics::{PhysicsSettings, send};
 
 use crate::{
@@ -111,7 +111,7 @@ pub(crate) fn advance(
             if robot.limb(limb).blocked_by.as_ref() != Some(by) {
                 let by = by.clone();
                 let arm = layout.limb(limb).name;
-                facts.write(SimFact::ArmBlocked { arm, by });
+                facts.write(SimFact::Robot(RobotFact::ArmBlocked { arm, by }));
             }
         }
         let mut joints = layout.limb(limb).joints.iter();
@@ -224,7 +224,7 @@ impl GripChange {
                 commands.queue(move |world: &mut World| grips::release(world, limb));
             }
             Self::Refuse { arm, id, angle } => {
-                facts.write(SimFact::GripRefused { arm, id, angle });
+                facts.write(SimFact::Robot(RobotFact::GripRefused { arm, id, angle }));
             }
         }
     }

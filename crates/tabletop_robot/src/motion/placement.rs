@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Robot, SimFact, Table};
+use tabletop_core::{Robot, RobotFact, SimFact, Table};
 
 use crate::{
     articulation::{
@@ -101,9 +101,9 @@ pub(crate) fn leave_obstacles(
             robot.joints[joint.index()].position = layout.joint(*joint).home;
         }
         let by = known.obstacle(obstacle);
-        facts.write(SimFact::ArmBlocked {
+        facts.write(SimFact::Robot(RobotFact::ArmBlocked {
             arm: layout.limb(limb).name,
             by,
-        });
+        }));
     }
 }

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
-use tabletop_core::{Hand, Holder, Pose, SceneItem, Shape, StepApp as _};
+use tabletop_core::{Hand, Manipulator, Pose, SceneItem, Shape, StepApp as _};
 use tabletop_physics::hold;
 
 use crate::world::*;
@@ -191,7 +191,7 @@ fn what_turns_near_a_hand_hardly_enters_the_table() {
             object("held", (3.0, 3.0, height), 1.0, block(Vec3::ONE)),
         ]);
         let [it, held] = ["it", "held"].map(|id| world.entity(id));
-        hold(world.0.world_mut(), held, Holder::Hand(Hand::Right));
+        hold(world.0.world_mut(), held, Manipulator::Hand(Hand::Right));
         *world.0.world_mut().get_mut::<Velocity>(it).unwrap() = Velocity {
             linear: Vec3::new(3.0, 3.0, 2.0),
             angular: Vec3::new(4.8, -1.7, 2.1),
@@ -216,7 +216,7 @@ fn a_box_near_a_hand_keeps_its_corners_out_of_the_table_while_something_is_fast(
             object("fast", (-6.0, 0.0, 50.0), 1.0, sphere(0.5)),
         ]);
         let [hit, held, fast] = ["box", "held", "fast"].map(|id| world.entity(id));
-        hold(world.0.world_mut(), held, Holder::Hand(Hand::Right));
+        hold(world.0.world_mut(), held, Manipulator::Hand(Hand::Right));
         world.0.step(2);
         for (object, linear) in [(fast, Vec3::Z * 90.0), (hit, Vec3::new(-1.0, -1.0, -8.0))] {
             *world.0.world_mut().get_mut::<Velocity>(object).unwrap() = Velocity {

@@ -1,22 +1,22 @@
-//! The cost of simulating a scene: the number of its solids, and of their overlaps.
+//! The cost of simulating a scene: the number of its solids, and of pairs of them that are near each other.
 
-use tabletop_core::{Bounds, ChainSpec, LidBoxSpec, Pose, SceneItem, Shape};
+use tabletop_core::{Bounds, ChainSpec, LidBoxSpec, ObjectSpec, PAIR_GAP, Pose, SceneItem, Shape};
 
-use crate::elements::overlap::Overlaps;
+use crate::elements::nearness::{BodyBounds, Nearness};
 
 /// Largest number of convex solids of a task: a container has five, a link is one.
 pub(crate) const MAX_SOLIDS: usize = 20_000;
 /// Largest number of links of all chains of a task.
 const MAX_LINKS: usize = 5_000;
-/// Largest number of overlapping pairs of solids of different objects at the start.
-const MAX_OVERLAPS: usize = 20_000;
+/// Largest number of pairs of solids of different objects that are near each other at the start. The physics keeps up to 3 kB for each.
+const MAX_PAIRS: usize = 200_000;
 
 /// The cost of a part of a scene.
 #[derive(Debug, Default)]
 pub(crate) struct Cost {
     solids: usize,
     links: usize,
-    overlaps: Overlaps,
+    nearness: Nearness,
 }
 
 /// The reason why a cost is too high: the problem and the expectation.
@@ -30,7 +30,7 @@ impl Cost {
     /// Adds an element of a scene. An element that exceeds the limits does not count for those after it.
     pub fn add(&mut self, item: &SceneItem) -> Result<(), Excess> {
         let bodies = bodies(item);
-        let solids = self.solids + bodies.iter().map(Vec::len).sum::<usize>();
+        let solids = self.solids + bodies.iter().map(|body| body.solids.len()).sum::<usize>();
         let links = match item {
             SceneItem::Chain(chain) => self.links + chain.links() as usize,
             SceneItem::Object(_) | SceneItem::LidBox(_) | SceneItem::Jointed(_) => self.links,
@@ -47,10 +47,10 @@ impl Cost {
                 expected: format!("at most {MAX_LINKS} links"),
             });
         }
-        if !self.overlaps.add(&bodies, MAX_OVERLAPS) {
+        if !self.nearness.add(&bodies, MAX_PAIRS) {
             return Err(Excess {
-                problem: "with it too many solids of different objects overlap",
-                expected: format!("at most {MAX_OVERLAPS} overlaps"),
+                problem: "with it too many solids of different objects are near each other",
+                expected: format!("at most {MAX_PAIRS} pairs with a gap of less than {PAIR_GAP}"),
             });
         }
         self.solids = solids;
@@ -59,21 +59,27 @@ impl Cost {
     }
 }
 
-/// The bodies of an element, each as the bounds of its solids.
-fn bodies(item: &SceneItem) -> Vec<Vec<Bounds>> {
+/// The bodies of an element. The physics pairs those that do not collide, too, before it passes over them.
+fn bodies(item: &SceneItem) -> Vec<BodyBounds> {
     match item {
-        SceneItem::Object(object) => vec![solids(&object.shape, object.pose)],
+        SceneItem::Object(object) => vec![body(object)],
         SceneItem::Chain(chain) => links(chain),
-        SceneItem::LidBox(lidbox) => vec![parts_of_lidbox(lidbox)],
-        SceneItem::Jointed(jointed) => {
-            let [first, second] = jointed
-                .placed()
-                .map(|object| solids(&object.shape, object.pose));
-            match jointed.collides {
-                true => vec![first, second],
-                false => vec![[first, second].concat()],
-            }
-        }
+        SceneItem::LidBox(lidbox) => parts_of_lidbox(lidbox).into(),
+        SceneItem::Jointed(jointed) => jointed.placed().map(|object| body(&object)).into(),
+    }
+}
+
+fn body(object: &ObjectSpec) -> BodyBounds {
+    BodyBounds {
+        solids: solids(&object.shape, object.pose),
+        is_fixed: object.is_fixed(),
+    }
+}
+
+fn movable(shape: &Shape, at: Pose) -> BodyBounds {
+    BodyBounds {
+        solids: solids(shape, at),
+        is_fixed: false,
     }
 }
 
@@ -82,26 +88,24 @@ fn solids(shape: &Shape, at: Pose) -> Vec<Bounds> {
     shape.colliding().into_iter().map(bounds).collect()
 }
 
-fn links(chain: &ChainSpec) -> Vec<Vec<Bounds>> {
+fn links(chain: &ChainSpec) -> Vec<BodyBounds> {
     let link = Shape::Block {
         span: chain.link_span,
         color: chain.color,
     };
-    let pose = |index| chain.link_pose(index);
     (0..chain.links())
-        .map(|index| solids(&link, pose(index)))
+        .map(|index| movable(&link, chain.link_pose(index)))
         .collect()
 }
 
-/// Box and lid, which do not collide with each other.
-fn parts_of_lidbox(lidbox: &LidBoxSpec) -> Vec<Bounds> {
+/// Box and lid.
+fn parts_of_lidbox(lidbox: &LidBoxSpec) -> [BodyBounds; 2] {
     let height = (lidbox.span.z + lidbox.thickness) / 2.0;
     let on_top = lidbox.pose * Pose::at(bevy::math::Vec3::Z * height);
     [
-        solids(&lidbox.container(), lidbox.pose),
-        solids(&lidbox.lid(), on_top),
+        movable(&lidbox.container(), lidbox.pose),
+        movable(&lidbox.lid(), on_top),
     ]
-    .concat()
 }
 
 #[cfg(test)]
@@ -113,14 +117,56 @@ mod tests {
         format!("<composite location='(0,0,9)'>{spheres}</composite>")
     }
 
+    const NEAR: &str = "with it too many solids of different objects are near each other, expected at most 200000 pairs with a gap of less than 0.28";
+
+    /// Cubes in a cube of this many along each edge.
+    fn cubes(count: usize, edge: f32, distance: f32, more: &str) -> String {
+        let at = |index: usize| {
+            let place = [
+                index % count,
+                index / count % count,
+                index / (count * count),
+            ];
+            let [x, y, z] = place.map(|steps| steps as f32 * distance);
+            format!(
+                "<block location='({x},{y},{z})' xspan='{edge}' yspan='{edge}' zspan='{edge}' {more}/>"
+            )
+        };
+        (0..count.pow(3)).map(at).collect()
+    }
+
     #[test]
     fn objects_in_one_place_are_limited() {
-        let balls = "<sphere location='(0,0,1)'/>".repeat(250);
-        let problem = "sphere: with it too many solids of different objects overlap, expected at most 20000 overlaps";
-        assert_eq!(lines_of(&balls), [problem; 50]);
-        assert_eq!(scene_of("", &balls).items.len(), 200);
-        assert_eq!(lines_of(&composite(98).repeat(20)).len(), 18);
+        let balls = "<sphere location='(0,0,1)'/>".repeat(650);
+        let problem = format!("sphere: {NEAR}");
+        assert_eq!(lines_of(&balls), vec![problem; 18]);
+        assert_eq!(scene_of("", &balls).items.len(), 632);
+        assert_eq!(lines_of(&composite(98).repeat(20)).len(), 14);
         assert_eq!(lines_of(&composite(5_000)), [""; 0]);
+    }
+
+    #[test]
+    fn objects_that_are_near_each_other_are_limited() {
+        assert_eq!(lines_of(&cubes(9, 0.001, 0.002, "")).len(), 97);
+        assert_eq!(lines_of(&cubes(10, 0.001, 0.3, "")), [""; 0]);
+        assert_eq!(lines_of(&cubes(15, 1.0, 1.0, "")), [""; 0]);
+        let chain = "<chain start='(0,0,1)' end='(0.5,0,1)' linkCount='1000'/>";
+        assert_eq!(lines_of(chain), [format!("chain: {NEAR}")]);
+    }
+
+    #[test]
+    fn what_stays_in_place_is_near_nothing_else_that_does() {
+        assert_eq!(lines_of(&cubes(10, 0.001, 0.002, "mass='0'")), [""; 0]);
+    }
+
+    #[test]
+    fn jointed_objects_that_do_not_collide_are_near_each_other() {
+        let jointed = |solids: usize| {
+            let composite = composite(solids);
+            format!("<sliderJoint location='(0,0,9)'>{composite}{composite}</sliderJoint>")
+        };
+        assert_eq!(lines_of(&jointed(400)), [""; 0]);
+        assert_eq!(lines_of(&jointed(500)), [format!("sliderJoint: {NEAR}")]);
     }
 
     #[test]

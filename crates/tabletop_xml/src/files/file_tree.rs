@@ -5,7 +5,8 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-use tabletop_core::{ShippedFiles, Symlinks, is_shipped, open_regular_file};
+use tabletop_core::{ShippedFiles, is_shipped};
+use tabletop_storage::{Symlinks, open_regular_file};
 
 use crate::elements::value::ValueError;
 

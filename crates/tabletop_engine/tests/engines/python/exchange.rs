@@ -173,3 +173,32 @@ fn a_row_of_a_column_may_be_a_number() {
     let motor = session.step(&common::at_rest()).unwrap().motor;
     assert_eq!(motor.gripper_velocities, [-1.0, 0.5]);
 }
+
+#[test]
+fn whatever_a_script_prints_is_shown() {
+    let (_folder, session) = start(
+        "import os, sys\ndef init(aux): pass\n\
+         def callback(sensor, motor, aux):\n\
+         \x20   print('\\x01no mark')\n    print('before\\x01after')\n\
+         \x20   for line in ['he was: called from', '', '    tabletop_mine at line 3', 'end']:\n\
+         \x20       print(line, file=sys.stderr)\n",
+    );
+    session.init().unwrap();
+    session.step(&common::at_rest()).unwrap();
+    let printed = session.printed("end");
+    let errors = "he was: called from\n\n    tabletop_mine at line 3\nend\n";
+    assert!(printed.contains(errors), "{printed}");
+    assert!(printed.contains("no mark\nbefore\nafter\n"), "{printed}");
+}
+
+#[test]
+fn equal_errors_before_a_crash_are_all_shown() {
+    let (_folder, session) = start(&of_callback(
+        "[print('again', file=sys.stderr) for k in range(50)]; os._exit(3)",
+    ));
+    session.init().unwrap();
+    let error = session.step(&common::at_rest()).unwrap_err().to_string();
+    let rest = session.engine.drain_console();
+    let again = rest.iter().filter(|line| line.text == "again").count();
+    assert_eq!(again + error.matches("again").count(), 50, "{error}");
+}

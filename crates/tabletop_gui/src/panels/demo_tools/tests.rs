@@ -13,11 +13,12 @@ fn the_first_grasp_opens_the_panel_and_later_ones_leave_it_closed() {
         .init_resource::<Panels>()
         .add_systems(Update, open_at_first_grasp);
     for is_open in [true, false] {
-        app.world_mut().write_message(SimFact::Grasped {
-            cause: tabletop_core::CommandId(0),
-            hand: Hand::Any,
-            id: "red".into(),
-        });
+        app.world_mut()
+            .write_message(SimFact::Hand(HandFact::Grasped {
+                cause: tabletop_core::CommandId(0),
+                hand: Hand::Any,
+                id: "red".into(),
+            }));
         app.update();
         let mut panels = app.world_mut().resource_mut::<Panels>();
         assert_eq!(panels.is_open(Panel::DemonstrationTools), is_open);

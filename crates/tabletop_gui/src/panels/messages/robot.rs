@@ -19,13 +19,13 @@ fn note_facts(mut facts: MessageReader<SimFact>, mut notices: ResMut<Notices>) {
 mod tests {
     use super::*;
     use bevy::time::TimeUpdateStrategy;
-    use tabletop_core::{Arm, CorePlugin};
+    use tabletop_core::{Arm, CorePlugin, RobotFact};
 
     fn made(id: &str) -> SimFact {
-        SimFact::GripMade {
+        SimFact::Robot(RobotFact::GripMade {
             arm: Arm::Left.name(),
             id: id.into(),
-        }
+        })
     }
 
     #[test]

@@ -7,7 +7,8 @@ use std::{
 };
 
 use bevy_egui::egui::{ColorImage, Context, TextureHandle, TextureOptions};
-use tabletop_core::{Picture, Symlinks, Timeline, TimelinePicture, open_regular_file};
+use tabletop_core::{Picture, Timeline, TimelinePicture};
+use tabletop_storage::{Symlinks, open_regular_file};
 
 /// So many pictures are kept.
 const MOST: usize = 64;

@@ -1,8 +1,8 @@
 //! The events of an episode, and the segments that they begin.
 
 use tabletop_core::{
-    Act, Actor, ClockCommand, CommandId, Hand, HandCommand, Manipulator, Paused, SimFact, SimTick,
-    Timeline, TimelineGrip, TimelineSegment,
+    Act, Actor, ClockCommand, CommandId, Hand, HandCommand, HandFact, HistoryFact, Manipulator,
+    MechanismFact, Paused, SceneFact, SimFact, SimTick, Timeline, TimelineGrip, TimelineSegment,
 };
 
 use crate::{
@@ -69,7 +69,7 @@ impl Episode {
         for (index, fact) in facts.iter().enumerate() {
             self.note_act(fact, timeline);
             let event = match fact {
-                SimFact::SegmentBegun { cause } => {
+                SimFact::History(HistoryFact::SegmentBegun { cause }) => {
                     lines.splice(..0, self.objects.open(frame));
                     self.files
                         .text
@@ -78,7 +78,7 @@ impl Episode {
                     self.begin_segment(*cause, released, timeline)?;
                     continue;
                 }
-                SimFact::ObjectCreated { object, .. } => {
+                SimFact::Scene(SceneFact::ObjectCreated { object, .. }) => {
                     let Some(spec) = stage.spec(*object) else {
                         continue;
                     };
@@ -89,42 +89,43 @@ impl Episode {
                     lines.extend(initialized_controls(spec, frame));
                     continue;
                 }
-                SimFact::ObjectDeleted { id, .. } => {
+                SimFact::Scene(SceneFact::ObjectDeleted { id, .. }) => {
                     if !self.objects.delete(id) {
                         continue;
                     }
                     Event::Delete { id }
                 }
-                SimFact::Grasped { hand, id, .. } => Event::Grasp { hand: *hand, id },
-                SimFact::Released { hand, .. } => Event::Release { hand: *hand },
-                SimFact::Destroyed { hand, .. } => Event::Destroy { hand: *hand },
-                SimFact::Triggered { by, control, .. } => Event::Trigger { by, control },
-                SimFact::ControlChanged { control, state, .. } => {
+                SimFact::Hand(HandFact::Grasped { hand, id, .. }) => {
+                    Event::Grasp { hand: *hand, id }
+                }
+                SimFact::Hand(HandFact::Released { hand, .. }) => Event::Release { hand: *hand },
+                SimFact::Hand(HandFact::Destroyed { hand, .. }) => Event::Destroy { hand: *hand },
+                SimFact::Mechanism(MechanismFact::Triggered { by, control, .. }) => {
+                    Event::Trigger { by, control }
+                }
+                SimFact::Mechanism(MechanismFact::ControlChanged { control, state, .. }) => {
                     Event::ChangeControlState { control, state }
                 }
-                SimFact::PointedTo {
+                SimFact::Mechanism(MechanismFact::PointedTo {
                     hand, part, object, ..
-                } => Event::PointTo {
+                }) => Event::PointTo {
                     hand: *hand,
                     part,
                     object,
                 },
-                SimFact::Fastened { by, bond, .. } => Event::Fasten { by, bond },
-                SimFact::Loosened { by, bond, .. } => Event::Loosen { by, bond },
-                SimFact::Cut {
+                SimFact::Mechanism(MechanismFact::Fastened { by, bond, .. }) => {
+                    Event::Fasten { by, bond }
+                }
+                SimFact::Mechanism(MechanismFact::Loosened { by, bond, .. }) => {
+                    Event::Loosen { by, bond }
+                }
+                SimFact::Mechanism(MechanismFact::Cut {
                     by, blade, link, ..
-                } => Event::Cut { by, blade, link },
-                SimFact::TaskLoaded { .. }
-                | SimFact::RecordingStarted { .. }
-                | SimFact::RecordingFinished { .. }
-                | SimFact::RecordingFailed { .. }
-                | SimFact::Undone { .. }
-                | SimFact::Redone { .. }
-                | SimFact::RobotShown { .. }
-                | SimFact::GripMade { .. }
-                | SimFact::GripRefused { .. }
-                | SimFact::GripReleased { .. }
-                | SimFact::ArmBlocked { .. }
+                }) => Event::Cut { by, blade, link },
+                SimFact::Scene(SceneFact::TaskLoaded { .. })
+                | SimFact::Recording(_)
+                | SimFact::History(HistoryFact::Undone { .. } | HistoryFact::Redone { .. })
+                | SimFact::Robot(_)
                 | SimFact::Refused { .. } => continue,
             };
             lines.push(event.fields(frame));
@@ -193,11 +194,11 @@ impl Episode {
 /// The hands that a command has emptied by now.
 fn released_by(command: CommandId, facts: &[SimFact]) -> Vec<Hand> {
     let released = facts.iter().filter_map(|fact| {
-        if let SimFact::Released {
+        if let SimFact::Hand(HandFact::Released {
             cause: Some(cause),
             hand,
             ..
-        } = fact
+        }) = fact
         {
             (*cause == command).then_some(*hand)
         } else {

@@ -53,6 +53,7 @@ impl Episode {
         image: Option<&SensorImage>,
         timeline: &mut Timeline,
     ) -> Result<(), RecorderError> {
+        self.files.require_in_place()?;
         let frame = self.clock.frame(tick);
         let mut moves = Vec::new();
         for object in self.objects.tracked_mut() {

@@ -1,7 +1,7 @@
 //! Undo and redo of an episode.
 
 use bevy::prelude::warn;
-use tabletop_core::{SimFact, Timeline};
+use tabletop_core::{HistoryFact, SimFact, Timeline};
 
 use crate::{
     error::RecorderError,
@@ -21,9 +21,9 @@ pub(super) enum HistoryTurn {
 
 impl HistoryTurn {
     pub fn of(fact: &SimFact) -> Option<Self> {
-        if let SimFact::Undone { .. } = fact {
+        if let SimFact::History(HistoryFact::Undone { .. }) = fact {
             Some(Self::Undo)
-        } else if let SimFact::Redone { .. } = fact {
+        } else if let SimFact::History(HistoryFact::Redone { .. }) = fact {
             Some(Self::Redo)
         } else {
             None

@@ -1,0 +1,9 @@
+//! Whole episodes, each in a world of its own: imitation of a recording, multiplication of a demonstration, hours of random acts.
+
+mod beginning;
+pub mod imitation;
+pub mod multiplication;
+pub mod shown_task;
+pub mod soak;
+
+pub use beginning::scene_at_beginning;

@@ -1,0 +1,314 @@
+//! Multiplication of demonstrations: the same task with everything elsewhere, demonstrated again by the hand or by the robot (MimicGen's idea:
+//! Mandlekar et al., MimicGen: A Data Generation System for Scalable Robot Learning using Human Demonstrations, 2023).
+//!
+//! The seed and the number of a demonstration alone decide it, so it does not matter which others were made, or where.
+
+mod collection;
+mod fingerprint;
+mod performance;
+mod variation;
+mod way;
+
+pub use collection::{Collection, CollectionError};
+pub use variation::{Variation, with_colors_exchanged};
+
+use std::{fmt, io, path::Path};
+
+use bevy::prelude::*;
+use serde_json::json;
+use tabletop_core::{
+    HeadCamera, Random, RecordingCommand, RobotCommand, SceneCommand, SceneSpec, StepApp as _,
+    WriteCommand as _,
+};
+use tabletop_kinematics::ModelError;
+use tabletop_planner::{PlanFailure, RobotBody, imitate};
+use tabletop_recorder::{
+    HandPictures, RecorderError, RecorderPlugin, RecordingReader, finish_recording,
+};
+use tabletop_scene::{IdAllocator, assemble};
+use tabletop_storage::{Storage, Symlinks, read_regular_file};
+use tabletop_task::{Binding, Demonstration, RequirementError, Requirements, Task};
+
+use tabletop_sim::{TabletopSimPlugins, headless_app_with};
+
+use crate::{
+    beginning::scene_at_beginning,
+    imitation::{AppStage, baxter_body},
+};
+use fingerprint::Fingerprint;
+use performance::perform;
+use variation::Varying;
+
+/// The demonstrator of the new demonstrations.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Demonstrator {
+    /// The hand of the demonstration.
+    #[default]
+    Hand,
+    /// The robot.
+    Robot,
+}
+
+/// A demonstration, ready to be multiplied.
+#[derive(Debug)]
+pub struct Multiplication {
+    shown: Demonstration,
+    task: Task,
+    requirements: Requirements,
+    scene: SceneSpec,
+    /// The robot, if it demonstrates.
+    body: Option<RobotBody>,
+    variation: Variation,
+    hand_pictures: HandPictures,
+    seed: u64,
+    /// That of the recording's files.
+    recorded: Fingerprint,
+}
+
+/// The result of making one demonstration.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Made {
+    /// True if it was kept.
+    pub is_kept: bool,
+    /// The faults of the attempts that were dropped before.
+    pub dropped: Vec<Dropped>,
+}
+
+/// The reason why a demonstration was dropped.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Dropped {
+    /// There was no room for everything.
+    NoRoom,
+    /// A step of the task has failed.
+    Step(usize, PlanFailure),
+}
+
+/// The error of a demonstration that cannot be multiplied.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says it")]
+pub enum MultiplyError {
+    #[error(transparent)]
+    Recording(#[from] RecorderError),
+    #[error(transparent)]
+    Requirements(#[from] RequirementError),
+    #[error(transparent)]
+    Robot(#[from] ModelError),
+    #[error("the recording moves nothing for good, so there is nothing to demonstrate again")]
+    NoTask,
+    #[error("the recording does not contain the scene at its beginning")]
+    NoScene,
+    #[error("{0}")]
+    Unbound(#[from] tabletop_task::Unbound),
+    #[error("{0}")]
+    Record(String),
+    #[error("{path}: {source}", path = .path.display())]
+    Io {
+        path: std::path::PathBuf,
+        source: io::Error,
+    },
+}
+
+/// The name of the setting that says of a recording how it was made.
+const MULTIPLIED: &str = "multiplied";
+/// The most bytes of a file of a recording that are read.
+const MOST_BYTES: u64 = 1 << 30;
+/// Number of attempts, each with other places, to make a demonstration.
+const TRIES: u64 = 20;
+/// Number of ticks after which objects on the table are at rest.
+const SETTLING: u64 = 30;
+
+impl Multiplication {
+    /// Reads a recording whose task is to be demonstrated again.
+    ///
+    /// # Errors
+    /// It cannot be read, or shows no task.
+    pub fn of(
+        recording: &RecordingReader,
+        demonstrator: Demonstrator,
+        variation: Variation,
+        seed: u64,
+    ) -> Result<Self, MultiplyError> {
+        let shown = Demonstration::of(recording)?;
+        let task = Task::of(&shown);
+        if task.steps.is_empty() {
+            return Err(MultiplyError::NoTask);
+        }
+        let requirements = Requirements::read_for(&task, recording.folder())?;
+        let scene = scene_at_beginning(recording.session()).ok_or(MultiplyError::NoScene)?;
+        let body = match demonstrator {
+            Demonstrator::Hand => None,
+            Demonstrator::Robot => Some(baxter_body(&scene.table)?),
+        };
+        Ok(Self {
+            shown,
+            task,
+            requirements,
+            scene,
+            body,
+            variation,
+            hand_pictures: HandPictures::None,
+            seed,
+            recorded: fingerprint_of(recording.folder())?,
+        })
+    }
+
+    /// The same with the objects of another scene, which take the roles of the task.
+    ///
+    /// # Errors
+    /// They do not fit.
+    pub fn with_scene(mut self, scene: SceneSpec) -> Result<Self, MultiplyError> {
+        let objects = assemble(&scene, &mut IdAllocator::default()).objects;
+        self.task.bind(&self.requirements, &objects)?;
+        if self.body.is_some() {
+            self.body = Some(baxter_body(&scene.table)?);
+        }
+        self.scene = scene;
+        Ok(self)
+    }
+
+    /// The same with the pictures of hand cameras.
+    #[must_use]
+    pub fn with_hand_pictures(self, hand_pictures: HandPictures) -> Self {
+        Self {
+            hand_pictures,
+            ..self
+        }
+    }
+
+    /// Records the demonstration of this number in a new folder. It tries other places until the relations of the task hold at the end.
+    ///
+    /// # Errors
+    /// It cannot be recorded there.
+    pub fn make(&self, number: u64, folder: &Path) -> Result<Made, MultiplyError> {
+        let mut made = Made::default();
+        for attempt in 0..TRIES {
+            let mut random = Random::new(self.seed_of(number, attempt));
+            let Some(scene) = self.varying().varied(&mut random) else {
+                made.dropped.push(Dropped::NoRoom);
+                continue;
+            };
+            match self.show(scene, number, attempt, &mut random, folder)? {
+                Ok(()) => {
+                    self.requirements.write(folder)?;
+                    made.is_kept = true;
+                    break;
+                }
+                Err((step, failure)) => {
+                    made.dropped.push(Dropped::Step(step, failure));
+                    let removed = Storage::default().remove_folder(folder);
+                    removed.map_err(MultiplyError::io(folder))?;
+                }
+            }
+        }
+        Ok(made)
+    }
+
+    fn varying(&self) -> Varying<'_> {
+        Varying {
+            task: &self.task,
+            requirements: &self.requirements,
+            scene: &self.scene,
+            body: self.body.as_ref(),
+            variation: self.variation,
+        }
+    }
+
+    fn seed_of(&self, number: u64, attempt: u64) -> u64 {
+        let mut mixed = self.seed;
+        for part in [number, attempt] {
+            mixed = Random::new(mixed ^ part.wrapping_mul(0xd6e8_feb8_6659_fd93)).bits();
+        }
+        mixed
+    }
+
+    /// Demonstrates it once, and records that.
+    fn show(
+        &self,
+        scene: SceneSpec,
+        number: u64,
+        attempt: u64,
+        random: &mut Random,
+        folder: &Path,
+    ) -> Result<Result<(), (usize, PlanFailure)>, MultiplyError> {
+        let objects = assemble(&scene, &mut IdAllocator::default()).objects;
+        let binding = self.task.bind(&self.requirements, &objects)?;
+        let mount = self.variation.mount(&scene.table, random);
+        let seed = random.bits();
+        let light = self.variation.light(random);
+        let mut header = serde_json::Map::new();
+        header.insert(
+            MULTIPLIED.into(),
+            json!({ "seed": self.seed, "number": number, "attempt": attempt }),
+        );
+        let mut app = headless_app_with(TabletopSimPlugins.build().set(RecorderPlugin {
+            folder: folder.to_owned(),
+            header,
+            hand_pictures: self.hand_pictures.clone(),
+            ..default()
+        }));
+        let world = app.world_mut();
+        let mut camera = world.resource_mut::<HeadCamera>();
+        camera.mount = mount;
+        camera.light = light;
+        world.write_command(SceneCommand::Set(Box::new(scene)));
+        if self.body.is_some() {
+            world.write_command(RobotCommand::Show(true));
+        }
+        app.step(SETTLING);
+        app.world_mut().write_command(RecordingCommand::Start);
+        app.step(1);
+        let shown = self.act(&mut app, &binding, seed);
+        finish_recording(&mut app).map_err(MultiplyError::Record)?;
+        Ok(shown)
+    }
+
+    /// A fingerprint of all that decides the demonstrations besides variation and seed: the recording, its requirements, the objects.
+    pub fn fingerprint(&self) -> String {
+        let scene = serde_json::to_vec(&self.scene).unwrap_or_default();
+        self.recorded.and(&scene).to_string()
+    }
+
+    fn act(&self, app: &mut App, binding: &Binding, seed: u64) -> Result<(), (usize, PlanFailure)> {
+        let Some(body) = &self.body else {
+            return perform(app, &self.shown, &self.task, binding);
+        };
+        let mut stage = AppStage::new(app);
+        let imitation = imitate(&mut stage, body, &self.task, binding, seed, |_| {});
+        imitation.failure.map_or(Ok(()), Err)
+    }
+}
+
+/// The fingerprint of a recording's files, its pictures apart, and of its requirements.
+fn fingerprint_of(recording: &Path) -> Result<Fingerprint, MultiplyError> {
+    let entries = Storage::default().entries(recording);
+    let files = entries.map_err(MultiplyError::io(recording))?.into_iter();
+    let mut found = Fingerprint::EMPTY;
+    for file in files.filter(|file| file.is_file()) {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        if name.starts_with('.') {
+            continue;
+        }
+        let bytes = read_regular_file(&file, MOST_BYTES, Symlinks::Refused);
+        let bytes = bytes.map_err(MultiplyError::io(&file))?;
+        found = found.and(name.as_bytes()).and(&bytes);
+    }
+    Ok(found)
+}
+
+impl MultiplyError {
+    fn io(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        |source| Self::Io {
+            path: path.to_owned(),
+            source,
+        }
+    }
+}
+
+impl fmt::Display for Dropped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoRoom => f.write_str("there was no room for everything"),
+            Self::Step(step, failure) => write!(f, "step {step}: {failure}"),
+        }
+    }
+}

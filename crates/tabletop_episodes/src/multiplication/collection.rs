@@ -1,0 +1,174 @@
+//! The folder of the demonstrations that were made of one.
+
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
+
+use serde_json::Value;
+use tabletop_recorder::{RecorderError, RecordingReader};
+use tabletop_storage::{
+    FolderLock, LockedFolder, Storage, StoredFile, Symlinks, is_taken, read_regular_text,
+};
+
+/// The file that says what a collection was made with, so that other demonstrations are not mixed with it.
+const MANIFEST: &str = "multiply.json";
+
+/// The most bytes of it that are read.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// Prefix of the hidden folder in which demonstrations are made.
+const WORKSHOP: &str = ".making-";
+
+/// A folder of demonstrations made of one, each in a folder of its number. Nobody else makes demonstrations there as long as this exists.
+#[derive(Debug)]
+pub struct Collection {
+    folder: PathBuf,
+    storage: Storage,
+    /// Where demonstrations are made. One that is whole is moved out of it.
+    workshop: LockedFolder,
+    _locked: StoredFile,
+}
+
+/// The error of a folder that takes no demonstrations.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says it")]
+pub enum CollectionError {
+    #[error("{}: the demonstrations there were made with other options or of another demonstration; name a new folder", .0.display())]
+    OtherManifest(PathBuf),
+    #[error("{}: it holds something else; name a new folder", .0.display())]
+    SomethingElse(PathBuf),
+    #[error("{}: another program makes demonstrations there; wait for its end, or name a new folder", .0.display())]
+    InUse(PathBuf),
+    #[error("{}: it is no whole demonstration of this collection; move it away, and it is made again", .0.display())]
+    NoDemonstration(PathBuf),
+    #[error("{}: {source}", .path.display())]
+    Io { path: PathBuf, source: io::Error },
+}
+
+impl Collection {
+    /// Opens a folder, which is made if it does not exist, for demonstrations with this manifest.
+    ///
+    /// # Errors
+    /// It holds something else, or demonstrations of another manifest; or another program makes demonstrations there.
+    pub fn open(folder: &Path, manifest: &Value) -> Result<Self, CollectionError> {
+        let storage = Storage::default();
+        storage
+            .create_folders(folder)
+            .map_err(CollectionError::io(folder))?;
+        let path = folder.join(MANIFEST);
+        let locked = {
+            let _alone = FolderLock::wait(folder, &storage);
+            if !is_taken(&path) {
+                begin(folder, manifest, &storage)?;
+            }
+            let locked = storage.open(&path).map_err(CollectionError::io(&path))?;
+            if !locked.try_lock() {
+                return Err(CollectionError::InUse(folder.to_owned()));
+            }
+            locked
+        };
+        let text = read_regular_text(&path, MOST_BYTES, Symlinks::Refused);
+        let known = serde_json::from_str(&text.map_err(CollectionError::io(&path))?);
+        if known.ok().as_ref() != Some(manifest) {
+            return Err(CollectionError::OtherManifest(path));
+        }
+        let workshop = LockedFolder::create(folder, WORKSHOP, &storage)
+            .map_err(CollectionError::io(folder))?;
+        Ok(Self {
+            folder: folder.to_owned(),
+            storage,
+            workshop,
+            _locked: locked,
+        })
+    }
+
+    /// True if the demonstration of a number is there, made with this seed.
+    ///
+    /// # Errors
+    /// Something else is in its place.
+    pub fn holds(&self, number: u64, seed: u64) -> Result<bool, CollectionError> {
+        let path = self.place_of(number);
+        if !is_taken(&path) || (!path.is_symlink() && self.is_empty(&path)) {
+            return Ok(false);
+        }
+        match !path.is_symlink() && is_demonstration(&path, number, seed).unwrap_or(false) {
+            true => Ok(true),
+            false => Err(CollectionError::NoDemonstration(path)),
+        }
+    }
+
+    /// The folder in which the demonstration of a number is to be made.
+    pub fn part(&self, number: u64) -> PathBuf {
+        self.workshop.path().join(name(number))
+    }
+
+    /// Puts the demonstration that was made into the collection, and onto the disk.
+    ///
+    /// # Errors
+    /// It cannot be moved there.
+    pub fn keep(&self, number: u64) -> Result<(), CollectionError> {
+        let (part, place) = (self.part(number), self.place_of(number));
+        let moved = match is_taken(&place) {
+            true => self.storage.rename_onto_empty(&part, &place),
+            false => self.storage.rename(&part, &place),
+        };
+        moved
+            .and_then(|()| self.storage.sync_folder(&self.folder))
+            .map_err(CollectionError::io(&place))
+    }
+
+    /// Ends the work on it.
+    ///
+    /// # Errors
+    /// The hidden folder cannot be removed.
+    pub fn close(self) -> Result<(), CollectionError> {
+        let closed = self.workshop.remove();
+        closed.map_err(CollectionError::io(&self.folder))
+    }
+
+    fn place_of(&self, number: u64) -> PathBuf {
+        self.folder.join(name(number))
+    }
+
+    fn is_empty(&self, folder: &Path) -> bool {
+        let entries = self.storage.entries(folder);
+        entries.is_ok_and(|entries| entries.is_empty())
+    }
+}
+
+impl CollectionError {
+    fn io(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        |source| Self::Io {
+            path: path.to_owned(),
+            source,
+        }
+    }
+}
+
+/// Writes the manifest into a folder that must be empty.
+fn begin(folder: &Path, manifest: &Value, storage: &Storage) -> Result<(), CollectionError> {
+    let entries = storage.entries(folder);
+    if !entries.map_err(CollectionError::io(folder))?.is_empty() {
+        return Err(CollectionError::SomethingElse(folder.to_owned()));
+    }
+    let path = folder.join(MANIFEST);
+    let text = format!("{manifest:#}\n");
+    let written = storage.write_new(&path, text.as_bytes());
+    written.map_err(CollectionError::io(&path))
+}
+
+fn name(number: u64) -> String {
+    format!("{number:04}")
+}
+
+/// True if a recording is whole, and the demonstration of this number and seed.
+fn is_demonstration(folder: &Path, number: u64, seed: u64) -> Result<bool, RecorderError> {
+    let recording = RecordingReader::open(folder)?;
+    let multiplied = recording.header().settings.get(super::MULTIPLIED);
+    let is = |name: &str, value: u64| {
+        let found = multiplied.and_then(|multiplied| multiplied.get(name));
+        found.and_then(Value::as_u64) == Some(value)
+    };
+    Ok(recording.cut_off_at().is_none() && is("number", number) && is("seed", seed))
+}

@@ -1,0 +1,64 @@
+//! The pairs of solids that the engine keeps in mind.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use bevy::prelude::*;
+use bevy_rapier3d::prelude::RapierContextSimulation;
+use tabletop_core::{Dynamics, PAIR_GAP, prelude::*};
+use tabletop_physics::PhysicsPlugin;
+
+/// A world of cubes with this edge, at these places.
+fn world(edge: f32, places: impl IntoIterator<Item = Vec3>, velocity: Vec3) -> App {
+    let mut app = App::new();
+    app.add_plugins((
+        MinimalPlugins,
+        CorePlugin::default(),
+        PhysicsPlugin::default(),
+    ))
+    .start();
+    let shape = Shape::Block {
+        span: Vec3::splat(edge),
+        color: Rgb::GRAY,
+    };
+    for (index, place) in places.into_iter().enumerate() {
+        let at = Pose::at(place);
+        let mut cube = ObjectSpec::new(format!("cube {index}"), at, 1.0, shape.clone());
+        cube.dynamics = Dynamics {
+            velocity,
+            ..cube.dynamics
+        };
+        app.world_mut().spawn((cube, Transform::from(at)));
+    }
+    app
+}
+
+fn pairs(app: &mut App) -> usize {
+    let mut engines = app.world_mut().query::<&RapierContextSimulation>();
+    let engine = engines.single(app.world()).unwrap();
+    engine.narrow_phase.contact_pairs().count()
+}
+
+#[test]
+fn what_is_nearer_than_the_gap_is_a_pair() {
+    for (gap, expected) in [(PAIR_GAP - 0.001, 1), (PAIR_GAP + 0.001, 0)] {
+        let mut app = world(1.0, [Vec3::ZERO, Vec3::X * (1.0 + gap)], Vec3::ZERO);
+        // Once they have moved.
+        app.step(2);
+        assert_eq!(pairs(&mut app), expected, "{gap}");
+    }
+}
+
+#[test]
+fn many_fast_bodies_make_no_more_pairs_than_memory_is_for() {
+    let side = 40_u16;
+    let places = (0..side * side).map(|index| {
+        let (x, y) = (index % side, index / side);
+        Vec3::new(f32::from(x), f32::from(y), 0.0) * 0.3
+    });
+    // All of them would be pairs.
+    let mut app = world(0.01, places, Vec3::Z * 200.0);
+    for _ in 0..3 {
+        app.step(1);
+        let pairs = pairs(&mut app);
+        assert!(pairs <= 200_000, "{pairs}");
+    }
+}

@@ -1,0 +1,31 @@
+//! The user's files and folders: each is read, created, replaced, moved and removed by one rule.
+//!
+//! Everything that changes the file system goes through a [`Storage`], of which tests let each call fail. No other crate renames or removes.
+//! `SECURITY.md` lists the places and their rules.
+//!
+//! - A file is [replaced](Storage::replace) whole, or stays as it was.
+//! - A folder appears whole: it is filled as a [`LockedFolder`] under a hidden name.
+//! - A folder that is in the way is [moved aside](Storage::move_aside) to a free name.
+//! - What a killed program has left is removed only if a lock shows that it was the program's own.
+
+mod calls;
+mod fault;
+mod folder_lock;
+mod locked_folder;
+mod path;
+mod regular_file;
+mod storage;
+mod stored_file;
+mod temporary_folder;
+mod whole_file;
+
+pub use fault::StorageFault;
+pub use folder_lock::FolderLock;
+pub use locked_folder::LockedFolder;
+pub use path::{is_taken, parent_of, require_folder};
+pub use regular_file::{
+    Symlinks, open_regular_file, read_regular_file, read_regular_text, require_regular_file,
+};
+pub use storage::Storage;
+pub use stored_file::StoredFile;
+pub use temporary_folder::TemporaryFolder;

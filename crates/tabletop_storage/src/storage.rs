@@ -1,0 +1,241 @@
+//! Every call that changes the file system, so that tests can make each of them fail.
+
+use std::{
+    fs::{self, File, OpenOptions},
+    io,
+    path::{Path, PathBuf},
+};
+
+use crate::{
+    calls::Calls,
+    fault::StorageFault,
+    path::first_free_name,
+    regular_file::{Symlinks, open_regular_file, require_regular_file},
+    stored_file::{StoredFile, read_at_most},
+};
+
+/// The file system.
+///
+/// Tests make one of its calls fail. Its calls are counted from 0; the same work makes the same calls.
+///
+/// ```
+/// use tabletop_storage::{StorageFault, Storage};
+///
+/// let counted = Storage::default();
+/// let failing = Storage::with_fault(StorageFault::Full, 12);
+/// assert_eq!((counted.calls(), failing.calls()), (0, 0));
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Storage {
+    calls: Calls,
+}
+
+impl Storage {
+    /// A storage of which this call fails.
+    pub fn with_fault(fault: StorageFault, call: u64) -> Self {
+        Self {
+            calls: Calls::with_fault(fault, call),
+        }
+    }
+
+    /// The number of calls.
+    pub fn calls(&self) -> u64 {
+        self.calls.count()
+    }
+
+    /// The number of bytes that were written to files.
+    pub fn bytes_written(&self) -> u64 {
+        self.calls.bytes()
+    }
+
+    fn may(&self) -> io::Result<()> {
+        self.calls.may()
+    }
+
+    /// Makes a new file, to be read and written.
+    ///
+    /// # Errors
+    /// Something is there, or it cannot be made.
+    pub fn create(&self, path: &Path) -> io::Result<StoredFile> {
+        self.may()?;
+        let file = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .create_new(true)
+            .open(path)?;
+        Ok(self.stored(file))
+    }
+
+    /// Makes a file, or empties the one that is there.
+    pub(crate) fn create_or_empty(&self, path: &Path) -> io::Result<StoredFile> {
+        self.may()?;
+        Ok(self.stored(File::create(path)?))
+    }
+
+    /// Opens a file, to be read and written.
+    ///
+    /// # Errors
+    /// It is no regular file, or cannot be opened.
+    pub fn open(&self, path: &Path) -> io::Result<StoredFile> {
+        self.may()?;
+        require_regular_file(path, Symlinks::Refused)?;
+        let file = OpenOptions::new().read(true).write(true).open(path)?;
+        Ok(self.stored(file))
+    }
+
+    /// Opens whatever is there, be it a pipe, to be written.
+    pub(crate) fn open_to_write(&self, path: &Path) -> io::Result<StoredFile> {
+        self.may()?;
+        Ok(self.stored(OpenOptions::new().append(true).open(path)?))
+    }
+
+    /// Opens a file, to be read.
+    ///
+    /// # Errors
+    /// It is no regular file, or cannot be opened.
+    pub fn open_to_read(&self, path: &Path) -> io::Result<StoredFile> {
+        self.may()?;
+        Ok(self.stored(open_regular_file(path, Symlinks::Refused)?))
+    }
+
+    /// Opens a folder, to be locked.
+    pub(crate) fn open_folder(&self, path: &Path) -> io::Result<File> {
+        File::open(path)
+    }
+
+    fn stored(&self, file: File) -> StoredFile {
+        StoredFile::new(file, self.calls.clone())
+    }
+
+    /// The content of a file, which is refused if it has more bytes than this.
+    ///
+    /// # Errors
+    /// It is no regular file, or cannot be read.
+    pub fn read(&self, path: &Path, most_bytes: u64) -> io::Result<Vec<u8>> {
+        read_at_most(self.open_to_read(path)?.file(), most_bytes)
+    }
+
+    /// Gives another name to a file or folder.
+    ///
+    /// # Errors
+    /// It has not the name, or cannot get the other one.
+    pub fn rename(&self, from: &Path, to: &Path) -> io::Result<()> {
+        self.may()?;
+        fs::rename(from, to)
+    }
+
+    /// Gives a folder the name of an empty one, in its place.
+    ///
+    /// # Errors
+    /// The other one is not empty, or it cannot be named so.
+    pub fn rename_onto_empty(&self, from: &Path, to: &Path) -> io::Result<()> {
+        if cfg!(not(unix)) {
+            // Windows renames onto nothing.
+            self.remove_empty(to)?;
+        }
+        self.rename(from, to)
+    }
+
+    /// Moves a folder to a free name, which is returned: its own with a number appended.
+    ///
+    /// # Errors
+    /// It cannot be renamed. The name that it should have got comes with the reason.
+    pub fn move_aside(&self, path: &Path) -> Result<PathBuf, (PathBuf, io::Error)> {
+        let aside = first_free_name(path);
+        match self.rename(path, &aside) {
+            Ok(()) => Ok(aside),
+            Err(source) => Err((aside, source)),
+        }
+    }
+
+    /// Makes a folder that is not there yet.
+    ///
+    /// # Errors
+    /// Something is there, or it cannot be made.
+    pub fn create_folder(&self, path: &Path) -> io::Result<()> {
+        self.may()?;
+        fs::create_dir(path)
+    }
+
+    /// Makes a folder and its missing parents.
+    ///
+    /// # Errors
+    /// One of them cannot be made.
+    pub fn create_folders(&self, path: &Path) -> io::Result<()> {
+        self.may()?;
+        fs::create_dir_all(path)
+    }
+
+    /// Removes a file.
+    ///
+    /// # Errors
+    /// It is not there, or cannot be removed.
+    pub fn remove_file(&self, path: &Path) -> io::Result<()> {
+        self.may()?;
+        fs::remove_file(path)
+    }
+
+    /// Removes a folder in which nothing is.
+    ///
+    /// # Errors
+    /// Something is in it, or it cannot be removed.
+    pub fn remove_empty(&self, path: &Path) -> io::Result<()> {
+        self.may()?;
+        fs::remove_dir(path)
+    }
+
+    /// Removes a folder with all that is in it, one call each.
+    ///
+    /// # Errors
+    /// A part of it cannot be removed.
+    pub fn remove_folder(&self, path: &Path) -> io::Result<()> {
+        for entry in self.entries(path)? {
+            match entry.symlink_metadata()?.is_dir() {
+                true => self.remove_folder(&entry)?,
+                false => self.remove_file(&entry)?,
+            }
+        }
+        self.remove_empty(path)
+    }
+
+    /// The entries of a folder, in the order of the names.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub fn entries(&self, folder: &Path) -> io::Result<Vec<PathBuf>> {
+        self.may()?;
+        let entries = fs::read_dir(folder)?;
+        let paths: Result<Vec<_>, _> = entries.map(|entry| Ok(entry?.path())).collect();
+        paths.map(|mut paths| {
+            paths.sort();
+            paths
+        })
+    }
+
+    /// Makes the names in a folder outlive a loss of power.
+    ///
+    /// # Errors
+    /// The disk does not take them.
+    pub fn sync_folder(&self, path: &Path) -> io::Result<()> {
+        self.may()?;
+        // Windows opens no folders.
+        match cfg!(unix) && self.calls.wait_for_disk() {
+            true => File::open(path)?.sync_all(),
+            false => Ok(()),
+        }
+    }
+
+    /// Makes a folder with all its content outlive a loss of power.
+    ///
+    /// # Errors
+    /// The disk does not take it.
+    pub fn sync_tree(&self, folder: &Path) -> io::Result<()> {
+        for entry in self.entries(folder)? {
+            match entry.symlink_metadata()?.is_dir() {
+                true => self.sync_tree(&entry)?,
+                false => self.open(&entry)?.sync()?,
+            }
+        }
+        self.sync_folder(folder)
+    }
+}

@@ -1,0 +1,189 @@
+//! Files are replaced whole or stay, and only leftovers of the program's own are removed.
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
+
+use std::{
+    fs::{self, File},
+    path::{Path, PathBuf},
+    process,
+};
+
+use tabletop_storage::{LockedFolder, Storage, StorageFault, TemporaryFolder};
+
+struct Place(PathBuf);
+
+impl Place {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("tabletop_storage_{name}_{}", process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn join(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(&self.0).unwrap();
+        let mut names: Vec<_> = entries
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        let _already_gone = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Writes with every call failing in every way in turn, and checks what is there then: the old text or the new one.
+fn survives_every_fault(name: &str, old: Option<&str>, write: fn(&Storage, &Path) -> bool) {
+    let mut calls = 0;
+    let counted = Storage::default();
+    let place = Place::new(&format!("{name}_counted"));
+    prepare(&place, old);
+    assert!(write(&counted, &place.join("file")));
+    assert!(counted.calls() > 3);
+    for call in 0..counted.calls() {
+        for fault in StorageFault::ALL {
+            let place = Place::new(&format!("{name}_{call}_{fault:?}"));
+            prepare(&place, old);
+            let file = place.join("file");
+            let is_written = write(&Storage::with_fault(fault, call), &file);
+            let there = fs::read_to_string(&file).ok();
+            let expected = if is_written { Some("new") } else { old };
+            assert_eq!(there.as_deref(), expected, "{fault:?} at call {call}");
+            assert!(!is_written, "{fault:?} at call {call} was silent");
+            calls += 1;
+        }
+    }
+    assert!(calls >= 20);
+}
+
+fn prepare(place: &Place, old: Option<&str>) {
+    if let Some(old) = old {
+        fs::write(place.join("file"), old).unwrap();
+    }
+    fs::write(place.join("file.part"), "another file").unwrap();
+}
+
+#[test]
+fn a_file_is_replaced_whole_or_stays() {
+    survives_every_fault("replaced", Some("old"), |storage, path| {
+        storage.replace(path, b"new").is_ok()
+    });
+    survives_every_fault("made", None, |storage, path| {
+        storage.write_new(path, b"new").is_ok()
+    });
+}
+
+#[test]
+fn nothing_else_is_touched_and_nothing_is_left() {
+    let place = Place::new("beside");
+    prepare(&place, Some("old"));
+    let storage = Storage::default();
+    storage.check_replaceable(&place.join("file")).unwrap();
+    storage.check_replaceable(&place.join("new")).unwrap();
+    storage.replace(&place.join("file"), b"new").unwrap();
+    let error = storage
+        .write_new(&place.join("file"), b"newer")
+        .unwrap_err();
+    assert_eq!(error.kind(), std::io::ErrorKind::AlreadyExists);
+    assert!(storage.replace(&place.0, b"new").is_err(), "a folder");
+    assert_eq!(place.names(), ["file", "file.part"]);
+    let text = |name| fs::read_to_string(place.join(name)).unwrap();
+    assert_eq!([text("file"), text("file.part")], ["new", "another file"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_leads_to_the_file_that_is_replaced_and_a_pipe_is_written_to() {
+    use std::{io::Read as _, os::unix::fs::PermissionsExt as _, process::Command, thread};
+    let place = Place::new("links");
+    let storage = Storage::default();
+    let [file, link, pipe] = ["file", "link", "pipe"].map(|name| place.join(name));
+    fs::write(&file, "old").unwrap();
+    fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
+    std::os::unix::fs::symlink(&file, &link).unwrap();
+    storage.replace(&link, b"new").unwrap();
+    assert!(link.is_symlink());
+    assert_eq!(fs::read_to_string(&file).unwrap(), "new");
+    let mode = fs::metadata(&file).unwrap().permissions().mode();
+    assert_eq!(mode & 0o777, 0o640);
+    storage.replace_name(&link, b"newer").unwrap();
+    assert!(!link.is_symlink());
+    assert_eq!(fs::read_to_string(&file).unwrap(), "new");
+
+    assert!(
+        Command::new("mkfifo")
+            .arg(&pipe)
+            .status()
+            .unwrap()
+            .success()
+    );
+    let reading = thread::spawn({
+        let pipe = pipe.clone();
+        move || {
+            let mut text = String::new();
+            File::open(pipe).unwrap().read_to_string(&mut text).unwrap();
+            text
+        }
+    });
+    storage.check_replaceable(&pipe).unwrap();
+    storage.replace(&pipe, b"through").unwrap();
+    assert_eq!(reading.join().unwrap(), "through");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_file_knows_whether_it_is_still_in_its_place() {
+    let place = Place::new("in_place");
+    let storage = Storage::default();
+    let path = place.join("file");
+    let file = storage.create(&path).unwrap();
+    assert!(file.is_at(&path).unwrap());
+    fs::rename(&path, place.join("moved")).unwrap();
+    assert!(!file.is_at(&path).unwrap());
+    fs::write(&path, "another").unwrap();
+    assert!(!file.is_at(&path).unwrap());
+    assert!(file.is_at(&place.join("moved")).unwrap());
+}
+
+#[test]
+fn only_abandoned_folders_of_the_program_are_removed() {
+    let place = Place::new("locked");
+    let storage = Storage::default();
+    let left = LockedFolder::create(&place.0, "kind-", &storage).unwrap();
+    let left_at = left.path().to_owned();
+    fs::write(left_at.join("file"), "content").unwrap();
+    drop(left);
+    for name in ["kind-1", "kind-x", "other-1"] {
+        fs::create_dir(place.join(name)).unwrap();
+        fs::write(place.join(name).join("file"), "mine").unwrap();
+    }
+    let first = LockedFolder::create(&place.0, "kind-", &storage).unwrap();
+    let second = LockedFolder::create(&place.0, "kind-", &storage).unwrap();
+    assert_ne!(first.path(), second.path());
+    assert!(first.path().exists(), "its program runs");
+    assert!(!left_at.join("file").exists(), "its program does not run");
+    assert!(
+        place.join("kind-1/file").exists(),
+        "no lock says whose it is"
+    );
+    assert_eq!(place.names().len(), 5);
+    let path = first.unlock().unwrap();
+    assert_eq!(fs::read_dir(path).unwrap().count(), 0);
+    second.remove().unwrap();
+    assert_eq!(place.names().len(), 4);
+}
+
+#[test]
+fn a_temporary_folder_goes_with_its_owner() {
+    let folder = TemporaryFolder::new("tabletop-test-temporary").unwrap();
+    let path = folder.path().to_owned();
+    fs::write(path.join("file"), "content").unwrap();
+    drop(folder);
+    assert!(!path.exists());
+}

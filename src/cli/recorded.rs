@@ -1,0 +1,21 @@
+//! The end of a command's recording.
+
+use bevy::prelude::*;
+use tabletop::recorder::{RecordingReport, finish_recording};
+
+use super::{Failure, terminal::say};
+
+/// Finishes what is still recorded. The run has failed if a recording has.
+pub(super) fn finish(app: &mut App) -> Result<RecordingReport, Failure> {
+    finish_recording(app).map_err(Failure::run)
+}
+
+/// Says where the earlier recordings are that were in the way.
+pub(super) fn say_moved_aside(report: &RecordingReport) {
+    for moved in &report.moved_aside {
+        let (from, to) = (moved.from.display(), moved.to.display());
+        say(format_args!(
+            "tabletop: {from}: the earlier recording there is now {to}"
+        ));
+    }
+}
