@@ -4,6 +4,7 @@
 mod circles;
 mod files;
 mod names;
+mod platforms;
 mod source;
 
 use std::{collections::BTreeSet, process::Command};

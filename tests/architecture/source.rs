@@ -14,6 +14,8 @@ pub struct Source {
     /// Its types: structures, enumerations and traits, those of modules within it, too.
     pub types: Vec<String>,
     pub paths: Vec<Vec<String>>,
+    /// Its conditions such as `unix`: what `#[cfg]` holds.
+    pub conditions: BTreeSet<String>,
 }
 
 /// A name that a file has from elsewhere.
@@ -73,6 +75,10 @@ impl Source {
                 rest = after_item(&rest[7..]);
                 continue;
             }
+            if rest.starts_with(&["#", "[", "cfg", "("].map(String::from)) {
+                let end = position(rest, "]");
+                source.conditions.insert(rest[4..end - 1].concat());
+            }
             match token.as_str() {
                 "pub" => {
                     rest = after_visibility(&rest[1..]);
@@ -115,6 +121,7 @@ impl Source {
     /// Adds the needs of a module within the file. Its `super` is the file.
     fn add_inline_module(&mut self, module: Self) {
         self.types.extend(module.types);
+        self.conditions.extend(module.conditions);
         let uses = module.uses.into_iter().filter(|it| !it.is_public);
         let uses = uses.map(|it| it.path);
         for mut path in module.paths.into_iter().chain(uses) {
