@@ -2,7 +2,6 @@
 
 use std::{
     fs,
-    io::Write as _,
     path::Path,
     process::{Command, Output},
 };
@@ -79,22 +78,4 @@ fn strace(options: &[&str], program: &Command, folder: &Path) -> Output {
         .env_remove("DISPLAY")
         .output()
         .unwrap()
-}
-
-/// True if strace is installed and may trace. CI must have it.
-pub fn is_possible() -> bool {
-    let traced = Command::new("strace").args(["-f", "-qq", "true"]).output();
-    match traced {
-        Ok(output) if output.status.success() => true,
-        failed => {
-            let reason = format!("SKIPPED: strace is needed to let calls fail: {failed:?}");
-            assert!(std::env::var_os("CI").is_none(), "{reason}");
-            #[expect(
-                clippy::explicit_write,
-                reason = "the test harness hides what a passing test says with eprintln"
-            )]
-            writeln!(std::io::stderr(), "{reason}").unwrap();
-            false
-        }
-    }
 }

@@ -19,6 +19,8 @@ pub enum Prerequisite {
     Perl,
     /// The validator `xmllint` of libxml2.
     Xmllint,
+    /// strace, and the right to trace, which Linux has.
+    Strace,
     /// The right to mount a disk in memory, which the root user of Linux has.
     Mounting,
 }
@@ -31,6 +33,7 @@ impl Prerequisite {
             Self::Python => succeeds("python3", ["--version"]),
             Self::Perl => succeeds("perl", ["-v"]),
             Self::Xmllint => succeeds("xmllint", ["--version"]),
+            Self::Strace => succeeds("strace", ["-f", "-qq", "--seccomp-bpf", "true"]),
             Self::Mounting => mounts(),
         }
     }
@@ -43,6 +46,7 @@ impl fmt::Display for Prerequisite {
             Self::Python => "Python 3 (python3)",
             Self::Perl => "Perl (perl)",
             Self::Xmllint => "xmllint",
+            Self::Strace => "strace",
             Self::Mounting => "the right to mount a disk",
         })
     }
