@@ -46,12 +46,14 @@ const CHANGERS: [[&str; 2]; 14] = [
 ];
 
 /// The files that call them. All others ask a `Storage` of `tabletop_storage`.
-const CHANGING: [&str; 7] = [
+const CHANGING: [&str; 8] = [
     // An engine's own folder, of a random name, in memory.
     "crates/tabletop_engine/src/private_folder.rs",
     "crates/tabletop_engine/src/regular_file.rs",
     "crates/tabletop_engine/src/worker/exchange_folder.rs",
     "crates/tabletop_engine/src/worker/trigger_file.rs",
+    // A folder of tests, to be mounted on.
+    "crates/tabletop_harness/src/prerequisite.rs",
     "crates/tabletop_storage/src/storage.rs",
     "crates/tabletop_storage/src/whole_file.rs",
     // The folder of a test.
