@@ -69,7 +69,8 @@ pub use tabletop_task as task;
 pub use tabletop_view as view;
 pub use tabletop_xml as xml;
 
-#[cfg(all(test, feature = "window"))]
+#[cfg(test)]
+#[cfg(feature = "window")]
 mod test_folder;
 #[cfg(feature = "window")]
 pub mod window;

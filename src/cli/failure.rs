@@ -37,18 +37,24 @@ impl Failure {
         Self::run(format!("{}: {error}", path.display()))
     }
 
-    /// The first failure of several parts of a run; the others are reported, unless they only repeat it.
+    /// The first failure of several parts of a run; the others are reported.
     pub fn of_all(results: impl IntoIterator<Item = Result<(), Self>>) -> Result<(), Self> {
         let mut failures = results.into_iter().filter_map(Result::err);
         let Some(first) = failures.next() else {
             return Ok(());
         };
-        let known = first.message.as_deref().unwrap_or_default();
-        let others = failures.filter_map(|failure| failure.message);
-        for other in others.filter(|other| !known.contains(other.as_str())) {
+        for other in failures.filter_map(|failure| failure.message) {
             say(format_args!("tabletop: {other}"));
         }
         Err(first)
+    }
+
+    /// The same, without a message that this text has reported already.
+    pub fn unless_said(self, said: &str) -> Self {
+        Self {
+            message: self.message.filter(|message| !said.contains(message)),
+            ..self
+        }
     }
 
     /// The run failed, and the reason was already reported.

@@ -8,7 +8,7 @@ use tabletop::{
     core::{HeadCamera, Picture, Pose, SimTick, StepApp as _, TICKS_PER_SECOND},
     headless_app_with,
     recorder::{Channels, RecorderPlugin, RecordingReport},
-    replay::{Player, Replay},
+    replay::{Player, Replay, ReplayError},
     script::ScriptPlugin,
 };
 
@@ -143,7 +143,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<ExitCode, Failure> {
     };
     let mut report = RecordingReport::default();
     let difference = match &args.out {
-        None if args.verify => replay.verify(goes_on).map_err(Failure::run),
+        None if args.verify => replay.verify(goes_on).map_err(refused),
         None => {
             replay.simulate_while(goes_on);
             Ok(None)
@@ -188,6 +188,17 @@ fn watch(replay: &Replay, script: &str, args: &ReplayArgs) -> Result<ExitCode, F
     script.run_while(&mut app, |app| !app.world().resource::<Player>().is_over())?;
     let acted = script.act(&mut app, ticks(args.seconds.unwrap_or(0.0)));
     acted.and(Ok(ExitCode::SUCCESS))
+}
+
+/// The failure of a replay that cannot be recorded, or of a recording that cannot be read.
+fn refused(error: ReplayError) -> Failure {
+    match error {
+        ReplayError::Record(_) => Failure::run(error),
+        ReplayError::Session(_)
+        | ReplayError::NoBeginning { .. }
+        | ReplayError::Settings { .. }
+        | ReplayError::Io { .. } => Failure::input(error),
+    }
 }
 
 /// Says of a replay that takes long how long it is.

@@ -193,6 +193,7 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     let start = Instant::now();
     let mut script = Script::start(&mut app, args.script.is_some());
     let mut ticks_taken = 0;
+    let mut said = String::new();
     let outcome = loop {
         app.step(1);
         ticks_taken += 1;
@@ -202,7 +203,11 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
         match app.world().resource::<ScenarioRun>().outcome() {
             Outcome::Running => {}
             Outcome::Done => break Ok(()),
-            Outcome::Failed(error) => break Err(Failure::run(error)),
+            Outcome::Failed(error) => {
+                said = error.to_string();
+                say(format_args!("tabletop: {said}"));
+                break Err(Failure::silent());
+            }
         }
     };
     let outcome = outcome.and_then(|()| {
@@ -216,7 +221,7 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
     });
     shut_down(app.world_mut());
     let ends = args.write_ends(&app);
-    let recorded = recorded::finish(&mut app);
+    let recorded = recorded::finish(&mut app).map_err(|failure| failure.unless_said(&said));
     let run = app.world().resource::<ScenarioRun>();
     let done = run.steps_done() - usize::from(scenario.setup.is_some()).min(run.steps_done());
     let done = match scenario.steps.len() {
