@@ -90,11 +90,14 @@ fn what_can_never_hold_is_reported_where_it_is_in_the_file() {
             assert!(said.contains(words), "{name}={value}: {said}");
         }
     }
-    write("Rde", "color", "red");
-    let said = refused(&["explain", &demo]);
-    let words =
-        "task.json: the demonstration has no object `Rde`; expected one of Green, Blue, Red";
-    assert!(said.contains(words), "{said}");
+    for role in ["Rde", "red"] {
+        write(role, "color", "red");
+        let said = refused(&["explain", &demo]);
+        let words = format!(
+            "task.json: the demonstration has no object `{role}`; expected one of Green, Blue, Red"
+        );
+        assert!(said.contains(&words), "{said}");
+    }
 
     write("Red", "colour", "red");
     accepted(&["require", &demo, "--step", "2", "--remove", "colour"]);

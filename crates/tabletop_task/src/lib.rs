@@ -52,7 +52,7 @@ pub use furniture::Furniture;
 pub use goal::{Freedom, Goal, PlaceRange, Reference};
 pub use manipulation::{Ending, Manipulation};
 pub use operation::{Operation, OperationDeed};
-pub use possibility::Impossible;
+pub use possibility::ImpossibleRequirement;
 pub use property::{has_value, properties, property};
 pub use relation::{Relation, RelativeSide};
 pub use requirement::{RequirementError, Requirements};

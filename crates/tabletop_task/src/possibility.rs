@@ -16,7 +16,7 @@ const MOST_LENGTHS: usize = 3;
 /// The reason why no object can meet a requirement.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
-pub enum Impossible {
+pub enum ImpossibleRequirement {
     #[error("`{name}` is no property of an object; expected one of {known}")]
     Property { name: String, known: String },
     #[error("no object has the {name} `{value}`; expected {expected}")]
@@ -33,10 +33,10 @@ pub enum Impossible {
 
 impl Task {
     /// Checks that some object can have this value of a property.
-    pub(crate) fn check(&self, name: &str, value: &str) -> Result<(), Impossible> {
+    pub(crate) fn check(&self, name: &str, value: &str) -> Result<(), ImpossibleRequirement> {
         if name == SAME {
             let step = value.trim().parse().ok().and_then(|step| self.step(step));
-            let no_step = || Impossible::NoStep(value.to_owned());
+            let no_step = || ImpossibleRequirement::NoStep(value.to_owned());
             return step.map(|_| ()).ok_or_else(no_step);
         }
         if self.knows(name, value) {
@@ -46,7 +46,7 @@ impl Task {
             PropertyKind::Color => return Ok(value.parse::<Rgb>().map(|_| ())?),
             PropertyKind::Description if !self.vocabulary.contains_key(name) => {
                 let (name, known) = (name.to_owned(), self.property_names());
-                return Err(Impossible::Property { name, known });
+                return Err(ImpossibleRequirement::Property { name, known });
             }
             PropertyKind::Id | PropertyKind::Description if !value.trim().is_empty() => {
                 return Ok(());
@@ -63,15 +63,21 @@ impl Task {
                 known => format!("one of {}", known.join(", ")),
             },
         };
-        Err(Impossible::Value {
+        Err(ImpossibleRequirement::Value {
             name: name.to_owned(),
             value: value.to_owned(),
             expected,
         })
     }
 
+    /// True if the demonstration has an object of this id.
+    pub(crate) fn has_object(&self, id: &str) -> bool {
+        let ids = self.vocabulary.get("id");
+        ids.is_some_and(|ids| ids.contains(id))
+    }
+
     /// True if an object of the demonstration has this text as a property.
-    pub(crate) fn knows(&self, name: &str, value: &str) -> bool {
+    fn knows(&self, name: &str, value: &str) -> bool {
         let mut known = self.vocabulary.get(name).into_iter().flatten();
         known.any(|known| is_same_text(known, value))
     }

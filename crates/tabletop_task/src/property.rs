@@ -155,7 +155,8 @@ pub fn has_value(name: &str, value: &str, wanted: &str) -> bool {
 
 fn has_color(value: &str, wanted: &str) -> bool {
     let [Ok(value), Ok(color)] = [value, wanted].map(str::parse::<Rgb>) else {
-        return false;
+        // A description may have this name.
+        return is_same_text(value, wanted);
     };
     let is_named = !wanted.trim().starts_with('#');
     value.to_bytes() == color.to_bytes()
@@ -219,6 +220,7 @@ mod tests {
             ("color", "#e01010", "#ff0000", false),
             ("color", "#00ff00", "red", false),
             ("color", "#00ff00", "vermilion", false),
+            ("color", "reddish", "Reddish", true),
             ("xspan", "2", "2.0", true),
             ("xspan", "2", "1..3", true),
             ("xspan", "2", "..1.5", false),

@@ -13,7 +13,7 @@ use tabletop_storage::{Storage, Symlinks, read_regular_text};
 
 use crate::{
     noun::color_name,
-    possibility::{Impossible, SAME},
+    possibility::{ImpossibleRequirement, SAME},
     property::{has_value, property},
     role::Role,
     task::Task,
@@ -46,7 +46,7 @@ pub enum RequirementError {
     OfRole {
         path: PathBuf,
         role: String,
-        reason: Impossible,
+        reason: ImpossibleRequirement,
     },
     #[error("{path}: the demonstration has no object `{role}`; expected one of {known}", path = .path.display())]
     NoRole {
@@ -55,7 +55,7 @@ pub enum RequirementError {
         known: String,
     },
     #[error(transparent)]
-    Impossible(#[from] Impossible),
+    Impossible(#[from] ImpossibleRequirement),
     #[error(
         "`{text}` is no requirement: expected `name=value`, the name of a property that {noun} has ({known}), or `any`"
     )]
@@ -95,7 +95,7 @@ impl Requirements {
         let all = Self::read(folder)?;
         let path = || folder.join(Self::FILE);
         for (role, required) in &all.roles {
-            if !task.knows("id", role) {
+            if !task.has_object(role) {
                 let ids = task.roles.iter().map(|role| role.id.as_str());
                 return Err(RequirementError::NoRole {
                     path: path(),

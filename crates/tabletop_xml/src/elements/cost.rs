@@ -27,34 +27,35 @@ pub(crate) struct Excess {
 }
 
 impl Cost {
-    /// Adds an element of a scene. An element that exceeds the limits does not count for those after it.
+    /// Adds an element of a scene. One with too many links or solids does not count for those after it.
     pub fn add(&mut self, item: &SceneItem) -> Result<(), Excess> {
-        let bodies = bodies(item);
-        let solids = self.solids + bodies.iter().map(|body| body.solids.len()).sum::<usize>();
         let links = match item {
             SceneItem::Chain(chain) => self.links + chain.links() as usize,
             SceneItem::Object(_) | SceneItem::LidBox(_) | SceneItem::Jointed(_) => self.links,
         };
-        if solids > MAX_SOLIDS {
-            return Err(Excess {
-                problem: "with it there are too many solids",
-                expected: format!("at most {MAX_SOLIDS} solids"),
-            });
-        }
         if links > MAX_LINKS {
             return Err(Excess {
                 problem: "with it there are too many links",
                 expected: format!("at most {MAX_LINKS} links"),
             });
         }
+        let bodies = bodies(item);
+        let solids = self.solids + bodies.iter().map(|body| body.solids.len()).sum::<usize>();
+        if solids > MAX_SOLIDS {
+            return Err(Excess {
+                problem: "with it there are too many solids",
+                expected: format!("at most {MAX_SOLIDS} solids"),
+            });
+        }
+        // Those with too many pairs do count: to look for pairs of ever more elements would take minutes.
+        self.solids = solids;
+        self.links = links;
         if !self.nearness.add(&bodies, MAX_PAIRS) {
             return Err(Excess {
                 problem: "with it too many solids of different objects are near each other",
                 expected: format!("at most {MAX_PAIRS} pairs with a gap of less than {PAIR_GAP}"),
             });
         }
-        self.solids = solids;
-        self.links = links;
         Ok(())
     }
 }
@@ -152,6 +153,15 @@ mod tests {
         assert_eq!(lines_of(&cubes(15, 1.0, 1.0, "")), [""; 0]);
         let chain = "<chain start='(0,0,1)' end='(0.5,0,1)' linkCount='1000'/>";
         assert_eq!(lines_of(chain), [format!("chain: {NEAR}")]);
+    }
+
+    #[test]
+    fn what_is_refused_for_its_pairs_counts_as_solids() {
+        let chain = "<chain start='(0,0,1)' end='(0.5,0,1)' linkCount='1000'/>";
+        let links = "chain: with it there are too many links, expected at most 5000 links";
+        let problems = lines_of(&chain.repeat(7));
+        assert_eq!(problems[..5], vec![format!("chain: {NEAR}"); 5]);
+        assert_eq!(problems[5..], [links; 2]);
     }
 
     #[test]
