@@ -10,7 +10,7 @@ use std::{collections::BTreeMap, error::Error, fs, fs::File, io::BufWriter, path
 use bevy::prelude::*;
 use tabletop::prelude::*;
 use tabletop_camera::{Camera, DrawnSolid, Rasterizer, Scene};
-use tabletop_core::{Bounds, LIGHT, Picture, Table};
+use tabletop_core::{LIGHT, Picture, Table};
 
 const TASK: &str = "tablesetup/elements.xml";
 const FOLDER: &str = "docs/elements";
@@ -105,7 +105,7 @@ fn scene(group: &[(&ObjectSpec, Pose)]) -> Scene {
 
 /// A camera from which all of a picture can be seen.
 fn camera(group: &[(&ObjectSpec, Pose)]) -> Camera {
-    let of_one = |(spec, pose): &(&ObjectSpec, Pose)| Bounds::of_shape(&spec.shape, *pose);
+    let of_one = |(spec, pose): &(&ObjectSpec, Pose)| spec.shape.bounds(*pose);
     let (mut low, mut high) = (Vec3::MAX, Vec3::MIN);
     for bounds in group.iter().map(of_one) {
         low = low.min(bounds.low);

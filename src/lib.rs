@@ -4,6 +4,7 @@
 //! | crate | content |
 //! |---|---|
 //! | [`core`] | the shared vocabulary: objects, scenes, commands, facts, the clock |
+//! | [`geometry`] | poses, coloured solids, bounds and rays |
 //! | [`xml`] | task files |
 //! | [`physics`] | Rapier, configured |
 //! | [`scene`] | the table, and the objects that come and go on it |
@@ -44,6 +45,7 @@ pub use tabletop_camera as camera;
 pub use tabletop_core as core;
 pub use tabletop_demonstrator as demonstrator;
 pub use tabletop_episodes::{imitation, multiplication, scene_at_beginning, shown_task, soak};
+pub use tabletop_geometry as geometry;
 #[cfg(feature = "window")]
 pub use tabletop_gui as gui;
 pub use tabletop_history as history;
@@ -65,6 +67,8 @@ pub use tabletop_sim::{
 };
 pub use tabletop_storage as storage;
 pub use tabletop_task as task;
+#[cfg(feature = "window")]
+pub use tabletop_user as user;
 #[cfg(feature = "window")]
 pub use tabletop_view as view;
 pub use tabletop_xml as xml;
@@ -90,7 +94,7 @@ pub mod prelude {
 }
 
 /// The window on a simulation, beside Bevy's `DefaultPlugins`: [`ViewPlugin`](view::ViewPlugin) shows the world,
-/// [`GuiPlugin`](gui::GuiPlugin) has keys, mouse and panels, and [`PacePlugin`](core::PacePlugin) lets users choose the pace of time.
+/// [`GuiPlugin`](gui::GuiPlugin) has keys, mouse and panels, and [`PacePlugin`](user::PacePlugin) lets users choose the pace of time.
 #[cfg(feature = "window")]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TabletopWindowPlugins;
@@ -101,6 +105,6 @@ impl PluginGroup for TabletopWindowPlugins {
         PluginGroupBuilder::start::<Self>()
             .add(view::ViewPlugin)
             .add(gui::GuiPlugin)
-            .add(core::PacePlugin)
+            .add(user::PacePlugin)
     }
 }

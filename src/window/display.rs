@@ -16,11 +16,11 @@ use bevy::{
         VideoModeSelection, WindowMode,
     },
 };
-use tabletop_core::{Action, KeySystems, UserCamera, was_struck};
 use tabletop_gui::{
     Renderer,
     display::{Antialiasing, DisplayOffer, DisplaySettings, Resolution, ScreenMode},
 };
+use tabletop_user::{Action, KeySystems, UserCamera, was_struck};
 use wgpu_types::DeviceType;
 
 use super::frame_rate::FrameRate;

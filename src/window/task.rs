@@ -5,10 +5,11 @@ mod understood;
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Actor, Agent, CommandWriter, Playback, PlaybackOrder, SceneCommand, ShownTask, TaskOrder,
-    Timeline, TimelineStage,
+    Actor, Agent, CommandWriter, Playback, PlaybackOrder, SceneCommand, ShownTask, Timeline,
+    TimelineStage,
 };
 use tabletop_gui::{Notices, Tone};
+use tabletop_user::TaskOrder;
 
 use self::{imitator::RobotImitator, understood::Understood};
 

@@ -5,10 +5,11 @@ use std::{ops::Range, time::Duration};
 use bevy::{prelude::*, time::TimeUpdateStrategy};
 use bevy_rapier3d::prelude::ExternalImpulse;
 use tabletop::{
-    core::{PacePlugin, PictureDemand, RestingSystems, SensorImage, Timeline},
+    core::{PictureDemand, RestingSystems, SensorImage, Timeline},
     prelude::*,
     replay::first_difference,
     scenario::{Outcome, Program, Scenario, ScenarioRun},
+    user::PacePlugin,
 };
 
 use crate::{

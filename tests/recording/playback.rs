@@ -4,12 +4,11 @@ use std::{fs, path::Path};
 
 use bevy::prelude::*;
 use tabletop::{
-    core::{
-        OpenRecording, PacePlugin, Playback, PlaybackOrder, SingleStep, Timeline, TimelineStage,
-    },
+    core::{OpenRecording, Playback, PlaybackOrder, Timeline, TimelineStage},
     prelude::*,
     recorder::RecordingReader,
     replay::PlaybackPlugin,
+    user::{PacePlugin, SingleStep},
 };
 
 use crate::{

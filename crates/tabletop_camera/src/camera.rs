@@ -8,7 +8,8 @@ use bevy::{
     math::{Mat3A, Vec2, Vec3, Vec3A},
     prelude::Quat,
 };
-use tabletop_core::{HeadCamera, Light, Pose, Table};
+use tabletop_core::{HeadCamera, Light, Table};
+use tabletop_geometry::Pose;
 
 pub(crate) use linear::{Linear, OnRow, Rays, SampleOffset};
 

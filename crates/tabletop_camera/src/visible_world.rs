@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
-use tabletop_core::{
-    CarriesHeadCamera, Figure, Markers, ObjectIndex, ObjectSpec, Primitive, Table,
-};
+use tabletop_core::{CarriesHeadCamera, Figure, Markers, ObjectIndex, ObjectSpec, Table};
+use tabletop_geometry::Primitive;
 
 use crate::{DrawnFigure, DrawnSolid, Facets, Scene};
 

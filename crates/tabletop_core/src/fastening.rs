@@ -1,8 +1,9 @@
 //! Fastening: the bonds that turning a guest makes, tightens and loosens.
 
 use std::collections::BTreeSet;
+use tabletop_geometry::Pose;
 
-use crate::{Bond, BondPoint, Bonds, HostPoint, ObjectSpec, PlacedPart, Pose};
+use crate::{Bond, BondPoint, Bonds, HostPoint, ObjectSpec, PlacedPart};
 
 /// The greatest distance, in units, at which a host is fastened to.
 const REACH: f32 = 2.0;

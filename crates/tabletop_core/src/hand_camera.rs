@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
+use tabletop_geometry::Pose;
 
-use crate::{Picture, Pose, SimTick, picture::fault_of_view};
+use crate::{Picture, SimTick, picture::fault_of_view};
 
 /// A camera that a link of the robot carries, as its hands do.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

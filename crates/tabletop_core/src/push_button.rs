@@ -1,10 +1,9 @@
 //! Push buttons on the table: a cap that a spring lifts out of a housing.
 
 use bevy::prelude::*;
+use tabletop_geometry::{Pose, Rgb};
 
-use crate::{
-    Control, ControlKind, JointMotion, JointedSpec, ObjectSpec, Pose, PushButton, Rgb, Shape,
-};
+use crate::{Control, ControlKind, JointMotion, JointedSpec, ObjectSpec, PushButton, Shape};
 
 /// The mass of the cap for a newton of the spring, in kg: it weighs a fifth of what presses it.
 const CAP_MASS: f32 = 0.02;
@@ -64,7 +63,7 @@ mod tests {
     }
 
     fn highest(spec: &ObjectSpec) -> f32 {
-        crate::Bounds::of_shape(&spec.shape, spec.pose).high.z
+        spec.shape.bounds(spec.pose).high.z
     }
 
     #[test]

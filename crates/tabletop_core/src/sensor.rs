@@ -7,8 +7,9 @@ use std::{
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
+use tabletop_geometry::Pose;
 
-use crate::{CameraCarrier, Light, Paused, Picture, Pose, SimTick, picture::fault_of_view};
+use crate::{CameraCarrier, Light, Paused, Picture, SimTick, picture::fault_of_view};
 
 /// The settings of the robot's head camera (report section 4, "head camera").
 ///

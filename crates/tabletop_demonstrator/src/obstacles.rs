@@ -1,7 +1,7 @@
 //! Obstacles of a held object, and its way along them.
 
 use bevy::prelude::*;
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 use tabletop_physics::{Convex, depth, nearest};
 
 /// Depths, in units, that count as touching and not as inside.

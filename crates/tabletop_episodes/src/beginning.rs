@@ -58,7 +58,8 @@ pub fn scene_at_beginning(session: &Session) -> Option<SceneSpec> {
 #[cfg(test)]
 mod tests {
     use bevy::math::Vec3;
-    use tabletop_core::{Actor, Pose, Rgb, Shape, Table};
+    use tabletop_core::{Actor, Shape, Table};
+    use tabletop_geometry::{Pose, Rgb};
     use tabletop_recorder::{SessionCommand, SessionHeader, SessionObject, SessionScene};
 
     use super::*;

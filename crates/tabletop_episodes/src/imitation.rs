@@ -2,9 +2,10 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Drive, Joint, JointKind, JointSpec, ObjectIndex, ObjectSpec, Pose, Random, Robot, RobotCommand,
+    Drive, Joint, JointKind, JointSpec, ObjectIndex, ObjectSpec, Random, Robot, RobotCommand,
     RobotLayout, SceneItem, SceneSpec, StepApp as _, Table, WriteCommand as _,
 };
+use tabletop_geometry::Pose;
 use tabletop_kinematics::{ModelError, baxter};
 use tabletop_planner::{
     LimbOrder, LimbSight, Piece, PlanningStage, RobotBody, SeenObject, Sight, Stopped, angles,

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use bevy::prelude::*;
 use tabletop_core::{
     Actor, Arm, ClockCommand, Drive, Hand, HandCommand, Held, HistoryCommand, ObjectIndex,
-    ObjectSpec, Pose, Preset, Random, RecordingCommand, Rgb, RobotCommand, RobotJoint,
-    SceneCommand, SceneItem, SceneSpec, Shape, SimCommand, StepApp as _, TICKS_PER_SECOND, Table,
-    Twist, WriteCommand as _,
+    ObjectSpec, Preset, Random, RecordingCommand, RobotCommand, RobotJoint, SceneCommand,
+    SceneItem, SceneSpec, Shape, SimCommand, StepApp as _, TICKS_PER_SECOND, Table,
+    WriteCommand as _,
 };
+use tabletop_geometry::{Pose, Rgb, Twist};
 use tabletop_physics::{Convex, collider, convex_parts, depth};
 use tabletop_recorder::{Durability, RecorderPlugin, finish_recording};
 

@@ -2,7 +2,7 @@
 
 use bevy::{prelude::*, window::PrimaryWindow};
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass};
-use tabletop_core::{Action, KeySystems, Keys};
+use tabletop_user::{Action, KeySystems, Keys};
 
 use crate::{
     panels::messages::{Notices, Tone},

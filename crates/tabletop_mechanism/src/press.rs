@@ -2,9 +2,10 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Bounds, Control, ControlKind, Held, ObjectIndex, ObjectSpec, Operator, Paused, Pose, Robot,
-    RobotLayout, Shape, Solid, TICK_SECONDS, UNITS_PER_METER,
+    Control, ControlKind, Held, ObjectIndex, ObjectSpec, Operator, Paused, Robot, RobotLayout,
+    Shape, TICK_SECONDS,
 };
+use tabletop_geometry::{Pose, Solid, UNITS_PER_METER};
 use tabletop_physics::{Pressure, is_touching, pressures_on};
 
 use crate::{limb::limb_of, network::Network, obey::trigger};
@@ -130,11 +131,11 @@ fn presses_of_held(world: &mut World, pressables: &[Entity]) -> Vec<Press> {
         let Some((spec, place)) = spec_and_pose(world, held) else {
             continue;
         };
-        let bounds = Bounds::of_shape(&spec.shape, place);
+        let bounds = spec.shape.bounds(place);
         for &object in pressables.iter().filter(|&&object| object != held) {
             let is_near = world.get::<ObjectSpec>(object).is_some_and(|other| {
                 let pose = world.get::<Transform>(object).map(Pose::from);
-                let room = Bounds::of_shape(&other.shape, pose.unwrap_or_default());
+                let room = other.shape.bounds(pose.unwrap_or_default());
                 other.is_fixed() && room.overlaps(bounds, -TOUCH)
             });
             if !is_near {

@@ -2,9 +2,10 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Bounds, Cause, CommandId, Hand, Held, Joint, JointKind, Manipulator, MechanismFact,
-    ObjectIndex, ObjectSpec, Operator, Paused, Pose, Robot, RobotLayout, Shape, SimFact, SimTick,
+    Cause, CommandId, Hand, Held, Joint, JointKind, Manipulator, MechanismFact, ObjectIndex,
+    ObjectSpec, Operator, Paused, Robot, RobotLayout, Shape, SimFact, SimTick,
 };
+use tabletop_geometry::Pose;
 use tabletop_history::begin_segment;
 use tabletop_physics::{is_touching, pressures_on, push, remove_object};
 
@@ -103,11 +104,11 @@ pub(crate) fn cut_links(world: &mut World) {
         })
         .collect();
     for (object, link, shape, pose) in links {
-        let bounds = Bounds::of_shape(&shape, pose);
+        let bounds = shape.bounds(pose);
         let touches = |world: &mut World, blade: Entity| {
             let room = world.get::<ObjectSpec>(blade).and_then(|spec| {
                 let pose = world.get::<Transform>(blade).map(Pose::from)?;
-                Some(Bounds::of_shape(&spec.shape, pose))
+                Some(spec.shape.bounds(pose))
             });
             room.is_some_and(|room| room.overlaps(bounds, -TOUCH))
                 && is_touching(world, blade, &shape, pose, TOUCH)

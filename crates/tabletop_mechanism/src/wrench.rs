@@ -2,8 +2,9 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Bond, Bonds, LimbName, ObjectSpec, Operator, Paused, Pose, Robot, RobotLayout, SimFact, Turn,
+    Bond, Bonds, LimbName, ObjectSpec, Operator, Paused, Robot, RobotLayout, SimFact, Turn,
 };
+use tabletop_geometry::Pose;
 
 use crate::bonds::{Pair, pair, take_turn, turned};
 

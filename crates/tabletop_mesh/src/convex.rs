@@ -11,7 +11,8 @@ use parry3d::transformation::{
     try_convex_hull,
     vhacd::{VHACD, VHACDParameters},
 };
-use tabletop_core::{MeshSpec, Polyhedron};
+use tabletop_core::MeshSpec;
+use tabletop_geometry::Polyhedron;
 
 /// Largest distance of a surface from the faces of a convex one, as a share of its length.
 const FLATNESS: f32 = 1e-4;

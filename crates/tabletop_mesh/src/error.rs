@@ -1,6 +1,7 @@
 //! Errors of mesh files.
 
-use tabletop_core::{MeshError, PolyhedronError};
+use tabletop_core::MeshError;
+use tabletop_geometry::PolyhedronError;
 
 /// The error of a file that is no mesh.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

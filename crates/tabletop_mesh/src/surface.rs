@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 
 use bevy::math::Vec3;
-use tabletop_core::{MeshSpec, Polyhedron, PolyhedronError};
+use tabletop_core::MeshSpec;
+use tabletop_geometry::{Polyhedron, PolyhedronError};
 
 use crate::{Triangle, error::MeshFileError, limits::MAX_STL_BYTES, stl::read_stl};
 

@@ -3,7 +3,8 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::RapierContextSimulation;
-use tabletop_core::{Dynamics, PAIR_GAP, prelude::*};
+use tabletop_core::{Dynamics, prelude::*};
+use tabletop_geometry::PAIR_GAP;
 use tabletop_physics::PhysicsPlugin;
 
 /// A world of cubes with this edge, at these places.

@@ -1,7 +1,8 @@
 //! The robot's body, as planning uses it.
 
 use bevy::math::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
-use tabletop_core::{LimbLayout, LinkFrame, Pose, RobotLayout, Solid, Table, UNITS_PER_METER};
+use tabletop_core::{LimbLayout, LinkFrame, RobotLayout, Table};
+use tabletop_geometry::{Pose, Solid, UNITS_PER_METER};
 use tabletop_kinematics::{
     ArmChain, Frames, Geometry, JointValues, LinkId, LinkShape, MOST_ARM_JOINTS, ModelError,
     RobotModel, Target,

@@ -3,7 +3,8 @@
 use std::cell::RefCell;
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::{Pose, Table};
+use tabletop_core::Table;
+use tabletop_geometry::Pose;
 use tabletop_task::PlacedSolid;
 
 use crate::{

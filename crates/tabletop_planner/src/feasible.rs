@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 use tabletop_task::{Binding, PlaceRange, PlacedSolid, Relation, Task};
 
 use crate::{

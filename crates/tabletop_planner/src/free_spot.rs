@@ -1,7 +1,7 @@
 //! Free places on the table.
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 use tabletop_task::PlacedSolid;
 
 use crate::{

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::{Pose, Table};
+use tabletop_core::Table;
+use tabletop_geometry::Pose;
 use tabletop_task::{
     Arrangement, Binding, PlaceRange, PlacedSolid, Reference, Relation, Symmetry, Task, TaskStep,
     twist_about,

@@ -1,7 +1,7 @@
 //! Paths of an arm.
 
 use bevy::math::Vec3;
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 use tabletop_task::angle_between;
 
 use crate::{body::Angles, clearance::Clearance};

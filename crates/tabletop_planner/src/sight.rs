@@ -3,7 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use bevy::math::Vec3;
-use tabletop_core::{JointSpec, Pose, Shape, Table};
+use tabletop_core::{JointSpec, Shape, Table};
+use tabletop_geometry::Pose;
 use tabletop_task::{Arrangement, PlacedSolid};
 
 use crate::body::Angles;
@@ -153,7 +154,8 @@ pub(crate) fn lean(rotation: bevy::math::Quat) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Part, Rgb};
+    use tabletop_core::Part;
+    use tabletop_geometry::Rgb;
 
     use super::*;
 

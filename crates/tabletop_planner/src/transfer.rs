@@ -5,7 +5,7 @@ mod choice;
 mod ways;
 
 use bevy::math::Vec3;
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 
 use crate::{
     body::RobotBody,

@@ -1,6 +1,6 @@
 //! Collision-free paths of an arm.
 
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 
 use crate::{
     body::Angles,

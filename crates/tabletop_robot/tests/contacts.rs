@@ -6,9 +6,10 @@ mod kit;
 use bevy::prelude::*;
 use kit::{Stage, block};
 use tabletop_core::{
-    Arm, Drive, ObjectIndex, Obstacle, Pose, RobotCommand, RobotContact, RobotJoint, StepApp,
-    TICK_SECONDS, Table, Twist,
+    Arm, Drive, ObjectIndex, Obstacle, RobotCommand, RobotContact, RobotJoint, StepApp,
+    TICK_SECONDS, Table,
 };
+use tabletop_geometry::{Pose, Twist};
 
 const ARM: Arm = Arm::Right;
 

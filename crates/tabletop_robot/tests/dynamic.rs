@@ -10,9 +10,10 @@ use kit::{
 };
 use proptest::prelude::*;
 use tabletop_core::{
-    Arm, Drive, Hand, HandCommand, HistoryCommand, JOINTS_PER_ARM, Pose, Recording, RobotCommand,
+    Arm, Drive, Hand, HandCommand, HistoryCommand, JOINTS_PER_ARM, Recording, RobotCommand,
     RobotJoint, StepApp, TICK_SECONDS,
 };
+use tabletop_geometry::Pose;
 use tabletop_kinematics::baxter;
 
 const SECONDS: f64 = TICK_SECONDS as f64;

@@ -6,9 +6,10 @@ mod kit;
 use bevy::prelude::*;
 use kit::{Stage, block};
 use tabletop_core::{
-    Arm, Drive, HandCommand, LidBoxSpec, ObjectIndex, Part, Pose, Rgb, Robot, RobotCommand,
-    RobotFact, RobotJoint, RobotMode, SceneCommand, SceneItem, SceneSpec, Shape, SimFact, StepApp,
+    Arm, Drive, HandCommand, LidBoxSpec, ObjectIndex, Part, Robot, RobotCommand, RobotFact,
+    RobotJoint, RobotMode, SceneCommand, SceneItem, SceneSpec, Shape, SimFact, StepApp,
 };
+use tabletop_geometry::{Pose, Rgb};
 use tabletop_robot::STEEPEST_GRIP;
 
 const ARM: Arm = Arm::Right;

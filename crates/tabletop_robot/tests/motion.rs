@@ -10,9 +10,10 @@ use bevy_rapier3d::{prelude::Collider, rapier::prelude as rapier};
 use kit::{Stage, block, inside_the_table};
 use proptest::prelude::*;
 use tabletop_core::{
-    Arm, Drive, Hand, HandCommand, HeadCamera, HistoryCommand, ObjectIndex, Obstacle, Pose, Robot,
+    Arm, Drive, Hand, HandCommand, HeadCamera, HistoryCommand, ObjectIndex, Obstacle, Robot,
     RobotCommand, RobotFact, RobotJoint, SimFact, StepApp, TICK_SECONDS,
 };
+use tabletop_geometry::Pose;
 use tabletop_robot::RobotLink;
 
 fn drive(stage: &mut Stage, joint: RobotJoint, drive: Drive) {

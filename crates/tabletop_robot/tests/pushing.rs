@@ -9,9 +9,9 @@ use kit::{
     motors::{ARM, SECOND, check_limits, drive, effort},
 };
 use tabletop_core::{
-    Drive, Obstacle, Pose, Robot, RobotCommand, RobotFact, RobotJoint, SimFact, StepApp,
-    TICK_SECONDS,
+    Drive, Obstacle, Robot, RobotCommand, RobotFact, RobotJoint, SimFact, StepApp, TICK_SECONDS,
 };
+use tabletop_geometry::Pose;
 
 #[test]
 fn a_swing_into_a_fixed_block_stops_there_within_the_efforts() {

@@ -2,7 +2,8 @@
 
 use bevy::prelude::*;
 use serde::Deserialize;
-use tabletop_core::{Hand, quat_from_degrees};
+use tabletop_core::Hand;
+use tabletop_geometry::quat_from_degrees;
 
 use crate::{
     RobotCheck,

@@ -3,9 +3,9 @@
 use bevy::prelude::*;
 use serde::Deserialize;
 use tabletop_core::{
-    Drive, Face, JointId, JointName, LimbId, LimbName, Pose, Robot, RobotCommand, RobotLayout,
-    SimCommand,
+    Drive, Face, JointId, JointName, LimbId, LimbName, Robot, RobotCommand, RobotLayout, SimCommand,
 };
+use tabletop_geometry::Pose;
 
 use crate::{
     fault::{fault_of_time, fault_of_vector},

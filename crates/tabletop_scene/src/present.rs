@@ -4,9 +4,10 @@ mod marks;
 
 use bevy::prelude::*;
 use tabletop_core::{
-    ChainSpec, Composition, Held, LidBoxSpec, Manipulator, ObjectIndex, ObjectSpec, Pose,
-    SceneItem, SceneSpec, Shape, Table,
+    ChainSpec, Composition, Held, LidBoxSpec, Manipulator, ObjectIndex, ObjectSpec, SceneItem,
+    SceneSpec, Shape, Table,
 };
+use tabletop_geometry::Pose;
 
 use crate::{
     Assembly, IdAllocator,

@@ -4,7 +4,8 @@ use std::f32::consts::FRAC_PI_2;
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{DefaultRapierContext, RapierContextColliders, RigidBodyDisabled};
-use tabletop_core::{Held, ObjectIndex, ObjectSpec, Pose, Preset, Random, Rgb, Shape, Table};
+use tabletop_core::{Held, ObjectIndex, ObjectSpec, Preset, Random, Shape, Table};
+use tabletop_geometry::{Pose, Rgb};
 use tabletop_physics::{Convex, collider, convex_parts};
 
 use crate::IdAllocator;

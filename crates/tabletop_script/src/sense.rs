@@ -4,12 +4,13 @@ use std::path::Path;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
-    JointId, JointState, ObjectIndex, ObjectSpec, Pose, Recording, Replaying, Robot, RobotLayout,
+    JointId, JointState, ObjectIndex, ObjectSpec, Recording, Replaying, Robot, RobotLayout,
     RobotMode, SensorImage, ShownTask, SimTick, TICK_SECONDS, Table,
 };
 use tabletop_engine::{
     Aux, JointMatrix, RgbImage, SensedContact, SensedControl, SensedObject, SensedStep, Sensor,
 };
+use tabletop_geometry::Pose;
 
 use crate::{ScriptSettings, mentions::mention};
 

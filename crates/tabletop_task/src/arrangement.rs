@@ -3,7 +3,8 @@
 use std::{collections::BTreeMap, f32::consts::TAU};
 
 use bevy::math::Vec3;
-use tabletop_core::{Pose, Shape};
+use tabletop_core::Shape;
+use tabletop_geometry::Pose;
 
 use crate::convex::PlacedSolid;
 
@@ -193,7 +194,7 @@ impl Placed {
     fn holds(&self, point: Vec3) -> bool {
         let spot = PlacedSolid {
             pose: Pose::at(point),
-            solid: tabletop_core::Solid::Ball(1e-3),
+            solid: tabletop_geometry::Solid::Ball(1e-3),
         };
         self.solids
             .iter()
@@ -223,7 +224,8 @@ fn overlap(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Part, Rgb};
+    use tabletop_core::Part;
+    use tabletop_geometry::Rgb;
 
     use super::*;
 

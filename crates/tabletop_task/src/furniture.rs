@@ -1,7 +1,8 @@
 //! What is otherwise known of the objects of a recording whose events do not tell all.
 
 use bevy::math::Vec3;
-use tabletop_core::{JointKind, JointSpec, ObjectSpec, Pose, Rgb, Shape};
+use tabletop_core::{JointKind, JointSpec, ObjectSpec, Shape};
+use tabletop_geometry::{Pose, Rgb};
 
 use crate::{
     convex::PlacedSolid,

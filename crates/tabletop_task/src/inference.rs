@@ -1,6 +1,7 @@
 //! What hands did, where only poses are known.
 
-use tabletop_core::{Hand, Pose, SimTick};
+use tabletop_core::{Hand, SimTick};
+use tabletop_geometry::Pose;
 use tabletop_recorder::TICKS_PER_FRAME;
 
 use crate::{

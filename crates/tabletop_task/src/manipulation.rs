@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
-use tabletop_core::{Hand, Pose, SimTick};
+use tabletop_core::{Hand, SimTick};
+use tabletop_geometry::Pose;
 
 use crate::demonstration::{Demonstration, HandAct, HandDeed};
 

@@ -2,7 +2,8 @@
 
 use bevy::math::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
-use tabletop_core::{JointKind, JointSpec, Pose};
+use tabletop_core::{JointKind, JointSpec};
+use tabletop_geometry::Pose;
 
 use crate::{
     arrangement::{Arrangement, TOUCH},

@@ -1,6 +1,7 @@
 //! Tracks: poses of an object, tick by tick.
 
-use tabletop_core::{Pose, SimTick};
+use tabletop_core::SimTick;
+use tabletop_geometry::Pose;
 
 use crate::rotation::angle_between;
 

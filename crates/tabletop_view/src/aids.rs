@@ -2,7 +2,9 @@
 //! it can be turned, what lies below it, and where the plane in which it is dragged meets table and objects.
 
 use bevy::prelude::*;
-use tabletop_core::{DragPlane, Hands, ObjectSpec, Pose, Primitive, UserCamera};
+use tabletop_core::{Hands, ObjectSpec};
+use tabletop_geometry::{Pose, Primitive};
+use tabletop_user::{DragPlane, UserCamera};
 
 use crate::{
     held::HeldVisual,
@@ -178,7 +180,8 @@ fn draw_sections(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tabletop_core::{Rgb, Solid, Table};
+    use tabletop_core::Table;
+    use tabletop_geometry::{Rgb, Solid};
 
     #[test]
     fn the_shadow_falls_on_the_highest_surface_below() {

@@ -7,10 +7,8 @@ use bevy::{
     prelude::*,
     render::view::NoIndirectDrawing,
 };
-use tabletop_core::{
-    Action, CameraMotion, CameraView, Hands, HeadCamera, KeySystems, Keys, Paused, Steering, Table,
-    UserCamera,
-};
+use tabletop_core::{Hands, HeadCamera, Paused, Table};
+use tabletop_user::{Action, CameraMotion, CameraView, KeySystems, Keys, Steering, UserCamera};
 
 use crate::viewpoint::Viewpoint;
 

@@ -1,7 +1,7 @@
 //! The section of a solid with a plane.
 
 use bevy::prelude::*;
-use tabletop_core::{Pose, Solid};
+use tabletop_geometry::{Pose, Solid};
 
 use crate::polyhedron;
 

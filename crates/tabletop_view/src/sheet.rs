@@ -10,7 +10,8 @@ use bevy::{
     },
     shader::ShaderRef,
 };
-use tabletop_core::{DragPlane, Table};
+use tabletop_core::Table;
+use tabletop_user::DragPlane;
 
 use crate::{held::HeldVisual, visual::Filled};
 
@@ -168,7 +169,8 @@ mod tests {
     use super::*;
     use crate::{test_app::test_app, visual};
     use std::f32::consts::FRAC_PI_2;
-    use tabletop_core::{Hands, ObjectSpec, Pose, Rgb, Shape};
+    use tabletop_core::{Hands, ObjectSpec, Shape};
+    use tabletop_geometry::{Pose, Rgb};
 
     fn app() -> App {
         test_app((visual::plugin, systems))

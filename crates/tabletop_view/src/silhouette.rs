@@ -4,7 +4,7 @@
 //! body is what remains of these polygons' edges after what lies within the others has been cut away.
 
 use bevy::prelude::*;
-use tabletop_core::{Pose, Primitive, Solid};
+use tabletop_geometry::{Pose, Primitive, Solid};
 
 use crate::polyhedron;
 
@@ -218,7 +218,8 @@ fn convex_hull(mut corners: Vec<Corner>) -> Vec<Corner> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tabletop_core::{Rgb, Shape};
+    use tabletop_core::Shape;
+    use tabletop_geometry::Rgb;
 
     /// Ten units above the origin, looking down, X to the right.
     fn above() -> Pose {

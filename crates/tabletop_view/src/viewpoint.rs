@@ -3,7 +3,9 @@
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use bevy::prelude::*;
-use tabletop_core::{Pose, Steering, Table};
+use tabletop_core::Table;
+use tabletop_geometry::Pose;
+use tabletop_user::Steering;
 
 /// Greatest elevation in radians: just short of straight up, so that the camera cannot roll over.
 const MAX_ELEVATION: f32 = FRAC_PI_2 - 0.01;

@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// Writes a scene as a task file, which [reads](crate::parse()) back as the same scene: numbers exactly, colours to
-/// within their 8 bits a channel, rotations exactly or, if they are no [rotation of a file](tabletop_core::quat_from_degrees), as the nearest
+/// within their 8 bits a channel, rotations exactly or, if they are no [rotation of a file](tabletop_geometry::quat_from_degrees), as the nearest
 /// of those: nowhere off by more than 2e-7.
 ///
 /// Parts that a file cannot express are written as the nearest that it can: characters that ids cannot have become underscores, a
@@ -237,7 +237,7 @@ fn element_name(shape: &Shape) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Pose, Rgb};
+    use tabletop_geometry::{Pose, Rgb};
 
     use super::*;
     use crate::test_support::scene_of;

@@ -4,14 +4,14 @@ use std::time::Duration;
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Actor, Agent, Ghost, Ghosts, Imitating, ObjectIndex, ObjectSpec, OrderSystems, Paused,
-    Replaying, RestApp as _, RestingSystems, Robot, RobotCommand, RobotLayout, SimBlocked, Table,
-    WriteCommand as _,
+    Actor, Agent, ObjectIndex, ObjectSpec, OrderSystems, Paused, Replaying, RestApp as _,
+    RestingSystems, Robot, RobotCommand, RobotLayout, SimBlocked, Table, WriteCommand as _,
 };
 use tabletop_gui::{Notices, Tone};
 use tabletop_planner::{Execution, ExecutionTurn, Imitation, RobotBody, goal_poses};
 use tabletop_robot::Description;
 use tabletop_task::Task;
+use tabletop_user::{Ghost, Ghosts, Imitating};
 
 use super::understood::{Lesson, Understood};
 use crate::imitation::{command, sight};

@@ -205,7 +205,7 @@ impl From<Linear> for Edge {
 mod tests {
     use bevy::math::Quat;
     use proptest::prelude::*;
-    use tabletop_core::Pose;
+    use tabletop_geometry::Pose;
 
     use super::*;
     use crate::Camera;

@@ -3,7 +3,7 @@
 use std::{ops::Range, sync::Arc};
 
 use bevy::math::{Mat3, Mat3A, Vec2, Vec3, Vec3A};
-use tabletop_core::Solid;
+use tabletop_geometry::Solid;
 
 use crate::{
     camera::{Linear, PinholeView, Window},

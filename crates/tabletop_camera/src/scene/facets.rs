@@ -1,7 +1,7 @@
 //! Facets: surfaces of triangles, prepared for drawing.
 
 use bevy::math::{Vec3, Vec3A};
-use tabletop_core::Triangles;
+use tabletop_geometry::Triangles;
 
 use crate::color::scaled_to_bytes;
 
@@ -145,7 +145,7 @@ impl Patches {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::Rgb;
+    use tabletop_geometry::Rgb;
 
     use super::*;
 

@@ -3,7 +3,8 @@
 
 use bevy::math::{DVec3, Vec3};
 use tabletop_camera::{Camera, DrawnSolid};
-use tabletop_core::{NAMED_COLORS, Picture, Pose, Rgb, Solid, Table};
+use tabletop_core::{Picture, Table};
+use tabletop_geometry::{NAMED_COLORS, Pose, Rgb, Solid};
 
 use crate::scenes::{default_scene, draw, head, level, smooth, solid, turned};
 

@@ -3,7 +3,8 @@
 use bevy::{math::Vec3, prelude::*};
 use proptest::prelude::*;
 use tabletop_camera::{Camera, DrawnFigure, Facets, Scene};
-use tabletop_core::{Picture, Pose, Rgb, Solid, Triangles};
+use tabletop_core::Picture;
+use tabletop_geometry::{Pose, Rgb, Solid, Triangles};
 
 use crate::scenes::{default_scene, draw_scene, head, level, of_solids, smooth, solid};
 

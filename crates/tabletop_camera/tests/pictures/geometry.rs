@@ -3,7 +3,8 @@
 use bevy::{math::Vec3, prelude::*};
 use proptest::prelude::*;
 use tabletop_camera::{Camera, DrawnSolid};
-use tabletop_core::{LIGHT, Picture, Pose, Primitive, Rgb, Solid};
+use tabletop_core::{LIGHT, Picture};
+use tabletop_geometry::{Pose, Primitive, Rgb, Solid};
 
 use crate::scenes::{draw, head, level, mixed_scene, smooth, solid};
 

@@ -2,7 +2,8 @@
 
 use bevy::math::Vec3;
 use tabletop_camera::{Camera, DrawnFigure, Facets, Rasterizer, Scene};
-use tabletop_core::{LIGHT, Light, Picture, Pose, Rgb, Triangles};
+use tabletop_core::{LIGHT, Light, Picture};
+use tabletop_geometry::{Pose, Rgb, Triangles};
 
 use crate::scenes::{default_scene, draw_scene, head, mixed_scene, of_solids, smooth};
 

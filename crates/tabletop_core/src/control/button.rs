@@ -5,7 +5,7 @@ use std::f32::consts::FRAC_1_SQRT_2;
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{Rgb, UNITS_PER_METER};
+use tabletop_geometry::{Rgb, UNITS_PER_METER};
 
 /// A button. Its cap is the control: an object of its own, which slides in a housing and springs back up.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]

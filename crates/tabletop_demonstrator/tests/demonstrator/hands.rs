@@ -1,7 +1,8 @@
 //! Effects of hands on a world.
 
 use bevy::prelude::*;
-use tabletop_core::{ChainSpec, LidBoxSpec, prelude::*, quat_from_degrees};
+use tabletop_core::{ChainSpec, LidBoxSpec, prelude::*};
+use tabletop_geometry::quat_from_degrees;
 
 use crate::desk::{Desk, block, object, two_blocks};
 

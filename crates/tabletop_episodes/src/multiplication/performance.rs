@@ -4,8 +4,9 @@ use std::f32::consts::{PI, TAU};
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Hand, HandCommand, Hands, ObjectIndex, Pose, SimTick, StepApp as _, WriteCommand as _,
+    Hand, HandCommand, Hands, ObjectIndex, SimTick, StepApp as _, WriteCommand as _,
 };
+use tabletop_geometry::Pose;
 use tabletop_planner::{Before, PlanFailure, Sight, is_met, undone};
 use tabletop_task::{
     Binding, Demonstration, PlaceRange, PlacedSolid, Reference, Relation, Task, TaskStep,

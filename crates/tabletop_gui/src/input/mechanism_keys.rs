@@ -1,7 +1,8 @@
 //! Keys that trigger, point, fasten, loosen and cut, with the held object or the one under the cursor.
 
 use bevy::prelude::*;
-use tabletop_core::{Actor, CommandWriter, KeySystems, Keys, Paused};
+use tabletop_core::{Actor, CommandWriter, Paused};
+use tabletop_user::{KeySystems, Keys};
 
 use crate::{
     Notices, Tone,
@@ -45,7 +46,8 @@ fn act(
 mod tests {
     use super::*;
     use crate::test_world::TestWorld;
-    use tabletop_core::{Hand, Joint, JointKind, MechanismCommand, Pose};
+    use tabletop_core::{Hand, Joint, JointKind, MechanismCommand};
+    use tabletop_geometry::Pose;
 
     #[test]
     fn a_key_points_to_what_the_cursor_is_on() {

@@ -2,9 +2,8 @@
 //! lets it go.
 
 use bevy::prelude::*;
-use tabletop_core::{
-    Actor, CommandWriter, DragPlane, HandCommand, Hands, ObjectSpec, Paused, Table,
-};
+use tabletop_core::{Actor, CommandWriter, HandCommand, Hands, ObjectSpec, Paused, Table};
+use tabletop_user::DragPlane;
 
 use crate::input::{
     drag::Drag,

@@ -8,7 +8,7 @@ use bevy::{
     },
     prelude::*,
 };
-use tabletop_core::{CameraMotion, UserCamera};
+use tabletop_user::{CameraMotion, UserCamera};
 
 use crate::input::{
     pick::Pickable,

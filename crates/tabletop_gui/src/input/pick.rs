@@ -2,7 +2,8 @@
 //! but are no objects.
 
 use bevy::{ecs::system::SystemParam, prelude::*};
-use tabletop_core::{Figure, ObjectIndex, ObjectSpec, Pose, Primitive, Table};
+use tabletop_core::{Figure, ObjectIndex, ObjectSpec, Table};
+use tabletop_geometry::{Pose, Primitive};
 
 /// Everything that can be seen or hide it.
 #[derive(SystemParam)]
@@ -67,7 +68,7 @@ mod tests {
     use super::*;
     use crate::test_world::block;
     use bevy::ecs::system::RunSystemOnce;
-    use tabletop_core::{Rgb, Triangles};
+    use tabletop_geometry::{Rgb, Triangles};
 
     fn picked(world: &mut World, origin: Vec3, direction: Vec3) -> Option<Entity> {
         let ray = Ray3d::new(origin, Dir3::new(direction).unwrap());

@@ -2,7 +2,7 @@
 
 use bevy::{prelude::*, window::PrimaryWindow};
 use bevy_egui::{EguiContext, PrimaryEguiContext, egui, input::EguiWantsInput};
-use tabletop_core::UserCamera;
+use tabletop_user::UserCamera;
 
 /// Reading the mouse, once a frame before its ticks.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]

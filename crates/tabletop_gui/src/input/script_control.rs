@@ -1,7 +1,8 @@
 //! Starting and stopping the script that drives the robot (report section 5.2), and what it says.
 
 use bevy::prelude::*;
-use tabletop_core::{Action, Agent, KeySystems, ScriptCommand, ScriptEvent, was_struck};
+use tabletop_core::{Agent, ScriptCommand, ScriptEvent};
+use tabletop_user::{Action, KeySystems, was_struck};
 
 use crate::panels::messages::{Notices, Tone};
 

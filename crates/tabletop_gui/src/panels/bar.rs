@@ -6,7 +6,7 @@ use bevy_egui::{
     egui::{self, Button, Context, RichText, Ui},
 };
 
-use tabletop_core::{Action, Keymap};
+use tabletop_user::{Action, Keymap};
 
 use crate::{
     display::DisplayOffer,

@@ -8,7 +8,7 @@ use bevy_egui::{
         self, Align2, Button, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, WidgetType, vec2,
     },
 };
-use tabletop_core::{Action, CameraMotion, CameraView, Keymap, Steering};
+use tabletop_user::{Action, CameraMotion, CameraView, Keymap, Steering};
 
 use crate::{
     panels::{Panel, Panels},

@@ -5,7 +5,8 @@ use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{Align2, Area, Context, Frame, Id, Order, RichText, vec2},
 };
-use tabletop_core::{Action, Imitating, Keymap, ShownTask, TaskOrder};
+use tabletop_core::ShownTask;
+use tabletop_user::{Action, Imitating, Keymap, TaskOrder};
 
 use crate::{
     panels::bar,

@@ -9,9 +9,10 @@ use bevy_egui::{
     egui::{self, Color32, Ui},
 };
 use tabletop_core::{
-    Action, Actor, CommandWriter, Hand, HandCommand, HandFact, Hands, History, HistoryCommand,
-    Keymap, ObjectSpec, Recording, RecordingCommand, SimCommand, SimFact,
+    Actor, CommandWriter, Hand, HandCommand, HandFact, Hands, History, HistoryCommand, ObjectSpec,
+    Recording, RecordingCommand, SimCommand, SimFact,
 };
+use tabletop_user::{Action, Keymap};
 
 use crate::{
     input::{plane::PlaneButtons, turns::TurnSums},

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
-use tabletop_core::{Action, ActionGroup, KeySystems, Keymap, Way, was_struck};
+use tabletop_user::{Action, ActionGroup, KeySystems, Keymap, Way, was_struck};
 
 /// The number of columns.
 const COLUMNS: usize = 3;

@@ -9,7 +9,8 @@ use bevy_egui::{
         ComboBox, Direction, Id, InnerResponse, Layout, Response, Ui, WidgetInfo, WidgetType, vec2,
     },
 };
-use tabletop_core::{Action, Actor, CommandWriter, Keymap, Preset, SceneCommand};
+use tabletop_core::{Actor, CommandWriter, Preset, SceneCommand};
+use tabletop_user::{Action, Keymap};
 
 use crate::{
     files::{FileRequest, Files, TaskFile, short_name},

@@ -3,7 +3,8 @@
 
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
-use tabletop_core::{Action, Keymap, Paused};
+use tabletop_core::Paused;
+use tabletop_user::{Action, Keymap};
 
 use crate::panels::{Panel, Panels, context_menu::ContextMenu};
 

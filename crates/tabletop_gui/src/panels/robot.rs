@@ -13,9 +13,10 @@ use bevy_egui::{
     egui::{CollapsingHeader, ComboBox, Ui, WidgetType},
 };
 use tabletop_core::{
-    Action, Actor, Agent, CommandWriter, Drive, Face, Keymap, LimbId, ObjectSpec, Robot,
-    RobotCommand, RobotLayout, ScriptCommand,
+    Actor, Agent, CommandWriter, Drive, Face, LimbId, ObjectSpec, Robot, RobotCommand, RobotLayout,
+    ScriptCommand,
 };
+use tabletop_user::{Action, Keymap};
 
 use self::{
     joint::{JointSelection, goal, joint},

@@ -15,9 +15,8 @@ use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{self, Ui},
 };
-use tabletop_core::{
-    History, Imitating, Keymap, Paused, Playback, ShownTask, SimTick, Timeline, TimelineStage,
-};
+use tabletop_core::{History, Paused, Playback, ShownTask, SimTick, Timeline, TimelineStage};
+use tabletop_user::{Imitating, Keymap};
 
 use self::{
     axis::TimeAxis,

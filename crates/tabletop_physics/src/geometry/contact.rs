@@ -152,7 +152,8 @@ fn wider(one: (f32, Vec3), other: (f32, Vec3)) -> (f32, Vec3) {
 mod tests {
     use std::f32::consts::TAU;
 
-    use tabletop_core::{Rgb, Shape};
+    use tabletop_core::Shape;
+    use tabletop_geometry::Rgb;
 
     use super::*;
     use crate::collider;

@@ -1,6 +1,6 @@
 //! Objects that were in the way.
 
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 
 use crate::sight::Sight;
 

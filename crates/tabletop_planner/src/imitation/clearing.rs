@@ -1,7 +1,7 @@
 //! Clearing: what is in the way is put aside.
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 use tabletop_task::{PlaceRange, PlacedSolid, Relation, TaskStep};
 
 use super::{Imitator, slider::Slider};

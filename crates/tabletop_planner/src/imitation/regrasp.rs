@@ -3,7 +3,7 @@
 use std::f32::consts::FRAC_PI_4;
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 use tabletop_task::Symmetry;
 
 use super::Imitator;

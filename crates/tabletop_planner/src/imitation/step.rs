@@ -1,7 +1,7 @@
 //! A step: what it asks for, and how the object gets there.
 
 use bevy::math::Vec3;
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 use tabletop_task::{Relation, TaskStep};
 
 use super::{Imitator, slider::Slider};

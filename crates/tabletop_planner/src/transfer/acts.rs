@@ -1,7 +1,7 @@
 //! The acts of a transfer: what the arm does when it takes an object, carries it and lets it go.
 
 use bevy::math::Vec3;
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 
 use super::{
     PAIRS, Transfer, above_place,

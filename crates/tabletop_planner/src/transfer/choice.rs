@@ -2,7 +2,7 @@
 
 use std::{cell::Cell, collections::BTreeMap};
 
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 use tabletop_task::{PlacedSolid, angle_between};
 
 use super::{BESIDE, PAIRS, Transfer, above_place};

@@ -1,7 +1,7 @@
 //! The ways of a transfer: to the object, up with it, across, and down.
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 use tabletop_task::PlacedSolid;
 
 use super::{BESIDE, Transfer, choice::Taking};

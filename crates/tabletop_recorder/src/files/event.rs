@@ -1,6 +1,7 @@
 //! The lines of a segment's text file (report section 4.1).
 
-use tabletop_core::{Bond, Decimal, Hand, ObjectSpec, Operator, Pose};
+use tabletop_core::{Bond, Decimal, Hand, ObjectSpec, Operator};
+use tabletop_geometry::Pose;
 
 use crate::files::properties::properties;
 
@@ -181,7 +182,8 @@ impl Event<'_> {
 #[cfg(test)]
 mod tests {
     use bevy::math::{Quat, Vec3};
-    use tabletop_core::{Rgb, Shape};
+    use tabletop_core::Shape;
+    use tabletop_geometry::Rgb;
 
     use super::*;
 

@@ -64,7 +64,8 @@ fn text(value: AttributeValue) -> String {
 #[cfg(test)]
 mod tests {
     use bevy::math::Vec3;
-    use tabletop_core::{Pose, Rgb, Shape};
+    use tabletop_core::Shape;
+    use tabletop_geometry::{Pose, Rgb};
 
     use super::*;
 

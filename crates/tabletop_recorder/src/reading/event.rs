@@ -278,7 +278,8 @@ fn hand(name: &str) -> Result<Hand, String> {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{ObjectSpec, Pose, Rgb, Shape};
+    use tabletop_core::{ObjectSpec, Shape};
+    use tabletop_geometry::{Pose, Rgb};
 
     use super::*;
     use crate::files::event::Event;

@@ -5,9 +5,10 @@ use std::{collections::BTreeMap, fs};
 use bevy::prelude::App;
 use tabletop_core::{
     ClockCommand, Hand, HandCommand, HistoryCommand, ObjectIndex, ObjectSpec, Recording,
-    RecordingCommand, Rgb, Robot, SceneCommand, Shape, SimCommand, SimTick, StepApp as _,
+    RecordingCommand, Robot, SceneCommand, Shape, SimCommand, SimTick, StepApp as _,
     WriteCommand as _,
 };
+use tabletop_geometry::Rgb;
 use tabletop_recorder::{Session, SessionCommand};
 
 use crate::stage::{Place, app, block, grasp, location, run, scene};

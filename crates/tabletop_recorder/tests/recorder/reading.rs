@@ -4,10 +4,11 @@ use std::fs;
 
 use bevy::{math::Vec3, prelude::default};
 use tabletop_core::{
-    Hand, HandCommand, HistoryCommand, ObjectSpec, Part, Pose, Recording, RecordingCommand,
-    SceneCommand, SceneItem, SceneSpec, Shape, SimCommand, SimTick, StepApp as _, Timeline,
-    TimelinePicture, TimelineStage,
+    Hand, HandCommand, HistoryCommand, ObjectSpec, Part, Recording, RecordingCommand, SceneCommand,
+    SceneItem, SceneSpec, Shape, SimCommand, SimTick, StepApp as _, Timeline, TimelinePicture,
+    TimelineStage,
 };
+use tabletop_geometry::Pose;
 use tabletop_recorder::{Occurrence, RecordingReader};
 
 #[cfg(unix)]

@@ -6,7 +6,8 @@ use bevy_rapier3d::{
     prelude::*,
     rapier::prelude::RigidBodyHandle,
 };
-use tabletop_core::{CarriesHeadCamera, Pose, Robot, Rollback, Table};
+use tabletop_core::{CarriesHeadCamera, Robot, Rollback, Table};
+use tabletop_geometry::Pose;
 use tabletop_physics::{MET_WHEN_THERE, to_rapier};
 
 use crate::articulation::{

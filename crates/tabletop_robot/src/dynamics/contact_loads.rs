@@ -10,7 +10,8 @@ use bevy::{
 use bevy_rapier3d::{
     parry::bounding_volume::BoundingVolume, plugin::RapierContextMut, rapier::prelude as rapier,
 };
-use tabletop_core::{LimbId, TICK_SECONDS, UNITS_PER_METER};
+use tabletop_core::{LimbId, TICK_SECONDS};
+use tabletop_geometry::UNITS_PER_METER;
 use tabletop_physics::impulse_share;
 
 use crate::{

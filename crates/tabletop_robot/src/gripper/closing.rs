@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, f32::consts::PI};
 
 use bevy::prelude::*;
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 use tabletop_physics::Convex;
 
 use crate::gripper::finger_pad::{FingerPad, FingerTouch, ProbeRay, opposite};

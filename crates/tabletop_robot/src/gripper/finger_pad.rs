@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::parry::query::Ray;
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 use tabletop_physics::{Convex, to_rapier};
 
 /// Number of probe rays across and along the face.

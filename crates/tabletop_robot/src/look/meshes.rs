@@ -7,7 +7,8 @@ use std::{
 };
 
 use bevy::math::Vec3;
-use tabletop_core::{Figure, Rgb};
+use tabletop_core::Figure;
+use tabletop_geometry::Rgb;
 use tabletop_kinematics::{Geometry, LinkShape};
 use tabletop_mesh::{MeshFileError, Triangle, read_obj, read_stl};
 use tabletop_storage::{Symlinks, read_regular_file, read_regular_text};

@@ -1,7 +1,8 @@
 //! Chains: links and two fixed ends, joined by ball joints.
 
 use bevy::prelude::*;
-use tabletop_core::{ChainSpec, JointKind, JointSpec, ObjectSpec, Pose, Rgb, Shape};
+use tabletop_core::{ChainSpec, JointKind, JointSpec, ObjectSpec, Shape};
+use tabletop_geometry::{Pose, Rgb};
 
 use crate::ids::IdAllocator;
 

@@ -1,7 +1,8 @@
 //! Lid boxes: a box and a lid that slides on top of it.
 
 use bevy::prelude::*;
-use tabletop_core::{JointKind, JointSpec, LidBoxSpec, ObjectSpec, Pose};
+use tabletop_core::{JointKind, JointSpec, LidBoxSpec, ObjectSpec};
+use tabletop_geometry::Pose;
 
 use crate::ids::IdAllocator;
 
@@ -45,7 +46,8 @@ pub(super) fn build(spec: &LidBoxSpec, ids: &mut IdAllocator) -> ([ObjectSpec; 2
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Rgb, SceneItem, SceneSpec};
+    use tabletop_core::{SceneItem, SceneSpec};
+    use tabletop_geometry::Rgb;
 
     use super::*;
     use crate::assemble;

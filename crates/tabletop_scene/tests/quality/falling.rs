@@ -2,7 +2,8 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
-use tabletop_core::{Hand, Manipulator, Pose, SceneItem, Shape, StepApp as _};
+use tabletop_core::{Hand, Manipulator, SceneItem, Shape, StepApp as _};
+use tabletop_geometry::Pose;
 use tabletop_physics::hold;
 
 use crate::world::*;

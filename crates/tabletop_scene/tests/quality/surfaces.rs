@@ -1,7 +1,8 @@
 //! Sliding, bouncing and initial velocities as the file gives them, and shapes with holes and many faces.
 
 use bevy::prelude::*;
-use tabletop_core::{Dynamics, Rgb, SceneItem, Shape, StepApp as _};
+use tabletop_core::{Dynamics, SceneItem, Shape, StepApp as _};
+use tabletop_geometry::Rgb;
 
 use crate::world::*;
 

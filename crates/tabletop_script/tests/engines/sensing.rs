@@ -1,7 +1,8 @@
 //! Sensing of scripts, and what they are spared.
 
 use bevy::prelude::*;
-use tabletop_core::{Arm, ObjectSpec, Pose, Rgb, RobotCommand, Shape};
+use tabletop_core::{Arm, ObjectSpec, RobotCommand, Shape};
+use tabletop_geometry::{Pose, Rgb};
 use tabletop_harness::test_with;
 use tabletop_script::{FieldPolicy, ScriptSettings};
 

@@ -3,8 +3,9 @@
 use bevy::math::Vec3;
 use tabletop_core::{
     Change, Control, ControlKind, CustomControl, CustomState, IndicatorLights, LightState,
-    ObjectSpec, Rgb, Shape, Side, ToggleSwitch,
+    ObjectSpec, Shape, Side, ToggleSwitch,
 };
+use tabletop_geometry::Rgb;
 
 use crate::{
     document::tree::Element,

@@ -1,6 +1,7 @@
 //! The cost of simulating a scene: the number of its solids, and of pairs of them that are near each other.
 
-use tabletop_core::{Bounds, ChainSpec, LidBoxSpec, ObjectSpec, PAIR_GAP, Pose, SceneItem, Shape};
+use tabletop_core::{ChainSpec, LidBoxSpec, ObjectSpec, SceneItem, Shape};
+use tabletop_geometry::{Bounds, PAIR_GAP, Pose};
 
 use crate::elements::nearness::{BodyBounds, Nearness};
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use tabletop_core::{Bounds, PAIR_GAP};
+use tabletop_geometry::{Bounds, PAIR_GAP};
 
 /// Edge of a cell of the grid, in units.
 const CELL: f32 = 4.0;

@@ -1,7 +1,7 @@
 //! Rotations as angles that read back exactly.
 
 use bevy::math::{DMat3, DQuat, DVec3, Quat};
-use tabletop_core::{quat_from_degrees, turn_about_x, turn_about_y};
+use tabletop_geometry::{quat_from_degrees, turn_about_x, turn_about_y};
 
 /// Number of neighbouring numbers of a rotation's component that are tried.
 const NEIGHBOURS: i32 = 2;

@@ -2,7 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use tabletop_core::{NAMED_COLORS, Table};
+use tabletop_core::Table;
+use tabletop_geometry::NAMED_COLORS;
 use tabletop_xml::{MAX_FAULTS, MAX_FILE_BYTES, NAMESPACE};
 
 use crate::{SAMPLE, lines, read};

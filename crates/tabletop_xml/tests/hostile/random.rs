@@ -4,7 +4,8 @@ use std::path::Path;
 
 use bevy::math::{Quat, Vec3};
 use proptest::prelude::*;
-use tabletop_core::{ObjectSpec, Pose, Rgb, SceneItem, SceneSpec, Shape, Table};
+use tabletop_core::{ObjectSpec, SceneItem, SceneSpec, Shape, Table};
+use tabletop_geometry::{Pose, Rgb};
 use tabletop_xml::{NAMESPACE, expand, write};
 
 use crate::{SAMPLE, read, scenes::scenes};

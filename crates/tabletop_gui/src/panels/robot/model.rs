@@ -1,6 +1,7 @@
 //! The content of the Robot window, and the user's input.
 
-use tabletop_core::{Face, JointId, Keymap, Robot, RobotLayout};
+use tabletop_core::{Face, JointId, Robot, RobotLayout};
+use tabletop_user::Keymap;
 
 use crate::input::jog::Directions;
 

@@ -3,7 +3,8 @@
 use bevy_egui::egui::{
     CollapsingHeader, Response, RichText, ScrollArea, Ui, WidgetInfo, WidgetType,
 };
-use tabletop_core::{Action, Imitating, Required, ShownProperty, ShownRole, TaskOrder};
+use tabletop_core::{Required, ShownProperty, ShownRole};
+use tabletop_user::{Action, Imitating, TaskOrder};
 
 use super::model::{Model, Request};
 use crate::widgets::{button::button, style::ACCENT};

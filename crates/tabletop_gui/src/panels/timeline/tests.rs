@@ -3,9 +3,11 @@ use std::fs::File;
 use bevy_egui::egui::{Pos2, Vec2, vec2};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use tabletop_core::{
-    Act, Arm, Hand, Manipulator, Pace, Required, Rgb, ShownProperty, ShownRole, ShownStep,
-    TaskOrder, TimelineGrip, TimelinePicture, TimelineSegment, Verb,
+    Act, Arm, Hand, Manipulator, Required, ShownProperty, ShownRole, ShownStep, TimelineGrip,
+    TimelinePicture, TimelineSegment, Verb,
 };
+use tabletop_geometry::Rgb;
+use tabletop_user::{Pace, TaskOrder};
 
 use super::*;
 

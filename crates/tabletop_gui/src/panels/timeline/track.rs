@@ -4,7 +4,8 @@ use bevy_egui::egui::{
     Align2, Color32, FontId, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo,
     WidgetType, pos2, vec2,
 };
-use tabletop_core::{Act, Rgb, SimTick, TimelineSegment, Verb};
+use tabletop_core::{Act, SimTick, TimelineSegment, Verb};
+use tabletop_geometry::Rgb;
 
 use super::{
     axis::TimeAxis,

@@ -1,7 +1,8 @@
 //! The buttons that move the playhead and set its pace.
 
 use bevy_egui::egui::{Button, Response, Ui, WidgetInfo, WidgetType};
-use tabletop_core::{Action, Pace, SimTick, TimelineStage};
+use tabletop_core::{SimTick, TimelineStage};
+use tabletop_user::{Action, Pace};
 
 use super::model::{Model, Request};
 

@@ -86,7 +86,8 @@ fn check_robot_command(command: &RobotCommand) -> Checked {
 #[cfg(test)]
 mod tests {
     use bevy::prelude::default;
-    use tabletop_core::{Hand, ObjectSpec, Part, Pose, Preset, Rgb, SceneItem, SceneSpec, Shape};
+    use tabletop_core::{Hand, ObjectSpec, Part, Preset, SceneItem, SceneSpec, Shape};
+    use tabletop_geometry::{Pose, Rgb};
 
     use super::*;
     use crate::files::bounds::values::MOST_VALUES;

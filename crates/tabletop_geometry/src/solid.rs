@@ -18,7 +18,7 @@ pub enum Solid {
     },
     /// A ball of this radius.
     Ball(f32),
-    /// A polyhedron. It is convex, except for the [drawn](crate::Shape::drawn) surfaces of rings and meshes.
+    /// A polyhedron. It is convex, except where only its look counts, as that of a ring's or mesh's surface.
     Polyhedron(Polyhedron),
 }
 
@@ -62,7 +62,8 @@ impl Bounds {
         }
     }
 
-    pub(crate) fn of_cuboid(span: Vec3, at: Pose) -> Self {
+    /// The bounds of a cuboid of these full extents at a pose.
+    pub fn of_cuboid(span: Vec3, at: Pose) -> Self {
         let half = span / 2.0;
         let reach = Mat3::from_quat(at.rotation).abs() * half;
         Self::around(at.location, reach)

@@ -4,9 +4,9 @@ use std::time::{Duration, Instant};
 
 use bevy::prelude::*;
 
-use crate::{
-    Actor, ClockCommand, CommandWriter, OrderSystems, Paused, RestApp as _, RestingSystems,
-    SimTick, TICK_SECONDS, idle,
+use tabletop_core::{
+    Actor, ClockCommand, CommandWriter, IdlePlugin, OrderSystems, Paused, RestApp as _,
+    RestingSystems, SimTick, TICK_SECONDS,
 };
 
 /// Longest time that the ticks of a frame may take together, so that pictures keep coming at any pace.
@@ -88,7 +88,7 @@ impl Pace {
 #[derive(Message, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SingleStep;
 
-/// Lets an app with a window run at its [`Pace`] and make [`SingleStep`]s. Needs [`CorePlugin`](crate::CorePlugin).
+/// Lets an app with a window run at its [`Pace`] and make [`SingleStep`]s. Needs [`CorePlugin`](tabletop_core::CorePlugin).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PacePlugin;
 
@@ -111,7 +111,7 @@ impl Plugin for PacePlugin {
                         .in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
                 ),
             )
-            .add_plugins(idle::plugin);
+            .add_plugins(IdlePlugin);
     }
 }
 
@@ -191,7 +191,7 @@ mod tests {
     use bevy::time::TimeUpdateStrategy;
 
     use super::*;
-    use crate::{CorePlugin, WriteCommand as _};
+    use tabletop_core::{CorePlugin, WriteCommand as _};
 
     fn app(frame: TimeUpdateStrategy) -> App {
         let mut app = App::new();

@@ -4,7 +4,7 @@ use std::fmt;
 
 use bevy::{prelude::*, reflect::enums::Enum as _};
 
-use crate::{JointName, robot::snake_case};
+use tabletop_core::{JointName, snake_case};
 
 /// An action that a key does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Reflect)]

@@ -3,10 +3,11 @@
 use bevy_input::keyboard::KeyCode::{self, *};
 
 use super::{
-    KeyBinding, Modifiers,
+    BindingError, KeyBinding, Modifiers,
     action::{Action, Way},
 };
-use crate::{JointId, JointLayout, JointRole, LimbId, LimbLayout, RobotLayout};
+use tabletop_core::{JointId, JointLayout, JointName, JointRole, LimbId, LimbLayout, RobotLayout};
+use thiserror::Error;
 
 /// A group of actions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -61,11 +62,24 @@ impl ActionRow {
     }
 }
 
-/// The table for a robot.
-pub(super) fn rows(layout: &RobotLayout) -> Vec<ActionRow> {
+/// A key in a robot's layout that does not exist.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("joint {joint}: {source}")]
+pub struct JointKeyError {
+    /// The joint that it is to move.
+    pub joint: JointName,
+    /// The fault of the key.
+    pub source: BindingError,
+}
+
+/// The table for a robot, and the keys of its joints that do not exist.
+pub(super) fn rows(layout: &RobotLayout) -> (Vec<ActionRow>, Vec<JointKeyError>) {
     let mut rows = plain_rows();
-    rows.extend(joints_by_place(layout).flat_map(|joint| rows_of_joint(layout, joint)));
-    rows
+    let mut faults = Vec::new();
+    for joint in joints_by_place(layout) {
+        rows.extend(rows_of_joint(layout.joint(joint), &mut faults));
+    }
+    (rows, faults)
 }
 
 /// The groups of a robot's actions with their names, in the order in which they are listed.
@@ -180,8 +194,7 @@ fn joints_by_place(layout: &RobotLayout) -> impl Iterator<Item = JointId> {
 }
 
 /// The two rows of a joint. A joint has one key, which Shift reverses; a gripper has two (report section 5.1).
-fn rows_of_joint(layout: &RobotLayout, joint: JointId) -> [ActionRow; 2] {
-    let joint = layout.joint(joint);
+fn rows_of_joint(joint: &JointLayout, faults: &mut Vec<JointKeyError>) -> [ActionRow; 2] {
     [Way::Plus, Way::Minus].map(|way| {
         let JointLayout {
             name,
@@ -190,7 +203,7 @@ fn rows_of_joint(layout: &RobotLayout, joint: JointId) -> [ActionRow; 2] {
             keys: [plus, minus],
             ..
         } = joint;
-        let (default_keys, sign) = match way {
+        let (key, sign) = match way {
             Way::Plus => (plus, '+'),
             Way::Minus => (minus, '-'),
         };
@@ -213,7 +226,16 @@ fn rows_of_joint(layout: &RobotLayout, joint: JointId) -> [ActionRow; 2] {
             (JointRole::Neck, way) => (ActionGroup::Robot, format!("{label} {sign}"), turns(way)),
         };
         let action = Action::Move(*name, way);
-        row(action, group, &label, tooltip, default_keys.clone()).continuous()
+        let key = key.as_deref().and_then(|key| {
+            let fault = |source| JointKeyError {
+                joint: *name,
+                source,
+            };
+            key.parse()
+                .map_err(|source| faults.push(fault(source)))
+                .ok()
+        });
+        row(action, group, &label, tooltip, key.into_iter().collect()).continuous()
     })
 }
 
@@ -249,7 +271,21 @@ mod tests {
     use super::*;
 
     fn all() -> Vec<ActionRow> {
-        rows(RobotLayout::baxter())
+        rows(RobotLayout::baxter()).0
+    }
+
+    #[test]
+    fn a_key_that_does_not_exist_is_reported_with_its_joint() {
+        let mut layout = RobotLayout::baxter().clone();
+        layout.joints[0].keys[0] = Some("Quot".to_owned());
+        let (_, faults) = rows(&layout);
+        let faults: Vec<_> = faults.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            faults,
+            [
+                "joint left_s0: there is no key `Quot`; keys are named as on a US keyboard: KeyA, Digit1, Space, F1"
+            ]
+        );
     }
 
     #[test]

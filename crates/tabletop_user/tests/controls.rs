@@ -3,7 +3,7 @@
 
 use std::{fs, path::Path};
 
-use tabletop_core::{Action, Keymap};
+use tabletop_user::{Action, Keymap};
 
 fn root() -> &'static Path {
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();

@@ -1,19 +1,10 @@
-//! Types that the window's view and its panels share.
+//! The plane in which the mouse drags.
 
 use std::f32::consts::FRAC_PI_2;
 
 use bevy::prelude::*;
 
-use crate::Table;
-
-/// Marks the camera through which the user looks. The view makes it; the panels are drawn over its picture.
-#[derive(Component, Clone, Copy, Debug, Default, Reflect)]
-#[reflect(Component)]
-pub struct UserCamera;
-
-/// Systems that read [`Keys`](crate::Keys), in [`RunFixedMainLoop`] before the ticks of a frame.
-#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct KeySystems;
+use tabletop_core::Table;
 
 /// The upright plane through what the selected hand holds, in which the mouse drags it (report section 4, figure 8g).
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Reflect)]

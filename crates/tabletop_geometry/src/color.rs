@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// A colour as it is displayed: red, green, blue in 0..=1, with no gamma to be applied.
 ///
 /// ```
-/// use tabletop_core::Rgb;
+/// use tabletop_geometry::Rgb;
 ///
 /// assert_eq!("orange".parse::<Rgb>().unwrap().to_string(), "#fb8200");
 /// assert_eq!("#00A57F".parse::<Rgb>().unwrap().to_string(), "#00a57f");

@@ -8,15 +8,15 @@ mod table;
 pub use action::{Action, Way};
 pub use binding::{BindingError, KeyBinding, Modifiers};
 pub use letters::KeyLetters;
-pub use table::{ActionGroup, Situation};
+pub use table::{ActionGroup, JointKeyError, Situation};
 
 use std::{cmp::Reverse, collections::BTreeMap};
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_input::{ButtonInput, keyboard::KeyCode};
+use tabletop_core::{Hands, RobotLayout};
 
 use self::table::ActionRow;
-use crate::{Hands, RobotLayout};
 
 /// The keys of each action. A key is known by its place on the keyboard, whatever is printed on it, unless
 /// [Ctrl or the like](KeyLetters) is held down with it. The robot's layout decides which joints have actions.
@@ -30,22 +30,23 @@ pub struct Keymap {
 impl Default for Keymap {
     /// The keys for [Baxter](RobotLayout::baxter).
     fn default() -> Self {
-        Self::of(RobotLayout::baxter())
+        Self::of(RobotLayout::baxter()).0
     }
 }
 
 impl Keymap {
-    /// The default keys for a robot.
-    pub fn of(layout: &RobotLayout) -> Self {
-        let rows = table::rows(layout);
+    /// The default keys for a robot, and those in its layout that do not exist.
+    pub fn of(layout: &RobotLayout) -> (Self, Vec<JointKeyError>) {
+        let (rows, faults) = table::rows(layout);
         let bindings = rows
             .iter()
             .map(|row| (row.action, row.default_keys.clone()));
-        Self {
+        let keymap = Self {
             groups: table::groups(layout),
             bindings: bindings.collect(),
             rows,
-        }
+        };
+        (keymap, faults)
     }
 
     /// All actions.
@@ -170,6 +171,10 @@ impl Keymap {
     }
 }
 
+/// Systems that read [`Keys`], in [`RunFixedMainLoop`] before the ticks of a frame.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct KeySystems;
+
 /// The owner of the keyboard. The panels set it.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum KeyboardFocus {
@@ -251,7 +256,7 @@ mod tests {
     use KeyCode::*;
     use bevy::ecs::system::RunSystemOnce as _;
 
-    use crate::{Hand, RobotJoint};
+    use tabletop_core::{Hand, RobotJoint};
 
     fn world() -> World {
         let mut world = World::new();

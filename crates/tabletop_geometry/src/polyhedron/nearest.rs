@@ -2,7 +2,8 @@
 
 use bevy::prelude::*;
 
-use crate::{figure::enter_triangle, polyhedron::Polyhedron};
+use crate::polyhedron::Polyhedron;
+use crate::triangles::enter_triangle;
 
 impl Polyhedron {
     /// The point where a ray enters its surface, as a factor of the direction. A ray that begins inside does not enter.

@@ -19,7 +19,7 @@ pub const UNITS_PER_METER: f64 = 10.0;
 ///
 /// ```
 /// use bevy::math::Vec3;
-/// use tabletop_core::Pose;
+/// use tabletop_geometry::Pose;
 ///
 /// let pose = Pose::from_degrees(Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 90.0));
 /// assert!((pose * Vec3::X - Vec3::new(1.0, 1.0, 0.0)).length() < 1e-6);

@@ -2,6 +2,11 @@
 
 use bevy::prelude::*;
 
+/// Marks the camera through which the user looks. The view makes it; the panels are drawn over its picture.
+#[derive(Component, Clone, Copy, Debug, Default, Reflect)]
+#[reflect(Component)]
+pub struct UserCamera;
+
 /// The present steering of the camera: speeds along and about its own directions. Panels set it while one of their controls is
 /// held down.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Reflect)]
