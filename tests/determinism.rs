@@ -107,7 +107,7 @@ fn a_scene_after_another_ends_in_the_same_bits() {
 struct Other<const N: usize>;
 
 #[test]
-fn what_else_is_in_the_app_does_not_matter() {
+fn foreign_parts_of_the_app_do_not_matter() {
     for file in FILES {
         let expected = stepped(file);
         let mut app = headless_app();

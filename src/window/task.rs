@@ -21,7 +21,7 @@ pub(super) fn plugin(app: &mut App) {
             Update,
             (
                 understood::read_recording,
-                understood::take_what_was_read,
+                understood::take_read_task,
                 obey,
                 put_back.run_if(|putting: Res<PuttingBack>| putting.0.is_some()),
             )

@@ -282,7 +282,7 @@ fn strings(list: &Value) -> impl Iterator<Item = &str> {
 }
 
 #[test]
-fn crates_depend_only_on_what_the_table_allows() {
+fn crates_depend_only_as_the_table_allows() {
     let metadata = metadata(&["--no-deps"]);
     let packages = metadata["packages"].as_array().unwrap();
     let names: BTreeSet<_> = packages

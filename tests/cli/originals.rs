@@ -48,7 +48,7 @@ fn one_of_2017_is_understood_with_the_sizes_of_its_task_file() {
 }
 
 #[test]
-fn the_robot_does_what_they_show() {
+fn the_robot_imitates_original_recordings() {
     for year in ["2014", "2017"] {
         let setup = original(&format!("{year}.xml"));
         let output = tabletop(&["imitate", &original(year), "--setup", &setup]);

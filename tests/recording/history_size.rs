@@ -12,7 +12,7 @@ const BLOCKS: usize = 300;
 const MOST_BYTES: usize = 800_000;
 
 #[test]
-fn a_segment_shares_what_has_not_changed() {
+fn a_segment_shares_unchanged_state() {
     let color = Rgb::GRAY;
     let span = Vec3::ONE / 2.0;
     let blocks = (0..BLOCKS).map(|number| {

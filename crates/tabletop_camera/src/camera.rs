@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ray_through_a_pixel_leads_to_what_is_seen_there() {
+    fn the_ray_through_a_pixel_inverts_the_projection() {
         let camera = head(HeadCamera::default());
         let view = PinholeView::of(&camera);
         for pixel in [Vec2::ZERO, Vec2::new(17.25, 140.5), Vec2::new(199.0, 3.0)] {

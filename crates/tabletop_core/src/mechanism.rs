@@ -197,7 +197,7 @@ mod tests {
     use tabletop_geometry::Rgb;
 
     #[test]
-    fn a_ray_touches_the_side_of_a_switch_and_what_can_be_pointed_to() {
+    fn a_ray_touches_the_side_of_a_switch_and_the_pointable_part() {
         let switch = Control::new(ControlKind::ToggleSwitch(ToggleSwitch {
             span: Vec3::new(1.0, 0.5, 0.1),
             angle: 10.0,

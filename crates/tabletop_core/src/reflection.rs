@@ -41,7 +41,7 @@ mod tests {
     use crate::{BondPoint, CorePlugin, Hands, MeshSpec, ObjectSpec, Shape, ToggleSwitch};
 
     #[test]
-    fn objects_and_what_they_consist_of_are_registered() {
+    fn objects_and_their_parts_are_registered() {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default()));
         let registry = app.world().resource::<AppTypeRegistry>().read();

@@ -359,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_program_remarks_is_not_left_out() {
+    fn a_full_console_still_takes_notes() {
         let console = Console::new(ConsoleLimit::Readable);
         for _ in 0..100_000 {
             console.push(Stream::Out, b"x");

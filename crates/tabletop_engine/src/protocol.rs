@@ -122,7 +122,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_can_be_read(arrays in any_arrays()) {
+        fn encoded_arrays_read_back(arrays in any_arrays()) {
             let bytes = arrays.encode().unwrap();
             prop_assert_eq!(bytes.len() % 8, 0);
             prop_assert_eq!(Arrays::decode(&bytes).unwrap(), arrays);

@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_moved_added_and_removed_before_the_recording_is_so_in_the_scene() {
+    fn the_scene_includes_changes_before_the_recording() {
         let item = |spec| SceneItem::Object(spec);
         let set = SceneSpec {
             table: Table::default(),

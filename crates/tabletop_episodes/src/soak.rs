@@ -272,7 +272,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_in_the_table_or_nowhere_is_seen() {
+    fn objects_in_the_table_or_at_nan_are_noticed() {
         let mut app = headless_app_with(TabletopSimPlugins);
         let color = Rgb::GRAY;
         let sphere = Shape::Sphere { radius: 1.0, color };

@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_behind_or_around_the_origin_is_not_entered() {
+    fn a_solid_behind_or_around_the_origin_is_not_entered() {
         for solid in [CUBOID, CYLINDER, BALL] {
             let up = [0.0, 0.0, 1.0];
             assert_eq!(distance(solid, Pose::IDENTITY, [0.0, 0.0, 10.0], up), None);

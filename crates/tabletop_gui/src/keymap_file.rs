@@ -400,7 +400,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_map_of_lists_is_reported_with_its_place() {
+    fn a_malformed_keymap_is_reported_with_its_place() {
         for (text, place) in [
             ("{\n  \"pause\": \"Space\"}", "2:"),
             ("{\n\n  \"pause\" [\"Space\"]}", "3:"),

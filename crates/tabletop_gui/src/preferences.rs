@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_is_read_again() {
+    fn kept_preferences_read_back() {
         let folder = folder("kept");
         let preferences = Preferences::in_folder(&folder);
         assert_eq!(preferences.read::<Size>("display").unwrap(), None);

@@ -129,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn children_are_found_between_whatever_stands_around_them() {
+    fn children_are_found_among_comments_and_quoted_brackets() {
         let text = "<?xml version='1.0'?>\n<!-- <a> -->\n<robot name='>'>\n<link name=\"/>\"/>\n\
             <!-- <no/> --><joint name='j'>\n<parent/></joint></robot>";
         let found = outline(text).unwrap();

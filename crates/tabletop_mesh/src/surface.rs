@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_mesh_is_refused_with_the_reason() {
+    fn malformed_meshes_are_refused_with_the_reason() {
         let reason = |bytes: &[u8]| match surface(bytes) {
             Ok(found) => panic!("{found:?}"),
             Err(error) => error.to_string(),

@@ -78,7 +78,7 @@ fn a_body_that_comes_or_goes_during_a_pause_reaches_the_engine_after_it() {
 }
 
 #[test]
-fn what_falls_fast_meets_nothing_that_is_gone() {
+fn a_fast_body_does_not_meet_removed_bodies() {
     let (mut app, small) = app();
     let post = sphere(&mut app, Vec3::new(20.0, 0.0, -100.0), 1.0, 0.0);
     let large = sphere(&mut app, Vec3::X * 20.0, 4.0, 1.0);
@@ -102,7 +102,7 @@ fn what_falls_fast_meets_nothing_that_is_gone() {
 struct Mark;
 
 #[test]
-fn what_wakes_in_a_tick_wakes_in_the_order_of_bodies() {
+fn bodies_woken_in_one_tick_wake_in_their_order() {
     let (mut app, falling) = app();
     let balls = [falling, ball(&mut app, 5.0), ball(&mut app, 10.0)];
     app.step(2);

@@ -39,7 +39,7 @@ fn pairs(app: &mut App) -> usize {
 }
 
 #[test]
-fn what_is_nearer_than_the_gap_is_a_pair() {
+fn bodies_nearer_than_the_gap_are_a_pair() {
     for (gap, expected) in [(PAIR_GAP - 0.001, 1), (PAIR_GAP + 0.001, 0)] {
         let mut app = world(1.0, [Vec3::ZERO, Vec3::X * (1.0 + gap)], Vec3::ZERO);
         // Once they have moved.

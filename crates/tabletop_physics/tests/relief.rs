@@ -64,7 +64,7 @@ fn most_depth_under_a_press(shape: Shape, at: Pose, press_from: Vec3, speed: f32
 }
 
 #[test]
-fn nothing_is_pressed_into_what_does_not_move() {
+fn nothing_is_pressed_into_a_fixed_body() {
     let block = Shape::Block {
         span: Vec3::ONE,
         color: COLOR,
@@ -81,7 +81,7 @@ fn nothing_is_pressed_into_what_does_not_move() {
 }
 
 #[test]
-fn a_stick_that_is_pressed_and_turns_stays_out_of_what_does_not_move() {
+fn a_pressed_and_turning_stick_stays_out_of_a_fixed_body() {
     let span = Vec3::new(2.0, 0.6, 0.6);
     let stick = Shape::Block { span, color: COLOR };
     for number in 0..400 {

@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_on_an_object_comes_from_the_top() {
+    fn a_stack_is_listed_from_the_top() {
         let bar = block(Vec3::new(3.0, 1.0, 1.0));
         let cube = block(Vec3::ONE);
         // The bar leans on a tower and on a pillar, both on the base.

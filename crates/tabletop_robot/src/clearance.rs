@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_near_may_leave_and_not_come_nearer() {
+    fn a_solid_that_is_too_near_may_leave_and_not_come_nearer() {
         assert!(!is_blocked(1.0, 1.005));
         assert!(is_blocked(1.0, 0.99));
         assert!(!is_blocked(0.5, 0.6));

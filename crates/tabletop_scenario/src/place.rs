@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_placed_keeps_its_distance_and_its_height() {
+    fn placed_objects_keep_their_distance_and_height() {
         for seed in 0..50 {
             let mut scene = scene(6);
             let places = ["b0", "b1", "b2", "b3"].map(|id| place(id, 3.0));
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_placed_is_an_error() {
+    fn an_impossible_place_is_an_error() {
         let mut random = Random::new(0);
         for (id, half, words) in [("b0", 0.0, "no free place"), ("x", 1.0, "has no object")] {
             let mut scene = scene(2);

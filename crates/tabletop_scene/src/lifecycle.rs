@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_hand_holds_stays_and_keeps_its_id() {
+    fn a_held_object_stays_and_keeps_its_id() {
         let mut app = test_app();
         app.world_mut().write_command(scene(&["a", "b"]));
         app.step(1);

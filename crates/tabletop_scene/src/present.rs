@@ -432,7 +432,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_of_a_broken_chain_is_saved_as_blocks() {
+    fn a_broken_chain_is_saved_as_blocks() {
         let mut app = app(vec![SceneItem::Chain(chain())]);
         let link = object(&app, "c-link3");
         app.world_mut().despawn(link);
@@ -466,7 +466,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_hand_holds_is_saved_as_let_go() {
+    fn a_held_object_is_saved_as_released() {
         let mut app = app(vec![block("a", 0.0)]);
         let held = object(&app, "a");
         let by = Manipulator::Hand(Hand::Left);
@@ -480,7 +480,7 @@ mod tests {
     }
 
     #[test]
-    fn presets_are_saved_as_what_they_are() {
+    fn presets_are_saved_without_loss() {
         let mut app = app(Vec::new());
         for preset in [Preset::Stack(3), Preset::BoxContainer] {
             app.world_mut()

@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_made_overlaps_nothing_until_there_is_no_room() {
+    fn presets_overlap_nothing_until_there_is_no_room() {
         for seed in 0..4 {
             let mut app = app();
             app.world_mut().write_command(ClockCommand::SetPaused(true));
@@ -341,7 +341,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_falls_onto_what_is_held_if_there_is_another_place() {
+    fn presets_avoid_the_held_object_if_there_is_another_place() {
         let wall = Shape::Block {
             span: Vec3::new(14.0, 12.0, 1.0),
             color: Rgb::GRAY,

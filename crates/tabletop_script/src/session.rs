@@ -88,7 +88,7 @@ impl ScriptSession {
             if will_be_paused && matches!(self.phase, Phase::Ready | Phase::Idle) {
                 return None;
             }
-            self.ask_what_is_due(simulation);
+            self.make_due_request(simulation);
             let was_alive = self.engine.is_alive();
             match self.look(will_be_paused, simulation) {
                 Some(reply @ (Reply::Init(_) | Reply::Step(_))) if will_be_paused => {
@@ -113,7 +113,7 @@ impl ScriptSession {
         }
     }
 
-    fn ask_what_is_due(&mut self, simulation: &Simulation) {
+    fn make_due_request(&mut self, simulation: &Simulation) {
         match self.phase {
             Phase::Ready => {
                 self.engine.init(simulation.senses.aux());

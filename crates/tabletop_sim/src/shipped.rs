@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_of_the_folder_is_what_its_path_says() {
+    fn true_paths_stay_unchanged() {
         let path = root().join("tablesetup/default.xml");
         assert_eq!(true_path(&path), path);
         let shipped = Path::new("shipped:tablesetup/default.xml");

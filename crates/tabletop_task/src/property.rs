@@ -214,7 +214,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn colours_numbers_and_ranges_are_compared_as_what_they_are() {
+    fn colours_numbers_and_ranges_are_compared_by_value() {
         for (name, value, wanted, expected) in [
             ("color", "#ff0000", "red", true),
             ("color", "#e01010", "red", true),

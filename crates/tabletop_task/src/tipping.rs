@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_long_stands_or_lies() {
+    fn long_objects_stand_or_lie() {
         let color = Rgb::RED;
         let bar = Shape::Block {
             span: Vec3::new(3.0, 1.0, 1.0),

@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn every_default_key_does_what_it_is_bound_to() {
+    fn every_default_key_triggers_its_action() {
         let mut world = world();
         let keymap = Keymap::default();
         for action in keymap.actions() {
@@ -332,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_held_comes_first() {
+    fn actions_on_the_held_object_come_first() {
         let mut world = world();
         let question_mark = [ShiftLeft, Slash];
         assert_eq!(held(&mut world, &question_mark), [Action::ShowHelp]);
@@ -381,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_write_while_text_is_typed_and_escape_closes_what_is_open() {
+    fn keys_write_while_text_is_typed_and_escape_closes_an_overlay() {
         let mut world = world();
         let keys = [Space, KeyR, Escape, F1];
         let asked = |world: &mut World, focus: KeyboardFocus| {

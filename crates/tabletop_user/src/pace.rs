@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn a_step_of_what_runs_is_its_last_tick() {
+    fn a_step_of_a_running_simulation_is_its_last_tick() {
         let mut app = app(TimeUpdateStrategy::FixedTimesteps(1));
         (0..3).for_each(|_| app.update());
         app.world_mut().write_message(SingleStep);

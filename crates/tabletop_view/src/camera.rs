@@ -357,7 +357,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_held_comes_to_the_middle_of_the_picture() {
+    fn the_held_object_comes_to_the_middle_of_the_picture() {
         let mut app = app(10);
         let held = Vec3::new(5.0, 3.0, 2.0);
         let object = app

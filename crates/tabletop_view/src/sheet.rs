@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sheet_ends_a_little_beyond_the_table_and_what_is_held() {
+    fn the_sheet_ends_a_little_beyond_the_table_and_the_held_object() {
         let table = Table {
             xspan: 30.0,
             yspan: 10.0,
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sheet_goes_through_what_the_selected_hand_holds() {
+    fn the_sheet_goes_through_the_object_in_the_selected_hand() {
         let mut app = app();
         app.world_mut().spawn(Table {
             xspan: 30.0,

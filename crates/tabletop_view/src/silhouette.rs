@@ -359,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn what_reaches_behind_the_eye_has_no_outline() {
+    fn solids_that_reach_behind_the_eye_have_no_outline() {
         let wall = block(0.0, Vec3::new(1.0, 1.0, 30.0));
         assert!(outline_from_above(&[wall]).is_empty());
         let around = Primitive {

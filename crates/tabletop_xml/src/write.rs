@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_file_cannot_say_is_written_as_the_nearest() {
+    fn inexpressible_values_are_written_as_the_nearest() {
         let object = |id: &str, shape| {
             SceneItem::Object(ObjectSpec {
                 id: id.into(),

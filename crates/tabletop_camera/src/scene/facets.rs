@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_drawn_is_left_out() {
+    fn invalid_triangles_are_left_out() {
         let points = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::NAN, Vec3::splat(1e38)];
         let facets = surface(
             &points,

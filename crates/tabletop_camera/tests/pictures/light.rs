@@ -57,7 +57,7 @@ fn colours_are_those_of_the_light_and_nothing_is_brighter_than_white() {
 }
 
 #[test]
-fn what_was_drawn_before_does_not_matter() {
+fn a_picture_does_not_depend_on_earlier_ones() {
     let scene = scene();
     let mut rasterizer = Rasterizer::default();
     let mut picture = Picture::default();

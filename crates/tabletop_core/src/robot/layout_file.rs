@@ -340,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_name_what_they_are_about() {
+    fn faults_name_their_subject() {
         for (from, to, expected) in [
             ("home: 0.25", "home: 2.5", "joint left_s0: its home 2.5"),
             (

@@ -38,7 +38,7 @@ fn a_block_is_stacked_on_another() {
 }
 
 #[test]
-fn what_is_let_go_of_where_it_was_grasped_stays_there() {
+fn an_object_released_where_it_was_grasped_stays_there() {
     let blocks = |spans: &[f32]| {
         let mut top = 0.0;
         let place = |(number, span): (usize, &f32)| {
@@ -125,7 +125,7 @@ fn a_mouse_jump_of_any_size_never_enters_table_walls_or_the_other_hands_object()
 }
 
 #[test]
-fn what_slides_down_a_slanted_wall_does_not_enter_the_table() {
+fn a_held_ball_that_slides_down_a_roof_does_not_enter_the_table() {
     let shape = Shape::Sphere {
         radius: 0.5,
         color: Rgb::GRAY,
@@ -336,7 +336,7 @@ fn hand_off_and_forced_releases_are_reported_under_the_hand_that_held() {
 }
 
 #[test]
-fn what_a_hand_does_names_the_command_that_it_came_of() {
+fn facts_of_a_hand_name_the_command_that_caused_them() {
     let mut desk = Desk::new(two_blocks());
     desk.grasp(Hand::Left, "red").step(1);
     let hand = Hand::Right;
@@ -380,7 +380,7 @@ fn a_destroyed_object_is_deleted_first() {
 }
 
 #[test]
-fn what_cannot_be_done_is_refused_and_changes_nothing() {
+fn impossible_commands_are_refused_and_change_nothing() {
     let mut desk = Desk::new(two_blocks());
     desk.grasp(Hand::Left, "no such thing");
     desk.move_to(Hand::Left, Vec3::ONE);

@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_sensed_is_not_sent() {
+    fn fields_without_a_value_are_not_sent() {
         let names = |sensor: &Sensor| {
             sensor
                 .arrays()

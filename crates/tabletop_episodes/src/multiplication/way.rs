@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_in_the_way_is_passed_above() {
+    fn the_path_passes_above_an_obstacle() {
         let carried = carried();
         let tower = PlacedSolid {
             pose: Pose::at(Vec3::new(3.0, 0.0, 2.5)),

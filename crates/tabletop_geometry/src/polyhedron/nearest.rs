@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_inside_a_convex_one() {
+    fn points_inside_a_convex_polyhedron_have_distance_zero() {
         let prism = Polyhedron::prism(1.0, 2.0, 6);
         assert!(prism.contains(Vec3::new(0.9, 0.9, 0.0)));
         assert!(!prism.contains(Vec3::new(0.9, 1.1, 0.0)));

@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn after_tab_keys_do_what_they_did() {
+    fn keys_keep_their_actions_after_tab() {
         let mut keyboard = Keyboard::new();
         assert_eq!(keyboard.strike(Tab, ""), []);
         assert!(keyboard.has_egui());

@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn what_went_down_and_up_between_two_ticks_counts_once() {
+    fn a_key_struck_between_two_ticks_counts_once() {
         let mut jog = Jog::default();
         jog.keys.update(Directions::default(), towards(LeftE1, -1));
         jog.keys

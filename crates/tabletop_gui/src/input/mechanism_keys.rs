@@ -50,7 +50,7 @@ mod tests {
     use tabletop_geometry::Pose;
 
     #[test]
-    fn a_key_points_to_what_the_cursor_is_on() {
+    fn a_key_points_to_the_object_under_the_cursor() {
         let mut test = TestWorld::new(plugin);
         test.block("red", Vec3::Z);
         test.point_at(Vec3::Z);
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_done_is_reported() {
+    fn an_impossible_fastening_is_reported() {
         let mut test = TestWorld::new(plugin);
         test.hold("red", Vec3::Z);
         test.point_at(Vec3::Z);

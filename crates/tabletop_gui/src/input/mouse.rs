@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn a_press_beside_what_is_held_lets_it_go_and_takes_nothing() {
+    fn a_press_beside_the_held_object_releases_it_and_takes_nothing() {
         let mut test = TestWorld::new(plugin);
         test.hold("red", Vec3::Z);
         test.block("blue", Vec3::new(5.0, 0.0, 1.0));
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_held_follows_the_cursor_while_the_button_is_down() {
+    fn the_held_object_follows_the_cursor_while_the_button_is_down() {
         let mut test = TestWorld::new(plugin);
         let red = test.hold("red", Vec3::Z);
         test.point_at(Vec3::Z);

@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drag_with_the_right_button_goes_round_what_the_cursor_was_on() {
+    fn a_right_drag_orbits_the_point_under_the_cursor() {
         let mut test = world();
         test.block("red", Vec3::Z);
         point(&mut test, [100.0, 100.0], Vec3::Z);
@@ -372,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn the_wheel_goes_towards_what_the_cursor_is_on() {
+    fn the_wheel_approaches_the_point_under_the_cursor() {
         let mut test = world();
         let at = Vec3::new(1.0, 2.0, 0.0);
         point(&mut test, [100.0, 100.0], at);

@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_hides_what_is_below_it() {
+    fn the_table_hides_objects_below_it() {
         let mut world = world();
         let below = block(&mut world, "below", Vec3::Z * -10.0);
         assert_eq!(picked(&mut world, Vec3::Z * 20.0, Vec3::NEG_Z), None);
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_hides_what_is_behind_it() {
+    fn a_figure_hides_objects_behind_it() {
         let mut world = world();
         let block = block(&mut world, "block", Vec3::Z);
         let plate = Triangles {
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_on_the_table_any_more_is_not_picked() {
+    fn removed_objects_are_not_picked() {
         let mut world = world();
         block(&mut world, "gone", Vec3::Z);
         world.resource_mut::<ObjectIndex>().remove("gone");

@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn the_panels_buttons_do_what_the_keys_do() {
+    fn the_panels_buttons_act_like_the_keys() {
         let mut test = holding();
         test.app.insert_resource(PlaneButtons {
             clockwise: true,

@@ -56,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_panel_is_hit_where_it_is_drawn_whatever_the_scale() {
+    fn a_panel_is_hit_where_it_is_drawn_at_any_scale() {
         let mut world = World::new();
         world.init_resource::<Pointer>();
         world.init_resource::<EguiWantsInput>();

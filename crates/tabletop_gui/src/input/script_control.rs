@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_script_prints_is_reported_as_often_as_it_prints_it() {
+    fn repeated_lines_of_a_script_are_each_reported() {
         let mut app = app();
         let line = ScriptEvent::Printed {
             line: "once more".into(),

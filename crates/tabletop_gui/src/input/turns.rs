@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_slider_moves_is_what_is_turned() {
+    fn a_slider_turns_by_the_degrees_it_moves() {
         let mut turns = TurnSums::default();
         for (to, by) in [(45, 45.0), (30, -15.0), (-30, -60.0)] {
             assert_eq!(degrees_of(turns.turn_to(Hand::Left, 1, to)), Some(by));

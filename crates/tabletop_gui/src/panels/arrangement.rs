@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fits_below_an_earlier_column_goes_there() {
+    fn a_panel_that_fits_below_an_earlier_column_goes_there() {
         let panels = Panels::default();
         let size = |panel: Panel| match panel {
             Panel::Robot => vec2(300.0, 400.0),
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_larger_than_the_desk_shows_its_title() {
+    fn a_panel_larger_than_the_desk_shows_its_title() {
         let place = kept_on(DESK, pos2(5.0, 5.0), vec2(2000.0, 2000.0));
         assert_eq!(place, DESK.min);
     }

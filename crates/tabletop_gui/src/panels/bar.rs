@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn every_panel_tells_what_it_is_for() {
+    fn every_panel_tells_its_purpose() {
         for panel in Panel::ALL {
             let mut harness = harness();
             harness.get_by_label(panel.label()).hover();

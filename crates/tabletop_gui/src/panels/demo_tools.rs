@@ -184,7 +184,7 @@ fn hands(ui: &mut Ui, model: &Model) -> Option<Request> {
         for hand in Hand::ALL {
             let is_selected = model.hand == hand;
             let radio = ui.radio(is_selected, format!("{hand:?}"));
-            let radio = radio.on_hover_text(what_a_hand_is(hand));
+            let radio = radio.on_hover_text(tooltip_of_hand(hand));
             if radio.clicked() && !is_selected {
                 chosen = Some(Request::Select(hand));
             }
@@ -194,7 +194,7 @@ fn hands(ui: &mut Ui, model: &Model) -> Option<Request> {
     ui.horizontal(choose).inner
 }
 
-const fn what_a_hand_is(hand: Hand) -> &'static str {
+const fn tooltip_of_hand(hand: Hand) -> &'static str {
     match hand {
         Hand::Left => "Act with the left hand",
         Hand::Right => "Act with the right hand",

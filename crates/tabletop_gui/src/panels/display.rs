@@ -411,7 +411,7 @@ mod tests {
     }
 
     #[test]
-    fn what_leaves_no_choice_is_disabled_and_says_why() {
+    fn a_list_without_a_choice_is_disabled_and_gives_the_reason() {
         let disabled = |list: &str, reason: &str, change: fn(&mut Stage)| {
             let mut harness = harness(change);
             let found = harness.get_by_role_and_label(Role::ComboBox, list);

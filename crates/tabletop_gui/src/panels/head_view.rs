@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn the_aspect_is_that_of_what_is_seen() {
+    fn the_aspect_is_that_of_the_field_of_view() {
         let mut camera = HeadCamera::default();
         assert_eq!(aspect(&camera), 4.0 / 3.0);
         camera.square_fov = true;

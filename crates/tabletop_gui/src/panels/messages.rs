@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn the_newest_is_seen_and_what_is_sought() {
+    fn the_newest_or_the_sought_message_is_seen() {
         let texts: Vec<_> = (0..500).map(|number| format!("number {number}.")).collect();
         let notices: Vec<_> = texts.iter().map(|text| (Tone::Event, &**text)).collect();
         let mut harness = harness(&notices);

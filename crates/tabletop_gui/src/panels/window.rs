@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_open_is_shown() {
+    fn only_open_panels_are_shown() {
         let mut harness = harness();
         assert!(harness.query_by_label("Move Status").is_some());
         assert!(harness.query_by_label("Move Robot").is_none());

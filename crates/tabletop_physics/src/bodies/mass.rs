@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn polyhedra_have_the_inertia_of_what_they_are() {
+    fn polyhedra_have_the_inertia_of_the_shapes_they_stand_for() {
         let square = Shape::Frustum {
             radius_top: std::f32::consts::SQRT_2,
             radius_bottom: std::f32::consts::SQRT_2,

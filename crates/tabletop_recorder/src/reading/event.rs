@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_reads_back() {
+    fn written_text_reads_back() {
         let id = "a, \"b\"";
         let shape = Shape::Sphere {
             radius: 0.5,

@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_not_a_number_is_refused() {
+    fn invalid_drives_are_refused() {
         let e1 = RobotLayout::baxter().joint(JointId(3));
         let head_pan = RobotLayout::baxter().joint(JointId(14));
         for drive in [Drive::Velocity(f64::NAN), Drive::Position(f64::INFINITY)] {

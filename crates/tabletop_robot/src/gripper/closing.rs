@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_box_contains_does_not_keep_the_fingers_from_it() {
+    fn the_content_of_a_box_does_not_keep_the_fingers_from_its_walls() {
         let wall = |x: f32| Convex {
             pose: Pose::at(Vec3::X * x),
             shape: SharedShape::cuboid(0.05, 0.8, 0.5),

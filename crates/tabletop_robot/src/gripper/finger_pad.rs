@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_beside_the_fingers_is_not_touched() {
+    fn objects_beside_the_fingers_are_not_touched() {
         let [left, _] = FingerPad::pair(Pose::IDENTITY, 2.0, FINGER);
         let beside = block(Vec3::ONE, Pose::at(Vec3::new(0.0, 0.71, 0.0)));
         assert_eq!(left.touch(&beside, 2.0), None);
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_entered_a_finger_is_nearer_than_nothing() {
+    fn an_object_inside_a_finger_has_a_negative_distance() {
         let [left, _] = FingerPad::pair(Pose::IDENTITY, 1.0, FINGER);
         let block = block(Vec3::ONE * 1.02, Pose::IDENTITY);
         let touch = left.touch(&block, 1.0).unwrap();

@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_drawn_is_an_error_that_names_the_file() {
+    fn a_mesh_that_cannot_be_drawn_is_an_error_that_names_the_file() {
         let broken = [
             ("broken.stl", "solid a\nfacet normal 0 0"),
             ("empty.stl", "solid a\nendsolid a\n"),

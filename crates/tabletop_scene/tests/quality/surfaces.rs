@@ -36,7 +36,7 @@ fn frustum(radius_top: f32, radius_bottom: f32, sides: u32) -> Shape {
 }
 
 #[test]
-fn what_is_smooth_slides_farther() {
+fn smooth_objects_slide_farther() {
     let sliding = |id: &str, y, friction| {
         let dynamics = Dynamics {
             friction,
@@ -60,7 +60,7 @@ fn what_is_smooth_slides_farther() {
 }
 
 #[test]
-fn what_is_elastic_bounces() {
+fn elastic_objects_bounce() {
     let ball = |id: &str, x, restitution| {
         let dynamics = Dynamics {
             restitution,

@@ -52,7 +52,7 @@ fn errors_of_callbacks_are_reported_with_file_and_line() {
 }
 
 #[test_with(Octave)]
-fn what_the_motor_cannot_be_is_reported() {
+fn invalid_motor_values_are_reported() {
     for (line, message) in [
         (
             "motor.jointVelocities = zeros(3, 7);",

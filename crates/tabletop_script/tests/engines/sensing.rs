@@ -20,7 +20,7 @@ fn fields(settings: ScriptSettings) -> String {
 }
 
 #[test_with(Octave)]
-fn scripts_get_what_they_mention() {
+fn scripts_get_the_fields_they_mention() {
     let folder = Folder::pair("", NAMES);
     assert_eq!(fields(folder.settings()), BARE);
     folder.write(
@@ -47,7 +47,7 @@ fn scripts_get_what_they_mention() {
 }
 
 #[test_with(Octave)]
-fn what_is_sensed_is_so() {
+fn sensed_values_match_the_world() {
     let folder = Folder::pair(
         "",
         "disp(sensor.trackerLoc('r-W1'));
@@ -98,7 +98,7 @@ aux.exit = 1;
 }
 
 #[test_with(Octave)]
-fn contacts_are_what_the_robot_touches() {
+fn sensed_contacts_are_those_of_the_robot() {
     // The left arm goes down to the table, on the right one lies a plate.
     let folder = Folder::pair(
         "n = 0;",

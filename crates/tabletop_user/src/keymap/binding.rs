@@ -262,7 +262,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_key_or_modifier_is_named() {
+    fn unknown_keys_and_modifiers_are_named() {
         for (text, unknown) in [
             ("", BindingError::UnknownKey(String::new())),
             ("KeyÄ", BindingError::UnknownKey("KeyÄ".into())),

@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_us_key_writes_leaves_a_key_its_place() {
+    fn letters_of_no_us_key_leave_a_key_its_place() {
         let mut letters = KeyLetters::default();
         for written in ["я", "ß", "ab", ""] {
             letters.learn(&struck(KeyCode::KeyZ, written));

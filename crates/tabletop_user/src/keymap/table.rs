@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn every_action_has_a_key_and_says_what_it_does() {
+    fn every_action_has_a_key_a_label_and_a_tooltip() {
         for row in all() {
             assert!(!row.default_keys.is_empty(), "{}", row.action);
             assert!(!row.label.is_empty(), "{}", row.action);

@@ -53,7 +53,7 @@ fn five_faults_give_five_located_messages() {
 }
 
 #[test]
-fn a_file_cut_anywhere_keeps_what_is_complete() {
+fn a_file_cut_anywhere_keeps_its_complete_elements() {
     let end = SAMPLE.trim_end().len();
     let mut items = 0;
     for length in 0..end {

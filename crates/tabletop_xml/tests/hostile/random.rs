@@ -196,7 +196,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_written_reads_back(scene in scenes()) {
+    fn written_text_reads_back(scene in scenes()) {
         let written = write(&scene);
         let task = read(&written);
         prop_assert_eq!(task.faults, [], "{}", written);

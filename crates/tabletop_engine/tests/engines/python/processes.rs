@@ -43,7 +43,7 @@ fn processes_of_a_script_know_its_functions() {
 }
 
 #[test_with(Python)]
-fn what_a_script_does_at_last_is_not_interrupted() {
+fn a_finally_block_is_not_interrupted() {
     let script = "import os, time\ndef init(aux):\n    try:\n        while True: time.sleep(0.01)\n    finally:\n        time.sleep(0.5)\n\
                   \x20       open(os.path.join(os.path.dirname(__file__), 'done'), 'w').close()\n\
                   def callback(sensor, motor, aux): pass\n";

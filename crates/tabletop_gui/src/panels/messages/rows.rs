@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_made_anew_when_what_they_show_changes() {
+    fn rows_are_rebuilt_when_their_content_changes() {
         let mut notices = Notices::default();
         notices.append(Tone::Event, "news");
         notices.append(Tone::Fault, "a fault");

@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn requests_become_what_users_tell() {
+    fn requests_become_commands() {
         let mut app = app();
         for (request, command) in [
             (

@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_refused_with_its_place_and_limit() {
+    fn invalid_commands_are_refused_with_place_and_limit() {
         let hand = Hand::Left;
         let location = Vec3::new(0.0, f32::INFINITY, 0.0);
         let ball = |radius| Shape::Sphere {
