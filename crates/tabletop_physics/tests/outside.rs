@@ -128,7 +128,7 @@ fn bodies_woken_in_one_tick_wake_in_their_order() {
 }
 
 #[test]
-fn a_body_whose_velocity_is_no_number_stops_and_falls_on() {
+fn a_body_with_a_nan_velocity_stops_and_falls_on() {
     let (mut app, ball) = app();
     let height = |app: &App| app.world().get::<Transform>(ball).unwrap().translation.z;
     let before = height(&app);

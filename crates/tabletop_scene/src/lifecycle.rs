@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn an_object_of_a_scene_names_the_command_that_it_came_of() {
+    fn an_object_of_a_scene_names_the_command_that_made_it() {
         let mut app = test_app();
         for command in [scene(&["a"]), SceneCommand::Clear.into()] {
             let id = app.world_mut().write_command(command);

@@ -359,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_is_none_is_named() {
+    fn an_invalid_line_is_named() {
         for (line, problem) in [
             ("x,delete,a", "expected a frame, found `x`"),
             ("1,fly,a", "expected an event of a recording, found `fly,a`"),

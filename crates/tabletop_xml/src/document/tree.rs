@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_that_is_none_is_kept_whole() {
+    fn an_invalid_name_is_kept_whole() {
         for name in [":block", "a:b:block", "block:"] {
             let text = format!("<{name}/>");
             assert_eq!(read_all(&text).0.unwrap().name, name);
