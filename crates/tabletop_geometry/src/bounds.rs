@@ -2,8 +2,8 @@
 
 use bevy::prelude::*;
 
-/// Gap, in units, below which the physics keeps two solids in mind as a pair: contacts are predicted so far, and the boxes in which the
-/// engine looks for pairs are a little larger.
+/// Gap, in units, below which physics keeps two solids as a pair: contact prediction reaches so far, and the boxes of the broad phase are a
+/// little larger.
 pub const PAIR_GAP: f32 = 0.28;
 
 /// An upright cuboid, in units.

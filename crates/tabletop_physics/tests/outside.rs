@@ -1,4 +1,4 @@
-//! What anything but the engine changes in bodies reaches the engine in the next step, also while it is paused for a tick.
+//! Changes of bodies from outside reach Rapier in the next step, even during a pause of one tick.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use bevy::prelude::*;
@@ -6,7 +6,7 @@ use bevy_rapier3d::prelude::*;
 use tabletop_core::prelude::*;
 use tabletop_physics::PhysicsPlugin;
 
-/// An app in which a ball falls, so that the engine changes something in every tick.
+/// An app in which a ball falls, so that Rapier changes something in every tick.
 fn app() -> (App, Entity) {
     let mut app = App::new();
     app.add_plugins((
@@ -85,7 +85,7 @@ fn a_fast_body_does_not_meet_removed_bodies() {
     for falling in [small, large] {
         app.world_mut().entity_mut(falling).insert(Ccd::disabled());
     }
-    // The small one is so fast that the engine looks for what it may hit.
+    // The small one is so fast that Rapier sweeps it.
     app.step(30);
     for gone in [small, post] {
         app.world_mut().despawn(gone);
@@ -107,9 +107,9 @@ fn bodies_woken_in_one_tick_wake_in_their_order() {
     let balls = [falling, ball(&mut app, 5.0), ball(&mut app, 10.0)];
     app.step(2);
     let active = |app: &mut App| {
-        let mut engines = app.world_mut().query::<&RapierContextSimulation>();
-        let engine = engines.single(app.world()).unwrap();
-        engine.islands.active_bodies().collect::<Vec<_>>()
+        let mut simulations = app.world_mut().query::<&RapierContextSimulation>();
+        let simulation = simulations.single(app.world()).unwrap();
+        simulation.islands.active_bodies().collect::<Vec<_>>()
     };
     let bodies = active(&mut app);
     assert_eq!(bodies.len(), balls.len());

@@ -1,4 +1,4 @@
-//! The pairs of solids that the engine keeps in mind.
+//! The pairs of solids that Rapier keeps.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use bevy::prelude::*;
@@ -33,9 +33,9 @@ fn world(edge: f32, places: impl IntoIterator<Item = Vec3>, velocity: Vec3) -> A
 }
 
 fn pairs(app: &mut App) -> usize {
-    let mut engines = app.world_mut().query::<&RapierContextSimulation>();
-    let engine = engines.single(app.world()).unwrap();
-    engine.narrow_phase.contact_pairs().count()
+    let mut simulations = app.world_mut().query::<&RapierContextSimulation>();
+    let simulation = simulations.single(app.world()).unwrap();
+    simulation.narrow_phase.contact_pairs().count()
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What is pressed on something that does not move stays outside it.
+//! Depenetration: an object that is pressed on a fixed body stays outside it.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use bevy::prelude::*;
