@@ -11,7 +11,7 @@ use tabletop_physics::{is_touching, pressures_on, push, remove_object};
 
 use crate::limb::limb_of;
 
-/// What is nearer to a blade than this touches it, in units.
+/// Distance, in units, below which an object touches a blade.
 const TOUCH: f32 = 0.02;
 
 /// How fast a hand closes scissors, in rad/s: against their spring, in a tenth of a second.
@@ -133,8 +133,8 @@ pub(crate) fn cut_links(world: &mut World) {
     }
 }
 
-/// Who closes scissors, and the command that it came of: the hand that cuts, who holds a blade, a limb that touches one, or what presses
-/// hardest on one.
+/// Who closes scissors, and the command that caused it: the hand that cuts, the holder of a blade, a limb that touches one, or the object
+/// that presses hardest on one.
 fn who_closes(world: &mut World, entity: Entity, joint: Joint) -> (Option<CommandId>, Operator) {
     let tick = *world.resource::<SimTick>();
     if let Some(closing) = world.get::<Snip>(entity).filter(|it| tick <= it.until) {
