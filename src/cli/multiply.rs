@@ -54,7 +54,7 @@ pub(super) struct MultiplyArgs {
     /// Give the objects other colours, as far as the requirements allow
     #[arg(long)]
     colors: bool,
-    /// Make blocks and cylinders narrower by up to this part of their widths, from 0 to 0.5, as far as what is required of them allows
+    /// Make blocks and cylinders narrower by up to this part of their widths, from 0 to 0.5, as far as requirements allow
     #[arg(long, value_name = "PART", value_parser = PARTS, allow_negative_numbers = true, default_value_t = 0.0, hide_default_value = true)]
     sizes: f32,
     /// The task file with the objects to do it with [default: the scene of the recording]

@@ -360,7 +360,7 @@ impl RunArgs {
     }
 }
 
-/// Saves the final state as a task file, and reports what that cannot express.
+/// Saves the final state as a task file, and reports the parts that a task file cannot express.
 fn save(app: &App, path: &Path) -> Result<(), Failure> {
     let name = path.display();
     let unsaid = save_task(app.world(), path)

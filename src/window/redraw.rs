@@ -114,7 +114,7 @@ pub(super) fn plugin(app: &mut App) {
 /// Changes of this kind of asset are seen.
 fn watch_assets<A: Asset>(app: &mut App, cause: RedrawCause) {
     let note = move |mut change: ResMut<AssetChange>| {
-        // A texture must not hide what needs settling.
+        // A texture must not hide a change that needs settling.
         if change.0 != Some(RedrawCause::Asset) {
             change.0 = Some(cause);
         }

@@ -120,7 +120,7 @@ impl Inventory<'_> {
                     "a task file cannot express how a chain hangs: that of `{id}` is saved in a straight line"
                 ),
                 SceneItem::Jointed(_) => format!(
-                    "a task file says where jointed objects are to {UNNOTICED}: `{id}` and what it is jointed to are farther apart"
+                    "a task file says where jointed objects are to {UNNOTICED}: `{id}` and the object at the other end of its joint are farther apart"
                 ),
                 SceneItem::LidBox(_) | SceneItem::Object(_) => {
                     format!(

@@ -62,7 +62,7 @@ pub(crate) fn note(script: &Path) -> Option<String> {
     let text = String::from_utf8_lossy(&text);
     (is_function(&text) && !reaches_shared(&text)).then(|| {
         format!(
-            "{} is a function without \"global sensor motor aux\", so what it calls by these names are its own variables",
+            "{} is a function without \"global sensor motor aux\", so these names are its own variables",
             script.display()
         )
     })

@@ -199,7 +199,7 @@ fn words_for(view: CameraView, keymap: &Keymap) -> (&'static str, String) {
         CameraView::RobotEye => ("Robot's eye", with_key(Action::ViewRobotEye)),
         CameraView::Center => (
             "Centre",
-            "Puts what you hold, or the table's centre, into the middle of the picture".into(),
+            "Puts the held object, or the table's centre, into the middle of the picture".into(),
         ),
     }
 }
