@@ -1,8 +1,8 @@
 //! Pictures of the elements of task files for the documentation, drawn as the head camera draws them:
 //! `cargo run --release --example element_pictures`.
 //!
-//! What stands together in a picture has the name of the picture as its id, or an id that begins with it. Of what can be triggered there are
-//! two pictures beside each other, before and after.
+//! The objects of a picture have its name as their id, or an id that begins with it. Elements that can be triggered have two pictures beside
+//! each other, before and after.
 #![expect(clippy::print_stdout, reason = "an example shows what it does")]
 
 use std::{collections::BTreeMap, error::Error, fs, fs::File, io::BufWriter, path::Path};
@@ -15,7 +15,7 @@ use tabletop_core::{LIGHT, Picture, Table};
 const TASK: &str = "tablesetup/elements.xml";
 const FOLDER: &str = "docs/elements";
 
-/// What is triggered, and the picture that shows it.
+/// The triggered control, and the picture that shows it.
 const TRIGGERED: [(&str, &str); 1] = [("button", "customControl")];
 
 /// Direction of the camera from the middle of its subject, in radii of the subject.

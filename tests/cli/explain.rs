@@ -437,7 +437,7 @@ fn objects_of_another_table_take_the_roles() {
     ];
     assert_eq!(bound(&demo, &other).unwrap(), by_color);
 
-    // Requirements decide, whatever the ids are.
+    // Requirements decide, not ids.
     require(&demo, &["--step", "2", "color=pink"]).unwrap();
     assert_eq!(bound(&demo, &other).unwrap()[2], "The pink object is b.");
     let error = bound(&demo, &same).unwrap_err();

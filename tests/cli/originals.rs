@@ -1,4 +1,4 @@
-//! Recordings as the original program wrote them, typed from what is known of its format: of July 2014, with its wrong keys and colours and the
+//! Recordings as the original program wrote them, typed from knowledge of its format: of July 2014, with its wrong keys and colours and the
 //! wrong hand in a hand-over, and of February 2017, without sizes, with an object that came later and an escaped comma.
 
 use std::path::Path;

@@ -16,7 +16,7 @@ const RED: &str = r#"<block id="Red" location="(-3,-2.5,0.5)" color="red"/>"#;
 const GREEN: &str = r#"<block id="Green" location="(0,-4,0.5)" color="green"/>"#;
 const BLUE: &str = r#"<block id="Blue" location="(3,-2.5,0.5)" color="blue"/>"#;
 
-/// What is said of green on blue and red on green among these objects, and a recording of it.
+/// The report on stacking green on blue and red on green among these objects, and a recording of it.
 fn stacked(scene: &str, objects: &[&str]) -> (String, PathBuf) {
     let setup = place(&format!("strange_{scene}.xml"));
     let text = format!(
@@ -28,7 +28,7 @@ fn stacked(scene: &str, objects: &[&str]) -> (String, PathBuf) {
     imitated(&demo, &["--setup", setup.to_str().unwrap()])
 }
 
-/// What is said when the robot imitates this, and a recording of it.
+/// The report on an imitation of this, and a recording of it.
 fn imitated(demo: &str, options: &[&str]) -> (String, PathBuf) {
     let recording = PathBuf::from(format!("{demo}_robot"));
     let record = ["--record", recording.to_str().unwrap()];

@@ -8,7 +8,7 @@ use crate::demonstration::Demonstration;
 /// Towers of five blocks.
 const BLOCKS: usize = 300;
 
-/// What a segment takes at most, in bytes.
+/// Largest size of a segment, in bytes.
 const MOST_BYTES: usize = 800_000;
 
 #[test]

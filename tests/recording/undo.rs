@@ -330,7 +330,7 @@ fn many_recordings_change_nothing() {
     compare_with_unrecorded("many", 2003..2010);
 }
 
-/// Compares what is recorded with what is not.
+/// Compares a recorded run with an unrecorded one.
 fn compare_with_unrecorded(name: &str, seeds: impl Iterator<Item = u64>) {
     for seed in seeds {
         let script = script(&mut Random(seed), 2 * TICKS);

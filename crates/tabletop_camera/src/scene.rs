@@ -1,4 +1,4 @@
-//! Scenes: what cameras look at.
+//! Scenes, at which cameras look.
 
 mod facets;
 

@@ -82,7 +82,7 @@ pub(crate) fn prepare_figure(
     Ok(())
 }
 
-/// Stops drawing what is no longer a figure.
+/// Stops drawing an entity that is no longer a figure.
 pub(crate) fn remove_figure(remove: On<Remove, Figure>, mut commands: Commands) {
     commands.entity(remove.entity).try_remove::<DrawnFacets>();
 }

@@ -194,13 +194,13 @@ pub enum RecordingFact {
         /// Its folder.
         folder: PathBuf,
     },
-    /// A recording could not begin or go on. What was written before stays.
+    /// A recording could not begin or go on. Lines written before stay.
     Failed {
         /// The command that caused it, if one did.
         cause: Option<CommandId>,
         /// Its folder.
         folder: PathBuf,
-        /// The fault, and what the user can do.
+        /// The fault, with a remedy.
         reason: String,
     },
 }

@@ -5,7 +5,7 @@ use tabletop_geometry::{Pose, Rgb};
 
 use crate::{Control, ControlKind, JointMotion, JointedSpec, ObjectSpec, PushButton, Shape};
 
-/// The mass of the cap for a newton of the spring, in kg: it weighs a fifth of what presses it.
+/// The mass of the cap for a newton of the spring, in kg: it weighs a fifth of the mass that presses it down.
 const CAP_MASS: f32 = 0.02;
 
 /// Width of the housing for a radius of the cap of 1.

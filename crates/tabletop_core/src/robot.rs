@@ -44,7 +44,7 @@ pub enum RobotMode {
     /// Exactly as commanded, without masses and forces.
     #[default]
     Kinematic,
-    /// By motors with limited torque, which move the masses of the links and whatever these push.
+    /// By motors with limited torque, which move the masses of the links and of the objects that these push.
     Dynamic,
 }
 

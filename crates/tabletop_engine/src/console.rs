@@ -58,7 +58,7 @@ pub struct ConsoleLine {
 /// An output of an engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stream {
-    /// The standard output: what scripts display.
+    /// The standard output, where scripts display values.
     Out,
     /// The standard error: warnings.
     Error,
@@ -217,7 +217,7 @@ fn clean(bytes: &[u8], limit: usize) -> String {
     cleaned
 }
 
-/// Splits what an engine prints into lines. A control character 1 begins a line of its own that is for the program.
+/// Splits the output of an engine into lines. A control character 1 begins a line of its own that is for the program.
 #[derive(Debug)]
 pub(crate) struct Splitter {
     line: Vec<u8>,

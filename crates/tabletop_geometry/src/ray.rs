@@ -1,4 +1,4 @@
-//! Intersection of rays with solids: for picking with the mouse, and for finding what lies below something.
+//! Intersection of rays with solids: for picking with the mouse, and for finding the object below a point.
 
 use bevy::prelude::*;
 

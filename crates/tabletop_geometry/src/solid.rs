@@ -1,4 +1,4 @@
-//! Solids: what every shape is made of in the end.
+//! Solids, of which every shape consists.
 
 use bevy::prelude::*;
 

@@ -186,7 +186,7 @@ fn entries_of<'a>(
     read
 }
 
-/// The keys of a file come before those of actions that it does not name, and what stands further up before the rest.
+/// The keys of a file win over those of actions that it does not name, and earlier entries win over later ones.
 fn bind(keymap: &mut Keymap, entries: Vec<KeymapEntry>, text: &str, faults: &mut Vec<String>) {
     let mut owners: BTreeMap<(KeyBinding, Situation), (Action, &str)> = BTreeMap::new();
     let named: BTreeSet<_> = entries.iter().map(|entry| entry.action).collect();

@@ -35,7 +35,7 @@ pub enum PreferencesError {
         /// The system's message.
         error: io::Error,
     },
-    /// The file is not what the program writes.
+    /// The file is not as the program writes it.
     #[error("{path}:{error}; mend or delete the file")]
     Syntax {
         /// The file.

@@ -1,4 +1,4 @@
-//! The scale of panels and their texts: what fits the window, or what the user has chosen.
+//! The scale of panels and their texts: the one that fits the window, or the user's choice.
 
 use bevy::{prelude::*, window::PrimaryWindow};
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass};

@@ -39,7 +39,7 @@ impl Child<'_> {
 pub(crate) struct Outline<'a> {
     /// The children of the root element.
     pub children: Vec<Child<'a>>,
-    /// The first element that does not end where it should: its tag, its line, and what is wrong with it.
+    /// The first element that does not end where it should: its tag, its line, and its fault.
     pub unbalanced: Option<(&'a str, usize, String)>,
 }
 

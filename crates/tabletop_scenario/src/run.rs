@@ -117,7 +117,7 @@ impl ScenarioRun {
         }
     }
 
-    /// Number of ticks for which it waits, whatever happens in them; `None` if it has ended.
+    /// Number of ticks for which it waits unconditionally; `None` if it has ended.
     pub(crate) fn waits_for(&self) -> Option<u64> {
         if self.outcome != Outcome::Running {
             return None;

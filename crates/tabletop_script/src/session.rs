@@ -13,8 +13,8 @@ use crate::{
     simulation::Simulation,
 };
 
-/// Longest time that one look for an answer takes while the simulation waits for the script anyway, and that what the script
-/// prints meanwhile waits to be reported.
+/// Longest time that one look for an answer takes while the simulation waits for the script anyway; the output of the script waits
+/// as long to be reported.
 const ONE_LOOK: Duration = Duration::from_millis(100);
 
 /// A script with its engine.
@@ -164,7 +164,7 @@ impl ScriptSession {
         };
     }
 
-    /// Does what an answer calls for. Returns nothing if another one is needed before the tick can begin.
+    /// Carries out an answer. Returns nothing if another one is needed before the tick can begin.
     fn take(
         &mut self,
         reply: Reply,

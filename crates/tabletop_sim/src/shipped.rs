@@ -120,7 +120,7 @@ pub fn read_text(path: &Path) -> io::Result<String> {
     }
 }
 
-/// The path that means the same file whatever the folder holds.
+/// The path that means the same file in any working folder.
 pub fn true_path(path: &Path) -> PathBuf {
     match shipped_files().find(path) {
         Some(file) => file.name(),

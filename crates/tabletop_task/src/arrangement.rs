@@ -25,7 +25,7 @@ pub(crate) struct Placed {
 pub const TOUCH: f32 = 0.06;
 /// Largest overhang of an edge, in units, that does not count as support.
 const EDGE: f32 = 0.03;
-/// How far apart, as seen from above, what is not beside each other may be, in units.
+/// Largest gap between objects, as seen from above, that are not beside each other, in units.
 const BESIDE: f32 = 1e-3;
 
 impl Arrangement {

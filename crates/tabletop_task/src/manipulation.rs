@@ -1,4 +1,4 @@
-//! Manipulations: what hands did to an object, from grasp to release.
+//! Manipulations: the acts of a hand on an object, from grasp to release.
 
 use std::collections::BTreeMap;
 

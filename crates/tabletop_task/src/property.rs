@@ -26,7 +26,7 @@ pub(crate) enum PropertyKind {
     Size,
     Length,
     Mass,
-    /// Whatever a task file says.
+    /// A description of the task file.
     Description,
 }
 

@@ -6,7 +6,7 @@ use bevy::prelude::*;
 
 use tabletop_core::Table;
 
-/// The upright plane through what the selected hand holds, in which the mouse drags it (report section 4, figure 8g).
+/// The upright plane through the held object of the selected hand, in which the mouse drags it (report section 4, figure 8g).
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource)]
 pub struct DragPlane {

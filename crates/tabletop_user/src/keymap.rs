@@ -18,7 +18,7 @@ use tabletop_core::{Hands, RobotLayout};
 
 use self::table::ActionRow;
 
-/// The keys of each action. A key is known by its place on the keyboard, whatever is printed on it, unless
+/// The keys of each action. A key is known by its place on the keyboard, not by its letter, unless
 /// [Ctrl or the like](KeyLetters) is held down with it. The robot's layout decides which joints have actions.
 #[derive(Resource, Clone, Debug, PartialEq, Eq)]
 pub struct Keymap {

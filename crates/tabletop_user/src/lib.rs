@@ -22,7 +22,7 @@ pub use pace::{Pace, PacePlugin, SingleStep};
 
 use bevy::prelude::*;
 
-/// Adds what view and panels share. Both of them add it, unless the other one already has.
+/// Adds the resources that view and panels share. Both of them add it, unless the other one already has.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct UserPlugin;
 

@@ -1,5 +1,5 @@
-//! The lines that help the user to place what he holds (report section 4, figure 8): its outline, the axes about which
-//! it can be turned, what lies below it, and where the plane in which it is dragged meets table and objects.
+//! The lines that help the user to place the held object (report section 4, figure 8): its outline, the axes about which
+//! it can be turned, its shadow, and where the plane in which it is dragged meets table and objects.
 
 use bevy::prelude::*;
 use tabletop_core::{Hands, ObjectSpec};
@@ -115,7 +115,7 @@ fn draw_axes(mut gizmos: Gizmos<ThinLines>, held: HeldVisual) {
     }
 }
 
-/// Below the end of the upright axis the shadow line goes on to whatever is there; a cross marks the place.
+/// Below the end of the upright axis the shadow line goes on to the first object or the table; a cross marks the place.
 fn draw_shadow(
     mut gizmos: Gizmos<ThinLines>,
     held: HeldVisual,

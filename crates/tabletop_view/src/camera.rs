@@ -1,4 +1,4 @@
-//! The user's camera, its keys, and what panels and mouse ask of it.
+//! The user's camera, its keys, and the requests of panels and mouse.
 
 use bevy::{
     camera::{ClearColorConfig, PerspectiveProjection},

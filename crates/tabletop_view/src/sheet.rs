@@ -69,7 +69,7 @@ pub(crate) fn plugin(app: &mut App) {
     app.add_plugins((MaterialPlugin::<Translucent>::default(), systems));
 }
 
-/// All but what draws it.
+/// All systems but those that draw it.
 pub(crate) fn systems(app: &mut App) {
     app.init_resource::<Assets<Translucent>>()
         .add_systems(Startup, spawn_sheet)

@@ -1,7 +1,7 @@
 //! The outline of a body as the user sees it: of all its solids together, without lines where they overlap.
 //!
 //! It is computed, not drawn twice: seen from a point, a convex solid covers a convex polygon, and the outline of the
-//! body is what remains of these polygons' edges after what lies within the others has been cut away.
+//! body consists of the parts of these polygons' edges that lie within no other polygon.
 
 use bevy::prelude::*;
 use tabletop_geometry::{Pose, Primitive, Solid};
@@ -72,7 +72,7 @@ impl Polygon {
         self.corners.iter().copied().zip(next.copied())
     }
 
-    /// Its edges without what lies within the other polygons, joined where they meet.
+    /// The parts of its edges that lie within no other polygon, joined where they meet.
     fn visible_lines(&self, rank: usize, polygons: &[Self]) -> Vec<Vec<Vec3>> {
         let mut lines: Vec<Vec<Vec3>> = Vec::new();
         let mut goes_on = false;

@@ -161,8 +161,8 @@ impl Viewpoint {
         .within_reach()
     }
 
-    /// After going towards a point until the distance is so many times what it was, or to where limits end it; the point is seen in
-    /// the same place then.
+    /// After an approach to a point that multiplies the distance by this factor, as far as limits allow; the point is seen in the same
+    /// place then.
     pub fn approached(self, point: Vec3, factor: f32) -> Self {
         let from_point = self.location - point;
         let distance = from_point.length();

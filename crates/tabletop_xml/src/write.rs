@@ -187,7 +187,7 @@ impl Writer {
         self.close();
     }
 
-    /// Writes a push button; its housing is made of what its cap says.
+    /// Writes a push button; its housing follows from its cap.
     fn push_button(&mut self, button: &JointedSpec) {
         let [housing, cap] = &button.objects;
         self.open("pushButton");

@@ -75,7 +75,7 @@ fn hash_of_pictures(antialiasing: bool) -> u64 {
     let (mut rasterizer, mut picture) = (Rasterizer::default(), Picture::default());
     (0..SCENES).fold(0xcbf2_9ce4_8422_2325, |hash, seed| {
         let (scene, camera) = random_scene(seed, antialiasing);
-        // What is kept from picture to picture must not show.
+        // Results that are kept from picture to picture must not show.
         rasterizer.draw(&scene, &camera, &mut picture);
         let before = hash_of(&picture);
         rasterizer.draw(&scene, &camera, &mut picture);

@@ -20,13 +20,13 @@ pub struct PushButton {
     pub force: f32,
     /// Colour of the cap.
     pub color: Rgb,
-    /// What it hands on downstream.
+    /// Its effect downstream.
     pub mode: PressMode,
     /// Its state while it is pressed; else it is in state 0.
     pub state: u32,
 }
 
-/// What a push button hands on downstream.
+/// The effect of a push button downstream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Reflect)]
 pub enum PressMode {
     /// Its state when it is pressed, and nothing when it comes up.

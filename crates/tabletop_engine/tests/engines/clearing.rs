@@ -1,4 +1,4 @@
-//! Scripts that clear what the driver needs.
+//! Scripts that clear variables or functions of the driver.
 
 use std::path;
 

@@ -94,7 +94,7 @@ fn break_leaves_a_script_with_any_path() {
             init,
             "addpath(aux.path); n = 1; if true, break, end, n = 2;",
         );
-        // What cannot be read is nobody's business, until it is called.
+        // Files that cannot be read do no harm until they are called.
         fs::create_dir(folder.0.join("data.m")).unwrap();
         fs::write(folder.0.join("._testInit.m"), b"\x80").unwrap();
         let session = Session::octave(&folder.0, TRIGGERS[0]);

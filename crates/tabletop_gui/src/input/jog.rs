@@ -87,7 +87,7 @@ pub(crate) struct Jog {
 }
 
 impl Jog {
-    /// With what the user moves the joints.
+    /// The keyboard or the panel, by which the user moves the joints.
     fn actor(&self) -> Actor {
         match self.keys.are_idle() {
             false => Actor::Key,
@@ -131,7 +131,7 @@ fn give_orders(jog: Res<Jog>, layout: Res<RobotLayout>, mut commands: CommandWri
     }
 }
 
-/// A tick has seen what has gone down.
+/// Forgets the struck keys once a tick has seen them.
 fn forget_struck(mut jog: ResMut<Jog>) {
     let mut forgetful = jog.clone();
     for controls in [&mut forgetful.keys, &mut forgetful.buttons] {

@@ -51,8 +51,8 @@ fn forget_press(mut press: ResMut<MousePress>) {
     press.set_if_neq(MousePress::Idle);
 }
 
-/// The button goes down: on what the selected hand holds a drag begins, and anywhere else the hand lets go; with an empty
-/// hand a click begins.
+/// The button goes down: on the held object a drag begins, and anywhere else the hand lets go; with an empty hand a click
+/// begins.
 fn press(
     buttons: Res<ButtonInput<MouseButton>>,
     pointer: Res<Pointer>,
@@ -84,7 +84,7 @@ fn press(
     };
 }
 
-/// The cursor moves: so does what it drags. Outside the window it stays where it is.
+/// The cursor moves, and the dragged object with it. Outside the window the object stays where it is.
 fn drag(
     pointer: Res<Pointer>,
     hands: Res<Hands>,

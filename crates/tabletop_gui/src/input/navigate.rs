@@ -1,5 +1,5 @@
-//! The mouse moves the user's camera: dragging with the right button goes round what the cursor is on, with Shift or with the middle
-//! button it drags the scene along, and the wheel or two fingers go towards what the cursor is on. The left button is the hands'.
+//! The mouse moves the user's camera: dragging with the right button orbits the point under the cursor, with Shift or with the middle button
+//! it drags the scene along, and the wheel or two fingers approach the point under the cursor. The left button is the hands'.
 
 use bevy::{
     input::{

@@ -1,4 +1,4 @@
-//! Starting and stopping the script that drives the robot (report section 5.2), and what it says.
+//! Starting and stopping the script that drives the robot (report section 5.2), and its messages.
 
 use bevy::prelude::*;
 use tabletop_core::{Agent, ScriptCommand, ScriptEvent};

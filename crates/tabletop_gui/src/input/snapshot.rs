@@ -29,7 +29,7 @@ pub(crate) struct Snapshots {
 }
 
 impl Snapshots {
-    /// Saves what the robot sees after the next tick.
+    /// Saves the head camera's picture after the next tick.
     pub const fn take_one(&mut self) {
         self.is_wanted = true;
     }

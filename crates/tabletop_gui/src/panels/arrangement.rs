@@ -83,8 +83,8 @@ impl Panels {
         kept_on(desk, place, size(panel))
     }
 
-    /// The place of a panel in the stack. Where the desk is too low for all, it goes on in another column; what still fits below an
-    /// earlier one, and is no wider, goes there.
+    /// The place of a panel in the stack. Where the desk is too low for all, it goes on in another column; a panel that fits below an
+    /// earlier column, and is no wider, goes there.
     fn slot(&self, panel: Panel, desk: Rect, size: &impl Fn(Panel) -> Vec2) -> Pos2 {
         let mut columns = vec![Vec2::ZERO];
         let mut slot = (0, 0.0);
@@ -111,7 +111,7 @@ impl Panels {
         desk.min + vec2(GAP + beside, GAP + below)
     }
 
-    /// Completes what was read from a file, which may be older than a panel.
+    /// Completes an arrangement from a file, which may be older than a panel.
     pub(crate) fn completed(mut self) -> Self {
         let mut seen = BTreeSet::new();
         self.stack.retain(|&panel| seen.insert(panel));

@@ -46,7 +46,7 @@ fn show_caption(
     orders.write_batch(show(context, &model));
 }
 
-/// Shows the sentence while the robot is busy, and returns what the user orders.
+/// Shows the sentence while the robot is busy, and returns the user's order.
 fn show(context: &Context, model: &Model) -> Option<TaskOrder> {
     let (sentence, remark) = texts(model.imitating, model.task)?;
     let stop = format!(

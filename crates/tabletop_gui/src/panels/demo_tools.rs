@@ -60,7 +60,7 @@ fn open_at_first_grasp(
 struct Model<'a> {
     /// The selected hand.
     hand: Hand,
-    /// Id of what it holds.
+    /// Id of the held object.
     held: Option<&'a str>,
     /// The turns about each axis, in degrees.
     turns: [i32; 3],

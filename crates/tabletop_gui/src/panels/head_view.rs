@@ -149,7 +149,7 @@ fn pixels(picture: &Picture, most: usize) -> ColorImage {
     )
 }
 
-/// Width of what the camera sees for a height of 1, whatever the shape of its pixels.
+/// Width of the field of view for a height of 1, with pixels of any shape.
 fn aspect(camera: &HeadCamera) -> f32 {
     if camera.square_fov {
         1.0

@@ -202,7 +202,7 @@ fn show_help(mut contexts: EguiContexts, keymap: Res<Keymap>, mut help: ResMut<H
     }
 }
 
-/// Shows the sheet over everything else, also over what a pause lays over the window.
+/// Shows the sheet over everything else, also over the overlay of a pause.
 fn show_sheet(context: &egui::Context, sheet: &KeySheet) -> Option<Request> {
     let id = egui::Id::new("help");
     let layer = egui::Modal::default_area(id).layer();

@@ -1,4 +1,4 @@
-//! The Messages window: the faults of task files, what could not be done, and what the robot and its script have done.
+//! The Messages window: faults of task files, failed commands, and events of the robot and its script.
 
 pub(crate) mod notices;
 pub(crate) mod robot;

@@ -284,7 +284,7 @@ mod tests {
             .build_ui_state(frame, stage)
     }
 
-    /// Clicks on what has these names, one after the other, and says what was wanted.
+    /// Clicks on the widgets of these names, one after the other, and returns their requests.
     fn clicked(harness: &mut Harness<Stage>, names: &[&str]) -> Vec<Request> {
         for name in names {
             harness.get_by_label(name).click();

@@ -96,7 +96,7 @@ fn has_motor(mode: RobotMode, joint: &JointLayout) -> bool {
     mode == RobotMode::Dynamic && matches!(joint.role, JointRole::Limb { .. })
 }
 
-/// Checks that a joint can do what it is commanded.
+/// Checks that a joint can carry out a drive.
 fn check(mode: RobotMode, joint: &JointLayout, drive: Drive) -> Result<(), String> {
     let value = match drive {
         Drive::Velocity(value)

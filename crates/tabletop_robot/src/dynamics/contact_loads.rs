@@ -1,6 +1,6 @@
 //! Free objects that an arm touches, as the arm's own dynamics needs them.
 //!
-//! For physics, the robot's bodies go where they are sent, whatever is in their way, and pushed objects get their speed at once. So the
+//! For physics, the robot's bodies go where they are sent through any obstacle, and pushed objects get their speed at once. So the
 //! effort of a push must be known before the arm moves, not after.
 
 use bevy::{

@@ -97,7 +97,7 @@ fn add_filled(
     }
 }
 
-/// The thickness of objects along a line. Those behind each other add up; what is inside another one does not count.
+/// The thickness of objects along a line. Objects behind each other add up; an object inside another one does not count.
 fn thickness(mut parts: Vec<[f32; 2]>) -> f32 {
     parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let mut end = f32::NEG_INFINITY;

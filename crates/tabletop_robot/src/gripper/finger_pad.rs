@@ -8,7 +8,7 @@ use tabletop_physics::{Convex, to_rapier};
 /// Number of probe rays across and along the face.
 const PROBE_RAYS: (u32, u32) = (9, 31);
 
-/// Depth to which the face yields to pressure, in units: whatever is nearer than this to the foremost point touches, too.
+/// Depth to which the face yields to pressure, in units: objects within this distance behind the foremost point touch, too.
 const YIELD: f32 = 0.04;
 
 /// Depth inside the finger at which the rays begin, in units, so that they meet objects that have entered it slightly.

@@ -132,7 +132,7 @@ pub(crate) fn pull_jointed(
     }
 }
 
-/// Takes what a bond has moved, or holds from now on, as it is.
+/// Takes over the new places of objects that a bond has moved, or holds from now on.
 pub(crate) fn follow_bonds(
     mut facts: MessageReader<SimFact>,
     robot: Res<Robot>,

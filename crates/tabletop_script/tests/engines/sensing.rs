@@ -1,4 +1,4 @@
-//! Sensing of scripts, and what they are spared.
+//! Sensor fields of scripts, and those that they are spared.
 
 use bevy::prelude::*;
 use tabletop_core::{Arm, ObjectSpec, RobotCommand, Shape};

@@ -10,7 +10,7 @@ use tabletop_xml::{NAMESPACE, expand, write};
 
 use crate::{SAMPLE, read, scenes::scenes};
 
-/// Asserts what holds for every text: its scene can be written and read again, and its faults are in the file.
+/// Asserts the invariants of every text: its scene can be written and read again, and its faults are in the file.
 fn check(text: &[u8]) {
     let task = read(text);
     let Table { xspan, yspan } = task.scene.table;

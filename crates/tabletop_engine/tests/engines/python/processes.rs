@@ -14,7 +14,7 @@ use crate::common::{self, Folder, Session, script_error};
 #[test_with(Python)]
 fn an_interrupt_is_answered_with_its_place_also_in_the_background() {
     let script = of_callback("os.kill(os.getpid(), 2); sum(range(10**7))");
-    // A shell has what it starts in the background ignore interrupts.
+    // A shell makes its background processes ignore interrupts.
     let shell = "#!/bin/sh\ntrap '' INT\nexec python3 \"$@\"\n";
     let (_bin, program) = executable("python-behind", shell);
     let folder = Folder::new(&[("robot.py", &script)]);

@@ -12,7 +12,7 @@ const FRAME: u64 = 15;
 /// Later than this after the beginning of a segment, the way back leads there.
 const REPEAT: u64 = 30;
 
-/// Shows the buttons, and returns what they ask for.
+/// Shows the buttons, and returns their requests.
 pub(super) fn show(ui: &mut Ui, model: &Model) -> Vec<Request> {
     let mut requests = Vec::new();
     ui.horizontal_wrapped(|ui| {
