@@ -46,7 +46,7 @@ fn stepped(file: &str) -> Vec<(String, Vec<u32>)> {
     bits(app.world())
 }
 
-/// In an ordinary Bevy app, as the window is one, with threads and so many ticks a frame.
+/// In an ordinary Bevy app, as the window is one, with threads and this number of ticks a frame.
 fn in_frames(file: &str, ticks_a_frame: u32) -> Vec<(String, Vec<u32>)> {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TabletopSimPlugins));

@@ -62,7 +62,7 @@ pub(super) struct MultiplyArgs {
     setup: Option<PathBuf>,
     #[command(flatten)]
     allowed: AllowedPaths,
-    /// Put up to so many other objects around, from 0 to 50
+    /// Put up to this number of other objects around, from 0 to 50
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = DISTRACTORS, allow_negative_numbers = true)]
     distractors: u32,
     /// Move the head camera by up to this many units, from 0 to 10, and turn it by up to 2° per unit

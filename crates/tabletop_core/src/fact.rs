@@ -164,7 +164,7 @@ pub enum MechanismFact {
     },
     /// A link of a chain was cut; its [`ObjectDeleted`](SceneFact::ObjectDeleted) comes after.
     Cut {
-        /// The command that it came of, if it came of one.
+        /// The command that caused it, if any.
         cause: Option<CommandId>,
         /// Who has closed the scissors.
         by: Operator,

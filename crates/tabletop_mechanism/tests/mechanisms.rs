@@ -398,7 +398,7 @@ fn grip(app: &mut App, object: &str, gripper: Pose) -> Vec<SimFact> {
     facts.get_cursor().read(facts).cloned().collect()
 }
 
-/// Turns a gripper with the screw about the vertical by so many degrees, and tells how tight it was after each step.
+/// Turns a gripper with the screw about the vertical between these angles, in degrees. Returns the tightness after each step.
 fn wrench(app: &mut App, from: f32, to: f32) -> Vec<u32> {
     let mut steps = Vec::new();
     for number in 0..=30_u8 {

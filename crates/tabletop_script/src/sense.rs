@@ -81,7 +81,7 @@ impl Senses<'_, '_> {
         self.robot.mode
     }
 
-    /// The senses of a callback script, so many ticks after its last call.
+    /// The senses of a callback script, `ticks` ticks after its last call.
     pub fn sensor(&self, ticks: u64, picture: Option<RgbImage>, fields: SensorFields) -> Sensor {
         let dynamic = self.mode() == RobotMode::Dynamic;
         let grippers = self.layout.limbs.iter().map(|limb| limb.gripper.joint);

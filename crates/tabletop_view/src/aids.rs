@@ -53,7 +53,7 @@ pub(crate) fn plugin(app: &mut App) {
         );
 }
 
-/// Lines that are so many pixels wide at any distance.
+/// Lines of this width in pixels at any distance.
 fn lines(width: f32, depth_bias: f32) -> GizmoConfig {
     GizmoConfig {
         line: GizmoLineConfig {

@@ -151,7 +151,7 @@ impl Viewpoint {
         LOWEST.min(self.location.z)
     }
 
-    /// After going by so many units.
+    /// After a shift by a vector, in units.
     pub fn shifted(self, by: Vec3) -> Self {
         let location = self.location + by;
         Self {
@@ -176,7 +176,7 @@ impl Viewpoint {
         }
     }
 
-    /// After so many seconds of being steered.
+    /// After being steered for this time, in seconds.
     pub fn steered(self, steering: Steering, seconds: f32) -> Self {
         let velocity = steering.forward * self.direction()
             + steering.right * self.right()

@@ -194,8 +194,8 @@ fn a_block_squeezed_against_a_wall_stops_the_hand_and_does_not_explode() {
     assert!(fastest < 5.0, "something flew off at {fastest} units/s");
 }
 
-/// The number of ticks in which the lowest of so many large blocks, one on the other, is deep in the table, while a hand presses a small block on
-/// the uppermost in many ways.
+/// The number of ticks in which the lowest block of a stack of large ones is deep in the table, while a hand presses a small block on the
+/// uppermost in many ways.
 fn deep_ticks_under_a_hand(count: usize) -> u32 {
     let mut deep_ticks = 0;
     let top = 1.5 * (count - 1) as f32;

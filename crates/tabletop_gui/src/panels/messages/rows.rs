@@ -29,7 +29,7 @@ struct RowInputs {
 }
 
 impl Rows {
-    /// The rows of the notices with these tones, each with at most so many letters.
+    /// The rows of the notices with these tones, each with at most `columns` letters.
     pub fn of(
         &mut self,
         notices: &Notices,
@@ -59,7 +59,7 @@ impl Rows {
     }
 }
 
-/// The parts of a text that fit into a row each: its lines, broken after so many letters.
+/// The parts of a text that fit into a row each: its lines, broken after `columns` letters.
 fn parts(text: &str, columns: usize) -> impl Iterator<Item = Range<usize>> {
     let mut next = 0;
     text.split('\n').flat_map(move |line| {

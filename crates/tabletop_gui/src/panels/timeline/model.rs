@@ -38,7 +38,7 @@ pub(crate) enum Request {
     StopAt(SimTick),
     SetPace(Pace),
     Loop(bool),
-    /// Undo so many segments.
+    /// Undo this number of segments.
     Undo(usize),
     Redo,
     Open(PathBuf),
