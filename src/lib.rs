@@ -13,6 +13,7 @@
 //! | [`mechanism`] | controls and bonds |
 //! | [`robot`] | the robot: its look, motion and grips |
 //! | [`kinematics`] | robots from URDF |
+//! | [`controller`] | the seam between the robot and what acts for it |
 //! | [`camera`] | the view of the robot's head camera |
 //! | [`recorder`] | recordings on disk |
 //! | [`script`] | users' Matlab, Octave and Python scripts that drive the robot |
@@ -42,6 +43,7 @@
 //! ```
 
 pub use tabletop_camera as camera;
+pub use tabletop_controller as controller;
 pub use tabletop_core as core;
 pub use tabletop_demonstrator as demonstrator;
 pub use tabletop_episodes::{imitation, multiplication, scene_at_beginning, shown_task, soak};

@@ -12,7 +12,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 28] = [
+const RULES: [Rule; 29] = [
     Rule::new("tabletop_storage", &[]),
     Rule::new("tabletop_geometry", &[]),
     Rule::new("tabletop_core", &["tabletop_geometry"]),
@@ -107,8 +107,13 @@ const RULES: [Rule; 28] = [
         ],
     ),
     Rule::new(
+        "tabletop_controller",
+        &["tabletop_core", "tabletop_geometry", "tabletop_kinematics"],
+    ),
+    Rule::new(
         "tabletop_planner",
         &[
+            "tabletop_controller",
             "tabletop_core",
             "tabletop_geometry",
             "tabletop_kinematics",
@@ -119,6 +124,7 @@ const RULES: [Rule; 28] = [
         "tabletop_sim",
         &[
             "tabletop_camera",
+            "tabletop_controller",
             "tabletop_core",
             "tabletop_geometry",
             "tabletop_demonstrator",
@@ -152,6 +158,7 @@ const RULES: [Rule; 28] = [
     Rule::new(
         "tabletop_episodes",
         &[
+            "tabletop_controller",
             "tabletop_core",
             "tabletop_geometry",
             "tabletop_kinematics",
@@ -187,6 +194,7 @@ const RULES: [Rule; 28] = [
     Rule::new(
         "tabletop",
         &[
+            "tabletop_controller",
             "tabletop_core",
             "tabletop_geometry",
             "tabletop_xml",
