@@ -7,6 +7,7 @@
 //! | [`geometry`] | poses, coloured solids, bounds and rays |
 //! | [`xml`] | task files |
 //! | [`physics`] | Rapier, configured |
+//! | [`assembly`] | the content of a task file, taken apart into objects and joints |
 //! | [`scene`] | the table, and the objects that come and go on it |
 //! | [`history`] | undo and redo |
 //! | [`demonstrator`] | the invisible hands |
@@ -42,6 +43,7 @@
 //! assert!((pose.location - Vec3::new(2.0, 0.0, 1.0)).length() < 0.005);
 //! ```
 
+pub use tabletop_assembly as assembly;
 pub use tabletop_camera as camera;
 pub use tabletop_controller as controller;
 pub use tabletop_core as core;

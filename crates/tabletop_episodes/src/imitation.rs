@@ -1,6 +1,7 @@
 //! The simulator as a stage on which the robot imitates.
 
 use bevy::prelude::*;
+use tabletop_assembly::{IdAllocator, assemble};
 use tabletop_controller::{Observer, SeenObject, Sight};
 use tabletop_core::{
     JointKind, Random, RobotCommand, RobotLayout, SceneItem, SceneSpec, StepApp as _, Table,
@@ -11,7 +12,6 @@ use tabletop_kinematics::{ModelError, baxter};
 use tabletop_planner::{
     LimbOrder, Piece, PlanningStage, RobotBody, Stopped, drives, is_feasible, scatter,
 };
-use tabletop_scene::{IdAllocator, assemble};
 use tabletop_task::{Arrangement, PlacedSolid, Requirements, Task};
 
 /// An app whose robot is moved by commands, as scripts move it.
