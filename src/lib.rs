@@ -7,12 +7,14 @@
 //! | [`geometry`] | poses, coloured solids, bounds and rays |
 //! | [`xml`] | task files |
 //! | [`physics`] | Rapier, configured |
+//! | [`assembly`] | the content of a task file, taken apart into objects and joints |
 //! | [`scene`] | the table, and the objects that come and go on it |
 //! | [`history`] | undo and redo |
 //! | [`demonstrator`] | the invisible hands |
 //! | [`mechanism`] | controls and bonds |
 //! | [`robot`] | the robot: its look, motion and grips |
 //! | [`kinematics`] | robots from URDF |
+//! | [`controller`] | the seam between the robot and what acts for it |
 //! | [`camera`] | the view of the robot's head camera |
 //! | [`recorder`] | recordings on disk |
 //! | [`script`] | users' Matlab, Octave and Python scripts that drive the robot |
@@ -41,7 +43,9 @@
 //! assert!((pose.location - Vec3::new(2.0, 0.0, 1.0)).length() < 0.005);
 //! ```
 
+pub use tabletop_assembly as assembly;
 pub use tabletop_camera as camera;
+pub use tabletop_controller as controller;
 pub use tabletop_core as core;
 pub use tabletop_demonstrator as demonstrator;
 pub use tabletop_episodes::{imitation, multiplication, scene_at_beginning, shown_task, soak};

@@ -8,8 +8,8 @@ use std::{
 use clap::Args;
 use serde_json::json;
 use tabletop::{
+    assembly::{IdAllocator, assemble},
     recorder::{RecorderError, RecordingReader, TICKS_PER_FRAME, read_original},
-    scene::{IdAllocator, assemble},
     task::{Demonstration, DetourKind, Furniture, Requirements, Role, Task, TaskStep},
 };
 use tabletop_core::{SceneSpec, TICKS_PER_SECOND};

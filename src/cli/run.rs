@@ -12,13 +12,13 @@ use clap::Args;
 use serde_json::json;
 use tabletop::{
     TabletopSimPlugins,
+    assembly::{IdAllocator, assemble},
     core::{
         RestingSystems, RobotFact, SceneCommand, SceneSpec, SimFact, SimTick, StepApp as _,
         TICKS_PER_SECOND, WriteCommand as _,
     },
     final_state, headless_app_with,
     recorder::{RecorderPlugin, UnrecordedPlugin},
-    scene::{IdAllocator, assemble},
     script::{ScriptPlugin, shut_down},
     shipped::{read_scenario, task_reader, true_path},
     shown_task::shown_task,

@@ -4,6 +4,7 @@ mod imitator;
 mod understood;
 
 use bevy::prelude::*;
+use tabletop_controller::RobotController;
 use tabletop_core::{
     Actor, Agent, CommandWriter, Playback, PlaybackOrder, SceneCommand, ShownTask, Timeline,
     TimelineStage,
@@ -45,6 +46,7 @@ fn obey(
     mut understood: ResMut<Understood>,
     mut shown: ResMut<ShownTask>,
     mut imitator: ResMut<RobotImitator>,
+    mut controller: ResMut<RobotController>,
     mut putting: ResMut<PuttingBack>,
     mut notices: ResMut<Notices>,
     agent: Res<Agent>,
@@ -60,11 +62,11 @@ fn obey(
             } => understood.require(role, property, *is_required),
             TaskOrder::Free { role, is_free } => understood.free(role, *is_free),
             TaskOrder::Stop => {
-                imitator.stop();
+                imitator.stop(&mut controller);
                 Ok(())
             }
             TaskOrder::PutBack => {
-                imitator.stop();
+                imitator.stop(&mut controller);
                 putting.0 = Some(Afterwards::Nothing);
                 Ok(())
             }
@@ -75,7 +77,7 @@ fn obey(
                 putting.0 = Some(Afterwards::Imitate);
                 Ok(())
             }
-            TaskOrder::Imitate => imitator.prepare(&understood),
+            TaskOrder::Imitate => imitator.prepare(&understood, &mut controller),
         };
         if let Err(reason) = result {
             notices.append(Tone::Warning, &reason);
@@ -92,6 +94,7 @@ fn put_back(
     mut commands: CommandWriter,
     mut orders: MessageWriter<PlaybackOrder>,
     mut imitator: ResMut<RobotImitator>,
+    mut controller: ResMut<RobotController>,
     mut notices: ResMut<Notices>,
     understood: Res<Understood>,
     timeline: Res<Timeline>,
@@ -110,7 +113,7 @@ fn put_back(
     };
     commands.write(Actor::Panel, SceneCommand::Set(Box::new(scene.clone())));
     if afterwards == Some(Afterwards::Imitate)
-        && let Err(reason) = imitator.prepare(&understood)
+        && let Err(reason) = imitator.prepare(&understood, &mut controller)
     {
         notices.append(Tone::Warning, &reason);
     }

@@ -12,7 +12,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 28] = [
+const RULES: [Rule; 30] = [
     Rule::new("tabletop_storage", &[]),
     Rule::new("tabletop_geometry", &[]),
     Rule::new("tabletop_core", &["tabletop_geometry"]),
@@ -32,9 +32,11 @@ const RULES: [Rule; 28] = [
         &["tabletop_core", "tabletop_geometry", "tabletop_history"],
     )
     .with_rapier(),
+    Rule::new("tabletop_assembly", &["tabletop_core", "tabletop_geometry"]),
     Rule::new(
         "tabletop_scene",
         &[
+            "tabletop_assembly",
             "tabletop_core",
             "tabletop_geometry",
             "tabletop_history",
@@ -107,8 +109,13 @@ const RULES: [Rule; 28] = [
         ],
     ),
     Rule::new(
+        "tabletop_controller",
+        &["tabletop_core", "tabletop_geometry", "tabletop_kinematics"],
+    ),
+    Rule::new(
         "tabletop_planner",
         &[
+            "tabletop_controller",
             "tabletop_core",
             "tabletop_geometry",
             "tabletop_kinematics",
@@ -118,7 +125,9 @@ const RULES: [Rule; 28] = [
     Rule::new(
         "tabletop_sim",
         &[
+            "tabletop_assembly",
             "tabletop_camera",
+            "tabletop_controller",
             "tabletop_core",
             "tabletop_geometry",
             "tabletop_demonstrator",
@@ -152,6 +161,8 @@ const RULES: [Rule; 28] = [
     Rule::new(
         "tabletop_episodes",
         &[
+            "tabletop_assembly",
+            "tabletop_controller",
             "tabletop_core",
             "tabletop_geometry",
             "tabletop_kinematics",
@@ -160,7 +171,6 @@ const RULES: [Rule; 28] = [
             "tabletop_recorder",
             "tabletop_replay",
             "tabletop_robot",
-            "tabletop_scene",
             "tabletop_sim",
             "tabletop_storage",
             "tabletop_task",
@@ -187,6 +197,8 @@ const RULES: [Rule; 28] = [
     Rule::new(
         "tabletop",
         &[
+            "tabletop_assembly",
+            "tabletop_controller",
             "tabletop_core",
             "tabletop_geometry",
             "tabletop_xml",

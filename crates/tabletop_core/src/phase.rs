@@ -35,6 +35,8 @@ pub enum OrderSystems {
     Scenario,
     /// Keys and buttons that the user holds down.
     User,
+    /// The controller that acts for the robot.
+    Controller,
     /// Scripts.
     Script,
 }

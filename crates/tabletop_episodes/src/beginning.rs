@@ -1,8 +1,8 @@
 //! The scene at the beginning of a recording.
 
+use tabletop_assembly::{IdAllocator, assemble};
 use tabletop_core::{ObjectSpec, SceneCommand, SceneItem, SceneSpec, SimCommand};
 use tabletop_recorder::Session;
-use tabletop_scene::{IdAllocator, assemble};
 
 use crate::imitation::moved;
 

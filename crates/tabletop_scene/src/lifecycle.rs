@@ -7,6 +7,7 @@ use bevy::{
     },
     prelude::*,
 };
+use tabletop_assembly::{Assembly, IdAllocator};
 use tabletop_core::{
     Cause, Held, IssuedCommand, Joint, ObjectIndex, ObjectSpec, SceneCommand, SceneFact, SceneSpec,
     SimFact, Table, carry_out,
@@ -14,7 +15,7 @@ use tabletop_core::{
 use tabletop_history::Parked;
 use tabletop_physics::{remove_object, renew_if_empty};
 
-use crate::{Assembly, IdAllocator, compound::Compounds, preset};
+use crate::{compound::Compounds, preset};
 
 /// Objects below this height, in units, have left the world.
 const LOWEST_Z: f32 = -1000.0;

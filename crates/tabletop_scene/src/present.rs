@@ -3,16 +3,14 @@
 mod marks;
 
 use bevy::prelude::*;
+use tabletop_assembly::{Assembly, IdAllocator};
 use tabletop_core::{
     ChainSpec, Composition, Held, LidBoxSpec, Manipulator, ObjectIndex, ObjectSpec, SceneItem,
     SceneSpec, Shape, Table,
 };
 use tabletop_geometry::Pose;
 
-use crate::{
-    Assembly, IdAllocator,
-    compound::{Compound, Compounds},
-};
+use crate::compound::{Compound, Compounds};
 use marks::{mark_parts, with_ids, with_marks_of_ids};
 
 /// Distance, in units, of a compound's part from where the next load puts it, up to which nothing is reported.

@@ -4,11 +4,10 @@ use std::f32::consts::FRAC_PI_2;
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{DefaultRapierContext, RapierContextColliders, RigidBodyDisabled};
+use tabletop_assembly::IdAllocator;
 use tabletop_core::{Held, ObjectIndex, ObjectSpec, Preset, Random, Shape, Table};
 use tabletop_geometry::{Pose, Rgb};
 use tabletop_physics::{Convex, collider, convex_parts};
-
-use crate::IdAllocator;
 
 /// Least distance, in units, to anything else.
 const CLEARANCE: f32 = 0.05;

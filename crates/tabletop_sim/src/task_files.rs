@@ -70,7 +70,7 @@ mod tests {
     use tabletop_core::prelude::*;
 
     use super::*;
-    use tabletop_scene::{IdAllocator, assemble};
+    use tabletop_assembly::{IdAllocator, assemble};
     use tabletop_storage::TemporaryFolder;
     use tabletop_xml::read_task;
 

@@ -31,7 +31,7 @@ pub fn assemble(scene: &SceneSpec, ids: &mut IdAllocator) -> Assembly {
 
 impl Assembly {
     /// An assembly of just this table.
-    pub(crate) const fn on(table: Table) -> Self {
+    pub const fn on(table: Table) -> Self {
         Self {
             table,
             objects: Vec::new(),
@@ -40,7 +40,7 @@ impl Assembly {
     }
 
     /// Adds the objects and joints of an item.
-    pub(crate) fn add(&mut self, item: &SceneItem, ids: &mut IdAllocator) {
+    pub fn add(&mut self, item: &SceneItem, ids: &mut IdAllocator) {
         match item {
             SceneItem::Object(spec) => self.objects.push(with_unique_ids(spec.clone(), ids)),
             SceneItem::Chain(spec) => {

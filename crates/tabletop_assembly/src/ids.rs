@@ -9,7 +9,7 @@ use tabletop_core::{ObjectSpec, Part, Shape};
 /// free, otherwise that id with `#` and a count that goes up with every try.
 ///
 /// ```
-/// use tabletop_scene::IdAllocator;
+/// use tabletop_assembly::IdAllocator;
 ///
 /// let mut ids = IdAllocator::default();
 /// let given = ["a", "a", "", "", "a"].map(|wanted| ids.unique(wanted));
