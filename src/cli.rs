@@ -9,6 +9,7 @@ mod cut_off;
 mod display;
 mod duration;
 mod explain;
+mod export;
 mod failure;
 mod faultless;
 mod hand_cameras;
@@ -67,6 +68,8 @@ enum Command {
     Imitate(imitate::ImitateArgs),
     /// Make many demonstrations from one, with everything elsewhere: for training networks
     Multiply(multiply::MultiplyArgs),
+    /// Write recordings as a dataset that other tools read
+    Export(export::ExportArgs),
     /// Check task files and report every fault with its place
     Check(check::CheckArgs),
     /// Answer questions about the robot's joints and frames for other programs
@@ -101,6 +104,7 @@ Examples:
   tabletop replay demo --window                 watch the recording
   tabletop explain demo                         say what it shows
   tabletop multiply demo --count 100 --out many make a hundred of it, with everything elsewhere
+  tabletop export many --to lerobot dataset     make a dataset of them that LeRobot reads
   tabletop run --script python --seconds 20     let a script drive the robot
   tabletop init work                            write all shipped files to a folder, to change them
 
@@ -126,6 +130,7 @@ pub fn main() -> ExitCode {
         Some(Command::Require(args)) => require::require(&args),
         Some(Command::Imitate(args)) => imitate::run(&args),
         Some(Command::Multiply(args)) => multiply::run(&args),
+        Some(Command::Export(args)) => export::run(&args),
         Some(Command::Check(args)) => check::check(&args),
         Some(Command::Robot(args)) => robot::robot(&args),
         #[cfg(feature = "window")]

@@ -21,6 +21,7 @@
 //! | [`storage`] | the user's files: each is replaced, moved and removed by one rule |
 //! | [`task`] | the task that a recording shows |
 //! | [`replay`] | recordings, simulated again |
+//! | [`export`] | recordings as datasets of other tools |
 //! | [`imitation`], [`multiplication`] | whole episodes in worlds of their own |
 //! | [`planner`] | the robot's plan for such a task |
 //! | [`scenario`] | scripted demonstrations, for tests and datasets |
@@ -49,6 +50,7 @@ pub use tabletop_controller as controller;
 pub use tabletop_core as core;
 pub use tabletop_demonstrator as demonstrator;
 pub use tabletop_episodes::{imitation, multiplication, scene_at_beginning, shown_task, soak};
+pub use tabletop_export as export;
 pub use tabletop_geometry as geometry;
 #[cfg(feature = "window")]
 pub use tabletop_gui as gui;

@@ -12,7 +12,7 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 30] = [
+const RULES: [Rule; 31] = [
     Rule::new("tabletop_storage", &[]),
     Rule::new("tabletop_geometry", &[]),
     Rule::new("tabletop_core", &["tabletop_geometry"]),
@@ -176,6 +176,16 @@ const RULES: [Rule; 30] = [
             "tabletop_task",
         ],
     ),
+    Rule::new(
+        "tabletop_export",
+        &[
+            "tabletop_core",
+            "tabletop_geometry",
+            "tabletop_recorder",
+            "tabletop_storage",
+            "tabletop_task",
+        ],
+    ),
     Rule::new("tabletop_harness", &["tabletop_harness_macro"]),
     Rule::new("tabletop_harness_macro", &[]),
     Rule::new("tabletop_user", &["tabletop_core", "tabletop_geometry"]),
@@ -205,6 +215,7 @@ const RULES: [Rule; 30] = [
             "tabletop_physics",
             "tabletop_scene",
             "tabletop_demonstrator",
+            "tabletop_export",
             "tabletop_episodes",
             "tabletop_mechanism",
             "tabletop_history",

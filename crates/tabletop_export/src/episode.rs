@@ -1,0 +1,84 @@
+//! Episodes: recordings as learners read them.
+
+use std::{path::PathBuf, sync::Arc};
+
+use tabletop_core::SimTick;
+
+use crate::image::Image;
+
+/// A recording as a learner reads it.
+#[derive(Clone, Debug)]
+pub struct Episode {
+    /// The folder of the recording.
+    pub folder: PathBuf,
+    /// Frames a second.
+    pub fps: u32,
+    /// The ticks whose ends the frames show.
+    pub ticks: Vec<SimTick>,
+    /// The state at each frame.
+    pub state: Signal,
+    /// The action from each frame to the next.
+    pub action: Signal,
+    /// The cameras with their pictures.
+    pub cameras: Vec<CameraTrack>,
+    /// The task, in a sentence a step.
+    pub task: String,
+    /// Other words for the task.
+    pub paraphrases: Vec<String>,
+    /// The parts of the task, each with the frame that it begins at.
+    pub subtasks: Vec<Subtask>,
+}
+
+/// Numbers for each frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Signal {
+    /// The names of a frame's numbers.
+    pub names: Vec<String>,
+    /// The numbers, frame by frame.
+    pub values: Vec<f32>,
+}
+
+/// The pictures of a camera, one for each frame.
+#[derive(Clone, Debug)]
+pub struct CameraTrack {
+    /// The camera's name: `head`, or that of a hand camera.
+    pub name: String,
+    /// The pictures. Frames in which nothing has changed share one.
+    pub images: Vec<Arc<Image>>,
+}
+
+/// A part of a task.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Subtask {
+    /// The frame at which it begins.
+    pub frame: usize,
+    /// What is done, without a full stop: `pick up the red block`.
+    pub sentence: String,
+}
+
+impl Episode {
+    /// Number of frames.
+    pub fn len(&self) -> usize {
+        self.ticks.len()
+    }
+
+    /// True if there is no frame.
+    pub fn is_empty(&self) -> bool {
+        self.ticks.is_empty()
+    }
+}
+
+impl Signal {
+    /// A signal of these numbers a frame, without frames.
+    pub fn new(names: Vec<String>) -> Self {
+        Self {
+            names,
+            values: Vec::new(),
+        }
+    }
+
+    /// The numbers of each frame.
+    pub fn frames(&self) -> impl ExactSizeIterator<Item = &[f32]> {
+        self.values.chunks_exact(self.names.len().max(1))
+    }
+}

@@ -1,0 +1,67 @@
+//! Errors of exports.
+
+use std::{io, path::PathBuf};
+
+use tabletop_recorder::RecorderError;
+use tabletop_task::RequirementError;
+use thiserror::Error;
+
+/// The error of an export.
+#[derive(Debug, Error)]
+pub enum ExportError {
+    /// A recording cannot be read.
+    #[error(transparent)]
+    Recording(#[from] RecorderError),
+    /// The requirements of a recording's task cannot be read.
+    #[error(transparent)]
+    Requirements(#[from] RequirementError),
+    /// A recording does not fit the dataset.
+    #[error("{}: {problem}", .recording.display())]
+    Unfit {
+        /// Its folder.
+        recording: PathBuf,
+        /// The reason.
+        problem: String,
+    },
+    /// A file of the dataset is not what this program writes.
+    #[error("{}: {problem}", .path.display())]
+    Dataset {
+        /// The file.
+        path: PathBuf,
+        /// Its fault.
+        problem: String,
+    },
+    /// A file cannot be read or written.
+    #[error("{}: {source}", .path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The reason.
+        source: io::Error,
+    },
+}
+
+impl ExportError {
+    /// Whether the user's input is at fault, and not the disk.
+    pub const fn is_of_input(&self) -> bool {
+        match self {
+            Self::Recording(_)
+            | Self::Requirements(_)
+            | Self::Unfit { .. }
+            | Self::Dataset { .. } => true,
+            Self::Io { .. } => false,
+        }
+    }
+
+    pub(crate) fn io(path: impl Into<PathBuf>) -> impl FnOnce(io::Error) -> Self {
+        let path = path.into();
+        |source| Self::Io { path, source }
+    }
+
+    pub(crate) fn dataset(path: impl Into<PathBuf>, problem: impl ToString) -> Self {
+        Self::Dataset {
+            path: path.into(),
+            problem: problem.to_string(),
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! Formats, and the export of recordings to them.
+
+use std::{path::PathBuf, sync::mpsc, thread};
+
+use crate::{episode::Episode, error::ExportError, selection::Selection};
+
+/// A dataset that is being written.
+pub trait Format {
+    /// An episode, prepared to be written.
+    type Prepared: Send;
+
+    /// Prepares an episode. Called on several threads at a time, so the long work belongs here.
+    ///
+    /// # Errors
+    /// The episode does not fit the format.
+    fn prepare(episode: Episode) -> Result<Self::Prepared, ExportError>;
+
+    /// Writes an episode behind the ones before. Returns its number of frames.
+    ///
+    /// # Errors
+    /// It does not fit the episodes before, or cannot be written.
+    fn write(&mut self, episode: Self::Prepared) -> Result<usize, ExportError>;
+
+    /// Makes everything written part of the dataset.
+    ///
+    /// # Errors
+    /// A file cannot be written; the dataset is then as it was before, or can be repaired.
+    fn finish(self) -> Result<(), ExportError>;
+}
+
+/// The numbers of an export.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ExportSummary {
+    /// Number of episodes written.
+    pub episodes: usize,
+    /// Number of their frames.
+    pub frames: usize,
+}
+
+/// Exports recordings in this order, on `jobs` threads. `tell` hears of every episode that is written. The result is the same for any number
+/// of threads.
+///
+/// # Errors
+/// A recording cannot be read or does not fit, or the dataset cannot be written. Nothing of this export is then part of the dataset.
+pub fn export<F: Format>(
+    recordings: &[PathBuf],
+    selection: &Selection,
+    mut format: F,
+    jobs: usize,
+    mut tell: impl FnMut(ExportSummary),
+) -> Result<ExportSummary, ExportError> {
+    let jobs = jobs.clamp(1, recordings.len().max(1));
+    let mut summary = ExportSummary::default();
+    thread::scope(|scope| {
+        // Worker `k` makes the episodes k, k + jobs, … and keeps one ahead of the writer.
+        let workers: Vec<_> = (0..jobs)
+            .map(|first| {
+                let (sender, receiver) = mpsc::sync_channel(1);
+                scope.spawn(move || {
+                    for folder in recordings.iter().skip(first).step_by(jobs) {
+                        let prepared = Episode::read(folder, selection).and_then(F::prepare);
+                        if sender.send(prepared).is_err() {
+                            // The writer has failed.
+                            break;
+                        }
+                    }
+                });
+                receiver
+            })
+            .collect();
+        for (number, folder) in recordings.iter().enumerate() {
+            let prepared = workers[number % jobs].recv();
+            let prepared = prepared.map_err(|_| ExportError::Unfit {
+                recording: folder.clone(),
+                problem: "the thread that read it has died".into(),
+            })??;
+            summary.frames += format.write(prepared)?;
+            summary.episodes += 1;
+            tell(summary);
+        }
+        Ok::<_, ExportError>(())
+    })?;
+    format.finish()?;
+    Ok(summary)
+}

@@ -1,0 +1,108 @@
+//! Pictures without an alpha channel, as learners want them.
+
+use std::path::Path;
+
+use tabletop_storage::{Symlinks, read_regular_file};
+
+use crate::error::ExportError;
+
+/// Largest size of a picture's file, in bytes.
+const MOST_BYTES: u64 = 256 * 1024 * 1024;
+
+/// A picture.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Image {
+    /// Number of columns.
+    pub width: u32,
+    /// Number of rows.
+    pub height: u32,
+    /// Red, green and blue of each pixel, row by row from the top.
+    pub rgb: Vec<u8>,
+    /// The same as a PNG file.
+    pub png: Vec<u8>,
+}
+
+impl Image {
+    /// Reads a picture of a recording. Its pixels stay as they are; only the alpha channel, which is opaque, goes: readers would
+    /// take it for a fourth colour.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is no PNG with 8 bits a colour.
+    pub fn read(path: &Path) -> Result<Self, ExportError> {
+        let bytes = read_regular_file(path, MOST_BYTES, Symlinks::Followed);
+        let bytes = bytes.map_err(ExportError::io(path))?;
+        Self::decode(&bytes).map_err(|problem| ExportError::dataset(path, problem))
+    }
+
+    /// The picture in a PNG file.
+    ///
+    /// # Errors
+    /// It is none, or has not 8 bits a colour.
+    pub fn decode(bytes: &[u8]) -> Result<Self, String> {
+        let mut decoder = png::Decoder::new(std::io::Cursor::new(bytes));
+        decoder.set_transformations(png::Transformations::EXPAND);
+        let mut reader = decoder.read_info().map_err(|error| error.to_string())?;
+        let size = reader.output_buffer_size().ok_or("it is too large")?;
+        let mut pixels = vec![0; size];
+        let info = reader
+            .next_frame(&mut pixels)
+            .map_err(|error| error.to_string())?;
+        pixels.truncate(info.buffer_size());
+        let rgb = match (info.color_type, info.bit_depth) {
+            (png::ColorType::Rgba, png::BitDepth::Eight) => {
+                let (pixels, _) = pixels.as_chunks();
+                pixels
+                    .iter()
+                    .flat_map(|&[red, green, blue, _]| [red, green, blue])
+                    .collect()
+            }
+            (png::ColorType::Rgb, png::BitDepth::Eight) => pixels,
+            (color, depth) => {
+                return Err(format!(
+                    "expected red, green and blue of 8 bits, found {color:?} of {depth:?}"
+                ));
+            }
+        };
+        Self::new(info.width, info.height, rgb).map_err(|error| error.to_string())
+    }
+
+    fn new(width: u32, height: u32, rgb: Vec<u8>) -> Result<Self, png::EncodingError> {
+        let mut png = Vec::new();
+        let mut encoder = png::Encoder::new(&mut png, width, height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::Fast);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&rgb)?;
+        writer.finish()?;
+        Ok(Self {
+            width,
+            height,
+            rgb,
+            png,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_pixels_stay_and_the_alpha_channel_goes() {
+        let rgba: Vec<u8> = (0..12_u8).flat_map(|i| [i, 2 * i, 3 * i, 255]).collect();
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 4, 3);
+        encoder.set_color(png::ColorType::Rgba);
+        let mut writer = encoder.write_header().unwrap();
+        writer.write_image_data(&rgba).unwrap();
+        writer.finish().unwrap();
+
+        let image = Image::decode(&bytes).unwrap();
+        let expected: Vec<u8> = (0..12_u8).flat_map(|i| [i, 2 * i, 3 * i]).collect();
+        assert_eq!((image.width, image.height), (4, 3));
+        assert_eq!(image.rgb, expected);
+        assert_eq!(Image::decode(&image.png).unwrap(), image);
+        assert!(Image::decode(&bytes[..20]).is_err());
+    }
+}

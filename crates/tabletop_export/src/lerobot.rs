@@ -1,0 +1,221 @@
+//! LeRobotDataset v3.0: Parquet files with a row a frame, and JSON around them.
+//!
+//! ```text
+//! meta/info.json                              features, totals
+//! meta/stats.json                             statistics of all frames
+//! meta/tasks.parquet                          the instructions
+//! meta/episodes/chunk-000/file-000.parquet    a row an episode
+//! data/chunk-000/file-000.parquet             a row a frame, a row group an episode
+//! ```
+//!
+//! Every export adds files and replaces the three first ones. They get their names together, by [`Commit`](commit::Commit).
+
+mod columns;
+mod commit;
+mod data_file;
+mod episode_table;
+mod info;
+mod language;
+mod stats;
+mod task_table;
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+use tabletop_storage::{FolderLock, Storage};
+
+use self::{
+    commit::Commit,
+    data_file::{DataFile, DataPlace},
+    episode_table::EpisodeRow,
+    info::Info,
+    stats::FeatureStats,
+};
+use crate::{episode::Episode, error::ExportError, format::Format};
+
+/// A LeRobot dataset (v3.0) in a folder, to which episodes are added. Its pictures are PNG files in the table of frames: nothing is lost.
+#[derive(Debug)]
+pub struct LeRobot {
+    folder: PathBuf,
+    storage: Storage,
+    commit: Commit,
+    info: Option<Info>,
+    tasks: Vec<String>,
+    stats: BTreeMap<String, FeatureStats>,
+    rows: Vec<EpisodeRow>,
+    file: Option<DataFile>,
+    next_file: usize,
+    /// Nobody else writes to it meanwhile.
+    _lock: Option<FolderLock>,
+}
+
+/// An episode with its statistics.
+#[derive(Debug)]
+pub struct PreparedEpisode {
+    episode: Episode,
+    stats: BTreeMap<String, FeatureStats>,
+}
+
+impl LeRobot {
+    /// Opens a dataset to add episodes, or begins a new one. The end of an export that was cut off is made up for first, or what it left is
+    /// removed.
+    ///
+    /// # Errors
+    /// The folder holds anything else, or cannot be read or written.
+    pub fn open(folder: PathBuf) -> Result<Self, ExportError> {
+        let storage = Storage::default();
+        let meta = folder.join("meta");
+        let is_new = !meta.exists();
+        if is_new && !is_empty(&folder, &storage)? {
+            return Err(ExportError::dataset(
+                &folder,
+                "it is neither empty nor a LeRobot dataset",
+            ));
+        }
+        storage
+            .create_folders(&meta)
+            .map_err(ExportError::io(&meta))?;
+        let lock = FolderLock::wait(&folder, &storage);
+        let commit = Commit::begin(&folder, &storage)?;
+        let info = Info::read(&folder)?;
+        let (tasks, stats) = match &info {
+            Some(_) => (task_table::read(&folder)?, stats::read(&folder)?),
+            None => Default::default(),
+        };
+        Ok(Self {
+            next_file: data_file::count(&folder),
+            folder,
+            storage,
+            commit,
+            info,
+            tasks,
+            stats,
+            rows: Vec::new(),
+            file: None,
+            _lock: lock,
+        })
+    }
+
+    /// The number of a task's sentence.
+    fn task_number(&mut self, task: &str) -> usize {
+        let known = self.tasks.iter().position(|known| known == task);
+        known.unwrap_or_else(|| {
+            self.tasks.push(task.to_owned());
+            self.tasks.len() - 1
+        })
+    }
+
+    /// The file that the next episode goes to.
+    fn file_for(&mut self, episode: &Episode) -> Result<&mut DataFile, ExportError> {
+        if self.file.as_ref().is_some_and(DataFile::is_full) {
+            self.close_file()?;
+        }
+        let file = match self.file.take() {
+            Some(file) => file,
+            None => {
+                let place = DataPlace::of(self.next_file);
+                self.next_file += 1;
+                let (path, file) =
+                    self.commit
+                        .create(&place.path("data"), &self.folder, &self.storage)?;
+                DataFile::new(path, file, place, episode)?
+            }
+        };
+        Ok(self.file.insert(file))
+    }
+
+    fn close_file(&mut self) -> Result<(), ExportError> {
+        match self.file.take() {
+            Some(file) => file.close(),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Format for LeRobot {
+    type Prepared = PreparedEpisode;
+
+    fn prepare(episode: Episode) -> Result<PreparedEpisode, ExportError> {
+        let stats = stats::of_episode(&episode);
+        Ok(PreparedEpisode { episode, stats })
+    }
+
+    fn write(&mut self, prepared: PreparedEpisode) -> Result<usize, ExportError> {
+        let PreparedEpisode { episode, mut stats } = prepared;
+        let unfit = |problem: String| ExportError::Unfit {
+            recording: episode.folder.clone(),
+            problem,
+        };
+        let mut info = match self.info.take() {
+            Some(info) => info,
+            None => Info::of(&episode),
+        };
+        info.check(&episode).map_err(unfit)?;
+        let task = self.task_number(&episode.task);
+        let row = EpisodeRow {
+            number: info.total_episodes,
+            task: episode.task.clone(),
+            task_number: task,
+            frames: episode.len(),
+            first_frame: info.total_frames,
+            place: DataPlace::default(),
+            stats: BTreeMap::new(),
+        };
+        let file = self.file_for(&episode)?;
+        file.write(&episode, &row)?;
+        let place = file.place();
+        stats.extend(stats::of_counters(&episode, &row));
+        for (feature, new) in &stats {
+            match self.stats.get_mut(feature) {
+                Some(all) => all.merge(new),
+                None => drop(self.stats.insert(feature.clone(), new.clone())),
+            }
+        }
+        info.total_episodes += 1;
+        info.total_frames += episode.len();
+        self.info = Some(info);
+        self.rows.push(EpisodeRow {
+            place,
+            stats,
+            ..row
+        });
+        Ok(episode.len())
+    }
+
+    fn finish(mut self) -> Result<(), ExportError> {
+        self.close_file()?;
+        let Some(mut info) = self.info.take() else {
+            return Ok(());
+        };
+        info.total_tasks = self.tasks.len();
+        if let Some(first) = self.rows.first() {
+            let place = first.place;
+            let table = episode_table::write(&self.rows, place)?;
+            let path = place.path("meta/episodes");
+            self.commit
+                .add(&path, &table, &self.folder, &self.storage)?;
+        }
+        for (path, bytes) in [
+            ("meta/tasks.parquet", task_table::write(&self.tasks)?),
+            ("meta/stats.json", stats::write(&self.stats)),
+            ("meta/info.json", info.write()),
+        ] {
+            self.commit
+                .add(Path::new(path), &bytes, &self.folder, &self.storage)?;
+        }
+        self.commit.end(&self.folder, &self.storage)
+    }
+}
+
+/// True if a folder is missing or holds nothing.
+fn is_empty(folder: &Path, storage: &Storage) -> Result<bool, ExportError> {
+    match folder.exists() {
+        false => Ok(true),
+        true => {
+            let entries = storage.entries(folder).map_err(ExportError::io(folder))?;
+            Ok(entries.is_empty())
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! `meta/episodes/chunk-XXX/file-XXX.parquet`: a row an episode.
+
+use std::collections::BTreeMap;
+
+use arrow::error::ArrowError;
+use parquet::arrow::ArrowWriter;
+
+use super::{
+    columns::{self, Column},
+    data_file::{DataPlace, batch, properties},
+    stats::{FeatureStats, QUANTILES},
+};
+use crate::error::ExportError;
+
+/// An episode in the table.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct EpisodeRow {
+    /// Its number.
+    pub number: usize,
+    /// Its task.
+    pub task: String,
+    /// The number of its task.
+    pub task_number: usize,
+    /// Number of its frames.
+    pub frames: usize,
+    /// The number of its first frame in the dataset.
+    pub first_frame: usize,
+    /// The file of its frames.
+    pub place: DataPlace,
+    /// The statistics of its features.
+    pub stats: BTreeMap<String, FeatureStats>,
+}
+
+/// The table of these episodes, as the file at a place.
+pub(super) fn write(rows: &[EpisodeRow], place: DataPlace) -> Result<Vec<u8>, ExportError> {
+    table(rows, place).map_err(|error| ExportError::dataset(place.path("meta/episodes"), error))
+}
+
+fn table(rows: &[EpisodeRow], place: DataPlace) -> Result<Vec<u8>, ArrowError> {
+    let tasks: Vec<_> = rows.iter().map(|row| vec![row.task.as_str()]).collect();
+    let number =
+        |name: &str, of: fn(&EpisodeRow) -> usize| columns::int64(name, rows.iter().map(of));
+    let mut all = vec![
+        number("episode_index", |row| row.number),
+        columns::string_lists("tasks", &tasks),
+        number("length", |row| row.frames),
+        number("data/chunk_index", |row| row.place.chunk),
+        number("data/file_index", |row| row.place.file),
+        number("dataset_from_index", |row| row.first_frame),
+        number("dataset_to_index", |row| row.first_frame + row.frames),
+    ];
+    let features: Vec<_> = rows
+        .first()
+        .map_or(Vec::new(), |row| row.stats.keys().collect());
+    for feature in features {
+        all.extend(columns_of(feature, rows));
+    }
+    let here = |of: usize| std::iter::repeat_n(of, rows.len());
+    all.push(columns::int64(
+        "meta/episodes/chunk_index",
+        here(place.chunk),
+    ));
+    all.push(columns::int64("meta/episodes/file_index", here(place.file)));
+    let batch = batch(all)?;
+    let mut bytes = Vec::new();
+    let mut writer = ArrowWriter::try_new(&mut bytes, batch.schema(), Some(properties().build()))?;
+    writer.write(&batch)?;
+    writer.close()?;
+    Ok(bytes)
+}
+
+/// The columns of a feature's statistics.
+fn columns_of(feature: &str, rows: &[EpisodeRow]) -> Vec<Column> {
+    let stats: Vec<_> = rows
+        .iter()
+        .filter_map(|row| row.stats.get(feature))
+        .collect();
+    let inner_lists = stats.first().map_or(0, |stats| stats.inner_lists());
+    let column = |name: &str, of: &dyn Fn(&FeatureStats) -> Vec<f64>| {
+        let values: Vec<_> = stats.iter().map(|stats| of(stats)).collect();
+        let values: Vec<_> = values.iter().map(Vec::as_slice).collect();
+        columns::tensors(&format!("stats/{feature}/{name}"), &values, inner_lists)
+    };
+    let mut all = vec![
+        column("min", &|stats| stats.min.clone()),
+        column("max", &|stats| stats.max.clone()),
+        column("mean", &|stats| stats.mean.clone()),
+        column("std", &|stats| stats.std.clone()),
+    ];
+    let counts: Vec<_> = stats.iter().map(|stats| [stats.count as f64]).collect();
+    let counts: Vec<_> = counts.iter().map(<[f64; 1]>::as_slice).collect();
+    all.push(columns::tensors(
+        &format!("stats/{feature}/count"),
+        &counts,
+        0,
+    ));
+    for (place, (name, _)) in QUANTILES.iter().enumerate() {
+        all.push(column(name, &|stats| stats.quantiles[place].clone()));
+    }
+    all
+}

@@ -1,0 +1,197 @@
+//! `meta/info.json`: the features of a dataset and its totals.
+
+use std::{io::ErrorKind, path::Path};
+
+use serde_json::{Map, Value, json};
+use tabletop_storage::{Symlinks, read_regular_file};
+
+use super::data_file::MOST_FILE_BYTES;
+use crate::{episode::Episode, error::ExportError};
+
+const PATH: &str = "meta/info.json";
+const MOST_BYTES: u64 = 64 * 1024 * 1024;
+
+/// The features of a dataset and its totals.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Info {
+    /// The file as it was read, with everything that others have written into it.
+    rest: Map<String, Value>,
+    features: Map<String, Value>,
+    fps: u64,
+    pub total_episodes: usize,
+    pub total_frames: usize,
+    pub total_tasks: usize,
+}
+
+impl Info {
+    /// The features of an episode.
+    pub fn of(episode: &Episode) -> Self {
+        let mut rest = Map::new();
+        rest.insert("codebase_version".into(), json!("v3.0"));
+        Self {
+            rest,
+            features: features_of(episode),
+            fps: u64::from(episode.fps),
+            total_episodes: 0,
+            total_frames: 0,
+            total_tasks: 0,
+        }
+    }
+
+    /// That of a dataset, if there is one.
+    pub fn read(folder: &Path) -> Result<Option<Self>, ExportError> {
+        let path = folder.join(PATH);
+        let bytes = match read_regular_file(&path, MOST_BYTES, Symlinks::Followed) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(ExportError::io(&path)(error)),
+        };
+        let rest: Map<String, Value> =
+            serde_json::from_slice(&bytes).map_err(|error| ExportError::dataset(&path, error))?;
+        if rest.get("codebase_version") != Some(&json!("v3.0")) {
+            return Err(ExportError::dataset(
+                &path,
+                "expected a dataset of version v3.0",
+            ));
+        }
+        let number = |name: &str| {
+            let number = rest.get(name).and_then(Value::as_u64);
+            number.ok_or_else(|| ExportError::dataset(&path, format!("it has no number {name}")))
+        };
+        let features = rest.get("features").and_then(Value::as_object).cloned();
+        Ok(Some(Self {
+            features: features.ok_or_else(|| ExportError::dataset(&path, "it has no features"))?,
+            fps: number("fps")?,
+            total_episodes: number("total_episodes")? as usize,
+            total_frames: number("total_frames")? as usize,
+            total_tasks: number("total_tasks")? as usize,
+            rest,
+        }))
+    }
+
+    /// The reason why an episode does not fit, if it does not.
+    pub fn check(&self, episode: &Episode) -> Result<(), String> {
+        if episode.is_empty() {
+            return Err("it has no frame".into());
+        }
+        if u64::from(episode.fps) != self.fps {
+            return Err(format!(
+                "it has {} frames a second, the dataset has {}",
+                episode.fps, self.fps
+            ));
+        }
+        let features = features_of(episode);
+        for (name, feature) in &features {
+            match self.features.get(name) {
+                Some(known) if known == feature => {}
+                Some(known) => {
+                    return Err(format!(
+                        "its {name} is {}, that of the dataset {}",
+                        described(feature),
+                        described(known)
+                    ));
+                }
+                None => return Err(format!("it has {name}, which the dataset has not")),
+            }
+        }
+        match self
+            .features
+            .keys()
+            .find(|name| !features.contains_key(*name))
+        {
+            Some(name) => Err(format!("it lacks {name}, which the dataset has")),
+            None => Ok(()),
+        }
+    }
+
+    /// The text of the file.
+    pub fn write(&self) -> Vec<u8> {
+        let defaults = json!({
+            "codebase_version": "v3.0",
+            "fps": self.fps,
+            "features": self.features,
+            "total_episodes": self.total_episodes,
+            "total_frames": self.total_frames,
+            "total_tasks": self.total_tasks,
+            "chunks_size": super::data_file::FILES_PER_CHUNK,
+            "data_files_size_in_mb": MOST_FILE_BYTES / 1_000_000,
+            "video_files_size_in_mb": 200,
+            "data_path": "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet",
+            "video_path": null,
+            "robot_type": "tabletop",
+            "splits": { "train": format!("0:{}", self.total_episodes) },
+        });
+        let mut all = self.rest.clone();
+        if let Value::Object(defaults) = defaults {
+            for (key, value) in defaults {
+                let is_fixed = matches!(key.as_str(), "robot_type" | "video_path" | "chunks_size");
+                if !(is_fixed && all.contains_key(&key)) {
+                    all.insert(key, value);
+                }
+            }
+        }
+        let mut text = serde_json::to_vec_pretty(&all).unwrap_or_default();
+        text.push(b'\n');
+        text
+    }
+}
+
+/// The features of an episode, in the order of their columns.
+fn features_of(episode: &Episode) -> Map<String, Value> {
+    let mut features = Map::new();
+    for (name, signal) in [
+        ("observation.state", &episode.state),
+        ("action", &episode.action),
+    ] {
+        features.insert(
+            name.into(),
+            json!({ "dtype": "float32", "shape": [signal.names.len()], "names": signal.names }),
+        );
+    }
+    for camera in &episode.cameras {
+        let size = camera
+            .images
+            .first()
+            .map_or([0, 0], |image| [image.height, image.width]);
+        features.insert(
+            feature_of_camera(&camera.name),
+            json!({
+                "dtype": "image",
+                "shape": [size[0], size[1], 3],
+                "names": ["height", "width", "channels"],
+            }),
+        );
+    }
+    for name in ["language_persistent", "language_events"] {
+        let language = json!({ "dtype": "language", "shape": [1], "names": null });
+        features.insert(name.into(), language);
+    }
+    for (name, dtype) in [
+        ("timestamp", "float32"),
+        ("frame_index", "int64"),
+        ("episode_index", "int64"),
+        ("index", "int64"),
+        ("task_index", "int64"),
+    ] {
+        let counter = json!({ "dtype": dtype, "shape": [1], "names": null });
+        features.insert(name.into(), counter);
+    }
+    features
+}
+
+/// The feature of a camera's pictures.
+pub(super) fn feature_of_camera(camera: &str) -> String {
+    format!("observation.images.{camera}")
+}
+
+/// A feature in a few words.
+fn described(feature: &Value) -> String {
+    let names = feature["names"].as_array().filter(|names| names.len() > 3);
+    match names {
+        Some(names) => {
+            let first: Vec<_> = names.iter().take(3).filter_map(Value::as_str).collect();
+            format!("{} numbers ({}, …)", names.len(), first.join(", "))
+        }
+        None => format!("{} of {}", feature["dtype"], feature["shape"]),
+    }
+}

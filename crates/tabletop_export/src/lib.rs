@@ -1,0 +1,33 @@
+//! Recordings as datasets of other tools.
+//!
+//! An [`Episode`] is a recording as a learner reads it: frames at equal intervals, each with a state, an action and pictures, and the task in
+//! sentences. A [`Format`] writes episodes, and [`export`] makes them of recordings on all cores, in constant memory.
+//!
+//! ```no_run
+//! use std::path::PathBuf;
+//! use tabletop_export::{LeRobot, Selection, export};
+//!
+//! let dataset = LeRobot::open("dataset".into())?;
+//! let recordings = [PathBuf::from("demo")];
+//! let summary = export(&recordings, &Selection::default(), dataset, 2, |_| {})?;
+//! println!("{} frames", summary.frames);
+//! # Ok::<_, tabletop_export::ExportError>(())
+//! ```
+
+mod action;
+mod episode;
+mod error;
+mod format;
+mod hand_track;
+mod image;
+mod lerobot;
+mod reading;
+mod selection;
+mod sentence;
+
+pub use episode::{CameraTrack, Episode, Signal, Subtask};
+pub use error::ExportError;
+pub use format::{ExportSummary, Format, export};
+pub use image::Image;
+pub use lerobot::LeRobot;
+pub use selection::{ActionKind, Selection, StateKind};

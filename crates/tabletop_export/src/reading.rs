@@ -1,0 +1,210 @@
+//! Episodes, read from recordings.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use tabletop_core::{SimTick, TICKS_PER_SECOND};
+use tabletop_recorder::{JointRow, RecordingReader};
+use tabletop_task::{Demonstration, Requirements, Task};
+
+use crate::{
+    action::hand_motions,
+    episode::{CameraTrack, Episode, Signal, Subtask},
+    error::ExportError,
+    hand_track::{HANDS, HandTrack},
+    image::Image,
+    selection::{ActionKind, Selection, StateKind},
+    sentence,
+};
+
+impl Episode {
+    /// Reads a recording. Frames in which nothing has changed have the picture of the frame before.
+    ///
+    /// # Errors
+    /// A file cannot be read, or the recording has no pictures.
+    pub fn read(folder: &Path, selection: &Selection) -> Result<Self, ExportError> {
+        let recording = RecordingReader::open(folder)?;
+        let shown = Demonstration::of(&recording)?;
+        let mut task = Task::of(&shown);
+        let requirements = Requirements::read_for(&task, folder)?;
+        task.phrase(&requirements);
+
+        let ticks_per_frame = recording.header().ticks_per_frame;
+        let ticks = frame_ticks(&recording);
+        let rows = recording.joints()?;
+        let joints = joint_positions(&rows, &ticks);
+        let robot_acts = is_moved(&joints);
+        let hands = HandTrack::all(&shown);
+        let state = match selection.state {
+            Some(kind) => kind,
+            None if robot_acts => StateKind::Both,
+            None => StateKind::Objects,
+        };
+        let action = match selection.action {
+            Some(kind) => kind,
+            None if robot_acts => ActionKind::Joints,
+            None => ActionKind::Hands,
+        };
+        let state = match state {
+            StateKind::Robot => joints.clone(),
+            StateKind::Objects => object_state(&shown, &hands, &ticks),
+            StateKind::Both => beside(&joints, &object_state(&shown, &hands, &ticks)),
+        };
+        let action = match action {
+            ActionKind::Hands => hand_motions(&shown, &hands, &ticks),
+            ActionKind::Joints => shifted(&joints),
+        };
+        let cameras = camera_tracks(&recording, ticks.len())?;
+        let instruction = sentence::instruction(&task);
+        let frame_of = |tick: SimTick| ticks.partition_point(|at| *at < tick).min(ticks.len() - 1);
+        let subtasks = sentence::parts(&task, recording.first_tick());
+        let subtasks = subtasks.into_iter().map(|(tick, sentence)| Subtask {
+            frame: frame_of(tick),
+            sentence,
+        });
+        Ok(Self {
+            folder: folder.to_owned(),
+            fps: TICKS_PER_SECOND / ticks_per_frame as u32,
+            state,
+            action,
+            cameras,
+            paraphrases: sentence::paraphrases(&task, &instruction),
+            task: instruction,
+            subtasks: subtasks.collect(),
+            ticks,
+        })
+    }
+}
+
+/// The ticks whose ends the frames show: at equal intervals, and the last one.
+fn frame_ticks(recording: &RecordingReader) -> Vec<SimTick> {
+    let (first, last) = (recording.first_tick().0, recording.last_tick().0);
+    let step = recording.header().ticks_per_frame.max(1);
+    let frames = last.saturating_sub(first).div_ceil(step);
+    (0..=frames)
+        .map(|frame| SimTick((first + frame * step).min(last)))
+        .collect()
+}
+
+/// The positions of all joints at each frame.
+fn joint_positions(rows: &[JointRow], ticks: &[SimTick]) -> Signal {
+    let first = rows.first().map(|row| row.tick);
+    let names = rows.iter().take_while(|row| Some(row.tick) == first);
+    let names: Vec<_> = names.map(|row| row.joint).collect();
+    let mut signal = Signal::new(names.iter().map(ToString::to_string).collect());
+    let mut positions = vec![0.0_f32; names.len()];
+    let mut rows = rows.iter().peekable();
+    for tick in ticks {
+        while let Some(row) = rows.next_if(|row| row.tick <= *tick) {
+            if let Some(place) = names.iter().position(|name| *name == row.joint) {
+                positions[place] = row.state.position as f32;
+            }
+        }
+        signal.values.extend(&positions);
+    }
+    signal
+}
+
+/// True if a number changes from frame to frame.
+fn is_moved(signal: &Signal) -> bool {
+    let mut frames = signal.frames();
+    let first = frames.next();
+    frames.any(|frame| Some(frame) != first)
+}
+
+/// The signal one frame later; the last frame stays.
+fn shifted(signal: &Signal) -> Signal {
+    let frames: Vec<_> = signal.frames().collect();
+    let later = frames.iter().skip(1).chain(frames.last());
+    Signal {
+        names: signal.names.clone(),
+        values: later.flat_map(|frame| frame.iter().copied()).collect(),
+    }
+}
+
+/// Two signals, frame by frame one after the other.
+fn beside(one: &Signal, other: &Signal) -> Signal {
+    let names = one.names.iter().chain(&other.names).cloned().collect();
+    let mut both = Signal::new(names);
+    for (one, other) in one.frames().zip(other.frames()) {
+        both.values.extend(one);
+        both.values.extend(other);
+    }
+    both
+}
+
+/// Pose of every object, in the order of their creation, and place and grip of the hands. An object that is not there has no rotation: all of its
+/// numbers are 0.
+fn object_state(shown: &Demonstration, hands: &[HandTrack; 2], ticks: &[SimTick]) -> Signal {
+    let parts = ["x", "y", "z", "qx", "qy", "qz", "qw"];
+    let objects = shown.objects.iter();
+    let objects = objects.flat_map(|object| parts.map(|part| format!("{}.{part}", object.spec.id)));
+    let of_hands = HANDS
+        .iter()
+        .flat_map(|(hand, _)| ["x", "y", "z", "grip"].map(|part| format!("{hand}_hand.{part}")));
+    let mut signal = Signal::new(objects.chain(of_hands).collect());
+    for &tick in ticks {
+        for object in &shown.objects {
+            let is_there =
+                object.created <= tick && object.deleted.is_none_or(|deleted| tick < deleted);
+            match object.track.at(tick).filter(|_| is_there) {
+                Some(pose) => {
+                    signal.values.extend(pose.location.to_array());
+                    signal.values.extend(pose.rotation.to_array());
+                }
+                None => signal.values.extend([0.0; 7]),
+            }
+        }
+        for hand in hands {
+            signal
+                .values
+                .extend(hand.pose(shown, tick).location.to_array());
+            signal
+                .values
+                .push(f32::from(u8::from(hand.held(tick).is_some())));
+        }
+    }
+    signal
+}
+
+/// The pictures of every camera at every frame.
+fn camera_tracks(
+    recording: &RecordingReader,
+    frames: usize,
+) -> Result<Vec<CameraTrack>, ExportError> {
+    let segments = recording.segments()?;
+    let recorded = segments.iter().flat_map(|segment| &segment.frames);
+    let recorded: BTreeMap<_, _> = recorded.map(|frame| (frame.number, frame)).collect();
+    let of_hands = recording.header().hand_cameras.iter();
+    let hands = of_hands.map(|camera| camera.name.as_str());
+    let mut tracks = Vec::new();
+    for name in std::iter::once("head").chain(hands) {
+        let picture = |number: u64| -> Option<&PathBuf> {
+            let frame = recorded.get(&number)?;
+            match name {
+                "head" => Some(&frame.picture),
+                hand => frame.hand_pictures.get(hand),
+            }
+        };
+        let mut images = Vec::with_capacity(frames);
+        let mut latest: Option<Arc<Image>> = None;
+        for number in 0..frames as u64 {
+            if let Some(path) = picture(number) {
+                latest = Some(Arc::new(Image::read(path)?));
+            }
+            let image = latest.clone().ok_or_else(|| ExportError::Unfit {
+                recording: recording.folder().to_owned(),
+                problem: format!("its first frame has no picture of the {name} camera"),
+            })?;
+            images.push(image);
+        }
+        tracks.push(CameraTrack {
+            name: name.to_owned(),
+            images,
+        });
+    }
+    Ok(tracks)
+}
