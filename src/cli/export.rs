@@ -12,7 +12,8 @@ use std::{
 use clap::{Args, ValueEnum};
 use tabletop::{
     export::{
-        ActionKind, ExportError, ExportSummary, Format, LeRobot, Selection, StateKind, export,
+        ActionKind, ExportError, ExportSummary, Format, LeRobot, Matlab, Mcap, Robomimic,
+        Selection, StateKind, export,
     },
     recorder::RecordingReader,
 };
@@ -27,7 +28,8 @@ pub(super) struct ExportArgs {
     /// Folders of recordings, or folders that hold them, as `multiply` makes them
     #[arg(value_name = "DIR", required = true)]
     recordings: Vec<PathBuf>,
-    /// The format, and the folder or file to write. `lerobot` is a folder (LeRobotDataset v3.0), to which further exports add episodes
+    /// The format, and the folder or file to write, to which further exports add episodes: `lerobot` (LeRobotDataset v3.0, a folder),
+    /// `robomimic` (an HDF5 file), `mcap` or `mat` (a folder with a file an episode, for Foxglove and Rerun, or MATLAB)
     #[arg(long, value_names = ["FORMAT", "OUT"], num_args = 2, required = true)]
     to: Vec<OsString>,
     /// The state of a frame [default: objects; with the robot if it moves]
@@ -76,10 +78,13 @@ pub(super) fn run(args: &ExportArgs) -> Result<ExitCode, Failure> {
     let start = Instant::now();
     let summary = match format.to_str() {
         Some("lerobot") => args.export(&recordings, LeRobot::open(out).map_err(failed)?),
+        Some("robomimic") => args.export(&recordings, Robomimic::open(out).map_err(failed)?),
+        Some("mcap") => args.export(&recordings, Mcap::open(out).map_err(failed)?),
+        Some("mat") => args.export(&recordings, Matlab::open(out).map_err(failed)?),
         _ => {
             let format = format.display();
             return Err(Failure::input(format!(
-                "there is no format {format}; expected lerobot"
+                "there is no format {format}; expected lerobot, robomimic, mcap or mat"
             )));
         }
     }?;

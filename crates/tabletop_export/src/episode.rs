@@ -2,9 +2,10 @@
 
 use std::{path::PathBuf, sync::Arc};
 
-use tabletop_core::SimTick;
+use tabletop_core::{ObjectSpec, SimTick};
+use tabletop_geometry::Pose;
 
-use crate::image::Image;
+use crate::{image::Image, selection::ActionKind};
 
 /// A recording as a learner reads it.
 #[derive(Clone, Debug)]
@@ -19,6 +20,10 @@ pub struct Episode {
     pub state: Signal,
     /// The action from each frame to the next.
     pub action: Signal,
+    /// The kind of action.
+    pub action_kind: ActionKind,
+    /// The objects with their poses.
+    pub objects: Vec<ObjectTrack>,
     /// The cameras with their pictures.
     pub cameras: Vec<CameraTrack>,
     /// The task, in a sentence a step.
@@ -36,6 +41,15 @@ pub struct Signal {
     pub names: Vec<String>,
     /// The numbers, frame by frame.
     pub values: Vec<f32>,
+}
+
+/// An object, and its pose at each frame.
+#[derive(Clone, Debug)]
+pub struct ObjectTrack {
+    /// The object.
+    pub spec: ObjectSpec,
+    /// Its poses, in the table's frame; `None` while it is not there.
+    pub poses: Vec<Option<Pose>>,
 }
 
 /// The pictures of a camera, one for each frame.

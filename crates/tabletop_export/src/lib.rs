@@ -16,18 +16,25 @@
 
 mod action;
 mod episode;
+mod episode_files;
 mod error;
 mod format;
+mod foxglove;
 mod hand_track;
 mod image;
 mod lerobot;
+mod matlab;
 mod reading;
+mod robomimic;
 mod selection;
 mod sentence;
 
-pub use episode::{CameraTrack, Episode, Signal, Subtask};
+pub use episode::{CameraTrack, Episode, ObjectTrack, Signal, Subtask};
 pub use error::ExportError;
 pub use format::{ExportSummary, Format, export};
+pub use foxglove::Mcap;
 pub use image::Image;
 pub use lerobot::LeRobot;
+pub use matlab::Matlab;
+pub use robomimic::Robomimic;
 pub use selection::{ActionKind, Selection, StateKind};

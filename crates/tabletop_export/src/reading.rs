@@ -12,7 +12,7 @@ use tabletop_task::{Demonstration, Requirements, Task};
 
 use crate::{
     action::hand_motions,
-    episode::{CameraTrack, Episode, Signal, Subtask},
+    episode::{CameraTrack, Episode, ObjectTrack, Signal, Subtask},
     error::ExportError,
     hand_track::{HANDS, HandTrack},
     image::Image,
@@ -48,11 +48,13 @@ impl Episode {
             None if robot_acts => ActionKind::Joints,
             None => ActionKind::Hands,
         };
+        let objects = object_tracks(&shown, &ticks);
         let state = match state {
             StateKind::Robot => joints.clone(),
-            StateKind::Objects => object_state(&shown, &hands, &ticks),
-            StateKind::Both => beside(&joints, &object_state(&shown, &hands, &ticks)),
+            StateKind::Objects => object_state(&shown, &objects, &hands, &ticks),
+            StateKind::Both => beside(&joints, &object_state(&shown, &objects, &hands, &ticks)),
         };
+        let action_kind = action;
         let action = match action {
             ActionKind::Hands => hand_motions(&shown, &hands, &ticks),
             ActionKind::Joints => shifted(&joints),
@@ -70,6 +72,8 @@ impl Episode {
             fps: TICKS_PER_SECOND / ticks_per_frame as u32,
             state,
             action,
+            action_kind,
+            objects,
             cameras,
             paraphrases: sentence::paraphrases(&task, &instruction),
             task: instruction,
@@ -138,19 +142,23 @@ fn beside(one: &Signal, other: &Signal) -> Signal {
 
 /// Pose of every object, in the order of their creation, and place and grip of the hands. An object that is not there has no rotation: all of its
 /// numbers are 0.
-fn object_state(shown: &Demonstration, hands: &[HandTrack; 2], ticks: &[SimTick]) -> Signal {
+fn object_state(
+    shown: &Demonstration,
+    objects: &[ObjectTrack],
+    hands: &[HandTrack; 2],
+    ticks: &[SimTick],
+) -> Signal {
     let parts = ["x", "y", "z", "qx", "qy", "qz", "qw"];
-    let objects = shown.objects.iter();
-    let objects = objects.flat_map(|object| parts.map(|part| format!("{}.{part}", object.spec.id)));
+    let of_objects = objects
+        .iter()
+        .flat_map(|object| parts.map(|part| format!("{}.{part}", object.spec.id)));
     let of_hands = HANDS
         .iter()
         .flat_map(|(hand, _)| ["x", "y", "z", "grip"].map(|part| format!("{hand}_hand.{part}")));
-    let mut signal = Signal::new(objects.chain(of_hands).collect());
-    for &tick in ticks {
-        for object in &shown.objects {
-            let is_there =
-                object.created <= tick && object.deleted.is_none_or(|deleted| tick < deleted);
-            match object.track.at(tick).filter(|_| is_there) {
+    let mut signal = Signal::new(of_objects.chain(of_hands).collect());
+    for (frame, &tick) in ticks.iter().enumerate() {
+        for object in objects {
+            match object.poses[frame] {
                 Some(pose) => {
                     signal.values.extend(pose.location.to_array());
                     signal.values.extend(pose.rotation.to_array());
@@ -168,6 +176,22 @@ fn object_state(shown: &Demonstration, hands: &[HandTrack; 2], ticks: &[SimTick]
         }
     }
     signal
+}
+
+/// Every object with its pose at each frame.
+fn object_tracks(shown: &Demonstration, ticks: &[SimTick]) -> Vec<ObjectTrack> {
+    let tracks = shown.objects.iter().map(|object| {
+        let poses = ticks.iter().map(|&tick| {
+            let is_there =
+                object.created <= tick && object.deleted.is_none_or(|deleted| tick < deleted);
+            object.track.at(tick).filter(|_| is_there)
+        });
+        ObjectTrack {
+            spec: object.spec.clone(),
+            poses: poses.collect(),
+        }
+    });
+    tracks.collect()
 }
 
 /// The pictures of every camera at every frame.

@@ -1,0 +1,106 @@
+//! MATLAB: a `.mat` file (v7.3) an episode.
+
+use std::path::PathBuf;
+
+use hdf5_pure::mat::{MatBuilder, MatError, Options};
+
+use crate::{
+    episode::{CameraTrack, Episode, Signal},
+    episode_files::EpisodeFiles,
+    error::ExportError,
+    format::Format,
+};
+
+/// A folder with a `.mat` file an episode: numbers and pictures as arrays, names and sentences as texts, a line each.
+#[derive(Debug)]
+pub struct Matlab(EpisodeFiles);
+
+impl Matlab {
+    /// The folder; episodes that it has already stay.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub fn open(folder: PathBuf) -> Result<Self, ExportError> {
+        Ok(Self(EpisodeFiles::open(folder, "mat")?))
+    }
+}
+
+impl Format for Matlab {
+    /// The bytes of a file, and the number of its frames.
+    type Prepared = (Vec<u8>, usize);
+
+    fn prepare(episode: Episode) -> Result<Self::Prepared, ExportError> {
+        let bytes = file_of(&episode).map_err(|error| ExportError::Unfit {
+            recording: episode.folder.clone(),
+            problem: error.to_string(),
+        })?;
+        Ok((bytes, episode.len()))
+    }
+
+    fn write(&mut self, (bytes, frames): Self::Prepared) -> Result<usize, ExportError> {
+        self.0.write(&bytes)?;
+        Ok(frames)
+    }
+
+    fn finish(self) -> Result<(), ExportError> {
+        Ok(())
+    }
+}
+
+fn file_of(episode: &Episode) -> Result<Vec<u8>, MatError> {
+    let mut file = MatBuilder::new(Options::default());
+    let frames = episode.len();
+    file.write_scalar_f64("fps", f64::from(episode.fps))?;
+    file.write_char("task", &episode.task)?;
+    let ticks: Vec<f64> = episode.ticks.iter().map(|tick| tick.0 as f64).collect();
+    file.write_f64("ticks", &[frames, 1], &ticks)?;
+    for (name, signal) in [("state", &episode.state), ("action", &episode.action)] {
+        file.write_f32(name, &[frames, signal.names.len()], &by_columns(signal))?;
+        file.write_char(&format!("{name}_names"), &signal.names.join("\n"))?;
+    }
+    let starts: Vec<f64> = episode
+        .subtasks
+        .iter()
+        .map(|part| part.frame as f64 + 1.0)
+        .collect();
+    let parts: Vec<_> = episode
+        .subtasks
+        .iter()
+        .map(|part| part.sentence.as_str())
+        .collect();
+    if !parts.is_empty() {
+        file.write_f64("subtask_frames", &[starts.len(), 1], &starts)?;
+        file.write_char("subtasks", &parts.join("\n"))?;
+    }
+    for camera in &episode.cameras {
+        if let Some(first) = camera.images.first() {
+            let size = [first.height as usize, first.width as usize, 3, frames];
+            let name = format!("{}_image", camera.name);
+            file.write_u8(&name, &size, &planes(camera))?;
+        }
+    }
+    file.finish()
+}
+
+/// The numbers of a signal, each for all frames after the one before.
+fn by_columns(signal: &Signal) -> Vec<f32> {
+    let width = signal.names.len();
+    (0..width)
+        .flat_map(|column| signal.frames().map(move |frame| frame[column]))
+        .collect()
+}
+
+/// The pictures as MATLAB has them: column by column, colour by colour, frame by frame.
+fn planes(camera: &CameraTrack) -> Vec<u8> {
+    let mut planes = Vec::new();
+    for image in &camera.images {
+        let (width, height) = (image.width as usize, image.height as usize);
+        for color in 0..3 {
+            for column in 0..width {
+                let rows = (0..height).map(|row| image.rgb[(row * width + column) * 3 + color]);
+                planes.extend(rows);
+            }
+        }
+    }
+    planes
+}

@@ -1,0 +1,266 @@
+//! robomimic: an HDF5 file with a group a demonstration.
+
+use std::{
+    f64::consts::TAU,
+    io,
+    path::{Path, PathBuf},
+};
+
+use hdf5_pure::{AttrValue, Error, File, FileBuilder};
+use serde_json::json;
+use tabletop_storage::Storage;
+
+use crate::{episode::Episode, error::ExportError, format::Format, selection::ActionKind};
+
+/// Every so many demonstrations, one is for validation.
+const VALIDATION: usize = 10;
+
+/// The compression of pictures.
+const DEFLATE: u32 = 4;
+
+/// An HDF5 file as robomimic reads it, to which demonstrations are added. Each is complete on the disk before the next one begins.
+pub struct Robomimic {
+    path: PathBuf,
+    file: File,
+    demonstrations: usize,
+    frames: usize,
+    /// The shape of each demonstration.
+    shape: Option<DemonstrationShape>,
+}
+
+/// What all demonstrations of a file have in common.
+#[derive(Clone, Debug, PartialEq)]
+struct DemonstrationShape {
+    env_args: String,
+}
+
+impl Robomimic {
+    /// Opens a file to add demonstrations, or makes a new one.
+    ///
+    /// # Errors
+    /// It is no such file, or cannot be read or written.
+    pub fn open(path: PathBuf) -> Result<Self, ExportError> {
+        if !path.exists() {
+            let bytes = empty_file().map_err(|error| failed(&path, error))?;
+            let written = Storage::default().write_new(&path, &bytes);
+            written.map_err(ExportError::io(&path))?;
+        }
+        let file = File::open_rw(&path).map_err(|error| failed(&path, error))?;
+        let data = file.group("data").map_err(|error| failed(&path, error))?;
+        let attributes = data.attrs().map_err(|error| failed(&path, error))?;
+        let frames = attributes.get("total").and_then(AttrValue::as_i64);
+        let frames = frames.ok_or_else(|| ExportError::dataset(&path, "data has no total"))?;
+        let demonstrations = data.groups().map_err(|error| failed(&path, error))?.len();
+        let env_args = attributes.get("env_args").and_then(AttrValue::as_str);
+        let shape = env_args.filter(|_| demonstrations > 0);
+        let shape = shape.map(|env_args| DemonstrationShape {
+            env_args: env_args.to_owned(),
+        });
+        Ok(Self {
+            path,
+            file,
+            demonstrations,
+            frames: frames.max(0) as usize,
+            shape,
+        })
+    }
+
+    fn add(&self, episode: &Episode, name: &str, env_args: &str) -> Result<(), Error> {
+        let frames = episode.len() as u64;
+        let root = self.file.root();
+        let meta = json!({ "lang": episode.task }).to_string();
+        root.create_group_with(name, |group| {
+            group.set_attr("num_samples", AttrValue::I64(frames as i64));
+            group.set_attr("ep_meta", AttrValue::VarLenString(meta));
+        })?;
+        let scale = scale(episode.action_kind, episode.fps);
+        let action = |(i, value): (usize, &f32)| f64::from(*value) / scale[i % scale.len()];
+        let actions: Vec<f64> = episode
+            .action
+            .values
+            .iter()
+            .enumerate()
+            .map(action)
+            .collect();
+        let width = episode.action.names.len() as u64;
+        root.create_dataset(&format!("{name}/actions"), |set| {
+            set.with_f64_data(&actions).with_shape(&[frames, width]);
+        })?;
+        let states: Vec<f64> = episode
+            .state
+            .values
+            .iter()
+            .copied()
+            .map(f64::from)
+            .collect();
+        let width = episode.state.names.len() as u64;
+        root.create_dataset(&format!("{name}/states"), |set| {
+            set.with_f64_data(&states).with_shape(&[frames, width]);
+        })?;
+        let last = |frame: u64| i64::from(frame + 1 == frames);
+        let done: Vec<i64> = (0..frames).map(last).collect();
+        let rewards: Vec<f64> = done.iter().map(|done| *done as f64).collect();
+        root.create_dataset(&format!("{name}/dones"), |set| {
+            set.with_i64_data(&done);
+        })?;
+        root.create_dataset(&format!("{name}/rewards"), |set| {
+            set.with_f64_data(&rewards);
+        })?;
+        root.create_group(&format!("{name}/obs"))?;
+        root.create_dataset(&format!("{name}/obs/state"), |set| {
+            set.with_f32_data(&episode.state.values)
+                .with_shape(&[frames, width]);
+        })?;
+        for camera in &episode.cameras {
+            let Some(first) = camera.images.first() else {
+                continue;
+            };
+            let (height, width) = (u64::from(first.height), u64::from(first.width));
+            let pixels: Vec<u8> = camera
+                .images
+                .iter()
+                .flat_map(|image| &image.rgb)
+                .copied()
+                .collect();
+            root.create_dataset(&format!("{name}/obs/{}_image", camera.name), |set| {
+                set.with_u8_data(&pixels)
+                    .with_shape(&[frames, height, width, 3])
+                    .with_chunks(&[1, height, width, 3])
+                    .with_deflate(DEFLATE);
+            })?;
+        }
+        let data = self.file.group("data")?;
+        let total = (self.frames + episode.len()) as i64;
+        data.set_attr("total", AttrValue::I64(total))?;
+        data.set_attr("env_args", AttrValue::VarLenString(env_args.to_owned()))?;
+        self.file.commit()
+    }
+
+    /// Divides the demonstrations into those to train with and those to validate with.
+    fn write_masks(&self) -> Result<(), Error> {
+        let root = self.file.root();
+        for (name, is_for_validation) in [("train", false), ("valid", true)] {
+            let names: Vec<_> = (0..self.demonstrations)
+                .filter(|number| (number % VALIDATION == VALIDATION - 1) == is_for_validation)
+                .map(|number| format!("demo_{number}"))
+                .collect();
+            let mask = format!("mask/{name}");
+            if self.file.dataset(&mask).is_ok() {
+                root.delete(&mask)?;
+            }
+            let names: Vec<_> = names.iter().map(String::as_str).collect();
+            if names.is_empty() {
+                continue;
+            }
+            let mut refused = None;
+            root.create_dataset(&mask, |set| {
+                refused = set.with_ascii_strings(&names).map(drop).err();
+            })?;
+            if let Some(refused) = refused {
+                return Err(refused.into());
+            }
+        }
+        self.file.commit()
+    }
+}
+
+impl Format for Robomimic {
+    type Prepared = Episode;
+
+    fn prepare(episode: Episode) -> Result<Episode, ExportError> {
+        let scale = scale(episode.action_kind, episode.fps);
+        let values = episode.action.values.iter().enumerate();
+        let mut beyond =
+            values.filter(|(i, value)| f64::from(value.abs()) > scale[i % scale.len()]);
+        match beyond.next() {
+            Some((i, value)) => Err(ExportError::Unfit {
+                problem: format!(
+                    "its action {} is {value}, but robomimic has none beyond {}",
+                    episode.action.names[i % episode.action.names.len()],
+                    scale[i % scale.len()]
+                ),
+                recording: episode.folder,
+            }),
+            None => Ok(episode),
+        }
+    }
+
+    fn write(&mut self, episode: Episode) -> Result<usize, ExportError> {
+        let env_args = env_args(&episode);
+        match &self.shape {
+            Some(shape) if shape.env_args != env_args => {
+                return Err(ExportError::Unfit {
+                    recording: episode.folder,
+                    problem: "its states, actions or frames a second are not those of the file"
+                        .into(),
+                });
+            }
+            Some(_) => {}
+            None => {
+                self.shape = Some(DemonstrationShape {
+                    env_args: env_args.clone(),
+                });
+            }
+        }
+        let name = format!("data/demo_{}", self.demonstrations);
+        self.add(&episode, &name, &env_args)
+            .map_err(|error| failed(&self.path, error))?;
+        self.demonstrations += 1;
+        self.frames += episode.len();
+        Ok(episode.len())
+    }
+
+    fn finish(self) -> Result<(), ExportError> {
+        let path = self.path.clone();
+        self.write_masks()
+            .and_then(|()| self.file.close())
+            .map_err(|error| failed(&path, error))
+    }
+}
+
+fn empty_file() -> Result<Vec<u8>, Error> {
+    let mut file = FileBuilder::new();
+    let mut data = file.create_group("data");
+    data.set_attr("total", AttrValue::I64(0));
+    data.set_attr("env_args", AttrValue::VarLenString("{}".into()));
+    file.add_group(data.finish());
+    let mask = file.create_group("mask");
+    file.add_group(mask.finish());
+    Ok(file.finish()?)
+}
+
+/// What a robomimic action of 1 stands for, for each of the numbers of a hand, or for every joint.
+fn scale(kind: ActionKind, fps: u32) -> Vec<f64> {
+    match kind {
+        ActionKind::Hands => {
+            let way = 40.0 / f64::from(fps);
+            let turn = TAU / 2.0;
+            vec![way, way, way, turn, turn, turn, 1.0]
+        }
+        ActionKind::Joints => vec![TAU],
+    }
+}
+
+/// The description of the environment, and of the meaning of states and actions.
+fn env_args(episode: &Episode) -> String {
+    json!({
+        "env_name": "tabletop",
+        "type": 2,
+        "env_kwargs": {
+            "fps": episode.fps,
+            "state_names": episode.state.names,
+            "action_names": episode.action.names,
+            "action_scale": scale(episode.action_kind, episode.fps),
+        },
+    })
+    .to_string()
+}
+
+fn failed(path: &Path, error: Error) -> ExportError {
+    match error {
+        Error::Io(error) => ExportError::io(path)(error),
+        error => match io::Error::other(error.to_string()) {
+            error => ExportError::dataset(path, error),
+        },
+    }
+}
