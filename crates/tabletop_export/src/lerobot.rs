@@ -65,7 +65,14 @@ impl LeRobot {
     /// # Errors
     /// The folder holds anything else, or cannot be read or written.
     pub fn open(folder: PathBuf) -> Result<Self, ExportError> {
-        let storage = Storage::default();
+        Self::open_in(folder, Storage::default())
+    }
+
+    /// [`open`](Self::open) in a storage of which a test lets calls fail.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn open_in(folder: PathBuf, storage: Storage) -> Result<Self, ExportError> {
         let meta = folder.join("meta");
         let is_new = !meta.exists();
         if is_new && !is_empty(&folder, &storage)? {
