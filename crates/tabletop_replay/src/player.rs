@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop_core::{
-    Actor, Agent, ClockCommand, CommandWriter, HandCommand, IssuedCommand, MechanismSystems,
-    Paused, RecordingCommand, Replaying, RestApp as _, RestingSystems, RobotCommand, ScriptEvent,
-    SimCommand, SimFact, SimSystems, SimTick, TickSystems,
+    Actor, Agent, ClockCommand, CommandSystems, CommandWriter, HandCommand, IssuedCommand,
+    MechanismSystems, Paused, RecordingCommand, Replaying, RestApp as _, RestingSystems,
+    RobotCommand, ScriptEvent, SimCommand, SimFact, SimTick, TickSystems,
 };
 use tabletop_recorder::{Session, SessionCommand};
 
@@ -163,7 +163,7 @@ pub(crate) fn plugin(app: &mut App) {
     app.add_systems(
         FixedUpdate,
         (
-            play.before(SimSystems::Load),
+            play.before(CommandSystems::History),
             pause_late
                 .after(MechanismSystems::Obey)
                 .before(MechanismSystems::React),
@@ -244,7 +244,9 @@ fn play(
 mod tests {
     use std::{slice, time::Duration};
 
-    use tabletop_core::{CorePlugin, Hand, SceneCommand, StepApp as _, WriteCommand as _};
+    use tabletop_core::{
+        CorePlugin, Hand, SceneCommand, SimSystems, StepApp as _, WriteCommand as _,
+    };
 
     use super::*;
 
