@@ -4,7 +4,8 @@ use std::cell::OnceCell;
 
 use bevy::prelude::*;
 use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*, rapier::prelude as rapier};
-use tabletop_core::{Hand, Hands, Joint, Pose, TICK_SECONDS};
+use tabletop_core::{Hand, Hands, Joint, TICK_SECONDS};
+use tabletop_geometry::Pose;
 use tabletop_physics::{
     Carry, Convex, Nearby, Nearest, convex_parts, nearby, nearest, pull_velocity,
 };

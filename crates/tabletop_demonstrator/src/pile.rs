@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume as _};
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 use tabletop_physics::{Convex, Nearby, depth};
 
 /// Distance, in units, by which it is tried whether an object gives way.

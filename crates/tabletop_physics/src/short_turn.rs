@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::{prelude::*, rapier::prelude as rapier};
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 
 use crate::geometry::to_rapier;
 

@@ -8,7 +8,7 @@ use bevy_rapier3d::{
     },
     rapier::prelude as rapier,
 };
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 use tabletop_physics::{Convex, contact, to_rapier};
 
 /// Distance, in units, that is kept from obstacles.
@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_near_may_leave_and_not_come_nearer() {
+    fn a_solid_that_is_too_near_may_leave_and_not_come_nearer() {
         assert!(!is_blocked(1.0, 1.005));
         assert!(is_blocked(1.0, 0.99));
         assert!(!is_blocked(0.5, 0.6));

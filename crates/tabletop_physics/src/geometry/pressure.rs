@@ -6,7 +6,8 @@ use bevy_rapier3d::{
     prelude::*,
     rapier::prelude::{Collider, ContactPair},
 };
-use tabletop_core::{TICK_SECONDS, UNITS_PER_METER};
+use tabletop_core::TICK_SECONDS;
+use tabletop_geometry::UNITS_PER_METER;
 
 use crate::effort::impulse_share;
 

@@ -6,7 +6,8 @@ use bevy_rapier3d::{
     prelude::*,
     rapier::prelude::RigidBodyHandle,
 };
-use tabletop_core::{CarriesHeadCamera, Pose, Robot, Rollback, Table};
+use tabletop_core::{CarriesHeadCamera, Robot, Rollback, Table};
+use tabletop_geometry::Pose;
 use tabletop_physics::{MET_WHEN_THERE, to_rapier};
 
 use crate::articulation::{
@@ -70,8 +71,8 @@ pub(crate) fn spawn(world: &mut World) -> Result {
     Ok(())
 }
 
-/// Lets the bodies meet others, or not. The engine does as they are marked only in ticks that are not paused, and forgets marks that were
-/// taken away during longer pauses, so it is told at once.
+/// Lets the bodies meet others, or not. Rapier's plugin obeys the marks only in ticks that are not paused, and forgets marks that were
+/// taken away during longer pauses, so Rapier is told at once.
 pub(crate) fn enable(world: &mut World, enabled: bool) -> Result {
     let links = world.resource::<LinkEntities>().clone();
     for &link in &links.0 {
@@ -128,7 +129,7 @@ pub(crate) fn base(world: &mut World) -> Pose {
         .pose(&table.unwrap_or_default())
 }
 
-/// Lets these links push nothing, and all others what they meet.
+/// Lets these links push nothing, and all others push the objects that they meet.
 pub(crate) fn make_passive(world: &mut World, passive: PassiveLinks) -> Result {
     let links = world.resource::<LinkEntities>().clone();
     world.resource_scope(|world, mut now: Mut<PassiveLinks>| {
@@ -171,7 +172,7 @@ pub(crate) fn put(bodies: &mut RapierRigidBodySet, part: Entity, pose: Pose) {
     }
 }
 
-/// Puts a body that meets nothing at a pose, asleep: the engine leaves it out of its step.
+/// Puts a body that meets nothing at a pose, asleep: Rapier leaves it out of its step.
 pub(crate) fn put_asleep(bodies: &mut RapierRigidBodySet, part: RigidBodyHandle, pose: Pose) {
     if let Some(body) = bodies.bodies.get_mut(part) {
         body.set_position(to_rapier(pose), false);

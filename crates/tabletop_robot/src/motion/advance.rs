@@ -2,7 +2,8 @@
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_rapier3d::{prelude::*, rapier::prelude::RigidBodyHandle};
-use tabletop_core::{LimbId, LimbName, Pose, Robot, RobotFact, RobotMode, SimFact};
+use tabletop_core::{LimbId, LimbName, Robot, RobotFact, RobotMode, SimFact};
+use tabletop_geometry::Pose;
 use tabletop_physics::{PhysicsSettings, send};
 
 use crate::{
