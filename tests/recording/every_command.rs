@@ -214,8 +214,14 @@ fn commands(random: &mut Random) -> Vec<SimCommand> {
         0..=4 => vec![SimCommand::Hand(hand_command(random))],
         5 | 13 => vec![SimCommand::Mechanism(mechanisms::command(random))],
         6 | 7 => vec![SimCommand::Robot(robot_command(random))],
-        8 => vec![SimCommand::History(HistoryCommand::Undo); 1 + random.below(3)],
-        9 => vec![SimCommand::History(HistoryCommand::Redo); 1 + random.below(2)],
+        8 => {
+            let undo = vec![HistoryCommand::Undo.into(); 1 + random.below(3)];
+            [undo, commands(random)].concat()
+        }
+        9 => {
+            let redo = vec![HistoryCommand::Redo.into(); 1 + random.below(2)];
+            [redo, commands(random)].concat()
+        }
         10 => vec![SimCommand::Clock(ClockCommand::SetPaused(
             random.below(2) == 0,
         ))],

@@ -49,11 +49,11 @@ pub(crate) fn configure(app: &mut App) {
         .configure_sets(
             FixedUpdate,
             (
+                CommandSystems::History,
                 SimSystems::Load,
                 CommandSystems::Recording,
                 CommandSystems::Clock,
                 SimSystems::Ingest,
-                CommandSystems::History,
                 CommandSystems::Hands,
                 CommandSystems::Mechanisms,
                 CommandSystems::Robot,

@@ -55,10 +55,10 @@ impl SimCommand {
     /// a phase, the one that was written first.
     pub const fn phase(&self) -> CommandSystems {
         match self {
+            Self::History(_) => CommandSystems::History,
             Self::Recording(_) => CommandSystems::Recording,
             Self::Clock(_) => CommandSystems::Clock,
             Self::Scene(_) => CommandSystems::Scene,
-            Self::History(_) => CommandSystems::History,
             Self::Hand(_) => CommandSystems::Hands,
             Self::Mechanism(_) => CommandSystems::Mechanisms,
             Self::Robot(_) => CommandSystems::Robot,
@@ -118,10 +118,10 @@ mod tests {
         app.add_plugins((MinimalPlugins, CorePlugin::default()))
             .init_resource::<Phases>();
         let phases = [
+            CommandSystems::History,
             CommandSystems::Recording,
             CommandSystems::Clock,
             CommandSystems::Scene,
-            CommandSystems::History,
             CommandSystems::Hands,
             CommandSystems::Mechanisms,
             CommandSystems::Robot,

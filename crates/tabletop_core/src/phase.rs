@@ -41,18 +41,18 @@ pub enum OrderSystems {
     Script,
 }
 
-/// The phases in which commands are carried out, in order, after [`SimSystems::Load`] and before [`SimSystems::Actuate`].
-/// [`SimCommand::phase`](crate::SimCommand::phase) assigns them. They run while paused, too.
+/// The phases in which commands are carried out, in order. The first comes before [`SimSystems::Load`], the others between it and
+/// [`SimSystems::Actuate`]. [`SimCommand::phase`](crate::SimCommand::phase) assigns them. They run while paused, too.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum CommandSystems {
+    /// Undo and redo, between two ticks: [`SimTick`](crate::SimTick) is turned before anything else is done in a tick.
+    History,
     /// Recordings begin.
     Recording,
     /// The clock is paused or resumed.
     Clock,
     /// Objects appear and disappear. Part of [`SimSystems::Ingest`].
     Scene,
-    /// Undo and redo.
-    History,
     /// The demonstrator's hands.
     Hands,
     /// Controls and bonds.

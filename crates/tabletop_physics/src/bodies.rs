@@ -38,7 +38,7 @@ pub(crate) fn plugin(app: &mut App) {
             BodySystems
                 .in_set(TickSystems)
                 .after(SimSystems::Ingest)
-                .before(CommandSystems::History),
+                .before(CommandSystems::Hands),
         )
         .add_systems(
             FixedUpdate,

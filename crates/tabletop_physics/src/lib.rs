@@ -164,8 +164,6 @@ impl Plugin for PhysicsPlugin {
                 holding::let_fall
                     .run_if(Paused::is_running)
                     .after(BodySystems)
-                    // A state that undo or redo brings back may be one of a pause, in which nothing has begun to fall.
-                    .after(CommandSystems::History)
                     .before(CommandSystems::Hands)
                     .in_set(TickSystems)
                     .in_set(RestingSystems),

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use bevy::{ecs::message::MessageCursor, prelude::*};
 use tabletop_core::{
-    Actor, Agent, ClockCommand, CommandWriter, HandCommand, IssuedCommand, MechanismSystems,
-    Paused, RecordingCommand, Replaying, RestApp as _, RestingSystems, RobotCommand, ScriptEvent,
-    SimCommand, SimFact, SimSystems, SimTick, TickSystems,
+    Actor, Agent, ClockCommand, CommandSystems, CommandWriter, HandCommand, IssuedCommand,
+    MechanismSystems, Paused, RecordingCommand, Replaying, RestApp as _, RestingSystems,
+    RobotCommand, ScriptEvent, SimCommand, SimFact, SimTick, TickSystems,
 };
 use tabletop_recorder::{Session, SessionCommand};
 
@@ -23,8 +23,6 @@ pub struct Player {
     start: SimTick,
     /// True if the recording has paused the simulation.
     has_paused: bool,
-    /// True if a pause begins in this tick after its commands were carried out.
-    pauses_late: bool,
     /// True if a recording is to be made of it.
     records: bool,
     /// True if it was reported that a script watches.
@@ -47,7 +45,6 @@ impl Player {
             given: 0,
             start,
             has_paused: false,
-            pauses_late: false,
             records: false,
             is_watched: false,
         }
@@ -99,17 +96,14 @@ impl Player {
 
     /// Number of ticks before the next one in which it acts; `None` if it is over.
     fn waits_for(&self, tick: SimTick) -> Option<u64> {
-        if self.pauses_late {
-            return Some(0);
-        }
         let begins = (tick < self.start).then_some(self.start.0);
         let next = self.commands.get(self.given).map(|next| next.tick);
         let due = begins.into_iter().chain(next).min()?;
         Some(due.saturating_sub(tick.0))
     }
 
-    /// The commands that are due. Commands given in one tick at several moments of a pause are given again at several moments. A pause that
-    /// undo has brought into a tick whose commands were already carried out begins after them.
+    /// The commands that are due. Those of one tick that were given at several moments, in a pause or because undo has gone back in between,
+    /// are given again at several moments.
     fn due(&mut self, tick: SimTick) -> Vec<SessionCommand> {
         let mut due = Vec::new();
         while let Some(next) = self.commands.get(self.given) {
@@ -117,13 +111,9 @@ impl Player {
                 break;
             }
             let last = due.last().map(|last: &SessionCommand| &last.command);
-            if last.is_some_and(|last| self.has_paused && begins_moment(next, last)) {
-                break;
-            }
-            if last.is_some_and(|last| !self.has_paused && is_late_pause(&next.command, last)) {
-                self.given += 1;
-                self.has_paused = true;
-                self.pauses_late = true;
+            if last.is_some_and(|last| self.has_paused && begins_moment(next, last))
+                || self.pauses_late(tick)
+            {
                 break;
             }
             if let SimCommand::Clock(ClockCommand::SetPaused(paused)) = next.command {
@@ -135,6 +125,19 @@ impl Player {
             }
         }
         due
+    }
+
+    /// True if a pause begins in this tick after commands that are not carried out in pauses. Undo leaves it there: it goes back to between
+    /// the commands of a tick, and the pause in which it was given goes on.
+    fn pauses_late(&self, tick: SimTick) -> bool {
+        let last = self.given.checked_sub(1);
+        let Some([last, next]) = last.and_then(|last| self.commands.get(last..last + 2)) else {
+            return false;
+        };
+        !self.has_paused
+            && [last.tick, next.tick] == [tick.0; 2]
+            && next.command == ClockCommand::SetPaused(true).into()
+            && next.command.phase() < last.command.phase()
     }
 }
 
@@ -153,17 +156,12 @@ fn begins_moment(next: &SessionCommand, last: &SimCommand) -> bool {
     }
 }
 
-/// True if a command begins a pause and follows one that could not be carried out in it.
-fn is_late_pause(command: &SimCommand, last: &SimCommand) -> bool {
-    *command == ClockCommand::SetPaused(true).into() && command.phase() < last.phase()
-}
-
 /// Lets the [`Player`] of an app play, if it has one.
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(
         FixedUpdate,
         (
-            play.before(SimSystems::Load),
+            play.before(CommandSystems::History),
             pause_late
                 .after(MechanismSystems::Obey)
                 .before(MechanismSystems::React),
@@ -176,8 +174,10 @@ pub(crate) fn plugin(app: &mut App) {
 }
 
 /// Begins a pause after the tick's commands were carried out: what undo leaves of a tick are commands to the scene, hands and mechanisms.
-fn pause_late(mut player: ResMut<Player>, mut paused: ResMut<Paused>) {
-    if std::mem::take(&mut player.pauses_late) {
+fn pause_late(mut player: ResMut<Player>, mut paused: ResMut<Paused>, tick: Res<SimTick>) {
+    if player.pauses_late(*tick) {
+        player.given += 1;
+        player.has_paused = true;
         paused.0 = true;
     }
 }
@@ -244,7 +244,9 @@ fn play(
 mod tests {
     use std::{slice, time::Duration};
 
-    use tabletop_core::{CorePlugin, Hand, SceneCommand, StepApp as _, WriteCommand as _};
+    use tabletop_core::{
+        CorePlugin, Hand, SceneCommand, SimSystems, StepApp as _, WriteCommand as _,
+    };
 
     use super::*;
 

@@ -6,7 +6,7 @@ use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tabletop_core::{
-    Reach, RestingSystems, Robot, RobotMode, SceneFact, SimFact, SimSystems, TickSystems,
+    CommandSystems, Reach, RestingSystems, Robot, RobotMode, SceneFact, SimFact, TickSystems,
     is_shipped,
 };
 use tabletop_physics::PhysicsSettings;
@@ -112,7 +112,7 @@ impl Plugin for RecordedSettingsPlugin {
                 .chain()
                 .in_set(TickSystems)
                 .in_set(RestingSystems)
-                .before(SimSystems::Load)
+                .before(CommandSystems::History)
                 .run_if(resource_exists::<SessionSettings>),
         );
     }

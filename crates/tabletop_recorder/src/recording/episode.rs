@@ -11,7 +11,7 @@ use std::{
 };
 
 use tabletop_core::{
-    Actor, CommandId, HandCamera, IssuedCommand, JointState, SimTick, Timeline, TimelineSegment,
+    Actor, CommandId, CommandSystems, HandCamera, JointState, SimTick, Timeline, TimelineSegment,
     TimelineStage,
 };
 
@@ -49,16 +49,16 @@ pub(crate) struct Episode {
     hand_cameras: Arc<[HandCamera]>,
     /// True if the commands of the tick in which it began are not in the session log yet.
     is_beginning: bool,
-    /// The tick before its commands were carried out; they may turn the clock.
+    /// The present tick.
     tick: SimTick,
     /// The commands of this tick that are in the session log.
     logged: Vec<LoggedCommand>,
-    /// The marks of this tick's segments, which follow them there.
+    /// The tick and phase of the last command there.
+    last: Option<(SimTick, CommandSystems)>,
+    /// The marks of this tick's segments, which follow the commands there.
     marks: Vec<u8>,
     /// Length of the session log before the first recorded command.
     head: u64,
-    /// The commands of this tick that are carried out after the clock was turned.
-    unlogged: Vec<IssuedCommand>,
     undoable: Vec<SegmentStart>,
     redoable: Vec<UndoneSegment>,
     /// The number of pictures that were written, also of what was undone.
@@ -72,6 +72,8 @@ struct LoggedCommand {
     actor: Actor,
     /// Length of the session log before it.
     before: u64,
+    /// The tick and phase of the command before it.
+    follows: Option<(SimTick, CommandSystems)>,
 }
 
 impl Episode {
@@ -100,8 +102,8 @@ impl Episode {
             is_beginning: true,
             tick: start,
             logged: Vec::new(),
+            last: None,
             marks: Vec::new(),
-            unlogged: Vec::new(),
             undoable: Vec::new(),
             redoable: Vec::new(),
             pictures: 0,

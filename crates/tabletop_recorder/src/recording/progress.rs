@@ -1,6 +1,6 @@
 //! The progress of a recording, for undo and redo.
 
-use tabletop_core::{JointState, SimTick};
+use tabletop_core::{CommandSystems, JointState, SimTick};
 
 use crate::{
     files::{intent::Lengths, session::SessionCommand},
@@ -20,7 +20,10 @@ pub(crate) struct RecordingProgress {
     pub(crate) sight: FrameSight,
     pub(crate) last_joints: Option<Vec<JointState>>,
     pub(crate) is_paused: bool,
-    /// The marks at the end of the session log, if they are of the present tick.
+    pub(crate) tick: SimTick,
+    /// The tick and phase of the last command in the session log.
+    pub(crate) last: Option<(SimTick, CommandSystems)>,
+    /// The marks of the tick's segments, at the end of the session log.
     pub(crate) marks: Vec<u8>,
 }
 
@@ -32,7 +35,6 @@ pub(crate) struct SegmentStart {
     /// The commands in the session log in place of the one that began it, if the recording goes on from here: a grasp that takes an
     /// object out of another hand is a release and a grasp, in segments of their own.
     pub(crate) released: Vec<SessionCommand>,
-    pub(crate) tick: SimTick,
 }
 
 /// A segment that can be brought back.

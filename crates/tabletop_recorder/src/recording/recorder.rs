@@ -108,6 +108,27 @@ pub fn set_earlier_commands(world: &mut World, begin: SimTick, commands: &[Sessi
     }
 }
 
+/// Follows undo and redo.
+pub(crate) fn follow_history(
+    mut recorder: ResMut<Recorder>,
+    mut recording: ResMut<Recording>,
+    mut facts: ParamSet<(MessageReader<SimFact>, MessageWriter<SimFact>)>,
+    mut timeline: ResMut<Timeline>,
+    tick: Res<SimTick>,
+    paused: Res<Paused>,
+) {
+    let mut history = Vec::new();
+    for fact in facts.p0().read() {
+        if let SimFact::History(fact) = fact {
+            history.push(fact.clone());
+        }
+    }
+    if let Some(episode) = &mut recorder.episode {
+        let result = episode.follow(&history, *tick, *paused, &mut timeline);
+        recorder.stop_on_error(result, &mut recording, &mut facts.p1());
+    }
+}
+
 /// Starts recordings, and logs the commands of this tick before they are carried out.
 pub(crate) fn take_commands(
     mut recorder: ResMut<Recorder>,
@@ -154,7 +175,7 @@ pub(crate) fn take_commands(
         commands
             .iter()
             .for_each(|issued| earlier.note_lasting(&issued.command));
-        let result = episode.log_commands(*tick, &commands);
+        let result = episode.log_commands(&commands);
         recorder.stop_on_error(result, &mut recording, &mut facts);
     } else {
         let hands_are_empty = Hand::ALL.iter().all(|&hand| hands.held_by(hand).is_none());
@@ -222,7 +243,7 @@ pub(crate) fn record(
         return;
     };
     let happened: Vec<_> = facts.p0().read().cloned().collect();
-    let mut result = episode.write_facts(*tick, &happened, *paused, &stage, &mut timeline);
+    let mut result = episode.write_events(&happened, &stage, &mut timeline);
     let image = image
         .as_deref()
         .filter(|image| image.tick == *tick && image.picture.width > 0);

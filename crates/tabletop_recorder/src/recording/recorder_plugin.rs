@@ -16,15 +16,15 @@ use crate::{
         hand_pictures::HandPictures, session::SessionSettings,
     },
     recording::recorder::{
-        Recorder, ask_for_picture, pass_over, record, take_commands, ticks_to_frame,
+        Recorder, ask_for_picture, follow_history, pass_over, record, take_commands, ticks_to_frame,
     },
 };
 
 /// Records the simulation into a folder from [`Start`] to [`Finish`], both ticks included.
 /// Needs [`CorePlugin`](tabletop_core::CorePlugin).
 ///
-/// It keeps between the phases of a tick: before [`SimSystems::Ingest`] it logs the commands, after [`PictureSystems`]
-/// it writes what came of them. Both also happen while paused, so that nothing is missed that is done meanwhile.
+/// It keeps between the phases of a tick: after undo and redo it follows them, before [`SimSystems::Ingest`] it logs the commands, after
+/// [`PictureSystems`] it writes what came of them. All of it also happens while paused, so that nothing is missed that is done meanwhile.
 ///
 /// [`Start`]: tabletop_core::RecordingCommand::Start
 /// [`Finish`]: tabletop_core::RecordingCommand::Finish
@@ -72,6 +72,9 @@ impl Plugin for RecorderPlugin {
             (
                 take_commands.in_set(CommandSystems::Recording),
                 (
+                    follow_history
+                        .after(CommandSystems::History)
+                        .before(SimSystems::Load),
                     ask_for_picture
                         .after(SimSystems::Propagate)
                         .before(SimSystems::Sense),

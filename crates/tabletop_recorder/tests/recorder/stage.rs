@@ -9,10 +9,11 @@ use std::{
 
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
-    CommandId, CorePlugin, Hand, HandCamera, HandCameras, HandCommand, HandFact, HandImages, Hands,
-    HistoryCommand, HistoryFact, IssuedCommand, ObjectIndex, ObjectSpec, Picture, PictureDemand,
-    PictureSystems, Recording, SceneCommand, SceneFact, SceneItem, SceneSpec, SensorImage, Shape,
-    SimCommand, SimFact, SimSystems, SimTick, StepApp as _, WriteCommand as _,
+    CommandId, CommandSystems, CorePlugin, Hand, HandCamera, HandCameras, HandCommand, HandFact,
+    HandImages, Hands, HistoryCommand, HistoryFact, IssuedCommand, ObjectIndex, ObjectSpec,
+    Picture, PictureDemand, PictureSystems, Recording, SceneCommand, SceneFact, SceneItem,
+    SceneSpec, SensorImage, Shape, SimCommand, SimFact, SimSystems, SimTick, StepApp as _,
+    WriteCommand as _, carry_out,
 };
 use tabletop_geometry::{Pose, Rgb};
 use tabletop_recorder::RecorderPlugin;
@@ -144,6 +145,7 @@ pub fn app_with(recorder: RecorderPlugin) -> App {
         .add_systems(
             FixedUpdate,
             (
+                undo_and_redo.in_set(CommandSystems::History),
                 act.in_set(SimSystems::Ingest),
                 move_objects.in_set(SimSystems::Physics),
                 take_picture.in_set(PictureSystems),
@@ -238,6 +240,33 @@ fn hear(mut facts: MessageReader<SimFact>, mut heard: ResMut<Heard>) {
     heard.0.extend(facts.read().cloned());
 }
 
+fn undo_and_redo(
+    world: &mut World,
+    reader: &mut SystemState<MessageReader<IssuedCommand>>,
+) -> Result {
+    carry_out(world, reader, |world, cause, command| {
+        let now = moment(world);
+        let mut moments = world.resource_mut::<Moments>();
+        match command {
+            HistoryCommand::Undo => {
+                if let Some(before) = moments.undoable.pop() {
+                    moments.redoable.push((before.clone(), now));
+                    let undone = HistoryFact::Undone { cause };
+                    turn(world, &before, SimFact::History(undone));
+                }
+            }
+            HistoryCommand::Redo => {
+                if let Some((before, after)) = moments.redoable.pop() {
+                    moments.undoable.push(before);
+                    let redone = HistoryFact::Redone { cause };
+                    turn(world, &after, SimFact::History(redone));
+                }
+            }
+        }
+        Ok(())
+    })
+}
+
 fn act(world: &mut World, reader: &mut SystemState<MessageReader<IssuedCommand>>) -> Result {
     let mut commands: Vec<_> = reader.get_mut(world)?.read().cloned().collect();
     commands.sort_by_key(|issued| issued.command.phase());
@@ -282,29 +311,6 @@ fn act(world: &mut World, reader: &mut SystemState<MessageReader<IssuedCommand>>
                 world.resource_mut::<Hands>().set_held(hand, None);
                 world.write_message(SimFact::Hand(HandFact::Destroyed { cause, hand, id }));
             }
-            SimCommand::History(HistoryCommand::Undo) => {
-                let now = moment(world);
-                let mut moments = world.resource_mut::<Moments>();
-                if let Some(before) = moments.undoable.pop() {
-                    moments.redoable.push((before.clone(), now));
-                    turn(
-                        world,
-                        &before,
-                        SimFact::History(HistoryFact::Undone { cause }),
-                    );
-                }
-            }
-            SimCommand::History(HistoryCommand::Redo) => {
-                let mut moments = world.resource_mut::<Moments>();
-                if let Some((before, after)) = moments.redoable.pop() {
-                    moments.undoable.push(before);
-                    turn(
-                        world,
-                        &after,
-                        SimFact::History(HistoryFact::Redone { cause }),
-                    );
-                }
-            }
             SimCommand::Scene(SceneCommand::Load(_) | SceneCommand::Make { .. })
             | SimCommand::Hand(
                 HandCommand::Select(_)
@@ -314,6 +320,7 @@ fn act(world: &mut World, reader: &mut SystemState<MessageReader<IssuedCommand>>
             )
             | SimCommand::Recording(_)
             | SimCommand::Clock(_)
+            | SimCommand::History(_)
             | SimCommand::Mechanism(_)
             | SimCommand::Robot(_) => {}
         }

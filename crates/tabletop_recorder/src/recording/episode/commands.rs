@@ -1,6 +1,6 @@
 //! The commands of an episode, in its session log.
 
-use tabletop_core::{ClockCommand, CommandSystems, IssuedCommand, SimCommand, SimTick};
+use tabletop_core::{ClockCommand, IssuedCommand, SimCommand};
 
 use crate::{
     error::RecorderError,
@@ -9,35 +9,30 @@ use crate::{
 };
 
 impl Episode {
-    /// Logs the commands of a tick, in the order in which they are carried out, before they are. If they turn the clock, those after
-    /// that belong to another tick, and are logged when it is reached.
-    pub(crate) fn log_commands(
-        &mut self,
-        tick: SimTick,
-        commands: &[IssuedCommand],
-    ) -> Result<(), RecorderError> {
-        let phase = |issued: &IssuedCommand| issued.command.phase();
-        let begins = commands.partition_point(|issued| phase(issued) < CommandSystems::History);
-        let (first, then) = commands.split_at(begins);
-        // A tick has several frames while it is paused; its marks stay behind the commands of all of them.
-        if tick != self.tick {
-            self.marks.clear();
-        }
-        self.tick = tick;
+    /// Logs the commands of this tick, in the order in which they are carried out, before they are. Those with which a tick goes on after
+    /// undo may be of earlier phases than those that undo has left of it: a pause lies between them.
+    pub(crate) fn log_commands(&mut self, commands: &[IssuedCommand]) -> Result<(), RecorderError> {
         self.logged.clear();
-        self.log(first)?;
-        if then
+        let mut phases = commands
             .iter()
-            .any(|issued| phase(issued) == CommandSystems::History)
-        {
-            self.unlogged = then.to_vec();
-            Ok(())
-        } else {
-            self.log(then)
+            .filter(|issued| is_logged(&issued.command))
+            .map(|issued| (self.tick, issued.command.phase()));
+        if !self.is_paused && phases.next().is_some_and(|first| Some(first) <= self.last) {
+            self.log_pause(true)?;
+            self.log_pause(false)?;
         }
+        self.log(commands)
     }
 
-    pub(super) fn log(&mut self, commands: &[IssuedCommand]) -> Result<(), RecorderError> {
+    /// Logs that the program itself has paused or resumed the simulation.
+    pub(super) fn log_pause(&mut self, paused: bool) -> Result<(), RecorderError> {
+        let pause = SessionCommand::of_app(self.tick, ClockCommand::SetPaused(paused));
+        let line = command_line(&pause)?;
+        self.is_paused = paused;
+        self.append_commands(&line)
+    }
+
+    fn log(&mut self, commands: &[IssuedCommand]) -> Result<(), RecorderError> {
         let mut lines = Vec::new();
         let mut follows = std::mem::take(&mut self.is_beginning);
         for issued in commands {
@@ -51,7 +46,9 @@ impl Episode {
                 id: issued.id,
                 actor: issued.actor,
                 before: self.end_of_commands() + lines.len() as u64,
+                follows: self.last,
             });
+            self.last = Some((self.tick, issued.command.phase()));
             let is_scene = matches!(issued.command, SimCommand::Scene(_));
             let command = SessionCommand {
                 at_once: self.is_paused && is_scene && follows,
@@ -64,7 +61,7 @@ impl Episode {
     }
 
     /// Adds lines of commands to the session log, before the marks of this tick.
-    pub(super) fn append_commands(&mut self, lines: &[u8]) -> Result<(), RecorderError> {
+    fn append_commands(&mut self, lines: &[u8]) -> Result<(), RecorderError> {
         if lines.is_empty() || self.marks.is_empty() {
             return self.files.session.append(lines);
         }

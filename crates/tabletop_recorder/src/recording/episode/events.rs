@@ -1,64 +1,22 @@
 //! The events of an episode, and the segments that they begin.
 
 use tabletop_core::{
-    Act, Actor, ClockCommand, CommandId, Hand, HandCommand, HandFact, HistoryFact, Manipulator,
-    MechanismFact, Paused, SceneFact, SimFact, SimTick, Timeline, TimelineGrip, TimelineSegment,
+    Act, Actor, CommandId, Hand, HandCommand, HandFact, HistoryFact, Manipulator, MechanismFact,
+    SceneFact, SimFact, Timeline, TimelineGrip, TimelineSegment,
 };
 
 use crate::{
     error::RecorderError,
-    files::{
-        event::Event,
-        segment_mark::SegmentMark,
-        session::{SessionCommand, command_line},
-    },
+    files::{event::Event, segment_mark::SegmentMark, session::SessionCommand},
     recording::{
-        episode::{Episode, history::HistoryTurn},
-        objects::initialized_controls,
-        progress::SegmentStart,
-        stage::RecordedWorld,
-        timeline_mark::TimelineMark,
+        episode::Episode, objects::initialized_controls, progress::SegmentStart,
+        stage::RecordedWorld, timeline_mark::TimelineMark,
     },
 };
 
 impl Episode {
-    /// Writes what has happened in a tick.
-    pub(crate) fn write_facts(
-        &mut self,
-        tick: SimTick,
-        facts: &[SimFact],
-        paused: Paused,
-        stage: &RecordedWorld,
-        timeline: &mut Timeline,
-    ) -> Result<(), RecorderError> {
-        let last_turn = facts
-            .iter()
-            .rposition(|fact| HistoryTurn::of(fact).is_some());
-        let (turned, rest) = facts.split_at(last_turn.map_or(0, |last| last + 1));
-        for facts in turned.split_inclusive(|fact| HistoryTurn::of(fact).is_some()) {
-            let is_undo = facts.last().and_then(HistoryTurn::of) == Some(HistoryTurn::Undo);
-            self.write_events(&facts[..facts.len() - 1], stage, timeline)?;
-            if is_undo {
-                self.undo(timeline)?;
-            } else {
-                self.redo(timeline)?;
-            }
-            self.tick = tick;
-            self.logged.clear();
-        }
-        if self.is_paused != paused.0 {
-            // A pause is not turned back with the clock.
-            let pause = SessionCommand::of_app(tick, ClockCommand::SetPaused(paused.0));
-            let line = command_line(&pause)?;
-            self.append_commands(&line)?;
-            self.is_paused = paused.0;
-        }
-        let unlogged = std::mem::take(&mut self.unlogged);
-        self.log(&unlogged)?;
-        self.write_events(rest, stage, timeline)
-    }
-
-    pub(super) fn write_events(
+    /// Writes what has happened in this tick.
+    pub(crate) fn write_events(
         &mut self,
         facts: &[SimFact],
         stage: &RecordedWorld,
@@ -162,6 +120,7 @@ impl Episode {
         let mut before = self.progress();
         let cause = self.logged.iter().find(|command| command.id == cause);
         before.files.session = cause.map_or(self.end_of_commands(), |cause| cause.before);
+        before.last = cause.map_or(self.last, |cause| cause.follows);
         let actor = cause.map_or(Actor::App, |cause| cause.actor);
         let released = released.into_iter().map(|hand| SessionCommand {
             tick: self.tick.0,
@@ -172,7 +131,6 @@ impl Episode {
         self.undoable.push(SegmentStart {
             before,
             released: released.collect(),
-            tick: self.tick,
             timeline: TimelineMark::of(timeline),
         });
         timeline.segments.push(TimelineSegment {

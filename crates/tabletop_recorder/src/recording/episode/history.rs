@@ -1,7 +1,7 @@
 //! Undo and redo of an episode.
 
 use bevy::prelude::warn;
-use tabletop_core::{HistoryFact, SimFact, Timeline};
+use tabletop_core::{CommandSystems, HistoryFact, Paused, SimTick, Timeline};
 
 use crate::{
     error::RecorderError,
@@ -12,26 +12,33 @@ use crate::{
     },
 };
 
-/// A change of the clock.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum HistoryTurn {
-    Undo,
-    Redo,
-}
-
-impl HistoryTurn {
-    pub fn of(fact: &SimFact) -> Option<Self> {
-        if let SimFact::History(HistoryFact::Undone { .. }) = fact {
-            Some(Self::Undo)
-        } else if let SimFact::History(HistoryFact::Redone { .. }) = fact {
-            Some(Self::Redo)
-        } else {
-            None
-        }
-    }
-}
-
 impl Episode {
+    /// Follows undo and redo to this tick, in which the simulation is paused or not. A pause is not undone.
+    pub(crate) fn follow(
+        &mut self,
+        history: &[HistoryFact],
+        tick: SimTick,
+        paused: Paused,
+        timeline: &mut Timeline,
+    ) -> Result<(), RecorderError> {
+        for fact in history {
+            match fact {
+                HistoryFact::Undone { .. } => self.undo(timeline)?,
+                HistoryFact::Redone { .. } => self.redo(timeline)?,
+                HistoryFact::SegmentBegun { .. } => {}
+            }
+        }
+        // A tick has several frames while it is paused, and after undo; its marks stay behind the commands of all of them.
+        if tick != self.tick {
+            self.marks.clear();
+        }
+        self.tick = tick;
+        if self.is_paused == paused.0 {
+            return Ok(());
+        }
+        self.log_pause(paused.0)
+    }
+
     pub(super) fn progress(&self) -> RecordingProgress {
         RecordingProgress {
             files: self.files.lengths(),
@@ -39,12 +46,14 @@ impl Episode {
             sight: self.sight.clone(),
             last_joints: self.last_joints.clone(),
             is_paused: self.is_paused,
+            tick: self.tick,
+            last: self.last,
             marks: self.marks.clone(),
         }
     }
 
     /// Goes back to the moment before the present segment began, and puts its files away.
-    pub(super) fn undo(&mut self, timeline: &mut Timeline) -> Result<(), RecorderError> {
+    fn undo(&mut self, timeline: &mut Timeline) -> Result<(), RecorderError> {
         let Some(start) = self.undoable.pop() else {
             warn!("the world was restored to a moment before the recording; the recording goes on");
             return Ok(());
@@ -57,6 +66,9 @@ impl Episode {
         then.extend(&start.before.marks);
         self.files.put_away(start.before.files, &then)?;
         self.resume(start.before.clone());
+        if !start.released.is_empty() {
+            self.last = Some((self.tick, CommandSystems::Hands));
+        }
         let timeline = start.timeline.cut(timeline);
         self.redoable.push(UndoneSegment {
             start,
@@ -67,7 +79,7 @@ impl Episode {
     }
 
     /// Brings back the segment that was undone last, in the place of what was recorded since.
-    pub(super) fn redo(&mut self, timeline: &mut Timeline) -> Result<(), RecorderError> {
+    fn redo(&mut self, timeline: &mut Timeline) -> Result<(), RecorderError> {
         let Some(undone) = self.redoable.pop() else {
             warn!(
                 "the world was restored to a moment outside the recording; the recording goes on"
@@ -77,7 +89,7 @@ impl Episode {
         let UndoneSegment { start, end, .. } = undone;
         start.timeline.cut(timeline);
         undone.timeline.append_to(timeline);
-        let first_frame = self.clock.frame(start.tick);
+        let first_frame = self.clock.frame(start.before.tick);
         self.files
             .bring_back(start.before.files, first_frame, end.files)?;
         self.resume(end);
@@ -85,11 +97,13 @@ impl Episode {
         Ok(())
     }
 
-    pub(super) fn resume(&mut self, progress: RecordingProgress) {
+    fn resume(&mut self, progress: RecordingProgress) {
         self.objects = progress.objects;
         self.sight = progress.sight;
         self.last_joints = progress.last_joints;
         self.is_paused = progress.is_paused;
+        self.tick = progress.tick;
+        self.last = progress.last;
         self.marks = progress.marks;
     }
 }
