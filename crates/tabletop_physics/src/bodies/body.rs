@@ -6,10 +6,11 @@ use tabletop_core::{
     Bounds, Dynamics, ObjectSpec, Polyhedron, Pose, Primitive, Shape, Solid, Table, Twist,
 };
 
-use super::{mass::mass_properties, polytope::Polytope};
+use super::mass::mass_properties;
 use crate::{
     effort::{BASE_SUBSTEPS, SUBSTEPS_OF_FREE},
     settings::PhysicsSettings,
+    workarounds::polytope::Polytope,
 };
 
 /// Speeds below which an object falls asleep after half a second: 0.02 m/s and 0.2 rad/s.

@@ -7,7 +7,7 @@ use bevy_rapier3d::{
 };
 use tabletop_core::Pose;
 
-use super::contact::contact;
+use crate::workarounds::contact::contact;
 
 /// A convex solid, with its pose in the frame of the whole that it belongs to.
 #[derive(Clone, Debug)]

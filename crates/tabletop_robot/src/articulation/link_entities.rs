@@ -7,7 +7,7 @@ use bevy_rapier3d::{
     rapier::prelude::RigidBodyHandle,
 };
 use tabletop_core::{CarriesHeadCamera, Pose, Robot, Rollback, Table};
-use tabletop_physics::{MET_WHEN_THERE, to_rapier};
+use tabletop_physics::{MET_WHEN_THERE, set_enabled, to_rapier};
 
 use crate::articulation::{
     passive_links::PassiveLinks,
@@ -70,31 +70,10 @@ pub(crate) fn spawn(world: &mut World) -> Result {
     Ok(())
 }
 
-/// Lets the bodies meet others, or not. The engine does as they are marked only in ticks that are not paused, and forgets marks that were
-/// taken away during longer pauses, so it is told at once.
+/// Lets the bodies meet others, or not.
 pub(crate) fn enable(world: &mut World, enabled: bool) -> Result {
     let links = world.resource::<LinkEntities>().clone();
-    for &link in &links.0 {
-        let mut link = world.entity_mut(link);
-        if !link.contains::<Collider>() {
-            continue;
-        }
-        if enabled {
-            link.remove::<RigidBodyDisabled>();
-        } else {
-            link.insert(RigidBodyDisabled);
-        }
-    }
-    let mut contexts =
-        world.query_filtered::<&mut RapierRigidBodySet, With<DefaultRapierContext>>();
-    let mut set = contexts.single_mut(world)?;
-    for link in &links.0 {
-        let handle = set.entity2body().get(link).copied();
-        if let Some(body) = handle.and_then(|handle| set.bodies.get_mut(handle)) {
-            body.set_enabled(enabled);
-        }
-    }
-    Ok(())
+    set_enabled(world, &links.0, enabled)
 }
 
 fn collider(body: &Body) -> Option<Collider> {
