@@ -3,10 +3,12 @@
 use std::cell::OnceCell;
 
 use bevy::prelude::*;
-use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*, rapier::prelude as rapier};
+use bevy_rapier3d::{
+    parry::bounding_volume::Aabb, plugin::RapierContextMut, prelude::*, rapier::prelude as rapier,
+};
 use tabletop_core::{Hand, Hands, Joint, Pose, TICK_SECONDS};
 use tabletop_physics::{
-    Carry, Convex, Nearby, Nearest, convex_parts, nearby, nearest, pull_velocity,
+    Carry, Convex, MovedBody, Nearby, Nearest, convex_parts, nearby, nearest, pull_velocity,
 };
 
 use crate::{
@@ -43,24 +45,24 @@ const SAME_STEP: f32 = 1e-4;
 /// sleeping objects for a tick.
 pub(crate) fn carry(
     hands: Res<Hands>,
-    rapier: ReadRapierContext,
-    mut held: Query<(&Carry, &CarryTarget, &mut Transform, Option<&mut Velocity>)>,
+    mut rapier: WriteRapierContext,
+    mut held: Query<(&Carry, &CarryTarget, MovedBody, Option<&mut Velocity>)>,
     mut sleeping: Query<&mut Sleeping>,
     joints: Query<&Joint>,
 ) {
-    let Ok(rapier) = rapier.single() else {
+    let Ok(mut rapier) = rapier.single_mut() else {
         return;
     };
     for object in Hand::ALL.into_iter().filter_map(|hand| hands.held_by(hand)) {
-        let Ok((carry, target, mut transform, velocity)) = held.get_mut(object) else {
+        let Ok((carry, target, mut body, velocity)) = held.get_mut(object) else {
             continue;
         };
-        let here = Pose::from(&*transform);
+        let here = body.pose();
         if let (Carry::AgainstJoints, Some(mut velocity)) = (carry, velocity) {
             *velocity = pull_velocity(here, target.0);
             continue;
         }
-        let Some(collider) = collider_of(&rapier, object) else {
+        let Some(collider) = collider_of(&rapier.colliders, object) else {
             continue;
         };
         let next = advanced(here, target.0);
@@ -68,18 +70,26 @@ pub(crate) fn carry(
         let shape = collider.shape();
         let near = Near::new(&rapier, object, shape, &is_jointed, here, next);
         let next = carried(collider, here, next, &near);
-        transform.set_if_neq(next.into());
-        for neighbour in near.sleeping {
+        for &neighbour in &near.sleeping {
             if let Ok(mut sleeping) = sleeping.get_mut(neighbour) {
                 sleeping.sleeping = false;
             }
         }
+        if next != here {
+            body.send(&mut rapier.rigidbody_set, rounded(next));
+        }
     }
 }
 
-fn collider_of<'a>(rapier: &'a RapierContext, object: Entity) -> Option<&'a rapier::Collider> {
-    let handle = rapier.colliders.entity2collider().get(&object)?;
-    rapier.colliders.colliders.get(*handle)
+/// A pose as it comes out of a global transform.
+fn rounded(pose: Pose) -> Pose {
+    let global = GlobalTransform::from(Transform::from(pose));
+    Pose::from(&global.compute_transform())
+}
+
+fn collider_of(colliders: &RapierContextColliders, object: Entity) -> Option<&rapier::Collider> {
+    let handle = colliders.entity2collider().get(&object)?;
+    colliders.colliders.get(*handle)
 }
 
 /// The pose that a freely carried object reaches on its way from one pose to another.
@@ -189,14 +199,15 @@ struct Near<'a> {
     sleeping: Vec<Entity>,
     /// The pile of these objects, if they were reached.
     pile: OnceCell<Pile>,
-    rapier: &'a RapierContext<'a>,
+    colliders: &'a RapierContextColliders,
+    bodies: &'a RapierRigidBodySet,
     carried: Entity,
     is_jointed: &'a dyn Fn(Entity) -> bool,
 }
 
 impl<'a> Near<'a> {
     fn new(
-        rapier: &'a RapierContext,
+        rapier: &'a RapierContextMut,
         carried: Entity,
         shape: &dyn rapier::Shape,
         is_jointed: &'a dyn Fn(Entity) -> bool,
@@ -215,7 +226,8 @@ impl<'a> Near<'a> {
             free: Vec::new(),
             sleeping: Vec::new(),
             pile: OnceCell::new(),
-            rapier,
+            colliders: &rapier.colliders,
+            bodies: &rapier.rigidbody_set,
             carried,
             is_jointed,
         };
@@ -236,12 +248,7 @@ impl<'a> Near<'a> {
     fn others(&self, room: Aabb) -> impl Iterator<Item = Nearby<'a>> + use<'a> {
         let carried = self.carried;
         let is_other = move |entity| entity != carried;
-        nearby(
-            self.rapier.colliders,
-            self.rapier.rigidbody_set,
-            room,
-            is_other,
-        )
+        nearby(self.colliders, self.bodies, room, is_other)
     }
 
     /// How much farther, in units, a held one at a pose is in free objects than they give way in a tick.

@@ -35,6 +35,7 @@ mod bodies;
 mod effort;
 mod geometry;
 mod holding;
+mod mover;
 mod rest;
 mod settings;
 mod snapshot;
@@ -48,6 +49,7 @@ pub use geometry::{
     pressures_on, to_rapier,
 };
 pub use holding::{Carry, MET_WHEN_THERE, hold, let_go, pull_velocity, push, put};
+pub use mover::{MovedBody, MovedBodyItem};
 pub use settings::PhysicsSettings;
 pub use snapshot::{PhysicsSnapshot, remove_joint, remove_object, renew_if_empty};
 pub use workarounds::{
@@ -55,7 +57,6 @@ pub use workarounds::{
     enabling::set_enabled,
     impulses::{impulse_share, solved_points},
     release::JustReleased,
-    short_turn::send,
 };
 
 /// The names that most users of this crate need.

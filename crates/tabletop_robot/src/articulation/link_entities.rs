@@ -1,13 +1,12 @@
 //! The robot's bodies in the world.
 
-use bevy::prelude::*;
+use bevy::{ecs::system::SystemState, prelude::*};
 use bevy_rapier3d::{
     plugin::systems::{init_colliders, init_rigid_bodies},
     prelude::*,
-    rapier::prelude::RigidBodyHandle,
 };
 use tabletop_core::{CarriesHeadCamera, Pose, Robot, Rollback, Table};
-use tabletop_physics::{MET_WHEN_THERE, set_enabled, to_rapier};
+use tabletop_physics::{MET_WHEN_THERE, MovedBody, set_enabled};
 
 use crate::articulation::{
     passive_links::PassiveLinks,
@@ -119,41 +118,19 @@ pub(crate) fn make_passive(world: &mut World, passive: PassiveLinks) -> Result {
 }
 
 /// Puts the bodies where the posture has them, without pushing anything on the way.
-pub(crate) fn teleport(world: &mut World) {
+pub(crate) fn teleport(world: &mut World) -> Result {
     let base = base(world);
     let posture = world
         .resource::<Articulation>()
         .posture(&positions(world.resource::<Robot>()), base);
-    let poses = posture.bodies();
     let parts = world.resource::<LinkEntities>().clone();
-    for (&part, &pose) in parts.0.iter().zip(poses) {
-        if let Some(mut transform) = world.get_mut::<Transform>(part) {
-            transform.set_if_neq(pose.into());
+    let mut state: SystemState<(Query<MovedBody>, WriteRapierContext)> = SystemState::new(world);
+    let (mut moved, mut rapier) = state.get_mut(world)?;
+    let bodies = &mut rapier.single_mut()?.rigidbody_set;
+    for (&part, &pose) in parts.0.iter().zip(posture.bodies()) {
+        if let Ok(mut body) = moved.get_mut(part) {
+            body.jump(bodies, pose);
         }
     }
-    let mut contexts =
-        world.query_filtered::<&mut RapierRigidBodySet, With<DefaultRapierContext>>();
-    if let Ok(mut bodies) = contexts.single_mut(world) {
-        for (part, pose) in parts.0.iter().zip(poses) {
-            put(&mut bodies, *part, *pose);
-        }
-    }
-}
-
-/// Puts a body at a pose, without pushing anything on the way.
-pub(crate) fn put(bodies: &mut RapierRigidBodySet, part: Entity, pose: Pose) {
-    let handle = bodies.entity2body().get(&part).copied();
-    if let Some(body) = handle.and_then(|handle| bodies.bodies.get_mut(handle)) {
-        let pose = to_rapier(pose);
-        body.set_position(pose, true);
-        body.set_next_kinematic_position(pose);
-    }
-}
-
-/// Puts a body that meets nothing at a pose, asleep: the engine leaves it out of its step.
-pub(crate) fn put_asleep(bodies: &mut RapierRigidBodySet, part: RigidBodyHandle, pose: Pose) {
-    if let Some(body) = bodies.bodies.get_mut(part) {
-        body.set_position(to_rapier(pose), false);
-        body.sleep();
-    }
+    Ok(())
 }
