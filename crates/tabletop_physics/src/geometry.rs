@@ -6,7 +6,7 @@ mod pressure;
 mod touch;
 
 pub(crate) use convex::placed_parts;
-pub use convex::{Convex, Nearest, convex_parts, depth, nearest, to_rapier};
+pub use convex::{Convex, Nearest, convex_parts, depth, nearest, pushed_out, to_rapier};
 pub use nearby::{Nearby, nearby};
 pub use pressure::{Pressure, pressures_on};
 pub use touch::is_touching;

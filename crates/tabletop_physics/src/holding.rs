@@ -4,9 +4,12 @@ use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 use tabletop_core::{Held, Joint, Manipulator, ObjectSpec, Pose, SimTick, TICK_SECONDS};
 
-use crate::workarounds::{
-    release::{JustReleased, settling},
-    short_turn::short_turn,
+use crate::{
+    mover::limits::FASTEST,
+    workarounds::{
+        release::{JustReleased, settling},
+        short_turn::short_turn,
+    },
 };
 
 /// Lets hands and links be met when they are there, and not ahead. Seen from afar, the edge of a finger that goes down beside a block is a slope
@@ -15,9 +18,6 @@ pub const MET_WHEN_THERE: SoftCcd = SoftCcd { prediction: 1e-6 };
 
 /// Part of the way to its target by which a jointed object is pulled in a tick.
 const PULLED_PER_TICK: f32 = 0.25;
-
-/// Greatest speeds at which it is pulled, in units/s, and turned, in rad/s.
-const FASTEST: (f32, f32) = (40.0, 10.0);
 
 /// The way in which a held object follows its holder.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]

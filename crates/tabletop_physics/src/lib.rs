@@ -46,10 +46,13 @@ pub use bodies::{BodySystems, collider, mass_properties, reshape, take_in};
 pub use effort::{Care, Engine};
 pub use geometry::{
     Convex, Nearby, Nearest, Pressure, convex_parts, depth, is_touching, nearby, nearest,
-    pressures_on, to_rapier,
+    pressures_on, pushed_out, to_rapier,
 };
 pub use holding::{Carry, MET_WHEN_THERE, hold, let_go, pull_velocity, push, put};
-pub use mover::{MovedBody, MovedBodyItem};
+pub use mover::{
+    Approach, Environment, FreeObject, MovedBody, MovedBodyItem, Pushed, SweptSolid, are_near,
+    limits,
+};
 pub use settings::PhysicsSettings;
 pub use snapshot::{PhysicsSnapshot, remove_joint, remove_object, renew_if_empty};
 pub use workarounds::{

@@ -4,10 +4,8 @@ use bevy::{ecs::query::QueryData, prelude::*};
 use bevy_rapier3d::prelude::*;
 use tabletop_core::Pose;
 
+use super::limits::JUMP;
 use crate::{geometry::to_rapier, workarounds::short_turn::turn_to};
-
-/// Largest distance, in units, that something moves in a tick while pushing things in its way; anything faster has jumped.
-const JUMP: f32 = 1.0;
 
 /// A body that a hand or a robot moves.
 #[derive(QueryData)]
@@ -23,8 +21,8 @@ impl MovedBodyItem<'_, '_> {
         Pose::from(&*self.transform)
     }
 
-    /// Sends it to a pose in the next step, and what is in its way with it, unless it jumps. Its [`Transform`] follows after the step; it goes at
-    /// once where the engine does not move the body yet, because it was only just taken, is hidden or has no solids.
+    /// Sends it to a pose in the next step, pushing free objects in its way, unless it jumps. Its [`Transform`] follows after the step; it goes at
+    /// once where Rapier does not move the body yet, because it was only just taken, is hidden or has no solids.
     pub fn send(&mut self, bodies: &mut Mut<RapierRigidBodySet>, pose: Pose) {
         if self.transform.translation.distance(pose.location) > JUMP {
             self.place(bodies, pose);
@@ -47,7 +45,7 @@ impl MovedBodyItem<'_, '_> {
         self.place(bodies, pose);
     }
 
-    /// Puts it at a pose, asleep, if it meets nothing: the engine leaves it out of its step.
+    /// Puts it at a pose, asleep, if it meets nothing: Rapier leaves it out of its step.
     pub fn put_asleep(&mut self, bodies: &mut Mut<RapierRigidBodySet>, pose: Pose) {
         let Some(handle) = self.handle else {
             self.transform.set_if_neq(pose.into());

@@ -1,10 +1,10 @@
-//! Bodies that take part in the engine's steps, or not.
+//! Bodies that take part in Rapier's steps, or not.
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// Lets bodies take part in the engine's steps from now on, or not. The plugin does as they are marked only in ticks that are not paused, and
-/// forgets marks that were taken away during longer pauses, so the engine is told at once.
+/// Lets bodies take part in Rapier's steps from now on, or not. The plugin does as they are marked only in ticks that are not paused, and
+/// forgets marks that were taken away during longer pauses, so Rapier is told at once.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! Impulses of the last step, as the engine reports them and as they were.
+//! Impulses of the last step, as Rapier reports them and as they were.
 
 use bevy::prelude::*;
 use bevy_rapier3d::{
@@ -8,7 +8,7 @@ use bevy_rapier3d::{
 
 use crate::effort::{BASE_SUBSTEPS, bodies_of, substeps};
 
-/// The share of a pair's reported impulses that acted in the last step: the engine counts the impulses at the beginning of the
+/// The share of a pair's reported impulses that acted in the last step: Rapier counts the impulses at the beginning of the
 /// step as well as those of all sub-steps.
 pub fn impulse_share(pair: &ContactPair, bodies: &RigidBodySet, colliders: &ColliderSet) -> f32 {
     let touching = bodies_of(pair, colliders).into_iter().flatten();
@@ -18,10 +18,10 @@ pub fn impulse_share(pair: &ContactPair, bodies: &RigidBodySet, colliders: &Coll
 }
 
 /// The points at which a pair was pressed together in the last step, in the frame of the first or of the second collider, and the impulses
-/// that the engine reports there.
+/// that Rapier reports there.
 pub fn solved_points(pair: &ContactPair, on_first: bool) -> impl Iterator<Item = (Vec3, f32)> {
     pair.solver_manifolds().iter().flat_map(move |manifold| {
-        // Only what the solver has looked at in this tick: other points keep impulses of earlier ones.
+        // Only points that the solver has used in this tick: others keep impulses of earlier ticks.
         let solved = manifold.data.solver_contacts.iter();
         let numbers = solved.flat_map(|solved| solved.contact_indices());
         let points = numbers.filter_map(|number| manifold.points.get(number as usize));

@@ -1,11 +1,11 @@
-//! Forgetting: what the engine remembers from step to step and must not.
+//! Memories of earlier steps, which Rapier must not have.
 
 use bevy_rapier3d::{
     prelude::{RapierContextJoints, RapierContextSimulation},
     rapier::prelude::{CCDSolver, PhysicsPipeline},
 };
 
-/// Lets the engine forget what it remembers of earlier steps.
+/// Lets Rapier forget earlier steps.
 pub(crate) fn forget(simulation: &mut RapierContextSimulation, joints: &RapierContextJoints) {
     // It keeps the fixed shapes from step to step, and learns of changes only in steps in which something is fast: it would look for shapes
     // that are gone.

@@ -6,9 +6,7 @@ use bevy_rapier3d::{
     prelude::RapierContext,
     rapier::prelude::{Collider, ColliderHandle, ContactPair},
 };
-use tabletop_physics::{contact, impulse_share, solved_points};
-
-use crate::clearance::MARGIN;
+use tabletop_physics::{contact, impulse_share, limits::MARGIN, solved_points};
 
 /// Distance, in units, at which something is touched: an arm stops at the margin before an obstacle, or a little earlier.
 const REACHED: f32 = 1.5 * MARGIN;
