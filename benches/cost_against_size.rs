@@ -1,4 +1,4 @@
-//! Benchmark of cost against size: what a scene costs by the number of its objects.
+//! Benchmark of cost against size: the cost of a scene by the number of its objects.
 //!
 //! `cargo bench --bench cost_against_size` times towers of five unit blocks, 10 to 10,000 blocks in all: setting the scene, a
 //! tick while all are awake, a tick at rest, a tick with a picture of the head camera, and a tick in which a hand grasps in a

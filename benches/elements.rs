@@ -1,4 +1,4 @@
-//! What elements of task files cost: how long 10,000 instances take until they are in the world, what 200 controls add to a tick, and what
+//! Costs of elements of task files: how long 10,000 instances take until they are in the world, what 200 controls add to a tick, and what
 //! a tick of rings costs beside one of cylinders. `cargo bench --bench elements` prints medians.
 #![expect(clippy::print_stdout, reason = "a benchmark prints its results")]
 
@@ -141,7 +141,7 @@ fn awake(content: &str) -> App {
     app
 }
 
-/// What a tick of each costs, in µs. They take turns, so that what else the machine does touches all.
+/// Cost of a tick of each app, in µs. The apps take turns, so that other load of the machine affects all alike.
 fn ticks<const N: usize>(apps: &mut [App; N]) -> [f64; N] {
     let mut times = [const { Vec::new() }; N];
     for _ in 0..TURNS {

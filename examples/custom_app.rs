@@ -10,7 +10,7 @@ use bevy::{
     prelude::*,
     window::WindowPlugin,
 };
-use tabletop::{core::Solid, prelude::*};
+use tabletop::{geometry::Solid, prelude::*};
 
 const TASKS: [&str; 3] = [
     "tablesetup/shapes.xml",

@@ -1,8 +1,8 @@
 //! Pictures of the elements of task files for the documentation, drawn as the head camera draws them:
 //! `cargo run --release --example element_pictures`.
 //!
-//! What stands together in a picture has the name of the picture as its id, or an id that begins with it. Of what can be triggered there are
-//! two pictures beside each other, before and after.
+//! The objects of a picture have its name as their id, or an id that begins with it. Elements that can be triggered have two pictures beside
+//! each other, before and after.
 #![expect(clippy::print_stdout, reason = "an example shows what it does")]
 
 use std::{collections::BTreeMap, error::Error, fs, fs::File, io::BufWriter, path::Path};
@@ -10,12 +10,12 @@ use std::{collections::BTreeMap, error::Error, fs, fs::File, io::BufWriter, path
 use bevy::prelude::*;
 use tabletop::prelude::*;
 use tabletop_camera::{Camera, DrawnSolid, Rasterizer, Scene};
-use tabletop_core::{Bounds, LIGHT, Picture, Table};
+use tabletop_core::{LIGHT, Picture, Table};
 
 const TASK: &str = "tablesetup/elements.xml";
 const FOLDER: &str = "docs/elements";
 
-/// What is triggered, and the picture that shows it.
+/// The triggered control, and the picture that shows it.
 const TRIGGERED: [(&str, &str); 1] = [("button", "customControl")];
 
 /// Direction of the camera from the middle of its subject, in radii of the subject.
@@ -105,7 +105,7 @@ fn scene(group: &[(&ObjectSpec, Pose)]) -> Scene {
 
 /// A camera from which all of a picture can be seen.
 fn camera(group: &[(&ObjectSpec, Pose)]) -> Camera {
-    let of_one = |(spec, pose): &(&ObjectSpec, Pose)| Bounds::of_shape(&spec.shape, *pose);
+    let of_one = |(spec, pose): &(&ObjectSpec, Pose)| spec.shape.bounds(*pose);
     let (mut low, mut high) = (Vec3::MAX, Vec3::MIN);
     for bounds in group.iter().map(of_one) {
         low = low.min(bounds.low);

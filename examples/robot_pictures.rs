@@ -7,7 +7,8 @@ use std::{error::Error, fs::File, io::BufWriter, path::Path, sync::Arc};
 
 use bevy::prelude::*;
 use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Facets, Rasterizer, Scene};
-use tabletop_core::{Face, JointRole, LIGHT, Picture, Pose, Rgb, RobotLayout, Solid, Table};
+use tabletop_core::{Face, JointRole, LIGHT, Picture, RobotLayout, Table};
+use tabletop_geometry::{Pose, Rgb, Solid};
 use tabletop_kinematics::{RobotModel, baxter};
 use tabletop_robot::look::{figure_of, merged, screen_with};
 

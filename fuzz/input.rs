@@ -22,16 +22,16 @@ pub struct Inputs {
     material: Option<Texts>,
 }
 
-/// What inputs are made of.
+/// The texts of which inputs are made.
 struct Texts {
-    /// What they begin as, in the order of their lengths.
+    /// First inputs, in the order of their lengths.
     corpus: Vec<Vec<u8>>,
     /// Words of the language.
     words: Vec<Vec<u8>>,
 }
 
 impl Inputs {
-    /// The inputs that are made of what is in the repository: where the program runs, or where it was built.
+    /// The inputs that are made of files of the repository: where the program runs, or where it was built.
     pub fn of(target: &Target, seed: u64) -> Result<Self, String> {
         let here = Path::new("");
         let folder = match here.join("fuzz/corpus").is_dir() {
@@ -46,7 +46,7 @@ impl Inputs {
         })
     }
 
-    /// What inputs begin as.
+    /// The first inputs.
     #[cfg(test)]
     pub fn corpus(&self) -> impl Iterator<Item = &[u8]> {
         let texts = self.material.iter();

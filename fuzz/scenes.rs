@@ -3,7 +3,8 @@
 use bevy::math::{Quat, Vec3};
 use bevy::prelude::{App, PluginGroup as _, Transform, default};
 use tabletop::{
-    core::{ObjectIndex, Part, Twist},
+    core::{ObjectIndex, Part},
+    geometry::Twist,
     headless_app_with,
     prelude::*,
     recorder::{RecorderPlugin, UnrecordedPlugin},

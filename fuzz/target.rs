@@ -28,11 +28,11 @@ pub struct Target {
     pub name: &'static str,
     /// Starts the target; the returned function takes inputs.
     pub start: fn() -> Box<dyn FnMut(&[u8])>,
-    /// What inputs are made of; else they are where chance begins.
+    /// The material of inputs; without it they are random bytes.
     pub material: Option<Material>,
 }
 
-/// What inputs are made of.
+/// The material of inputs.
 pub struct Material {
     /// Folders of the repository with files to begin with, besides the target's corpus.
     pub shipped: &'static [&'static str],
@@ -208,7 +208,7 @@ fn understand(folder: &Path) {
     }
 }
 
-/// What a program that was killed was about to do with a recording.
+/// The unfinished act of a killed program on a recording.
 fn intent(bytes: &[u8]) {
     let folder = recording_with(&[
         ("states.csv", b"tick,id\n31,A\n"),

@@ -80,7 +80,7 @@ enum Command {
     Init(init::InitArgs),
     /// Act at random, for hours, as a user could, and check the world after every tick
     Soak(soak::SoakArgs),
-    /// Print what your shell needs to complete commands and options
+    /// Print a script with which your shell completes commands and options
     ///
     /// For bash: tabletop completions bash > ~/.local/share/bash-completion/completions/tabletop
     Completions(completions::CompletionsArgs),

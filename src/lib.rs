@@ -4,14 +4,17 @@
 //! | crate | content |
 //! |---|---|
 //! | [`core`] | the shared vocabulary: objects, scenes, commands, facts, the clock |
+//! | [`geometry`] | poses, coloured solids, bounds and rays |
 //! | [`xml`] | task files |
 //! | [`physics`] | Rapier, configured |
+//! | [`assembly`] | the content of a task file, taken apart into objects and joints |
 //! | [`scene`] | the table, and the objects that come and go on it |
 //! | [`history`] | undo and redo |
 //! | [`demonstrator`] | the invisible hands |
 //! | [`mechanism`] | controls and bonds |
 //! | [`robot`] | the robot: its look, motion and grips |
 //! | [`kinematics`] | robots from URDF |
+//! | [`controller`] | the seam between the robot and what acts for it |
 //! | [`camera`] | the view of the robot's head camera |
 //! | [`recorder`] | recordings on disk |
 //! | [`script`] | users' Matlab, Octave and Python scripts that drive the robot |
@@ -40,10 +43,13 @@
 //! assert!((pose.location - Vec3::new(2.0, 0.0, 1.0)).length() < 0.005);
 //! ```
 
+pub use tabletop_assembly as assembly;
 pub use tabletop_camera as camera;
+pub use tabletop_controller as controller;
 pub use tabletop_core as core;
 pub use tabletop_demonstrator as demonstrator;
 pub use tabletop_episodes::{imitation, multiplication, scene_at_beginning, shown_task, soak};
+pub use tabletop_geometry as geometry;
 #[cfg(feature = "window")]
 pub use tabletop_gui as gui;
 pub use tabletop_history as history;
@@ -65,6 +71,8 @@ pub use tabletop_sim::{
 };
 pub use tabletop_storage as storage;
 pub use tabletop_task as task;
+#[cfg(feature = "window")]
+pub use tabletop_user as user;
 #[cfg(feature = "window")]
 pub use tabletop_view as view;
 pub use tabletop_xml as xml;
@@ -90,7 +98,7 @@ pub mod prelude {
 }
 
 /// The window on a simulation, beside Bevy's `DefaultPlugins`: [`ViewPlugin`](view::ViewPlugin) shows the world,
-/// [`GuiPlugin`](gui::GuiPlugin) has keys, mouse and panels, and [`PacePlugin`](core::PacePlugin) lets users choose the pace of time.
+/// [`GuiPlugin`](gui::GuiPlugin) has keys, mouse and panels, and [`PacePlugin`](user::PacePlugin) lets users choose the pace of time.
 #[cfg(feature = "window")]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TabletopWindowPlugins;
@@ -101,6 +109,6 @@ impl PluginGroup for TabletopWindowPlugins {
         PluginGroupBuilder::start::<Self>()
             .add(view::ViewPlugin)
             .add(gui::GuiPlugin)
-            .add(core::PacePlugin)
+            .add(user::PacePlugin)
     }
 }

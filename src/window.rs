@@ -42,7 +42,7 @@ use crate::{
 pub struct WindowOptions {
     /// The content of the table.
     pub show: Show,
-    /// Folders in which, and below, files may name others, besides what is around them.
+    /// Folders whose files, at any depth, may be named by others, besides those around them.
     pub allowed: Vec<PathBuf>,
     /// The robot at the table; a replay has that of its recording.
     pub robot: RobotPlugin,

@@ -1,4 +1,4 @@
-//! Apps of one's own with one of the plugins: what a plugin lacks is logged, and nothing panics.
+//! Apps of one's own with one of the plugins: missing plugins are logged, and nothing panics.
 
 use bevy::prelude::*;
 use tabletop::{

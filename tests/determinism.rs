@@ -46,7 +46,7 @@ fn stepped(file: &str) -> Vec<(String, Vec<u32>)> {
     bits(app.world())
 }
 
-/// In an ordinary Bevy app, as the window is one, with threads and so many ticks a frame.
+/// In an ordinary Bevy app, as the window is one, with threads and this number of ticks a frame.
 fn in_frames(file: &str, ticks_a_frame: u32) -> Vec<(String, Vec<u32>)> {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, TabletopSimPlugins));
@@ -107,7 +107,7 @@ fn a_scene_after_another_ends_in_the_same_bits() {
 struct Other<const N: usize>;
 
 #[test]
-fn what_else_is_in_the_app_does_not_matter() {
+fn foreign_parts_of_the_app_do_not_matter() {
     for file in FILES {
         let expected = stepped(file);
         let mut app = headless_app();

@@ -1,4 +1,4 @@
-//! What strangers' files may name besides what is around them.
+//! Paths that strangers' files may name besides those around them.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! `tabletop completions`: what shells need to complete commands and options.
+//! `tabletop completions`: scripts with which shells complete commands and options.
 
 use std::process::ExitCode;
 

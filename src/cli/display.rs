@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_refused() {
+    fn invalid_display_options_are_refused() {
         for words in [
             "--settings --no-settings",
             "--fullscreen --windowed",

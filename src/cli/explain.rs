@@ -8,8 +8,8 @@ use std::{
 use clap::Args;
 use serde_json::json;
 use tabletop::{
+    assembly::{IdAllocator, assemble},
     recorder::{RecorderError, RecordingReader, TICKS_PER_FRAME, read_original},
-    scene::{IdAllocator, assemble},
     task::{Demonstration, DetourKind, Furniture, Requirements, Role, Task, TaskStep},
 };
 use tabletop_core::{SceneSpec, TICKS_PER_SECOND};
@@ -100,7 +100,7 @@ fn reported(task: &Task) -> Vec<String> {
     reported.into_iter().map(|(_, line)| line).collect()
 }
 
-/// The objects of a scene, which tell what a recording of the original program does not.
+/// The objects of a scene, which complete a recording of the original program.
 pub(super) fn furniture(scene: &SceneSpec) -> Furniture {
     let assembly = assemble(scene, &mut IdAllocator::default());
     Furniture {

@@ -10,7 +10,9 @@ use std::{
 use bevy::prelude::*;
 use clap::Args;
 use tabletop::{
-    TabletopSimPlugins, headless_app_with,
+    TabletopSimPlugins,
+    assembly::{IdAllocator, assemble},
+    headless_app_with,
     imitation::{AppStage, scattered_for},
     multiplication::with_colors_exchanged,
     planner::{Doing, Imitation, RobotBody, imitate},
@@ -19,7 +21,6 @@ use tabletop::{
         read_original,
     },
     robot::{Description, RobotPlugin},
-    scene::{IdAllocator, assemble},
     scene_at_beginning,
     task::{Requirements, Task},
 };

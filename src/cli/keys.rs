@@ -3,7 +3,8 @@
 use std::{fmt::Write as _, path::PathBuf, process::ExitCode};
 
 use clap::Args;
-use tabletop::core::{Keymap, RobotLayout};
+use tabletop::core::RobotLayout;
+use tabletop::user::Keymap;
 use tabletop_gui::{Preferences, keymap_file};
 
 use super::{Failure, Output, WRONG_INPUT, robot_options::describe, terminal::say};

@@ -28,7 +28,7 @@ fn page(program: Command) -> io::Result<String> {
         .subcommand_value_name("COMMAND");
     program.build();
     let mut page = Vec::new();
-    // An empty date would not be quoted, so that what follows would be taken for it.
+    // An empty date would not be quoted, so that the next argument would be taken for it.
     let man = Man::new(program.clone()).date(" ");
     let man = man.manual("User Commands");
     man.render_title(&mut page)?;

@@ -54,7 +54,7 @@ pub(super) struct MultiplyArgs {
     /// Give the objects other colours, as far as the requirements allow
     #[arg(long)]
     colors: bool,
-    /// Make blocks and cylinders narrower by up to this part of their widths, from 0 to 0.5, as far as what is required of them allows
+    /// Make blocks and cylinders narrower by up to this part of their widths, from 0 to 0.5, as far as requirements allow
     #[arg(long, value_name = "PART", value_parser = PARTS, allow_negative_numbers = true, default_value_t = 0.0, hide_default_value = true)]
     sizes: f32,
     /// The task file with the objects to do it with [default: the scene of the recording]
@@ -62,7 +62,7 @@ pub(super) struct MultiplyArgs {
     setup: Option<PathBuf>,
     #[command(flatten)]
     allowed: AllowedPaths,
-    /// Put up to so many other objects around, from 0 to 50
+    /// Put up to this number of other objects around, from 0 to 50
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = DISTRACTORS, allow_negative_numbers = true)]
     distractors: u32,
     /// Move the head camera by up to this many units, from 0 to 10, and turn it by up to 2° per unit

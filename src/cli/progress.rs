@@ -31,7 +31,7 @@ impl ProgressLine {
         }
     }
 
-    /// Shows that so many are done, with a note behind.
+    /// Shows the number of done items, with a note behind.
     pub fn reach(&mut self, done: u64, note: &str) {
         let is_recent = self.shown.is_some_and(|shown| shown.elapsed() < PERIOD);
         if !self.is_visible || (is_recent && done < self.all) {

@@ -5,7 +5,7 @@ use tabletop::recorder::{RecordingReport, finish_recording};
 
 use super::{Failure, terminal::say};
 
-/// Finishes what is still recorded. The run has failed if a recording has.
+/// Finishes a recording that still runs. The run has failed if a recording has.
 pub(super) fn finish(app: &mut App) -> Result<RecordingReport, Failure> {
     finish_recording(app).map_err(Failure::run)
 }

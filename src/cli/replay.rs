@@ -5,7 +5,8 @@ use std::{path::PathBuf, process::ExitCode};
 use bevy::{math::Vec3, prelude::*};
 use clap::Args;
 use tabletop::{
-    core::{HeadCamera, Picture, Pose, SimTick, StepApp as _, TICKS_PER_SECOND},
+    core::{HeadCamera, Picture, SimTick, StepApp as _, TICKS_PER_SECOND},
+    geometry::Pose,
     headless_app_with,
     recorder::{Channels, RecorderPlugin, RecordingReport},
     replay::{Player, Replay, ReplayError},

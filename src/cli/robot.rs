@@ -7,7 +7,8 @@ use clap::{Args, Subcommand};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Value, json};
 use tabletop::{
-    core::{JointName, JointRole, LimbLayout, LimbName, RobotLayout, Table, UNITS_PER_METER},
+    core::{JointName, JointRole, LimbLayout, LimbName, RobotLayout, Table},
+    geometry::UNITS_PER_METER,
     robot::Description,
 };
 use tabletop_kinematics::{ArmChain, ModelError, RobotModel, Target, Unreachable};

@@ -15,6 +15,8 @@ use tabletop::{
     },
     shipped::{self, shipped_files, true_path},
 };
+#[cfg(feature = "window")]
+use tabletop_user::Keymap;
 
 use super::{Failure, range::NumberRange};
 
@@ -101,7 +103,12 @@ pub(super) fn describe(path: &Path) -> Result<Description, Failure> {
             reach: None,
         },
     };
-    Description::read(source).map_err(|error| at(path, &error))
+    let description = Description::read(source).map_err(|error| at(path, &error))?;
+    #[cfg(feature = "window")]
+    if let Some(fault) = Keymap::of(&description.layout).1.first() {
+        return Err(at(path, fault));
+    }
+    Ok(description)
 }
 
 /// True if a path stays in the folder that it begins in.

@@ -12,13 +12,13 @@ use clap::Args;
 use serde_json::json;
 use tabletop::{
     TabletopSimPlugins,
+    assembly::{IdAllocator, assemble},
     core::{
         RestingSystems, RobotFact, SceneCommand, SceneSpec, SimFact, SimTick, StepApp as _,
         TICKS_PER_SECOND, WriteCommand as _,
     },
     final_state, headless_app_with,
     recorder::{RecorderPlugin, UnrecordedPlugin},
-    scene::{IdAllocator, assemble},
     script::{ScriptPlugin, shut_down},
     shipped::{read_scenario, task_reader, true_path},
     shown_task::shown_task,
@@ -112,10 +112,7 @@ pub(super) fn run(args: &RunArgs) -> Result<ExitCode, Failure> {
             let setup = args.setup.as_deref();
             let setup = setup.unwrap_or(Path::new(DEFAULT_SETUP));
             let (mut app, result) = put_on_table(setup, &args.allowed.folders, plugins(args)?)?;
-            app.add_systems(
-                FixedLast,
-                report_what_stops_the_robot.in_set(RestingSystems),
-            );
+            app.add_systems(FixedLast, report_stops_of_the_robot.in_set(RestingSystems));
             args.robot.show(&mut app);
             args.tell_task(&mut app, Some(setup))?;
             let start = Instant::now();
@@ -184,10 +181,8 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
 
     let mut app = headless_app_with(recording(plugins(args)?, args)?);
     let (limit, only_prepares) = (program.limit, program.only_prepares());
-    app.insert_resource(ScenarioRun::new(program)).add_systems(
-        FixedLast,
-        report_what_stops_the_robot.in_set(RestingSystems),
-    );
+    app.insert_resource(ScenarioRun::new(program))
+        .add_systems(FixedLast, report_stops_of_the_robot.in_set(RestingSystems));
     args.robot.show(&mut app);
     args.tell_task(&mut app, None)?;
     let start = Instant::now();
@@ -241,7 +236,7 @@ fn perform(scenario: &Path, args: &RunArgs) -> Result<ExitCode, Failure> {
 }
 
 /// Reports every obstacle of an arm, and every object that cannot be gripped, once.
-fn report_what_stops_the_robot(
+fn report_stops_of_the_robot(
     mut facts: MessageReader<SimFact>,
     mut reported: Local<BTreeSet<String>>,
 ) {
@@ -365,7 +360,7 @@ impl RunArgs {
     }
 }
 
-/// Saves the final state as a task file, and reports what that cannot express.
+/// Saves the final state as a task file, and reports the parts that a task file cannot express.
 fn save(app: &App, path: &Path) -> Result<(), Failure> {
     let name = path.display();
     let unsaid = save_task(app.world(), path)

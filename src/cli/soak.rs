@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn growth_is_what_the_end_has_more_than_the_beginning() {
+    fn growth_compares_the_end_with_the_beginning() {
         assert_eq!(growth(&[1, 9, 5, 5, 5, 5, 9, 8]), 0);
         assert_eq!(growth(&[1, 2, 3, 4, 5, 6, 7, 8]), 4);
         assert_eq!(growth(&[]), 0);

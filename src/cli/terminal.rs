@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_terminal_obeys_is_written_out() {
+    fn control_characters_are_escaped() {
         assert_eq!(printable("two\nlines\t\u{e4}"), "two\nlines\t\u{e4}");
         assert_eq!(
             printable("a\u{1b}[31mred\u{9b}2J\r\u{7}"),

@@ -60,7 +60,7 @@ pub(super) struct WindowArgs {
 
 impl WindowArgs {
     /// Reads the files that are named, before there is a window. Faults of the task file are reported in the window and do not close it, but
-    /// a picture of what is left of the scene gives exit code 2.
+    /// a picture of the rest of the scene gives exit code 2.
     fn read_files(&self) -> Result<ExitCode, Failure> {
         #[cfg(feature = "window")]
         if let Some(keys) = &self.keys {

@@ -16,11 +16,11 @@ use bevy::{
         VideoModeSelection, WindowMode,
     },
 };
-use tabletop_core::{Action, KeySystems, UserCamera, was_struck};
 use tabletop_gui::{
     Renderer,
     display::{Antialiasing, DisplayOffer, DisplaySettings, Resolution, ScreenMode},
 };
+use tabletop_user::{Action, KeySystems, UserCamera, was_struck};
 use wgpu_types::DeviceType;
 
 use super::frame_rate::FrameRate;
@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn the_command_line_overrides_what_was_chosen() {
+    fn the_command_line_overrides_chosen_settings() {
         let options = DisplayOptions {
             fullscreen: Some(true),
             antialiasing: Some(Antialiasing::X8),
@@ -398,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn the_window_becomes_what_is_chosen() {
+    fn the_window_takes_the_chosen_settings() {
         let (mut app, window) = app();
         let camera = app.world_mut().spawn((UserCamera, Msaa::Off)).id();
         app.insert_resource(DisplaySettings {

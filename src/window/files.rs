@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_dropped_onto_the_window_is_opened() {
+    fn files_dropped_onto_the_window_are_opened() {
         let folder = folder("dropped");
         let drop = |app: &mut App, path: &str| {
             app.world_mut().write_message(FileDragAndDrop::DroppedFile {

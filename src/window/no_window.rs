@@ -80,7 +80,7 @@ mod tests {
     const NO_DRIVER: &str = "Unable to find a GPU! Make sure you have installed required drivers! For extra information, see: https://github.com/bevyengine/bevy";
 
     #[test]
-    fn a_panic_tells_what_is_missing() {
+    fn a_panic_names_the_missing_part() {
         let library = |name: &str| NoWindow::Library(name.into());
         for (message, expected) in [
             (NO_DISPLAY, NoWindow::Display),

@@ -85,7 +85,7 @@ impl Beginning {
 /// The title of the main window.
 const WINDOW_TITLE: &str = "tabletop";
 
-/// A frame, whatever it shows.
+/// The schedule of a frame.
 #[derive(ScheduleLabel, Clone, Debug, PartialEq, Eq, Hash)]
 struct WindowFrame;
 

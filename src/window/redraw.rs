@@ -114,7 +114,7 @@ pub(super) fn plugin(app: &mut App) {
 /// Changes of this kind of asset are seen.
 fn watch_assets<A: Asset>(app: &mut App, cause: RedrawCause) {
     let note = move |mut change: ResMut<AssetChange>| {
-        // A texture must not hide what needs settling.
+        // A texture must not hide a change that needs settling.
         if change.0 != Some(RedrawCause::Asset) {
             change.0 = Some(cause);
         }
@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn what_trembles_is_not_drawn_and_what_creeps_is() {
+    fn trembling_is_not_drawn_and_creeping_is() {
         let mut app = still_app();
         let mut put = |z: f32| {
             let world = app.world_mut();
@@ -353,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mouse_that_moves_over_what_stays_the_same_draws_nothing() {
+    fn a_mouse_over_an_unchanged_picture_draws_nothing() {
         let mut app = still_app();
         app.world_mut()
             .write_message(WindowEvent::CursorMoved(CursorMoved {
@@ -365,7 +365,7 @@ mod tests {
     }
 
     #[test]
-    fn what_waits_for_a_picture_gets_one() {
+    fn a_waiting_screenshot_gets_a_picture() {
         let mut app = still_app();
         let screenshot = app.world_mut().spawn(Screenshot::primary_window()).id();
         assert_eq!(causes(&mut app, 3), [Some(RedrawCause::Screenshot); 3]);

@@ -4,11 +4,13 @@ mod imitator;
 mod understood;
 
 use bevy::prelude::*;
+use tabletop_controller::RobotController;
 use tabletop_core::{
-    Actor, Agent, CommandWriter, Playback, PlaybackOrder, SceneCommand, ShownTask, TaskOrder,
-    Timeline, TimelineStage,
+    Actor, Agent, CommandWriter, Playback, PlaybackOrder, SceneCommand, ShownTask, Timeline,
+    TimelineStage,
 };
 use tabletop_gui::{Notices, Tone};
+use tabletop_user::TaskOrder;
 
 use self::{imitator::RobotImitator, understood::Understood};
 
@@ -20,7 +22,7 @@ pub(super) fn plugin(app: &mut App) {
             Update,
             (
                 understood::read_recording,
-                understood::take_what_was_read,
+                understood::take_read_task,
                 obey,
                 put_back.run_if(|putting: Res<PuttingBack>| putting.0.is_some()),
             )
@@ -44,6 +46,7 @@ fn obey(
     mut understood: ResMut<Understood>,
     mut shown: ResMut<ShownTask>,
     mut imitator: ResMut<RobotImitator>,
+    mut controller: ResMut<RobotController>,
     mut putting: ResMut<PuttingBack>,
     mut notices: ResMut<Notices>,
     agent: Res<Agent>,
@@ -59,11 +62,11 @@ fn obey(
             } => understood.require(role, property, *is_required),
             TaskOrder::Free { role, is_free } => understood.free(role, *is_free),
             TaskOrder::Stop => {
-                imitator.stop();
+                imitator.stop(&mut controller);
                 Ok(())
             }
             TaskOrder::PutBack => {
-                imitator.stop();
+                imitator.stop(&mut controller);
                 putting.0 = Some(Afterwards::Nothing);
                 Ok(())
             }
@@ -74,7 +77,7 @@ fn obey(
                 putting.0 = Some(Afterwards::Imitate);
                 Ok(())
             }
-            TaskOrder::Imitate => imitator.prepare(&understood),
+            TaskOrder::Imitate => imitator.prepare(&understood, &mut controller),
         };
         if let Err(reason) = result {
             notices.append(Tone::Warning, &reason);
@@ -91,6 +94,7 @@ fn put_back(
     mut commands: CommandWriter,
     mut orders: MessageWriter<PlaybackOrder>,
     mut imitator: ResMut<RobotImitator>,
+    mut controller: ResMut<RobotController>,
     mut notices: ResMut<Notices>,
     understood: Res<Understood>,
     timeline: Res<Timeline>,
@@ -109,7 +113,7 @@ fn put_back(
     };
     commands.write(Actor::Panel, SceneCommand::Set(Box::new(scene.clone())));
     if afterwards == Some(Afterwards::Imitate)
-        && let Err(reason) = imitator.prepare(&understood)
+        && let Err(reason) = imitator.prepare(&understood, &mut controller)
     {
         notices.append(Tone::Warning, &reason);
     }

@@ -1,7 +1,7 @@
 //! No two files of a crate need each other, directly or by a detour: who reads one of them need not read the other.
 //!
 //! The arrows between files are found in their text: a path that begins with `crate`, `self`, `super` or the name of a module
-//! below leads to the file that defines what it names. A module that declares or re-exports another one does not need it.
+//! below leads to the file that defines the item. A module that declares or re-exports another one does not need it.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -104,7 +104,7 @@ impl Modules {
         arrows.collect()
     }
 
-    /// The file that defines what a path in a module names; none if that is not in this crate.
+    /// The file that defines the item of a path in a module; none if that is not in this crate.
     fn file_of(&self, module: &[String], path: &[String], depth: usize) -> Option<Vec<String>> {
         if depth > 20 {
             return None;

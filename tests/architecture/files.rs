@@ -1,11 +1,11 @@
-//! Files are opened and changed in few places: those that open make sure of what they open (a pipe could wait for ever, a device never end, a
+//! Files are opened and changed in few places: those that open check the kind of file (a pipe could wait for ever, a device never end, a
 //! stranger's link lead to any file), and those that change keep the rules of `SECURITY.md`.
 
 use std::collections::BTreeSet;
 
 use crate::source::program;
 
-/// The ends of the paths of functions that open whatever is there.
+/// The ends of the paths of functions that open a file of any kind.
 const OPENERS: [[&str; 2]; 4] = [
     ["File", "open"],
     ["OpenOptions", "new"],
@@ -16,14 +16,14 @@ const OPENERS: [[&str; 2]; 4] = [
 /// The files that call them. All others ask `tabletop_storage` for a regular file.
 const OPENING: [&str; 7] = [
     "crates/tabletop_engine/src/regular_file.rs",
-    // What the system tells of processes.
+    // The system's files about processes.
     "crates/tabletop_engine/src/worker/descendants.rs",
     // Files of an engine's own folder.
     "crates/tabletop_engine/src/worker/exchange_folder.rs",
     "crates/tabletop_engine/src/worker/trigger_file.rs",
     "crates/tabletop_storage/src/regular_file.rs",
     "crates/tabletop_storage/src/storage.rs",
-    // What the system tells of the program's memory.
+    // The system's file about the program's memory.
     "src/cli/soak.rs",
 ];
 

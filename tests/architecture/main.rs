@@ -12,35 +12,63 @@ use std::{collections::BTreeSet, process::Command};
 use serde_json::Value;
 
 /// The crates of ours that each crate may depend on, and whether it may name Rapier and enable features that draw or open windows.
-const RULES: [Rule; 26] = [
+const RULES: [Rule; 30] = [
     Rule::new("tabletop_storage", &[]),
-    Rule::new("tabletop_core", &[]),
-    Rule::new("tabletop_mesh", &["tabletop_core"]),
+    Rule::new("tabletop_geometry", &[]),
+    Rule::new("tabletop_core", &["tabletop_geometry"]),
+    Rule::new("tabletop_mesh", &["tabletop_core", "tabletop_geometry"]),
     Rule::new(
         "tabletop_xml",
-        &["tabletop_core", "tabletop_mesh", "tabletop_storage"],
+        &[
+            "tabletop_core",
+            "tabletop_geometry",
+            "tabletop_mesh",
+            "tabletop_storage",
+        ],
     ),
-    Rule::new("tabletop_history", &["tabletop_core"]),
-    Rule::new("tabletop_physics", &["tabletop_core", "tabletop_history"]).with_rapier(),
+    Rule::new("tabletop_history", &["tabletop_core", "tabletop_geometry"]),
+    Rule::new(
+        "tabletop_physics",
+        &["tabletop_core", "tabletop_geometry", "tabletop_history"],
+    )
+    .with_rapier(),
+    Rule::new("tabletop_assembly", &["tabletop_core", "tabletop_geometry"]),
     Rule::new(
         "tabletop_scene",
-        &["tabletop_core", "tabletop_history", "tabletop_physics"],
+        &[
+            "tabletop_assembly",
+            "tabletop_core",
+            "tabletop_geometry",
+            "tabletop_history",
+            "tabletop_physics",
+        ],
     )
     .with_rapier(),
     Rule::new(
         "tabletop_demonstrator",
-        &["tabletop_core", "tabletop_history", "tabletop_physics"],
+        &[
+            "tabletop_core",
+            "tabletop_geometry",
+            "tabletop_history",
+            "tabletop_physics",
+        ],
     )
     .with_rapier(),
     Rule::new(
         "tabletop_mechanism",
-        &["tabletop_core", "tabletop_history", "tabletop_physics"],
+        &[
+            "tabletop_core",
+            "tabletop_geometry",
+            "tabletop_history",
+            "tabletop_physics",
+        ],
     ),
     Rule::new("tabletop_kinematics", &[]),
     Rule::new(
         "tabletop_robot",
         &[
             "tabletop_core",
+            "tabletop_geometry",
             "tabletop_history",
             "tabletop_kinematics",
             "tabletop_mesh",
@@ -52,24 +80,56 @@ const RULES: [Rule; 26] = [
     Rule::new("tabletop_engine", &[]),
     Rule::new(
         "tabletop_script",
-        &["tabletop_core", "tabletop_engine", "tabletop_storage"],
+        &[
+            "tabletop_core",
+            "tabletop_geometry",
+            "tabletop_engine",
+            "tabletop_storage",
+        ],
     ),
-    Rule::new("tabletop_camera", &["tabletop_core", "tabletop_history"]),
-    Rule::new("tabletop_recorder", &["tabletop_core", "tabletop_storage"]),
-    Rule::new("tabletop_scenario", &["tabletop_core", "tabletop_storage"]),
+    Rule::new(
+        "tabletop_camera",
+        &["tabletop_core", "tabletop_geometry", "tabletop_history"],
+    ),
+    Rule::new(
+        "tabletop_recorder",
+        &["tabletop_core", "tabletop_geometry", "tabletop_storage"],
+    ),
+    Rule::new(
+        "tabletop_scenario",
+        &["tabletop_core", "tabletop_geometry", "tabletop_storage"],
+    ),
     Rule::new(
         "tabletop_task",
-        &["tabletop_core", "tabletop_recorder", "tabletop_storage"],
+        &[
+            "tabletop_core",
+            "tabletop_geometry",
+            "tabletop_recorder",
+            "tabletop_storage",
+        ],
+    ),
+    Rule::new(
+        "tabletop_controller",
+        &["tabletop_core", "tabletop_geometry", "tabletop_kinematics"],
     ),
     Rule::new(
         "tabletop_planner",
-        &["tabletop_core", "tabletop_kinematics", "tabletop_task"],
+        &[
+            "tabletop_controller",
+            "tabletop_core",
+            "tabletop_geometry",
+            "tabletop_kinematics",
+            "tabletop_task",
+        ],
     ),
     Rule::new(
         "tabletop_sim",
         &[
+            "tabletop_assembly",
             "tabletop_camera",
+            "tabletop_controller",
             "tabletop_core",
+            "tabletop_geometry",
             "tabletop_demonstrator",
             "tabletop_history",
             "tabletop_mechanism",
@@ -87,6 +147,7 @@ const RULES: [Rule; 26] = [
         "tabletop_replay",
         &[
             "tabletop_core",
+            "tabletop_geometry",
             "tabletop_history",
             "tabletop_physics",
             "tabletop_recorder",
@@ -100,14 +161,16 @@ const RULES: [Rule; 26] = [
     Rule::new(
         "tabletop_episodes",
         &[
+            "tabletop_assembly",
+            "tabletop_controller",
             "tabletop_core",
+            "tabletop_geometry",
             "tabletop_kinematics",
             "tabletop_physics",
             "tabletop_planner",
             "tabletop_recorder",
             "tabletop_replay",
             "tabletop_robot",
-            "tabletop_scene",
             "tabletop_sim",
             "tabletop_storage",
             "tabletop_task",
@@ -115,12 +178,29 @@ const RULES: [Rule; 26] = [
     ),
     Rule::new("tabletop_harness", &["tabletop_harness_macro"]),
     Rule::new("tabletop_harness_macro", &[]),
-    Rule::new("tabletop_view", &["tabletop_core"]).with_window(),
-    Rule::new("tabletop_gui", &["tabletop_core", "tabletop_storage"]).with_window(),
+    Rule::new("tabletop_user", &["tabletop_core", "tabletop_geometry"]),
+    Rule::new(
+        "tabletop_view",
+        &["tabletop_core", "tabletop_geometry", "tabletop_user"],
+    )
+    .with_window(),
+    Rule::new(
+        "tabletop_gui",
+        &[
+            "tabletop_core",
+            "tabletop_geometry",
+            "tabletop_storage",
+            "tabletop_user",
+        ],
+    )
+    .with_window(),
     Rule::new(
         "tabletop",
         &[
+            "tabletop_assembly",
+            "tabletop_controller",
             "tabletop_core",
+            "tabletop_geometry",
             "tabletop_xml",
             "tabletop_physics",
             "tabletop_scene",
@@ -140,6 +220,7 @@ const RULES: [Rule; 26] = [
             "tabletop_storage",
             "tabletop_task",
             "tabletop_planner",
+            "tabletop_user",
             "tabletop_view",
             "tabletop_gui",
         ],
@@ -213,7 +294,7 @@ fn strings(list: &Value) -> impl Iterator<Item = &str> {
 }
 
 #[test]
-fn crates_depend_only_on_what_the_table_allows() {
+fn crates_depend_only_as_the_table_allows() {
     let metadata = metadata(&["--no-deps"]);
     let packages = metadata["packages"].as_array().unwrap();
     let names: BTreeSet<_> = packages

@@ -1,5 +1,5 @@
-//! What is done otherwise on one platform is done somehow on the others: each `#[cfg(unix)]` and its like has its `#[cfg(not(unix))]`
-//! in the same file, and says there what is missing.
+//! Code for one platform has its other side for the rest: each `#[cfg(unix)]` and its like has its `#[cfg(not(unix))]` in the same file,
+//! which says what is missing there.
 
 use crate::source::{Source, program};
 

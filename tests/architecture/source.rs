@@ -14,7 +14,7 @@ pub struct Source {
     /// Its types: structures, enumerations and traits, those of modules within it, too.
     pub types: Vec<String>,
     pub paths: Vec<Vec<String>>,
-    /// Its conditions such as `unix`: what `#[cfg]` holds.
+    /// Its conditions in `#[cfg]`, such as `unix`.
     pub conditions: BTreeSet<String>,
 }
 

@@ -24,7 +24,7 @@ fn is_done_when_allowed(arguments: &[&str], allowed: &str) {
 }
 
 #[test]
-fn a_task_file_that_is_checked_includes_what_is_allowed() {
+fn a_checked_task_file_includes_allowed_files() {
     let tabletop = "<tabletop xmlns='http://synapse.cs.umd.edu/tabletop-xml'>";
     let task = format!("{tabletop}<include file='../parts/ball.xml'/></tabletop>");
     let ball = format!("{tabletop}<sphere location='(0,0,1)'/></tabletop>");

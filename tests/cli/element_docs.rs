@@ -20,7 +20,7 @@ const NOT_SEEN: [&str; 7] = [
     "var",
 ];
 
-/// What a schema says: elements with the names of their types, and of each type and group of attributes, the attributes and the types
+/// The content of a schema: elements with the names of their types, and of each type and group of attributes, the attributes and the types
 /// and groups that it has besides.
 #[derive(Default)]
 struct Schema {
@@ -34,7 +34,7 @@ impl Schema {
         let mut schema = Self::default();
         let mut holder = String::new();
         for line in text.lines() {
-            // What the schema defines begins with the line, directly in it.
+            // Definitions of the schema begin with the line, directly in it.
             let mut is_definition = line.starts_with("  <xs:");
             for tag in line.split('<').skip(1) {
                 let kind = tag.split([' ', '>', '/']).next().unwrap();

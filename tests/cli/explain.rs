@@ -62,7 +62,7 @@ fn a_box_with_a_lid_is_opened_filled_and_closed() {
 }
 
 #[test]
-fn what_lies_on_another_side_is_tipped() {
+fn an_object_on_another_side_is_tipped() {
     means(
         &recorded("stand_up"),
         &[
@@ -89,7 +89,7 @@ fn a_swap_needs_a_third_place() {
 }
 
 #[test]
-fn a_wall_stands_on_what_is_below() {
+fn upper_blocks_of_a_wall_stand_on_lower_ones() {
     means(
         &recorded("wall"),
         &[
@@ -156,7 +156,7 @@ fn a_recording_of_the_original_program_is_understood() {
 }
 
 #[test]
-fn what_hands_did_is_seen_in_the_poses() {
+fn acts_of_hands_are_seen_in_the_poses() {
     for scenario in ["stack_three", "swap", "wall"] {
         let demo = record_shipped(scenario, &format!("explain_acts_{scenario}"));
         let is_pose = |line: &str| !line.contains(",grasp,") && !line.contains(",release,");
@@ -209,7 +209,7 @@ const RED: (f32, f32) = (2.0, 0.0);
 const GREEN: (f32, f32) = (-2.0, 0.0);
 
 #[test]
-fn what_comes_back_was_a_detour() {
+fn moving_an_object_away_and_back_is_a_detour() {
     let away = carry("RedBlock", RED, (6.0, 2.0));
     let back = carry("RedBlock", (6.0, 2.0), RED);
     let lines = explained(&shown("back", &(away.clone() + &back)));
@@ -308,7 +308,7 @@ fn both_hands_work_at_the_same_time() {
 }
 
 #[test]
-fn what_was_undone_is_not_there() {
+fn undone_steps_are_not_explained() {
     let steps = carry("GreenBlock", GREEN, (-6.0, 0.0))
         + &carry("RedBlock", RED, (6.0, 2.0))
         + "Undo, Undo,";
@@ -437,7 +437,7 @@ fn objects_of_another_table_take_the_roles() {
     ];
     assert_eq!(bound(&demo, &other).unwrap(), by_color);
 
-    // Requirements decide, whatever the ids are.
+    // Requirements decide, not ids.
     require(&demo, &["--step", "2", "color=pink"]).unwrap();
     assert_eq!(bound(&demo, &other).unwrap()[2], "The pink object is b.");
     let error = bound(&demo, &same).unwrap_err();
@@ -475,7 +475,7 @@ fn json_tells_all_of_it() {
 }
 
 #[test]
-fn what_is_no_recording_is_reported() {
+fn a_folder_without_a_recording_is_reported() {
     let output = tabletop(&["explain", "tablesetup"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(

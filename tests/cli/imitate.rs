@@ -119,7 +119,7 @@ fn rings_go_from_peg_to_peg() {
 }
 
 #[test]
-fn what_the_robot_does_can_be_replayed() {
+fn an_imitation_can_be_replayed() {
     let demo = recorded("hand_over");
     let robot = place("imitate_replayed");
     let robot = robot.to_str().unwrap();
@@ -128,7 +128,7 @@ fn what_the_robot_does_can_be_replayed() {
 }
 
 #[test]
-fn its_hands_see_what_the_robot_does() {
+fn hand_cameras_record_an_imitation() {
     let demo = recorded("swap");
     let robot = place("imitate_hand_cameras");
     let folder = robot.to_str().unwrap();
@@ -172,7 +172,7 @@ fn trials_are_counted() {
 }
 
 #[test]
-fn what_cannot_be_done_is_reported_in_a_sentence() {
+fn an_impossible_step_is_reported_in_a_sentence() {
     // The blocks of the default table are as wide as the gripper opens.
     let output = tabletop(&["imitate", &recorded("stack_two_blocks")]);
     assert_eq!(output.status.code(), Some(1));

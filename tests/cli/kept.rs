@@ -58,7 +58,7 @@ fn only_a_recording_is_moved_aside_and_the_last_line_says_where_to() {
 }
 
 #[test]
-fn a_replay_says_what_it_has_moved_aside() {
+fn a_replay_names_the_recording_it_moved_aside() {
     let demo = record_shipped("stack_two_blocks", "kept_replayed");
     let out = place("kept_replayed_out");
     place("kept_replayed_out-1");
@@ -162,7 +162,7 @@ fn only_whole_demonstrations_of_the_collection_count() {
 }
 
 #[test]
-fn what_cannot_be_imitated_is_no_success() {
+fn an_impossible_imitation_is_no_success() {
     let still = scenario("kept_still.ron", "Start, Wait(0.5), Finish");
     let demo = place("kept_still");
     let path = demo.to_str().unwrap();

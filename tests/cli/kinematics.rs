@@ -162,7 +162,7 @@ fn ik_takes_points_of_the_table_and_stays_near_its_seed() {
 }
 
 #[test]
-fn what_cannot_be_reached_is_reported_and_ends_in_1() {
+fn an_unreachable_target_is_reported_and_ends_in_1() {
     let far = json!({ "arm": "left", "position": [-30.0, 20.0, 5.0] });
     let near = json!({ "arm": "left", "position": [-3.0, 0.0, 3.0] });
     let answers = robot(&["ik"], format!("{far}\n{near}\n").as_bytes());

@@ -4,7 +4,7 @@ use std::{fmt::Write as _, fs};
 
 use crate::support::{place, stderr, stdout, tabletop};
 
-/// A rule, what a file in it has after the first line, and the faults that it must have, each from `line:column: ` on.
+/// A rule, the text of a file in it after the first line, and the faults that it must have, each from `line:column: ` on.
 type Rule = (&'static str, &'static str, &'static [&'static str]);
 
 /// Files and folders.

@@ -55,7 +55,7 @@ fn one_demonstration_becomes_many_that_show_the_same() {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_bytes_and_what_is_there_is_kept() {
+fn the_same_seed_gives_the_same_bytes_and_existing_recordings_are_kept() {
     let demo = record_shipped("stack_three", "multiply_bytes");
     let [one, other] = ["multiply_bytes_one", "multiply_bytes_other"].map(place);
     let options = ["--colors", "--distractors", "3", "--camera", "1"];
@@ -120,7 +120,7 @@ fn demonstrations_of_other_options_are_not_mixed() {
 }
 
 #[test]
-fn what_is_required_of_an_object_stays_so() {
+fn variations_keep_required_properties() {
     let demo = record_shipped("stack_three", "multiply_required");
     let output = tabletop(&["require", &demo, "--step", "2", "color=red"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));

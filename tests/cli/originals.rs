@@ -1,4 +1,4 @@
-//! Recordings as the original program wrote them, typed from what is known of its format: of July 2014, with its wrong keys and colours and the
+//! Recordings as the original program wrote them, typed from knowledge of its format: of July 2014, with its wrong keys and colours and the
 //! wrong hand in a hand-over, and of February 2017, without sizes, with an object that came later and an escaped comma.
 
 use std::path::Path;
@@ -48,7 +48,7 @@ fn one_of_2017_is_understood_with_the_sizes_of_its_task_file() {
 }
 
 #[test]
-fn the_robot_does_what_they_show() {
+fn the_robot_imitates_original_recordings() {
     for year in ["2014", "2017"] {
         let setup = original(&format!("{year}.xml"));
         let output = tabletop(&["imitate", &original(year), "--setup", &setup]);

@@ -159,7 +159,7 @@ fn number_after(text: &str, words: &str) -> u64 {
 }
 
 #[test]
-fn what_hands_did_before_the_start_is_done_again() {
+fn acts_of_hands_before_the_start_are_replayed() {
     for (name, steps) in [
         (
             "before",
@@ -386,7 +386,7 @@ fn without_a_display_a_replay_in_the_window_says_so() {
 }
 
 #[test]
-fn what_is_no_recording_is_exit_code_2() {
+fn a_missing_recording_is_exit_code_2() {
     let output = tabletop(&["replay", "no such folder"]);
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(stderr(&output).lines().count(), 1, "{}", stderr(&output));
@@ -405,7 +405,7 @@ fn a_camera_that_is_too_large_is_located() {
 }
 
 #[test]
-fn what_a_terminal_obeys_is_written_out() {
+fn control_characters_are_escaped() {
     let scenario = scenario("escape.ron", "Grasp(\"\\u{1b}[31mred\"),");
     let output = tabletop(&["run", scenario.to_str().unwrap()]);
     let said = stderr(&output);

@@ -50,7 +50,7 @@ const NEVER: [(&str, &str, &str); 18] = [
 ];
 
 #[test]
-fn what_can_never_hold_is_refused() {
+fn impossible_requirements_are_refused() {
     let demo = record_shipped("stack_three", "require_never");
     for (name, value, words) in NEVER {
         let said = refused(&["require", &demo, "--step", "2", &format!("{name}={value}")]);
@@ -75,7 +75,7 @@ fn what_can_never_hold_is_refused() {
 }
 
 #[test]
-fn what_can_never_hold_is_reported_where_it_is_in_the_file() {
+fn impossible_requirements_are_reported_with_their_place_in_the_file() {
     let demo = record_shipped("stack_three", "require_by_hand");
     let file = Path::new(&demo).join("task.json");
     let write = |role: &str, name: &str, value: &str| {

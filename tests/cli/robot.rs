@@ -60,7 +60,7 @@ fn motors_come_to_the_same_place() {
 }
 
 #[test]
-fn a_description_that_is_none_is_wrong_input() {
+fn an_invalid_description_is_wrong_input() {
     let file = place("no_robot.urdf");
     for (text, words) in [
         (None, "No such file"),

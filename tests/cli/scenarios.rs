@@ -120,7 +120,7 @@ fn the_plug_of_a_shut_valve_is_locked() {
 }
 
 #[test]
-fn a_run_ends_with_what_was_done() {
+fn a_run_ends_with_a_summary() {
     let path = scenario(
         "done.ron",
         "Wait(1), Expect(Exists(\"RedBlock\")), Wait(1),",
@@ -218,7 +218,7 @@ fn every_shipped_scenario_has_its_test() {
 }
 
 #[test]
-fn a_failed_check_says_where_what_and_what_instead() {
+fn a_failed_check_states_its_place_the_expected_and_the_found() {
     let path = scenario(
         "failing.ron",
         "  WaitUntilRest(2),\n  Expect(OnTopOf(object: \"RedBlock\", of: \"GreenBlock\")),",
@@ -239,7 +239,7 @@ fn a_failed_check_says_where_what_and_what_instead() {
 }
 
 #[test]
-fn what_a_hand_refuses_fails_at_its_step() {
+fn a_refused_command_of_a_hand_fails_at_its_step() {
     let path = scenario("refused.ron", "  Grasp(\"BlueBlock\"),\n  Wait(9),");
     let output = run(&path, &[]);
     assert_eq!(output.status.code(), Some(1));
@@ -317,7 +317,7 @@ const UNDO: &str = "  Start, Grasp(\"RedBlock\"), Wait(0.5), Destroy, Expect(Gon
     Undo, Expect(HeldBy(object: \"RedBlock\", hand: Any)), Redo, Expect(Gone(\"RedBlock\")), Finish";
 
 #[test]
-fn what_is_not_recorded_can_be_undone_and_leaves_no_files() {
+fn unrecorded_steps_can_be_undone_and_leave_no_files() {
     let path = scenario("unrecorded.ron", UNDO);
     let empty = place("unrecorded");
     fs::create_dir(&empty).unwrap();
@@ -342,7 +342,7 @@ fn hands_do_not_act_while_paused() {
 }
 
 #[test]
-fn undo_brings_back_what_was_destroyed() {
+fn undo_brings_back_a_destroyed_object() {
     let path = scenario("undo.ron", UNDO);
     let folder = place("undo");
     let output = run(&path, &["--record", folder.to_str().unwrap()]);
@@ -381,7 +381,7 @@ fn a_recording_that_cannot_go_on_ends_the_scenario() {
 }
 
 #[test]
-fn what_takes_too_long_fails() {
+fn a_step_beyond_the_time_limit_fails() {
     let path = scenario("long.ron", "  Wait(3600),");
     let output = run(&path, &["--seconds", "2"]);
     assert_eq!(output.status.code(), Some(1));
@@ -472,7 +472,7 @@ fn two_programs_do_not_record_into_one_folder() {
 }
 
 #[test]
-fn what_stops_an_arm_is_reported_once() {
+fn an_obstacle_of_an_arm_is_reported_once() {
     let steps = "Robot(Show), Robot(Move([(RightS1, 1.0)])), Wait(2), Robot(Move([(RightS1, 1.0)])), Wait(0.5),";
     let output = run(&scenario("stopped.ron", steps), &[]);
     let reported = stderr(&output);

@@ -1,4 +1,4 @@
-//! What a stranger can put in the place of a recording's files is refused: it is not waited for, does not fill the memory, and leads nowhere.
+//! Pipes, devices and links in the place of a recording's files are refused: nothing waits for them, fills the memory, or follows them.
 
 #![cfg(unix)]
 
@@ -20,7 +20,7 @@ fn recorded(name: &str) -> PathBuf {
     record_shipped("red_on_blue", name).into()
 }
 
-/// Runs the program, which must not wait for what never comes.
+/// Runs the program, which must not wait for ever.
 fn ended(arguments: &[&str], recording: &Path) -> Output {
     let mut program = command(arguments);
     program.arg(recording);

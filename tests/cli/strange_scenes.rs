@@ -16,7 +16,7 @@ const RED: &str = r#"<block id="Red" location="(-3,-2.5,0.5)" color="red"/>"#;
 const GREEN: &str = r#"<block id="Green" location="(0,-4,0.5)" color="green"/>"#;
 const BLUE: &str = r#"<block id="Blue" location="(3,-2.5,0.5)" color="blue"/>"#;
 
-/// What is said of green on blue and red on green among these objects, and a recording of it.
+/// The report on stacking green on blue and red on green among these objects, and a recording of it.
 fn stacked(scene: &str, objects: &[&str]) -> (String, PathBuf) {
     let setup = place(&format!("strange_{scene}.xml"));
     let text = format!(
@@ -28,7 +28,7 @@ fn stacked(scene: &str, objects: &[&str]) -> (String, PathBuf) {
     imitated(&demo, &["--setup", setup.to_str().unwrap()])
 }
 
-/// What is said when the robot imitates this, and a recording of it.
+/// The report on an imitation of this, and a recording of it.
 fn imitated(demo: &str, options: &[&str]) -> (String, PathBuf) {
     let recording = PathBuf::from(format!("{demo}_robot"));
     let record = ["--record", recording.to_str().unwrap()];
@@ -60,13 +60,13 @@ fn fails(scene: &str, objects: &[&str], reason: &str) {
 }
 
 #[test]
-fn what_occupies_a_goal_is_put_aside() {
+fn an_object_on_a_goal_is_put_aside() {
     let yellow = r#"<block id="Yellow" location="(3,-2.5,1.5)" color="yellow"/>"#;
     is_stacked("occupied", &[RED, GREEN, BLUE, yellow]);
 }
 
 #[test]
-fn what_cannot_be_put_aside_is_named() {
+fn an_object_that_cannot_be_put_aside_is_named() {
     let wide = r#"<block id="Wide" location="(3,-2.5,1.5)" xspan="2.5" yspan="2.5" zspan="1" color="yellow"/>"#;
     fails(
         "occupied_by_wide",
@@ -82,7 +82,7 @@ fn what_cannot_be_put_aside_is_named() {
 }
 
 #[test]
-fn what_stands_around_an_object_is_put_aside_and_back() {
+fn neighbours_of_an_object_are_put_aside_and_back() {
     let around: Vec<_> = ["-4.05,-2.5", "-1.95,-2.5", "-3,-1.45", "-3,-3.55"]
         .iter()
         .enumerate()
@@ -102,13 +102,13 @@ fn what_stands_around_an_object_is_put_aside_and_back() {
 }
 
 #[test]
-fn what_covers_an_object_is_lifted_off() {
+fn a_cover_is_lifted_off() {
     let cup = r#"<box id="Cup" location="(-3,-2.5,0.85)" rotation="(180,0,0)" xspan="1.6" yspan="1.6" zspan="1.7" thickness="0.1" color="orange"/>"#;
     is_stacked("covered", &[RED, GREEN, BLUE, cup]);
 }
 
 #[test]
-fn what_a_box_encloses_is_left_there() {
+fn an_object_enclosed_by_a_box_is_left_there() {
     let bin = r#"<box id="Bin" location="(-3,-2.5,1)" xspan="1.6" yspan="1.6" zspan="2" thickness="0.2" color="orange"/>"#;
     let red = r#"<block id="Red" location="(-3,-2.5,0.75)" color="red"/>"#;
     fails(
@@ -119,7 +119,7 @@ fn what_a_box_encloses_is_left_there() {
 }
 
 #[test]
-fn what_is_at_the_edge_is_taken() {
+fn objects_at_the_edge_are_taken() {
     for (scene, at) in [("left", "-9.5,-2.5"), ("near", "-3,-5.9")] {
         let red = format!(r#"<block id="Red" location="({at},0.5)" color="red"/>"#);
         is_stacked(scene, &[&red, GREEN, BLUE]);
@@ -127,7 +127,7 @@ fn what_is_at_the_edge_is_taken() {
 }
 
 #[test]
-fn what_no_arm_reaches_is_said_before_anything_moves() {
+fn an_unreachable_object_is_reported_before_anything_moves() {
     let red = r#"<block id="Red" location="(0,5,0.5)" color="red"/>"#;
     fails(
         "beyond",
@@ -170,7 +170,7 @@ fn a_closed_lid_is_opened_and_closed_again() {
 }
 
 #[test]
-fn what_is_missing_is_named() {
+fn missing_objects_are_named() {
     fails(
         "missing",
         &[RED, GREEN],

@@ -141,7 +141,7 @@ fn five_faults_give_five_located_messages() {
 }
 
 #[test]
-fn the_dump_holds_what_the_file_says() {
+fn the_dump_holds_the_content_of_the_file() {
     let path = file(
         "dump.xml",
         r##"<tabletop xmlns="http://synapse.cs.umd.edu/tabletop-xml" xspan="8" yspan="6">
@@ -216,7 +216,7 @@ fn the_dump_holds_controls_bond_points_and_bonds() {
 }
 
 #[test]
-fn what_cannot_be_read_is_one_line_and_exit_code_2() {
+fn unreadable_input_is_one_line_and_exit_code_2() {
     for arguments in [
         &["check", "no such file.xml"][..],
         &["run", "--setup", "no such file.xml"],
@@ -231,7 +231,7 @@ fn what_cannot_be_read_is_one_line_and_exit_code_2() {
 }
 
 #[test]
-fn what_cannot_be_written_is_one_line_and_exit_code_1() {
+fn unwritable_output_is_one_line_and_exit_code_1() {
     let output = tabletop(&[
         "run",
         "--seconds",

@@ -8,7 +8,7 @@ fn is_obeyed(letter: char) -> bool {
 }
 
 #[test]
-fn what_a_terminal_obeys_is_written_out_in_refusals() {
+fn control_characters_are_escaped_in_refusals() {
     for arguments in [
         &["--\u{1b}[31mred"][..],
         &["run", "--\u{1b}[31mred\u{9b}2J"],

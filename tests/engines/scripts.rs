@@ -260,7 +260,7 @@ fn an_error_of_a_script_ends_the_run_with_its_place() {
 }
 
 #[test_with(Octave, Python)]
-fn what_cannot_be_run_is_reported_before_anything_starts() {
+fn scripts_that_cannot_run_are_reported_before_anything_starts() {
     let file = folder("file-for-folder").join("robot.py");
     fs::write(&file, "").unwrap();
     let matlab_file = format!("octave:{}", file.display());
@@ -394,7 +394,7 @@ fn a_script_that_fails_beside_a_scenario_is_reported_once_when_it_does() {
 }
 
 #[test_with(Python)]
-fn what_is_printed_is_shown_while_the_script_runs() {
+fn printed_lines_are_shown_while_the_script_runs() {
     let go = folder("progress").join("go");
     let wait = format!("print('halfway')\n    while not os.path.exists({go:?}): time.sleep(0.01)");
     let script = python("progress-script", &wait, "aux.exit = 1");
@@ -417,7 +417,7 @@ fn what_is_printed_is_shown_while_the_script_runs() {
 }
 
 #[test_with(Octave)]
-fn what_is_printed_at_the_end_is_shown_and_files_are_whole() {
+fn lines_printed_at_the_end_are_shown_and_files_are_whole() {
     let folder = copy_of_matlab("last");
     fs::write(
         folder.join("lastInit.m"),

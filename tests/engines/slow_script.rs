@@ -41,7 +41,7 @@ impl Window {
 }
 
 #[test_with(Python)]
-fn what_is_done_while_a_script_is_waited_for_is_recorded_in_its_tick() {
+fn commands_given_while_a_script_is_waited_for_are_recorded_in_their_tick() {
     let place = fresh_folder("slow_script");
     fs::create_dir_all(&place).unwrap();
     let script = place.join("robot.py");

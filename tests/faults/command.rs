@@ -134,7 +134,7 @@ impl Commands {
         fault::count(fault, &command(subject.arguments()), &self.folder())
     }
 
-    /// Runs a command with a fault, and checks its report and what is there then.
+    /// Runs a command with a fault, and checks its report and the files afterwards.
     pub fn survives(
         &self,
         subject: Subject,

@@ -1,4 +1,4 @@
-//! Whichever call to the file system fails under a command, the command says so, nothing that was there is gone, and what is kept is whole.
+//! Whichever call to the file system fails under a command, the command says so, no earlier file is gone, and kept files are whole.
 //!
 //! The faults come from outside, from strace, so that they reach every call, be it a library's. Of each kind of calls every 29-th fails, or
 //! every n-th if the environment variable EVERY says so.

@@ -82,7 +82,7 @@ fn session() -> Vec<u8> {
     fs::read(demonstration.folder.join("session.jsonl")).unwrap()
 }
 
-/// Reads what may be a recording, and replays a second of it.
+/// Reads a folder that may be a recording, and replays a second of it.
 fn try_to_replay(folder: &Path) {
     if let Ok(replay) = Replay::read(folder) {
         let mut app = headless_app_with(replay.plugins());

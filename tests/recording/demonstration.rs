@@ -8,7 +8,8 @@ use std::{
 use bevy::{app::PluginGroupBuilder, prelude::*};
 use bevy_rapier3d::prelude::{Sleeping, Velocity};
 use tabletop::{
-    core::{HeadCamera, History, RobotMode, Twist},
+    core::{HeadCamera, History, RobotMode},
+    geometry::Twist,
     headless_app_with,
     physics::PhysicsSettings,
     prelude::*,

@@ -1,4 +1,4 @@
-//! The dock, whose power is switched off before its cartridges are changed: what is recorded of it, and that each step is undone exactly.
+//! The dock, whose power is switched off before its cartridges are changed: its recording, and the exact undo of each step.
 
 use std::fs;
 
@@ -9,7 +9,7 @@ use crate::demonstration::Demonstration;
 
 const HAND: Hand = Hand::Right;
 
-/// What is done in the dock, each with the ticks until the next.
+/// The commands in the dock, each with the ticks until the next.
 fn acts() -> Vec<(SimCommand, u64)> {
     let trigger = || {
         let (hand, control, part) = (HAND, "power".to_owned(), None);
@@ -71,7 +71,7 @@ fn begun(name: &str) -> Demonstration {
     demonstration
 }
 
-/// The states of all controls, and what is fastened to what.
+/// The states of all controls, and the bonds.
 fn mechanisms(demonstration: &Demonstration) -> (Vec<ObjectSpec>, Bonds) {
     let world = demonstration.app.world();
     let objects = world.resource::<ObjectIndex>().iter();

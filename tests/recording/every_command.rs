@@ -294,7 +294,7 @@ fn difference(name: &str, seed: u64, drawn: &mut BTreeMap<&'static str, usize>) 
 }
 
 #[test]
-fn what_any_commands_leave_after_undo_replays_to_the_same_bytes() {
+fn any_commands_with_undo_replay_to_the_same_bytes() {
     let drawn = replay_demonstrations("few", seeds(0..14));
     // A few seeds, to look for a fault, need not draw them all.
     let draws_all = drawn.len() == KINDS || env::var_os("SEEDS").is_some();
@@ -303,7 +303,7 @@ fn what_any_commands_leave_after_undo_replays_to_the_same_bytes() {
 
 #[test]
 #[ignore = "takes a minute"]
-fn what_many_commands_leave_after_undo_replays_to_the_same_bytes() {
+fn many_commands_with_undo_replay_to_the_same_bytes() {
     replay_demonstrations("many", 14..40);
 }
 

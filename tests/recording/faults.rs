@@ -192,7 +192,7 @@ fn with_another_scene(calls: Calls) {
     try_faults("fault_scene", calls, |recorder| record(&acts, recorder));
 }
 
-/// The replay of what a script did: a command in every tick. It makes the same calls as the recording.
+/// The replay of a script: a command in every tick. It makes the same calls as the recording.
 fn with_a_script(calls: Calls) {
     let place = fresh_folder_in_memory("fault_script_once");
     let joints = RobotJoint::of_arm(Arm::Left).map(|joint| (joint, Drive::Velocity(0.2)));

@@ -8,11 +8,11 @@ use crate::demonstration::Demonstration;
 /// Towers of five blocks.
 const BLOCKS: usize = 300;
 
-/// What a segment takes at most, in bytes.
+/// Largest size of a segment, in bytes.
 const MOST_BYTES: usize = 800_000;
 
 #[test]
-fn a_segment_shares_what_has_not_changed() {
+fn a_segment_shares_unchanged_state() {
     let color = Rgb::GRAY;
     let span = Vec3::ONE / 2.0;
     let blocks = (0..BLOCKS).map(|number| {

@@ -5,10 +5,11 @@ use std::{ops::Range, time::Duration};
 use bevy::{prelude::*, time::TimeUpdateStrategy};
 use bevy_rapier3d::prelude::ExternalImpulse;
 use tabletop::{
-    core::{PacePlugin, PictureDemand, RestingSystems, SensorImage, Timeline},
+    core::{PictureDemand, RestingSystems, SensorImage, Timeline},
     prelude::*,
     replay::first_difference,
     scenario::{Outcome, Program, Scenario, ScenarioRun},
+    user::PacePlugin,
 };
 
 use crate::{
@@ -113,13 +114,13 @@ fn undergo(app: &mut App, event: &Event) {
 }
 
 #[test]
-fn what_is_passed_over_leaves_no_trace() {
+fn passed_over_ticks_leave_no_trace() {
     compare_with_every_tick("few", 0..15);
 }
 
 #[test]
 #[ignore = "takes a minute"]
-fn what_is_often_passed_over_leaves_no_trace() {
+fn many_passed_over_ticks_leave_no_trace() {
     compare_with_every_tick("many", 15..40);
 }
 
@@ -297,7 +298,7 @@ fn a_scenario_passes_over_its_waits() {
 }
 
 #[test]
-fn a_window_that_rests_records_what_replays() {
+fn a_window_at_rest_records_a_replayable_demonstration() {
     let mut window = Window::open("window_at_rest", |plugins| plugins.add(PacePlugin));
     window
         .app

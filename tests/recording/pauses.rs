@@ -1,4 +1,4 @@
-//! What is done in pauses.
+//! Commands in pauses.
 
 use tabletop::prelude::*;
 

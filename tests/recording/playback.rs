@@ -4,12 +4,11 @@ use std::{fs, path::Path};
 
 use bevy::prelude::*;
 use tabletop::{
-    core::{
-        OpenRecording, PacePlugin, Playback, PlaybackOrder, SingleStep, Timeline, TimelineStage,
-    },
+    core::{OpenRecording, Playback, PlaybackOrder, Timeline, TimelineStage},
     prelude::*,
     recorder::RecordingReader,
     replay::PlaybackPlugin,
+    user::{PacePlugin, SingleStep},
 };
 
 use crate::{
@@ -163,7 +162,7 @@ fn a_recording_that_is_opened_plays_to_its_end_and_the_user_goes_on_and_records(
 }
 
 #[test]
-fn what_is_put_away_leaves_a_fresh_task() {
+fn a_closed_recording_leaves_a_fresh_task() {
     let demonstration = recording("put_away");
     let mut window = used_window("put_away_window");
     window.open_recording(&demonstration.folder);
@@ -224,7 +223,7 @@ fn a_recording_that_loops_begins_again() {
 }
 
 #[test]
-fn what_cannot_be_opened_is_reported_in_one_line() {
+fn an_unreadable_recording_is_reported_in_one_line() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_recording");
     let _there_already = fs::create_dir_all(&folder);
     let moon = recording("moon_recording");

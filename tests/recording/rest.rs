@@ -125,7 +125,7 @@ fn every_example_of_the_report_is_at_rest_after_a_quarter_of_a_minute() {
 }
 
 #[test]
-fn a_recording_of_what_is_at_rest_has_no_line_after_its_first_frame() {
+fn a_recording_of_a_scene_at_rest_has_no_line_after_its_first_frame() {
     for file in task_files() {
         let mut untouched = Demonstration::new("untouched");
         untouched.act(&[
@@ -191,7 +191,7 @@ fn a_scene_settles_while_something_is_moved_far_away() {
 }
 
 #[test]
-fn what_is_fixed_carries_what_falls_on_it_after_it_was_held() {
+fn a_fixed_object_carries_a_falling_load_after_it_was_held() {
     let text = r#"<tabletop xmlns="http://synapse.cs.umd.edu/tabletop-xml" xspan="20" yspan="12">
         <block id="shelf" location="(0,0,3)" xspan="4" yspan="4" zspan="0.5" mass="0"/>
         <block id="load" location="(0,0,8)" xspan="1" yspan="1" zspan="1" mass="1"/>
@@ -217,7 +217,7 @@ fn what_is_fixed_carries_what_falls_on_it_after_it_was_held() {
 }
 
 #[test]
-fn what_is_fixed_stops_what_falls_fast_on_it_after_it_was_held_still() {
+fn a_fixed_object_stops_a_fast_load_after_it_was_held_still() {
     let text = r#"<tabletop xmlns="http://synapse.cs.umd.edu/tabletop-xml" xspan="20" yspan="12">
         <block id="shelf" location="(0,0,3)" xspan="4" yspan="4" zspan="0.5" mass="0"/>
         <box id="load" location="(6,0,0.5)" xspan="1" yspan="1" zspan="1" thickness="0.1" mass="1"/>

@@ -7,7 +7,7 @@ use tabletop::{core::Drive, prelude::*, robot::RobotLink};
 use crate::demonstration::{Demonstration, assert_replays};
 
 #[test]
-fn what_the_robot_did_before_and_in_a_recording_is_done_again() {
+fn the_robots_motion_before_and_in_a_recording_is_replayed() {
     let mut demonstration = Demonstration::new("robot");
     let load = || SimCommand::Scene(SceneCommand::Load("tablesetup/default.xml".into()));
     let drive = |joint, position| {
@@ -34,7 +34,7 @@ fn what_the_robot_did_before_and_in_a_recording_is_done_again() {
 }
 
 #[test]
-fn a_robot_is_passive_again_in_what_a_scene_put_into_it_after_undo() {
+fn links_inside_the_objects_of_a_scene_are_passive_again_after_undo() {
     let mut demonstration = Demonstration::new("passive_again");
     let block = |id: String, at| {
         let shape = Shape::Block {

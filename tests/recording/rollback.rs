@@ -1,4 +1,4 @@
-//! What changes in a tick, on an entity that rolls back or in a resource, is restored by undo, or derived from what is.
+//! Undo restores all state that a tick changes on an entity that rolls back or in a resource, or derives it from restored state.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -92,12 +92,12 @@ const NOT_ROLLED_BACK: [&str; 23] = [
     "tabletop_history::segments::Segments",
     "tabletop_recorder::files::session::SessionSettings",
     "tabletop_recorder::recording::recorder::Recorder",
-    // Commands go on, whatever is undone.
+    // Numbers of commands go on after undo.
     "tabletop_core::command::carry_out::Cause",
     "tabletop_core::command::issued::NextCommandId",
     "tabletop_scenario::run::ScenarioRun",
     "tabletop_script::runner::ScriptRunner",
-    // Pictures are made of what is there.
+    // Pictures are made of the present state.
     "tabletop_camera::head_camera::HeadCameraRenderer",
     "tabletop_camera::visible_world::FigureCount",
     "tabletop_core::hand_camera::HandImages",

@@ -100,7 +100,7 @@ fn take_detours(name: &str, seeds: impl Iterator<Item = u64>) -> usize {
 }
 
 #[test]
-fn what_one_object_was_released_for_is_undone_and_it_falls_as_before() {
+fn undo_of_a_grasp_drops_the_object_that_was_released_for_it() {
     let begin = [
         (
             vec![SimCommand::Scene(SceneCommand::Load(
@@ -138,7 +138,7 @@ fn what_one_object_was_released_for_is_undone_and_it_falls_as_before() {
 }
 
 #[test]
-fn what_was_undone_in_a_pause_just_after_a_release_falls_in_time_after_redo() {
+fn an_object_released_before_an_undo_in_a_pause_falls_in_time_after_redo() {
     let mut demonstration = begun("undone_in_a_pause");
     let set_paused = |is_paused| ClockCommand::SetPaused(is_paused).into();
     demonstration.act(&[
@@ -241,7 +241,7 @@ fn a_button_comes_up_after_a_pause_in_which_the_hand_over_of_its_tick_was_undone
 }
 
 #[test]
-fn what_has_shrunk_in_an_undo_leaves_room() {
+fn a_control_that_shrinks_in_an_undo_leaves_room() {
     let task = r#"<tabletop xmlns="http://synapse.cs.umd.edu/tabletop-xml">
       <customControl id="dial" location="(0,0,0.5)">
         <state><block location="(0,0,0)" xspan="1" yspan="1" zspan="1" nextStateWhenTriggered="1"/></state>
@@ -274,13 +274,13 @@ fn what_has_shrunk_in_an_undo_leaves_room() {
 }
 
 #[test]
-fn redo_brings_back_what_was_undone() {
+fn redo_brings_back_undone_segments() {
     go_there_and_back_again("few", 1000..1007);
 }
 
 #[test]
 #[ignore = "takes a minute"]
-fn redo_brings_back_what_was_undone_many_times() {
+fn redo_brings_back_undone_segments_many_times() {
     go_there_and_back_again("many", 1007..1020);
 }
 
@@ -330,7 +330,7 @@ fn many_recordings_change_nothing() {
     compare_with_unrecorded("many", 2003..2010);
 }
 
-/// Compares what is recorded with what is not.
+/// Compares a recorded run with an unrecorded one.
 fn compare_with_unrecorded(name: &str, seeds: impl Iterator<Item = u64>) {
     for seed in seeds {
         let script = script(&mut Random(seed), 2 * TICKS);
@@ -402,7 +402,7 @@ fn detour() -> Vec<Act> {
 }
 
 #[test]
-fn what_was_undone_left_no_trace_on_disk() {
+fn undone_segments_leave_no_trace_on_disk() {
     let [before, mut after] = way();
     let mut straight = Demonstration::new("straight_way");
     straight.act(&before);
@@ -429,7 +429,7 @@ fn what_was_undone_left_no_trace_on_disk() {
 }
 
 #[test]
-fn what_was_undone_and_redone_is_there_again() {
+fn redone_segments_are_there_again() {
     let [before, _] = way();
     let finish = [(vec![SimCommand::Recording(RecordingCommand::Finish)], 1)];
     let mut straight = Demonstration::new("straight_on");

@@ -8,7 +8,8 @@ use bevy::{
     math::{Mat3A, Vec2, Vec3, Vec3A},
     prelude::Quat,
 };
-use tabletop_core::{HeadCamera, Light, Pose, Table};
+use tabletop_core::{HeadCamera, Light, Table};
+use tabletop_geometry::Pose;
 
 pub(crate) use linear::{Linear, OnRow, Rays, SampleOffset};
 
@@ -229,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ray_through_a_pixel_leads_to_what_is_seen_there() {
+    fn the_ray_through_a_pixel_inverts_the_projection() {
         let camera = head(HeadCamera::default());
         let view = PinholeView::of(&camera);
         for pixel in [Vec2::ZERO, Vec2::new(17.25, 140.5), Vec2::new(199.0, 3.0)] {

@@ -1,7 +1,7 @@
 //! Colours as numbers of 0..=255, and rounded to bytes.
 
 use bevy::math::Vec3;
-use tabletop_core::Rgb;
+use tabletop_geometry::Rgb;
 
 /// A colour as numbers of 0..=255.
 pub(crate) fn scaled_to_bytes(color: Rgb) -> Vec3 {

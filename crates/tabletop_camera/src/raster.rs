@@ -41,7 +41,7 @@ use crate::{
 const ROWS_IN_TASK: usize = 2 * ROWS;
 
 /// Draws pictures, one after the other. It keeps its memory, so it allocates next to nothing after a picture of
-/// the same size and a scene of the same length; it also keeps what it has computed about the table and figures that stay. Rows in which
+/// the same size and a scene of the same length; it also keeps its results for the table and for figures that stay. Rows in which
 /// nothing has changed since the last picture are not drawn again.
 ///
 /// In an app, Bevy's compute threads help.

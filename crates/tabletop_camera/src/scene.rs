@@ -1,11 +1,12 @@
-//! Scenes: what cameras look at.
+//! Scenes, at which cameras look.
 
 mod facets;
 
 use std::sync::Arc;
 
 use bevy::math::Vec3;
-use tabletop_core::{Pose, Primitive, Rgb, Solid, Table};
+use tabletop_core::Table;
+use tabletop_geometry::{Pose, Primitive, Rgb, Solid};
 
 pub use facets::Facets;
 

@@ -3,9 +3,8 @@
 use std::sync::Arc;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
-use tabletop_core::{
-    CarriesHeadCamera, Figure, Markers, ObjectIndex, ObjectSpec, Primitive, Table,
-};
+use tabletop_core::{CarriesHeadCamera, Figure, Markers, ObjectIndex, ObjectSpec, Table};
+use tabletop_geometry::Primitive;
 
 use crate::{DrawnFigure, DrawnSolid, Facets, Scene};
 
@@ -83,7 +82,7 @@ pub(crate) fn prepare_figure(
     Ok(())
 }
 
-/// Stops drawing what is no longer a figure.
+/// Stops drawing an entity that is no longer a figure.
 pub(crate) fn remove_figure(remove: On<Remove, Figure>, mut commands: Commands) {
     commands.entity(remove.entity).try_remove::<DrawnFacets>();
 }

@@ -7,7 +7,8 @@ use bevy::{
     tasks::{ComputeTaskPool, TaskPoolBuilder},
 };
 use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Facets, Rasterizer, Scene};
-use tabletop_core::{HeadCamera, Picture, Pose, Rgb, Solid, Table, Triangles};
+use tabletop_core::{HeadCamera, Picture, Table};
+use tabletop_geometry::{Pose, Rgb, Solid, Triangles};
 
 #[test]
 fn threads_do_not_change_a_picture() {

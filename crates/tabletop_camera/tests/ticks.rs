@@ -4,9 +4,8 @@ use std::time::Duration;
 
 use bevy::{prelude::*, time::TimeUpdateStrategy};
 use tabletop_camera::{Camera, CameraPlugin, DrawnFigure, DrawnSolid, Facets, Rasterizer, Scene};
-use tabletop_core::{
-    Figure, HeadCamera, Markers, Picture, PictureDemand, SensorImage, Triangles, prelude::*,
-};
+use tabletop_core::{Figure, HeadCamera, Markers, Picture, PictureDemand, SensorImage, prelude::*};
+use tabletop_geometry::Triangles;
 
 /// Every object moves this far along X in a tick.
 const STEP: f32 = 0.125;

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::Pose;
+use tabletop_geometry::Pose;
 
 /// A point of a composite at which it can be fastened to another object.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]

@@ -40,6 +40,7 @@ pub(crate) fn configure(app: &mut App) {
             (
                 OrderSystems::Scenario.run_if(SimBlocked::is_clear),
                 OrderSystems::User.run_if(SimBlocked::is_clear),
+                OrderSystems::Controller.run_if(SimBlocked::is_clear),
                 OrderSystems::Script,
                 TickSystems.run_if(SimBlocked::is_clear),
             )

@@ -7,10 +7,10 @@ pub(crate) mod switch;
 use std::f32::consts::FRAC_PI_2;
 
 use bevy::prelude::*;
+use tabletop_geometry::{Pose, Rgb};
 
 use crate::{
-    Change, Control, ControlKind, IndicatorLights, Part, Pose, PushButton, Rgb, Shape, Side,
-    ToggleSwitch,
+    Change, Control, ControlKind, IndicatorLights, Part, PushButton, Shape, Side, ToggleSwitch,
 };
 
 impl Control {
@@ -299,10 +299,16 @@ mod tests {
         assert_eq!(control.next_state(None), Some(1));
         assert_eq!(control.next_state(Some(0)), None);
         let mut object = ObjectSpec::new("d", Pose::IDENTITY, 1.0, Shape::Control(control));
-        assert_eq!(object.shape.colliding()[0].solid, crate::Solid::Ball(1.0));
+        assert_eq!(
+            object.shape.colliding()[0].solid,
+            tabletop_geometry::Solid::Ball(1.0)
+        );
         let control = object.control_mut("d").unwrap();
         control.state = 1;
         assert_eq!(control.next_state(None), None);
-        assert_eq!(object.shape.colliding()[0].solid, crate::Solid::Ball(2.0));
+        assert_eq!(
+            object.shape.colliding()[0].solid,
+            tabletop_geometry::Solid::Ball(2.0)
+        );
     }
 }

@@ -164,7 +164,7 @@ pub enum MechanismFact {
     },
     /// A link of a chain was cut; its [`ObjectDeleted`](SceneFact::ObjectDeleted) comes after.
     Cut {
-        /// The command that it came of, if it came of one.
+        /// The command that caused it, if any.
         cause: Option<CommandId>,
         /// Who has closed the scissors.
         by: Operator,
@@ -194,13 +194,13 @@ pub enum RecordingFact {
         /// Its folder.
         folder: PathBuf,
     },
-    /// A recording could not begin or go on. What was written before stays.
+    /// A recording could not begin or go on. Lines written before stay.
     Failed {
         /// The command that caused it, if one did.
         cause: Option<CommandId>,
         /// Its folder.
         folder: PathBuf,
-        /// The fault, and what the user can do.
+        /// The fault, with a remedy.
         reason: String,
     },
 }

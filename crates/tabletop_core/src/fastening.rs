@@ -1,8 +1,9 @@
 //! Fastening: the bonds that turning a guest makes, tightens and loosens.
 
 use std::collections::BTreeSet;
+use tabletop_geometry::Pose;
 
-use crate::{Bond, BondPoint, Bonds, HostPoint, ObjectSpec, PlacedPart, Pose};
+use crate::{Bond, BondPoint, Bonds, HostPoint, ObjectSpec, PlacedPart};
 
 /// The greatest distance, in units, at which a host is fastened to.
 const REACH: f32 = 2.0;
@@ -287,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn a_locked_host_holds_what_it_has_and_takes_nothing() {
+    fn a_locked_host_keeps_its_guest_and_takes_no_other() {
         let two = [("hole", host(1, "hole2")), ("hole2", host(1, ""))];
         let objects = [
             object("panel", Vec3::ZERO, &two),
@@ -304,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_connected_already_is_not_fastened_again() {
+    fn connected_objects_are_not_fastened_again() {
         let objects = [
             object("a", Vec3::ZERO, &[("tip", guest()), ("hole", host(1, ""))]),
             object(

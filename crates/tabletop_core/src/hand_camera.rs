@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
+use tabletop_geometry::Pose;
 
-use crate::{Picture, Pose, SimTick, picture::fault_of_view};
+use crate::{Picture, SimTick, picture::fault_of_view};
 
 /// A camera that a link of the robot carries, as its hands do.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,7 +51,7 @@ impl HandCamera {
     pub const MOST: usize = 8;
     /// Most letters of a name.
     const LONGEST_NAME: usize = 64;
-    /// What follows the number of a frame in the names of other files.
+    /// Suffixes of other files of a frame, after its number.
     const TAKEN: [&str; 3] = ["depth", "ids", "png"];
 
     /// The fault of settings that make no sense.

@@ -8,10 +8,16 @@ use crate::{RestingSystems, rest};
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Idle(pub u64);
 
-pub(crate) fn plugin(app: &mut App) {
-    app.init_resource::<Idle>()
-        .add_systems(FixedFirst, catch_up.in_set(RestingSystems))
-        .add_systems(Last, look_for_rest);
+/// Publishes [`Idle`], and passes over such ticks when frames are far apart.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct IdlePlugin;
+
+impl Plugin for IdlePlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<Idle>()
+            .add_systems(FixedFirst, catch_up.in_set(RestingSystems))
+            .add_systems(Last, look_for_rest);
+    }
 }
 
 fn look_for_rest(world: &mut World) {
@@ -44,7 +50,7 @@ mod tests {
     use bevy::time::TimeUpdateStrategy;
 
     use super::*;
-    use crate::{CorePlugin, PacePlugin, SceneCommand, SimTick, WriteCommand as _};
+    use crate::{CorePlugin, SceneCommand, SimTick, WriteCommand as _};
 
     #[derive(Resource, Default)]
     struct Made(Vec<u64>);
@@ -52,7 +58,7 @@ mod tests {
     /// An app whose frames are a tenth of a second apart.
     fn app() -> App {
         let mut app = App::new();
-        app.add_plugins((MinimalPlugins, CorePlugin::default(), PacePlugin))
+        app.add_plugins((MinimalPlugins, CorePlugin::default(), IdlePlugin))
             .init_resource::<Made>()
             .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(
                 100,

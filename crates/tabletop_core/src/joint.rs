@@ -2,8 +2,9 @@
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
+use tabletop_geometry::Pose;
 
-use crate::{Pose, Rollback};
+use crate::Rollback;
 
 /// The kind of a joint between two objects.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Reflect)]

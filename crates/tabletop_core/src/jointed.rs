@@ -2,8 +2,9 @@
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
+use tabletop_geometry::Pose;
 
-use crate::{Control, JointKind, ObjectSpec, Pose, PushButton, Shape};
+use crate::{Control, JointKind, ObjectSpec, PushButton, Shape};
 
 /// Two objects of which the second slides or turns against the first (`<sliderJoint>`, `<hingeJoint>`, `<scissors>`,
 /// `<pushButton>`). Displacements are in
@@ -128,7 +129,8 @@ impl JointedSpec {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Rgb, Shape};
+    use crate::Shape;
+    use tabletop_geometry::Rgb;
 
     fn jointed(motion: JointMotion, init: f32) -> JointedSpec {
         let object = |id: &str, x| {

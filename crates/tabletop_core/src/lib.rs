@@ -21,9 +21,7 @@
 
 mod agent;
 mod bond;
-mod bounds;
 mod clock;
-mod color;
 mod command;
 mod control;
 mod fact;
@@ -34,29 +32,23 @@ mod hand_camera;
 mod idle;
 mod joint;
 mod jointed;
-mod keymap;
 mod light;
 pub mod limits;
 mod manipulator;
 mod mechanism;
 mod mesh;
 mod mount;
-mod navigation;
 mod number;
 mod object;
 mod object_index;
 mod operator;
-mod pace;
 mod paused;
 mod phase;
 mod picture;
 mod playback;
-mod polyhedron;
-mod pose;
 mod preset;
 mod push_button;
 mod random;
-mod ray;
 mod reach;
 mod recording;
 mod reflection;
@@ -70,18 +62,12 @@ mod sensor;
 mod shape;
 mod shipped;
 mod shown_task;
-mod solid;
 mod tick;
 mod timeline;
-mod turn;
-mod twist;
-mod user;
 
 pub use agent::{Agent, ScriptCommand, ScriptEvent, SimBlocked};
 pub use bond::{Bond, BondEnd, BondPoint, Bonds, GuestPoint, HostPoint, TightnessStep};
-pub use bounds::{Bounds, PAIR_GAP};
 pub use clock::StepApp;
-pub use color::{ColorError, NAMED_COLORS, Rgb};
 pub use command::{
     Actor, Cause, ClockCommand, CommandId, CommandKind, CommandWriter, HandCommand, HistoryCommand,
     IssuedCommand, MechanismCommand, RecordingCommand, RobotCommand, SceneCommand, SimCommand,
@@ -96,36 +82,28 @@ pub use fact::{
     HandFact, HistoryFact, MechanismFact, RecordingFact, RobotFact, SceneFact, SimFact,
 };
 pub use fastening::Turn;
-pub use figure::{CarriesHeadCamera, Figure, Triangles};
+pub use figure::{CarriesHeadCamera, Figure};
 pub use hand::{Hand, Hands};
 pub use hand_camera::{HandCamera, HandCameras, HandImages};
-pub use idle::Idle;
+pub use idle::{Idle, IdlePlugin};
 pub use joint::{Joint, JointKind, JointSpec};
 pub use jointed::{JointMotion, JointedSpec};
-pub use keymap::{
-    Action, ActionGroup, BindingError, KeyBinding, KeyLetters, KeyboardFocus, Keymap, Keys,
-    Modifiers, Situation, Way, was_struck,
-};
 pub use light::{LIGHT, Light};
 pub use manipulator::{Held, Manipulator};
 pub use mechanism::{PlacedPart, TouchedSurface};
 pub use mesh::{MeshError, MeshSpec};
-pub use navigation::{CameraMotion, CameraView, Steering};
 pub use number::Decimal;
 pub use object::{
     Change, Control, ControlKind, CustomControl, CustomState, Dynamics, ObjectSpec, Part, Shape,
 };
 pub use object_index::ObjectIndex;
 pub use operator::{Operator, OperatorError};
-pub use pace::{Pace, PacePlugin, SingleStep};
 pub use paused::Paused;
 pub use phase::{
     ActuateSystems, CommandSystems, MechanismSystems, OrderSystems, SimSystems, TickSystems,
 };
 pub use picture::Picture;
 pub use playback::{Playback, PlaybackOrder};
-pub use polyhedron::{MOST_SIDES, Polyhedron, PolyhedronError, ROUND_SIDES};
-pub use pose::{Pose, UNITS_PER_METER, degrees_from_quat, quat_from_degrees};
 pub use preset::Preset;
 pub use random::Random;
 pub use reach::Reach;
@@ -137,24 +115,18 @@ pub use robot::{
     GripperLayout, HandCameraLayout, JOINTS_PER_ARM, JointId, JointLayout, JointName, JointRole,
     JointState, LayoutError, LayoutFile, LimbId, LimbLayout, LimbName, LimbState, LinkFrame,
     MANUAL_SPEED, Markers, Obstacle, Robot, RobotContact, RobotJoint, RobotLayout, RobotMode,
-    WIDEST_GRIP,
+    WIDEST_GRIP, snake_case,
 };
 pub use rollback::Rollback;
 pub use scene::{ChainSpec, LidBoxSpec, SceneItem, SceneSpec, Table};
 pub use sensor::{HeadCamera, PictureDemand, PictureSystems, SensorImage};
 pub use shape::{Composition, attributes::AttributeValue};
 pub use shipped::{ShippedFile, ShippedFiles, is_shipped, seen_from};
-pub use shown_task::{
-    Ghost, Ghosts, Imitating, Required, ShownProperty, ShownRole, ShownStep, ShownTask, TaskOrder,
-};
-pub use solid::{Primitive, Solid};
+pub use shown_task::{Required, ShownProperty, ShownRole, ShownStep, ShownTask};
 pub use tick::{SimTick, TICK_SECONDS, TICKS_PER_SECOND};
 pub use timeline::{
     Act, Timeline, TimelineGrip, TimelinePicture, TimelineSegment, TimelineStage, Verb,
 };
-pub use turn::{turn_about, turn_about_x, turn_about_y, turn_about_z};
-pub use twist::Twist;
-pub use user::{DragPlane, KeySystems, UserCamera};
 
 use bevy::prelude::*;
 
@@ -164,10 +136,12 @@ pub mod prelude {
     pub use crate::{
         Actor, Arm, ClockCommand, CommandWriter, CorePlugin, Drive, Hand, HandCommand, HandFact,
         Hands, HistoryCommand, HistoryFact, IssuedCommand, MechanismCommand, MechanismFact,
-        ObjectIndex, ObjectSpec, Paused, Pose, Preset, RecordingCommand, RecordingFact, Rgb, Robot,
+        ObjectIndex, ObjectSpec, Paused, Preset, RecordingCommand, RecordingFact, Robot,
         RobotCommand, RobotFact, RobotJoint, SceneCommand, SceneFact, SceneItem, SceneSpec, Shape,
         SimCommand, SimFact, SimSystems, SimTick, StepApp, Table, WriteCommand,
     };
+    #[doc(hidden)]
+    pub use tabletop_geometry::{Pose, Rgb};
 }
 
 /// Adds clock, commands and facts. Every other plugin of the simulator needs it.
@@ -190,24 +164,16 @@ impl Plugin for CorePlugin {
             .add_message::<ScriptCommand>()
             .add_message::<ScriptEvent>()
             .add_message::<OpenRecording>()
-            .add_message::<CameraMotion>()
             .add_message::<PlaybackOrder>()
-            .add_message::<TaskOrder>()
             .init_resource::<Agent>()
             .init_resource::<Bonds>()
             .init_resource::<Cause>()
             .init_resource::<command::NextCommandId>()
             .init_resource::<SimBlocked>()
-            .init_resource::<DragPlane>()
-            .init_resource::<Ghosts>()
             .init_resource::<HandCameras>()
             .init_resource::<HandImages>()
             .init_resource::<Hands>()
             .init_resource::<History>()
-            .init_resource::<Imitating>()
-            .init_resource::<KeyLetters>()
-            .init_resource::<KeyboardFocus>()
-            .init_resource::<Keymap>()
             .init_resource::<Markers>()
             .init_resource::<Playback>()
             .init_resource::<Recording>()
@@ -215,7 +181,6 @@ impl Plugin for CorePlugin {
             .init_resource::<Robot>()
             .init_resource::<RobotLayout>()
             .init_resource::<ShownTask>()
-            .init_resource::<Steering>()
             .init_resource::<ObjectIndex>()
             .init_resource::<Timeline>()
             .add_systems(
@@ -223,10 +188,6 @@ impl Plugin for CorePlugin {
                 paused::carry_out
                     .in_set(CommandSystems::Clock)
                     .in_set(RestingSystems),
-            )
-            .configure_sets(
-                RunFixedMainLoop,
-                KeySystems.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
             );
         clock::configure(app);
         rest::configure(app);

@@ -23,7 +23,7 @@ pub const SWITCH_ANGLES: RangeInclusive<f32> = 0.0..=80.0;
 /// How far caps of push buttons go down, in units.
 pub const TRAVELS: RangeInclusive<f32> = 0.01..=10.0;
 
-/// What takes the cap of a push button down, in newtons.
+/// Forces, in newtons, that can be needed to press the cap of a push button down.
 pub const PRESSING_FORCES: RangeInclusive<f32> = 0.1..=1000.0;
 
 /// Springs of push buttons, in kg/s².

@@ -1,8 +1,9 @@
 //! Parts of objects with an id or a function: controls, bond points, and parts that can be pointed to.
 
 use bevy::prelude::*;
+use tabletop_geometry::Pose;
 
-use crate::{BondEnd, BondPoint, Control, GuestPoint, HostPoint, ObjectSpec, Part, Pose, Shape};
+use crate::{BondEnd, BondPoint, Control, GuestPoint, HostPoint, ObjectSpec, Part, Shape};
 
 /// An object, or a part of one with an id of its own.
 #[derive(Clone, Copy, Debug)]
@@ -192,10 +193,11 @@ fn control_of<'a>(shape: &'a mut Shape, own: &str, id: &str) -> Option<&'a mut C
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{ControlKind, Rgb, Side, ToggleSwitch};
+    use crate::{ControlKind, Side, ToggleSwitch};
+    use tabletop_geometry::Rgb;
 
     #[test]
-    fn a_ray_touches_the_side_of_a_switch_and_what_can_be_pointed_to() {
+    fn a_ray_touches_the_side_of_a_switch_and_the_pointable_part() {
         let switch = Control::new(ControlKind::ToggleSwitch(ToggleSwitch {
             span: Vec3::new(1.0, 0.5, 0.1),
             angle: 10.0,

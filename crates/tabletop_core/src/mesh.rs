@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{Polyhedron, PolyhedronError};
+use tabletop_geometry::{Polyhedron, PolyhedronError};
 
 /// A mesh, already scaled: a surface of triangles and the convex solids that fill it. Lengths in units, in the shape's frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]

@@ -1,8 +1,9 @@
 //! The mount of the head camera.
 
 use std::f64::consts::FRAC_PI_2;
+use tabletop_geometry::{Pose, turn_about_x, turn_about_z};
 
-use crate::{CameraCarrier, HeadCamera, Pose, Table, turn_about_x, turn_about_z};
+use crate::{CameraCarrier, HeadCamera, Table};
 
 impl HeadCamera {
     /// Its pose before this table. The camera looks along its own -Z with its Y up.

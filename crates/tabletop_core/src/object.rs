@@ -2,8 +2,9 @@
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
+use tabletop_geometry::{Pose, Rgb};
 
-use crate::{BondPoint, IndicatorLights, MeshSpec, Pose, PushButton, Rgb, Rollback, ToggleSwitch};
+use crate::{BondPoint, IndicatorLights, MeshSpec, PushButton, Rollback, ToggleSwitch};
 
 /// The description of an object: everything that physics, pictures and recordings need to know of it.
 ///

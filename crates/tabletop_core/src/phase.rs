@@ -16,7 +16,7 @@ pub enum SimSystems {
     Ingest,
     /// Hands, joints and grippers turn targets into kinematic poses and motor commands.
     Actuate,
-    /// The physics engine makes one step.
+    /// Rapier makes one step.
     Physics,
     /// Global transforms are brought up to this tick. Runs while paused, too.
     Propagate,
@@ -35,6 +35,8 @@ pub enum OrderSystems {
     Scenario,
     /// Keys and buttons that the user holds down.
     User,
+    /// The controller that acts for the robot.
+    Controller,
     /// Scripts.
     Script,
 }
@@ -64,7 +66,7 @@ pub enum CommandSystems {
 pub enum MechanismSystems {
     /// Commands are carried out.
     Obey,
-    /// Controls and bonds follow what touches and turns them, not while paused.
+    /// Controls react to contacts, and bonds to turns; not while paused.
     React,
 }
 

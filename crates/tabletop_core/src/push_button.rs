@@ -1,12 +1,11 @@
 //! Push buttons on the table: a cap that a spring lifts out of a housing.
 
 use bevy::prelude::*;
+use tabletop_geometry::{Pose, Rgb};
 
-use crate::{
-    Control, ControlKind, JointMotion, JointedSpec, ObjectSpec, Pose, PushButton, Rgb, Shape,
-};
+use crate::{Control, ControlKind, JointMotion, JointedSpec, ObjectSpec, PushButton, Shape};
 
-/// The mass of the cap for a newton of the spring, in kg: it weighs a fifth of what presses it.
+/// The mass of the cap for a newton of the spring, in kg: it weighs a fifth of the mass that presses it down.
 const CAP_MASS: f32 = 0.02;
 
 /// Width of the housing for a radius of the cap of 1.
@@ -64,7 +63,7 @@ mod tests {
     }
 
     fn highest(spec: &ObjectSpec) -> f32 {
-        crate::Bounds::of_shape(&spec.shape, spec.pose).high.z
+        spec.shape.bounds(spec.pose).high.z
     }
 
     #[test]

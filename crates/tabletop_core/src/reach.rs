@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_in_the_folders_or_below_is_within_reach() {
+    fn files_in_the_folders_or_below_are_within_reach() {
         let reach = Reach::of(["src", "no such folder"]);
         for (path, is_within) in [
             ("src", true),

@@ -1,18 +1,18 @@
 //! Reflection: the types of the simulation, for inspectors and scenes.
 
 use bevy::prelude::*;
+use tabletop_geometry::Twist;
 
 use crate::{
-    Agent, CarriesHeadCamera, DragPlane, Hands, HeadCamera, Held, History, Joint, Markers,
-    ObjectIndex, ObjectSpec, Pace, Paused, Playback, Recording, Replaying, Robot, Rollback,
-    SimBlocked, SimTick, Steering, Table, Twist, UserCamera,
+    Agent, CarriesHeadCamera, Hands, HeadCamera, Held, History, Joint, Markers, ObjectIndex,
+    ObjectSpec, Paused, Playback, Recording, Replaying, Robot, Rollback, SimBlocked, SimTick,
+    Table,
 };
 
 /// Registers components and resources with all the types in them.
 pub(crate) fn register(app: &mut App) {
     app.register_type::<Agent>()
         .register_type::<CarriesHeadCamera>()
-        .register_type::<DragPlane>()
         .register_type::<Hands>()
         .register_type::<HeadCamera>()
         .register_type::<Held>()
@@ -21,7 +21,6 @@ pub(crate) fn register(app: &mut App) {
         .register_type::<Markers>()
         .register_type::<ObjectIndex>()
         .register_type::<ObjectSpec>()
-        .register_type::<Pace>()
         .register_type::<Paused>()
         .register_type::<Playback>()
         .register_type::<Recording>()
@@ -30,22 +29,19 @@ pub(crate) fn register(app: &mut App) {
         .register_type::<Rollback>()
         .register_type::<SimBlocked>()
         .register_type::<SimTick>()
-        .register_type::<Steering>()
         .register_type::<Table>()
-        .register_type::<Twist>()
-        .register_type::<UserCamera>();
+        .register_type::<Twist>();
 }
 
 #[cfg(test)]
 mod tests {
     use bevy::{prelude::*, reflect::TypeRegistry};
+    use tabletop_geometry::{Pose, Rgb};
 
-    use crate::{
-        BondPoint, CorePlugin, Hands, MeshSpec, ObjectSpec, Pose, Rgb, Shape, ToggleSwitch,
-    };
+    use crate::{BondPoint, CorePlugin, Hands, MeshSpec, ObjectSpec, Shape, ToggleSwitch};
 
     #[test]
-    fn objects_and_what_they_consist_of_are_registered() {
+    fn objects_and_their_parts_are_registered() {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default()));
         let registry = app.world().resource::<AppTypeRegistry>().read();

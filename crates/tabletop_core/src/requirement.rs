@@ -22,13 +22,13 @@ pub fn require<P: Plugin>(app: &App, plugin: &impl Plugin) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{CorePlugin, PacePlugin};
+    use crate::{CorePlugin, IdlePlugin};
 
     #[test]
     fn a_plugin_that_is_there_is_not_missed() {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default()));
-        assert!(require::<CorePlugin>(&app, &PacePlugin));
-        assert!(!require::<PacePlugin>(&app, &PacePlugin));
+        assert!(require::<CorePlugin>(&app, &IdlePlugin));
+        assert!(!require::<IdlePlugin>(&app, &IdlePlugin));
     }
 }

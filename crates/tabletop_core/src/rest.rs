@@ -23,7 +23,7 @@ use crate::{
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RestingSystems;
 
-/// Number of ticks at rest that run before the first is passed over: engines tidy up after the last thing has stopped.
+/// Number of ticks at rest that run before the first is passed over: Rapier tidies up after the last body has stopped.
 const SETTLING_TICKS: u64 = 16;
 
 /// Declares when something can change.

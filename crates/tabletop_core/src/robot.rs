@@ -12,14 +12,15 @@ pub use layout::{
     HandCameraLayout, JointId, JointLayout, JointRole, LimbId, LimbLayout, LinkFrame, RobotLayout,
 };
 pub use layout_file::{LayoutError, LayoutFile};
-pub(crate) use name::snake_case;
+pub use name::snake_case;
 pub use name::{JointName, LimbName};
 pub use obstacle::Obstacle;
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
+use tabletop_geometry::Pose;
 
-use crate::{Pose, TICK_SECONDS};
+use crate::TICK_SECONDS;
 
 /// Speed of manual control, in rad/s, and units/s for grippers (report section 5.1).
 pub const MANUAL_SPEED: f64 = 1.0;
@@ -43,7 +44,7 @@ pub enum RobotMode {
     /// Exactly as commanded, without masses and forces.
     #[default]
     Kinematic,
-    /// By motors with limited torque, which move the masses of the links and whatever these push.
+    /// By motors with limited torque, which move the masses of the links and of the objects that these push.
     Dynamic,
 }
 
@@ -207,5 +208,5 @@ impl Markers {
     pub const OPACITY: f32 = 0.5;
 
     /// Colour of a marker.
-    pub const COLOR: crate::Rgb = crate::Rgb::new(0.0, 0.5, 0.5);
+    pub const COLOR: tabletop_geometry::Rgb = tabletop_geometry::Rgb::new(0.0, 0.5, 0.5);
 }

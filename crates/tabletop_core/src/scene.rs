@@ -2,8 +2,9 @@
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
+use tabletop_geometry::{Bounds, Pose, Primitive, Rgb, Solid};
 
-use crate::{Bounds, JointedSpec, ObjectSpec, Pose, Primitive, Rgb, Rollback, Shape, Solid};
+use crate::{JointedSpec, ObjectSpec, Rollback, Shape};
 
 /// The content of a task file, in the file's order, before ids are made unique.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -161,31 +162,35 @@ impl LidBoxSpec {
     }
 }
 
-impl Bounds {
-    /// The bounds of an element of a task file; rough for a chain.
-    pub fn of_item(item: &SceneItem) -> Self {
-        match item {
-            SceneItem::Object(object) => Self::of_shape(&object.shape, object.pose),
-            SceneItem::Chain(chain) => Self::of_chain(chain),
-            SceneItem::LidBox(lidbox) => Self::of_lidbox(lidbox),
-            SceneItem::Jointed(jointed) => {
+impl SceneItem {
+    /// Its bounds on the table; rough for a chain.
+    pub fn bounds(&self) -> Bounds {
+        match self {
+            Self::Object(object) => object.shape.bounds(object.pose),
+            Self::Chain(chain) => chain.bounds(),
+            Self::LidBox(lidbox) => lidbox.bounds(),
+            Self::Jointed(jointed) => {
                 let [first, second] = jointed
                     .placed()
-                    .map(|object| Self::of_shape(&object.shape, object.pose));
+                    .map(|object| object.shape.bounds(object.pose));
                 first.union(second)
             }
         }
     }
+}
 
-    fn of_chain(chain: &ChainSpec) -> Self {
-        let reach = chain.link_span.max_element();
-        Self::around(chain.start, Vec3::splat(reach))
-            .union(Self::around(chain.end, Vec3::splat(reach)))
+impl ChainSpec {
+    fn bounds(&self) -> Bounds {
+        let reach = self.link_span.max_element();
+        Bounds::around(self.start, Vec3::splat(reach))
+            .union(Bounds::around(self.end, Vec3::splat(reach)))
     }
+}
 
-    fn of_lidbox(lidbox: &LidBoxSpec) -> Self {
-        let top = lidbox.thickness + lidbox.handle_span.z;
-        let center = lidbox.pose * Pose::at(Vec3::Z * top / 2.0);
-        Self::of_cuboid(lidbox.span + Vec3::Z * top, center)
+impl LidBoxSpec {
+    fn bounds(&self) -> Bounds {
+        let top = self.thickness + self.handle_span.z;
+        let center = self.pose * Pose::at(Vec3::Z * top / 2.0);
+        Bounds::of_cuboid(self.span + Vec3::Z * top, center)
     }
 }

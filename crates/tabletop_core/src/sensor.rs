@@ -7,8 +7,9 @@ use std::{
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
+use tabletop_geometry::Pose;
 
-use crate::{CameraCarrier, Light, Paused, Picture, Pose, SimTick, picture::fault_of_view};
+use crate::{CameraCarrier, Light, Paused, Picture, SimTick, picture::fault_of_view};
 
 /// The settings of the robot's head camera (report section 4, "head camera").
 ///
@@ -20,7 +21,7 @@ pub struct HeadCamera {
     pub pan: f32,
     /// Angle between the lower and upper edges of the picture in radians, above 0 and below π.
     pub vertical_fov: f32,
-    /// Makes the angle between the left and right edges equal to [`vertical_fov`](Self::vertical_fov), whatever the size
+    /// Makes the angle between the left and right edges equal to [`vertical_fov`](Self::vertical_fov), at any size
     /// of the picture. Its pixels are then not square, as in the pictures of the original program.
     pub square_fov: bool,
     /// Columns of the picture.

@@ -7,8 +7,9 @@ mod solids;
 use std::borrow::Cow;
 
 use bevy::prelude::*;
+use tabletop_geometry::{Pose, Rgb};
 
-use crate::{BondEnd, BondPoint, Control, ControlKind, Part, Pose, Rgb, Shape};
+use crate::{BondEnd, BondPoint, Control, ControlKind, Part, Shape};
 
 impl Shape {
     /// All names of shapes.

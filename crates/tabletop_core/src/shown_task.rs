@@ -1,10 +1,11 @@
-//! The demonstrated task, as panels and view know it.
+//! The demonstrated task, as scripts, panels and view know it.
 
 use std::path::PathBuf;
 
 use bevy::prelude::*;
+use tabletop_geometry::{Pose, Rgb};
 
-use crate::{Pose, Rgb, Shape, SimTick};
+use crate::SimTick;
 
 /// The task that a recording demonstrates, in words. The crate that explains recordings sets it.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
@@ -74,82 +75,4 @@ pub struct ShownProperty {
     pub value: String,
     /// True if an object needs it to take the place of this one.
     pub is_required: bool,
-}
-
-/// A request of the user about the demonstrated task. The crate that explains recordings reads it.
-#[derive(Message, Clone, Debug, PartialEq, Eq)]
-pub enum TaskOrder {
-    /// Require a property of an object, or no longer require it.
-    Require {
-        /// The [role's](ShownRole) id.
-        role: String,
-        /// The property's name.
-        property: String,
-        /// True if it is required from now on.
-        is_required: bool,
-    },
-    /// Let any object take the place of this one, or again only the one most like it.
-    Free {
-        /// The [role's](ShownRole) id.
-        role: String,
-        /// True if any object may.
-        is_free: bool,
-    },
-    /// Let the robot imitate the task with the objects on the table.
-    Imitate,
-    /// Stop the imitation.
-    Stop,
-    /// Put every object back where the recording began.
-    PutBack,
-}
-
-/// The robot's progress with the demonstrated task. The crate that moves the robot sets it.
-#[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
-pub enum Imitating {
-    /// The robot does not imitate.
-    #[default]
-    Idle,
-    /// The robot is being put at the table.
-    Preparing,
-    /// The robot does a step.
-    Step {
-        /// The number of the step, from 1.
-        number: usize,
-        /// Number of earlier tries.
-        tries: usize,
-        /// True while the motion is still being planned.
-        is_planning: bool,
-    },
-}
-
-impl Imitating {
-    /// True while the robot imitates.
-    pub const fn is_on(&self) -> bool {
-        match self {
-            Self::Idle => false,
-            Self::Preparing | Self::Step { .. } => true,
-        }
-    }
-}
-
-/// Ghosts: translucent previews in the window, and only there, of objects at their goals. The crate that moves the objects sets them.
-#[derive(Resource, Clone, Debug, Default, PartialEq)]
-pub struct Ghosts(pub Vec<Ghost>);
-
-/// The preview of an object at its goal.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Ghost {
-    /// Id of the object.
-    pub id: String,
-    /// Its shape.
-    pub shape: Shape,
-    /// Its goal.
-    pub pose: Pose,
-    /// True for the next object to be moved: a line leads to the ghost from the object.
-    pub is_next: bool,
-}
-
-impl Ghost {
-    /// Opacity of a ghost, from 0 to 1.
-    pub const OPACITY: f32 = 0.35;
 }

@@ -3,8 +3,9 @@
 use std::{fmt, path::PathBuf};
 
 use bevy::prelude::*;
+use tabletop_geometry::Rgb;
 
-use crate::{HandFact, Manipulator, MechanismFact, Operator, Rgb, RobotFact, SimFact, SimTick};
+use crate::{HandFact, Manipulator, MechanismFact, Operator, RobotFact, SimFact, SimTick};
 
 /// The timeline of the recording that is being made, was made last, or is open. The recorder or the replayer fills it in.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]

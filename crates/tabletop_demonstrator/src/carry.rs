@@ -9,7 +9,8 @@ use bevy_rapier3d::{
     prelude::*,
     rapier::prelude as rapier,
 };
-use tabletop_core::{Hand, Hands, Joint, Pose, TICK_SECONDS};
+use tabletop_core::{Hand, Hands, Joint, TICK_SECONDS};
+use tabletop_geometry::Pose;
 use tabletop_physics::{
     Approach, Carry, Convex, Environment, MovedBody, Nearest, Pushed, SweptSolid, convex_parts,
     limits::{FASTEST, FASTEST_PUSH, LEAVING, MOST_SLIDES, PRESSED, REACH, SAME_LENGTH, TOUCHING},

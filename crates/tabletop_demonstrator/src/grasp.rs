@@ -3,8 +3,9 @@
 use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
     Cause, CommandId, Hand, HandCommand, HandFact, Hands, Held, IssuedCommand, Manipulator,
-    ObjectIndex, ObjectSpec, Paused, Pose, SimFact, carry_out, turn_about,
+    ObjectIndex, ObjectSpec, Paused, SimFact, carry_out,
 };
+use tabletop_geometry::{Pose, turn_about};
 use tabletop_history::begin_segment;
 use tabletop_physics::{Carry, hold, let_go, remove_object};
 

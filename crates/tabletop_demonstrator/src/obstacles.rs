@@ -1,7 +1,7 @@
 //! Obstacles of a held object, and its way along them.
 
 use bevy::prelude::*;
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 use tabletop_physics::{
     Convex, depth,
     limits::{INSIDE, LEAVING, MOST_SLIDING_STEPS, SAME_DEPTH, SAME_LENGTH, SLIDING_STEP},
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_that_is_pinned_is_not_pressed_deeper_by_what_touches_it() {
+    fn a_pinned_block_is_not_pressed_deeper_by_its_obstacles() {
         let above = cuboid(Vec3::new(20.0, 12.0, 4.0), Vec3::Z * 2.955);
         let from = Pose::at(Vec3::Z * 0.46);
         let to = Pose::at(Vec3::new(9.0, 0.0, 3.0));

@@ -50,7 +50,7 @@ pub struct EngineConfig {
     /// The way in which it learns of requests.
     pub trigger: Trigger,
     /// The folder that holds agentBehavior.m and the scripts that it names (MATLAB, Octave), or the file with the functions
-    /// `init` and `callback` (Python), or whatever a user's driver runs. A relative path is one from the working directory.
+    /// `init` and `callback` (Python), or the script of a user's driver. A relative path is one from the working directory.
     pub agent: PathBuf,
     /// The names of an init and a callback script to run instead of those that agentBehavior.m names.
     pub pair: Option<[String; 2]>,

@@ -58,7 +58,7 @@ pub struct ConsoleLine {
 /// An output of an engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stream {
-    /// The standard output: what scripts display.
+    /// The standard output, where scripts display values.
     Out,
     /// The standard error: warnings.
     Error,
@@ -217,7 +217,7 @@ fn clean(bytes: &[u8], limit: usize) -> String {
     cleaned
 }
 
-/// Splits what an engine prints into lines. A control character 1 begins a line of its own that is for the program.
+/// Splits the output of an engine into lines. A control character 1 begins a line of its own that is for the program.
 #[derive(Debug)]
 pub(crate) struct Splitter {
     line: Vec<u8>,
@@ -359,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_program_remarks_is_not_left_out() {
+    fn a_full_console_still_takes_notes() {
         let console = Console::new(ConsoleLimit::Readable);
         for _ in 0..100_000 {
             console.push(Stream::Out, b"x");

@@ -127,8 +127,8 @@ impl EngineHandle {
         self.0.killer.kill();
     }
 
-    /// The next reply, or nothing if none comes in time or no more will. A request whose time is long over fails, whatever keeps
-    /// the engine's thread.
+    /// The next reply, or nothing if none comes in time or no more will. A request whose time is long over fails, even if
+    /// the engine's thread is stuck.
     pub fn recv_timeout(&self, limit: Duration) -> Option<Reply> {
         let replies = lock(&self.0.replies);
         let pending = *lock(&self.0.pending);

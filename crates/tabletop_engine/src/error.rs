@@ -4,7 +4,7 @@ use std::{fmt, io, path::PathBuf, time::Duration};
 
 use crate::{protocol::ProtocolError, variables::invalid_field::InvalidField};
 
-/// Why an engine did not do what it was asked to.
+/// The reason why an engine did not carry out a request.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum EngineError {
     /// There is no engine to start.
@@ -29,7 +29,7 @@ pub enum EngineError {
     /// The script failed.
     #[error("{0}")]
     Script(ScriptError),
-    /// The script set a variable to what cannot be used.
+    /// The script set a variable to a value that cannot be used.
     #[error("{field}{}", in_script(.script.as_ref()))]
     InvalidField {
         /// The field that cannot be used.
@@ -112,7 +112,7 @@ fn way_to_end(status: &str) -> &'static str {
     }
 }
 
-/// An error in a script: what, and where.
+/// An error in a script, with its place.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ScriptError {
     /// The error's identifier ("Octave:undefined-function"); empty if it has none.
@@ -159,7 +159,7 @@ impl ScriptError {
         }
     }
 
-    /// An error from what a driver sends: the stack as lines of "line file".
+    /// An error as a driver sends it: the stack as lines of "line file".
     pub(crate) fn new(id: &str, message: &str, stack: &str) -> Self {
         let syntax = location_in_message(message);
         let stack = syntax

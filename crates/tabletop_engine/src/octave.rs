@@ -1,4 +1,4 @@
-//! Scripts in the Matlab language, and how GNU Octave and MATLAB differ in what they make of them.
+//! Scripts in the Matlab language, and how GNU Octave and MATLAB differ in running them.
 
 pub(crate) mod hint;
 pub(crate) mod script_folder;

@@ -1,7 +1,7 @@
-//! Named arrays as bytes: what the program and an engine tell each other.
+//! Named arrays as bytes, which the program and an engine exchange.
 //!
 //! `docs/script-protocol.md` describes the format for those who write an engine in another language. Everything here is
-//! little endian; whatever the bytes are, reading them ends with [`Arrays`] or with a [`ProtocolError`].
+//! little endian; reading any bytes ends with [`Arrays`] or with a [`ProtocolError`].
 
 mod array;
 mod decode;
@@ -122,7 +122,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_can_be_read(arrays in any_arrays()) {
+        fn encoded_arrays_read_back(arrays in any_arrays()) {
             let bytes = arrays.encode().unwrap();
             prop_assert_eq!(bytes.len() % 8, 0);
             prop_assert_eq!(Arrays::decode(&bytes).unwrap(), arrays);

@@ -364,7 +364,7 @@ impl Running {
         original.replace(".m.sourced", ".m")
     }
 
-    /// Adds a remark to what the script prints.
+    /// Adds a remark to the output of the script.
     fn note(&self, note: &str) {
         self.worker.console.push(Stream::Note, note.as_bytes());
     }
@@ -400,7 +400,7 @@ impl Running {
         self.process.write_line(&line).map_err(|_| self.death())
     }
 
-    /// Waits until the engine has done what it was asked to.
+    /// Waits until the engine has carried out its request.
     fn wait(&mut self, what: &'static str, limit: Duration) -> Result<(), EngineError> {
         let start = Instant::now();
         let mut looked_after = start;

@@ -1,4 +1,4 @@
-//! Programs that stand in for engines: what they answer cannot harm the program. These tests need no engine.
+//! Programs that stand in for engines: their answers cannot harm the program. These tests need no engine.
 
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
@@ -12,7 +12,7 @@ use tabletop_engine::{
     Reply,
 };
 
-/// The fault in the answer of a driver that leaves whatever these commands make at `$reply`.
+/// The fault in the answer of a driver whose reply, at `$reply`, these commands make.
 fn fault(commands: &str) -> EngineError {
     let text = format!(
         "#!/bin/sh\nreply=\"$1/reply.bin\"\nread -r op number\n{commands}\nprintf '\\001done %s\\n' \"$number\"\nread -r op\n"

@@ -1,8 +1,8 @@
 //! The scene at the beginning of a recording.
 
+use tabletop_assembly::{IdAllocator, assemble};
 use tabletop_core::{ObjectSpec, SceneCommand, SceneItem, SceneSpec, SimCommand};
 use tabletop_recorder::Session;
-use tabletop_scene::{IdAllocator, assemble};
 
 use crate::imitation::moved;
 
@@ -58,7 +58,8 @@ pub fn scene_at_beginning(session: &Session) -> Option<SceneSpec> {
 #[cfg(test)]
 mod tests {
     use bevy::math::Vec3;
-    use tabletop_core::{Actor, Pose, Rgb, Shape, Table};
+    use tabletop_core::{Actor, Shape, Table};
+    use tabletop_geometry::{Pose, Rgb};
     use tabletop_recorder::{SessionCommand, SessionHeader, SessionObject, SessionScene};
 
     use super::*;
@@ -72,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_moved_added_and_removed_before_the_recording_is_so_in_the_scene() {
+    fn the_scene_includes_changes_before_the_recording() {
         let item = |spec| SceneItem::Object(spec);
         let set = SceneSpec {
             table: Table::default(),

@@ -1,130 +1,48 @@
 //! The simulator as a stage on which the robot imitates.
 
 use bevy::prelude::*;
+use tabletop_assembly::{IdAllocator, assemble};
+use tabletop_controller::{Observer, SeenObject, Sight};
 use tabletop_core::{
-    Drive, Joint, JointKind, JointSpec, ObjectIndex, ObjectSpec, Pose, Random, Robot, RobotCommand,
-    RobotLayout, SceneItem, SceneSpec, StepApp as _, Table, WriteCommand as _,
+    JointKind, Random, RobotCommand, RobotLayout, SceneItem, SceneSpec, StepApp as _, Table,
+    WriteCommand as _,
 };
+use tabletop_geometry::Pose;
 use tabletop_kinematics::{ModelError, baxter};
 use tabletop_planner::{
-    LimbOrder, LimbSight, Piece, PlanningStage, RobotBody, SeenObject, Sight, Stopped, angles,
-    is_feasible, scatter,
+    LimbOrder, Piece, PlanningStage, RobotBody, Stopped, drives, is_feasible, scatter,
 };
-use tabletop_scene::{IdAllocator, assemble};
 use tabletop_task::{Arrangement, PlacedSolid, Requirements, Task};
-
-/// The sight of a world, with the robot at the table.
-pub fn sight(world: &mut World) -> Sight {
-    let table = world.query::<&Table>().iter(world).next().copied();
-    let joints: Vec<_> = world.query::<&Joint>().iter(world).copied().collect();
-    let id = |entity: &Entity| Some(world.get::<ObjectSpec>(*entity)?.id.clone());
-    let joints = joints.into_iter().filter_map(|joint| {
-        let [first, second] = joint.objects.map(|entity| id(&entity));
-        Some(JointSpec {
-            objects: [first?, second?],
-            frames: joint.frames,
-            kind: joint.kind,
-            collides: joint.collides,
-        })
-    });
-    let objects = world.resource::<ObjectIndex>().iter().filter_map(|entity| {
-        let spec = world.get::<ObjectSpec>(entity)?;
-        let seen = SeenObject {
-            shape: spec.shape.clone(),
-            pose: Pose::from(world.get::<Transform>(entity)?),
-            is_fixed: spec.is_fixed(),
-        };
-        Some((spec.id.clone(), seen))
-    });
-    Sight {
-        table: table.unwrap_or_default(),
-        objects: objects.collect(),
-        joints: joints.collect(),
-        limbs: limbs(world),
-    }
-}
-
-fn limbs(world: &World) -> Vec<LimbSight> {
-    let robot = world.resource::<Robot>();
-    let id = |entity: &Entity| Some(world.get::<ObjectSpec>(*entity)?.id.clone());
-    let layout = world.resource::<RobotLayout>();
-    let limbs = layout.limbs.iter().zip(&robot.limbs);
-    let limbs = limbs.map(|(limb, state)| LimbSight {
-        angles: angles(robot.positions_of(&limb.joints)),
-        opening: robot.joint(limb.gripper.joint).position,
-        holds: state.holds.iter().filter_map(id).collect(),
-        blocked_by: state.blocked_by.as_ref().map(ToString::to_string),
-    });
-    limbs.collect()
-}
-
-/// The command that carries out orders for the limbs; `None` if nothing is to move.
-pub fn command(layout: &RobotLayout, orders: &[LimbOrder]) -> Option<RobotCommand> {
-    let mut drives = Vec::new();
-    for (limb, order) in layout.limbs.iter().zip(orders) {
-        let joints = limb.joints.iter().copied().zip(order.joints);
-        let all = joints.chain([(limb.gripper.joint, order.opening)]);
-        let moving = all.filter(|(_, velocity)| *velocity != 0.0);
-        drives.extend(
-            moving.map(|(joint, velocity)| (layout.joint(joint).name, Drive::Velocity(velocity))),
-        );
-    }
-    (!drives.is_empty()).then_some(RobotCommand::Drive(drives))
-}
 
 /// An app whose robot is moved by commands, as scripts move it.
 pub struct AppStage<'a> {
     app: &'a mut App,
-    sight: Sight,
-    objects: Vec<Entity>,
+    observer: Observer,
 }
 
 impl<'a> AppStage<'a> {
     /// The app, with the objects on its table.
     pub fn new(app: &'a mut App) -> Self {
-        let mut stage = Self {
-            app,
-            sight: Sight::default(),
-            objects: Vec::new(),
-        };
-        stage.look();
-        stage
-    }
-
-    /// Updates the sight. If the objects are the same, only their poses are read.
-    fn look(&mut self) {
-        let world = self.app.world();
-        let index = world.resource::<ObjectIndex>();
-        if !index.iter().eq(self.objects.iter().copied()) {
-            self.objects = index.iter().collect();
-            self.sight = sight(self.app.world_mut());
-            return;
-        }
-        for &entity in &self.objects {
-            if let (Some(spec), Some(transform)) = (
-                world.get::<ObjectSpec>(entity),
-                world.get::<Transform>(entity),
-            ) && let Some(seen) = self.sight.objects.get_mut(&spec.id)
-            {
-                seen.pose = Pose::from(transform);
-            }
-        }
-        self.sight.limbs = limbs(world);
+        let mut observer = Observer::default();
+        observer.look(app.world_mut());
+        Self { app, observer }
     }
 }
 
 impl PlanningStage for AppStage<'_> {
     fn sight(&self) -> &Sight {
-        &self.sight
+        self.observer.sight()
     }
 
     fn tick(&mut self, orders: &[LimbOrder]) -> Result<(), Stopped> {
-        let layout = self.app.world().resource::<RobotLayout>();
-        if let Some(command) = command(layout, orders) {
-            self.app.world_mut().write_command(command);
+        let drives = drives(self.app.world().resource::<RobotLayout>(), orders);
+        if !drives.is_empty() {
+            self.app
+                .world_mut()
+                .write_command(RobotCommand::Drive(drives));
         }
         self.app.step(1);
-        self.look();
+        self.observer.look(self.app.world_mut());
         Ok(())
     }
 }

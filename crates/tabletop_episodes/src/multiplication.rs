@@ -16,6 +16,7 @@ use std::{fmt, io, path::Path};
 
 use bevy::prelude::*;
 use serde_json::json;
+use tabletop_assembly::{IdAllocator, assemble};
 use tabletop_core::{
     HeadCamera, Random, RecordingCommand, RobotCommand, SceneCommand, SceneSpec, StepApp as _,
     WriteCommand as _,
@@ -25,7 +26,6 @@ use tabletop_planner::{PlanFailure, RobotBody, imitate};
 use tabletop_recorder::{
     HandPictures, RecorderError, RecorderPlugin, RecordingReader, finish_recording,
 };
-use tabletop_scene::{IdAllocator, assemble};
 use tabletop_storage::{Storage, Symlinks, read_regular_file};
 use tabletop_task::{Binding, Demonstration, RequirementError, Requirements, Task};
 

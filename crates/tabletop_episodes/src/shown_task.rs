@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use tabletop_core::{NAMED_COLORS, Required, ShownProperty, ShownRole, ShownStep, ShownTask};
+use tabletop_core::{Required, ShownProperty, ShownRole, ShownStep, ShownTask};
+use tabletop_geometry::NAMED_COLORS;
 use tabletop_task::{
     Binding, Reference, Requirements, Role, Task, TaskStep, has_value, properties, property,
 };

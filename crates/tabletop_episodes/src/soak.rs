@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use bevy::prelude::*;
 use tabletop_core::{
     Actor, Arm, ClockCommand, Drive, Hand, HandCommand, Held, HistoryCommand, ObjectIndex,
-    ObjectSpec, Pose, Preset, Random, RecordingCommand, Rgb, RobotCommand, RobotJoint,
-    SceneCommand, SceneItem, SceneSpec, Shape, SimCommand, StepApp as _, TICKS_PER_SECOND, Table,
-    Twist, WriteCommand as _,
+    ObjectSpec, Preset, Random, RecordingCommand, RobotCommand, RobotJoint, SceneCommand,
+    SceneItem, SceneSpec, Shape, SimCommand, StepApp as _, TICKS_PER_SECOND, Table,
+    WriteCommand as _,
 };
+use tabletop_geometry::{Pose, Rgb, Twist};
 use tabletop_physics::{Convex, collider, convex_parts, depth};
 use tabletop_recorder::{Durability, RecorderPlugin, finish_recording};
 
@@ -271,7 +272,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_in_the_table_or_nowhere_is_seen() {
+    fn objects_in_the_table_or_at_nan_are_noticed() {
         let mut app = headless_app_with(TabletopSimPlugins);
         let color = Rgb::GRAY;
         let sphere = Shape::Sphere { radius: 1.0, color };

@@ -1,4 +1,4 @@
-//! Display settings (report 2.3, figure 3), what the display offers, and what becomes of a choice that it does not offer.
+//! Display settings (report 2.3, figure 3), the display's offer, and the replacement of settings that it does not offer.
 
 mod antialiasing;
 mod mode;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use bevy::prelude::*;
-use tabletop_core::{Action, KeySystems, was_struck};
+use tabletop_user::{Action, KeySystems, was_struck};
 
 /// A task file that the user can load.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -22,8 +22,9 @@ use serde::{
     Deserialize, Deserializer,
     de::{MapAccess, Visitor},
 };
-use tabletop_core::{Action, KeyBinding, Keymap, RobotLayout, Situation};
+use tabletop_core::RobotLayout;
 use tabletop_storage::{Symlinks, read_regular_text};
+use tabletop_user::{Action, KeyBinding, Keymap, Situation};
 
 use crate::{Notices, Preferences, Tone, preferences::MOST_BYTES};
 
@@ -68,7 +69,7 @@ pub fn read(
             let located = faults.map(|fault| format!("{}:{fault}", path.display()));
             (keymap, located.collect())
         }
-        Err(fault) => (Keymap::of(layout), vec![fault]),
+        Err(fault) => (Keymap::of(layout).0, vec![fault]),
     }
 }
 
@@ -81,9 +82,11 @@ pub fn read_text(path: &Path) -> Result<String, String> {
     text.map_err(|error| format!("{}: {error}", path.display()))
 }
 
-/// The keys of a robot as they are shipped, and those of its joints that have another meaning already.
+/// The keys of a robot as they are shipped, and those of its joints that do not exist or have another meaning already.
 fn shipped(layout: &RobotLayout) -> (Keymap, Vec<String>) {
-    let keymap = Keymap::of(layout);
+    let (keymap, unknown) = Keymap::of(layout);
+    let unknown = unknown.iter();
+    let unknown = unknown.map(|fault| format!("{}: {fault}", layout.name));
     let conflicts = keymap.conflicts().into_iter();
     let faults = conflicts.map(|(binding, owner, action)| {
         format!(
@@ -91,7 +94,7 @@ fn shipped(layout: &RobotLayout) -> (Keymap, Vec<String>) {
             layout.name
         )
     });
-    let faults = faults.collect();
+    let faults = unknown.chain(faults).collect();
     (keymap, faults)
 }
 
@@ -183,7 +186,7 @@ fn entries_of<'a>(
     read
 }
 
-/// The keys of a file come before those of actions that it does not name, and what stands further up before the rest.
+/// The keys of a file win over those of actions that it does not name, and earlier entries win over later ones.
 fn bind(keymap: &mut Keymap, entries: Vec<KeymapEntry>, text: &str, faults: &mut Vec<String>) {
     let mut owners: BTreeMap<(KeyBinding, Situation), (Action, &str)> = BTreeMap::new();
     let named: BTreeSet<_> = entries.iter().map(|entry| entry.action).collect();
@@ -397,7 +400,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_map_of_lists_is_reported_with_its_place() {
+    fn a_malformed_keymap_is_reported_with_its_place() {
         for (text, place) in [
             ("{\n  \"pause\": \"Space\"}", "2:"),
             ("{\n\n  \"pause\" [\"Space\"]}", "3:"),

@@ -1,7 +1,7 @@
 //! Keys, mouse and panels of the window. Every act of the user becomes a [`SimCommand`](tabletop_core::SimCommand); the results
 //! are read from [`SimFact`](tabletop_core::SimFact)s.
 //!
-//! The keys are in one table, [`Action`](tabletop_core::Action); users bind others in [`keymap_file`]s. A click on an
+//! The keys are in one table, [`Action`](tabletop_user::Action); users bind others in [`keymap_file`]s. A click on an
 //! object puts it into the selected hand, a drag moves it in the drag plane, a press anywhere else lets it go. Right drags, middle drags
 //! and the wheel move the camera.
 //!
@@ -49,7 +49,7 @@ pub mod prelude {
 
 use bevy::{asset::AssetEventSystems, prelude::*};
 use bevy_egui::{EguiGlobalSettings, EguiPlugin, EguiPostUpdateSet, PrimaryEguiContext};
-use tabletop_core::UserCamera;
+use tabletop_user::{UserCamera, UserPlugin};
 
 /// Adds keys and panels. Needs Bevy's renderer and [`CorePlugin`](tabletop_core::CorePlugin).
 #[derive(Clone, Copy, Debug, Default)]
@@ -57,6 +57,7 @@ pub struct GuiPlugin;
 
 impl Plugin for GuiPlugin {
     fn build(&self, app: &mut App) {
+        UserPlugin::add_to(app);
         app.init_resource::<Preferences>()
             .init_resource::<PresetSeeds>()
             .insert_resource(EguiGlobalSettings {

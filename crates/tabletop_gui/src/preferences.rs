@@ -35,7 +35,7 @@ pub enum PreferencesError {
         /// The system's message.
         error: io::Error,
     },
-    /// The file is not what the program writes.
+    /// The file is not as the program writes it.
     #[error("{path}:{error}; mend or delete the file")]
     Syntax {
         /// The file.
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_is_read_again() {
+    fn kept_preferences_read_back() {
         let folder = folder("kept");
         let preferences = Preferences::in_folder(&folder);
         assert_eq!(preferences.read::<Size>("display").unwrap(), None);

@@ -1,8 +1,8 @@
-//! The scale of panels and their texts: what fits the window, or what the user has chosen.
+//! The scale of panels and their texts: the one that fits the window, or the user's choice.
 
 use bevy::{prelude::*, window::PrimaryWindow};
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass};
-use tabletop_core::{Action, KeySystems, Keys};
+use tabletop_user::{Action, KeySystems, Keys};
 
 use crate::{
     panels::messages::{Notices, Tone},

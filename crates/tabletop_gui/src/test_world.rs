@@ -2,9 +2,10 @@
 
 use bevy::{prelude::*, time::TimeUpdateStrategy};
 use tabletop_core::{
-    CorePlugin, Hands, IssuedCommand, ObjectIndex, ObjectSpec, Pose, Rgb, Shape, SimCommand, Table,
-    UserCamera,
+    CorePlugin, Hands, IssuedCommand, ObjectIndex, ObjectSpec, Shape, SimCommand, Table,
 };
+use tabletop_geometry::{Pose, Rgb};
+use tabletop_user::UserCamera;
 
 use crate::input::pointer::Pointer;
 

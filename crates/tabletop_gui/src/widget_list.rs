@@ -46,7 +46,7 @@ struct WidgetList {
     has_failed: bool,
 }
 
-/// Lets the panels say what they consist of.
+/// Lets the panels list their widgets.
 fn enable(mut contexts: EguiContexts) {
     if let Ok(context) = contexts.ctx_mut() {
         context.enable_accesskit();

@@ -14,7 +14,7 @@ pub const REQUIRE_ALL: &str = "TABLETOP_REQUIRE_ALL";
 pub struct RegisteredTest {
     /// Its path, from the crate on.
     pub name: &'static str,
-    /// What it needs.
+    /// Its prerequisites.
     pub prerequisites: &'static [Prerequisite],
     /// The test itself, which panics if it fails.
     pub run: fn(),
@@ -22,7 +22,7 @@ pub struct RegisteredTest {
 
 inventory::collect!(RegisteredTest);
 
-/// What becomes of a test without its prerequisites.
+/// The treatment of a test without its prerequisites.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Policy {
     Ignore,

@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn snapshots_share_what_has_not_changed() {
+    fn snapshots_share_unchanged_state() {
         let (mut app, lamps) = app(usize::MAX);
         let first = begin(&mut app).bytes;
         assert!(first > 160_000, "{first}");
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_shared_comes_back_as_it_was() {
+    fn shared_state_comes_back_as_it_was() {
         let (mut app, lamps) = app(usize::MAX);
         for number in 1..5 {
             begin(&mut app);

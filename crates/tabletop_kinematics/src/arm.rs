@@ -30,7 +30,7 @@ pub struct ArmChain {
     end: DAffine3,
 }
 
-/// A joint and what is rigid before it.
+/// A joint, with the rigid transform before it.
 #[derive(Clone, Copy, Debug)]
 struct Segment {
     /// From the joint's frame to that of the joint before it.

@@ -56,7 +56,7 @@ const TOLERANCE: Miss = Miss {
 
 /// The weight of a rotation of the tip against its distance.
 const METERS_PER_RAD: f64 = 0.3;
-/// Least squared damping, in m²: far below what an arm in a usual posture moves per rad.
+/// Least squared damping, in m²: far below the squared way of an arm per rad in a usual posture.
 const LEAST_DAMPING: f64 = 1e-7;
 /// Squared damping per squared miss.
 const DAMPING: f64 = 0.1;

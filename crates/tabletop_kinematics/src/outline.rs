@@ -39,7 +39,7 @@ impl Child<'_> {
 pub(crate) struct Outline<'a> {
     /// The children of the root element.
     pub children: Vec<Child<'a>>,
-    /// The first element that does not end where it should: its tag, its line, and what is wrong with it.
+    /// The first element that does not end where it should: its tag, its line, and its fault.
     pub unbalanced: Option<(&'a str, usize, String)>,
 }
 
@@ -129,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn children_are_found_between_whatever_stands_around_them() {
+    fn children_are_found_among_comments_and_quoted_brackets() {
         let text = "<?xml version='1.0'?>\n<!-- <a> -->\n<robot name='>'>\n<link name=\"/>\"/>\n\
             <!-- <no/> --><joint name='j'>\n<parent/></joint></robot>";
         let found = outline(text).unwrap();

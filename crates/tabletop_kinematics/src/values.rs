@@ -7,7 +7,7 @@ use crate::ModelJointId;
 /// One number for every joint of a [`RobotModel`](crate::RobotModel): positions, velocities, accelerations or torques.
 ///
 /// Positions are radians for turning joints and metres for sliding ones, torques N m and N. The numbers of fixed joints and of
-/// those that follow another one are ignored when read by the model, and 0 in what it returns. They belong
+/// those that follow another one are ignored when read by the model, and 0 in its results. They belong
 /// to the model that made them ([`RobotModel::zero`](crate::RobotModel::zero)).
 ///
 /// ```

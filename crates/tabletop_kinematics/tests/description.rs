@@ -144,7 +144,7 @@ fn the_cross_bar_lies_behind_the_fingers() {
 }
 
 #[test]
-fn an_arm_weighs_what_its_links_do() {
+fn an_arm_weighs_as_much_as_its_links() {
     let robot = baxter().unwrap();
     let left = |link: &str| link.starts_with("left_") || link.starts_with("l_gripper");
     let links = robot.links().iter().filter(|link| left(&link.name));

@@ -232,7 +232,7 @@ proptest! {
     }
 
     #[test]
-    fn the_work_of_the_torques_is_what_becomes_of_the_energy(
+    fn the_power_of_the_torques_equals_the_change_of_energy(
         angles in prop::collection::vec(-1.5..1.5_f64, 19),
         speeds in prop::collection::vec(-1.0..1.0_f64, 19),
         rates in prop::collection::vec(-3.0..3.0_f64, 19),

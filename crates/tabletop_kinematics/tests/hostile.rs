@@ -167,7 +167,7 @@ fn every_fault_is_reported_with_its_place() {
 }
 
 #[test]
-fn what_the_reader_cannot_read_is_located() {
+fn unreadable_elements_are_located() {
     let cases = [
         (joint("wobbly", ""), "line 4: joint j: "),
         (
@@ -230,7 +230,7 @@ fn texts_that_are_no_xml_are_refused() {
 }
 
 #[test]
-fn what_xml_knows_and_urdf_does_not_is_refused_or_left_out() {
+fn xml_beyond_urdf_is_refused_or_left_out() {
     let entity = "<!DOCTYPE robot [<!ENTITY a \"<link name='a'/>\">]>\n<robot name='r'>&a;</robot>";
     let deep = format!(
         "<!DOCTYPE robot [<!ENTITY a \"<\">]><robot>{}",

@@ -115,7 +115,7 @@ fn a_point_is_reached_with_any_rotation() {
 }
 
 #[test]
-fn what_is_out_of_reach_is_reported_with_the_nearest_posture() {
+fn an_unreachable_target_is_reported_with_the_nearest_posture() {
     let arm = left_arm();
     let far = Target::Point(DVec3::new(3.0, 1.0, 0.4));
     let error = arm.solve(&far, &START).unwrap_err();

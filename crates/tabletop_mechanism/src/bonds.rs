@@ -3,8 +3,9 @@
 use bevy::prelude::*;
 use tabletop_core::{
     Bond, Bonds, CommandId, Held, HostPoint, Joint, JointKind, MechanismFact, ObjectIndex,
-    ObjectSpec, Operator, Pose, Rollback, SimFact, Turn,
+    ObjectSpec, Operator, Rollback, SimFact, Turn,
 };
+use tabletop_geometry::Pose;
 use tabletop_physics::{hold, put, remove_joint, take_in};
 
 use crate::network::Network;

@@ -2,9 +2,10 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Joint, JointKind, MechanismFact, ObjectIndex, ObjectSpec, Operator, Paused, Pose, PushButton,
-    Robot, RobotLayout, Shape, SimFact,
+    Joint, JointKind, MechanismFact, ObjectIndex, ObjectSpec, Operator, Paused, PushButton, Robot,
+    RobotLayout, Shape, SimFact,
 };
+use tabletop_geometry::Pose;
 use tabletop_physics::{pressures_on, push};
 
 use crate::{limb::limb_of, network::Network};

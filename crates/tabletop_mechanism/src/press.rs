@@ -2,9 +2,10 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Bounds, Control, ControlKind, Held, ObjectIndex, ObjectSpec, Operator, Paused, Pose, Robot,
-    RobotLayout, Shape, Solid, TICK_SECONDS, UNITS_PER_METER,
+    Control, ControlKind, Held, ObjectIndex, ObjectSpec, Operator, Paused, Robot, RobotLayout,
+    Shape, TICK_SECONDS,
 };
+use tabletop_geometry::{Pose, Solid, UNITS_PER_METER};
 use tabletop_physics::{Pressure, is_touching, pressures_on};
 
 use crate::{limb::limb_of, network::Network, obey::trigger};
@@ -113,13 +114,13 @@ fn presses_of_robot(world: &World) -> Vec<Press> {
         let by = Operator::Limb(limb);
         let point = Pose::from(place).inverse() * contact.point;
         add(&mut presses, &by, spec, feels_touch, |shape, at| {
-            has(shape, at, point)
+            has_point(shape, at, point)
         });
     }
     presses
 }
 
-/// What hands and grippers hold presses the immovable as it touches it.
+/// Held objects press immovable controls by touching them.
 fn presses_of_held(world: &mut World, pressables: &[Entity]) -> Vec<Press> {
     let objects: Vec<_> = world.resource::<ObjectIndex>().iter().collect();
     let mut presses = Vec::new();
@@ -130,11 +131,11 @@ fn presses_of_held(world: &mut World, pressables: &[Entity]) -> Vec<Press> {
         let Some((spec, place)) = spec_and_pose(world, held) else {
             continue;
         };
-        let bounds = Bounds::of_shape(&spec.shape, place);
+        let bounds = spec.shape.bounds(place);
         for &object in pressables.iter().filter(|&&object| object != held) {
             let is_near = world.get::<ObjectSpec>(object).is_some_and(|other| {
                 let pose = world.get::<Transform>(object).map(Pose::from);
-                let room = Bounds::of_shape(&other.shape, pose.unwrap_or_default());
+                let room = other.shape.bounds(pose.unwrap_or_default());
                 other.is_fixed() && room.overlaps(bounds, -TOUCH)
             });
             if !is_near {
@@ -151,7 +152,7 @@ fn presses_of_held(world: &mut World, pressables: &[Entity]) -> Vec<Press> {
     presses
 }
 
-/// What falls or leans on something, or is pushed onto what can move, presses it by its force.
+/// Presses by force: of free objects that fall or lean on a control, and of held ones that push a control that can move.
 fn presses_of_free(world: &mut World, pressables: &[Entity]) -> Vec<Press> {
     let mut presses = Vec::new();
     for pressures in pressures_on(world, pressables).chunk_by(|a, b| (a.on, a.by) == (b.on, b.by)) {
@@ -169,7 +170,7 @@ fn presses_of_free(world: &mut World, pressables: &[Entity]) -> Vec<Press> {
         let is_held = world.get::<Held>(by).is_some();
         let feels = |control: &Control| match control.kind {
             ControlKind::ToggleSwitch(_) => true,
-            // What stands on its shapes is not meant.
+            // An object that only stands on its shapes does not press it.
             ControlKind::Custom(_) => is_held,
             ControlKind::PushButton(_) | ControlKind::IndicatorLights(_) => false,
         };
@@ -177,14 +178,14 @@ fn presses_of_free(world: &mut World, pressables: &[Entity]) -> Vec<Press> {
         add(&mut presses, &by, &spec, feels, |shape, at| {
             let own = pressures
                 .iter()
-                .filter(|pressure| has(shape, at, pose.inverse() * pressure.point));
+                .filter(|pressure| has_point(shape, at, pose.inverse() * pressure.point));
             own.map(|pressure| pressure.force).sum::<f32>() >= LEAST_FORCE
         });
     }
     presses
 }
 
-/// Whether an object that has pressed a control, and that nobody holds, is still there: it may lie on the side that is raised now.
+/// True if a free object that has pressed a control is still there: it may lie on the side that is raised now.
 fn lies_there(world: &mut World, press: &Press) -> bool {
     let Operator::Object(id) = &press.by else {
         return false;
@@ -209,8 +210,8 @@ fn lies_there(world: &mut World, press: &Press) -> bool {
     control.is_some_and(|(shape, at)| is_touching(world, presser, &shape, at, LET_GO))
 }
 
-/// Whether a point, in the frame of an object, is on a part of it.
-fn has(shape: &Shape, at: Pose, point: Vec3) -> bool {
+/// True if a point, in the frame of an object, is on the surface of a part of it, given with its pose, or inside.
+fn has_point(shape: &Shape, at: Pose, point: Vec3) -> bool {
     let solids = shape.colliding();
     let distance = |solid: Solid, at: Pose| distance(solid, at.inverse() * point);
     solids

@@ -2,15 +2,16 @@
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Bounds, Cause, CommandId, Hand, Held, Joint, JointKind, Manipulator, MechanismFact,
-    ObjectIndex, ObjectSpec, Operator, Paused, Pose, Robot, RobotLayout, Shape, SimFact, SimTick,
+    Cause, CommandId, Hand, Held, Joint, JointKind, Manipulator, MechanismFact, ObjectIndex,
+    ObjectSpec, Operator, Paused, Robot, RobotLayout, Shape, SimFact, SimTick,
 };
+use tabletop_geometry::Pose;
 use tabletop_history::begin_segment;
 use tabletop_physics::{is_touching, pressures_on, push, remove_object};
 
 use crate::limb::limb_of;
 
-/// What is nearer to a blade than this touches it, in units.
+/// Distance, in units, below which an object touches a blade.
 const TOUCH: f32 = 0.02;
 
 /// How fast a hand closes scissors, in rad/s: against their spring, in a tenth of a second.
@@ -103,11 +104,11 @@ pub(crate) fn cut_links(world: &mut World) {
         })
         .collect();
     for (object, link, shape, pose) in links {
-        let bounds = Bounds::of_shape(&shape, pose);
+        let bounds = shape.bounds(pose);
         let touches = |world: &mut World, blade: Entity| {
             let room = world.get::<ObjectSpec>(blade).and_then(|spec| {
                 let pose = world.get::<Transform>(blade).map(Pose::from)?;
-                Some(Bounds::of_shape(&spec.shape, pose))
+                Some(spec.shape.bounds(pose))
             });
             room.is_some_and(|room| room.overlaps(bounds, -TOUCH))
                 && is_touching(world, blade, &shape, pose, TOUCH)
@@ -132,8 +133,8 @@ pub(crate) fn cut_links(world: &mut World) {
     }
 }
 
-/// Who closes scissors, and the command that it came of: the hand that cuts, who holds a blade, a limb that touches one, or what presses
-/// hardest on one.
+/// Who closes scissors, and the command that caused it: the hand that cuts, the holder of a blade, a limb that touches one, or the object
+/// that presses hardest on one.
 fn who_closes(world: &mut World, entity: Entity, joint: Joint) -> (Option<CommandId>, Operator) {
     let tick = *world.resource::<SimTick>();
     if let Some(closing) = world.get::<Snip>(entity).filter(|it| tick <= it.until) {

@@ -1,9 +1,10 @@
-//! The robot's grippers as wrenches: what they hold at a host is fastened and loosened by turning it.
+//! The robot's grippers as wrenches: they fasten and loosen a held guest by turning it at its host.
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Bond, Bonds, LimbName, ObjectSpec, Operator, Paused, Pose, Robot, RobotLayout, SimFact, Turn,
+    Bond, Bonds, LimbName, ObjectSpec, Operator, Paused, Robot, RobotLayout, SimFact, Turn,
 };
+use tabletop_geometry::Pose;
 
 use crate::bonds::{Pair, pair, take_turn, turned};
 
@@ -34,13 +35,13 @@ struct Wrench {
     host_point: String,
     /// The gripper in the frame of the host point, a tick ago.
     gripper: Pose,
-    /// By what angle it has turned since the last step, about the axis of the next one.
+    /// Angle by which it has turned since the last step, about the axis of the next one.
     angle: f32,
     /// How far it has gone since the last step.
     way: Vec3,
 }
 
-/// What a gripper holds.
+/// An object in a gripper.
 struct Gripped {
     limb: LimbName,
     gripper: Pose,
@@ -52,7 +53,7 @@ pub(crate) fn is_possible(robot: Res<Robot>, wrenches: Res<Wrenches>) -> bool {
     !wrenches.0.is_empty() || robot.limbs.iter().any(|limb| !limb.holds.is_empty())
 }
 
-/// Fastens and loosens by a step what grippers have turned far enough.
+/// Fastens and loosens objects by a step once grippers have turned them far enough.
 pub(crate) fn turn(world: &mut World) {
     if world.resource::<Paused>().0 {
         return;
@@ -99,7 +100,7 @@ fn turn_one(world: &mut World, before: &Wrenches, gripped: &Gripped) -> Option<W
     let wrench = before.of(gripped.limb, &bond);
     let has_arrived = wrench.is_none();
     if tightness == 0 && !is_at_host(&pair) {
-        // What was loosened is fastened again only when it has been away.
+        // A loosened object is fastened again only after it has been away.
         let has_left = pair.guest.location.distance(pair.host.location) > AWAY;
         return wrench
             .filter(|_| !has_left)
@@ -194,7 +195,7 @@ impl Wrench {
         }
     }
 
-    /// What is left of the gripper's turn after a step.
+    /// Makes a step: its angle is taken off the gripper's turn.
     fn make_step(&mut self, Pair { what, .. }: &Pair, tightness: u32, turn: Turn) {
         let angle = |tightness| what.turn_to(tightness).map_or(0.0, Vec3::length);
         self.angle += match turn {

@@ -168,7 +168,7 @@ fn block(at: Vec3) -> ObjectSpec {
 }
 
 #[test]
-fn a_custom_control_collides_as_its_state_shows_and_wakes_what_lies_on_it() {
+fn a_custom_control_collides_as_its_state_shows_and_wakes_its_load() {
     let mut app = app(vec![tower(), block(Vec3::Z * 2.5)]);
     app.step(300);
     assert!((pose(&app, "block").location.z - 2.5).abs() < 0.01);
@@ -191,7 +191,7 @@ fn a_control_collides_as_the_state_shows_that_is_passed_on_to_it_at_first() {
 }
 
 #[test]
-fn what_a_hand_holds_presses_the_raised_side_of_a_switch_once() {
+fn a_held_object_presses_the_raised_side_of_a_switch_once() {
     let poker = Shape::Block {
         span: Vec3::new(0.2, 0.2, 1.0),
         color: Rgb::RED,
@@ -344,7 +344,7 @@ fn a_screw_goes_in_three_steps_cannot_go_a_fourth_and_comes_out() {
 }
 
 #[test]
-fn what_is_fastened_is_one_body() {
+fn fastened_objects_are_one_body() {
     let mut app = app(vec![
         nut(Vec3::Z * 0.5, 1.0),
         screw("screw", Vec3::new(1.0, 0.0, 0.5)),
@@ -365,7 +365,7 @@ fn what_is_fastened_is_one_body() {
 }
 
 #[test]
-fn the_bonds_of_what_is_destroyed_are_no_more() {
+fn a_destroyed_object_loses_its_bonds() {
     let mut app = app(vec![
         nut(Vec3::Z * 0.5, 0.0),
         screw("screw", Vec3::new(1.0, 0.0, 0.5)),
@@ -398,7 +398,7 @@ fn grip(app: &mut App, object: &str, gripper: Pose) -> Vec<SimFact> {
     facts.get_cursor().read(facts).cloned().collect()
 }
 
-/// Turns a gripper with the screw about the vertical by so many degrees, and tells how tight it was after each step.
+/// Turns a gripper with the screw about the vertical between these angles, in degrees. Returns the tightness after each step.
 fn wrench(app: &mut App, from: f32, to: f32) -> Vec<u32> {
     let mut steps = Vec::new();
     for number in 0..=30_u8 {

@@ -195,7 +195,7 @@ fn a_weight_presses_a_button_while_it_lies_there_and_something_light_does_not() 
 }
 
 #[test]
-fn what_a_hand_holds_presses_a_button_that_is_no_further_than_its_travel() {
+fn a_held_object_presses_a_button_no_further_than_its_travel() {
     let mut app = app(vec![
         button(push_button(PressMode::Once), 0.0),
         lamp(),
@@ -257,7 +257,7 @@ fn a_block_that_falls_on_the_raised_side_of_a_switch_presses_it() {
 }
 
 #[test]
-fn what_lies_across_a_switch_presses_it_once() {
+fn a_plank_across_a_switch_presses_it_once() {
     let mut app = app(vec![
         switch(),
         block("plank", Vec3::Z * 0.6, Vec3::new(3.0, 0.4, 0.2), 1.0),
@@ -267,7 +267,7 @@ fn what_lies_across_a_switch_presses_it_once() {
 }
 
 #[test]
-fn what_weighs_next_to_nothing_does_not_press_a_switch() {
+fn a_feather_does_not_press_a_switch() {
     // It lies flat on the raised side, which is turned by 10°.
     let turned = Pose::from_degrees(Vec3::ZERO, Vec3::Y * -10.0);
     let mut feather = ObjectSpec::new(

@@ -11,7 +11,8 @@ use parry3d::transformation::{
     try_convex_hull,
     vhacd::{VHACD, VHACDParameters},
 };
-use tabletop_core::{MeshSpec, Polyhedron};
+use tabletop_core::MeshSpec;
+use tabletop_geometry::Polyhedron;
 
 /// Largest distance of a surface from the faces of a convex one, as a share of its length.
 const FLATNESS: f32 = 1e-4;
@@ -101,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_convex_is_one_solid() {
+    fn a_convex_mesh_is_one_solid() {
         for sides in [3, 6, 32] {
             let frustum = Polyhedron::frustum(0.5, 1.0, 2.0, sides);
             let solids = convex_solids(frustum);
@@ -129,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_flat_has_no_solids() {
+    fn a_flat_mesh_has_no_solids() {
         let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
         let sheet = Polyhedron::new(corners, vec![[0, 1, 2]]);
         let sheet = sheet.unwrap_or_else(|error| panic!("{error}"));

@@ -1,6 +1,7 @@
 //! Errors of mesh files.
 
-use tabletop_core::{MeshError, PolyhedronError};
+use tabletop_core::MeshError;
+use tabletop_geometry::PolyhedronError;
 
 /// The error of a file that is no mesh.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -15,7 +16,7 @@ pub enum MeshFileError {
     /// It is not written as OBJ.
     #[error("it is no OBJ file: {0}")]
     Obj(String),
-    /// It has more triangles than so many.
+    /// It has more triangles than this limit.
     #[error("it has more than {0} triangles")]
     TooManyTriangles(usize),
     /// Its content is no surface.

@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_stl_file_is_refused() {
+    fn malformed_stl_is_refused() {
         for (text, fault) in [
             ("", "its length"),
             ("solid\nvertex 1 2\n", "line 2: a corner"),

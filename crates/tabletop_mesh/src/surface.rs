@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 
 use bevy::math::Vec3;
-use tabletop_core::{MeshSpec, Polyhedron, PolyhedronError};
+use tabletop_core::MeshSpec;
+use tabletop_geometry::{Polyhedron, PolyhedronError};
 
 use crate::{Triangle, error::MeshFileError, limits::MAX_STL_BYTES, stl::read_stl};
 
@@ -109,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_mesh_is_refused_with_the_reason() {
+    fn malformed_meshes_are_refused_with_the_reason() {
         let reason = |bytes: &[u8]| match surface(bytes) {
             Ok(found) => panic!("{found:?}"),
             Err(error) => error.to_string(),

@@ -2,7 +2,8 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Held, Joint, Manipulator, ObjectSpec, Pose, SimTick, TICK_SECONDS};
+use tabletop_core::{Held, Joint, Manipulator, ObjectSpec, SimTick, TICK_SECONDS};
+use tabletop_geometry::Pose;
 
 use crate::{
     mover::limits::FASTEST,

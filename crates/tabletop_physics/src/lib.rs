@@ -76,8 +76,8 @@ use bevy_rapier3d::{
 };
 use tabletop_core::{
     CommandSystems, ObjectSpec, Paused, RestingSystems, SimSystems, TICK_SECONDS, TickSystems,
-    Twist,
 };
+use tabletop_geometry::Twist;
 use tabletop_history::RollbackApp;
 
 use crate::workarounds::{

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
-use tabletop_core::Twist;
+use tabletop_geometry::Twist;
 
 /// Writes the twists of objects whose velocity has changed, by a step or by an undo.
 pub(crate) fn note_twists(mut objects: Query<(&Velocity, &mut Twist), Changed<Velocity>>) {

@@ -76,7 +76,7 @@ fn turn_on(mut turners: Query<&mut Transform, With<Turner>>, tick: Res<SimTick>)
 }
 
 #[test]
-fn what_lies_on_a_body_that_hardly_turns_is_not_struck() {
+fn a_slowly_turning_body_does_not_strike_its_load() {
     let mut app = App::new();
     app.add_plugins((
         MinimalPlugins,

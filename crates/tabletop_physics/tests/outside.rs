@@ -1,4 +1,4 @@
-//! What anything but the engine changes in bodies reaches the engine in the next step, also while it is paused for a tick.
+//! Changes of bodies from outside reach Rapier in the next step, even during a pause of one tick.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use bevy::prelude::*;
@@ -6,7 +6,7 @@ use bevy_rapier3d::prelude::*;
 use tabletop_core::prelude::*;
 use tabletop_physics::PhysicsPlugin;
 
-/// An app in which a ball falls, so that the engine changes something in every tick.
+/// An app in which a ball falls, so that Rapier changes something in every tick.
 fn app() -> (App, Entity) {
     let mut app = App::new();
     app.add_plugins((
@@ -78,14 +78,14 @@ fn a_body_that_comes_or_goes_during_a_pause_reaches_the_engine_after_it() {
 }
 
 #[test]
-fn what_falls_fast_meets_nothing_that_is_gone() {
+fn a_fast_body_does_not_meet_removed_bodies() {
     let (mut app, small) = app();
     let post = sphere(&mut app, Vec3::new(20.0, 0.0, -100.0), 1.0, 0.0);
     let large = sphere(&mut app, Vec3::X * 20.0, 4.0, 1.0);
     for falling in [small, large] {
         app.world_mut().entity_mut(falling).insert(Ccd::disabled());
     }
-    // The small one is so fast that the engine looks for what it may hit.
+    // The small one is so fast that Rapier sweeps it.
     app.step(30);
     for gone in [small, post] {
         app.world_mut().despawn(gone);
@@ -102,14 +102,14 @@ fn what_falls_fast_meets_nothing_that_is_gone() {
 struct Mark;
 
 #[test]
-fn what_wakes_in_a_tick_wakes_in_the_order_of_bodies() {
+fn bodies_woken_in_one_tick_wake_in_their_order() {
     let (mut app, falling) = app();
     let balls = [falling, ball(&mut app, 5.0), ball(&mut app, 10.0)];
     app.step(2);
     let active = |app: &mut App| {
-        let mut engines = app.world_mut().query::<&RapierContextSimulation>();
-        let engine = engines.single(app.world()).unwrap();
-        engine.islands.active_bodies().collect::<Vec<_>>()
+        let mut simulations = app.world_mut().query::<&RapierContextSimulation>();
+        let simulation = simulations.single(app.world()).unwrap();
+        simulation.islands.active_bodies().collect::<Vec<_>>()
     };
     let bodies = active(&mut app);
     assert_eq!(bodies.len(), balls.len());
@@ -128,7 +128,7 @@ fn what_wakes_in_a_tick_wakes_in_the_order_of_bodies() {
 }
 
 #[test]
-fn a_body_whose_velocity_is_no_number_stops_and_falls_on() {
+fn a_body_with_a_nan_velocity_stops_and_falls_on() {
     let (mut app, ball) = app();
     let height = |app: &App| app.world().get::<Transform>(ball).unwrap().translation.z;
     let before = height(&app);

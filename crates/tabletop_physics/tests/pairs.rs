@@ -1,9 +1,10 @@
-//! The pairs of solids that the engine keeps in mind.
+//! The pairs of solids that Rapier keeps.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::RapierContextSimulation;
-use tabletop_core::{Dynamics, PAIR_GAP, prelude::*};
+use tabletop_core::{Dynamics, prelude::*};
+use tabletop_geometry::PAIR_GAP;
 use tabletop_physics::PhysicsPlugin;
 
 /// A world of cubes with this edge, at these places.
@@ -32,13 +33,13 @@ fn world(edge: f32, places: impl IntoIterator<Item = Vec3>, velocity: Vec3) -> A
 }
 
 fn pairs(app: &mut App) -> usize {
-    let mut engines = app.world_mut().query::<&RapierContextSimulation>();
-    let engine = engines.single(app.world()).unwrap();
-    engine.narrow_phase.contact_pairs().count()
+    let mut simulations = app.world_mut().query::<&RapierContextSimulation>();
+    let simulation = simulations.single(app.world()).unwrap();
+    simulation.narrow_phase.contact_pairs().count()
 }
 
 #[test]
-fn what_is_nearer_than_the_gap_is_a_pair() {
+fn bodies_nearer_than_the_gap_are_a_pair() {
     for (gap, expected) in [(PAIR_GAP - 0.001, 1), (PAIR_GAP + 0.001, 0)] {
         let mut app = world(1.0, [Vec3::ZERO, Vec3::X * (1.0 + gap)], Vec3::ZERO);
         // Once they have moved.

@@ -1,4 +1,4 @@
-//! What is pressed on something that does not move stays outside it.
+//! Depenetration: an object that is pressed on a fixed body stays outside it.
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use bevy::prelude::*;
@@ -64,7 +64,7 @@ fn most_depth_under_a_press(shape: Shape, at: Pose, press_from: Vec3, speed: f32
 }
 
 #[test]
-fn nothing_is_pressed_into_what_does_not_move() {
+fn nothing_is_pressed_into_a_fixed_body() {
     let block = Shape::Block {
         span: Vec3::ONE,
         color: COLOR,
@@ -81,7 +81,7 @@ fn nothing_is_pressed_into_what_does_not_move() {
 }
 
 #[test]
-fn a_stick_that_is_pressed_and_turns_stays_out_of_what_does_not_move() {
+fn a_pressed_and_turning_stick_stays_out_of_a_fixed_body() {
     let span = Vec3::new(2.0, 0.6, 0.6);
     let stick = Shape::Block { span, color: COLOR };
     for number in 0..400 {

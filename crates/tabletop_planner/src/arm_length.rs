@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_posture_is_excluded_and_what_is_far_is() {
+    fn no_posture_is_excluded_and_far_poses_are() {
         let arm = ArmChain::between(&baxter().unwrap(), "torso", "right_end_effector").unwrap();
         let length = ArmLength::of(&arm, [0.1, -0.3, 0.2, 0.9, -0.4, 0.6, 0.3]);
         let mut random = Random::new(1);

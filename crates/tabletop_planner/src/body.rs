@@ -1,7 +1,9 @@
 //! The robot's body, as planning uses it.
 
 use bevy::math::{DAffine3, DMat3, DQuat, DVec3, Quat, Vec3};
-use tabletop_core::{LimbLayout, LinkFrame, Pose, RobotLayout, Solid, Table, UNITS_PER_METER};
+use tabletop_controller::{Angles, angles};
+use tabletop_core::{LimbLayout, LinkFrame, RobotLayout, Table};
+use tabletop_geometry::{Pose, Solid, UNITS_PER_METER};
 use tabletop_kinematics::{
     ArmChain, Frames, Geometry, JointValues, LinkId, LinkShape, MOST_ARM_JOINTS, ModelError,
     RobotModel, Target,
@@ -9,18 +11,6 @@ use tabletop_kinematics::{
 use tabletop_task::PlacedSolid;
 
 use crate::arm_length::ArmLength;
-
-/// The angles of an arm from its base to its tip, in rad; 0 beyond its last joint.
-pub type Angles = [f64; MOST_ARM_JOINTS];
-
-/// These angles, with 0 beyond the last.
-pub fn angles(each: impl IntoIterator<Item = f64>) -> Angles {
-    let mut all = Angles::default();
-    for (place, angle) in all.iter_mut().zip(each) {
-        *place = angle;
-    }
-    all
-}
 
 /// A robot: its links, limbs and grippers.
 #[derive(Clone, Debug)]

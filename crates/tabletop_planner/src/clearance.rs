@@ -3,12 +3,14 @@
 use std::cell::RefCell;
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::{Pose, Table};
+use tabletop_controller::{Angles, Sight};
+use tabletop_core::Table;
+use tabletop_geometry::Pose;
 use tabletop_task::PlacedSolid;
 
 use crate::{
-    body::{Angles, LinkSolid, RobotBody},
-    sight::{Sight, lean},
+    body::{LinkSolid, RobotBody},
+    sight::{Solids as _, lean},
 };
 
 /// A limb among the obstacles that it must not touch.

@@ -8,34 +8,28 @@ use std::{
 };
 
 use bevy::platform::cell::SyncCell;
+use tabletop_controller::{Controller, Drives, Sight};
+use tabletop_core::RobotLayout;
 use tabletop_task::{Binding, Task};
 
 use crate::{
     body::RobotBody,
     failure::PlanFailure,
     imitation::{Doing, Imitation, imitate},
-    sight::Sight,
-    stage::{LimbOrder, PlanningStage, Stopped},
+    stage::{LimbOrder, PlanningStage, Stopped, drives},
 };
 
-/// The execution of a task, for callers that advance time themselves: it asks for a tick and continues when it is given the result. It plans in
-/// its own thread, and stops when it is dropped.
+/// The execution of a task as a controller. It plans in a thread of its own while ticks pass, and stops when it is dropped.
 pub struct Execution {
+    layout: RobotLayout,
+    patience: Duration,
     sights: Sender<Sight>,
     events: SyncCell<Receiver<ExecutionEvent>>,
+    /// True if the plan waits for the result of its last orders.
+    expects_sight: bool,
+    is_planning: bool,
     doing: Option<Doing>,
-    over: Option<Imitation>,
-}
-
-/// The next move of an execution.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ExecutionTurn {
-    /// It is planning.
-    Planning,
-    /// It waits for a tick with these orders, one for each limb; then call [`Execution::see`].
-    Orders(Vec<LimbOrder>),
-    /// It has ended.
-    Over(Imitation),
+    result: Option<Imitation>,
 }
 
 /// An event of the planning thread.
@@ -66,16 +60,19 @@ impl PlanningStage for Correspondence {
 }
 
 impl Execution {
-    /// Begins a task in a world that looks like this. `seed` decides all random choices.
+    /// Begins a task in a world that looks like this. `seed` decides all random choices. A tick waits for its orders as long as `patience`
+    /// allows; then it passes without any. With [`Duration::MAX`], the same sights lead to the same drives.
     ///
     /// # Errors
     /// The system has no thread for it.
     pub fn begin(
+        layout: RobotLayout,
         body: RobotBody,
         task: Task,
         binding: Binding,
         sight: Sight,
         seed: u64,
+        patience: Duration,
     ) -> io::Result<Self> {
         let (sights, seen) = channel();
         let (events, received) = channel();
@@ -93,49 +90,66 @@ impl Execution {
         };
         thread::Builder::new().name("planner".into()).spawn(plan)?;
         Ok(Self {
+            layout,
+            patience,
             sights,
             events: SyncCell::new(received),
+            expects_sight: false,
+            is_planning: true,
             doing: None,
-            over: None,
+            result: None,
         })
     }
 
-    /// The next move, as soon as it is known; after `within`, [`ExecutionTurn::Planning`].
-    pub fn turn(&mut self, within: Duration) -> ExecutionTurn {
-        if let Some(imitation) = &self.over {
-            return ExecutionTurn::Over(imitation.clone());
-        }
+    /// The step that is being done; `None` before the first one.
+    pub const fn doing(&self) -> Option<Doing> {
+        self.doing
+    }
+
+    /// True while the next motion is being planned.
+    pub const fn is_planning(&self) -> bool {
+        self.is_planning
+    }
+
+    /// The result, once it has ended.
+    pub const fn result(&self) -> Option<&Imitation> {
+        self.result.as_ref()
+    }
+
+    /// The orders for the next tick, as soon as they are known. `None` if it is still planning, or over.
+    fn orders(&mut self) -> Option<Vec<LimbOrder>> {
         loop {
-            match self.events.get().recv_timeout(within) {
+            match self.events.get().recv_timeout(self.patience) {
                 Ok(ExecutionEvent::Doing(doing)) => self.doing = Some(doing),
-                Ok(ExecutionEvent::Orders(orders)) => return ExecutionTurn::Orders(orders),
-                Ok(ExecutionEvent::Over(imitation)) => return self.end(imitation),
-                Err(RecvTimeoutError::Timeout) => return ExecutionTurn::Planning,
+                Ok(ExecutionEvent::Orders(orders)) => return Some(orders),
+                Ok(ExecutionEvent::Over(imitation)) => self.result = Some(imitation),
+                Err(RecvTimeoutError::Timeout) => return None,
                 Err(RecvTimeoutError::Disconnected) => {
                     let step = self.doing.map_or(1, |doing| doing.step);
-                    return self.end(Imitation {
+                    self.result.get_or_insert_with(|| Imitation {
                         failure: Some((step, PlanFailure::Stopped)),
                         ..Imitation::default()
                     });
+                    return None;
                 }
             }
         }
     }
+}
 
-    fn end(&mut self, imitation: Imitation) -> ExecutionTurn {
-        self.over = Some(imitation.clone());
-        ExecutionTurn::Over(imitation)
-    }
-
-    /// Passes on what is seen after the tick that it asked for.
-    pub fn see(&self, sight: Sight) {
-        // After the end, nobody looks.
-        drop(self.sights.send(sight));
-    }
-
-    /// The step that is being done; `None` before the first one.
-    pub fn doing(&self) -> Option<Doing> {
-        self.doing
+impl Controller for Execution {
+    fn act(&mut self, sight: &Sight) -> Drives {
+        if self.result.is_some() {
+            return Drives::new();
+        }
+        if self.expects_sight {
+            // Nobody looks any more if it is over.
+            drop(self.sights.send(sight.clone()));
+        }
+        let orders = self.orders();
+        self.expects_sight = orders.is_some();
+        self.is_planning = orders.is_none() && self.result.is_none();
+        orders.map_or(Drives::new(), |orders| drives(&self.layout, &orders))
     }
 }
 
@@ -143,11 +157,11 @@ impl Execution {
 mod tests {
     use std::collections::BTreeMap;
 
-    use tabletop_core::{RobotLayout, TICK_SECONDS, Table};
+    use tabletop_controller::{LimbSight, angles};
+    use tabletop_core::{TICK_SECONDS, Table};
     use tabletop_kinematics::baxter;
 
     use super::*;
-    use crate::{body::angles, sight::LimbSight};
 
     fn body() -> RobotBody {
         RobotBody::new(RobotLayout::baxter(), baxter().unwrap(), &Table::default()).unwrap()
@@ -200,28 +214,23 @@ mod tests {
         }
     }
 
-    fn begun() -> (Execution, Sight) {
+    fn begun(patience: Duration) -> (Execution, Sight) {
         let body = body();
         let sight = at_home(&body);
-        let begun = Execution::begin(body, nothing(), Binding::default(), sight.clone(), 7);
+        let begun = Execution::begin(
+            RobotLayout::baxter().clone(),
+            body,
+            nothing(),
+            Binding::default(),
+            sight.clone(),
+            7,
+            patience,
+        );
         (begun.unwrap(), sight)
     }
 
     #[test]
     fn tick_by_tick_it_does_the_same_as_at_a_stretch() {
-        let (mut execution, mut sight) = begun();
-        let mut orders = Vec::new();
-        let step_by_step = loop {
-            match execution.turn(Duration::MAX) {
-                ExecutionTurn::Planning => {}
-                ExecutionTurn::Orders(next) => {
-                    sight = passed(sight, &next);
-                    orders.push(next);
-                    execution.see(sight.clone());
-                }
-                ExecutionTurn::Over(imitation) => break imitation,
-            }
-        };
         let body = body();
         let mut alone = Alone(at_home(&body), Vec::new());
         let at_a_stretch = imitate(
@@ -232,29 +241,29 @@ mod tests {
             7,
             |_| {},
         );
-        assert_eq!(step_by_step, at_a_stretch);
-        assert!(orders.len() > 30);
-        assert_eq!(orders, alone.1);
-        assert_eq!(
-            execution.turn(Duration::ZERO),
-            ExecutionTurn::Over(at_a_stretch)
-        );
+        assert!(alone.1.len() > 30);
+
+        let (mut execution, mut sight) = begun(Duration::MAX);
+        for orders in &alone.1 {
+            let expected = drives(RobotLayout::baxter(), orders);
+            assert_eq!(execution.act(&sight), expected);
+            sight = passed(sight, orders);
+        }
+        assert_eq!(execution.act(&sight), []);
+        assert_eq!(execution.result(), Some(&at_a_stretch));
+        assert!(!execution.is_planning());
     }
 
     #[test]
-    fn it_waits_for_the_tick_that_it_has_asked_for() {
-        let (mut execution, sight) = begun();
-        let ExecutionTurn::Orders(_) = execution.turn(Duration::MAX) else {
-            panic!("arms are to be parked");
-        };
-        assert_eq!(
-            execution.turn(Duration::from_millis(20)),
-            ExecutionTurn::Planning
-        );
-        execution.see(sight);
-        assert!(matches!(
-            execution.turn(Duration::MAX),
-            ExecutionTurn::Orders(_)
-        ));
+    fn a_tick_passes_without_drives_while_it_is_planning() {
+        let (mut execution, sight) = begun(Duration::ZERO);
+        let mut idle = 0;
+        while execution.act(&sight).is_empty() {
+            assert!(execution.is_planning());
+            idle += 1;
+            thread::sleep(Duration::from_millis(1));
+        }
+        assert!(!execution.is_planning());
+        assert!(idle < 10_000);
     }
 }

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use tabletop_core::Pose;
+use tabletop_controller::Sight;
+use tabletop_geometry::Pose;
 use tabletop_task::{Binding, PlaceRange, PlacedSolid, Relation, Task};
 
 use crate::{
     goals::{goal_poses, is_over},
-    sight::Sight,
+    sight::Solids as _,
 };
 
 /// How deep solids may be in each other, in units.

@@ -1,12 +1,13 @@
 //! Free places on the table.
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::Pose;
+use tabletop_controller::Sight;
+use tabletop_geometry::Pose;
 use tabletop_task::PlacedSolid;
 
 use crate::{
     body::RobotBody,
-    sight::{Sight, heights},
+    sight::{Solids as _, heights},
 };
 
 /// How far from others something is put, so that fingers reach it, in units: rather than less.

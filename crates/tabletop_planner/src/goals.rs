@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::{Pose, Table};
+use tabletop_controller::{SeenObject, Sight};
+use tabletop_core::Table;
+use tabletop_geometry::Pose;
 use tabletop_task::{
     Arrangement, Binding, PlaceRange, PlacedSolid, Reference, Relation, Symmetry, Task, TaskStep,
     twist_about,
@@ -11,7 +13,7 @@ use tabletop_task::{
 
 use crate::{
     failure::PlanFailure,
-    sight::{SeenObject, Sight, heights, lean},
+    sight::{Arranged as _, Solids as _, heights, lean},
 };
 
 /// A pose that does, and its cost above that of the best.

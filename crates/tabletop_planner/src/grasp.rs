@@ -3,7 +3,8 @@
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::{Pose, Shape, Solid};
+use tabletop_core::Shape;
+use tabletop_geometry::{Pose, Solid};
 use tabletop_task::PlacedSolid;
 
 /// From where an object is taken.
@@ -174,7 +175,7 @@ fn around(count: u16) -> Vec<f32> {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::Rgb;
+    use tabletop_geometry::Rgb;
 
     use super::*;
 

@@ -9,15 +9,16 @@ mod slider;
 mod step;
 
 use cleared::Cleared;
+use tabletop_controller::{Angles, Sight};
 use tabletop_task::{Binding, PlaceRange, Reference, Relation, Task, TaskStep};
 
 use crate::{
-    body::{Angles, RobotBody},
+    body::RobotBody,
     failure::PlanFailure,
     goals::{Before, is_met},
     grasp::GraspSide,
     motion::wait,
-    sight::Sight,
+    sight::Arranged as _,
     stage::{PlanningStage, Stopped},
 };
 

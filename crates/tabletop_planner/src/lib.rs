@@ -2,7 +2,7 @@
 //! each step, compares with the relations of the task, and corrects.
 //!
 //! [`imitate`] does a [`Task`](tabletop_task::Task) on a [`PlanningStage`], which advances time tick by tick, reports what is seen, and takes
-//! joint velocities. It knows the robot as a [`RobotBody`]: the URDF's links and the frames of the grippers.
+//! joint velocities. [`Execution`] does the same as a [`Controller`](tabletop_controller::Controller). It knows the robot as a [`RobotBody`]: the URDF's links and the frames of the grippers.
 //!
 //! | from the whole to its parts | |
 //! |---|---|
@@ -34,13 +34,13 @@ mod standing;
 mod transfer;
 mod transit;
 
-pub use body::{Angles, LimbBody, RobotBody, angles};
-pub use execution::{Execution, ExecutionTurn};
+pub use body::{LimbBody, RobotBody};
+pub use execution::Execution;
 pub use failure::PlanFailure;
 pub use feasible::is_feasible;
 pub use goals::{Before, goal_poses, is_met};
 pub use grasp::{Grasp, GraspSide, grasps};
 pub use imitation::{Doing, Imitation, imitate, undone};
 pub use scatter::{Piece, scatter};
-pub use sight::{LimbSight, SeenObject, Sight};
-pub use stage::{LimbOrder, PlanningStage, Stopped};
+pub use sight::{Arranged, Solids};
+pub use stage::{LimbOrder, PlanningStage, Stopped, drives};

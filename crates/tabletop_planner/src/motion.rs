@@ -1,11 +1,11 @@
 //! Motion of an arm and its gripper, tick by tick.
 
+use tabletop_controller::{Angles, Sight};
 use tabletop_core::TICK_SECONDS;
 
 use crate::{
-    body::{Angles, RobotBody},
+    body::RobotBody,
     failure::PlanFailure,
-    sight::Sight,
     stage::{LimbOrder, PlanningStage, Stopped},
 };
 

@@ -1,10 +1,11 @@
 //! Paths of an arm.
 
 use bevy::math::Vec3;
-use tabletop_core::Pose;
+use tabletop_controller::Angles;
+use tabletop_geometry::Pose;
 use tabletop_task::angle_between;
 
-use crate::{body::Angles, clearance::Clearance};
+use crate::clearance::Clearance;
 
 /// A path as a list of postures without the first one.
 pub(crate) type Path = Vec<Angles>;

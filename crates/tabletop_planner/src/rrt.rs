@@ -1,9 +1,9 @@
 //! Random search for a path: two trees that grow towards each other (Kuffner and LaValle: RRT-Connect, 2000).
 
+use tabletop_controller::Angles;
 use tabletop_core::Random;
 
 use crate::{
-    body::Angles,
     clearance::{Clearance, Margins},
     path::{Path, even, largest_turn},
 };

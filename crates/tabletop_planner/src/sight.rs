@@ -1,12 +1,11 @@
-//! The world as it is seen.
+//! The seen world as the planner reads it: solids, what stands on what, what is in the way.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use bevy::math::Vec3;
-use tabletop_core::{JointSpec, Pose, Shape, Table};
+use tabletop_controller::{SeenObject, Sight};
+use tabletop_geometry::Pose;
 use tabletop_task::{Arrangement, PlacedSolid};
-
-use crate::body::Angles;
 
 /// Depth to which a part that is above an object may be in it, in units.
 const PLAY: f32 = 0.05;
@@ -14,51 +13,21 @@ const PLAY: f32 = 0.05;
 /// Height above its place at which an object meets nothing that carries it, in units.
 const RAISED: f32 = 0.02;
 
-/// The world at the end of a tick.
-#[derive(Clone, Debug, Default)]
-pub struct Sight {
-    /// The table.
-    pub table: Table,
-    /// The objects, by id.
-    pub objects: BTreeMap<String, SeenObject>,
-    /// Joints between objects.
-    pub joints: Vec<JointSpec>,
-    /// The robot's limbs.
-    pub limbs: Vec<LimbSight>,
-}
-
-/// An object that is seen.
-#[derive(Clone, Debug)]
-pub struct SeenObject {
-    /// Its shape.
-    pub shape: Shape,
-    /// Its pose.
-    pub pose: Pose,
-    /// True if nothing can move it.
-    pub is_fixed: bool,
-}
-
-/// A limb of the robot.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct LimbSight {
-    /// The angles of its joints, in rad.
-    pub angles: Angles,
-    /// Opening of its gripper, in units.
-    pub opening: f64,
-    /// Ids of the objects that its gripper holds.
-    pub holds: Vec<String>,
-    /// The obstacle in its way.
-    pub blocked_by: Option<String>,
-}
-
-impl SeenObject {
+/// The solids of an object.
+pub trait Solids {
     /// Its solids at its present pose.
-    pub fn solids(&self) -> Vec<PlacedSolid> {
+    fn solids(&self) -> Vec<PlacedSolid>;
+
+    /// Its solids at another pose.
+    fn solids_at(&self, pose: Pose) -> Vec<PlacedSolid>;
+}
+
+impl Solids for SeenObject {
+    fn solids(&self) -> Vec<PlacedSolid> {
         self.solids_at(self.pose)
     }
 
-    /// Its solids at another pose.
-    pub fn solids_at(&self, pose: Pose) -> Vec<PlacedSolid> {
+    fn solids_at(&self, pose: Pose) -> Vec<PlacedSolid> {
         let solids = self.shape.colliding();
         solids
             .iter()
@@ -67,15 +36,32 @@ impl SeenObject {
     }
 }
 
-impl Sight {
+/// The arrangement of the objects of a sight.
+pub trait Arranged {
     /// The arrangement of the objects.
-    pub fn arrangement(&self) -> Arrangement {
+    fn arrangement(&self) -> Arrangement;
+
+    /// The arrangement of the objects if one of them were at this pose.
+    fn arrangement_with(&self, moved: &str, pose: Pose) -> Arrangement;
+
+    /// True if a part of one object is above another one.
+    fn covers(&self, one: &str, other: &str) -> bool;
+
+    /// An object, none of these, that is where another one would be at this pose.
+    fn occupant(&self, id: &str, pose: Pose, except: &[&str]) -> Option<String>;
+
+    /// Ids of the objects that stand on an object, directly or on each other. Each comes before the one it stands on; of objects that
+    /// stand on each other in turn, one comes first.
+    fn stack_above(&self, id: &str) -> Vec<String>;
+}
+
+impl Arranged for Sight {
+    fn arrangement(&self) -> Arrangement {
         let objects = self.objects.iter();
         Arrangement::new(objects.map(|(id, object)| (id.as_str(), &object.shape, object.pose)))
     }
 
-    /// The arrangement of the objects if one of them were at this pose.
-    pub(crate) fn arrangement_with(&self, moved: &str, pose: Pose) -> Arrangement {
+    fn arrangement_with(&self, moved: &str, pose: Pose) -> Arrangement {
         let objects = self.objects.iter().map(|(id, object)| match id == moved {
             true => (id.as_str(), &object.shape, pose),
             false => (id.as_str(), &object.shape, object.pose),
@@ -83,16 +69,14 @@ impl Sight {
         Arrangement::new(objects)
     }
 
-    /// True if a part of one object is above another one.
-    pub(crate) fn covers(&self, one: &str, other: &str) -> bool {
+    fn covers(&self, one: &str, other: &str) -> bool {
         let (Some(one), Some(other)) = (self.objects.get(one), self.objects.get(other)) else {
             return false;
         };
         is_above(&one.solids(), &other.solids())
     }
 
-    /// An object, none of these, that is where another one would be at this pose.
-    pub(crate) fn occupant(&self, id: &str, pose: Pose, except: &[&str]) -> Option<String> {
+    fn occupant(&self, id: &str, pose: Pose, except: &[&str]) -> Option<String> {
         let raised = Pose::new(pose.location + Vec3::Z * RAISED, pose.rotation);
         let solids = self.objects.get(id)?.solids_at(raised);
         let mut others = self.objects.iter();
@@ -107,9 +91,7 @@ impl Sight {
         occupant.map(|(other, _)| other.clone())
     }
 
-    /// Ids of the objects that stand on an object, directly or on each other. Each comes before the one it stands on; of objects that
-    /// stand on each other in turn, one comes first.
-    pub fn stack_above(&self, id: &str) -> Vec<String> {
+    fn stack_above(&self, id: &str) -> Vec<String> {
         let arrangement = self.arrangement();
         let above = |id: &str| arrangement.standing_on(id).into_iter();
         let mut visited = BTreeSet::from([id]);
@@ -153,7 +135,8 @@ pub(crate) fn lean(rotation: bevy::math::Quat) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Part, Rgb};
+    use tabletop_core::{Part, Shape};
+    use tabletop_geometry::Rgb;
 
     use super::*;
 
@@ -190,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_on_an_object_comes_from_the_top() {
+    fn a_stack_is_listed_from_the_top() {
         let bar = block(Vec3::new(3.0, 1.0, 1.0));
         let cube = block(Vec3::ONE);
         // The bar leans on a tower and on a pillar, both on the base.

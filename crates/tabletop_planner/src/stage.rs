@@ -1,6 +1,7 @@
 //! The stage on which the planner acts.
 
-use crate::{body::Angles, sight::Sight};
+use tabletop_controller::{Angles, Drives, Sight};
+use tabletop_core::{Drive, RobotLayout};
 
 /// A world that advances tick by tick.
 pub trait PlanningStage {
@@ -12,6 +13,20 @@ pub trait PlanningStage {
     /// # Errors
     /// The robot is to stop.
     fn tick(&mut self, orders: &[LimbOrder]) -> Result<(), Stopped>;
+}
+
+/// The drives that carry out orders for the limbs of a robot.
+pub fn drives(layout: &RobotLayout, orders: &[LimbOrder]) -> Drives {
+    let mut drives = Drives::new();
+    for (limb, order) in layout.limbs.iter().zip(orders) {
+        let joints = limb.joints.iter().copied().zip(order.joints);
+        let all = joints.chain([(limb.gripper.joint, order.opening)]);
+        let moving = all.filter(|(_, velocity)| *velocity != 0.0);
+        drives.extend(
+            moving.map(|(joint, velocity)| (layout.joint(joint).name, Drive::Velocity(velocity))),
+        );
+    }
+    drives
 }
 
 /// The request to do nothing more.

@@ -1,7 +1,8 @@
 //! Sides on which an object can lie.
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::{Pose, Shape};
+use tabletop_core::Shape;
+use tabletop_geometry::Pose;
 use tabletop_task::{PlacedSolid, Symmetry};
 
 /// Angle by which the table is thought to be tilted to find the edges of a side, in rad.
@@ -49,7 +50,8 @@ fn rests(shape: &Shape, pose: Pose, centre: Vec3) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Part, Rgb};
+    use tabletop_core::Part;
+    use tabletop_geometry::Rgb;
 
     use super::*;
 

@@ -5,15 +5,10 @@ mod choice;
 mod ways;
 
 use bevy::math::Vec3;
-use tabletop_core::Pose;
+use tabletop_controller::{SeenObject, Sight};
+use tabletop_geometry::Pose;
 
-use crate::{
-    body::RobotBody,
-    failure::PlanFailure,
-    goals::Candidate,
-    grasp::GraspSide,
-    sight::{SeenObject, Sight},
-};
+use crate::{body::RobotBody, failure::PlanFailure, goals::Candidate, grasp::GraspSide};
 
 /// Height above its goal at which an object is released, in units.
 const DROP: f32 = 0.02;

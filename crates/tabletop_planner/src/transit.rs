@@ -1,9 +1,9 @@
 //! Collision-free paths of an arm.
 
-use tabletop_core::Pose;
+use tabletop_controller::Angles;
+use tabletop_geometry::Pose;
 
 use crate::{
-    body::Angles,
     clearance::{Clearance, Margins},
     path::{Path, even, largest_turn, lift, line},
     rrt::connect,

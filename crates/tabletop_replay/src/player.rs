@@ -391,7 +391,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_commanded_in_a_pause_is_commanded_in_a_pause() {
+    fn commands_given_in_a_pause_are_replayed_in_the_pause() {
         let mut player = player(&[
             (1, SimCommand::Clock(ClockCommand::SetPaused(true))),
             (1, SimCommand::Hand(HandCommand::Release(Hand::Left))),

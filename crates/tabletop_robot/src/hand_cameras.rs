@@ -1,7 +1,8 @@
 //! The places of the cameras in the robot's hands.
 
 use bevy::prelude::*;
-use tabletop_core::{HandImages, Pose, Robot};
+use tabletop_core::{HandImages, Robot};
+use tabletop_geometry::Pose;
 
 use crate::{
     articulation::tree::{Articulation, Posture, in_units},

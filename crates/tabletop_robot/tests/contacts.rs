@@ -6,9 +6,10 @@ mod kit;
 use bevy::prelude::*;
 use kit::{Stage, block};
 use tabletop_core::{
-    Arm, Drive, ObjectIndex, Obstacle, Pose, RobotCommand, RobotContact, RobotJoint, StepApp,
-    TICK_SECONDS, Table, Twist,
+    Arm, Drive, ObjectIndex, Obstacle, RobotCommand, RobotContact, RobotJoint, StepApp,
+    TICK_SECONDS, Table,
 };
+use tabletop_geometry::{Pose, Twist};
 
 const ARM: Arm = Arm::Right;
 
@@ -103,7 +104,7 @@ fn a_finger_that_pushes_a_block_feels_its_inertia_and_its_friction() {
 }
 
 #[test]
-fn a_link_feels_the_weight_of_what_lies_on_it() {
+fn a_link_feels_the_weight_of_its_load() {
     let mut stage = Stage::new();
     let mass = 2.0;
     let plate = block(Vec3::new(1.0, 1.0, 0.2));
@@ -125,7 +126,7 @@ fn a_link_feels_the_weight_of_what_lies_on_it() {
 }
 
 #[test]
-fn what_is_held_is_touched_by_both_fingers_where_they_hold_it() {
+fn both_fingers_touch_held_objects_where_they_hold_them() {
     let mut stage = Stage::new();
     stage.reach(ARM, Vec3::new(3.0, -2.0, 0.85), 0.0);
     for (id, height) in [("upper", 0.75), ("lower", 0.25)] {
@@ -158,7 +159,7 @@ fn what_is_held_is_touched_by_both_fingers_where_they_hold_it() {
 }
 
 #[test]
-fn what_stops_an_arm_is_touched() {
+fn an_arm_touches_the_object_that_stops_it() {
     for stage in [Stage::new(), Stage::dynamic()] {
         let mut stage = push(stage, 0.0);
         stage.app.step(200);

@@ -10,9 +10,10 @@ use kit::{
 };
 use proptest::prelude::*;
 use tabletop_core::{
-    Arm, Drive, Hand, HandCommand, HistoryCommand, JOINTS_PER_ARM, Pose, Recording, RobotCommand,
+    Arm, Drive, Hand, HandCommand, HistoryCommand, JOINTS_PER_ARM, Recording, RobotCommand,
     RobotJoint, StepApp, TICK_SECONDS,
 };
+use tabletop_geometry::Pose;
 use tabletop_kinematics::baxter;
 
 const SECONDS: f64 = TICK_SECONDS as f64;
@@ -223,7 +224,7 @@ fn energy(stage: &Stage, arm: Arm) -> f64 {
 }
 
 #[test]
-fn a_free_arm_loses_only_what_damping_takes() {
+fn a_free_arm_loses_energy_only_to_damping() {
     let mut stage = Stage::dynamic();
     go(&mut stage, ARM, [0.0, -0.6, 0.3, 0.6, 0.2, 0.5, 0.0]);
     let joints = RobotJoint::of_arm(ARM);
@@ -322,7 +323,7 @@ fn undo_takes_the_motors_back_too() {
 }
 
 #[test]
-fn what_hinders_an_arm_is_left_when_the_robot_goes_away() {
+fn a_hidden_robot_keeps_its_angles_and_stops() {
     let mut stage = Stage::dynamic();
     drive(&mut stage, &[(RobotJoint::RightS1, Drive::Velocity(-1.0))]);
     stage.app.step(3);

@@ -6,9 +6,10 @@ mod kit;
 use bevy::prelude::*;
 use kit::{Stage, block};
 use tabletop_core::{
-    Arm, Drive, HandCommand, LidBoxSpec, ObjectIndex, Part, Pose, Rgb, Robot, RobotCommand,
-    RobotFact, RobotJoint, RobotMode, SceneCommand, SceneItem, SceneSpec, Shape, SimFact, StepApp,
+    Arm, Drive, HandCommand, LidBoxSpec, ObjectIndex, Part, Robot, RobotCommand, RobotFact,
+    RobotJoint, RobotMode, SceneCommand, SceneItem, SceneSpec, Shape, SimFact, StepApp,
 };
+use tabletop_geometry::{Pose, Rgb};
 use tabletop_robot::STEEPEST_GRIP;
 
 const ARM: Arm = Arm::Right;
@@ -124,7 +125,7 @@ fn closing_fingers_turn_a_block_until_it_is_flush() {
 }
 
 #[test]
-fn what_cannot_turn_is_refused_by_the_angle_of_figure_11() {
+fn a_wedged_object_is_refused_by_the_angle_of_figure_11() {
     let turned = Vec3::Z * 20.0;
     let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, turned);
     // Wedged between two walls.
@@ -144,7 +145,7 @@ fn what_cannot_turn_is_refused_by_the_angle_of_figure_11() {
 }
 
 #[test]
-fn what_is_held_is_put_down_though_the_arm_goes_a_little_too_deep() {
+fn a_held_object_is_put_down_though_the_arm_goes_a_little_too_deep() {
     let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, Vec3::ZERO);
     assert_eq!(grip_facts(close(&mut stage)), made());
     let hand = stage.robot().limb(ARM).end_effector.location;
@@ -288,7 +289,7 @@ fn a_block_as_wide_as_the_gripper_is_taken_carried_and_put_down() {
 }
 
 #[test]
-fn every_order_to_open_releases_what_is_as_wide_as_the_gripper() {
+fn every_order_to_open_releases_an_object_as_wide_as_the_gripper() {
     for order in [
         Drive::Velocity(0.01),
         Drive::Toward(2.0),
@@ -361,7 +362,7 @@ fn a_hand_takes_an_object_out_of_a_gripper() {
 }
 
 #[test]
-fn hiding_the_robot_lets_go_of_what_it_holds() {
+fn hiding_the_robot_releases_held_objects() {
     let mut stage = gripper_around(unit_block(), 1.0, Vec3::Z * 0.5, Vec3::ZERO);
     close(&mut stage);
     stage.reach(ARM, Vec3::new(3.0, -2.0, 2.0), 0.0);

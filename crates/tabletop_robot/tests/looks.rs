@@ -111,7 +111,7 @@ fn the_face_changes_and_nothing_else() {
 }
 
 #[test]
-fn what_has_no_mesh_is_shown_by_what_it_is_touched_by() {
+fn a_link_without_a_mesh_shows_its_collision_shape() {
     let urdf = include_str!("../../../assets/baxter/baxter.urdf");
     let missing = "package://nowhere/wrist.stl";
     let urdf = urdf.replace("package://tabletop/wrist.shape.json", missing);

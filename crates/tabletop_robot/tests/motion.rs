@@ -10,9 +10,10 @@ use bevy_rapier3d::{prelude::Collider, rapier::prelude as rapier};
 use kit::{Stage, block, inside_the_table};
 use proptest::prelude::*;
 use tabletop_core::{
-    Arm, Drive, Hand, HandCommand, HeadCamera, HistoryCommand, ObjectIndex, Obstacle, Pose, Robot,
+    Arm, Drive, Hand, HandCommand, HeadCamera, HistoryCommand, ObjectIndex, Obstacle, Robot,
     RobotCommand, RobotFact, RobotJoint, SimFact, StepApp, TICK_SECONDS,
 };
+use tabletop_geometry::Pose;
 use tabletop_robot::RobotLink;
 
 fn drive(stage: &mut Stage, joint: RobotJoint, drive: Drive) {
@@ -289,7 +290,7 @@ proptest! {
 }
 
 #[test]
-fn what_it_does_is_the_same_every_time() {
+fn equal_runs_end_in_equal_states() {
     let run = || -> (Robot, Pose) {
         let mut stage = Stage::new();
         stage.reach(Arm::Right, Vec3::new(3.0, -2.0, 0.9), 0.0);
@@ -366,7 +367,7 @@ fn an_arm_shown_in_a_block_pushes_it_once_it_has_left_it() {
 }
 
 #[test]
-fn an_arm_lets_what_it_crushes_out_of_the_table() {
+fn an_arm_lets_a_crushed_block_out_of_the_table() {
     let mut stage = Stage::new();
     drive(&mut stage, RobotJoint::RightGripper, Drive::Position(0.2));
     let place = Vec3::new(3.0, -3.0, 0.3);

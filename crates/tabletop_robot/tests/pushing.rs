@@ -9,9 +9,9 @@ use kit::{
     motors::{ARM, SECOND, check_limits, drive, effort},
 };
 use tabletop_core::{
-    Drive, Obstacle, Pose, Robot, RobotCommand, RobotFact, RobotJoint, SimFact, StepApp,
-    TICK_SECONDS,
+    Drive, Obstacle, Robot, RobotCommand, RobotFact, RobotJoint, SimFact, StepApp, TICK_SECONDS,
 };
+use tabletop_geometry::Pose;
 
 #[test]
 fn a_swing_into_a_fixed_block_stops_there_within_the_efforts() {
@@ -169,7 +169,7 @@ fn an_arm_that_presses_a_block_onto_the_table_stops() {
 }
 
 #[test]
-fn what_it_does_is_the_same_every_time() {
+fn equal_runs_end_in_equal_states() {
     let run = || {
         let pushed = push(1.0, true);
         (pushed.robot.joints, pushed.block)

@@ -327,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_a_user_can_do_is_a_step() {
+    fn every_command_of_a_user_is_a_step() {
         for step in STEPS {
             let mut stage = Stage::new(step);
             stage.holders[0] = Some(Hand::Any);

@@ -2,7 +2,8 @@
 
 use bevy::prelude::*;
 use serde::Deserialize;
-use tabletop_core::{Hand, quat_from_degrees};
+use tabletop_core::Hand;
+use tabletop_geometry::quat_from_degrees;
 
 use crate::{
     RobotCheck,
@@ -296,7 +297,7 @@ mod tests {
     use crate::test_stage::Stage;
 
     #[test]
-    fn checks_find_what_is_there() {
+    fn true_checks_pass() {
         let all = "WaitUntilRest(1), Expect(Location(object: \"low\", at: (0, 0, 0.5))), \
             Expect(Rotation(object: \"low\", degrees: (0, 0, 1))), \
             Expect(OnTopOf(object: \"high\", of: \"low\")), Expect(OnTable(object: \"low\")), \
@@ -309,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn checks_say_what_they_expected_and_found() {
+    fn failed_checks_state_the_expected_and_the_found() {
         for (check, words) in [
             (
                 "Location(object: \"low\", at: (1, 0, 0.5))",

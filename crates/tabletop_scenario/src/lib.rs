@@ -59,8 +59,9 @@ pub mod prelude {
 use bevy::prelude::*;
 use tabletop_core::{
     Actor, Bonds, CommandId, CommandWriter, Hands, ObjectIndex, ObjectSpec, OrderSystems, Paused,
-    Pose, RecordingFact, RestApp as _, RestingSystems, Robot, RobotLayout, SimFact, Table,
+    RecordingFact, RestApp as _, RestingSystems, Robot, RobotLayout, SimFact, Table,
 };
+use tabletop_geometry::Pose;
 
 use crate::seen::{ScenarioObject, Seen};
 

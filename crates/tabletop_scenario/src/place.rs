@@ -2,7 +2,8 @@
 
 use bevy::prelude::*;
 use serde::Deserialize;
-use tabletop_core::{Bounds, Pose, Random, SceneItem, SceneSpec, turn_about};
+use tabletop_core::{Random, SceneItem, SceneSpec};
+use tabletop_geometry::{Bounds, Pose, turn_about};
 
 /// Least distance, in units, of a placed object from any other.
 const CLEARANCE: f32 = 0.05;
@@ -53,13 +54,13 @@ pub(crate) fn place_all(
             .iter()
             .enumerate()
             .filter(|(other, _)| !is_yet_to_be_placed(other, done))
-            .map(|(_, item)| Bounds::of_item(item))
+            .map(|(_, item)| item.bounds())
             .collect();
         let item = &scene.items[index];
         scene.items[index] = (0..TRIES)
             .map(|_| moved(item, place, random))
             .find(|candidate| {
-                let bounds = Bounds::of_item(candidate);
+                let bounds = candidate.bounds();
                 !obstacles
                     .iter()
                     .any(|&obstacle| bounds.is_crowded_by(obstacle, CLEARANCE))
@@ -107,7 +108,8 @@ fn moved(item: &SceneItem, place: &RandomPlace, random: &mut Random) -> SceneIte
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{ObjectSpec, Rgb, Shape};
+    use tabletop_core::{ObjectSpec, Shape};
+    use tabletop_geometry::Rgb;
 
     use super::*;
 
@@ -141,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_placed_keeps_its_distance_and_its_height() {
+    fn placed_objects_keep_their_distance_and_height() {
         for seed in 0..50 {
             let mut scene = scene(6);
             let places = ["b0", "b1", "b2", "b3"].map(|id| place(id, 3.0));
@@ -149,7 +151,7 @@ mod tests {
                 place_all(&mut scene, &places, &mut Random::new(seed)),
                 Ok(())
             );
-            let bounds: Vec<_> = scene.items.iter().map(Bounds::of_item).collect();
+            let bounds: Vec<_> = scene.items.iter().map(SceneItem::bounds).collect();
             for (index, a) in bounds.iter().enumerate() {
                 assert_eq!((a.low.z, a.high.z), (0.0, 1.0));
                 for b in &bounds[..index] {
@@ -170,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_placed_is_an_error() {
+    fn an_impossible_place_is_an_error() {
         let mut random = Random::new(0);
         for (id, half, words) in [("b0", 0.0, "no free place"), ("x", 1.0, "has no object")] {
             let mut scene = scene(2);

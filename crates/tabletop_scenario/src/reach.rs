@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_scenario_names_what_is_around_it() {
+    fn a_scenario_reaches_the_folders_around_it() {
         let root = std::env::temp_dir().join(format!("tabletop_reach_{}", std::process::id()));
         for file in ["scenarios/a.xml", "tablesetup/b.xml", "else/c.xml"] {
             let file = root.join(file);

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use bevy::prelude::*;
-use tabletop_core::{Pose, TICKS_PER_SECOND};
+use tabletop_core::TICKS_PER_SECOND;
+use tabletop_geometry::Pose;
 
 use crate::seen::{ScenarioObject, Seen};
 

@@ -3,9 +3,9 @@
 use bevy::prelude::*;
 use serde::Deserialize;
 use tabletop_core::{
-    Drive, Face, JointId, JointName, LimbId, LimbName, Pose, Robot, RobotCommand, RobotLayout,
-    SimCommand,
+    Drive, Face, JointId, JointName, LimbId, LimbName, Robot, RobotCommand, RobotLayout, SimCommand,
 };
+use tabletop_geometry::Pose;
 
 use crate::{
     fault::{fault_of_time, fault_of_vector},
@@ -331,7 +331,7 @@ mod tests {
     }
 
     #[test]
-    fn checks_say_what_they_expected_and_found() {
+    fn failed_checks_state_the_expected_and_the_found() {
         for (check, words) in [
             ("Joint(joint: LeftE1, at: 1)", "found it at 2.6180"),
             ("EndEffector(arm: Left, at: (1, 0, 0))", "1.000 away"),

@@ -117,7 +117,7 @@ impl ScenarioRun {
         }
     }
 
-    /// Number of ticks for which it waits, whatever happens in them; `None` if it has ended.
+    /// Number of ticks for which it waits unconditionally; `None` if it has ended.
     pub(crate) fn waits_for(&self) -> Option<u64> {
         if self.outcome != Outcome::Running {
             return None;
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn what_concerns_the_whole_scenario_fails_at_the_step_that_is_due() {
+    fn a_fault_of_the_whole_scenario_fails_the_step_that_is_due() {
         let mut stage = Stage::new("Wait(9), Clear");
         stage.tick();
         stage.run.give_up("the disk is full".into());
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_done_is_counted() {
+    fn finished_steps_and_checks_are_counted() {
         let mut stage =
             Stage::new("Clear, Expect(Gone(\"x\")), Clear, Expect(Exists(\"x\")), Clear");
         stage.failure();
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn what_takes_too_long_fails() {
+    fn a_step_beyond_the_time_limit_fails() {
         let mut stage = Stage::new("Wait(5), Clear");
         stage.run.program.limit = 60;
         assert_eq!(

@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_reported_with_its_place() {
+    fn mistakes_are_reported_with_their_place() {
         for (text, at, words) in [
             ("(steps: [\n  Grasp(\"x\"),\n  Drop,\n])", "3:3: ", "Drop"),
             (

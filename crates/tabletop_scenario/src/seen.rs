@@ -1,7 +1,8 @@
 //! The world as scenarios see it: its state at the end of the last tick.
 
 use bevy::prelude::*;
-use tabletop_core::{Bonds, Bounds, Hand, ObjectSpec, Pose, Robot, RobotLayout, Table};
+use tabletop_core::{Bonds, Hand, ObjectSpec, Robot, RobotLayout, Table};
+use tabletop_geometry::{Bounds, Pose};
 
 /// The world as a scenario sees it.
 #[derive(Clone, Debug)]
@@ -38,7 +39,7 @@ pub(crate) struct ScenarioObject<'a> {
 impl ScenarioObject<'_> {
     /// The upright cuboid around it.
     pub fn bounds(&self) -> Bounds {
-        Bounds::of_shape(&self.spec.shape, self.pose)
+        self.spec.shape.bounds(self.pose)
     }
 }
 

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use bevy::prelude::*;
 use tabletop_core::{
-    Bonds, Hand, ObjectSpec, Pose, Rgb, Robot, RobotLayout, SceneSpec, Shape, SimCommand, Table,
+    Bonds, Hand, ObjectSpec, Robot, RobotLayout, SceneSpec, Shape, SimCommand, Table,
 };
+use tabletop_geometry::{Pose, Rgb};
 
 use crate::{
     Outcome, Program, Scenario, ScenarioRun,

@@ -1,7 +1,6 @@
 //! The table and the objects on it: how a scene becomes bodies and joints, and how they come and go.
 //!
-//! [`assemble`] takes the content of a task file apart into single objects with unique ids and the joints between them;
-//! [`ScenePlugin`] carries out the commands that put them on the table; [`present_scene`] is the way back.
+//! [`ScenePlugin`] carries out the commands that put objects on the table; [`present_scene`] is the way back to a task file.
 //!
 //! ```
 //! use bevy::prelude::*;
@@ -31,26 +30,23 @@
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
-mod assembly;
 mod compound;
-mod ids;
 mod lifecycle;
 mod present;
 mod preset;
 #[cfg(test)]
 mod test_app;
 
-pub use assembly::{Assembly, assemble};
-pub use ids::IdAllocator;
 pub use present::{PresentScene, present_scene};
 
 /// The names that most users of this crate need.
 pub mod prelude {
     #[doc(hidden)]
-    pub use crate::{Assembly, IdAllocator, PresentScene, ScenePlugin, assemble, present_scene};
+    pub use crate::{PresentScene, ScenePlugin, present_scene};
 }
 
 use bevy::prelude::*;
+use tabletop_assembly::IdAllocator;
 use tabletop_core::{CommandSystems, RestingSystems, SimSystems, require};
 use tabletop_history::{RollbackApp, is_rolling_back};
 use tabletop_physics::PhysicsPlugin;

@@ -7,6 +7,7 @@ use bevy::{
     },
     prelude::*,
 };
+use tabletop_assembly::{Assembly, IdAllocator};
 use tabletop_core::{
     Cause, Held, IssuedCommand, Joint, ObjectIndex, ObjectSpec, SceneCommand, SceneFact, SceneSpec,
     SimFact, Table, carry_out,
@@ -14,7 +15,7 @@ use tabletop_core::{
 use tabletop_history::Parked;
 use tabletop_physics::{remove_object, renew_if_empty};
 
-use crate::{Assembly, IdAllocator, compound::Compounds, preset};
+use crate::{compound::Compounds, preset};
 
 /// Objects below this height, in units, have left the world.
 const LOWEST_Z: f32 = -1000.0;
@@ -224,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_hand_holds_stays_and_keeps_its_id() {
+    fn a_held_object_stays_and_keeps_its_id() {
         let mut app = test_app();
         app.world_mut().write_command(scene(&["a", "b"]));
         app.step(1);
@@ -240,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn an_object_of_a_scene_names_the_command_that_it_came_of() {
+    fn an_object_of_a_scene_names_the_command_that_made_it() {
         let mut app = test_app();
         for command in [scene(&["a"]), SceneCommand::Clear.into()] {
             let id = app.world_mut().write_command(command);

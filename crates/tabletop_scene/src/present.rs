@@ -3,15 +3,14 @@
 mod marks;
 
 use bevy::prelude::*;
+use tabletop_assembly::{Assembly, IdAllocator};
 use tabletop_core::{
-    ChainSpec, Composition, Held, LidBoxSpec, Manipulator, ObjectIndex, ObjectSpec, Pose,
-    SceneItem, SceneSpec, Shape, Table,
+    ChainSpec, Composition, Held, LidBoxSpec, Manipulator, ObjectIndex, ObjectSpec, SceneItem,
+    SceneSpec, Shape, Table,
 };
+use tabletop_geometry::Pose;
 
-use crate::{
-    Assembly, IdAllocator,
-    compound::{Compound, Compounds},
-};
+use crate::compound::{Compound, Compounds};
 use marks::{mark_parts, with_ids, with_marks_of_ids};
 
 /// Distance, in units, of a compound's part from where the next load puts it, up to which nothing is reported.
@@ -119,7 +118,7 @@ impl Inventory<'_> {
                     "a task file cannot express how a chain hangs: that of `{id}` is saved in a straight line"
                 ),
                 SceneItem::Jointed(_) => format!(
-                    "a task file says where jointed objects are to {UNNOTICED}: `{id}` and what it is jointed to are farther apart"
+                    "a task file says where jointed objects are to {UNNOTICED}: `{id}` and the object at the other end of its joint are farther apart"
                 ),
                 SceneItem::LidBox(_) | SceneItem::Object(_) => {
                     format!(
@@ -431,7 +430,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_of_a_broken_chain_is_saved_as_blocks() {
+    fn a_broken_chain_is_saved_as_blocks() {
         let mut app = app(vec![SceneItem::Chain(chain())]);
         let link = object(&app, "c-link3");
         app.world_mut().despawn(link);
@@ -465,7 +464,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_hand_holds_is_saved_as_let_go() {
+    fn a_held_object_is_saved_as_released() {
         let mut app = app(vec![block("a", 0.0)]);
         let held = object(&app, "a");
         let by = Manipulator::Hand(Hand::Left);
@@ -479,7 +478,7 @@ mod tests {
     }
 
     #[test]
-    fn presets_are_saved_as_what_they_are() {
+    fn presets_are_saved_without_loss() {
         let mut app = app(Vec::new());
         for preset in [Preset::Stack(3), Preset::BoxContainer] {
             app.world_mut()

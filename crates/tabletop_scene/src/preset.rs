@@ -4,10 +4,10 @@ use std::f32::consts::FRAC_PI_2;
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::{DefaultRapierContext, RapierContextColliders, RigidBodyDisabled};
-use tabletop_core::{Held, ObjectIndex, ObjectSpec, Pose, Preset, Random, Rgb, Shape, Table};
+use tabletop_assembly::IdAllocator;
+use tabletop_core::{Held, ObjectIndex, ObjectSpec, Preset, Random, Shape, Table};
+use tabletop_geometry::{Pose, Rgb};
 use tabletop_physics::{Convex, collider, convex_parts};
-
-use crate::IdAllocator;
 
 /// Least distance, in units, to anything else.
 const CLEARANCE: f32 = 0.05;
@@ -309,7 +309,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_made_overlaps_nothing_until_there_is_no_room() {
+    fn presets_overlap_nothing_until_there_is_no_room() {
         for seed in 0..4 {
             let mut app = app();
             app.world_mut().write_command(ClockCommand::SetPaused(true));
@@ -340,7 +340,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_falls_onto_what_is_held_if_there_is_another_place() {
+    fn presets_avoid_the_held_object_if_there_is_another_place() {
         let wall = Shape::Block {
             span: Vec3::new(14.0, 12.0, 1.0),
             color: Rgb::GRAY,

@@ -1,6 +1,6 @@
 //! While the simulation waits for the script, frames go by without ticks, and each tries the one that is due.
 //!
-//! Whatever time passes until then is not made up for.
+//! The time that passes until then is not made up for.
 
 use std::time::Duration;
 

@@ -2,11 +2,11 @@
 //! section 5.2).
 //!
 //! A [`ScriptCommand`](tabletop_core::ScriptCommand) starts and stops them. Their replies become
-//! [`SimCommand`](tabletop_core::SimCommand)s, so a recording of what they do runs again without them.
+//! [`SimCommand`](tabletop_core::SimCommand)s, so a recording of their acts runs again without them.
 //! [`ScriptEvent`](tabletop_core::ScriptEvent)s report what becomes of them, and [`Agent`](tabletop_core::Agent) holds their
 //! state.
 //!
-//! The simulation waits for the script; what is drawn does not. While [`SimBlocked`] is set, frames go by
+//! The simulation waits for the script; drawing does not. While [`SimBlocked`] is set, frames go by
 //! without ticks, each looks for the answer once, and messages are kept for the next tick. Without a window
 //! ([`Waiting::Blocking`]) a run is the same every time, and the script's commands are the same either way.
 //!
@@ -79,7 +79,7 @@ use tabletop_core::{
 use blocked::{drop_overstep, keep_messages, try_again};
 use runner::{ScriptRunner, call, is_running};
 
-/// Ends the script, if there is one, and waits until its engine has ended. What it still prints becomes events.
+/// Ends the script, if there is one, and waits until its engine has ended. Its last output becomes events.
 pub fn shut_down(world: &mut World) {
     // Without the plugin there is no script.
     drop(world.run_system_once(runner::shut_down));

@@ -1,4 +1,4 @@
-//! Words in scripts: some of what can be sensed costs time, and most scripts do not mention it.
+//! Words in scripts: some sensor fields cost time, and most scripts do not mention them.
 
 use std::path::{Path, PathBuf};
 

@@ -73,7 +73,7 @@ impl ScriptRunner {
         true
     }
 
-    /// Passes on what ending engines still print, and forgets those that have ended.
+    /// Passes on the last output of ending engines, and forgets those that have ended.
     fn reap(&mut self, events: &mut ScriptEvents) {
         self.ending.retain(|engine| {
             let is_alive = engine.is_alive();
@@ -83,7 +83,7 @@ impl ScriptRunner {
     }
 }
 
-/// Ends the script, and waits until its engine has ended. What it still prints becomes events.
+/// Ends the script, and waits until its engine has ended. Its last output becomes events.
 pub(crate) fn shut_down(mut runner: ResMut<ScriptRunner>, mut events: ScriptEvents) {
     runner.end_session();
     while !runner.ending.is_empty() {

@@ -4,12 +4,13 @@ use std::path::Path;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
-    JointId, JointState, ObjectIndex, ObjectSpec, Pose, Recording, Replaying, Robot, RobotLayout,
+    JointId, JointState, ObjectIndex, ObjectSpec, Recording, Replaying, Robot, RobotLayout,
     RobotMode, SensorImage, ShownTask, SimTick, TICK_SECONDS, Table,
 };
 use tabletop_engine::{
     Aux, JointMatrix, RgbImage, SensedContact, SensedControl, SensedObject, SensedStep, Sensor,
 };
+use tabletop_geometry::Pose;
 
 use crate::{ScriptSettings, mentions::mention};
 
@@ -80,7 +81,7 @@ impl Senses<'_, '_> {
         self.robot.mode
     }
 
-    /// The senses of a callback script, so many ticks after its last call.
+    /// The senses of a callback script, `ticks` ticks after its last call.
     pub fn sensor(&self, ticks: u64, picture: Option<RgbImage>, fields: SensorFields) -> Sensor {
         let dynamic = self.mode() == RobotMode::Dynamic;
         let grippers = self.layout.limbs.iter().map(|limb| limb.gripper.joint);

@@ -13,8 +13,8 @@ use crate::{
     simulation::Simulation,
 };
 
-/// Longest time that one look for an answer takes while the simulation waits for the script anyway, and that what the script
-/// prints meanwhile waits to be reported.
+/// Longest time that one look for an answer takes while the simulation waits for the script anyway; the output of the script waits
+/// as long to be reported.
 const ONE_LOOK: Duration = Duration::from_millis(100);
 
 /// A script with its engine.
@@ -88,7 +88,7 @@ impl ScriptSession {
             if will_be_paused && matches!(self.phase, Phase::Ready | Phase::Idle) {
                 return None;
             }
-            self.ask_what_is_due(simulation);
+            self.make_due_request(simulation);
             let was_alive = self.engine.is_alive();
             match self.look(will_be_paused, simulation) {
                 Some(reply @ (Reply::Init(_) | Reply::Step(_))) if will_be_paused => {
@@ -113,7 +113,7 @@ impl ScriptSession {
         }
     }
 
-    fn ask_what_is_due(&mut self, simulation: &Simulation) {
+    fn make_due_request(&mut self, simulation: &Simulation) {
         match self.phase {
             Phase::Ready => {
                 self.engine.init(simulation.senses.aux());
@@ -164,7 +164,7 @@ impl ScriptSession {
         };
     }
 
-    /// Does what an answer calls for. Returns nothing if another one is needed before the tick can begin.
+    /// Carries out an answer. Returns nothing if another one is needed before the tick can begin.
     fn take(
         &mut self,
         reply: Reply,

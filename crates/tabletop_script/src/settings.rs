@@ -26,7 +26,7 @@ pub struct ScriptSettings {
     pub pair: Option<[String; 2]>,
     /// Ticks from one picture of the head camera to the next; 15 are the four a second of the original program.
     pub ticks_per_picture: u64,
-    /// The policy for the objects, the contacts and what the grippers hold (`sensor.objects`, `contacts` and `held`).
+    /// The policy for the objects, the contacts and the held objects (`sensor.objects`, `contacts` and `held`).
     pub objects: FieldPolicy,
     /// The policy for the points on the arms (`sensor.trackerLoc`). They cost Octave half a millisecond a tick.
     pub trackers: FieldPolicy,

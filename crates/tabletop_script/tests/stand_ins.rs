@@ -1,4 +1,4 @@
-//! Where there is no engine, or a program that is none, the simulation goes on and says so. These tests need no engine.
+//! Without an engine, or with a program that is no engine, the simulation goes on and says so. These tests need no engine.
 
 #![cfg(unix)]
 #![expect(clippy::unwrap_used, reason = "a test may panic")]

@@ -4,7 +4,8 @@ use std::io::Write;
 
 use bevy::prelude::*;
 use serde_json::json;
-use tabletop_core::{Decimal, ObjectIndex, ObjectSpec, Pose, Robot, RobotLayout};
+use tabletop_core::{Decimal, ObjectIndex, ObjectSpec, Robot, RobotLayout};
+use tabletop_geometry::Pose;
 
 /// Writes the poses of all objects as CSV, in the order of creation: `id,x,y,z,rx,ry,rz` in units and degrees, the numbers as
 /// recordings write them.

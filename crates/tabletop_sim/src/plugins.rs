@@ -2,6 +2,7 @@
 
 use bevy::{app::PluginGroupBuilder, prelude::*};
 use tabletop_camera::CameraPlugin;
+use tabletop_controller::ControllerPlugin;
 use tabletop_core::CorePlugin;
 use tabletop_demonstrator::DemonstratorPlugin;
 use tabletop_history::HistoryPlugin;
@@ -17,8 +18,8 @@ use tabletop_xml::XmlPlugin;
 use crate::{reset::ResetPlugin, settings::RecordedSettingsPlugin, shipped::ShippedFilesPlugin};
 
 /// The simulator without display: [`CorePlugin`], [`HistoryPlugin`], [`XmlPlugin`], [`PhysicsPlugin`], [`ScenePlugin`],
-/// [`DemonstratorPlugin`], [`MechanismPlugin`], [`RobotPlugin`], [`CameraPlugin`], [`RecorderPlugin`], [`ScriptPlugin`],
-/// [`ScenarioPlugin`], [`RecordedSettingsPlugin`], [`ShippedFilesPlugin`] and [`ResetPlugin`].
+/// [`DemonstratorPlugin`], [`MechanismPlugin`], [`RobotPlugin`], [`CameraPlugin`], [`ControllerPlugin`], [`RecorderPlugin`],
+/// [`ScriptPlugin`], [`ScenarioPlugin`], [`RecordedSettingsPlugin`], [`ShippedFilesPlugin`] and [`ResetPlugin`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TabletopSimPlugins;
 
@@ -34,6 +35,7 @@ impl PluginGroup for TabletopSimPlugins {
             .add(MechanismPlugin)
             .add(RobotPlugin::default())
             .add(CameraPlugin)
+            .add(ControllerPlugin)
             .add(RecorderPlugin::default())
             .add(ScriptPlugin::default())
             .add(ScenarioPlugin)

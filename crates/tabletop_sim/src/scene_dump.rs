@@ -7,8 +7,8 @@ use std::io::Write;
 
 use bevy::prelude::*;
 use serde::Serialize;
+use tabletop_assembly::{Assembly, IdAllocator, assemble};
 use tabletop_core::{JointKind, ObjectSpec, Part, SceneSpec, Shape};
-use tabletop_scene::{Assembly, IdAllocator, assemble};
 
 use mechanisms::{BondDump, BondPointDump, ControlDump, bond_points, bonds, controls};
 use pose::PoseDump;

@@ -120,7 +120,7 @@ pub fn read_text(path: &Path) -> io::Result<String> {
     }
 }
 
-/// The path that means the same file whatever the folder holds.
+/// The path that means the same file in any working folder.
 pub fn true_path(path: &Path) -> PathBuf {
     match shipped_files().find(path) {
         Some(file) => file.name(),
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_of_the_folder_is_what_its_path_says() {
+    fn true_paths_stay_unchanged() {
         let path = root().join("tablesetup/default.xml");
         assert_eq!(true_path(&path), path);
         let shipped = Path::new("shipped:tablesetup/default.xml");

@@ -53,7 +53,7 @@ fn is_listed(path: &Path) -> bool {
     is_task_name(path) && read().is_ok_and(|text| is_task(&text))
 }
 
-/// Saves the table as a task file, replacing an existing one. Returns what a task file cannot express of it.
+/// Saves the table as a task file, replacing an existing one. Returns the parts of it that a task file cannot express.
 ///
 /// # Errors
 ///
@@ -70,7 +70,7 @@ mod tests {
     use tabletop_core::prelude::*;
 
     use super::*;
-    use tabletop_scene::{IdAllocator, assemble};
+    use tabletop_assembly::{IdAllocator, assemble};
     use tabletop_storage::TemporaryFolder;
     use tabletop_xml::read_task;
 
@@ -150,7 +150,7 @@ mod tests {
             let first = saved(&app, &path);
             let off = deviation(first.clone(), &present);
             assert!(off <= 2e-7, "{}: {off}", file.display());
-            // What a file has said once, it says again to the bit.
+            // A scene from a file survives writing and reading to the bit.
             fs::write(&path, write(&first)).unwrap();
             assert_eq!(read_task(&path).unwrap().scene, first);
             let ids = |scene: &SceneSpec| {

@@ -39,7 +39,7 @@ impl Calls {
         self.bytes.fetch_add(count as u64, Ordering::Relaxed);
     }
 
-    /// Counts a call, and lets it fail if it is to. Half of what it was to write is then given to `tear`.
+    /// Counts a call, and lets it fail if it is to. `tear` then writes half of its bytes.
     pub(crate) fn call(&self, tear: impl FnOnce()) -> io::Result<()> {
         let call = self.count.fetch_add(1, Ordering::Relaxed);
         let Some((fault, failing)) = self.failpoint else {

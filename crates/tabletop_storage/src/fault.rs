@@ -5,7 +5,7 @@ use std::io::{self, ErrorKind};
 /// The failure of calls to a [`Storage`](crate::Storage).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StorageFault {
-    /// One call finds the disk full. Of what it was to write, half is written.
+    /// One call finds the disk full, and writes half of its bytes.
     FullOnce,
     /// From one call on, the disk is full.
     Full,
@@ -13,7 +13,7 @@ pub enum StorageFault {
     Broken,
     /// The program is killed before a call: nothing later reaches the disk.
     Killed,
-    /// The program is killed in a call: of what it was to write, half is written.
+    /// The program is killed in a call that has written half of its bytes.
     KilledWithin,
 }
 
@@ -42,7 +42,7 @@ impl StorageFault {
         }
     }
 
-    /// True if the call that fails writes half of what it was to write.
+    /// True if the failing call writes half of its bytes.
     pub(crate) fn tears(self, call: u64, failing: u64) -> bool {
         match self {
             Self::FullOnce | Self::Full | Self::KilledWithin => call == failing,

@@ -1,4 +1,4 @@
-//! Locks on folders, for moments in which nobody else may change what is in them.
+//! Locks on folders, for moments in which nobody else may change their contents.
 
 use std::{
     fs::{File, TryLockError},

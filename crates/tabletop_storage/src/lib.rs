@@ -6,7 +6,7 @@
 //! - A file is [replaced](Storage::replace) whole, or stays as it was.
 //! - A folder appears whole: it is filled as a [`LockedFolder`] under a hidden name.
 //! - A folder that is in the way is [moved aside](Storage::move_aside) to a free name.
-//! - What a killed program has left is removed only if a lock shows that it was the program's own.
+//! - Files that a killed program has left are removed only if a lock shows that they were the program's own.
 
 mod calls;
 mod fault;

@@ -65,7 +65,7 @@ impl LockedFolder {
         &self.path
     }
 
-    /// Removes the lock: what was filled in is whole, and nobody removes it any more. Returns its path.
+    /// Removes the lock: the folder is complete, and nobody removes it any more. Returns its path.
     ///
     /// # Errors
     /// The lock cannot be removed.

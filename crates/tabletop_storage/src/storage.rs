@@ -83,7 +83,7 @@ impl Storage {
         Ok(self.stored(file))
     }
 
-    /// Opens whatever is there, be it a pipe, to be written.
+    /// Opens a path for writing, be it a pipe.
     pub(crate) fn open_to_write(&self, path: &Path) -> io::Result<StoredFile> {
         self.may()?;
         Ok(self.stored(OpenOptions::new().append(true).open(path)?))

@@ -38,7 +38,7 @@ impl Drop for Place {
     }
 }
 
-/// Writes with every call failing in every way in turn, and checks what is there then: the old text or the new one.
+/// Writes with every call failing in every way in turn, and checks that the old text or the new one is there.
 fn survives_every_fault(name: &str, old: Option<&str>, write: fn(&Storage, &Path) -> bool) {
     let mut calls = 0;
     let counted = Storage::default();

@@ -3,7 +3,8 @@
 use std::{collections::BTreeMap, f32::consts::TAU};
 
 use bevy::math::Vec3;
-use tabletop_core::{Pose, Shape};
+use tabletop_core::Shape;
+use tabletop_geometry::Pose;
 
 use crate::convex::PlacedSolid;
 
@@ -24,7 +25,7 @@ pub(crate) struct Placed {
 pub const TOUCH: f32 = 0.06;
 /// Largest overhang of an edge, in units, that does not count as support.
 const EDGE: f32 = 0.03;
-/// How far apart, as seen from above, what is not beside each other may be, in units.
+/// Largest gap between objects, as seen from above, that are not beside each other, in units.
 const BESIDE: f32 = 1e-3;
 
 impl Arrangement {
@@ -193,7 +194,7 @@ impl Placed {
     fn holds(&self, point: Vec3) -> bool {
         let spot = PlacedSolid {
             pose: Pose::at(point),
-            solid: tabletop_core::Solid::Ball(1e-3),
+            solid: tabletop_geometry::Solid::Ball(1e-3),
         };
         self.solids
             .iter()
@@ -223,7 +224,8 @@ fn overlap(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Part, Rgb};
+    use tabletop_core::Part;
+    use tabletop_geometry::Rgb;
 
     use super::*;
 

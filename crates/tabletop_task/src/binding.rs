@@ -194,7 +194,7 @@ impl Task {
                 let (lacks, has) = (listed(&lacks), listed(&has));
                 format!("{lacks} is required, and {} has {has}", object.id)
             }
-            Some(_) => "what would fit does not move".into(),
+            Some(_) => "the objects that would fit do not move".into(),
             None => {
                 let kinds: BTreeSet<_> = objects
                     .iter()

@@ -1,7 +1,7 @@
 //! Distances between convex solids (Gilbert, Johnson and Keerthi's algorithm).
 
 use bevy::math::{Vec2, Vec3, Vec3Swizzles as _};
-use tabletop_core::{Bounds, Pose, Primitive, Solid};
+use tabletop_geometry::{Bounds, Pose, Primitive, Solid};
 
 /// A convex solid with its pose, in the table's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,7 @@
 //! Demonstrations: the objects, their motions, and the acts of the hands that a recording shows.
 
-use tabletop_core::{Hand, JointSpec, ObjectSpec, Pose, SimTick, Table};
+use tabletop_core::{Hand, JointSpec, ObjectSpec, SimTick, Table};
+use tabletop_geometry::Pose;
 use tabletop_recorder::{Occurrence, RecordedSegment, RecorderError, RecordingReader};
 
 use crate::{

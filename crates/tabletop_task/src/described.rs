@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use bevy::math::Vec3;
-use tabletop_core::{ObjectSpec, Pose, Rgb, Shape};
+use tabletop_core::{ObjectSpec, Shape};
+use tabletop_geometry::{Pose, Rgb};
 
 /// The object that the properties of a recording describe, and whether its size is among them.
 pub(crate) fn described(id: &str, properties: &[(String, String)]) -> (ObjectSpec, bool) {

@@ -1,14 +1,15 @@
-//! What is otherwise known of the objects of a recording whose events do not tell all.
+//! Other knowledge of the objects of a recording whose events do not tell all.
 
 use bevy::math::Vec3;
-use tabletop_core::{JointKind, JointSpec, ObjectSpec, Pose, Rgb, Shape};
+use tabletop_core::{JointKind, JointSpec, ObjectSpec, Shape};
+use tabletop_geometry::{Pose, Rgb};
 
 use crate::{
     convex::PlacedSolid,
     demonstration::{Demonstration, ShownObject},
 };
 
-/// What is otherwise known of the objects of a recording: those of the task file that was on the table.
+/// Other knowledge of the objects of a recording: the task file that was on the table.
 #[derive(Clone, Debug, Default)]
 pub struct Furniture {
     /// The objects.
@@ -18,7 +19,7 @@ pub struct Furniture {
 }
 
 impl Demonstration {
-    /// Takes from the furniture what the events do not tell, and guesses the rest.
+    /// Completes properties that the events do not tell from the furniture, and guesses the rest.
     pub(crate) fn furnish(&mut self, furniture: &Furniture) {
         for object in self.objects.iter_mut().filter(|object| object.is_guessed) {
             let mut like = furniture.objects.iter();
@@ -36,7 +37,7 @@ impl Demonstration {
         }
     }
 
-    /// Guesses that what is of unknown size is as wide as it is high above the table, or above what is known below it.
+    /// Guesses that an object of unknown size is as wide as it is high above the table, or above the known object below it.
     fn guess_sizes(&mut self) {
         let first = |object: &ShownObject| object.track.at(self.start);
         let mut guessed: Vec<_> = (0..self.objects.len())

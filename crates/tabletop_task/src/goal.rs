@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 use serde::{Deserialize, Serialize};
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 
 use crate::{
     demonstration::Demonstration,

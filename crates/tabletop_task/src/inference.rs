@@ -1,6 +1,7 @@
-//! What hands did, where only poses are known.
+//! Acts of hands, inferred where only poses are known.
 
-use tabletop_core::{Hand, Pose, SimTick};
+use tabletop_core::{Hand, SimTick};
+use tabletop_geometry::Pose;
 use tabletop_recorder::TICKS_PER_FRAME;
 
 use crate::{
@@ -9,7 +10,7 @@ use crate::{
     track::Track,
 };
 
-/// For how long what is held may stand still in the air, and what was put down lies still at least, in ticks.
+/// Ticks for which a held object stands still in the air at most, and for which one that was put down lies still at least.
 const PAUSE: u64 = 45;
 /// How far something has to be moved to have been in a hand, in units, or turned, in rad.
 const MOVED: (f32, f32) = (0.3, 0.2);
@@ -28,8 +29,8 @@ struct ShownMotion {
     lift: f32,
 }
 
-/// The acts of hands by which the objects may have moved as they did: something is in a hand from where it begins to move until it stands
-/// still on something. What only moves while something else is carried was pushed.
+/// The acts of hands by which the objects may have moved as they did: an object is in a hand from the moment when it begins to move until
+/// it stands still on something. An object that only moves while another one is carried was pushed.
 pub(crate) fn inferred_acts(shown: &Demonstration) -> Vec<HandAct> {
     let mut motions: Vec<_> = shown
         .objects
@@ -74,7 +75,7 @@ fn motions(shown: &Demonstration, id: &str) -> Vec<ShownMotion> {
     };
     for (tick, _) in entries {
         let gap = tick.0 - since.0;
-        // What is told for the first time after a rest began to move a frame ago at most.
+        // An object whose first row after a rest is here began to move a frame ago at most.
         let began = SimTick(tick.0.saturating_sub(gap.min(TICKS_PER_FRAME)) + 1);
         let goes_on = motions
             .last()
@@ -114,7 +115,7 @@ fn motions(shown: &Demonstration, id: &str) -> Vec<ShownMotion> {
     motions
 }
 
-/// From when on an object is where it stays at the end of a motion: what it moves by when it settles is no hand's.
+/// The tick from which an object stays where it is at the end of a motion: it settles by itself, not by a hand.
 fn settled(track: &Track, motion: &ShownMotion) -> SimTick {
     let Some(end) = track.at(motion.to) else {
         return motion.to;

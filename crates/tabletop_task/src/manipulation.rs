@@ -1,9 +1,10 @@
-//! Manipulations: what hands did to an object, from grasp to release.
+//! Manipulations: the acts of a hand on an object, from grasp to release.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
-use tabletop_core::{Hand, Pose, SimTick};
+use tabletop_core::{Hand, SimTick};
+use tabletop_geometry::Pose;
 
 use crate::demonstration::{Demonstration, HandAct, HandDeed};
 

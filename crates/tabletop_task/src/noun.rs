@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use tabletop_core::{NAMED_COLORS, ObjectSpec, Rgb};
+use tabletop_core::ObjectSpec;
+use tabletop_geometry::{NAMED_COLORS, Rgb};
 
 use crate::demonstration::Demonstration;
 

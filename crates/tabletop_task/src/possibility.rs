@@ -1,6 +1,7 @@
 //! Requirements that an object can meet.
 
-use tabletop_core::{ColorError, Rgb, Shape};
+use tabletop_core::Shape;
+use tabletop_geometry::{ColorError, Rgb};
 
 use crate::{
     property::{LENGTHS, PropertyKind, is_same_text, numbers, range},

@@ -1,7 +1,8 @@
 //! Properties of objects.
 
 use bevy::math::Vec3;
-use tabletop_core::{ObjectSpec, Rgb, Shape};
+use tabletop_core::{ObjectSpec, Shape};
+use tabletop_geometry::Rgb;
 
 /// The lengths that define shapes.
 pub(crate) const LENGTHS: [&str; 8] = [
@@ -25,7 +26,7 @@ pub(crate) enum PropertyKind {
     Size,
     Length,
     Mass,
-    /// Whatever a task file says.
+    /// A description of the task file.
     Description,
 }
 
@@ -130,7 +131,7 @@ fn around(shape: &Shape) -> Vec3 {
     let solids: Vec<_> = shape
         .colliding()
         .iter()
-        .map(|solid| crate::convex::PlacedSolid::of(solid, tabletop_core::Pose::IDENTITY))
+        .map(|solid| crate::convex::PlacedSolid::of(solid, tabletop_geometry::Pose::IDENTITY))
         .collect();
     let reach = |way: Vec3| {
         let all = solids.iter().map(|solid| solid.farthest(way).dot(way));
@@ -208,12 +209,12 @@ fn number(text: &str) -> Option<f32> {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::Pose;
+    use tabletop_geometry::Pose;
 
     use super::*;
 
     #[test]
-    fn colours_numbers_and_ranges_are_compared_as_what_they_are() {
+    fn colours_numbers_and_ranges_are_compared_by_value() {
         for (name, value, wanted, expected) in [
             ("color", "#ff0000", "red", true),
             ("color", "#e01010", "red", true),

@@ -10,7 +10,7 @@ use tabletop_recorder::{
 use crate::{demonstration::Demonstration, furniture::Furniture, inference::inferred_acts};
 
 impl Demonstration {
-    /// Reads a recording, be it one of the original program. The furniture tells what its events do not.
+    /// Reads a recording, be it one of the original program. The furniture completes its events.
     ///
     /// # Errors
     /// A file cannot be read, or has a line that no recorder writes; the error names the file.
@@ -22,7 +22,7 @@ impl Demonstration {
     }
 
     /// The demonstration of segments of events, which are all that a recording of the original program has. Objects are as the properties in their
-    /// events describe them; what these leave out, as in the furniture. If the events name no hand, its acts are inferred from the poses.
+    /// events describe them, completed from the furniture. If the events name no hand, its acts are inferred from the poses.
     pub fn of_events(
         segments: &[RecordedSegment],
         ticks_per_frame: u64,

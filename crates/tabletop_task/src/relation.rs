@@ -2,7 +2,8 @@
 
 use bevy::math::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
-use tabletop_core::{JointKind, JointSpec, Pose};
+use tabletop_core::{JointKind, JointSpec};
+use tabletop_geometry::Pose;
 
 use crate::{
     arrangement::{Arrangement, TOUCH},
@@ -332,7 +333,7 @@ fn is_aligned(shown: &Demonstration, after: &Arrangement, id: &str, other: &str)
     let [Some((_, own)), Some((_, other))] = known else {
         return false;
     };
-    // Blocks are aligned up to quarter turns, whatever their sides are called.
+    // Blocks are aligned up to quarter turns: their sides have no names.
     let relative = other.rotation.inverse() * own.rotation;
     let quarters = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| relative * axis);
     quarters.iter().all(|axis| {

@@ -8,7 +8,8 @@ use std::{
 };
 
 use serde::{Deserialize, Serialize};
-use tabletop_core::{ObjectSpec, Rgb};
+use tabletop_core::ObjectSpec;
+use tabletop_geometry::Rgb;
 use tabletop_storage::{Storage, Symlinks, read_regular_text};
 
 use crate::{

@@ -4,7 +4,8 @@ mod likeness;
 
 use bevy::math::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
-use tabletop_core::{Pose, Primitive, Shape, Solid};
+use tabletop_core::Shape;
+use tabletop_geometry::{Pose, Primitive, Solid};
 
 use crate::rotation::{angle_between, twist_about};
 use likeness::{SAME_LENGTH, looks_the_same};
@@ -247,7 +248,8 @@ fn add(turns: &mut Vec<Quat>, turn: Quat) {
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
-    use tabletop_core::{Part, Rgb};
+    use tabletop_core::Part;
+    use tabletop_geometry::Rgb;
 
     use super::*;
 
@@ -271,7 +273,7 @@ mod tests {
     fn ring(sides: u16) -> Shape {
         let parts = (0..sides).map(|i| {
             let degrees = Vec3::Z * 360.0 * f32::from(i) / f32::from(sides);
-            let at = tabletop_core::quat_from_degrees(degrees) * Vec3::X;
+            let at = tabletop_geometry::quat_from_degrees(degrees) * Vec3::X;
             part(block(0.3, 0.5, 0.4), at, degrees)
         });
         Shape::Composite {

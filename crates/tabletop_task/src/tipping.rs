@@ -4,7 +4,8 @@ use std::f32::consts::FRAC_PI_4;
 
 use bevy::math::Vec3;
 use serde::{Deserialize, Serialize};
-use tabletop_core::{Pose, Shape};
+use tabletop_core::Shape;
+use tabletop_geometry::Pose;
 
 use crate::{convex::PlacedSolid, symmetry::Symmetry};
 
@@ -68,7 +69,7 @@ fn long_axis(shape: &Shape) -> Option<Vec3> {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::Rgb;
+    use tabletop_geometry::Rgb;
 
     use super::*;
 
@@ -77,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_long_stands_or_lies() {
+    fn long_objects_stand_or_lie() {
         let color = Rgb::RED;
         let bar = Shape::Block {
             span: Vec3::new(3.0, 1.0, 1.0),

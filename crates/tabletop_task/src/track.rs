@@ -1,6 +1,7 @@
 //! Tracks: poses of an object, tick by tick.
 
-use tabletop_core::{Pose, SimTick};
+use tabletop_core::SimTick;
+use tabletop_geometry::Pose;
 
 use crate::rotation::angle_between;
 
@@ -84,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn what_falls_is_at_rest_when_it_has_landed() {
+    fn a_falling_object_is_at_rest_once_it_has_landed() {
         let mut track = Track::default();
         for tick in 0..=30_u64 {
             let height = 30_u64.saturating_sub(tick) as f32 / 10.0;

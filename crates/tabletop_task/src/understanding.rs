@@ -33,7 +33,7 @@ impl Task {
         Self::read_with(folder, &Furniture::default())
     }
 
-    /// The same, with furniture that tells what a recording of the original program does not.
+    /// The same, with furniture that completes a recording of the original program.
     ///
     /// # Errors
     /// As of [`Task::read`].

@@ -1,8 +1,10 @@
-//! The lines that help the user to place what he holds (report section 4, figure 8): its outline, the axes about which
-//! it can be turned, what lies below it, and where the plane in which it is dragged meets table and objects.
+//! The lines that help the user to place the held object (report section 4, figure 8): its outline, the axes about which
+//! it can be turned, its shadow, and where the plane in which it is dragged meets table and objects.
 
 use bevy::prelude::*;
-use tabletop_core::{DragPlane, Hands, ObjectSpec, Pose, Primitive, UserCamera};
+use tabletop_core::{Hands, ObjectSpec};
+use tabletop_geometry::{Pose, Primitive};
+use tabletop_user::{DragPlane, UserCamera};
 
 use crate::{
     held::HeldVisual,
@@ -51,7 +53,7 @@ pub(crate) fn plugin(app: &mut App) {
         );
 }
 
-/// Lines that are so many pixels wide at any distance.
+/// Lines of this width in pixels at any distance.
 fn lines(width: f32, depth_bias: f32) -> GizmoConfig {
     GizmoConfig {
         line: GizmoLineConfig {
@@ -113,7 +115,7 @@ fn draw_axes(mut gizmos: Gizmos<ThinLines>, held: HeldVisual) {
     }
 }
 
-/// Below the end of the upright axis the shadow line goes on to whatever is there; a cross marks the place.
+/// Below the end of the upright axis the shadow line goes on to the first object or the table; a cross marks the place.
 fn draw_shadow(
     mut gizmos: Gizmos<ThinLines>,
     held: HeldVisual,
@@ -178,7 +180,8 @@ fn draw_sections(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tabletop_core::{Rgb, Solid, Table};
+    use tabletop_core::Table;
+    use tabletop_geometry::{Rgb, Solid};
 
     #[test]
     fn the_shadow_falls_on_the_highest_surface_below() {

@@ -1,4 +1,4 @@
-//! The user's camera, its keys, and what panels and mouse ask of it.
+//! The user's camera, its keys, and the requests of panels and mouse.
 
 use bevy::{
     camera::{ClearColorConfig, PerspectiveProjection},
@@ -7,10 +7,8 @@ use bevy::{
     prelude::*,
     render::view::NoIndirectDrawing,
 };
-use tabletop_core::{
-    Action, CameraMotion, CameraView, Hands, HeadCamera, KeySystems, Keys, Paused, Steering, Table,
-    UserCamera,
-};
+use tabletop_core::{Hands, HeadCamera, Paused, Table};
+use tabletop_user::{Action, CameraMotion, CameraView, KeySystems, Keys, Steering, UserCamera};
 
 use crate::viewpoint::Viewpoint;
 
@@ -359,7 +357,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_held_comes_to_the_middle_of_the_picture() {
+    fn the_held_object_comes_to_the_middle_of_the_picture() {
         let mut app = app(10);
         let held = Vec3::new(5.0, 3.0, 2.0);
         let object = app

@@ -1,7 +1,8 @@
 //! Ghosts of objects at their goals, translucent; a line leads to the next one.
 
 use bevy::prelude::*;
-use tabletop_core::{Ghost, Ghosts, ObjectIndex};
+use tabletop_core::ObjectIndex;
+use tabletop_user::{Ghost, Ghosts};
 
 use crate::{mesh, surface::Surface, visual::Looks};
 
@@ -95,7 +96,8 @@ fn bow(from: Vec3, to: Vec3) -> impl Iterator<Item = Vec3> {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{CorePlugin, Pose, Rgb, Shape};
+    use tabletop_core::{CorePlugin, Shape};
+    use tabletop_geometry::{Pose, Rgb};
 
     use super::*;
 

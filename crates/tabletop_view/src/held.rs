@@ -1,7 +1,8 @@
 //! The object in the selected hand, as it is drawn.
 
 use bevy::{ecs::system::SystemParam, prelude::*};
-use tabletop_core::{Hands, Pose, Primitive};
+use tabletop_core::Hands;
+use tabletop_geometry::{Pose, Primitive};
 
 use crate::visual::{Filled, Visuals};
 

@@ -29,6 +29,7 @@ pub mod prelude {
 }
 
 use bevy::prelude::*;
+use tabletop_user::UserPlugin;
 
 /// Draws the simulation and moves the user's camera. Needs Bevy's renderer and [`CorePlugin`](tabletop_core::CorePlugin).
 #[derive(Clone, Copy, Debug, Default)]
@@ -36,6 +37,7 @@ pub struct ViewPlugin;
 
 impl Plugin for ViewPlugin {
     fn build(&self, app: &mut App) {
+        UserPlugin::add_to(app);
         app.add_plugins((
             surface::plugin,
             visual::plugin,
@@ -53,7 +55,9 @@ mod tests {
     use std::time::Duration;
 
     use bevy::{ecs::query::QueryFilter, time::TimeUpdateStrategy};
-    use tabletop_core::{CorePlugin, DragPlane, Hands, ObjectSpec, Pose, Rgb, Shape, Table};
+    use tabletop_core::{CorePlugin, Hands, ObjectSpec, Shape, Table};
+    use tabletop_geometry::{Pose, Rgb};
+    use tabletop_user::DragPlane;
 
     use super::*;
 

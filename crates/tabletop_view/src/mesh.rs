@@ -6,7 +6,7 @@ use bevy::{
     mesh::{Indices, PrimitiveTopology},
     prelude::*,
 };
-use tabletop_core::{Rgb, Solid, Triangles};
+use tabletop_geometry::{Rgb, Solid, Triangles};
 
 /// Sides of a cylinder, and of a ball around its axis.
 pub(crate) const SIDES: u32 = 64;

@@ -1,7 +1,7 @@
 //! Smooth pictures between ticks: drawn shapes lie between the last two ticks, at any frame rate.
 
 use bevy::prelude::*;
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 
 /// An object that is farther than this from where it was a tick ago, in units, did not move there but was put there:
 /// its speed would be 30 m/s.

@@ -3,7 +3,7 @@
 use std::f32::consts::TAU;
 
 use bevy::prelude::*;
-use tabletop_core::Solid;
+use tabletop_geometry::Solid;
 
 use crate::mesh::SIDES;
 

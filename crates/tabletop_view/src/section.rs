@@ -1,7 +1,7 @@
 //! The section of a solid with a plane.
 
 use bevy::prelude::*;
-use tabletop_core::{Pose, Solid};
+use tabletop_geometry::{Pose, Solid};
 
 use crate::polyhedron;
 
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_plane_misses_is_not_cut() {
+    fn solids_beside_the_plane_are_not_cut() {
         for solid in [
             Solid::Ball(1.0),
             Solid::Cuboid(Vec3::splat(2.0)),

@@ -10,7 +10,8 @@ use bevy::{
     },
     shader::ShaderRef,
 };
-use tabletop_core::{DragPlane, Table};
+use tabletop_core::Table;
+use tabletop_user::DragPlane;
 
 use crate::{held::HeldVisual, visual::Filled};
 
@@ -68,7 +69,7 @@ pub(crate) fn plugin(app: &mut App) {
     app.add_plugins((MaterialPlugin::<Translucent>::default(), systems));
 }
 
-/// All but what draws it.
+/// All systems but those that draw it.
 pub(crate) fn systems(app: &mut App) {
     app.init_resource::<Assets<Translucent>>()
         .add_systems(Startup, spawn_sheet)
@@ -168,7 +169,8 @@ mod tests {
     use super::*;
     use crate::{test_app::test_app, visual};
     use std::f32::consts::FRAC_PI_2;
-    use tabletop_core::{Hands, ObjectSpec, Pose, Rgb, Shape};
+    use tabletop_core::{Hands, ObjectSpec, Shape};
+    use tabletop_geometry::{Pose, Rgb};
 
     fn app() -> App {
         test_app((visual::plugin, systems))
@@ -182,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sheet_ends_a_little_beyond_the_table_and_what_is_held() {
+    fn the_sheet_ends_a_little_beyond_the_table_and_the_held_object() {
         let table = Table {
             xspan: 30.0,
             yspan: 10.0,
@@ -209,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sheet_goes_through_what_the_selected_hand_holds() {
+    fn the_sheet_goes_through_the_object_in_the_selected_hand() {
         let mut app = app();
         app.world_mut().spawn(Table {
             xspan: 30.0,

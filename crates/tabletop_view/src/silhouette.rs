@@ -1,10 +1,10 @@
 //! The outline of a body as the user sees it: of all its solids together, without lines where they overlap.
 //!
 //! It is computed, not drawn twice: seen from a point, a convex solid covers a convex polygon, and the outline of the
-//! body is what remains of these polygons' edges after what lies within the others has been cut away.
+//! body consists of the parts of these polygons' edges that lie within no other polygon.
 
 use bevy::prelude::*;
-use tabletop_core::{Pose, Primitive, Solid};
+use tabletop_geometry::{Pose, Primitive, Solid};
 
 use crate::polyhedron;
 
@@ -72,7 +72,7 @@ impl Polygon {
         self.corners.iter().copied().zip(next.copied())
     }
 
-    /// Its edges without what lies within the other polygons, joined where they meet.
+    /// The parts of its edges that lie within no other polygon, joined where they meet.
     fn visible_lines(&self, rank: usize, polygons: &[Self]) -> Vec<Vec<Vec3>> {
         let mut lines: Vec<Vec<Vec3>> = Vec::new();
         let mut goes_on = false;
@@ -218,7 +218,8 @@ fn convex_hull(mut corners: Vec<Corner>) -> Vec<Corner> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tabletop_core::{Rgb, Shape};
+    use tabletop_core::Shape;
+    use tabletop_geometry::Rgb;
 
     /// Ten units above the origin, looking down, X to the right.
     fn above() -> Pose {
@@ -358,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn what_reaches_behind_the_eye_has_no_outline() {
+    fn solids_that_reach_behind_the_eye_have_no_outline() {
         let wall = block(0.0, Vec3::new(1.0, 1.0, 30.0));
         assert!(outline_from_above(&[wall]).is_empty());
         let around = Primitive {

@@ -3,7 +3,8 @@
 use bevy::{
     asset::embedded_asset, prelude::*, render::render_resource::AsBindGroup, shader::ShaderRef,
 };
-use tabletop_core::{LIGHT, Rgb};
+use tabletop_core::LIGHT;
+use tabletop_geometry::Rgb;
 
 /// A surface of one colour, or of the colours of its vertices. Faces that look up show it exactly, others a fixed share of it.
 #[derive(Asset, AsBindGroup, TypePath, Clone, Debug)]

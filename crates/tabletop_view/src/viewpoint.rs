@@ -3,7 +3,9 @@
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use bevy::prelude::*;
-use tabletop_core::{Pose, Steering, Table};
+use tabletop_core::Table;
+use tabletop_geometry::Pose;
+use tabletop_user::Steering;
 
 /// Greatest elevation in radians: just short of straight up, so that the camera cannot roll over.
 const MAX_ELEVATION: f32 = FRAC_PI_2 - 0.01;
@@ -149,7 +151,7 @@ impl Viewpoint {
         LOWEST.min(self.location.z)
     }
 
-    /// After going by so many units.
+    /// After a shift by a vector, in units.
     pub fn shifted(self, by: Vec3) -> Self {
         let location = self.location + by;
         Self {
@@ -159,8 +161,8 @@ impl Viewpoint {
         .within_reach()
     }
 
-    /// After going towards a point until the distance is so many times what it was, or to where limits end it; the point is seen in
-    /// the same place then.
+    /// After an approach to a point that multiplies the distance by this factor, as far as limits allow; the point is seen in the same
+    /// place then.
     pub fn approached(self, point: Vec3, factor: f32) -> Self {
         let from_point = self.location - point;
         let distance = from_point.length();
@@ -174,7 +176,7 @@ impl Viewpoint {
         }
     }
 
-    /// After so many seconds of being steered.
+    /// After being steered for this time, in seconds.
     pub fn steered(self, steering: Steering, seconds: f32) -> Self {
         let velocity = steering.forward * self.direction()
             + steering.right * self.right()

@@ -2,7 +2,8 @@
 //! bodies, which the view never touches.
 
 use bevy::{ecs::entity::EntityHashMap, platform::collections::HashMap, prelude::*, time::Fixed};
-use tabletop_core::{Figure, ObjectSpec, Primitive, RestingSystems, Rgb, Solid, Table};
+use tabletop_core::{Figure, ObjectSpec, RestingSystems, Table};
+use tabletop_geometry::{Primitive, Rgb, Solid};
 
 use crate::{mesh, motion::BodyMotion, surface::Surface};
 
@@ -204,7 +205,8 @@ impl Looks {
 mod tests {
     use super::*;
     use crate::test_app::test_app;
-    use tabletop_core::{Pose, Shape, Triangles};
+    use tabletop_core::Shape;
+    use tabletop_geometry::{Pose, Triangles};
 
     fn app() -> App {
         test_app(plugin)

@@ -147,7 +147,7 @@ impl<'a, 't> TaskReading<'a, 't> {
     }
 }
 
-/// True if a file is meant to be loaded, whatever its faults: its root is `<tabletop>`, and it is more than a file of `<def>`s
+/// True if a file is meant to be loaded, even with faults: its root is `<tabletop>`, and it is more than a file of `<def>`s
 /// for others to include.
 ///
 /// ```

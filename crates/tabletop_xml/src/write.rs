@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// Writes a scene as a task file, which [reads](crate::parse()) back as the same scene: numbers exactly, colours to
-/// within their 8 bits a channel, rotations exactly or, if they are no [rotation of a file](tabletop_core::quat_from_degrees), as the nearest
+/// within their 8 bits a channel, rotations exactly or, if they are no [rotation of a file](tabletop_geometry::quat_from_degrees), as the nearest
 /// of those: nowhere off by more than 2e-7.
 ///
 /// Parts that a file cannot express are written as the nearest that it can: characters that ids cannot have become underscores, a
@@ -187,7 +187,7 @@ impl Writer {
         self.close();
     }
 
-    /// Writes a push button; its housing is made of what its cap says.
+    /// Writes a push button; its housing follows from its cap.
     fn push_button(&mut self, button: &JointedSpec) {
         let [housing, cap] = &button.objects;
         self.open("pushButton");
@@ -237,7 +237,7 @@ fn element_name(shape: &Shape) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Pose, Rgb};
+    use tabletop_geometry::{Pose, Rgb};
 
     use super::*;
     use crate::test_support::scene_of;
@@ -277,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_file_cannot_say_is_written_as_the_nearest() {
+    fn inexpressible_values_are_written_as_the_nearest() {
         let object = |id: &str, shape| {
             SceneItem::Object(ObjectSpec {
                 id: id.into(),

@@ -5,7 +5,8 @@
 use std::path::Path;
 
 use bevy::math::Vec3;
-use tabletop_core::{ObjectSpec, Pose, Primitive, SceneItem, SceneSpec, Shape, Solid, Table};
+use tabletop_core::{ObjectSpec, SceneItem, SceneSpec, Shape, Table};
+use tabletop_geometry::{Pose, Primitive, Solid};
 use tabletop_xml::read_task;
 
 const NAMES: [&str; 15] = [
@@ -130,7 +131,7 @@ fn overlaps_are_found() {
     let at = |x, solid| Primitive {
         pose: Pose::at(Vec3::X * x),
         solid,
-        color: tabletop_core::Rgb::GRAY,
+        color: tabletop_geometry::Rgb::GRAY,
     };
     let cube = Solid::Cuboid(Vec3::ONE);
     assert!(are_apart(&at(0.0, cube), &at(1.0, cube)));

@@ -21,14 +21,14 @@ fn shipped_files_have_no_faults() {
 }
 
 #[test]
-fn the_parser_accepts_what_the_schema_accepts() {
+fn the_parser_accepts_every_text_the_schema_accepts() {
     for text in texts::accepted() {
         assert_eq!(faults(&text), [], "{text}");
     }
 }
 
 #[test]
-fn the_parser_rejects_what_the_schema_rejects() {
+fn the_parser_rejects_every_text_the_schema_rejects() {
     for text in texts::rejected() {
         assert_ne!(faults(&text), [], "{text}");
     }

@@ -3,21 +3,21 @@
 use std::time::Duration;
 
 use bevy::prelude::*;
+use tabletop_controller::{RobotController, Sight};
 use tabletop_core::{
-    Actor, Agent, Ghost, Ghosts, Imitating, ObjectIndex, ObjectSpec, OrderSystems, Paused,
-    Replaying, RestApp as _, RestingSystems, Robot, RobotCommand, RobotLayout, SimBlocked, Table,
-    WriteCommand as _,
+    Actor, Agent, ObjectIndex, ObjectSpec, OrderSystems, Paused, Replaying, RestApp as _,
+    RestingSystems, Robot, RobotCommand, RobotLayout, Table, WriteCommand as _,
 };
 use tabletop_gui::{Notices, Tone};
-use tabletop_planner::{Execution, ExecutionTurn, Imitation, RobotBody, goal_poses};
+use tabletop_planner::{Execution, Imitation, RobotBody, goal_poses};
 use tabletop_robot::Description;
 use tabletop_task::Task;
+use tabletop_user::{Ghost, Ghosts, Imitating};
 
 use super::understood::{Lesson, Understood};
-use crate::imitation::{command, sight};
 
-/// Time for which a tick waits for its orders.
-const LONGEST_WAIT: Duration = Duration::from_millis(4);
+/// Time for which a tick waits for its drives.
+const PATIENCE: Duration = Duration::from_millis(4);
 /// Number of ticks until the robot is at the table, and objects on it are at rest.
 const PREPARATION: u32 = 30;
 
@@ -33,14 +33,11 @@ enum ImitatorState {
         lesson: Box<Lesson>,
         ticks: u32,
     },
+    /// The [`RobotController`] is an [`Execution`].
     Acting {
-        execution: Box<Execution>,
         task: Box<Task>,
         /// Ghosts of objects at their goals, with their steps.
         ghosts: Vec<(usize, Ghost)>,
-        /// True while it waits for the result of the tick.
-        is_expecting: bool,
-        is_planning: bool,
     },
 }
 
@@ -48,13 +45,13 @@ pub(super) fn plugin(app: &mut App) {
     app.init_resource::<RobotImitator>()
         .add_systems(
             FixedUpdate,
-            act.run_if(SimBlocked::is_clear)
+            supervise
                 .run_if(is_busy)
                 .in_set(OrderSystems::User)
                 .in_set(RestingSystems),
         )
         .wake_while(is_busy)
-        .add_systems(Update, publish.run_if(resource_changed::<RobotImitator>));
+        .add_systems(Update, publish);
 }
 
 fn is_busy(imitator: Res<RobotImitator>) -> bool {
@@ -63,9 +60,14 @@ fn is_busy(imitator: Res<RobotImitator>) -> bool {
 
 impl RobotImitator {
     /// Prepares the imitation.
-    pub fn prepare(&mut self, understood: &Understood) -> Result<(), String> {
+    pub fn prepare(
+        &mut self,
+        understood: &Understood,
+        controller: &mut RobotController,
+    ) -> Result<(), String> {
         let lesson = understood.lesson();
         let lesson = lesson.ok_or("nothing was shown yet: record a demonstration first")?;
+        self.stop(controller);
         self.0 = ImitatorState::Preparing {
             lesson: Box::new(lesson.clone()),
             ticks: 0,
@@ -73,39 +75,37 @@ impl RobotImitator {
         Ok(())
     }
 
-    pub fn stop(&mut self) {
+    pub fn stop(&mut self, controller: &mut RobotController) {
+        if matches!(self.0, ImitatorState::Acting { .. }) {
+            controller.stop();
+        }
         self.0 = ImitatorState::Idle;
     }
 
     /// Its progress.
-    fn progress(&self) -> Imitating {
+    fn progress(&self, execution: Option<&Execution>) -> Imitating {
         match &self.0 {
             ImitatorState::Idle => Imitating::Idle,
             ImitatorState::Preparing { .. } => Imitating::Preparing,
-            ImitatorState::Acting {
-                execution,
-                is_planning,
-                ..
-            } => match execution.doing() {
-                None => Imitating::Preparing,
-                Some(doing) => Imitating::Step {
+            ImitatorState::Acting { .. } => match (execution, execution.and_then(Execution::doing))
+            {
+                (Some(execution), Some(doing)) => Imitating::Step {
                     number: doing.step,
                     tries: doing.tries,
-                    is_planning: *is_planning,
+                    is_planning: execution.is_planning(),
                 },
+                _ => Imitating::Preparing,
             },
         }
     }
 
     /// Ghosts of the steps that are not done yet.
-    fn ghosts(&self) -> Vec<Ghost> {
-        let ImitatorState::Acting {
-            execution, ghosts, ..
-        } = &self.0
-        else {
+    fn ghosts(&self, execution: Option<&Execution>) -> Vec<Ghost> {
+        let ImitatorState::Acting { ghosts, .. } = &self.0 else {
             return Vec::new();
         };
-        let present = execution.doing().map_or(1, |doing| doing.step);
+        let doing = execution.and_then(Execution::doing);
+        let present = doing.map_or(1, |doing| doing.step);
         let left = ghosts.iter().filter(|(step, _)| *step >= present);
         left.map(|(step, ghost)| Ghost {
             is_next: *step == present,
@@ -118,15 +118,17 @@ impl RobotImitator {
 /// Publishes the robot's progress for panels and view.
 fn publish(
     imitator: Res<RobotImitator>,
+    controller: Res<RobotController>,
     mut imitating: ResMut<Imitating>,
     mut ghosts: ResMut<Ghosts>,
 ) {
-    imitating.set_if_neq(imitator.progress());
-    ghosts.set_if_neq(Ghosts(imitator.ghosts()));
+    let execution = controller.get();
+    imitating.set_if_neq(imitator.progress(execution));
+    ghosts.set_if_neq(Ghosts(imitator.ghosts(execution)));
 }
 
-/// Gives the robot its orders, once a tick.
-fn act(world: &mut World) {
+/// Prepares the imitation, begins it, and ends it when it is over, stopped, or no longer possible.
+fn supervise(world: &mut World) {
     if world.resource::<Paused>().0 {
         return;
     }
@@ -139,18 +141,16 @@ fn act(world: &mut World) {
         }
         () => imitator.go_on(world),
     };
-    match outcome {
-        None => *world.resource_mut::<RobotImitator>() = imitator,
-        Some(Ok(reported)) => world
-            .resource_mut::<Notices>()
-            .append(Tone::Event, &reported),
-        Some(Err(reason)) => {
-            let reported = format!("the robot has stopped: {reason}");
-            world
-                .resource_mut::<Notices>()
-                .append(Tone::Warning, &reported);
-        }
-    }
+    let Some(outcome) = outcome else {
+        *world.resource_mut::<RobotImitator>() = imitator;
+        return;
+    };
+    world.resource_mut::<RobotController>().stop();
+    let (tone, report) = match outcome {
+        Ok(report) => (Tone::Event, report),
+        Err(reason) => (Tone::Warning, format!("the robot has stopped: {reason}")),
+    };
+    world.resource_mut::<Notices>().append(tone, &report);
 }
 
 fn is_there(world: &World) -> bool {
@@ -178,31 +178,10 @@ impl RobotImitator {
                     Err(reason) => Some(Err(reason)),
                 }
             }
-            ImitatorState::Acting {
-                execution,
-                task,
-                is_expecting,
-                is_planning,
-                ..
-            } => {
-                if *is_expecting {
-                    execution.see(sight(world));
-                    *is_expecting = false;
-                }
-                let turn = execution.turn(LONGEST_WAIT);
-                *is_planning = turn == ExecutionTurn::Planning;
-                match turn {
-                    ExecutionTurn::Planning => None,
-                    ExecutionTurn::Orders(orders) => {
-                        *is_expecting = true;
-                        let command = command(world.resource::<RobotLayout>(), &orders);
-                        if let Some(command) = command {
-                            world.write_command_of(Actor::Panel, command);
-                        }
-                        None
-                    }
-                    ExecutionTurn::Over(imitation) => Some(reported(task, &imitation)),
-                }
+            ImitatorState::Acting { task, .. } => {
+                let controller = world.resource::<RobotController>();
+                let execution = controller.get::<Execution>()?;
+                Some(reported(task, execution.result()?))
             }
         }
     }
@@ -240,7 +219,7 @@ fn begin(world: &mut World, lesson: &Lesson) -> Result<ImitatorState, String> {
     let body = body.map_err(|error| error.to_string())?;
     let mut task = lesson.task.clone();
     task.phrase(&lesson.requirements);
-    let sight = sight(world);
+    let sight = Sight::of(world);
     let shape = |id: &str| Some(objects.iter().find(|object| object.id == id)?.shape.clone());
     let ghosts = goal_poses(&task, &binding, &sight);
     let ghosts = ghosts.into_iter().filter_map(|(step, id, pose)| {
@@ -253,14 +232,13 @@ fn begin(world: &mut World, lesson: &Lesson) -> Result<ImitatorState, String> {
         Some((step, ghost))
     });
     let ghosts = ghosts.collect();
-    let execution = Execution::begin(body, task.clone(), binding, sight, SEED);
+    let layout = world.resource::<RobotLayout>().clone();
+    let execution = Execution::begin(layout, body, task.clone(), binding, sight, SEED, PATIENCE);
     let execution = execution.map_err(|error| error.to_string())?;
+    world.insert_resource(RobotController::new(execution));
     Ok(ImitatorState::Acting {
-        execution: Box::new(execution),
         task: Box::new(task),
         ghosts,
-        is_expecting: false,
-        is_planning: true,
     })
 }
 

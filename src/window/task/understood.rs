@@ -85,7 +85,7 @@ pub(super) fn read_recording(timeline: Res<Timeline>, mut understood: ResMut<Und
 }
 
 /// Takes over the result of reading. A recording in which no hand acts does not replace the earlier task.
-pub(super) fn take_what_was_read(mut understood: ResMut<Understood>) {
+pub(super) fn take_read_task(mut understood: ResMut<Understood>) {
     let Some((folder, receiver)) = &mut understood.bypass_change_detection().reading else {
         return;
     };

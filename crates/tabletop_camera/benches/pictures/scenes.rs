@@ -4,7 +4,8 @@ use std::{f32::consts::TAU, sync::Arc};
 
 use bevy::math::{Quat, Vec3};
 use tabletop_camera::{DrawnFigure, DrawnSolid, Facets};
-use tabletop_core::{Pose, Rgb, Solid, Table, Triangles};
+use tabletop_core::Table;
+use tabletop_geometry::{Pose, Rgb, Solid, Triangles};
 
 /// The blocks of `tablesetup/default.xml`, and ten more around them.
 pub fn blocks() -> Vec<DrawnSolid> {

@@ -1,7 +1,7 @@
 //! Boxes around drawn shapes.
 
 use bevy::math::{Mat3, Vec3};
-use tabletop_core::{Pose, Solid};
+use tabletop_geometry::{Pose, Solid};
 
 use crate::{camera::PinholeView, scene::DrawnSolid};
 

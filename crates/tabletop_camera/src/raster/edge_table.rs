@@ -45,7 +45,7 @@ impl EdgeTable {
 }
 
 impl Buckets {
-    /// Fills so many buckets with pairs of a bucket and a number.
+    /// Fills buckets, of this number, from pairs of a bucket and a number.
     fn fill(&mut self, buckets: u32, pairs: impl Iterator<Item = (u32, u32)> + Clone) {
         let Self { numbers, starts } = self;
         starts.clear();

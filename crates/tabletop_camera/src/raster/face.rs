@@ -205,7 +205,7 @@ impl From<Linear> for Edge {
 mod tests {
     use bevy::math::Quat;
     use proptest::prelude::*;
-    use tabletop_core::Pose;
+    use tabletop_geometry::Pose;
 
     use super::*;
     use crate::Camera;
@@ -317,7 +317,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_sample_lies_in_one_face_of_what_its_ray_meets(
+        fn every_sample_on_a_solid_lies_in_exactly_one_face(
             location in [-3.0..3.0_f32, -3.0..3.0, -12.0..-4.0],
             axis in [-3.0..3.0_f32, -3.0..3.0, -3.0..3.0],
             span in [0.3..3.0_f32, 0.3..3.0, 0.3..3.0],

@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, sync::Arc};
 
-use tabletop_core::{Polyhedron, Rgb, Solid};
+use tabletop_geometry::{Polyhedron, Rgb, Solid};
 
 use crate::scene::{DrawnFigure, DrawnSolid, Facets};
 
@@ -54,7 +54,7 @@ impl Polyhedra {
 mod tests {
     use super::*;
     use bevy::math::Vec3;
-    use tabletop_core::Pose;
+    use tabletop_geometry::Pose;
 
     #[test]
     fn facets_are_made_once_and_kept_while_they_are_seen() {

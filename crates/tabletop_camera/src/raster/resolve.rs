@@ -23,7 +23,7 @@ pub(crate) struct Pixels<'a> {
     pub objects: &'a mut [u32],
 }
 
-/// A row of pixels and what its samples see.
+/// A row of pixels, with the surfaces that its samples see.
 #[derive(Debug)]
 pub(crate) struct RowResolver<'a, 'b> {
     pub visible: &'a VisibleSurfaces,

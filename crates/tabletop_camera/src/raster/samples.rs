@@ -146,7 +146,7 @@ impl CenterRow<'_> {
         self.surface[columns].fill(0);
     }
 
-    /// Puts a surface into these columns, whatever they see.
+    /// Puts a surface into these columns without a test of depth.
     pub fn fill(&mut self, columns: Range<usize>, inverse_depth: OnRow<f32>, surface: u32) {
         let first = columns.start as i32;
         for (x, seen) in (first..).zip(&mut self.inverse_depth[columns.clone()]) {
@@ -183,7 +183,7 @@ impl SmoothRow<'_> {
         self.surface[columns].fill([0; 4]);
     }
 
-    /// Puts a surface into all samples of these columns, whatever they see.
+    /// Puts a surface into all samples of these columns without a test of depth.
     pub fn fill(&mut self, columns: Range<usize>, inverse_depth: SmoothOnRow, surface: u32) {
         let first = columns.start as i32;
         for (x, seen) in (first..).zip(&mut self.inverse_depth[columns.clone()]) {

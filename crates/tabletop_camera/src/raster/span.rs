@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rim_of_what_is_nearer_sees_several_faces() {
+    fn the_rim_of_the_nearer_face_sees_several_faces() {
         use Sees::{Face, Several};
         let planes = planes(&[0.0, 0.1, 0.2]);
         assert_eq!(
@@ -260,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_farther_changes_nothing() {
+    fn a_farther_face_changes_nothing() {
         let planes = planes(&[0.0, 0.1, 0.2]);
         let near = (2, 0..20);
         assert_eq!(
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_equally_near_is_looked_at_more_closely() {
+    fn a_span_of_equally_near_faces_sees_several() {
         let planes = planes(&[0.0, 0.1, 0.1]);
         let seen = spans(&planes, &[(1, 0..20), (2, 4..10)]);
         assert!(seen.contains(&(4, 10, Sees::Several)));

@@ -1,7 +1,8 @@
 //! Transparent spheres: they are blended into the picture of everything opaque.
 
 use bevy::math::{Vec3, Vec4};
-use tabletop_core::{Markers, Pose, Solid};
+use tabletop_core::Markers;
+use tabletop_geometry::{Pose, Solid};
 
 use crate::{
     camera::{PinholeView, SampleOffset, Window},

@@ -3,7 +3,7 @@
 use std::{ops::Range, sync::Arc};
 
 use bevy::math::{Mat3, Mat3A, Vec2, Vec3, Vec3A};
-use tabletop_core::Solid;
+use tabletop_geometry::Solid;
 
 use crate::{
     camera::{Linear, PinholeView, Window},
@@ -137,7 +137,7 @@ impl VisibleSurfaces {
         self.edge_table.sort(rows, view.height, ROWS as u32);
     }
 
-    /// Forgets all but the first figures and what is nothing.
+    /// Forgets all figures from a number on.
     fn forget_figures_from(&mut self, end: usize) {
         let last = end.checked_sub(1).map(|last| &self.figures[last]);
         let (surfaces, triangles, patches) = last.map_or((0, 0, 0), |last| {

@@ -1,7 +1,7 @@
 //! Facets: surfaces of triangles, prepared for drawing.
 
 use bevy::math::{Vec3, Vec3A};
-use tabletop_core::Triangles;
+use tabletop_geometry::Triangles;
 
 use crate::color::scaled_to_bytes;
 
@@ -145,7 +145,7 @@ impl Patches {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::Rgb;
+    use tabletop_geometry::Rgb;
 
     use super::*;
 
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_drawn_is_left_out() {
+    fn invalid_triangles_are_left_out() {
         let points = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::NAN, Vec3::splat(1e38)];
         let facets = surface(
             &points,

@@ -43,7 +43,7 @@ fn a_figure_is_drawn_where_it_is_now() {
 }
 
 #[test]
-fn what_is_kept_of_a_picture_is_what_would_be_drawn() {
+fn an_incremental_picture_equals_a_fresh_one() {
     for seed in 0..60 {
         let (mut scene, camera) = random_scene(seed, seed % 2 == 0);
         let (mut rasterizer, mut picture) = (Rasterizer::default(), Picture::default());
@@ -75,7 +75,7 @@ fn hash_of_pictures(antialiasing: bool) -> u64 {
     let (mut rasterizer, mut picture) = (Rasterizer::default(), Picture::default());
     (0..SCENES).fold(0xcbf2_9ce4_8422_2325, |hash, seed| {
         let (scene, camera) = random_scene(seed, antialiasing);
-        // What is kept from picture to picture must not show.
+        // Results that are kept from picture to picture must not show.
         rasterizer.draw(&scene, &camera, &mut picture);
         let before = hash_of(&picture);
         rasterizer.draw(&scene, &camera, &mut picture);

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use bevy::math::{Quat, Vec3};
 use tabletop_camera::{Camera, DrawnFigure, DrawnSolid, Facets, Scene};
-use tabletop_core::{HeadCamera, Picture, Pose, Rgb, Solid, Table, Triangles};
+use tabletop_core::{HeadCamera, Picture, Table};
+use tabletop_geometry::{Pose, Rgb, Solid, Triangles};
 
 /// A scene and a camera. Every fourth scene has something very near, very large or behind the camera; in every third one,
 /// solids stand upright and in a grid, so that their edges are level and their faces meet.

@@ -3,7 +3,8 @@
 
 use bevy::math::{DVec3, Vec3};
 use tabletop_camera::{Camera, DrawnSolid};
-use tabletop_core::{NAMED_COLORS, Picture, Pose, Rgb, Solid, Table};
+use tabletop_core::{Picture, Table};
+use tabletop_geometry::{NAMED_COLORS, Pose, Rgb, Solid};
 
 use crate::scenes::{default_scene, draw, head, level, smooth, solid, turned};
 
@@ -72,7 +73,7 @@ fn colors_of(object: u32, picture: &Picture) -> Vec<[u8; 3]> {
 }
 
 #[test]
-fn what_faces_up_shows_exactly_the_colour_of_the_task_file_anywhere_on_the_table() {
+fn upward_faces_show_the_exact_colour_of_the_task_file_anywhere_on_the_table() {
     let from_above = Camera {
         pose: Pose::at(Vec3::Z * 30.0),
         ..head()

@@ -1,7 +1,8 @@
 //! Smooth edges.
 
 use bevy::math::Vec3;
-use tabletop_core::{Picture, Rgb, Solid};
+use tabletop_core::Picture;
+use tabletop_geometry::{Rgb, Solid};
 
 use crate::scenes::{draw, head, level, mixed_scene, smooth, solid};
 

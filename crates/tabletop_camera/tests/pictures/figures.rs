@@ -3,7 +3,8 @@
 use bevy::{math::Vec3, prelude::*};
 use proptest::prelude::*;
 use tabletop_camera::{Camera, DrawnFigure, Facets, Scene};
-use tabletop_core::{Picture, Pose, Rgb, Solid, Triangles};
+use tabletop_core::Picture;
+use tabletop_geometry::{Pose, Rgb, Solid, Triangles};
 
 use crate::scenes::{default_scene, draw_scene, head, level, of_solids, smooth, solid};
 
@@ -223,7 +224,7 @@ fn color_at(picture: &Picture, camera: &Camera, point: Vec3) -> [u8; 3] {
 }
 
 #[test]
-fn markers_are_blended_over_what_is_behind_them_and_change_nothing_else() {
+fn markers_are_blended_over_the_picture_and_change_nothing_else() {
     for camera in [head(), smooth(head())] {
         let plain = draw_scene(&of_solids(&default_scene()), &camera);
         let with = |markers: Vec<Vec3>| {
@@ -275,7 +276,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn whatever_a_figure_is_every_pixel_has_a_value(
+    fn every_pixel_of_any_figure_has_a_value(
         vertices in prop::collection::vec((any_vector(), any_vector()), 0..12),
         indices in prop::collection::vec([0..14_u32, 0..14_u32, 0..14_u32], 0..30),
         pose in (any_vector(), any_vector()),

@@ -3,7 +3,8 @@
 use bevy::{math::Vec3, prelude::*};
 use proptest::prelude::*;
 use tabletop_camera::{Camera, DrawnSolid};
-use tabletop_core::{LIGHT, Picture, Pose, Primitive, Rgb, Solid};
+use tabletop_core::{LIGHT, Picture};
+use tabletop_geometry::{Pose, Primitive, Rgb, Solid};
 
 use crate::scenes::{draw, head, level, mixed_scene, smooth, solid};
 
@@ -89,7 +90,7 @@ fn assert_seen(scene: &[DrawnSolid], camera: &Camera, picture: &Picture) -> usiz
 }
 
 #[test]
-fn every_pixel_shows_what_its_ray_meets_first() {
+fn every_pixel_shows_the_first_solid_on_its_ray() {
     let scene = mixed_scene();
     let views = [
         head(),
@@ -169,7 +170,7 @@ fn from_inside_a_solid_is_not_seen() {
 }
 
 #[test]
-fn what_is_nearer_than_the_near_plane_is_not_seen() {
+fn solids_nearer_than_the_near_plane_are_not_seen() {
     let wall = solid(
         1,
         [0.0, 5.0, 0.0],
@@ -189,7 +190,7 @@ fn what_is_nearer_than_the_near_plane_is_not_seen() {
 }
 
 #[test]
-fn what_lies_behind_is_not_seen() {
+fn solids_behind_the_camera_are_not_seen() {
     for shape in [
         Solid::Cuboid(Vec3::splat(2.0)),
         Solid::Ball(1.0),

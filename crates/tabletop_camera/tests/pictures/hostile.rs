@@ -3,7 +3,8 @@
 use bevy::math::{Quat, Vec3};
 use proptest::prelude::*;
 use tabletop_camera::{Camera, DrawnSolid, Rasterizer};
-use tabletop_core::{LIGHT, Picture, Pose, Rgb, Solid};
+use tabletop_core::{LIGHT, Picture};
+use tabletop_geometry::{Pose, Rgb, Solid};
 
 use crate::scenes::{draw, head, mixed_scene, of_solids, smooth};
 

@@ -2,7 +2,8 @@
 
 use bevy::math::Vec3;
 use tabletop_camera::{Camera, DrawnFigure, Facets, Rasterizer, Scene};
-use tabletop_core::{LIGHT, Light, Picture, Pose, Rgb, Triangles};
+use tabletop_core::{LIGHT, Light, Picture};
+use tabletop_geometry::{Pose, Rgb, Triangles};
 
 use crate::scenes::{default_scene, draw_scene, head, mixed_scene, of_solids, smooth};
 
@@ -56,7 +57,7 @@ fn colours_are_those_of_the_light_and_nothing_is_brighter_than_white() {
 }
 
 #[test]
-fn what_was_drawn_before_does_not_matter() {
+fn a_picture_does_not_depend_on_earlier_ones() {
     let scene = scene();
     let mut rasterizer = Rasterizer::default();
     let mut picture = Picture::default();

@@ -2,7 +2,8 @@
 
 use bevy::math::{Quat, Vec3};
 use tabletop_camera::{Camera, DrawnSolid, Rasterizer, Scene};
-use tabletop_core::{HeadCamera, LIGHT, Picture, Pose, Rgb, Solid, Table};
+use tabletop_core::{HeadCamera, LIGHT, Picture, Table};
+use tabletop_geometry::{Pose, Rgb, Solid};
 
 pub fn draw(solids: &[DrawnSolid], camera: &Camera) -> Picture {
     draw_scene(&of_solids(solids), camera)

@@ -16,6 +16,8 @@ pub enum Actor {
     Panel,
     /// A scenario.
     Scenario,
+    /// The controller that acts for the robot, such as its planner.
+    Controller,
     /// The script that drives the robot.
     Script,
     /// The replay of a recording. The commands of the recording itself keep the actor who gave them.

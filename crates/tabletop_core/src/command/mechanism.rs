@@ -39,7 +39,7 @@ pub enum MechanismCommand {
         /// Id of a guest point, or of an object; for an object, its bonded point counts.
         guest: String,
     },
-    /// Close scissors: what links of chains both blades come to touch are cut.
+    /// Close scissors: links of chains that both blades come to touch are cut.
     Cut {
         /// The hand.
         hand: Hand,

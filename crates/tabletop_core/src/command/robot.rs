@@ -2,8 +2,9 @@
 
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
+use tabletop_geometry::Pose;
 
-use crate::{Drive, Face, JointName, LimbName, Pose};
+use crate::{Drive, Face, JointName, LimbName};
 
 /// A command to the robot. Showing the robot and its [markers](crate::Markers) are commands too: both stay when a scene is cleared,
 /// and only the robot's crate knows what they need.

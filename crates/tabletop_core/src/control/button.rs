@@ -5,7 +5,7 @@ use std::f32::consts::FRAC_1_SQRT_2;
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{Rgb, UNITS_PER_METER};
+use tabletop_geometry::{Rgb, UNITS_PER_METER};
 
 /// A button. Its cap is the control: an object of its own, which slides in a housing and springs back up.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]
@@ -20,13 +20,13 @@ pub struct PushButton {
     pub force: f32,
     /// Colour of the cap.
     pub color: Rgb,
-    /// What it hands on downstream.
+    /// Its effect downstream.
     pub mode: PressMode,
     /// Its state while it is pressed; else it is in state 0.
     pub state: u32,
 }
 
-/// What a push button hands on downstream.
+/// The effect of a push button downstream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Reflect)]
 pub enum PressMode {
     /// Its state when it is pressed, and nothing when it comes up.

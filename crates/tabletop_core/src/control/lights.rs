@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::Rgb;
+use tabletop_geometry::Rgb;
 
 /// A row of lights along X.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]

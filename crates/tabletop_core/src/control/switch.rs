@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::Rgb;
+use tabletop_geometry::Rgb;
 
 /// A toggle switch. Its origin is the bottom edge at which its two blocks meet, along Y.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Reflect)]

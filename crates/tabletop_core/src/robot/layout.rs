@@ -5,9 +5,10 @@ use bevy::{
     prelude::*,
 };
 use serde::{Deserialize, Serialize};
+use tabletop_geometry::{Pose, UNITS_PER_METER};
 
 use crate::{
-    HandCamera, KeyBinding, Pose, Table, UNITS_PER_METER,
+    HandCamera, Table,
     robot::name::{JointName, LimbName},
 };
 
@@ -80,8 +81,8 @@ pub struct JointLayout {
     pub effort: f64,
     /// Largest speed of its motor, in rad/s, if the URDF gives none.
     pub speed: f64,
-    /// The keys that move it up and the keys that move it down, unless the user binds others.
-    pub keys: [Vec<KeyBinding>; 2],
+    /// The key that moves it up and the one that moves it down unless the user binds others, as `robot.ron` names them.
+    pub keys: [Option<String>; 2],
 }
 
 impl JointLayout {

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use thiserror::Error;
 
 use crate::{
-    BindingError, HandCamera, KeyBinding, Modifiers,
+    HandCamera,
     robot::{
         layout::{
             BaseLayout, CameraCarrier, CameraLayout, FingerLook, GripperKind, GripperLayout,
@@ -100,14 +100,6 @@ pub enum LayoutError {
     /// Its syntax is wrong.
     #[error("{0}")]
     Syntax(#[from] Box<SpannedError>),
-    /// A key of a joint does not exist.
-    #[error("joint {joint}: {source}")]
-    Key {
-        /// The joint.
-        joint: String,
-        /// The fault of the key.
-        source: BindingError,
-    },
     /// Its content makes no sense.
     #[error("{0}")]
     Fault(String),
@@ -240,8 +232,7 @@ impl JointEntry {
         if self.sign.abs() != 1.0 {
             return Err(fault(format!("joint {name}: its sign is neither 1 nor -1")));
         }
-        let key = binding(name, self.key.as_deref())?;
-        let back = key.map(|key| KeyBinding::new(Modifiers::SHIFT, key.key));
+        let back = self.key.as_ref().map(|key| format!("Shift+{key}"));
         Ok(JointLayout {
             name: JointName::new(name),
             label: self.label.clone(),
@@ -251,7 +242,7 @@ impl JointEntry {
             sign: self.sign,
             effort: self.effort,
             speed: self.speed,
-            keys: [key, back].map(|key| key.into_iter().collect()),
+            keys: [self.key.clone(), back],
         })
     }
 }
@@ -272,8 +263,6 @@ impl GripperEntry {
                 "gripper {name}: its fingers have no extents"
             )));
         }
-        let keys = [&self.open_key, &self.close_key].map(|key| binding(name, key.as_deref()));
-        let [open, close] = keys;
         Ok(JointLayout {
             name: JointName::new(name),
             label: "gripper".to_owned(),
@@ -283,7 +272,7 @@ impl GripperEntry {
             sign: 1.0,
             effort: 0.0,
             speed: 0.0,
-            keys: [open?, close?].map(|key| key.into_iter().collect()),
+            keys: [self.open_key.clone(), self.close_key.clone()],
         })
     }
 }
@@ -327,14 +316,6 @@ fn check_limits(joint: &str, [least, largest]: [f64; 2], home: f64) -> Result<()
     Ok(())
 }
 
-fn binding(joint: &str, key: Option<&str>) -> Result<Option<KeyBinding>, LayoutError> {
-    let parsed = key.map(str::parse).transpose();
-    parsed.map_err(|source| LayoutError::Key {
-        joint: joint.to_owned(),
-        source,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -359,10 +340,9 @@ mod tests {
     }
 
     #[test]
-    fn faults_name_what_they_are_about() {
+    fn faults_name_their_subject() {
         for (from, to, expected) in [
             ("home: 0.25", "home: 2.5", "joint left_s0: its home 2.5"),
-            ("\"Quote\"", "\"Quot\"", "joint left_s0: "),
             (
                 "\"left_s1\"",
                 "\"left_s0\"",

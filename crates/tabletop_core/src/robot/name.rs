@@ -28,7 +28,7 @@ fn interned(name: &str) -> &'static str {
 }
 
 /// Turns `LeftE1` into `left_e1`; a name in snake case stays as it is.
-pub(crate) fn snake_case(name: &str) -> Cow<'_, str> {
+pub fn snake_case(name: &str) -> Cow<'_, str> {
     if !name.contains(char::is_uppercase) {
         return Cow::Borrowed(name);
     }

@@ -1,8 +1,9 @@
 //! The attributes by which task files and recordings describe shapes.
 
 use bevy::prelude::*;
+use tabletop_geometry::Rgb;
 
-use crate::{Rgb, Shape};
+use crate::Shape;
 
 /// The value of an attribute.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,8 @@
 //! The simple shapes of which a shape consists.
 
-use crate::{Control, Part, Pose, Shape, shape::Composition};
+use tabletop_geometry::Pose;
+
+use crate::{Control, Part, Shape, shape::Composition};
 
 impl Shape {
     /// The simple shapes that can be seen of it: all but composites and lids. They come in the order of the task file, each with its pose in
@@ -52,7 +54,7 @@ mod tests {
     use bevy::prelude::*;
 
     use super::*;
-    use crate::Rgb;
+    use tabletop_geometry::Rgb;
 
     #[test]
     fn poses_of_nested_parts_compose() {

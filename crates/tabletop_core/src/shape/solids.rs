@@ -1,8 +1,9 @@
 //! The solids of which a shape consists.
 
 use bevy::prelude::*;
+use tabletop_geometry::{Bounds, MOST_SIDES, Polyhedron, Pose, Primitive, Solid, turn_about};
 
-use crate::{Bounds, MOST_SIDES, Part, Polyhedron, Pose, Primitive, Shape, Solid, turn_about};
+use crate::{Part, Shape};
 
 impl Shape {
     /// The solids to draw. Those of rings and meshes are polyhedra that are not convex.
@@ -19,17 +20,14 @@ impl Shape {
     pub fn colliding(&self) -> Vec<Primitive> {
         primitives(self.simple_touched(), SolidPurpose::Colliding)
     }
-}
 
-impl Bounds {
-    /// The bounds of a shape's solids; the shape's origin is at the given pose.
-    pub fn of_shape(shape: &Shape, at: Pose) -> Self {
-        shape
-            .colliding()
+    /// The bounds of the solids that other bodies touch, if the shape's origin is at this pose.
+    pub fn bounds(&self, at: Pose) -> Bounds {
+        self.colliding()
             .into_iter()
-            .map(|part| Self::of_primitive(part, at))
-            .reduce(Self::union)
-            .unwrap_or(Self::around(at.location, Vec3::ZERO))
+            .map(|part| Bounds::of_primitive(part, at))
+            .reduce(Bounds::union)
+            .unwrap_or(Bounds::around(at.location, Vec3::ZERO))
     }
 }
 
@@ -163,7 +161,7 @@ mod tests {
     use std::f32::consts::SQRT_2;
 
     use super::*;
-    use crate::Rgb;
+    use tabletop_geometry::Rgb;
 
     #[test]
     fn turned_solids_reach_as_far_as_they_do() {
@@ -184,7 +182,7 @@ mod tests {
             (cylinder, Vec3::new(SQRT_2, SQRT_2, 1.0)),
             (ball, Vec3::splat(0.5)),
         ] {
-            let bounds = Bounds::of_shape(&shape, turned);
+            let bounds = shape.bounds(turned);
             assert!(
                 (bounds.low - (Vec3::X - reach)).length() < 1e-5,
                 "{bounds:?}"

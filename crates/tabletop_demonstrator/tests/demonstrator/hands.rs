@@ -1,7 +1,8 @@
 //! Effects of hands on a world.
 
 use bevy::prelude::*;
-use tabletop_core::{ChainSpec, LidBoxSpec, prelude::*, quat_from_degrees};
+use tabletop_core::{ChainSpec, LidBoxSpec, prelude::*};
+use tabletop_geometry::quat_from_degrees;
 
 use crate::desk::{Desk, block, object, two_blocks};
 
@@ -37,7 +38,7 @@ fn a_block_is_stacked_on_another() {
 }
 
 #[test]
-fn what_is_let_go_of_where_it_was_grasped_stays_there() {
+fn an_object_released_where_it_was_grasped_stays_there() {
     let blocks = |spans: &[f32]| {
         let mut top = 0.0;
         let place = |(number, span): (usize, &f32)| {
@@ -124,7 +125,7 @@ fn a_mouse_jump_of_any_size_never_enters_table_walls_or_the_other_hands_object()
 }
 
 #[test]
-fn what_slides_down_a_slanted_wall_does_not_enter_the_table() {
+fn a_held_ball_that_slides_down_a_roof_does_not_enter_the_table() {
     let shape = Shape::Sphere {
         radius: 0.5,
         color: Rgb::GRAY,
@@ -193,8 +194,8 @@ fn a_block_squeezed_against_a_wall_stops_the_hand_and_does_not_explode() {
     assert!(fastest < 5.0, "something flew off at {fastest} units/s");
 }
 
-/// The number of ticks in which the lowest of so many large blocks, one on the other, is deep in the table, while a hand presses a small block on
-/// the uppermost in many ways.
+/// The number of ticks in which the lowest block of a stack of large ones is deep in the table, while a hand presses a small block on the
+/// uppermost in many ways.
 fn deep_ticks_under_a_hand(count: usize) -> u32 {
     let mut deep_ticks = 0;
     let top = 1.5 * (count - 1) as f32;
@@ -335,7 +336,7 @@ fn hand_off_and_forced_releases_are_reported_under_the_hand_that_held() {
 }
 
 #[test]
-fn what_a_hand_does_names_the_command_that_it_came_of() {
+fn facts_of_a_hand_name_the_command_that_caused_them() {
     let mut desk = Desk::new(two_blocks());
     desk.grasp(Hand::Left, "red").step(1);
     let hand = Hand::Right;
@@ -379,7 +380,7 @@ fn a_destroyed_object_is_deleted_first() {
 }
 
 #[test]
-fn what_cannot_be_done_is_refused_and_changes_nothing() {
+fn impossible_commands_are_refused_and_change_nothing() {
     let mut desk = Desk::new(two_blocks());
     desk.grasp(Hand::Left, "no such thing");
     desk.move_to(Hand::Left, Vec3::ONE);

@@ -6,7 +6,7 @@ use tabletop_core::{History, Recording, prelude::*};
 use crate::desk::{Desk, two_blocks};
 
 #[test]
-fn what_is_kept_for_undo_goes_when_the_recording_ends() {
+fn undo_snapshots_are_dropped_when_the_recording_ends() {
     let mut desk = Desk::new(two_blocks());
     let undoable = |desk: &Desk| desk.0.world().resource::<History>().undoable;
     desk.0.insert_resource(Recording(true));

@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_asked_for_wins_over_the_variable() {
+    fn an_explicit_choice_wins_over_the_variable() {
         let disk = Disk::new(
             "variable",
             &["path/octave-cli", "path/matlab", "mine/octave-cli-8"],
@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_is_reported_with_a_remedy() {
+    fn a_missing_engine_is_reported_with_a_remedy() {
         let disk = Disk::new("missing", &[]);
         let fault = disk.find(Platform::Linux, "auto").unwrap_err();
         assert!(

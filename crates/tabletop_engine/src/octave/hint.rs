@@ -136,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_is_lacking_is_explained() {
+    fn only_known_mistakes_get_a_hint() {
         let hint = |message, in_init| hint(&ScriptError::new("", message, ""), in_init);
         let octave = "structure has no member 'rgbVision'";
         assert!(hint(octave, false).unwrap().contains("--picture-every 1"));

@@ -62,7 +62,7 @@ pub(crate) fn note(script: &Path) -> Option<String> {
     let text = String::from_utf8_lossy(&text);
     (is_function(&text) && !reaches_shared(&text)).then(|| {
         format!(
-            "{} is a function without \"global sensor motor aux\", so what it calls by these names are its own variables",
+            "{} is a function without \"global sensor motor aux\", so these names are its own variables",
             script.display()
         )
     })
@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     #[cfg(unix)]
-    fn what_is_no_file_is_not_read() {
+    fn pipes_and_devices_are_not_read() {
         let folder = std::env::temp_dir().join(format!("tabletop-pipes-{}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
         let (pipe, endless) = (folder.join("pipe.m"), folder.join("zero.m"));

@@ -30,7 +30,7 @@ const LIMITS: &str = "caxis clim xlim ylim zlim";
 /// Functions that look for drawings.
 const SOUGHT: &str = "allchild findall findobj";
 
-/// Functions that can compute what they would draw.
+/// Functions that can return their points instead of drawing them.
 const COMPUTED: &str = "bar barh contour contour3 contourf stairs";
 
 /// Functions that would ask for a file in a window.
@@ -101,7 +101,7 @@ fn nothing_found(name: &str) -> String {
     format!("function found = {name}(varargin)\nfound = zeros(0, 1);\nend\n")
 }
 
-/// A function that draws nothing, but lets Octave's own compute what that would compute instead of drawing.
+/// A function that draws nothing, but returns the points that Octave's own function computes.
 fn computed(name: &str) -> String {
     let (own, results) = match name.starts_with("contour") {
         true => ("contourc", 1),

@@ -17,7 +17,7 @@ pub(crate) enum WarningStack {
 }
 
 impl WarningStack {
-    /// Takes a line and calls `each` with what is to be shown.
+    /// Takes a line and calls `each` with every line that is to be shown.
     pub(crate) fn feed(&mut self, line: &[u8], mut each: impl FnMut(&[u8])) {
         let before = std::mem::take(self);
         if line.ends_with(b": called from") {

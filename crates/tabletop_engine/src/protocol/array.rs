@@ -1,4 +1,4 @@
-//! An array: what a variable of a script is.
+//! An array, the value of a variable of a script.
 
 /// The elements of an [`Array`]. Matrices are in column-major order, as in Matlab.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,7 +6,7 @@ use super::{
 };
 
 impl Arrays {
-    /// Reads what [`encode`](Self::encode) or an engine wrote.
+    /// Reads the bytes that [`encode`](Self::encode) or an engine wrote.
     ///
     /// # Errors
     /// The bytes are not of this format.

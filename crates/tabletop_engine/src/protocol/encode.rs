@@ -9,7 +9,7 @@ impl Arrays {
     /// The arrays as bytes.
     ///
     /// # Errors
-    /// An array's size does not fit its elements, or is beyond what the format holds.
+    /// An array's size does not fit its elements, or exceeds the format's range.
     pub fn encode(&self) -> Result<Vec<u8>, ProtocolError> {
         let mut records = Vec::new();
         let mut names = Vec::new();

@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_say_what_was_found_and_expected() {
+    fn faults_state_the_found_and_the_expected_value() {
         let three = Array::matrix(&[[0.0; 7]; 3]);
         assert_eq!(
             fault("motor.jointVelocities", three),

@@ -121,7 +121,7 @@ pub struct SensedStep {
     pub object: String,
     /// The relation that the step achieves.
     pub relation: String,
-    /// To what that is a relation.
+    /// The other object of the relation.
     pub reference: String,
     /// Goal of the object in the frame of the reference: a location in units, and a rotation about the fixed axes X, then Y, then Z, in
     /// rad. Not a number if there is no goal.
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_sensed_is_not_sent() {
+    fn fields_without_a_value_are_not_sent() {
         let names = |sensor: &Sensor| {
             sensor
                 .arrays()

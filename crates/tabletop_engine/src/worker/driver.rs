@@ -8,7 +8,7 @@ macro_rules! files {
     };
 }
 
-/// The driver for MATLAB and Octave. What is private is found whatever a script does to the path.
+/// The driver for MATLAB and Octave. Its private functions are found with any path that a script sets.
 const MATLAB: &[(&str, &str)] = files![
     "private/tabletop_fields.m",
     "private/tabletop_file.m",

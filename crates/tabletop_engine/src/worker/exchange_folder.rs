@@ -60,7 +60,7 @@ impl ExchangeFolder {
         .map_err(|error| EngineError::file(path, &error))
     }
 
-    /// Reads what the engine answered.
+    /// Reads the engine's reply.
     pub(crate) fn read_reply(&self) -> Result<Arrays, EngineError> {
         let path = self.folder().join("reply.bin");
         let bytes = regular_file::read(&path, MAX_FILE_BYTES, Links::Refused)

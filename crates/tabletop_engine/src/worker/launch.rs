@@ -62,7 +62,7 @@ pub(crate) fn command(config: &EngineConfig, session: &ExchangeFolder) -> Result
 }
 
 /// The first commands to MATLAB and Octave. The user's own startup file may have gone to another folder, and where it waits for
-/// keys it takes some of the spaces. What the driver shadows is nobody's business.
+/// keys it takes some of the spaces. Functions that the driver shadows are not reported.
 pub(crate) fn preparation(config: &EngineConfig, session: &ExchangeFolder) -> String {
     let home = absolute(&config.working_dir).unwrap_or_else(|_| config.working_dir.clone());
     format!(

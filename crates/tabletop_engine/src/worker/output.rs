@@ -9,7 +9,7 @@ use crate::{
     worker::signal::Signal,
 };
 
-/// Reads what an engine prints until it ends.
+/// Reads the output of an engine until it ends.
 pub(crate) fn read_output(
     mut output: impl Read,
     stream: Stream,

@@ -34,7 +34,7 @@ impl Killer {
         }
     }
 
-    /// Lets the process and all that it has started leave what they are doing, as Ctrl-C would, where there is such a thing.
+    /// Interrupts the process and all that it has started, as Ctrl-C would, on platforms that have interrupts.
     pub(crate) fn interrupt(&self) {
         let target = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(pid) = target.pid {

@@ -1,4 +1,4 @@
-//! Scripts that clear what the driver needs.
+//! Scripts that clear variables or functions of the driver.
 
 use std::path;
 
@@ -21,7 +21,7 @@ fn motors(init: &str, callback: &str, trigger: Trigger) -> [MotorCommand; 2] {
 }
 
 #[test_with(Octave)]
-fn whatever_becomes_of_the_path_the_script_runs_on() {
+fn the_script_runs_on_after_any_change_of_the_path() {
     for trigger in TRIGGERS {
         for change in [
             "restoredefaultpath;",
@@ -72,7 +72,7 @@ fn a_motor_that_was_cleared_is_at_rest() {
 }
 
 #[test_with(Octave)]
-fn what_was_cleared_may_be_declared_again() {
+fn cleared_globals_may_be_declared_again() {
     for trigger in TRIGGERS {
         for declare in ["sensor motor aux", "motor", "aux"] {
             let heading = format!("clear all; close all; clc; global {declare};");

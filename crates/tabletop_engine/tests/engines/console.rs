@@ -11,7 +11,7 @@ use tabletop_harness::test_with;
 use crate::common::{self, Folder, Session, TRIGGERS, octave};
 
 #[test_with(Octave)]
-fn what_scripts_print_arrives_apart_from_replies() {
+fn printed_text_arrives_apart_from_replies() {
     for trigger in TRIGGERS {
         let folder = Folder::pair(
             "disp('from init'); x = 3",
@@ -95,7 +95,7 @@ fn a_flood_is_noted_now_and_then() {
 }
 
 #[test_with(Octave)]
-fn a_struct_shows_what_it_holds() {
+fn a_printed_struct_shows_its_fields() {
     let folder = Folder::pair(
         "s.number = 0.25; s.row = [2 0.5]; s.long = 1:14; s.thin = sparse(3); s.name = 'it is'; s.yes = true; s.all = zeros(2, 7); s.inner.x = 1; s.list = {1, 2}; s.go = @sin;\n\
          s, inner = s.inner\nmany(3).x = 1\nstruct()\ntext = disp(s.inner); disp(s.inner); nested = {s}",
@@ -142,7 +142,7 @@ fn a_struct_shows_what_it_holds() {
 }
 
 #[test_with(Octave)]
-fn what_was_shown_is_not_reported_again() {
+fn shown_output_is_not_reported_again() {
     for trigger in TRIGGERS {
         let folder = Folder::pair(
             "fprintf(stderr, 'a warning\\n');",
@@ -195,7 +195,7 @@ fn a_struct_in_a_cell_keeps_its_values() {
 }
 
 #[test_with(Octave)]
-fn nothing_is_reported_of_what_the_driver_does() {
+fn actions_of_the_driver_are_not_reported() {
     let folder = Folder::pair(
         "try, norm(1, 2, 3, 4), catch, end\nx = debug_on_error();\npath(path, tempdir); p = path; path(p);\ndisp ready",
         "",
@@ -206,7 +206,7 @@ fn nothing_is_reported_of_what_the_driver_does() {
 }
 
 #[test_with(Octave)]
-fn what_a_script_shadows_is_noted() {
+fn shadowed_functions_are_noted() {
     let folder = Folder::pair("disp ready", "");
     fs::write(folder.0.join("cumsum.m"), "function cumsum, end").unwrap();
     let session = Session::octave(&folder.0, Trigger::Stdin);

@@ -6,7 +6,7 @@ use tabletop_harness::test_with;
 use crate::common::{self, Folder, Session, octave};
 
 #[test_with(Octave)]
-fn what_draws_does_nothing_without_a_display() {
+fn drawing_functions_do_nothing_without_a_display() {
     let calls = [
         "h = waitbar(0, 'wait'); waitbar(0.5, h); close(h); close all",
         "figure(3); set(gcf, 'name', 'mine'); p = get(gcf, 'position');",

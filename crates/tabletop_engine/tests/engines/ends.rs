@@ -1,4 +1,4 @@
-//! Engines that hang, crash or are stopped: each end is reported as what it is, in time.
+//! Engines that hang, crash or are stopped: each end is reported in time, by its kind.
 
 use std::time::{Duration, Instant};
 

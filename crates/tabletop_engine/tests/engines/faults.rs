@@ -121,7 +121,7 @@ fn wrong_syntax_is_reported_with_its_place() {
 }
 
 #[test_with(Octave)]
-fn what_is_missing_is_reported() {
+fn missing_functions_are_reported() {
     let folder = Folder::new(&[(
         "agentBehavior.m",
         "function [i, c] = agentBehavior()\ni = @nosuch;\nc = @nosuch;\nend\n",

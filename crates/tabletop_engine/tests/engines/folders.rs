@@ -40,7 +40,7 @@ fn a_script_that_would_be_mistaken_for_another_is_reported() {
 }
 
 #[test_with(Octave)]
-fn what_is_no_folder_of_scripts_is_reported() {
+fn a_path_that_is_no_script_folder_is_reported() {
     let folder = Folder::pair("", "");
     let file = folder.0.join("testInit.m");
     assert_eq!(
@@ -106,7 +106,7 @@ fn scripts_may_be_named_in_many_ways() {
 }
 
 #[test_with(Octave)]
-fn what_names_no_script_is_reported() {
+fn values_that_are_no_function_handle_are_reported() {
     for (text, message) in [
         (
             "function [i, c] = agentBehavior(), i = @testInit; c = ['abc'; 'def'] == 'a'; end",

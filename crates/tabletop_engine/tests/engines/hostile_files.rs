@@ -52,7 +52,7 @@ fn a_request_goes_to_no_other_file() {
 #[cfg(target_os = "linux")]
 #[test_with(Python)]
 fn an_engine_that_does_not_read_its_requests_is_ended() {
-    // It answers what it sees waiting, until the pipe of its requests is full.
+    // It answers each waiting request, until the pipe of its requests is full.
     let text = "#!/usr/bin/env python3\nimport fcntl, struct, sys, termios\n\
         reply = struct.pack('<4I', 0x31415454, 1, 0, 0)\n\
         open(sys.argv[1] + '/reply.bin', 'wb').write(reply)\n\

@@ -8,7 +8,7 @@ use tabletop_harness::test_with;
 use crate::common::{self, Folder, Session, TRIGGERS};
 
 #[test_with(Octave)]
-fn whatever_a_script_clears_it_runs_on() {
+fn a_script_runs_on_after_clearing_anything() {
     let inits = [
         "clear all; close all; clc; count = 0;",
         "fclose('all'); count = 0;",
@@ -188,7 +188,7 @@ fn a_misused_aux_is_reported() {
 }
 
 #[test_with(Octave)]
-fn exit_is_reported_whatever_its_value() {
+fn exit_is_reported_with_any_value() {
     for exit in ["aux.exit = false;", "aux.exit = [];", "aux.exit = 'now';"] {
         let folder = Folder::pair("", exit);
         let session = Session::octave(&folder.0, Trigger::Stdin);

@@ -83,7 +83,7 @@ fn a_script_that_may_be_left_is_still_in_its_folder() {
 }
 
 #[test_with(Octave)]
-fn a_script_may_be_left_whatever_is_put_on_the_path() {
+fn break_leaves_a_script_with_any_path() {
     for init in [
         "addpath(aux.path);",
         "addpath(genpath(aux.path));",
@@ -94,7 +94,7 @@ fn a_script_may_be_left_whatever_is_put_on_the_path() {
             init,
             "addpath(aux.path); n = 1; if true, break, end, n = 2;",
         );
-        // What cannot be read is nobody's business, until it is called.
+        // Files that cannot be read do no harm until they are called.
         fs::create_dir(folder.0.join("data.m")).unwrap();
         fs::write(folder.0.join("._testInit.m"), b"\x80").unwrap();
         let session = Session::octave(&folder.0, TRIGGERS[0]);
@@ -113,7 +113,7 @@ fn a_script_may_be_left_whatever_is_put_on_the_path() {
 }
 
 #[test_with(Octave)]
-fn the_program_says_what_it_has_changed() {
+fn changes_to_a_script_are_noted() {
     let folder = Folder::pair("if true, break, end", "");
     let session = Session::octave(&folder.0, TRIGGERS[0]);
     session.init().unwrap();
@@ -126,7 +126,7 @@ fn the_program_says_what_it_has_changed() {
 }
 
 #[test_with(Octave)]
-fn what_is_left_where_it_cannot_be_is_reported_with_what_to_write() {
+fn a_break_that_cannot_leave_is_reported_with_its_replacement() {
     let elsewhere = Folder::pair("addpath([aux.path 'lib']);", "part");
     fs::create_dir(elsewhere.0.join("lib")).unwrap();
     fs::write(elsewhere.0.join("lib/part.m"), "if true, break, end").unwrap();

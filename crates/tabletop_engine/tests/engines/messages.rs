@@ -17,7 +17,7 @@ fn message(init: &str, callback: &str) -> String {
 }
 
 #[test_with(Octave)]
-fn what_is_not_always_sensed_is_explained() {
+fn optional_sensor_fields_are_explained() {
     for (callback, hint) in [
         (
             "x = sensor.rgbVision;",
@@ -151,7 +151,7 @@ fn an_error_without_a_place_is_in_the_script_that_ran() {
 }
 
 #[test_with(Octave)]
-fn what_a_callback_has_cleared_or_spoilt_is_reported() {
+fn variables_cleared_or_overwritten_by_a_callback_are_reported() {
     let cleared = message("", "clear all\ndisp(sensor.timeElapsed)");
     assert!(cleared.contains("comes back in the next call"), "{cleared}");
     let spoilt = message("", "aux = 3;");
@@ -191,7 +191,7 @@ fn functions_of_their_own_variables_are_noted() {
 }
 
 #[test_with(Octave)]
-fn what_to_do_is_reported() {
+fn errors_name_the_remedy() {
     for (init, reported) in [
         (
             "function testInit, disp(aux.path)",

@@ -66,7 +66,7 @@ fn two_rows_are_too_many() {
 }
 
 #[test_with(Python)]
-fn python_has_one_row_of_whatever_length() {
+fn python_gets_one_row_of_any_length() {
     let script = "def init(aux):\n    aux.initJointAngles = aux.maxJointAngles\n\
         def callback(sensor, motor, aux):\n\
         \x20   assert (aux.numLimbs, aux.numJoints) == (1, 7)\n\

@@ -37,7 +37,7 @@ fn nobody_answers_and_nobody_types() {
 
 #[cfg(unix)]
 #[test_with(Octave)]
-fn what_a_script_starts_reads_nothing() {
+fn processes_started_by_a_script_have_no_input() {
     let folder = Folder::pair(
         "",
         "[status, text] = system('cat; read x; echo got:$x; exit 3 # done');\n\

@@ -3,17 +3,18 @@
 use std::f32::consts::{PI, TAU};
 
 use bevy::prelude::*;
+use tabletop_controller::Sight;
 use tabletop_core::{
-    Hand, HandCommand, Hands, ObjectIndex, Pose, SimTick, StepApp as _, WriteCommand as _,
+    Hand, HandCommand, Hands, ObjectIndex, SimTick, StepApp as _, WriteCommand as _,
 };
-use tabletop_planner::{Before, PlanFailure, Sight, is_met, undone};
+use tabletop_geometry::Pose;
+use tabletop_planner::{Arranged as _, Before, PlanFailure, Solids as _, is_met, undone};
 use tabletop_task::{
     Binding, Demonstration, PlaceRange, PlacedSolid, Reference, Relation, Task, TaskStep,
     angle_between,
 };
 
 use super::way::{CarriedWay, WayPoint};
-use crate::imitation::sight;
 
 /// Limits on the number of ticks between a release and the next grasp, which is otherwise as demonstrated.
 const PAUSE: (u64, u64) = (15, 60);
@@ -37,7 +38,7 @@ pub(super) fn perform(
     task: &Task,
     binding: &Binding,
 ) -> Result<(), (usize, PlanFailure)> {
-    let sight = sight(app.world_mut());
+    let sight = Sight::of(app.world_mut());
     let beginning = sight
         .objects
         .iter()
@@ -157,7 +158,7 @@ impl Performance<'_> {
     }
 
     fn begin(&mut self, i: usize) -> Result<(), PlanFailure> {
-        let sight = sight(self.app.world_mut());
+        let sight = Sight::of(self.app.world_mut());
         let step = self.acts[i].step;
         let id = self.bound(&step.object)?.to_owned();
         let object = sight
@@ -320,7 +321,7 @@ impl Performance<'_> {
 
     /// Checks all relations; an error names the step of one that does not hold.
     fn judge(mut self, task: &Task) -> Result<(), (usize, PlanFailure)> {
-        let sight = sight(self.app.world_mut());
+        let sight = Sight::of(self.app.world_mut());
         if let Some(undone) = undone(task, self.binding, &sight, &self.before) {
             return Err(undone);
         }

@@ -3,12 +3,12 @@
 use std::f32::consts::TAU;
 
 use bevy::math::{Quat, Vec3};
+use tabletop_assembly::{IdAllocator, assemble};
 use tabletop_core::{
-    HeadCamera, LIGHT, Light, NAMED_COLORS, ObjectSpec, Pose, Random, Rgb, SceneItem, SceneSpec,
-    Shape, Table,
+    HeadCamera, LIGHT, Light, ObjectSpec, Random, SceneItem, SceneSpec, Shape, Table,
 };
+use tabletop_geometry::{NAMED_COLORS, Pose, Rgb};
 use tabletop_planner::RobotBody;
-use tabletop_scene::{IdAllocator, assemble};
 use tabletop_task::{PlaceRange, PlacedSolid, Reference, Requirements, Task};
 
 use crate::imitation::scattered;

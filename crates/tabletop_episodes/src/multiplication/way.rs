@@ -1,7 +1,8 @@
 //! The way of a hand, adapted to objects that are elsewhere.
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::{Hand, Pose, Primitive, Shape, SimTick};
+use tabletop_core::{Hand, Shape, SimTick};
+use tabletop_geometry::{Pose, Primitive};
 use tabletop_task::{Demonstration, HandDeed, PlacedSolid, Reference, TaskStep, angle_between};
 
 /// The way on which the object of a step was carried.
@@ -221,7 +222,7 @@ fn lift_over(solids: &[Primitive], way: &[Pose], obstacles: &[PlacedSolid]) -> f
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Rgb, Solid};
+    use tabletop_geometry::{Rgb, Solid};
 
     use super::*;
 
@@ -291,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_in_the_way_is_passed_above() {
+    fn the_path_passes_above_an_obstacle() {
         let carried = carried();
         let tower = PlacedSolid {
             pose: Pose::at(Vec3::new(3.0, 0.0, 2.5)),

@@ -105,7 +105,7 @@ impl DisplayOffer {
         self.modes.iter().chain([&self.screen])
     }
 
-    /// The nearest to these settings that the display can do, and what had to be changed, a line each.
+    /// The nearest settings that the display offers, and the changes, a line each.
     pub fn nearest(&self, chosen: DisplaySettings) -> (DisplaySettings, Vec<String>) {
         let mut nearest = DisplaySettings {
             antialiasing: self.nearest_antialiasing(chosen.antialiasing),

@@ -39,14 +39,14 @@ fn settings() -> DisplaySettings {
 }
 
 #[test]
-fn what_the_display_offers_stays() {
+fn offered_settings_stay() {
     let (nearest, changes) = offer().nearest(settings());
     assert_eq!(nearest, settings());
     assert_eq!(changes, [""; 0]);
 }
 
 #[test]
-fn what_it_does_not_offer_becomes_the_nearest_and_is_reported() {
+fn other_settings_become_the_nearest_offered_and_are_reported() {
     let with = |change: fn(&mut DisplaySettings)| {
         let mut settings = settings();
         change(&mut settings);
@@ -76,7 +76,7 @@ fn what_it_does_not_offer_becomes_the_nearest_and_is_reported() {
 }
 
 #[test]
-fn a_processor_that_draws_gets_what_it_draws_fluently() {
+fn software_rendering_gets_no_antialiasing() {
     let offer = DisplayOffer {
         is_software: true,
         ..offer()
@@ -171,7 +171,7 @@ proptest! {
     }
 
     #[test]
-    fn whatever_can_be_chosen_is_offered(offer in offers(), fullscreen: bool) {
+    fn every_choice_is_offered(offer in offers(), fullscreen: bool) {
         for resolution in offer.resolutions(fullscreen) {
             for refresh_rate in offer.refresh_rates(fullscreen, resolution) {
                 for color_depth in offer.color_depths(fullscreen, resolution, refresh_rate) {

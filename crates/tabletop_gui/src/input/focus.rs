@@ -9,7 +9,7 @@ use bevy_egui::{
     EguiContext, EguiInput, EguiPostUpdateSet, EguiPreUpdateSet, egui,
     helpers::bevy_to_egui_physical_key,
 };
-use tabletop_core::{KeyLetters, KeyboardFocus, Keys};
+use tabletop_user::{KeyLetters, KeyboardFocus, Keys};
 
 use crate::display::DisplayDialog;
 
@@ -91,7 +91,8 @@ fn is_press_of(event: &egui::Event, keys: &[egui::Key]) -> bool {
 mod tests {
     use super::*;
     use KeyCode::{ArrowRight, Digit1, Digit2, Enter, Escape, F1, KeyR, Space, Tab};
-    use tabletop_core::{Action, CorePlugin, KeySystems, Keymap};
+    use tabletop_core::CorePlugin;
+    use tabletop_user::{Action, KeySystems, Keymap};
 
     /// A form with things that can have the focus, and the results.
     #[derive(Resource, Default)]
@@ -230,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn after_tab_keys_do_what_they_did() {
+    fn keys_keep_their_actions_after_tab() {
         let mut keyboard = Keyboard::new();
         assert_eq!(keyboard.strike(Tab, ""), []);
         assert!(keyboard.has_egui());

@@ -1,9 +1,8 @@
 //! Keys that undo and redo (report section 4.1).
 
 use bevy::prelude::*;
-use tabletop_core::{
-    Action, Actor, CommandWriter, History, HistoryCommand, KeySystems, was_struck,
-};
+use tabletop_core::{Actor, CommandWriter, History, HistoryCommand};
+use tabletop_user::{Action, KeySystems, was_struck};
 
 pub(crate) fn plugin(app: &mut App) {
     app.add_systems(

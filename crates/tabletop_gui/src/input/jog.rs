@@ -87,7 +87,7 @@ pub(crate) struct Jog {
 }
 
 impl Jog {
-    /// With what the user moves the joints.
+    /// The keyboard or the panel, by which the user moves the joints.
     fn actor(&self) -> Actor {
         match self.keys.are_idle() {
             false => Actor::Key,
@@ -131,7 +131,7 @@ fn give_orders(jog: Res<Jog>, layout: Res<RobotLayout>, mut commands: CommandWri
     }
 }
 
-/// A tick has seen what has gone down.
+/// Forgets the struck keys once a tick has seen them.
 fn forget_struck(mut jog: ResMut<Jog>) {
     let mut forgetful = jog.clone();
     for controls in [&mut forgetful.keys, &mut forgetful.buttons] {
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn what_went_down_and_up_between_two_ticks_counts_once() {
+    fn a_key_struck_between_two_ticks_counts_once() {
         let mut jog = Jog::default();
         jog.keys.update(Directions::default(), towards(LeftE1, -1));
         jog.keys

@@ -1,7 +1,8 @@
 //! Keys of the whole program: Space pauses, Esc quits (report section 2.4).
 
 use bevy::prelude::*;
-use tabletop_core::{Action, Actor, ClockCommand, CommandWriter, KeySystems, Paused, was_struck};
+use tabletop_core::{Actor, ClockCommand, CommandWriter, Paused};
+use tabletop_user::{Action, KeySystems, was_struck};
 
 use crate::panels::context_menu::ContextMenu;
 

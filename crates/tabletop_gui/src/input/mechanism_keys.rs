@@ -1,7 +1,8 @@
 //! Keys that trigger, point, fasten, loosen and cut, with the held object or the one under the cursor.
 
 use bevy::prelude::*;
-use tabletop_core::{Actor, CommandWriter, KeySystems, Keys, Paused};
+use tabletop_core::{Actor, CommandWriter, Paused};
+use tabletop_user::{KeySystems, Keys};
 
 use crate::{
     Notices, Tone,
@@ -45,10 +46,11 @@ fn act(
 mod tests {
     use super::*;
     use crate::test_world::TestWorld;
-    use tabletop_core::{Hand, Joint, JointKind, MechanismCommand, Pose};
+    use tabletop_core::{Hand, Joint, JointKind, MechanismCommand};
+    use tabletop_geometry::Pose;
 
     #[test]
-    fn a_key_points_to_what_the_cursor_is_on() {
+    fn a_key_points_to_the_object_under_the_cursor() {
         let mut test = TestWorld::new(plugin);
         test.block("red", Vec3::Z);
         test.point_at(Vec3::Z);
@@ -87,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_done_is_reported() {
+    fn an_impossible_fastening_is_reported() {
         let mut test = TestWorld::new(plugin);
         test.hold("red", Vec3::Z);
         test.point_at(Vec3::Z);

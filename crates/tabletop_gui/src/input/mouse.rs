@@ -2,9 +2,8 @@
 //! lets it go.
 
 use bevy::prelude::*;
-use tabletop_core::{
-    Actor, CommandWriter, DragPlane, HandCommand, Hands, ObjectSpec, Paused, Table,
-};
+use tabletop_core::{Actor, CommandWriter, HandCommand, Hands, ObjectSpec, Paused, Table};
+use tabletop_user::DragPlane;
 
 use crate::input::{
     drag::Drag,
@@ -52,8 +51,8 @@ fn forget_press(mut press: ResMut<MousePress>) {
     press.set_if_neq(MousePress::Idle);
 }
 
-/// The button goes down: on what the selected hand holds a drag begins, and anywhere else the hand lets go; with an empty
-/// hand a click begins.
+/// The button goes down: on the held object a drag begins, and anywhere else the hand lets go; with an empty hand a click
+/// begins.
 fn press(
     buttons: Res<ButtonInput<MouseButton>>,
     pointer: Res<Pointer>,
@@ -85,7 +84,7 @@ fn press(
     };
 }
 
-/// The cursor moves: so does what it drags. Outside the window it stays where it is.
+/// The cursor moves, and the dragged object with it. Outside the window the object stays where it is.
 fn drag(
     pointer: Res<Pointer>,
     hands: Res<Hands>,
@@ -194,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn a_press_beside_what_is_held_lets_it_go_and_takes_nothing() {
+    fn a_press_beside_the_held_object_releases_it_and_takes_nothing() {
         let mut test = TestWorld::new(plugin);
         test.hold("red", Vec3::Z);
         test.block("blue", Vec3::new(5.0, 0.0, 1.0));
@@ -219,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_held_follows_the_cursor_while_the_button_is_down() {
+    fn the_held_object_follows_the_cursor_while_the_button_is_down() {
         let mut test = TestWorld::new(plugin);
         let red = test.hold("red", Vec3::Z);
         test.point_at(Vec3::Z);

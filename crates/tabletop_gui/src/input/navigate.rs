@@ -1,5 +1,5 @@
-//! The mouse moves the user's camera: dragging with the right button goes round what the cursor is on, with Shift or with the middle
-//! button it drags the scene along, and the wheel or two fingers go towards what the cursor is on. The left button is the hands'.
+//! The mouse moves the user's camera: dragging with the right button orbits the point under the cursor, with Shift or with the middle button
+//! it drags the scene along, and the wheel or two fingers approach the point under the cursor. The left button is the hands'.
 
 use bevy::{
     input::{
@@ -8,7 +8,7 @@ use bevy::{
     },
     prelude::*,
 };
-use tabletop_core::{CameraMotion, UserCamera};
+use tabletop_user::{CameraMotion, UserCamera};
 
 use crate::input::{
     pick::Pickable,
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drag_with_the_right_button_goes_round_what_the_cursor_was_on() {
+    fn a_right_drag_orbits_the_point_under_the_cursor() {
         let mut test = world();
         test.block("red", Vec3::Z);
         point(&mut test, [100.0, 100.0], Vec3::Z);
@@ -372,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn the_wheel_goes_towards_what_the_cursor_is_on() {
+    fn the_wheel_approaches_the_point_under_the_cursor() {
         let mut test = world();
         let at = Vec3::new(1.0, 2.0, 0.0);
         point(&mut test, [100.0, 100.0], at);

@@ -1,9 +1,8 @@
 //! Keys that make objects and clear the table (report section 6.1).
 
 use bevy::prelude::*;
-use tabletop_core::{
-    Action, Actor, CommandWriter, KeySystems, Paused, Preset, SceneCommand, was_struck,
-};
+use tabletop_core::{Actor, CommandWriter, Paused, Preset, SceneCommand};
+use tabletop_user::{Action, KeySystems, was_struck};
 
 use crate::PresetSeeds;
 

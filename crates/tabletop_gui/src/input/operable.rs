@@ -2,9 +2,11 @@
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
-    Action, Bonds, Hand, Hands, Joint, JointKind, MechanismCommand, ObjectIndex, ObjectSpec, Pose,
+    Bonds, Hand, Hands, Joint, JointKind, MechanismCommand, ObjectIndex, ObjectSpec,
     TouchedSurface, Turn,
 };
+use tabletop_geometry::Pose;
+use tabletop_user::Action;
 
 use crate::input::pick::Pickable;
 

@@ -2,7 +2,8 @@
 //! but are no objects.
 
 use bevy::{ecs::system::SystemParam, prelude::*};
-use tabletop_core::{Figure, ObjectIndex, ObjectSpec, Pose, Primitive, Table};
+use tabletop_core::{Figure, ObjectIndex, ObjectSpec, Table};
+use tabletop_geometry::{Pose, Primitive};
 
 /// Everything that can be seen or hide it.
 #[derive(SystemParam)]
@@ -67,7 +68,7 @@ mod tests {
     use super::*;
     use crate::test_world::block;
     use bevy::ecs::system::RunSystemOnce;
-    use tabletop_core::{Rgb, Triangles};
+    use tabletop_geometry::{Rgb, Triangles};
 
     fn picked(world: &mut World, origin: Vec3, direction: Vec3) -> Option<Entity> {
         let ray = Ray3d::new(origin, Dir3::new(direction).unwrap());
@@ -111,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_hides_what_is_below_it() {
+    fn the_table_hides_objects_below_it() {
         let mut world = world();
         let below = block(&mut world, "below", Vec3::Z * -10.0);
         assert_eq!(picked(&mut world, Vec3::Z * 20.0, Vec3::NEG_Z), None);
@@ -119,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_hides_what_is_behind_it() {
+    fn a_figure_hides_objects_behind_it() {
         let mut world = world();
         let block = block(&mut world, "block", Vec3::Z);
         let plate = Triangles {
@@ -144,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_on_the_table_any_more_is_not_picked() {
+    fn removed_objects_are_not_picked() {
         let mut world = world();
         block(&mut world, "gone", Vec3::Z);
         world.resource_mut::<ObjectIndex>().remove("gone");

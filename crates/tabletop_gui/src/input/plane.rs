@@ -1,7 +1,8 @@
 //! The turns of the plane in which objects are dragged (report section 4.3, figure 8d).
 
 use bevy::prelude::*;
-use tabletop_core::{Action, CameraMotion, DragPlane, Hand, Hands, Keys, Paused, UserCamera};
+use tabletop_core::{Hand, Hands, Paused};
+use tabletop_user::{Action, CameraMotion, DragPlane, Keys, UserCamera};
 
 use crate::input::{mouse::MousePress, pointer::MouseSystems};
 
@@ -171,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn the_panels_buttons_do_what_the_keys_do() {
+    fn the_panels_buttons_act_like_the_keys() {
         let mut test = holding();
         test.app.insert_resource(PlaneButtons {
             clockwise: true,

@@ -2,7 +2,7 @@
 
 use bevy::{prelude::*, window::PrimaryWindow};
 use bevy_egui::{EguiContext, PrimaryEguiContext, egui, input::EguiWantsInput};
-use tabletop_core::UserCamera;
+use tabletop_user::UserCamera;
 
 /// Reading the mouse, once a frame before its ticks.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -56,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_panel_is_hit_where_it_is_drawn_whatever_the_scale() {
+    fn a_panel_is_hit_where_it_is_drawn_at_any_scale() {
         let mut world = World::new();
         world.init_resource::<Pointer>();
         world.init_resource::<EguiWantsInput>();

@@ -1,10 +1,8 @@
 //! The robot's keys (report sections 5 and 5.1).
 
 use bevy::prelude::*;
-use tabletop_core::{
-    Action, Actor, CommandWriter, KeySystems, Keys, Paused, Robot, RobotCommand, RobotLayout, Way,
-    was_struck,
-};
+use tabletop_core::{Actor, CommandWriter, Paused, Robot, RobotCommand, RobotLayout};
+use tabletop_user::{Action, KeySystems, Keys, Way, was_struck};
 
 use crate::{
     input::jog::{Directions, Jog},

@@ -1,7 +1,8 @@
-//! Starting and stopping the script that drives the robot (report section 5.2), and what it says.
+//! Starting and stopping the script that drives the robot (report section 5.2), and its messages.
 
 use bevy::prelude::*;
-use tabletop_core::{Action, Agent, KeySystems, ScriptCommand, ScriptEvent, was_struck};
+use tabletop_core::{Agent, ScriptCommand, ScriptEvent};
+use tabletop_user::{Action, KeySystems, was_struck};
 
 use crate::panels::messages::{Notices, Tone};
 
@@ -83,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_script_prints_is_reported_as_often_as_it_prints_it() {
+    fn repeated_lines_of_a_script_are_each_reported() {
         let mut app = app();
         let line = ScriptEvent::Printed {
             line: "once more".into(),

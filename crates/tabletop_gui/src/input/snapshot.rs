@@ -29,7 +29,7 @@ pub(crate) struct Snapshots {
 }
 
 impl Snapshots {
-    /// Saves what the robot sees after the next tick.
+    /// Saves the head camera's picture after the next tick.
     pub const fn take_one(&mut self) {
         self.is_wanted = true;
     }
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_written_is_reported_with_its_path() {
+    fn a_failed_save_is_reported_with_its_path() {
         let error = save(&picture(), Path::new("/no such folder"), at(0)).unwrap_err();
         let words = error.to_string();
         assert!(words.contains("/no such folder/headcam1970"), "{words}");

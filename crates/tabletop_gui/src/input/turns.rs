@@ -9,7 +9,7 @@ pub(crate) const MAX_DEGREES: i32 = 180;
 /// The axes, in the order of their sliders.
 pub(crate) const AXES: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
 
-/// Sums of the turns since a hand took what it holds, in whole degrees. They are no orientation: every turn is about an
+/// Sums of the turns since a hand grasped its object, in whole degrees. They are no orientation: every turn is about an
 /// axis of the world, on top of those before.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct TurnSums([[i32; 3]; 4]);
@@ -38,7 +38,7 @@ pub(crate) fn plugin(app: &mut App) {
         .add_systems(Update, begin_anew);
 }
 
-/// Every grasp begins at 0, an empty hand stands there, and what an undo brings back begins there, too.
+/// Every grasp begins at 0, an empty hand stands at 0, and a grasp that undo brings back begins at 0, too.
 fn begin_anew(mut facts: MessageReader<SimFact>, mut turns: ResMut<TurnSums>) {
     for fact in facts.read() {
         match fact {
@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_slider_moves_is_what_is_turned() {
+    fn a_slider_turns_by_the_degrees_it_moves() {
         let mut turns = TurnSums::default();
         for (to, by) in [(45, 45.0), (30, -15.0), (-30, -60.0)] {
             assert_eq!(degrees_of(turns.turn_to(Hand::Left, 1, to)), Some(by));

@@ -83,8 +83,8 @@ impl Panels {
         kept_on(desk, place, size(panel))
     }
 
-    /// The place of a panel in the stack. Where the desk is too low for all, it goes on in another column; what still fits below an
-    /// earlier one, and is no wider, goes there.
+    /// The place of a panel in the stack. Where the desk is too low for all, it goes on in another column; a panel that fits below an
+    /// earlier column, and is no wider, goes there.
     fn slot(&self, panel: Panel, desk: Rect, size: &impl Fn(Panel) -> Vec2) -> Pos2 {
         let mut columns = vec![Vec2::ZERO];
         let mut slot = (0, 0.0);
@@ -111,7 +111,7 @@ impl Panels {
         desk.min + vec2(GAP + beside, GAP + below)
     }
 
-    /// Completes what was read from a file, which may be older than a panel.
+    /// Completes an arrangement from a file, which may be older than a panel.
     pub(crate) fn completed(mut self) -> Self {
         let mut seen = BTreeSet::new();
         self.stack.retain(|&panel| seen.insert(panel));
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fits_below_an_earlier_column_goes_there() {
+    fn a_panel_that_fits_below_an_earlier_column_goes_there() {
         let panels = Panels::default();
         let size = |panel: Panel| match panel {
             Panel::Robot => vec2(300.0, 400.0),
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_larger_than_the_desk_shows_its_title() {
+    fn a_panel_larger_than_the_desk_shows_its_title() {
         let place = kept_on(DESK, pos2(5.0, 5.0), vec2(2000.0, 2000.0));
         assert_eq!(place, DESK.min);
     }

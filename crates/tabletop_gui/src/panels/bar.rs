@@ -6,7 +6,7 @@ use bevy_egui::{
     egui::{self, Button, Context, RichText, Ui},
 };
 
-use tabletop_core::{Action, Keymap};
+use tabletop_user::{Action, Keymap};
 
 use crate::{
     display::DisplayOffer,
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn every_panel_tells_what_it_is_for() {
+    fn every_panel_tells_its_purpose() {
         for panel in Panel::ALL {
             let mut harness = harness();
             harness.get_by_label(panel.label()).hover();

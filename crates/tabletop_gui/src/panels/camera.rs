@@ -8,7 +8,7 @@ use bevy_egui::{
         self, Align2, Button, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, WidgetType, vec2,
     },
 };
-use tabletop_core::{Action, CameraMotion, CameraView, Keymap, Steering};
+use tabletop_user::{Action, CameraMotion, CameraView, Keymap, Steering};
 
 use crate::{
     panels::{Panel, Panels},
@@ -199,7 +199,7 @@ fn words_for(view: CameraView, keymap: &Keymap) -> (&'static str, String) {
         CameraView::RobotEye => ("Robot's eye", with_key(Action::ViewRobotEye)),
         CameraView::Center => (
             "Centre",
-            "Puts what you hold, or the table's centre, into the middle of the picture".into(),
+            "Puts the held object, or the table's centre, into the middle of the picture".into(),
         ),
     }
 }

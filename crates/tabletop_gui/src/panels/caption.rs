@@ -5,7 +5,8 @@ use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{Align2, Area, Context, Frame, Id, Order, RichText, vec2},
 };
-use tabletop_core::{Action, Imitating, Keymap, ShownTask, TaskOrder};
+use tabletop_core::ShownTask;
+use tabletop_user::{Action, Imitating, Keymap, TaskOrder};
 
 use crate::{
     panels::bar,
@@ -45,7 +46,7 @@ fn show_caption(
     orders.write_batch(show(context, &model));
 }
 
-/// Shows the sentence while the robot is busy, and returns what the user orders.
+/// Shows the sentence while the robot is busy, and returns the user's order.
 fn show(context: &Context, model: &Model) -> Option<TaskOrder> {
     let (sentence, remark) = texts(model.imitating, model.task)?;
     let stop = format!(

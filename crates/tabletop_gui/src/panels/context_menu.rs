@@ -5,7 +5,8 @@ use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{self, Ui},
 };
-use tabletop_core::{Actor, ClockCommand, CommandWriter, Keymap, MechanismCommand, Paused};
+use tabletop_core::{Actor, ClockCommand, CommandWriter, MechanismCommand, Paused};
+use tabletop_user::Keymap;
 
 use crate::{
     input::{

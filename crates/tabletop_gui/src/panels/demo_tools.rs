@@ -9,9 +9,10 @@ use bevy_egui::{
     egui::{self, Color32, Ui},
 };
 use tabletop_core::{
-    Action, Actor, CommandWriter, Hand, HandCommand, HandFact, Hands, History, HistoryCommand,
-    Keymap, ObjectSpec, Recording, RecordingCommand, SimCommand, SimFact,
+    Actor, CommandWriter, Hand, HandCommand, HandFact, Hands, History, HistoryCommand, ObjectSpec,
+    Recording, RecordingCommand, SimCommand, SimFact,
 };
+use tabletop_user::{Action, Keymap};
 
 use crate::{
     input::{plane::PlaneButtons, turns::TurnSums},
@@ -59,7 +60,7 @@ fn open_at_first_grasp(
 struct Model<'a> {
     /// The selected hand.
     hand: Hand,
-    /// Id of what it holds.
+    /// Id of the held object.
     held: Option<&'a str>,
     /// The turns about each axis, in degrees.
     turns: [i32; 3],
@@ -183,7 +184,7 @@ fn hands(ui: &mut Ui, model: &Model) -> Option<Request> {
         for hand in Hand::ALL {
             let is_selected = model.hand == hand;
             let radio = ui.radio(is_selected, format!("{hand:?}"));
-            let radio = radio.on_hover_text(what_a_hand_is(hand));
+            let radio = radio.on_hover_text(tooltip_of_hand(hand));
             if radio.clicked() && !is_selected {
                 chosen = Some(Request::Select(hand));
             }
@@ -193,7 +194,7 @@ fn hands(ui: &mut Ui, model: &Model) -> Option<Request> {
     ui.horizontal(choose).inner
 }
 
-const fn what_a_hand_is(hand: Hand) -> &'static str {
+const fn tooltip_of_hand(hand: Hand) -> &'static str {
     match hand {
         Hand::Left => "Act with the left hand",
         Hand::Right => "Act with the right hand",

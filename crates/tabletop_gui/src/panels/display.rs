@@ -201,7 +201,7 @@ fn show(ui: &mut Ui, model: Model, settings: &mut DisplaySettings) -> Option<Dis
     request.inner
 }
 
-/// The rows of what has more than two values. What depends on another choice stays something that is offered.
+/// The rows of settings with more than two values. A setting that depends on another one keeps an offered value.
 fn choices(ui: &mut Ui, offer: &DisplayOffer, settings: &mut DisplaySettings) {
     *settings = offer.nearest(*settings).0;
     let fullscreen = settings.fullscreen;
@@ -411,7 +411,7 @@ mod tests {
     }
 
     #[test]
-    fn what_leaves_no_choice_is_disabled_and_says_why() {
+    fn a_list_without_a_choice_is_disabled_and_gives_the_reason() {
         let disabled = |list: &str, reason: &str, change: fn(&mut Stage)| {
             let mut harness = harness(change);
             let found = harness.get_by_role_and_label(Role::ComboBox, list);

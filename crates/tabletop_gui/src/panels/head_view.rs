@@ -149,7 +149,7 @@ fn pixels(picture: &Picture, most: usize) -> ColorImage {
     )
 }
 
-/// Width of what the camera sees for a height of 1, whatever the shape of its pixels.
+/// Width of the field of view for a height of 1, with pixels of any shape.
 fn aspect(camera: &HeadCamera) -> f32 {
     if camera.square_fov {
         1.0
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn the_aspect_is_that_of_what_is_seen() {
+    fn the_aspect_is_that_of_the_field_of_view() {
         let mut camera = HeadCamera::default();
         assert_eq!(aspect(&camera), 4.0 / 3.0);
         camera.square_fov = true;

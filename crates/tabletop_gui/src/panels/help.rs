@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
-use tabletop_core::{Action, ActionGroup, KeySystems, Keymap, Way, was_struck};
+use tabletop_user::{Action, ActionGroup, KeySystems, Keymap, Way, was_struck};
 
 /// The number of columns.
 const COLUMNS: usize = 3;
@@ -202,7 +202,7 @@ fn show_help(mut contexts: EguiContexts, keymap: Res<Keymap>, mut help: ResMut<H
     }
 }
 
-/// Shows the sheet over everything else, also over what a pause lays over the window.
+/// Shows the sheet over everything else, also over the overlay of a pause.
 fn show_sheet(context: &egui::Context, sheet: &KeySheet) -> Option<Request> {
     let id = egui::Id::new("help");
     let layer = egui::Modal::default_area(id).layer();

@@ -26,7 +26,7 @@ fn recall(preferences: Res<Preferences>, mut panels: ResMut<Panels>, mut notices
     }
 }
 
-/// Keeps what has changed, when the mouse has let go of it.
+/// Keeps changes once the mouse button is up.
 fn keep(
     mut kept: Local<Option<Panels>>,
     panels: Res<Panels>,

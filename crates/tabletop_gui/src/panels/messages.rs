@@ -1,4 +1,4 @@
-//! The Messages window: the faults of task files, what could not be done, and what the robot and its script have done.
+//! The Messages window: faults of task files, failed commands, and events of the robot and its script.
 
 pub(crate) mod notices;
 pub(crate) mod robot;
@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn the_newest_is_seen_and_what_is_sought() {
+    fn the_newest_or_the_sought_message_is_seen() {
         let texts: Vec<_> = (0..500).map(|number| format!("number {number}.")).collect();
         let notices: Vec<_> = texts.iter().map(|text| (Tone::Event, &**text)).collect();
         let mut harness = harness(&notices);

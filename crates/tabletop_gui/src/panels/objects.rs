@@ -9,7 +9,8 @@ use bevy_egui::{
         ComboBox, Direction, Id, InnerResponse, Layout, Response, Ui, WidgetInfo, WidgetType, vec2,
     },
 };
-use tabletop_core::{Action, Actor, CommandWriter, Keymap, Preset, SceneCommand};
+use tabletop_core::{Actor, CommandWriter, Preset, SceneCommand};
+use tabletop_user::{Action, Keymap};
 
 use crate::{
     files::{FileRequest, Files, TaskFile, short_name},
@@ -283,7 +284,7 @@ mod tests {
             .build_ui_state(frame, stage)
     }
 
-    /// Clicks on what has these names, one after the other, and says what was wanted.
+    /// Clicks on the widgets of these names, one after the other, and returns their requests.
     fn clicked(harness: &mut Harness<Stage>, names: &[&str]) -> Vec<Request> {
         for name in names {
             harness.get_by_label(name).click();

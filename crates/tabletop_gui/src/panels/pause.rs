@@ -3,7 +3,8 @@
 
 use bevy::prelude::*;
 use bevy_egui::{EguiContexts, EguiPrimaryContextPass, egui};
-use tabletop_core::{Action, Keymap, Paused};
+use tabletop_core::Paused;
+use tabletop_user::{Action, Keymap};
 
 use crate::panels::{Panel, Panels, context_menu::ContextMenu};
 
@@ -99,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn the_overlay_covers_panels_but_not_what_is_in_the_foreground() {
+    fn the_overlay_covers_panels_but_not_the_foreground() {
         assert_eq!(clicks_through(egui::Order::Middle, Panels::default()), 0);
         assert_eq!(
             clicks_through(egui::Order::Foreground, Panels::default()),

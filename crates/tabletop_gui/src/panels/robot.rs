@@ -13,9 +13,10 @@ use bevy_egui::{
     egui::{CollapsingHeader, ComboBox, Ui, WidgetType},
 };
 use tabletop_core::{
-    Action, Actor, Agent, CommandWriter, Drive, Face, Keymap, LimbId, ObjectSpec, Robot,
-    RobotCommand, RobotLayout, ScriptCommand,
+    Actor, Agent, CommandWriter, Drive, Face, LimbId, ObjectSpec, Robot, RobotCommand, RobotLayout,
+    ScriptCommand,
 };
+use tabletop_user::{Action, Keymap};
 
 use self::{
     joint::{JointSelection, goal, joint},
@@ -43,7 +44,7 @@ struct Sources<'w, 's> {
 }
 
 impl Sources<'_, '_> {
-    /// Ids of what the gripper of a limb holds.
+    /// Ids of the objects in the gripper of a limb.
     fn held_by(&self, limb: LimbId) -> Vec<&str> {
         let held = &self.robot.limb(limb).holds;
         self.specs.iter_many(held).map(|spec| &*spec.id).collect()
@@ -117,7 +118,7 @@ fn show(ui: &mut Ui, model: &Model, selection: &mut JointSelection) -> RobotInpu
     input
 }
 
-/// The switches: what there is to see, and who controls the robot.
+/// The switches: visible parts, and the control of the robot.
 fn switches(ui: &mut Ui, model: &Model, requests: &mut Vec<Request>) {
     let is_shown = model.robot.is_shown;
     ui.horizontal(|ui| {

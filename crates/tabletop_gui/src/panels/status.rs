@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn the_memory_of_undo_is_reported_and_what_did_not_fit() {
+    fn the_memory_of_undo_and_dropped_segments_are_reported() {
         let mut history = History {
             undoable: 12,
             bytes: 3_500_000,

@@ -15,9 +15,8 @@ use bevy_egui::{
     EguiContexts, EguiPrimaryContextPass,
     egui::{self, Ui},
 };
-use tabletop_core::{
-    History, Imitating, Keymap, Paused, Playback, ShownTask, SimTick, Timeline, TimelineStage,
-};
+use tabletop_core::{History, Paused, Playback, ShownTask, SimTick, Timeline, TimelineStage};
+use tabletop_user::{Imitating, Keymap};
 
 use self::{
     axis::TimeAxis,
@@ -46,7 +45,7 @@ pub(crate) struct View {
     pictures: Pictures,
 }
 
-/// Shows the panel's contents, and returns what the user asks for.
+/// Shows the panel's contents, and returns the user's requests.
 pub(crate) fn show(ui: &mut Ui, model: &Model, view: &mut View) -> Vec<Request> {
     view.pictures.begin_frame(model.timeline);
     let mut requests = transport::show(ui, model);

@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_script_prints_is_only_listed() {
+    fn printed_lines_are_only_listed() {
         let mut notices = Notices::default();
         notices.log(Tone::Event, "printed");
         let mut toasts = Toasts::default();

@@ -28,7 +28,7 @@ const FLASH_SECONDS: f64 = 0.4;
 const FLASH_WIDTH: f32 = 2.0;
 
 impl Panel {
-    /// Shows the panel unless it is closed, and returns what its contents return.
+    /// Shows the panel unless it is closed, and returns the result of its contents.
     pub(crate) fn show<R>(
         self,
         context: &Context,
@@ -54,7 +54,7 @@ impl Panel {
                 let shown = inside.show(ui, |ui| {
                     ui.set_width(self.width());
                     ui.spacing_mut().item_spacing = spacing;
-                    // Without the least height, what has grown would be scrolled in the space that it had before.
+                    // Without the least height, contents that have grown would be scrolled in their former space.
                     let scroll = ScrollArea::vertical()
                         .min_scrolled_height(highest)
                         .max_height(highest);
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_open_is_shown() {
+    fn only_open_panels_are_shown() {
         let mut harness = harness();
         assert!(harness.query_by_label("Move Status").is_some());
         assert!(harness.query_by_label("Move Robot").is_none());

@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_goes_wrong_is_reported_once() {
+    fn a_failed_copy_is_reported_once() {
         let clipboard = Clipboard::default();
         let (sender, receiver) = mpsc::channel();
         clipboard.copy_by("text".into(), move |text| {

@@ -6,7 +6,7 @@ use bevy_egui::{
     egui::{self, Color32, Stroke, Vec2, vec2},
 };
 
-/// The colour of what is on or worked at.
+/// The colour of widgets that are on or in use.
 pub(crate) const ACCENT: Color32 = Color32::from_rgb(64, 196, 180);
 
 /// Background of selected things.

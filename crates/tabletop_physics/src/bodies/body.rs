@@ -2,9 +2,8 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{
-    Bounds, Dynamics, ObjectSpec, Polyhedron, Pose, Primitive, Shape, Solid, Table, Twist,
-};
+use tabletop_core::{Dynamics, ObjectSpec, Shape, Table};
+use tabletop_geometry::{Bounds, Polyhedron, Pose, Primitive, Solid, Twist};
 
 use super::mass::mass_properties;
 use crate::{

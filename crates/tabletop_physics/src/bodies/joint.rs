@@ -2,7 +2,8 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Joint, JointKind, ObjectSpec, Pose, TICK_SECONDS};
+use tabletop_core::{Joint, JointKind, ObjectSpec, TICK_SECONDS};
+use tabletop_geometry::Pose;
 
 use super::mass::mass_properties;
 use crate::settings::PhysicsSettings;

@@ -5,7 +5,8 @@ use bevy::{
     prelude::*,
 };
 use bevy_rapier3d::{prelude::MassProperties, rapier};
-use tabletop_core::{Primitive, Shape, Solid};
+use tabletop_core::Shape;
+use tabletop_geometry::{Primitive, Solid};
 
 /// Mass properties of a shape that weighs `mass` kg: the centre of mass is its origin whatever its parts are
 /// (report section 6.2, `<composite>`), and the inertia about it is that of its parts, all of one density.
@@ -86,7 +87,8 @@ fn inertia_of_faces(faces: impl Iterator<Item = [DVec3; 3]>) -> DMat3 {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Part, Pose, Rgb};
+    use tabletop_core::Part;
+    use tabletop_geometry::{Pose, Rgb};
 
     use super::*;
 
@@ -115,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn polyhedra_have_the_inertia_of_what_they_are() {
+    fn polyhedra_have_the_inertia_of_the_shapes_they_stand_for() {
         let square = Shape::Frustum {
             radius_top: std::f32::consts::SQRT_2,
             radius_bottom: std::f32::consts::SQRT_2,

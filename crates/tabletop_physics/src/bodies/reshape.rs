@@ -2,7 +2,8 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*};
-use tabletop_core::{ObjectSpec, Primitive};
+use tabletop_core::ObjectSpec;
+use tabletop_geometry::Primitive;
 
 use super::{body::collider, mass::mass_properties};
 use crate::geometry::nearby;

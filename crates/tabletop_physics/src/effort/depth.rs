@@ -53,7 +53,7 @@ mod tests {
     }
 
     #[test]
-    fn what_nothing_supports_has_no_depth() {
+    fn unsupported_bodies_have_no_depth() {
         let depths = Depths::new(&[0], &[(2, 3)]);
         assert_eq!([1, 2, 3, 7].map(|body| depths.of(body)), [None; 4]);
     }

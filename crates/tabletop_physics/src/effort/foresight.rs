@@ -4,7 +4,7 @@ use bevy_rapier3d::{
     parry::bounding_volume::{Aabb, BoundingVolume as _},
     rapier::prelude::{Collider, QueryFilter, RigidBodyHandle},
 };
-use tabletop_core::PAIR_GAP;
+use tabletop_geometry::PAIR_GAP;
 
 use super::{engine::Engine, mode::PREDICTION};
 

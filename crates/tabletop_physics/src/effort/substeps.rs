@@ -138,7 +138,7 @@ mod tests {
     };
 
     #[test]
-    fn what_is_deeper_gets_more() {
+    fn deeper_bodies_get_more_substeps() {
         let substeps = |depth| {
             let depth = Some(depth);
             SubstepFactors { depth, ..BLOCK }.substeps()

@@ -5,7 +5,7 @@ use bevy_rapier3d::{
     parry::bounding_volume::{Aabb, BoundingVolume as _},
     rapier::prelude as rapier,
 };
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 
 use crate::workarounds::contact::contact;
 

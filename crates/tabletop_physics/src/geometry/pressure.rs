@@ -2,7 +2,8 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::{prelude::*, rapier::prelude::Collider};
-use tabletop_core::{TICK_SECONDS, UNITS_PER_METER};
+use tabletop_core::TICK_SECONDS;
+use tabletop_geometry::UNITS_PER_METER;
 
 use crate::workarounds::impulses::{impulse_share, solved_points};
 

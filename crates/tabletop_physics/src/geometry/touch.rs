@@ -2,7 +2,8 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Pose, Shape};
+use tabletop_core::Shape;
+use tabletop_geometry::Pose;
 
 use super::convex::{Convex, convex_parts, placed_parts};
 use crate::bodies::collider;

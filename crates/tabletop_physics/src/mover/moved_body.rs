@@ -2,7 +2,7 @@
 
 use bevy::{ecs::query::QueryData, prelude::*};
 use bevy_rapier3d::prelude::*;
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 
 use super::limits::JUMP;
 use crate::{geometry::to_rapier, workarounds::short_turn::turn_to};

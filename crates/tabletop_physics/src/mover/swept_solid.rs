@@ -8,7 +8,7 @@ use bevy_rapier3d::{
     },
     rapier::prelude as rapier,
 };
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 
 use super::{
     approach::Approach,

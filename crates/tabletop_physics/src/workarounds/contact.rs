@@ -152,7 +152,8 @@ fn wider(one: (f32, Vec3), other: (f32, Vec3)) -> (f32, Vec3) {
 mod tests {
     use std::f32::consts::TAU;
 
-    use tabletop_core::{Rgb, Shape};
+    use tabletop_core::Shape;
+    use tabletop_geometry::Rgb;
 
     use super::*;
     use crate::collider;
@@ -208,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_near_the_edge_of_a_slab_is_found() {
+    fn contacts_near_the_edge_of_a_slab_are_found() {
         let slab = rapier::SharedShape::cuboid(SLAB.x, SLAB.y, SLAB.z);
         let cylinder = rapier::SharedShape::cylinder(HALF_HEIGHT, RADIUS);
         let mut near = 0;
@@ -228,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn what_leans_on_an_edge_is_no_deeper_than_the_edge_is_in_it() {
+    fn a_cylinder_on_an_edge_is_no_deeper_than_the_edge_in_it() {
         let slab = rapier::SharedShape::cuboid(SLAB.x, SLAB.y, SLAB.z);
         for i in 0..200_000 {
             let [a, b, c, tilt, along, radius, height, depth] =

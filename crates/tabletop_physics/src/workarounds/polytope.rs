@@ -14,7 +14,7 @@ use bevy_rapier3d::{
     },
     rapier::prelude::Vector,
 };
-use tabletop_core::Polyhedron;
+use tabletop_geometry::Polyhedron;
 
 const SIDES: u32 = 32;
 

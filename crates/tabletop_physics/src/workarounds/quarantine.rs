@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_body_whose_velocity_is_no_number_is_stopped_before_it_moves() {
+    fn a_body_with_a_nan_velocity_is_stopped_before_it_moves() {
         for kind in [
             RigidBodyType::Dynamic,
             RigidBodyType::KinematicPositionBased,

@@ -13,7 +13,7 @@ use bevy_rapier3d::{
     rapier::prelude as rapier,
     rapier::prelude::{Collider, ColliderHandle, ColliderSet, ContactPair, QueryFilter},
 };
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 
 use crate::{
     effort::REACH,

@@ -1,7 +1,7 @@
 //! The arms: which does it, and where they wait meanwhile.
 
 use bevy::math::Vec3;
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 
 use super::Imitator;
 use crate::{

@@ -1,8 +1,8 @@
 //! Objects that were in the way.
 
-use tabletop_core::Pose;
-
-use crate::sight::Sight;
+use crate::sight::Arranged as _;
+use tabletop_controller::Sight;
+use tabletop_geometry::Pose;
 
 /// An object that was in the way, and how it stood.
 pub(super) struct Cleared {

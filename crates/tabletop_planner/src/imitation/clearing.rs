@@ -1,7 +1,8 @@
 //! Clearing: what is in the way is put aside.
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::Pose;
+use tabletop_controller::{SeenObject, Sight};
+use tabletop_geometry::Pose;
 use tabletop_task::{PlaceRange, PlacedSolid, Relation, TaskStep};
 
 use super::{Imitator, slider::Slider};
@@ -9,7 +10,7 @@ use crate::{
     failure::PlanFailure,
     free_spot::free_spots,
     goals::{Candidate, candidates, is_inside},
-    sight::{SeenObject, Sight, is_above},
+    sight::{Arranged as _, Solids as _, is_above},
     stage::PlanningStage,
 };
 

@@ -1,10 +1,11 @@
 //! Putting back what was in the way, after the last step.
 
+use tabletop_controller::Sight;
+
 use super::{Imitator, cleared::Cleared, slider::Slider};
 use crate::{
     failure::PlanFailure,
     goals::Candidate,
-    sight::Sight,
     stage::{PlanningStage, Stopped},
 };
 

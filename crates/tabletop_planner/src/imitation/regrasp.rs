@@ -3,7 +3,8 @@
 use std::f32::consts::FRAC_PI_4;
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::Pose;
+use tabletop_controller::{SeenObject, Sight};
+use tabletop_geometry::Pose;
 use tabletop_task::Symmetry;
 
 use super::Imitator;
@@ -12,7 +13,6 @@ use crate::{
     free_spot::free_spots,
     goals::{Candidate, Placement},
     grasp::GraspSide,
-    sight::{SeenObject, Sight},
     stage::PlanningStage,
     standing::sides,
     transfer::Transfer,

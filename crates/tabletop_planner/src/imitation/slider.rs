@@ -1,10 +1,11 @@
 //! Parts that slide along a joint, such as lids.
 
 use bevy::math::Vec3;
+use tabletop_controller::Sight;
 use tabletop_core::JointKind;
 
 use super::Imitator;
-use crate::{failure::PlanFailure, sight::Sight, stage::PlanningStage};
+use crate::{failure::PlanFailure, stage::PlanningStage};
 
 /// A part that slides along a joint.
 pub(super) struct Slider<'s> {

@@ -1,7 +1,8 @@
 //! A step: what it asks for, and how the object gets there.
 
 use bevy::math::Vec3;
-use tabletop_core::Pose;
+use tabletop_controller::Sight;
+use tabletop_geometry::Pose;
 use tabletop_task::{Relation, TaskStep};
 
 use super::{Imitator, slider::Slider};
@@ -9,7 +10,7 @@ use crate::{
     failure::PlanFailure,
     goals::{Candidate, Placement, bound, candidates, inside, is_inside},
     grasp::GraspSide,
-    sight::{Sight, heights},
+    sight::{Solids as _, heights},
     stage::PlanningStage,
 };
 

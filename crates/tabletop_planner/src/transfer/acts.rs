@@ -1,7 +1,8 @@
 //! The acts of a transfer: what the arm does when it takes an object, carries it and lets it go.
 
 use bevy::math::Vec3;
-use tabletop_core::Pose;
+use tabletop_controller::Sight;
+use tabletop_geometry::Pose;
 
 use super::{
     PAIRS, Transfer, above_place,
@@ -14,7 +15,6 @@ use crate::{
     goals::{Candidate, Placement},
     motion::{follow, grip, wait},
     path::{Path, largest_turn, lift, line},
-    sight::Sight,
     stage::PlanningStage,
     transit::WaySearch,
 };

@@ -2,18 +2,18 @@
 
 use std::{cell::Cell, collections::BTreeMap};
 
-use tabletop_core::Pose;
+use tabletop_controller::{Angles, SeenObject, Sight};
+use tabletop_geometry::Pose;
 use tabletop_task::{PlacedSolid, angle_between};
 
 use super::{BESIDE, PAIRS, Transfer, above_place};
 use crate::{
-    body::Angles,
     clearance::Margins,
     failure::PlanFailure,
     goals::Candidate,
     grasp::{Grasp, grasps},
     path::{Path, largest_turn},
-    sight::{SeenObject, Sight},
+    sight::Solids as _,
     transit::WaySearch,
 };
 

@@ -1,16 +1,16 @@
 //! The ways of a transfer: to the object, up with it, across, and down.
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::Pose;
+use tabletop_controller::{Angles, SeenObject, Sight};
+use tabletop_geometry::Pose;
 use tabletop_task::PlacedSolid;
 
 use super::{BESIDE, Transfer, choice::Taking};
 use crate::{
-    body::Angles,
     clearance::{Clearance, Margins},
     goals::{Candidate, Placement},
     path::{Path, lift, withdraw},
-    sight::{SeenObject, Sight, heights},
+    sight::{Solids as _, heights},
     transit::{WaySearch, transit},
 };
 

@@ -10,9 +10,10 @@ pub(crate) use command::check_command;
 pub(crate) use scene::check_table;
 
 use tabletop_core::{
-    HandCamera, HeadCamera, JointKind, JointSpec, ObjectSpec, Pose,
+    HandCamera, HeadCamera, JointKind, JointSpec, ObjectSpec,
     limits::{DISPLACEMENTS, MASSES, PROPORTIONS, STIFFNESSES, TRAVELS},
 };
+use tabletop_geometry::Pose;
 
 use crate::files::bounds::{
     object::check_object,

@@ -1,6 +1,7 @@
 //! The lines of a segment's text file (report section 4.1).
 
-use tabletop_core::{Bond, Decimal, Hand, ObjectSpec, Operator, Pose};
+use tabletop_core::{Bond, Decimal, Hand, ObjectSpec, Operator};
+use tabletop_geometry::Pose;
 
 use crate::files::properties::properties;
 
@@ -181,7 +182,8 @@ impl Event<'_> {
 #[cfg(test)]
 mod tests {
     use bevy::math::{Quat, Vec3};
-    use tabletop_core::{Rgb, Shape};
+    use tabletop_core::Shape;
+    use tabletop_geometry::Rgb;
 
     use super::*;
 
@@ -224,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn what_becomes_of_controls_and_bonds_is_written_as_the_original_program_wrote_it() {
+    fn events_of_controls_and_bonds_are_written_as_in_the_original_program() {
         let by = &Operator::Hand(Hand::Right);
         let bond = &Bond {
             host_point: "nutHole".into(),
@@ -271,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn what_hands_do_is_written_with_their_names() {
+    fn events_of_hands_are_written_with_their_names() {
         let id = "a";
         for (event, expected) in [
             (Event::Delete { id }, "3,delete,a"),

@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn what_happens_between_two_frames_is_shown_by_the_later() {
+    fn ticks_between_two_frames_belong_to_the_later() {
         let clock = FrameClock {
             start: SimTick(100),
         };

@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_does_not_read_back() {
+    fn nan_and_infinity_do_not_read_back() {
         for (value, reads) in [(1.5, true), (f64::NAN, false), (f64::INFINITY, false)] {
             let line = to_json_line(&("null, none", value)).unwrap();
             assert_eq!(reads_back(&line), reads, "{value}");

@@ -64,7 +64,8 @@ fn text(value: AttributeValue) -> String {
 #[cfg(test)]
 mod tests {
     use bevy::math::Vec3;
-    use tabletop_core::{Pose, Rgb, Shape};
+    use tabletop_core::Shape;
+    use tabletop_geometry::{Pose, Rgb};
 
     use super::*;
 
@@ -91,7 +92,7 @@ mod tests {
     const RED: Rgb = Rgb::new(1.0, 0.0, 0.0);
 
     #[test]
-    fn every_shape_lists_what_is_known_of_it() {
+    fn every_shape_lists_its_properties() {
         let span = Vec3::new(1.0, 2.0, 3.0);
         for (shape, expected) in [
             (
@@ -170,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_file_describes_comes_first_and_is_not_repeated() {
+    fn descriptions_of_the_file_come_first_and_are_not_repeated() {
         let ball = Shape::Sphere {
             radius: 1.0,
             color: RED,

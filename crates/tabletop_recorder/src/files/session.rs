@@ -6,9 +6,10 @@ use bevy::prelude::Resource;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::{Map, Value};
 use tabletop_core::{
-    Actor, ClockCommand, HandCamera, HeadCamera, IssuedCommand, JointSpec, ObjectSpec, Pose,
+    Actor, ClockCommand, HandCamera, HeadCamera, IssuedCommand, JointSpec, ObjectSpec,
     RecordingCommand, SimCommand, SimTick, Table,
 };
+use tabletop_geometry::Pose;
 
 use crate::{
     error::RecorderError,

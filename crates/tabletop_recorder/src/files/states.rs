@@ -1,6 +1,7 @@
 //! The pose and the speed of every object at the end of every tick.
 
-use tabletop_core::{Pose, SimTick, Twist};
+use tabletop_core::SimTick;
+use tabletop_geometry::{Pose, Twist};
 
 /// An object's state at the end of a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -278,7 +278,8 @@ fn hand(name: &str) -> Result<Hand, String> {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{ObjectSpec, Pose, Rgb, Shape};
+    use tabletop_core::{ObjectSpec, Shape};
+    use tabletop_geometry::{Pose, Rgb};
 
     use super::*;
     use crate::files::event::Event;
@@ -297,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_reads_back() {
+    fn written_text_reads_back() {
         let id = "a, \"b\"";
         let shape = Shape::Sphere {
             radius: 0.5,
@@ -358,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_is_none_is_named() {
+    fn an_invalid_line_is_named() {
         for (line, problem) in [
             ("x,delete,a", "expected a frame, found `x`"),
             ("1,fly,a", "expected an event of a recording, found `fly,a`"),

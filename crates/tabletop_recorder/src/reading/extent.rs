@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_last_tick_is_found_whatever_ids_hold() {
+    fn the_last_tick_is_found_with_any_ids() {
         for (text, tick) in [
             ("tick,id,x\n", None),
             ("tick,id,x\n3,a,1.0\n", Some(3)),

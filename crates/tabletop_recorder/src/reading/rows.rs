@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::{JointName, JointState, Pose, SimTick, Twist};
+use tabletop_core::{JointName, JointState, SimTick};
+use tabletop_geometry::{Pose, Twist};
 
 use crate::{
     error::RecorderError,

@@ -2,7 +2,8 @@
 
 use std::{collections::BTreeMap, path::PathBuf};
 
-use tabletop_core::{Act, Hand, Manipulator, Operator, Rgb, SimTick, TimelineSegment, Verb};
+use tabletop_core::{Act, Hand, Manipulator, Operator, SimTick, TimelineSegment, Verb};
+use tabletop_geometry::Rgb;
 
 use crate::reading::event::{Occurrence, RecordedEvent};
 

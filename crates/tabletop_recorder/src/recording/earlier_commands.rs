@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_reported_again_is_what_was_noted() {
+    fn earlier_commands_are_reported_as_noted() {
         let commands = [
             (3, scene()),
             (4, issued(RobotCommand::Show(true))),

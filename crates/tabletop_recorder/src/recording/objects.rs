@@ -2,7 +2,8 @@
 
 use std::{collections::BTreeMap, sync::Arc};
 
-use tabletop_core::{ObjectSpec, Rgb, SimTick};
+use tabletop_core::{ObjectSpec, SimTick};
+use tabletop_geometry::Rgb;
 
 use crate::{
     files::{event::Event, states},

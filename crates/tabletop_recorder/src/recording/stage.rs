@@ -3,8 +3,9 @@
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
     HandCamera, HandCameras, HandImages, HeadCamera, Joint, JointSpec, JointState, ObjectIndex,
-    ObjectSpec, Robot, RobotLayout, Shape, Table, Twist,
+    ObjectSpec, Robot, RobotLayout, Shape, Table,
 };
+use tabletop_geometry::Twist;
 
 use crate::{
     files::{

@@ -1,7 +1,7 @@
 //! Tracking of objects: whether they have changed enough to be reported.
 
 use bevy::math::Vec3;
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 
 use crate::files::states::ObjectState;
 

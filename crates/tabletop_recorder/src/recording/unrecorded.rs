@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_starts_and_finishes_what_is_not_there_to_be_read() {
+    fn a_recording_without_files_starts_and_finishes() {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default(), UnrecordedPlugin))
             .start();

@@ -68,7 +68,7 @@ fn failure(app: &mut App) -> (PathBuf, String) {
 const IDS: [&str; 6] = ["a", "bb", "ccc", "dddd", "eeeee", "ffffff"];
 
 #[test_with(Mounting)]
-fn what_was_recorded_before_the_disk_was_full_is_complete() {
+fn a_recording_is_complete_up_to_a_full_disk() {
     let place = Place::new();
     for round in 0..12 {
         let path = place.path().join(round.to_string());

@@ -5,9 +5,10 @@ use std::{collections::BTreeMap, fs};
 use bevy::prelude::App;
 use tabletop_core::{
     ClockCommand, Hand, HandCommand, HistoryCommand, ObjectIndex, ObjectSpec, Recording,
-    RecordingCommand, Rgb, Robot, SceneCommand, Shape, SimCommand, SimTick, StepApp as _,
+    RecordingCommand, Robot, SceneCommand, Shape, SimCommand, SimTick, StepApp as _,
     WriteCommand as _,
 };
+use tabletop_geometry::Rgb;
 use tabletop_recorder::{Session, SessionCommand};
 
 use crate::stage::{Place, app, block, grasp, location, run, scene};
@@ -223,7 +224,7 @@ fn a_reader_for_the_original_program_reads_a_recording() {
 }
 
 #[test]
-fn states_hold_every_tick_of_what_moves() {
+fn states_hold_every_tick_of_moving_objects() {
     let place = Place::new();
     let mut app = app(&place);
     run(
@@ -308,7 +309,7 @@ fn the_session_log_holds_the_scene_and_every_command() {
 }
 
 #[test]
-fn an_earlier_recording_is_part_of_what_came_before_without_what_was_undone() {
+fn earlier_commands_include_an_earlier_recording_without_undone_ones() {
     let place = Place::new();
     let mut app = app(&place);
     run(
@@ -367,7 +368,7 @@ fn a_scene_that_is_set_in_the_first_tick_is_the_one_recorded() {
 }
 
 #[test]
-fn what_happens_while_paused_is_recorded() {
+fn commands_in_a_pause_are_recorded() {
     let place = Place::new();
     let mut app = app(&place);
     run(
@@ -407,7 +408,7 @@ fn the_last_frame_tells_where_everything_is_that_is_not_where_its_last_line_says
 }
 
 /// The frames of segment 0 if nothing moves, and this is done after 20 ticks.
-fn frames_of_what_stands_still(act: impl FnOnce(&mut App)) -> Vec<u64> {
+fn frames_of_a_still_scene(act: impl FnOnce(&mut App)) -> Vec<u64> {
     let place = Place::new();
     let mut app = app(&place);
     run(
@@ -427,16 +428,16 @@ fn frames_of_what_stands_still(act: impl FnOnce(&mut App)) -> Vec<u64> {
 }
 
 #[test]
-fn what_appears_vanishes_or_changes_its_colour_is_in_a_picture_though_nothing_moves() {
-    assert_eq!(frames_of_what_stands_still(|_| {}), [0]);
+fn appearing_vanishing_and_recoloured_objects_are_pictured_though_nothing_moves() {
+    assert_eq!(frames_of_a_still_scene(|_| {}), [0]);
     assert_eq!(
-        frames_of_what_stands_still(|app| {
+        frames_of_a_still_scene(|app| {
             app.world_mut().write_command(SceneCommand::Clear);
         }),
         [0, 2]
     );
     assert_eq!(
-        frames_of_what_stands_still(|app| {
+        frames_of_a_still_scene(|app| {
             let still = app.world().resource::<ObjectIndex>().get("still").unwrap();
             let blue = ObjectSpec {
                 shape: Shape::Sphere {
@@ -450,7 +451,7 @@ fn what_appears_vanishes_or_changes_its_colour_is_in_a_picture_though_nothing_mo
         [0, 2]
     );
     assert_eq!(
-        frames_of_what_stands_still(|app| {
+        frames_of_a_still_scene(|app| {
             app.world_mut().resource_mut::<Robot>().is_shown = true;
         }),
         [0, 2]

@@ -120,7 +120,7 @@ fn an_undone_segment_keeps_its_hand_pictures_until_it_cannot_be_redone() {
 }
 
 #[test]
-fn what_moves_the_robot_is_seen_by_its_hands() {
+fn hand_cameras_see_the_robot_move() {
     let frames = |hand_pictures| {
         let place = Place::new();
         let mut app = recorder(&place, hand_pictures);

@@ -46,7 +46,7 @@ fn records_until_killed() {
 }
 
 #[test]
-fn what_was_recorded_before_a_kill_is_complete() {
+fn a_recording_is_complete_up_to_a_kill() {
     let place = Place::new();
     let begin = Instant::now();
     for round in 0..15 {

@@ -4,10 +4,11 @@ use std::fs;
 
 use bevy::{math::Vec3, prelude::default};
 use tabletop_core::{
-    Hand, HandCommand, HistoryCommand, ObjectSpec, Part, Pose, Recording, RecordingCommand,
-    SceneCommand, SceneItem, SceneSpec, Shape, SimCommand, SimTick, StepApp as _, Timeline,
-    TimelinePicture, TimelineStage,
+    Hand, HandCommand, HistoryCommand, ObjectSpec, Part, Recording, RecordingCommand, SceneCommand,
+    SceneItem, SceneSpec, Shape, SimCommand, SimTick, StepApp as _, Timeline, TimelinePicture,
+    TimelineStage,
 };
+use tabletop_geometry::Pose;
 use tabletop_recorder::{Occurrence, RecordingReader};
 
 #[cfg(unix)]
@@ -155,7 +156,7 @@ fn events_pictures_states_and_joints_are_read_with_their_ticks() {
 }
 
 #[test]
-fn what_was_cut_off_is_read_as_far_as_it_goes() {
+fn truncated_files_are_read_as_far_as_they_go() {
     let place = Place::new();
     let mut app = app(&place);
     run(
@@ -186,7 +187,7 @@ fn what_was_cut_off_is_read_as_far_as_it_goes() {
 }
 
 #[test]
-fn what_is_no_recording_or_damaged_is_an_error_with_its_place() {
+fn missing_and_damaged_files_are_errors_with_their_place() {
     let place = Place::new();
     let error = RecordingReader::open(place.path()).unwrap_err().to_string();
     assert!(error.contains("session.jsonl"), "{error}");
@@ -251,7 +252,7 @@ fn composites_in_composites_are_recorded_and_read() {
 }
 
 #[test]
-fn what_cannot_be_written_ends_the_recording() {
+fn a_command_that_cannot_be_written_ends_the_recording() {
     let place = Place::new();
     let mut app = app(&place);
     run(
@@ -305,7 +306,7 @@ fn links_and_devices_are_not_read() {
 /// Else the recovery of an interrupted undo would move files from or to any folder.
 #[cfg(unix)]
 #[test]
-fn what_was_undone_is_not_looked_for_in_other_folders() {
+fn undone_segments_are_not_looked_for_in_other_folders() {
     let put_away = r#"{"PutAway":{"segment":1,"before":BEFORE,"then":""}}"#;
     let bring_back = r#"{"BringBack":{"segment":1,"before":BEFORE,"first_frame":0}}"#;
     let before = r#"{"segment":0,"text":0,"session":0,"states":0,"joints":0}"#;

@@ -11,9 +11,10 @@ use bevy::{ecs::system::SystemState, prelude::*};
 use tabletop_core::{
     CommandId, CorePlugin, Hand, HandCamera, HandCameras, HandCommand, HandFact, HandImages, Hands,
     HistoryCommand, HistoryFact, IssuedCommand, ObjectIndex, ObjectSpec, Picture, PictureDemand,
-    PictureSystems, Pose, Recording, Rgb, SceneCommand, SceneFact, SceneItem, SceneSpec,
-    SensorImage, Shape, SimCommand, SimFact, SimSystems, SimTick, StepApp as _, WriteCommand as _,
+    PictureSystems, Recording, SceneCommand, SceneFact, SceneItem, SceneSpec, SensorImage, Shape,
+    SimCommand, SimFact, SimSystems, SimTick, StepApp as _, WriteCommand as _,
 };
+use tabletop_geometry::{Pose, Rgb};
 use tabletop_recorder::RecorderPlugin;
 
 /// A folder for the recordings of a test, removed in the end.

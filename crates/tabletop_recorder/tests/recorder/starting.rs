@@ -13,7 +13,7 @@ use tabletop_storage::{Storage, StorageFault};
 use crate::stage::{Place, app, app_into, app_with, heard, run, scene};
 
 #[test]
-fn start_and_finish_tell_what_they_do() {
+fn start_and_finish_are_reported() {
     let place = Place::new();
     let mut app = app(&place);
     let folder = place.demo();
@@ -191,7 +191,7 @@ fn a_folder_that_loses_its_place_ends_the_recording() {
 }
 
 #[test]
-fn the_report_names_what_was_moved_aside_and_what_has_failed() {
+fn the_report_names_moved_recordings_and_failures() {
     let place = Place::new();
     let mut app = app(&place);
     assert_eq!(finish_recording(&mut app), Ok(RecordingReport::default()));

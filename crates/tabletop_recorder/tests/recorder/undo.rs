@@ -78,7 +78,7 @@ fn commands_of_the_tick_before_the_grasp_stay() {
 }
 
 #[test]
-fn scenes_are_set_before_hands_act_whatever_the_order_of_the_commands() {
+fn scenes_are_set_before_hands_act_in_any_order_of_commands() {
     assert_same(
         &[(20, scene(&["a", "c"]))],
         &[
@@ -90,7 +90,7 @@ fn scenes_are_set_before_hands_act_whatever_the_order_of_the_commands() {
 }
 
 #[test]
-fn hands_act_after_the_clock_was_turned_whatever_the_order_of_the_commands() {
+fn hands_act_after_undo_in_any_order_of_commands() {
     assert_same(
         &[(20, grasp(RIGHT, "bb"))],
         &[
@@ -177,7 +177,7 @@ fn an_undone_destroy_brings_the_object_back_without_a_line() {
 }
 
 #[test]
-fn what_was_created_in_an_undone_segment_is_gone() {
+fn objects_created_in_an_undone_segment_are_gone() {
     assert_same(
         &[
             (20, grasp(LEFT, "a")),
@@ -313,7 +313,7 @@ fn undo_works_while_paused() {
 }
 
 #[test]
-fn what_is_undone_is_kept_until_it_cannot_be_redone() {
+fn undone_segments_are_kept_until_they_cannot_be_redone() {
     let place = Place::new();
     let mut app = app(&place);
     run(
@@ -341,7 +341,7 @@ fn what_is_undone_is_kept_until_it_cannot_be_redone() {
 }
 
 #[test]
-fn an_undo_of_what_was_never_begun_is_survived() {
+fn an_undo_without_a_segment_is_survived() {
     let place = Place::new();
     let mut app = app(&place);
     run(

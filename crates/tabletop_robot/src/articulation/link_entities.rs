@@ -5,7 +5,8 @@ use bevy_rapier3d::{
     plugin::systems::{init_colliders, init_rigid_bodies},
     prelude::*,
 };
-use tabletop_core::{CarriesHeadCamera, Pose, Robot, Rollback, Table};
+use tabletop_core::{CarriesHeadCamera, Robot, Rollback, Table};
+use tabletop_geometry::Pose;
 use tabletop_physics::{MET_WHEN_THERE, MovedBody, set_enabled};
 
 use crate::articulation::{
@@ -106,7 +107,7 @@ pub(crate) fn base(world: &mut World) -> Pose {
         .pose(&table.unwrap_or_default())
 }
 
-/// Lets these links push nothing, and all others what they meet.
+/// Lets these links push nothing, and all others push the objects that they meet.
 pub(crate) fn make_passive(world: &mut World, passive: PassiveLinks) -> Result {
     let links = world.resource::<LinkEntities>().clone();
     world.resource_scope(|world, mut now: Mut<PassiveLinks>| {

@@ -3,21 +3,20 @@
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-/// The links that push nothing; true at the number of each. They go where the robot moves them, but the engine does not look for their
-/// contacts.
+/// The links that push nothing; true at the number of each. They go where the robot moves them, but Rapier computes no contacts for them.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct PassiveLinks {
-    /// The links that are far from everything they could push. They sleep: two dozen moving bodies would be most of the engine's step.
+    /// The links that are far from every free object. They sleep: two dozen moving bodies would be most of a physics step.
     far: Vec<bool>,
-    /// The links that stand in an object, since the robot came or because something pressed the object against them. They would press it into
-    /// the table, so they push nothing until they are out.
+    /// The links that overlap an object: the robot appeared there, or something pressed the object against them. They would press it into the
+    /// table, so they push nothing until they are out of it.
     pub inside: Vec<bool>,
-    /// True in the tick in which the robot comes: what comes with it has no bodies yet.
+    /// True in the tick in which the robot appears: objects that appear with it have no bodies yet.
     is_new: bool,
 }
 
 impl PassiveLinks {
-    /// No links, or those that are far and those that are inside an object.
+    /// The links that are far, and those that overlap an object; empty lists if there are none.
     pub fn new(far: Vec<bool>, inside: Vec<bool>) -> Self {
         let any = |links: Vec<bool>| {
             if links.contains(&true) {
@@ -33,7 +32,7 @@ impl PassiveLinks {
         }
     }
 
-    /// All links of a robot that has just come, until it is seen which of them are inside something.
+    /// All links of a robot that has just appeared, until the next tick shows which of them overlap an object.
     pub fn of_newcomer(links: usize) -> Self {
         Self {
             is_new: links > 0,
@@ -41,7 +40,7 @@ impl PassiveLinks {
         }
     }
 
-    /// The same a tick later, of a robot with so many links: without those that are inside nothing now, and with those that crush something.
+    /// The passive links a tick later, of a robot with `links` links. Links that overlap nothing any more leave; links that crush an object join.
     pub fn after_tick(
         &self,
         links: usize,
@@ -54,12 +53,12 @@ impl PassiveLinks {
         Self::new(self.far.clone(), inside.collect())
     }
 
-    /// True if any link stands in an object.
+    /// True if any link overlaps an object.
     pub fn are_inside(&self) -> bool {
         !self.inside.is_empty()
     }
 
-    /// Lets the engine look for the contacts of all other links, and no longer for those of these.
+    /// Replaces the passive links by others: Rapier computes the contacts of all links but these.
     pub fn set(&mut self, to: Self, links: &[Entity], shapes: &mut RapierContextColliders) {
         for (number, link) in links.iter().enumerate() {
             let is_passive = to.contains(number);
@@ -74,7 +73,7 @@ impl PassiveLinks {
         *self = to;
     }
 
-    /// True for a link that is far from everything it could push.
+    /// True for a link that is far from every free object.
     pub fn is_far(&self, link: usize) -> bool {
         self.far.get(link).copied().unwrap_or(false)
     }

@@ -1,7 +1,8 @@
 //! Pairs of the robot's bodies that can collide.
 
 use bevy::prelude::*;
-use tabletop_core::{JointRole, Pose};
+use tabletop_core::JointRole;
+use tabletop_geometry::Pose;
 use tabletop_physics::SweptSolid;
 
 use crate::articulation::tree::{Articulation, Body, Positions, TreePosition};

@@ -8,10 +8,8 @@ use bevy::{
 };
 use bevy_rapier3d::rapier::prelude::SharedShape;
 use smallvec::SmallVec;
-use tabletop_core::{
-    HandCamera, JointId, JointRole, LimbId, LimbLayout, LinkFrame, Pose, RobotLayout,
-    UNITS_PER_METER,
-};
+use tabletop_core::{HandCamera, JointId, JointRole, LimbId, LimbLayout, LinkFrame, RobotLayout};
+use tabletop_geometry::{Pose, UNITS_PER_METER};
 use tabletop_kinematics::{
     ArmChain, Frames, Geometry, JointValues, LinkId, LinkShape, Load, ModelError, ModelJointId,
     MovingFrames, RobotModel,

@@ -96,7 +96,7 @@ fn has_motor(mode: RobotMode, joint: &JointLayout) -> bool {
     mode == RobotMode::Dynamic && matches!(joint.role, JointRole::Limb { .. })
 }
 
-/// Checks that a joint can do what it is commanded.
+/// Checks that a joint can carry out a drive.
 fn check(mode: RobotMode, joint: &JointLayout, drive: Drive) -> Result<(), String> {
     let value = match drive {
         Drive::Velocity(value)
@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_not_a_number_is_refused() {
+    fn invalid_drives_are_refused() {
         let e1 = RobotLayout::baxter().joint(JointId(3));
         let head_pan = RobotLayout::baxter().joint(JointId(14));
         for drive in [Drive::Velocity(f64::NAN), Drive::Position(f64::INFINITY)] {

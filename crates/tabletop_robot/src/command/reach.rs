@@ -1,7 +1,8 @@
 //! Bringing an end effector to a pose.
 
 use bevy::prelude::*;
-use tabletop_core::{LimbId, Pose, Robot, UNITS_PER_METER};
+use tabletop_core::{LimbId, Robot};
+use tabletop_geometry::{Pose, UNITS_PER_METER};
 use tabletop_kinematics::Target;
 
 use crate::{

@@ -21,7 +21,7 @@ pub(crate) struct Contact {
     pub impulse: f32,
 }
 
-/// Adds the contacts of a body in the last tick, as the physics engine reports them.
+/// Adds the contacts of a body in the last tick, as Rapier reports them.
 pub(crate) fn add_pressed(
     contacts: &mut Vec<Contact>,
     rapier: &RapierContext,
@@ -46,8 +46,8 @@ pub(crate) fn add_pressed(
     }));
 }
 
-/// The centre of pressure on the first or the second collider of a pair, in its frame, and the impulse along the normals that the
-/// engine reports.
+/// The centre of pressure on the first or the second collider of a pair, in its frame, and the impulse along the normals that Rapier
+/// reports.
 fn pressure(pair: &ContactPair, on_first: bool) -> Option<(Vec3, f32)> {
     let (mut moment, mut impulse) = (Vec3::ZERO, 0.0);
     for (place, at_point) in solved_points(pair, on_first) {

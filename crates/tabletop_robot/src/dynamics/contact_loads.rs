@@ -1,6 +1,6 @@
 //! Free objects that an arm touches, as the arm's own dynamics needs them.
 //!
-//! For physics, the robot's bodies go where they are sent, whatever is in their way, and pushed objects get their speed at once. So the
+//! For physics, the robot's bodies go where they are sent through any obstacle, and pushed objects get their speed at once. So the
 //! effort of a push must be known before the arm moves, not after.
 
 use bevy::{
@@ -10,7 +10,8 @@ use bevy::{
 use bevy_rapier3d::{
     parry::bounding_volume::BoundingVolume, plugin::RapierContextMut, rapier::prelude as rapier,
 };
-use tabletop_core::{LimbId, TICK_SECONDS, UNITS_PER_METER};
+use tabletop_core::{LimbId, TICK_SECONDS};
+use tabletop_geometry::UNITS_PER_METER;
 use tabletop_physics::{FreeObject, impulse_share, limits::TOUCHING};
 
 use crate::{

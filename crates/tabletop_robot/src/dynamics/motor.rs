@@ -2,7 +2,7 @@
 
 /// Angle between a joint and its target, in rad, at which the motor pulls with its full torque: 0.57°.
 ///
-/// So whatever a motor can hold at all, it holds within this angle, whether its weight is known or not.
+/// So a motor holds any load that it can bear within this angle, whether the weight is known or not.
 pub(crate) const STRETCH: f64 = 0.01;
 
 /// Time, in s, in which an unhindered joint covers two thirds of the way to its target.

@@ -5,7 +5,8 @@
 //! kinematic mode. Springs bear the arms' own weight, as in the real robot; the motors bear the objects that the grippers hold.
 
 use bevy::{math::DVec3, prelude::*};
-use tabletop_core::{LimbId, Robot, RobotLayout, TICK_SECONDS, UNITS_PER_METER};
+use tabletop_core::{LimbId, Robot, RobotLayout, TICK_SECONDS};
+use tabletop_geometry::UNITS_PER_METER;
 use tabletop_kinematics::Load;
 
 use crate::{

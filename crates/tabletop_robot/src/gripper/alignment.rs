@@ -70,12 +70,12 @@ mod tests {
     const OBJECT: Entity = Entity::PLACEHOLDER;
 
     #[test]
-    fn what_is_nearly_flush_is_held_at_once() {
+    fn a_nearly_flush_object_is_held_at_once() {
         assert_eq!(judge(&mut None, OBJECT, 0.19), Judgement::Hold);
     }
 
     #[test]
-    fn what_is_askew_is_turned_until_it_is_flush() {
+    fn an_askew_object_is_turned_until_it_is_flush() {
         let mut alignment = None;
         for angle in [0.3, 0.2, 0.1, 0.05] {
             assert_eq!(judge(&mut alignment, OBJECT, angle), Judgement::Press);
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_turn_is_given_up() {
+    fn an_object_that_does_not_turn_is_given_up() {
         for (angle, expected) in [(0.3, Judgement::Refuse), (0.15, Judgement::Hold)] {
             let mut alignment = None;
             judge(&mut alignment, OBJECT, 0.31);

@@ -3,7 +3,7 @@
 use std::{collections::BTreeMap, f32::consts::PI};
 
 use bevy::prelude::*;
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 use tabletop_physics::Convex;
 
 use crate::gripper::finger_pad::{FingerPad, FingerTouch, ProbeRay, opposite};
@@ -97,7 +97,7 @@ fn add_filled(
     }
 }
 
-/// The thickness of objects along a line. Those behind each other add up; what is inside another one does not count.
+/// The thickness of objects along a line. Objects behind each other add up; an object inside another one does not count.
 fn thickness(mut parts: Vec<[f32; 2]>) -> f32 {
     parts.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let mut end = f32::NEG_INFINITY;
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_box_contains_does_not_keep_the_fingers_from_it() {
+    fn the_content_of_a_box_does_not_keep_the_fingers_from_its_walls() {
         let wall = |x: f32| Convex {
             pose: Pose::at(Vec3::X * x),
             shape: SharedShape::cuboid(0.05, 0.8, 0.5),

@@ -2,13 +2,13 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::parry::query::Ray;
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 use tabletop_physics::{Convex, to_rapier};
 
 /// Number of probe rays across and along the face.
 const PROBE_RAYS: (u32, u32) = (9, 31);
 
-/// Depth to which the face yields to pressure, in units: whatever is nearer than this to the foremost point touches, too.
+/// Depth to which the face yields to pressure, in units: objects within this distance behind the foremost point touch, too.
 const YIELD: f32 = 0.04;
 
 /// Depth inside the finger at which the rays begin, in units, so that they meet objects that have entered it slightly.
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_beside_the_fingers_is_not_touched() {
+    fn objects_beside_the_fingers_are_not_touched() {
         let [left, _] = FingerPad::pair(Pose::IDENTITY, 2.0, FINGER);
         let beside = block(Vec3::ONE, Pose::at(Vec3::new(0.0, 0.71, 0.0)));
         assert_eq!(left.touch(&beside, 2.0), None);
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_entered_a_finger_is_nearer_than_nothing() {
+    fn an_object_inside_a_finger_has_a_negative_distance() {
         let [left, _] = FingerPad::pair(Pose::IDENTITY, 1.0, FINGER);
         let block = block(Vec3::ONE * 1.02, Pose::IDENTITY);
         let touch = left.touch(&block, 1.0).unwrap();

@@ -5,9 +5,10 @@ use std::collections::BTreeSet;
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
 use tabletop_core::{
-    Bonds, Held, LimbId, LimbName, Manipulator, MechanismFact, ObjectSpec, Pose, Robot, RobotFact,
+    Bonds, Held, LimbId, LimbName, Manipulator, MechanismFact, ObjectSpec, Robot, RobotFact,
     RobotLayout, SimFact,
 };
+use tabletop_geometry::Pose;
 use tabletop_physics::{Carry, hold, let_go, pull_velocity};
 
 use crate::gripper::{alignment::Alignment, closing::Touched};
@@ -131,7 +132,7 @@ pub(crate) fn pull_jointed(
     }
 }
 
-/// Takes what a bond has moved, or holds from now on, as it is.
+/// Takes over the new places of objects that a bond has moved, or holds from now on.
 pub(crate) fn follow_bonds(
     mut facts: MessageReader<SimFact>,
     robot: Res<Robot>,

@@ -2,7 +2,7 @@
 
 use bevy::math::Vec3;
 use serde::Deserialize;
-use tabletop_core::quat_from_degrees;
+use tabletop_geometry::quat_from_degrees;
 
 use super::{axis::LinkAxis, detail::Detail, extrusion::Extrusion, hull::Hull};
 

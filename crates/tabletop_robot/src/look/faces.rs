@@ -3,7 +3,8 @@
 use std::f32::consts::{FRAC_PI_2, TAU};
 
 use bevy::math::{Vec2, Vec3, ops};
-use tabletop_core::{Face, Rgb, Triangles, UNITS_PER_METER};
+use tabletop_core::Face;
+use tabletop_geometry::{Rgb, Triangles, UNITS_PER_METER};
 
 /// Size of the picture in m: the display is 1024 x 600 pixels.
 const PICTURE: Vec2 = Vec2::new(0.216, 0.127);

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use bevy::math::{Affine3A, DAffine3, Vec3};
-use tabletop_core::{Face, Figure, Rgb, Triangles, UNITS_PER_METER};
+use tabletop_core::{Face, Figure};
+use tabletop_geometry::{Rgb, Triangles, UNITS_PER_METER};
 use tabletop_kinematics::{Geometry, LinkShape};
 
 use crate::{

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use bevy::math::Vec3;
-use tabletop_core::{Rgb, Triangles, UNITS_PER_METER};
+use tabletop_geometry::{Rgb, Triangles, UNITS_PER_METER};
 
 /// Cosine of the largest angle, 50°, at which neighbouring faces form one smooth surface.
 const SMOOTH_COSINE: f32 = 0.643;

@@ -6,7 +6,8 @@ use bevy::{
     math::{DAffine3, DMat3, DVec3},
     prelude::*,
 };
-use tabletop_core::{Face, Figure, FingerLook, GripperLayout, Robot, UNITS_PER_METER};
+use tabletop_core::{Face, Figure, FingerLook, GripperLayout, Robot};
+use tabletop_geometry::UNITS_PER_METER;
 use tabletop_kinematics::{Geometry, Link, LinkShape};
 
 use crate::{

@@ -7,7 +7,8 @@ use std::{
 };
 
 use bevy::math::Vec3;
-use tabletop_core::{Figure, Rgb};
+use tabletop_core::Figure;
+use tabletop_geometry::Rgb;
 use tabletop_kinematics::{Geometry, LinkShape};
 use tabletop_mesh::{MeshFileError, Triangle, read_obj, read_stl};
 use tabletop_storage::{Symlinks, read_regular_file, read_regular_text};
@@ -276,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_drawn_is_an_error_that_names_the_file() {
+    fn a_mesh_that_cannot_be_drawn_is_an_error_that_names_the_file() {
         let broken = [
             ("broken.stl", "solid a\nfacet normal 0 0"),
             ("empty.stl", "solid a\nendsolid a\n"),

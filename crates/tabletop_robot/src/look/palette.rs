@@ -1,7 +1,7 @@
 //! The colours of the robot.
 
 use serde::Deserialize;
-use tabletop_core::Rgb;
+use tabletop_geometry::Rgb;
 
 /// A colour of the robot, by the name that shape files use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]

@@ -3,7 +3,8 @@
 
 use bevy::math::Vec3;
 use serde::Deserialize;
-use tabletop_core::{Figure, Triangles};
+use tabletop_core::Figure;
+use tabletop_geometry::Triangles;
 
 use super::{
     boxes::Cuboid, detail::Detail, extrusion::Extrusion, hull::Hull, lathe::Lathe, loft::Loft,

@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use bevy::math::Vec3;
-use tabletop_core::{Figure, Rgb, Triangles};
+use tabletop_core::Figure;
+use tabletop_geometry::{Rgb, Triangles};
 use tabletop_kinematics::Geometry;
 
 use super::{axis::LinkAxis, boxes::Cuboid, detail::Detail, hull::Hull, lathe::Lathe};

@@ -1,7 +1,7 @@
 //! Poses of the robot at some positions of its joints.
 
 use bevy_rapier3d::parry::bounding_volume::Aabb;
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 
 use crate::articulation::tree::{Articulation, Positions, Posture};
 

@@ -4,7 +4,8 @@ use std::rc::Rc;
 
 use bevy::prelude::*;
 use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
-use tabletop_core::{LimbId, Pose};
+use tabletop_core::LimbId;
+use tabletop_geometry::Pose;
 use tabletop_physics::{Convex, Environment, SweptSolid, limits::REACH};
 
 use crate::{

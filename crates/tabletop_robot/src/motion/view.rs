@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_rapier3d::prelude::*;
-use tabletop_core::{Held, Joint, LimbId, ObjectSpec, Obstacle, Pose, Robot, Table};
+use tabletop_core::{Held, Joint, LimbId, ObjectSpec, Obstacle, Robot, Table};
+use tabletop_geometry::Pose;
 use tabletop_physics::{Environment, convex_parts};
 
 use crate::{

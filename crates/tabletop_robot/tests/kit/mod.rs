@@ -8,6 +8,7 @@ use bevy_rapier3d::{parry, prelude::Collider, rapier::prelude as rapier};
 use tabletop_core::CommandId;
 use tabletop_core::*;
 use tabletop_demonstrator::DemonstratorPlugin;
+use tabletop_geometry::*;
 use tabletop_history::HistoryPlugin;
 use tabletop_physics::PhysicsPlugin;
 use tabletop_robot::{RobotLink, RobotPlugin};

@@ -2,7 +2,8 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::Velocity;
-use tabletop_core::{Hand, Manipulator, Pose, SceneItem, Shape, StepApp as _};
+use tabletop_core::{Hand, Manipulator, SceneItem, Shape, StepApp as _};
+use tabletop_geometry::Pose;
 use tabletop_physics::hold;
 
 use crate::world::*;
@@ -112,7 +113,7 @@ fn nothing_tunnels_through_the_floor_of_a_thin_box() {
 }
 
 #[test]
-fn what_sleeps_and_is_hit_stays_out_of_the_table() {
+fn a_sleeping_object_that_is_hit_stays_out_of_the_table() {
     for mass in [1.0, 3.0] {
         let plate = block((2.0, 2.0, 1.0));
         let mut world = TestWorld::new([
@@ -172,7 +173,7 @@ fn a_blow_presses_nothing_light_into_the_table() {
 }
 
 #[test]
-fn what_leaves_the_world_is_deleted() {
+fn objects_that_leave_the_world_are_deleted() {
     let mut world = TestWorld::new([object("ball", (30.0, 0.0, 1.0), 1.0, sphere(0.5))]);
     world.seconds(4.0);
     assert_eq!(world.poses().len(), 1);
@@ -181,7 +182,7 @@ fn what_leaves_the_world_is_deleted() {
 }
 
 #[test]
-fn what_turns_near_a_hand_hardly_enters_the_table() {
+fn an_object_that_turns_near_a_hand_hardly_enters_the_table() {
     let span = Vec3::new(5.0, 5.0, 3.0);
     for number in 0..40 {
         let height = 1.9 + 0.02 * number as f32;

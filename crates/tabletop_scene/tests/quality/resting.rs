@@ -1,7 +1,8 @@
 //! Objects that must stand still.
 
 use bevy::prelude::*;
-use tabletop_core::{ObjectSpec, Part, Pose, Random, SceneItem, Shape};
+use tabletop_core::{ObjectSpec, Part, Random, SceneItem, Shape};
+use tabletop_geometry::Pose;
 use tabletop_physics::PhysicsSettings;
 
 use crate::world::*;

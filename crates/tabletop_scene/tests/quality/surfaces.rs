@@ -1,7 +1,8 @@
 //! Sliding, bouncing and initial velocities as the file gives them, and shapes with holes and many faces.
 
 use bevy::prelude::*;
-use tabletop_core::{Dynamics, Rgb, SceneItem, Shape, StepApp as _};
+use tabletop_core::{Dynamics, SceneItem, Shape, StepApp as _};
+use tabletop_geometry::Rgb;
 
 use crate::world::*;
 
@@ -35,7 +36,7 @@ fn frustum(radius_top: f32, radius_bottom: f32, sides: u32) -> Shape {
 }
 
 #[test]
-fn what_is_smooth_slides_farther() {
+fn smooth_objects_slide_farther() {
     let sliding = |id: &str, y, friction| {
         let dynamics = Dynamics {
             friction,
@@ -59,7 +60,7 @@ fn what_is_smooth_slides_farther() {
 }
 
 #[test]
-fn what_is_elastic_bounces() {
+fn elastic_objects_bounce() {
     let ball = |id: &str, x, restitution| {
         let dynamics = Dynamics {
             restitution,

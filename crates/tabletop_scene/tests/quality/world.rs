@@ -1,7 +1,8 @@
 //! A headless world for tests.
 
 use bevy::prelude::*;
-use tabletop_core::{ChainSpec, LidBoxSpec, prelude::*, quat_from_degrees};
+use tabletop_core::{ChainSpec, LidBoxSpec, prelude::*};
+use tabletop_geometry::quat_from_degrees;
 use tabletop_physics::{PhysicsPlugin, PhysicsSettings};
 use tabletop_scene::ScenePlugin;
 

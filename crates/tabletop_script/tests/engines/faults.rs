@@ -1,4 +1,4 @@
-//! Scripts that fail, hang or crash: the message says what and where, only the agent stops, and it can be started again.
+//! Scripts that fail, hang or crash: the message names the error and its place, only the agent stops, and it can be started again.
 
 use std::{fs, time::Duration};
 
@@ -8,7 +8,7 @@ use tabletop_harness::test_with;
 use crate::kit::{Folder, Stage, failure};
 
 const INIT: &str = "aux.drawMarkers = [1 2 3];\ncalls = 0;\n";
-/// Three good calls come before what goes wrong in line 4.
+/// Three good calls come before the error in line 4.
 const GOOD: &str =
     "calls = calls + 1;\nmotor.jointVelocities(:) = 0.2;\nif calls < 4, return; end\n";
 
@@ -52,7 +52,7 @@ fn errors_of_callbacks_are_reported_with_file_and_line() {
 }
 
 #[test_with(Octave)]
-fn what_the_motor_cannot_be_is_reported() {
+fn invalid_motor_values_are_reported() {
     for (line, message) in [
         (
             "motor.jointVelocities = zeros(3, 7);",

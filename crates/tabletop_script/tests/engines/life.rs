@@ -47,7 +47,7 @@ fn the_example_turns_every_joint_as_long_as_its_limits_allow() {
 }
 
 #[test_with(Octave)]
-fn functions_that_declare_globals_do_what_scripts_do() {
+fn functions_that_declare_globals_act_like_scripts() {
     let init = "aux.initJointAngles = repmat([0.1 0.2 0.3 1.4 0.5 0.6 0.7], 2, 1);\nphase = 0;\n";
     let callback = "phase = phase + sensor.timeElapsed;
 motor.jointVelocities = (0.5 + sensor.jointAngles / 10) * cos(3 * phase);

@@ -1,7 +1,8 @@
-//! Sensing of scripts, and what they are spared.
+//! Sensor fields of scripts, and those that they are spared.
 
 use bevy::prelude::*;
-use tabletop_core::{Arm, ObjectSpec, Pose, Rgb, RobotCommand, Shape};
+use tabletop_core::{Arm, ObjectSpec, RobotCommand, Shape};
+use tabletop_geometry::{Pose, Rgb};
 use tabletop_harness::test_with;
 use tabletop_script::{FieldPolicy, ScriptSettings};
 
@@ -19,7 +20,7 @@ fn fields(settings: ScriptSettings) -> String {
 }
 
 #[test_with(Octave)]
-fn scripts_get_what_they_mention() {
+fn scripts_get_the_fields_they_mention() {
     let folder = Folder::pair("", NAMES);
     assert_eq!(fields(folder.settings()), BARE);
     folder.write(
@@ -46,7 +47,7 @@ fn scripts_get_what_they_mention() {
 }
 
 #[test_with(Octave)]
-fn what_is_sensed_is_so() {
+fn sensed_values_match_the_world() {
     let folder = Folder::pair(
         "",
         "disp(sensor.trackerLoc('r-W1'));
@@ -97,7 +98,7 @@ aux.exit = 1;
 }
 
 #[test_with(Octave)]
-fn contacts_are_what_the_robot_touches() {
+fn sensed_contacts_are_those_of_the_robot() {
     // The left arm goes down to the table, on the right one lies a plate.
     let folder = Folder::pair(
         "n = 0;",

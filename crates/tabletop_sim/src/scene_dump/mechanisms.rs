@@ -1,4 +1,4 @@
-//! What objects of a scene can be operated, and what they are fastened to.
+//! The objects of a scene that can be operated, and their bonds.
 
 use serde::Serialize;
 use tabletop_core::{BondEnd, BondPoint, Bonds, Control, ObjectSpec, PlacedPart, TightnessStep};

@@ -1,7 +1,7 @@
 //! Poses in a dump.
 
 use serde::Serialize;
-use tabletop_core::Pose;
+use tabletop_geometry::Pose;
 
 /// Location in units, rotation in degrees.
 #[derive(Serialize)]

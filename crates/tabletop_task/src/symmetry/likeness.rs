@@ -1,7 +1,7 @@
 //! Likeness: whether a turned shape looks as before.
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::{Polyhedron, Pose, Primitive, Solid};
+use tabletop_geometry::{Polyhedron, Pose, Primitive, Solid};
 
 use crate::rotation::angle_between;
 

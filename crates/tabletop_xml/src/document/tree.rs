@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_well_formed_is_located() {
+    fn malformed_xml_is_located() {
         for (text, fault) in [
             ("", "f:1:1: there is no element, expected <tabletop>"),
             ("<r>\n<a>", "f:2:1: a: it is not closed, expected </a>"),
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_that_is_none_is_kept_whole() {
+    fn an_invalid_name_is_kept_whole() {
         for name in [":block", "a:b:block", "block:"] {
             let text = format!("<{name}/>");
             assert_eq!(read_all(&text).0.unwrap().name, name);
@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_complete_before_an_error_is_kept() {
+    fn complete_elements_before_an_error_are_kept() {
         let (root, faults) = read_all("<r><a/><b><c/></b><d><e/></x>");
         assert_eq!(faults.len(), 1);
         let root = root.unwrap();

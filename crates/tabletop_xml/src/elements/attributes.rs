@@ -3,7 +3,8 @@
 use std::{fmt, ops::RangeInclusive};
 
 use bevy::math::{DVec3, Vec3};
-use tabletop_core::{Dynamics, Pose, Rgb};
+use tabletop_core::Dynamics;
+use tabletop_geometry::{Pose, Rgb};
 
 use crate::{
     document::tree::{Attribute, Element},

@@ -1,7 +1,8 @@
 //! The default blades of scissors.
 
 use bevy::math::Vec3;
-use tabletop_core::{ObjectSpec, Part, Pose, Rgb, Shape};
+use tabletop_core::{ObjectSpec, Part, Shape};
+use tabletop_geometry::{Pose, Rgb};
 
 /// A blade's height and thickness as shares of its length, and its handle's length.
 const HEIGHT: f32 = 0.14;

@@ -53,7 +53,8 @@ fn check_links(chain: &ChainSpec, attributes: &mut AttributeReader) {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Rgb, SceneItem};
+    use tabletop_core::SceneItem;
+    use tabletop_geometry::Rgb;
 
     use super::*;
     use crate::test_support::{items_of, lines_of};

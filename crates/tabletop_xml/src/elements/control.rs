@@ -3,8 +3,9 @@
 use bevy::math::Vec3;
 use tabletop_core::{
     Change, Control, ControlKind, CustomControl, CustomState, IndicatorLights, LightState,
-    ObjectSpec, Rgb, Shape, Side, ToggleSwitch,
+    ObjectSpec, Shape, Side, ToggleSwitch,
 };
+use tabletop_geometry::Rgb;
 
 use crate::{
     document::tree::Element,
@@ -306,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn what_an_enclosing_composite_says_counts_where_a_shape_says_nothing() {
+    fn shapes_inherit_the_next_state_of_their_composite() {
         let control = only_control(
             "<customControl location='(0,0,1)'><state>\
              <composite location='(0,0,0)' nextStateWhenTriggered='1'><sphere location='(0,0,0)'/>\

@@ -1,6 +1,7 @@
 //! The cost of simulating a scene: the number of its solids, and of pairs of them that are near each other.
 
-use tabletop_core::{Bounds, ChainSpec, LidBoxSpec, ObjectSpec, PAIR_GAP, Pose, SceneItem, Shape};
+use tabletop_core::{ChainSpec, LidBoxSpec, ObjectSpec, SceneItem, Shape};
+use tabletop_geometry::{Bounds, PAIR_GAP, Pose};
 
 use crate::elements::nearness::{BodyBounds, Nearness};
 
@@ -156,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_refused_for_its_pairs_counts_as_solids() {
+    fn items_refused_for_their_pairs_count_as_solids() {
         let chain = "<chain start='(0,0,1)' end='(0.5,0,1)' linkCount='1000'/>";
         let links = "chain: with it there are too many links, expected at most 5000 links";
         let problems = lines_of(&chain.repeat(7));
@@ -165,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stays_in_place_is_near_nothing_else_that_does() {
+    fn fixed_solids_are_not_near_each_other() {
         assert_eq!(lines_of(&cubes(10, 0.001, 0.002, "mass='0'")), [""; 0]);
     }
 

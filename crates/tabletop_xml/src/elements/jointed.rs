@@ -101,7 +101,8 @@ impl ElementReader<'_, '_> {
 #[cfg(test)]
 mod tests {
     use bevy::math::Vec3;
-    use tabletop_core::{Pose, SceneItem};
+    use tabletop_core::SceneItem;
+    use tabletop_geometry::Pose;
 
     use super::*;
     use crate::test_support::{items_of, lines_of};

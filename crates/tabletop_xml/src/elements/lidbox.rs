@@ -65,7 +65,8 @@ fn usual_handle_thickness(span: Vec3) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Pose, SceneItem};
+    use tabletop_core::SceneItem;
+    use tabletop_geometry::Pose;
 
     use super::*;
     use crate::test_support::items_of;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use tabletop_core::{Bounds, PAIR_GAP};
+use tabletop_geometry::{Bounds, PAIR_GAP};
 
 /// Edge of a cell of the grid, in units.
 const CELL: f32 = 4.0;
@@ -130,7 +130,7 @@ impl Nearness {
 }
 
 impl Cells {
-    /// The cells of a solid and of what is near it; `None` if it is large.
+    /// The cells of a solid and those near it; `None` if it is large.
     fn around(bounds: Bounds) -> Option<Self> {
         let cell = |at: bevy::math::Vec3| at.to_array().map(|at| (at / CELL).floor() as i32);
         let (low, high) = (cell(bounds.low - PAIR_GAP), cell(bounds.high + PAIR_GAP));

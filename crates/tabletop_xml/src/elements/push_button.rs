@@ -1,6 +1,7 @@
 //! The element of push buttons.
 
-use tabletop_core::{JointedSpec, PressMode, PushButton, Rgb, Shape};
+use tabletop_core::{JointedSpec, PressMode, PushButton, Shape};
+use tabletop_geometry::Rgb;
 
 use crate::{
     document::tree::Element,
@@ -67,7 +68,8 @@ fn mode(text: &str) -> Result<PressMode, ValueError> {
 #[cfg(test)]
 mod tests {
     use bevy::math::Vec3;
-    use tabletop_core::{Pose, SceneItem};
+    use tabletop_core::SceneItem;
+    use tabletop_geometry::Pose;
 
     use super::*;
     use crate::test_support::{items_of, lines_of, scene_of};

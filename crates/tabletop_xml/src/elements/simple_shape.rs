@@ -104,7 +104,8 @@ pub(super) fn simple_shape(
 
 #[cfg(test)]
 mod tests {
-    use tabletop_core::{Dynamics, ObjectSpec, Pose, Rgb};
+    use tabletop_core::{Dynamics, ObjectSpec};
+    use tabletop_geometry::{Pose, Rgb};
 
     use super::*;
     use crate::test_support::{lines_of, only_object};

@@ -3,7 +3,8 @@
 use std::{fmt, ops::RangeInclusive, str::FromStr};
 
 use bevy::math::{DVec3, Vec3};
-use tabletop_core::{NAMED_COLORS, Rgb, limits::MOST_LINKS};
+use tabletop_core::limits::MOST_LINKS;
+use tabletop_geometry::{NAMED_COLORS, Rgb};
 
 use crate::{document::syntax::is_blank, fault::Excerpt};
 

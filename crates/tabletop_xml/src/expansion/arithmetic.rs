@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn what_reads_as_a_number_is_no_variable() {
+    fn a_number_with_an_exponent_is_no_variable() {
         assert_eq!(result("1e1"), Ok(10.0));
     }
 
@@ -208,14 +208,14 @@ mod tests {
     }
 
     #[test]
-    fn what_follows_an_expression_is_not_looked_at() {
+    fn text_after_an_expression_is_ignored() {
         for expression in ["2 x", "2)", "2 3", "2,color", "2é"] {
             assert_eq!(result(expression), Ok(2.0), "{expression}");
         }
     }
 
     #[test]
-    fn what_is_no_arithmetic_says_why() {
+    fn malformed_arithmetic_gives_the_reason() {
         for expression in [
             "", " ", "2+", "2+ *3", "- 3", "2*- 3", "---3", "(2", "()", "é",
         ] {

@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_value_says_why() {
+    fn expressions_without_a_value_give_the_reason() {
         for (text, expected) in [
             ("$ $", "`$ $` is no expression"),
             ("$2+$", "`$2+$` is no expression"),

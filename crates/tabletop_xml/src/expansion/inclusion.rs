@@ -50,7 +50,7 @@ impl<'a, 'f> Inclusion<'a, 'f> {
         }
     }
 
-    /// The root of the task file, with what it includes.
+    /// The root of the task file, with the files that it includes.
     pub fn task(mut self, bytes: &'a [u8]) -> Option<Element<'a>> {
         self.document(self.task, bytes)
     }

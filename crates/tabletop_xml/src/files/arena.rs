@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_kept_stays() {
+    fn kept_bytes_stay() {
         let arena = Arena::default();
         let kept: Vec<_> = (0..100).map(|byte| arena.keep(vec![byte])).collect();
         assert!(kept.iter().zip(0..).all(|(bytes, byte)| **bytes == [byte]));

@@ -1,7 +1,7 @@
 //! Rotations as angles that read back exactly.
 
 use bevy::math::{DMat3, DQuat, DVec3, Quat};
-use tabletop_core::{quat_from_degrees, turn_about_x, turn_about_y};
+use tabletop_geometry::{quat_from_degrees, turn_about_x, turn_about_y};
 
 /// Number of neighbouring numbers of a rotation's component that are tried.
 const NEIGHBOURS: i32 = 2;
@@ -120,7 +120,7 @@ mod tests {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
         #[test]
-        fn what_a_file_can_say_reads_back_to_the_bit(
+        fn rotations_given_in_degrees_read_back_to_the_bit(
             x in -400.0..400.0_f64, y in -400.0..400.0_f64, z in -400.0..400.0_f64
         ) {
             for angles in [[x, y, z], [x, 90.0, z], [x, -90.0 + y * 1e-7, z], [0.0, 0.0, z]] {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use bevy::math::{DVec3, Vec3};
-use tabletop_core::{NAMED_COLORS, Pose, Rgb};
+use tabletop_geometry::{NAMED_COLORS, Pose, Rgb};
 
 use crate::write::{
     Writer,

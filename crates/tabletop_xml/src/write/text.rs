@@ -4,7 +4,7 @@ use quick_xml::escape::escape;
 
 use crate::{document::decode::is_xml_character, elements::value::is_id_character};
 
-/// A text without what an id cannot have.
+/// A text without the characters that an id cannot have.
 pub(super) fn as_id(text: &str) -> String {
     text.replace(|character| !is_id_character(character), "_")
 }
@@ -17,10 +17,10 @@ pub(super) fn as_literal(text: &str) -> String {
     }
 }
 
-/// A text as the value of an attribute; what XML does not allow becomes U+FFFD.
+/// A text as the value of an attribute; characters that XML does not allow become U+FFFD.
 pub(super) fn as_attribute(text: &str) -> String {
     let allowed = text.replace(|character| !is_xml_character(character), "\u{fffd}");
-    // What a reader of XML takes for a blank if it is written as it is.
+    // A reader of XML takes these for blanks unless they are escaped.
     escape(allowed)
         .replace('\t', "&#9;")
         .replace('\n', "&#10;")

@@ -2,7 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use tabletop_core::{NAMED_COLORS, Table};
+use tabletop_core::Table;
+use tabletop_geometry::NAMED_COLORS;
 use tabletop_xml::{MAX_FAULTS, MAX_FILE_BYTES, NAMESPACE};
 
 use crate::{SAMPLE, lines, read};
@@ -52,7 +53,7 @@ fn five_faults_give_five_located_messages() {
 }
 
 #[test]
-fn a_file_cut_anywhere_keeps_what_is_complete() {
+fn a_file_cut_anywhere_keeps_its_complete_elements() {
     let end = SAMPLE.trim_end().len();
     let mut items = 0;
     for length in 0..end {

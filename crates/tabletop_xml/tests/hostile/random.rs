@@ -4,12 +4,13 @@ use std::path::Path;
 
 use bevy::math::{Quat, Vec3};
 use proptest::prelude::*;
-use tabletop_core::{ObjectSpec, Pose, Rgb, SceneItem, SceneSpec, Shape, Table};
+use tabletop_core::{ObjectSpec, SceneItem, SceneSpec, Shape, Table};
+use tabletop_geometry::{Pose, Rgb};
 use tabletop_xml::{NAMESPACE, expand, write};
 
 use crate::{SAMPLE, read, scenes::scenes};
 
-/// Asserts what holds for every text: its scene can be written and read again, and its faults are in the file.
+/// Asserts the invariants of every text: its scene can be written and read again, and its faults are in the file.
 fn check(text: &[u8]) {
     let task = read(text);
     let Table { xspan, yspan } = task.scene.table;
@@ -195,7 +196,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_written_reads_back(scene in scenes()) {
+    fn written_text_reads_back(scene in scenes()) {
         let written = write(&scene);
         let task = read(&written);
         prop_assert_eq!(task.faults, [], "{}", written);

@@ -3,9 +3,10 @@
 use bevy::math::Vec3;
 use proptest::prelude::*;
 use tabletop_core::{
-    ChainSpec, Dynamics, JointMotion, JointedSpec, LidBoxSpec, NAMED_COLORS, ObjectSpec, Part,
-    Pose, Rgb, SceneItem, SceneSpec, Shape, Table,
+    ChainSpec, Dynamics, JointMotion, JointedSpec, LidBoxSpec, ObjectSpec, Part, SceneItem,
+    SceneSpec, Shape, Table,
 };
+use tabletop_geometry::{NAMED_COLORS, Pose, Rgb};
 
 fn vectors(most: f32) -> impl Strategy<Value = Vec3> {
     let part = move || prop_oneof![-most..most, Just(0.0), Just(most), Just(-0.1)];

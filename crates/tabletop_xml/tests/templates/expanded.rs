@@ -36,7 +36,7 @@ fn everything_is_put_in() {
 }
 
 #[test]
-fn what_is_broken_is_left_out() {
+fn broken_elements_are_left_out() {
     for content in [
         "<block location='(0,0,1)' id='&x;'/><sphere location='(0,0,1)'/>",
         "<block location='(0,0,1)' xspan='$nothing$'/><sphere location='(0,0,1)'/>",

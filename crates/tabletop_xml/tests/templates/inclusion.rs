@@ -25,7 +25,7 @@ fn loaded(folder: &Folder, path: &Path) -> (Vec<String>, Vec<String>) {
 }
 
 #[test]
-fn what_is_included_stands_in_its_place() {
+fn included_elements_stand_in_place_of_the_include() {
     let folder = Folder::new("place");
     folder.write(
         "middle.xml",
@@ -139,7 +139,7 @@ fn faults_of_an_included_file_are_located_in_it() {
 }
 
 #[test]
-fn what_is_not_in_the_folder_is_refused_and_not_read() {
+fn files_outside_the_folder_are_refused_and_not_read() {
     let folder = Folder::new("outside");
     folder.write("secret.xml", BALL);
     folder.write("inside/folder/x.xml", BALL);

@@ -87,7 +87,7 @@ fn misspelt_variables_are_harmless() {
 }
 
 #[test]
-fn variables_that_are_not_there_are_faults_of_what_names_them() {
+fn unknown_variables_are_faults_of_the_elements_that_name_them() {
     assert_eq!(
         faults("<block location='(0,0,$heigth/2$)'/>\n<sphere location='(0,0,1)'/>"),
         ["f:2:8: block, location: `heigth` in `$heigth/2$` is no variable"]
@@ -102,7 +102,7 @@ fn variables_that_are_not_there_are_faults_of_what_names_them() {
 }
 
 #[test]
-fn what_is_outside_of_dollars_is_literal() {
+fn text_outside_dollars_is_literal() {
     let content = "<def name='d'><var name='a' value='3'/>\
                    <block location='(-$a/3$,+$a$,$-a$)' xspan='$a$' yspan='$a$$a$' zspan='.$a$'/></def>\
                    <instance def='d'/>";
@@ -128,7 +128,7 @@ fn words_that_read_as_numbers_are_numbers() {
 }
 
 #[test]
-fn what_follows_an_expression_is_not_looked_at() {
+fn text_after_an_expression_is_ignored() {
     assert_eq!(span("<block location='(0,0,1)' xspan='$2 x$'/>")[0], 2.0);
 }
 

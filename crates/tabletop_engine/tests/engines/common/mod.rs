@@ -58,7 +58,7 @@ impl Drop for Folder {
 pub fn executable(name: &str, text: &str) -> (Folder, PathBuf) {
     let folder = Folder::new(&[("text", text)]);
     let program = folder.0.join(name);
-    // Another process writes it: while this one does, what other tests start could hold it open, and it could not be run.
+    // Another process writes it: processes that other tests start would inherit the open file from this one, and it could not be run.
     let mut install = std::process::Command::new("install");
     install.args(["-m", "755"]).arg(folder.0.join("text"));
     assert!(install.arg(&program).status().unwrap().success());
@@ -156,7 +156,7 @@ fn next(engine: &EngineHandle) -> Result<Reply, EngineError> {
     Ok(reply)
 }
 
-/// The script's fault in what should be one.
+/// The script's error, which the result must be.
 pub fn script_error<T: std::fmt::Debug>(result: Result<T, EngineError>) -> ScriptError {
     match result {
         Err(EngineError::Script(error)) => error,

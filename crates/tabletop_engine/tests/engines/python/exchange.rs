@@ -143,7 +143,7 @@ fn a_misused_aux_names_the_script_and_a_typo_is_noted() {
 }
 
 #[test_with(Python)]
-fn what_is_too_large_is_reported_by_its_size() {
+fn oversized_values_are_reported_with_their_size() {
     let (folder, session) = start("def init(aux): pass\ndef callback(sensor, motor, aux): pass\n");
     let reported = |line: &str| {
         let script =
@@ -175,7 +175,7 @@ fn a_row_of_a_column_may_be_a_number() {
 }
 
 #[test]
-fn whatever_a_script_prints_is_shown() {
+fn any_printed_text_is_shown() {
     let (_folder, session) = start(
         "import os, sys\ndef init(aux): pass\n\
          def callback(sensor, motor, aux):\n\

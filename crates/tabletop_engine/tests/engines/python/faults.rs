@@ -33,7 +33,7 @@ fn a_file_that_python_cannot_read_is_named_once() {
 }
 
 #[test_with(Python)]
-fn what_led_to_an_error_is_reported() {
+fn the_cause_of_an_error_is_reported() {
     let (folder, session) = start(
         "def init(aux): pass\n\
          def callback(sensor, motor, aux):\n\
@@ -196,7 +196,7 @@ fn hangs_exits_and_missing_files_are_reported() {
 }
 
 #[test_with(Python)]
-fn what_is_no_script_is_reported() {
+fn invalid_scripts_are_reported() {
     let callback = "def callback(sensor, motor, aux): pass\n";
     for (name, text, message) in [
         (

@@ -14,7 +14,7 @@ use crate::common::{self, Folder, Session, script_error};
 #[test_with(Python)]
 fn an_interrupt_is_answered_with_its_place_also_in_the_background() {
     let script = of_callback("os.kill(os.getpid(), 2); sum(range(10**7))");
-    // A shell has what it starts in the background ignore interrupts.
+    // A shell makes its background processes ignore interrupts.
     let shell = "#!/bin/sh\ntrap '' INT\nexec python3 \"$@\"\n";
     let (_bin, program) = executable("python-behind", shell);
     let folder = Folder::new(&[("robot.py", &script)]);
@@ -43,7 +43,7 @@ fn processes_of_a_script_know_its_functions() {
 }
 
 #[test_with(Python)]
-fn what_a_script_does_at_last_is_not_interrupted() {
+fn a_finally_block_is_not_interrupted() {
     let script = "import os, time\ndef init(aux):\n    try:\n        while True: time.sleep(0.01)\n    finally:\n        time.sleep(0.5)\n\
                   \x20       open(os.path.join(os.path.dirname(__file__), 'done'), 'w').close()\n\
                   def callback(sensor, motor, aux): pass\n";

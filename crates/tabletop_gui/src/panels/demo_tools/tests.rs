@@ -96,7 +96,7 @@ fn each_hand_can_be_selected() {
 }
 
 #[test]
-fn what_is_held_is_named_released_and_destroyed() {
+fn the_held_object_is_named_released_and_destroyed() {
     let harness = Stage::holding().harness();
     assert!(harness.query_by_label("red").is_some());
     for (name, request) in [("Release", Request::Release), ("Destroy", Request::Destroy)] {
@@ -105,7 +105,7 @@ fn what_is_held_is_named_released_and_destroyed() {
 }
 
 #[test]
-fn what_is_held_is_turned_by_each_slider() {
+fn each_slider_turns_the_held_object() {
     for (axis, (name, degrees)) in [("X", 10), ("Y", 0), ("Z", -20)].into_iter().enumerate() {
         for (step, way) in [(1, "up"), (-1, "down")] {
             let requests = Stage::holding().after_click(&format!("{name} {way} by 1°"));

@@ -70,7 +70,7 @@ pub struct Notices {
     next: u64,
     /// The number of the first one that the user has not seen in full.
     unseen: u64,
-    /// Grows with every change of what there is.
+    /// Grows with every change of the notices.
     revision: u64,
 }
 

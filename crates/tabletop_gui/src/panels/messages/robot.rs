@@ -29,7 +29,7 @@ mod tests {
     }
 
     #[test]
-    fn what_happens_again_is_reported_last() {
+    fn a_repeated_event_is_reported_last() {
         let mut app = App::new();
         app.add_plugins((MinimalPlugins, CorePlugin::default(), plugin))
             .insert_resource(TimeUpdateStrategy::FixedTimesteps(1))

@@ -29,7 +29,7 @@ struct RowInputs {
 }
 
 impl Rows {
-    /// The rows of the notices with these tones, each with at most so many letters.
+    /// The rows of the notices with these tones, each with at most `columns` letters.
     pub fn of(
         &mut self,
         notices: &Notices,
@@ -59,7 +59,7 @@ impl Rows {
     }
 }
 
-/// The parts of a text that fit into a row each: its lines, broken after so many letters.
+/// The parts of a text that fit into a row each: its lines, broken after `columns` letters.
 fn parts(text: &str, columns: usize) -> impl Iterator<Item = Range<usize>> {
     let mut next = 0;
     text.split('\n').flat_map(move |line| {
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_made_anew_when_what_they_show_changes() {
+    fn rows_are_rebuilt_when_their_content_changes() {
         let mut notices = Notices::default();
         notices.append(Tone::Event, "news");
         notices.append(Tone::Fault, "a fault");

@@ -1,7 +1,8 @@
 //! The joint that the user has selected, and how he moves it.
 
 use bevy_egui::egui::{Button, ComboBox, Key, Response, RichText, Slider, Ui, WidgetType};
-use tabletop_core::{Action, JointId, RobotLayout, Way};
+use tabletop_core::{JointId, RobotLayout};
+use tabletop_user::{Action, Way};
 
 use super::{
     model::{Model, Request, RobotInput},

@@ -1,6 +1,7 @@
 //! The content of the Robot window, and the user's input.
 
-use tabletop_core::{Face, JointId, Keymap, Robot, RobotLayout};
+use tabletop_core::{Face, JointId, Robot, RobotLayout};
+use tabletop_user::Keymap;
 
 use crate::input::jog::Directions;
 
@@ -9,7 +10,7 @@ use crate::input::jog::Directions;
 pub(super) struct Model<'a> {
     pub robot: &'a Robot,
     pub layout: &'a RobotLayout,
-    /// Ids of what the grippers hold, by limb.
+    /// Ids of the objects in the grippers, by limb.
     pub held: &'a [Vec<&'a str>],
     pub shows_head_view: bool,
     /// True if a script moves the arms.

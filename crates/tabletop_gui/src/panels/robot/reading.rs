@@ -17,7 +17,7 @@ pub(super) fn reading(joint: &JointLayout, position: f64) -> String {
     }
 }
 
-/// A number with so many decimals; no zero has a sign.
+/// A number with this count of decimals; no zero has a sign.
 pub(super) fn number(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {

@@ -1,4 +1,4 @@
-//! The limbs side by side: where their joints stand and what their grippers hold.
+//! The limbs side by side: positions of their joints, and objects in their grippers.
 
 use bevy_egui::egui::{self, Label, RichText, Ui};
 use tabletop_core::{JointId, LimbId};

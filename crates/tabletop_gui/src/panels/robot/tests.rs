@@ -89,7 +89,7 @@ fn of_first_joint(directions: &Directions) -> i8 {
 }
 
 #[test]
-fn the_switches_ask_for_what_they_say() {
+fn each_switch_makes_its_request() {
     for (name, request) in [
         ("Show/Hide", Request::ShowRobot(true)),
         ("Head View", Request::ToggleHeadView),
@@ -233,7 +233,7 @@ fn while_a_script_moves_the_arms_the_user_cannot() {
 }
 
 #[test]
-fn what_the_grippers_hold_is_shown() {
+fn objects_in_the_grippers_are_shown() {
     let mut harness = Stage::default().harness();
     assert!(harness.query_by_label("red, blue").is_none());
     harness.get_by_label("Joints and grippers").click();

@@ -3,7 +3,8 @@
 use bevy_egui::egui::{
     CollapsingHeader, Response, RichText, ScrollArea, Ui, WidgetInfo, WidgetType,
 };
-use tabletop_core::{Action, Imitating, Required, ShownProperty, ShownRole, TaskOrder};
+use tabletop_core::{Required, ShownProperty, ShownRole};
+use tabletop_user::{Action, Imitating, TaskOrder};
 
 use super::model::{Model, Request};
 use crate::widgets::{button::button, style::ACCENT};
@@ -12,7 +13,7 @@ use crate::widgets::{button::button, style::ACCENT};
 const STEPS: f32 = 110.0;
 const ROLES: f32 = 170.0;
 
-/// Shows the lesson, and returns what the user asks for.
+/// Shows the lesson, and returns the user's requests.
 pub(super) fn show(ui: &mut Ui, model: &Model) -> Vec<Request> {
     let task = model.task;
     if let Some(fault) = &task.fault {

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use tabletop_core::{
-    History, Imitating, Keymap, Pace, Playback, ShownStep, ShownTask, SimTick, TaskOrder, Timeline,
-    TimelineSegment, TimelineStage,
+    History, Playback, ShownStep, ShownTask, SimTick, Timeline, TimelineSegment, TimelineStage,
 };
+use tabletop_user::{Imitating, Keymap, Pace, TaskOrder};
 
 use super::axis::seconds;
 
@@ -38,7 +38,7 @@ pub(crate) enum Request {
     StopAt(SimTick),
     SetPace(Pace),
     Loop(bool),
-    /// Undo so many segments.
+    /// Undo this number of segments.
     Undo(usize),
     Redo,
     Open(PathBuf),

@@ -2,10 +2,10 @@
 
 use bevy::{ecs::system::SystemParam, prelude::*};
 use tabletop_core::{
-    Action, Actor, ClockCommand, CommandWriter, HistoryCommand, Imitating, KeySystems,
-    OpenRecording, OrderSystems, Pace, PlaybackOrder, Recording, RestApp as _, RestingSystems,
-    SingleStep, TaskOrder, was_struck,
+    Actor, ClockCommand, CommandWriter, HistoryCommand, OpenRecording, OrderSystems, PlaybackOrder,
+    Recording, RestApp as _, RestingSystems,
 };
+use tabletop_user::{Action, Imitating, KeySystems, Pace, SingleStep, TaskOrder, was_struck};
 
 use super::model::Request;
 
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn requests_become_what_users_tell() {
+    fn requests_become_commands() {
         let mut app = app();
         for (request, command) in [
             (
@@ -251,7 +251,7 @@ mod tests {
     #[test]
     fn keys_step_and_set_the_pace() {
         let mut app = app();
-        let keymap = tabletop_core::Keymap::default();
+        let keymap = tabletop_user::Keymap::default();
         let strike = |app: &mut App, action| {
             let binding = keymap.bindings(action)[0];
             let mut keys = app.world_mut().resource_mut::<ButtonInput<KeyCode>>();

@@ -3,9 +3,11 @@ use std::fs::File;
 use bevy_egui::egui::{Pos2, Vec2, vec2};
 use egui_kittest::{Harness, kittest::Queryable as _};
 use tabletop_core::{
-    Act, Arm, Hand, Manipulator, Pace, Required, Rgb, ShownProperty, ShownRole, ShownStep,
-    TaskOrder, TimelineGrip, TimelinePicture, TimelineSegment, Verb,
+    Act, Arm, Hand, Manipulator, Required, ShownProperty, ShownRole, ShownStep, TimelineGrip,
+    TimelinePicture, TimelineSegment, Verb,
 };
+use tabletop_geometry::Rgb;
+use tabletop_user::{Pace, TaskOrder};
 
 use super::*;
 
@@ -129,7 +131,7 @@ fn place_of(harness: &Harness<Desk>, name: &str) -> Pos2 {
 }
 
 #[test]
-fn every_button_of_an_open_recording_asks_for_what_it_says() {
+fn every_button_of_an_open_recording_makes_its_request() {
     let mut desk = Desk::new(TimelineStage::Open);
     desk.shown = SimTick(500);
     let mut harness = harness(desk);
@@ -276,7 +278,7 @@ fn while_the_world_is_being_brought_to_a_moment_buttons_wait() {
 }
 
 #[test]
-fn what_grippers_do_is_on_the_timeline() {
+fn grips_are_on_the_timeline() {
     let harness = harness(Desk::new(TimelineStage::Open));
     let grip = harness.get_by_label("5.00 s: left gripper grasps Ball");
     let ruler = harness.get_by_label("Time").rect();
@@ -284,13 +286,13 @@ fn what_grippers_do_is_on_the_timeline() {
 }
 
 #[test]
-fn what_the_panel_reads_and_writes_is_not_the_same() {
+fn the_panels_reads_and_writes_do_not_conflict() {
     let mut system = IntoSystem::into_system(show_panel);
     system.initialize(&mut World::new());
 }
 
 #[test]
-fn each_widget_shows_what_it_does() {
+fn each_widget_is_found_by_its_name() {
     let harness = harness(Desk::new(TimelineStage::Open));
     for name in ["Play", "Loop", "Close", "Pace 2×"] {
         let place = place_of(&harness, name);
@@ -457,7 +459,7 @@ fn each_property_of_each_object_can_be_required_or_not() {
 }
 
 #[test]
-fn what_could_not_be_understood_is_reported() {
+fn a_recording_that_is_not_understood_is_reported() {
     let mut harness = taught(TimelineStage::Finished);
     harness.state_mut().task = ShownTask {
         fault: Some("demo/states.csv:3: expected 14 values".into()),

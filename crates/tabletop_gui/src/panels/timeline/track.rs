@@ -1,10 +1,11 @@
-//! The ruler, the segments on it, what the grippers do, and the playhead.
+//! The ruler, the segments on it, the grips, and the playhead.
 
 use bevy_egui::egui::{
     Align2, Color32, FontId, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo,
     WidgetType, pos2, vec2,
 };
-use tabletop_core::{Act, Rgb, SimTick, TimelineSegment, Verb};
+use tabletop_core::{Act, SimTick, TimelineSegment, Verb};
+use tabletop_geometry::Rgb;
 
 use super::{
     axis::TimeAxis,
@@ -188,7 +189,7 @@ pub(super) fn moment(response: &Response, axis: TimeAxis, first: SimTick) -> Vec
     }
 }
 
-/// The time of a moment and what goes on then.
+/// The time of a moment, and the sentence of its segment.
 pub(super) fn caption_at(model: &Model, tick: SimTick) -> String {
     let time = model.time(tick);
     match model.timeline.segment_at(tick) {

@@ -1,7 +1,8 @@
 //! The buttons that move the playhead and set its pace.
 
 use bevy_egui::egui::{Button, Response, Ui, WidgetInfo, WidgetType};
-use tabletop_core::{Action, Pace, SimTick, TimelineStage};
+use tabletop_core::{SimTick, TimelineStage};
+use tabletop_user::{Action, Pace};
 
 use super::model::{Model, Request};
 
@@ -11,7 +12,7 @@ const FRAME: u64 = 15;
 /// Later than this after the beginning of a segment, the way back leads there.
 const REPEAT: u64 = 30;
 
-/// Shows the buttons, and returns what they ask for.
+/// Shows the buttons, and returns their requests.
 pub(super) fn show(ui: &mut Ui, model: &Model) -> Vec<Request> {
     let mut requests = Vec::new();
     ui.horizontal_wrapped(|ui| {

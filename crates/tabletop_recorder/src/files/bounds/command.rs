@@ -86,7 +86,8 @@ fn check_robot_command(command: &RobotCommand) -> Checked {
 #[cfg(test)]
 mod tests {
     use bevy::prelude::default;
-    use tabletop_core::{Hand, ObjectSpec, Part, Pose, Preset, Rgb, SceneItem, SceneSpec, Shape};
+    use tabletop_core::{Hand, ObjectSpec, Part, Preset, SceneItem, SceneSpec, Shape};
+    use tabletop_geometry::{Pose, Rgb};
 
     use super::*;
     use crate::files::bounds::values::MOST_VALUES;
@@ -119,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_refused_with_its_place_and_limit() {
+    fn invalid_commands_are_refused_with_place_and_limit() {
         let hand = Hand::Left;
         let location = Vec3::new(0.0, f32::INFINITY, 0.0);
         let ball = |radius| Shape::Sphere {

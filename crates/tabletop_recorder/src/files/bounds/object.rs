@@ -1,9 +1,10 @@
 //! Bounds on objects.
 
 use tabletop_core::{
-    BondEnd, BondPoint, Change, Control, ControlKind, Dynamics, ObjectSpec, Part, Rgb, Shape,
+    BondEnd, BondPoint, Change, Control, ControlKind, Dynamics, ObjectSpec, Part, Shape,
     limits::{MASSES, PADDINGS, PRESSING_FORCES, PROPORTIONS, SPANS, SWITCH_ANGLES, TRAVELS},
 };
+use tabletop_geometry::Rgb;
 
 use crate::files::bounds::values::{
     Checked, FRICTIONS, VELOCITIES, check_count, check_parts, check_place, check_sides,

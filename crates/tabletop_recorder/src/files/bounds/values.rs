@@ -3,10 +3,8 @@
 use std::ops::RangeInclusive;
 
 use bevy::math::{Quat, Vec3};
-use tabletop_core::{
-    Pose,
-    limits::{MOST_LINKS, SPANS},
-};
+use tabletop_core::limits::{MOST_LINKS, SPANS};
+use tabletop_geometry::Pose;
 
 /// Objects and other elements of a scene, with the parts of composites.
 pub(super) const MOST_PARTS: usize = 100_000;

@@ -1,9 +1,8 @@
 //! The states, frames and pictures of an episode.
 
 use bevy::prelude::{Entity, warn};
-use tabletop_core::{
-    IssuedCommand, Picture, Pose, SensorImage, SimTick, Timeline, TimelinePicture,
-};
+use tabletop_core::{IssuedCommand, Picture, SensorImage, SimTick, Timeline, TimelinePicture};
+use tabletop_geometry::Pose;
 
 use crate::{
     error::RecorderError,

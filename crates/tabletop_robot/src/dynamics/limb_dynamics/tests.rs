@@ -212,7 +212,7 @@ fn a_thing_that_lies_on_the_arm_weighs() {
 }
 
 #[test]
-fn an_arm_does_not_slip_along_what_it_presses_on_until_friction_gives_way() {
+fn a_pressing_arm_does_not_slip_until_friction_gives_way() {
     let slide = |torque: f64| {
         let mut masses = apart(1.0);
         let lever = |joint: usize| each(7, |i| if i == joint { 1.0 } else { 0.0 });
@@ -242,7 +242,7 @@ fn an_arm_does_not_slip_along_what_it_presses_on_until_friction_gives_way() {
 }
 
 #[test]
-fn what_the_joints_do_is_found_in_any_state() {
+fn a_step_respects_all_limits_in_any_state() {
     // A simple generator, so that the numbers are the same every time.
     let mut state = 1_u64;
     let mut number = move || {

@@ -158,7 +158,7 @@ impl Stage {
         self.app.world_mut().write_message(command);
     }
 
-    /// Simulates so many ticks.
+    /// Simulates this number of ticks.
     pub fn ticks(&mut self, ticks: u64) {
         for _ in 0..ticks {
             self.app.step(1);

@@ -1,0 +1,58 @@
+//! The user before the window: keys and their actions, the camera he looks through, the plane he drags in, the pace of time, and the
+//! imitation that he watches.
+//!
+//! View and panels share it and do not know each other. A world without a window has none of it.
+
+mod drag_plane;
+mod ghost;
+mod imitating;
+mod keymap;
+mod navigation;
+mod pace;
+
+pub use drag_plane::DragPlane;
+pub use ghost::{Ghost, Ghosts};
+pub use imitating::{Imitating, TaskOrder};
+pub use keymap::{
+    Action, ActionGroup, BindingError, JointKeyError, KeyBinding, KeyLetters, KeySystems,
+    KeyboardFocus, Keymap, Keys, Modifiers, Situation, Way, was_struck,
+};
+pub use navigation::{CameraMotion, CameraView, Steering, UserCamera};
+pub use pace::{Pace, PacePlugin, SingleStep};
+
+use bevy::prelude::*;
+
+/// Adds the resources that view and panels share. Both of them add it, unless the other one already has.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct UserPlugin;
+
+impl UserPlugin {
+    /// Adds it to an app that does not have it yet.
+    pub fn add_to(app: &mut App) {
+        if !app.is_plugin_added::<Self>() {
+            app.add_plugins(Self);
+        }
+    }
+}
+
+impl Plugin for UserPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_message::<CameraMotion>()
+            .add_message::<TaskOrder>()
+            .init_resource::<DragPlane>()
+            .init_resource::<Ghosts>()
+            .init_resource::<Imitating>()
+            .init_resource::<KeyLetters>()
+            .init_resource::<KeyboardFocus>()
+            .init_resource::<Keymap>()
+            .init_resource::<Steering>()
+            .register_type::<DragPlane>()
+            .register_type::<Pace>()
+            .register_type::<Steering>()
+            .register_type::<UserCamera>()
+            .configure_sets(
+                RunFixedMainLoop,
+                KeySystems.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+            );
+    }
+}
