@@ -109,7 +109,7 @@ const NOT_ROLLED_BACK: [&str; 23] = [
     "tabletop_physics::bodies::PendingBodies",
     // Found out anew in every tick.
     "tabletop_core::rest::Rest",
-    "tabletop_physics::outside::WrittenBack",
+    "tabletop_physics::workarounds::outside::WrittenBack",
     "tabletop_physics::rest::LastStep",
 ];
 

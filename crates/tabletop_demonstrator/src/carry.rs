@@ -3,160 +3,125 @@
 use std::cell::OnceCell;
 
 use bevy::prelude::*;
-use bevy_rapier3d::{parry::bounding_volume::Aabb, prelude::*, rapier::prelude as rapier};
+use bevy_rapier3d::{
+    parry::bounding_volume::{Aabb, BoundingVolume as _},
+    plugin::RapierContextMut,
+    prelude::*,
+    rapier::prelude as rapier,
+};
 use tabletop_core::{Hand, Hands, Joint, TICK_SECONDS};
 use tabletop_geometry::Pose;
 use tabletop_physics::{
-    Carry, Convex, Nearby, Nearest, convex_parts, nearby, nearest, pull_velocity,
+    Approach, Carry, Convex, Environment, MovedBody, Nearest, Pushed, SweptSolid, convex_parts,
+    limits::{FASTEST, FASTEST_PUSH, LEAVING, MOST_SLIDES, PRESSED, REACH, SAME_LENGTH, TOUCHING},
+    nearest, pull_velocity,
 };
 
 use crate::{
     grasp::CarryTarget,
     obstacles::{leave, slide},
-    pile::{Pile, PiledObject, Resistance},
 };
-
-/// Greatest speeds of a hand: in units/s, and in rad/s for turning.
-const FASTEST: (f32, f32) = (40.0, 10.0);
-
-/// Greatest speed, in units/s, at which a hand pushes free objects.
-const FASTEST_PUSH: f32 = 6.0;
-
-/// Depth, in units, to which a free object may be squeezed against something before the hand yields.
-const MOST_SQUEEZE: f32 = 0.002;
-
-/// Gap, in units, to which a free object is reached before it is pushed.
-const GAP: f32 = 0.01;
-
-/// Depths, in units, of a free object in something: from the first on the hand slows, at the second it only yields.
-const TOO_DEEP: (f32, f32) = (0.02, 0.05);
-
-/// Number of tries to slide along obstacles and push no free object too much.
-const MOST_SLIDES: usize = 4;
-
-/// Number of parts of a turn that are tried, each half as large as the one before.
-const TURNS: i32 = 5;
-
-/// Largest difference of equal steps, in units.
-const SAME_STEP: f32 = 1e-4;
 
 /// Moves every held object towards its target for one tick, and keeps its surroundings awake: Rapier would let things fall into
 /// sleeping objects for a tick.
 pub(crate) fn carry(
     hands: Res<Hands>,
-    rapier: ReadRapierContext,
-    mut held: Query<(&Carry, &CarryTarget, &mut Transform, Option<&mut Velocity>)>,
+    mut rapier: WriteRapierContext,
+    mut held: Query<(&Carry, &CarryTarget, MovedBody, Option<&mut Velocity>)>,
     mut sleeping: Query<&mut Sleeping>,
     joints: Query<&Joint>,
 ) {
-    let Ok(rapier) = rapier.single() else {
+    let Ok(mut rapier) = rapier.single_mut() else {
         return;
     };
     for object in Hand::ALL.into_iter().filter_map(|hand| hands.held_by(hand)) {
-        let Ok((carry, target, mut transform, velocity)) = held.get_mut(object) else {
+        let Ok((carry, target, mut body, velocity)) = held.get_mut(object) else {
             continue;
         };
-        let here = Pose::from(&*transform);
+        let here = body.pose();
         if let (Carry::AgainstJoints, Some(mut velocity)) = (carry, velocity) {
             *velocity = pull_velocity(here, target.0);
             continue;
         }
-        let Some(collider) = collider_of(&rapier, object) else {
+        let Some(collider) = collider_of(&rapier.colliders, object) else {
             continue;
         };
         let next = advanced(here, target.0);
-        let is_jointed = |object| joints.iter().any(|joint| joint.objects.contains(&object));
-        let shape = collider.shape();
-        let near = Near::new(&rapier, object, shape, &is_jointed, here, next);
-        let next = carried(collider, here, next, &near);
-        transform.set_if_neq(next.into());
-        for neighbour in near.sleeping {
-            if let Ok(mut sleeping) = sleeping.get_mut(neighbour) {
+        let held = convex_parts(Pose::IDENTITY, collider.shared_shape());
+        let (next, neighbours) = {
+            let near = Near::new(&rapier, object, collider.shape(), &joints, here, next);
+            (carried(&held, here, next, &near), near.things.free)
+        };
+        for neighbour in neighbours.iter().filter(|it| it.is_sleeping) {
+            if let Ok(mut sleeping) = sleeping.get_mut(neighbour.object) {
                 sleeping.sleeping = false;
             }
         }
+        body.send(&mut rapier.rigidbody_set, next);
     }
 }
 
-fn collider_of<'a>(rapier: &'a RapierContext, object: Entity) -> Option<&'a rapier::Collider> {
-    let handle = rapier.colliders.entity2collider().get(&object)?;
-    rapier.colliders.colliders.get(*handle)
+fn collider_of(colliders: &RapierContextColliders, object: Entity) -> Option<&rapier::Collider> {
+    let handle = colliders.entity2collider().get(&object)?;
+    colliders.colliders.get(*handle)
 }
 
 /// The pose that a freely carried object reaches on its way from one pose to another.
-fn carried(collider: &rapier::Collider, here: Pose, mut next: Pose, near: &Near) -> Pose {
-    let held = convex_parts(Pose::IDENTITY, collider.shared_shape());
-    if let Some(outside) = leave(&held, here, next, &near.immovable) {
+fn carried(held: &[Convex], here: Pose, mut next: Pose, near: &Near) -> Pose {
+    if let Some(outside) = leave(held, here, next, &near.immovable) {
         return outside;
     }
-    next.rotation = turned(&held, here, next.rotation, near);
+    next.rotation = near.turned(held, here, next.rotation);
     let step = next.location - here.location;
-    let pushes = near.pushes(&held, here, step.length());
-    let mut step = pushed(step * slowness(&pushes), &pushes);
+    let pushes = near.pushes(held, here, step.length());
+    let mut step = pushed(step, &pushes);
     for _ in 0..MOST_SLIDES {
         next.location = here.location + step;
-        let there = slide(&held, here, next, &near.immovable);
+        let there = slide(held, here, next, &near.immovable);
         let slid = there.location - here.location;
         step = pushed(slid, &pushes);
-        if step.distance(slid) < SAME_STEP {
+        if step.distance(slid) < SAME_LENGTH {
             return there;
         }
     }
     here
 }
 
-/// The orientation that a held object reaches on its way to another: the farthest of a few at which it squeezes no free object.
-fn turned(held: &[Convex], here: Pose, rotation: Quat, near: &Near) -> Quat {
-    if rotation == here.rotation || near.free.is_empty() {
-        return rotation;
-    }
-    let squeeze_here = near.squeeze(held, here);
-    let parts = (0..TURNS).map(|halvings| 0.5f32.powi(halvings));
-    let mut turns = parts.map(|part| here.rotation.slerp(rotation, part).normalize());
-    let is_free = |turn: &Quat| {
-        let squeeze = near.squeeze(held, Pose::new(here.location, *turn));
-        squeeze <= squeeze_here.max(0.0)
-    };
-    turns.find(is_free).unwrap_or(here.rotation)
-}
-
-/// A free object that a held one reaches.
-struct Push {
-    nearest: Nearest,
-    resistance: Resistance,
-}
-
-impl Push {
-    /// The way, in units, by which it gives way in a tick.
-    fn way(&self) -> f32 {
-        let give = self.resistance.give(TOO_DEEP.0);
-        give.min(FASTEST_PUSH * TICK_SECONDS)
-    }
-}
-
-/// The part of a step at which a hand slows, so that nothing is squeezed ever more.
-fn slowness(pushes: &[Push]) -> f32 {
-    let depths = pushes
-        .iter()
-        .map(|push| push.resistance.depth.max(-push.nearest.distance));
-    let room = TOO_DEEP.1 - depths.fold(0.0, f32::max);
-    (room / (TOO_DEEP.1 - TOO_DEEP.0)).clamp(0.0, 1.0)
-}
+/// A free object that a held one reaches, and where.
+type Push<'a> = (Pushed<'a>, Vec<Nearest>);
 
 /// The part of a step that remains when free objects are reached in one tick and pushed from the next one on, no faster
-/// than a hand pushes, and without being squeezed.
+/// than a hand pushes. A hand leaves an object that it is too deep in; an arm, which goes along a path, only stops.
 fn pushed(mut step: Vec3, pushes: &[Push]) -> Vec3 {
-    for push in pushes {
-        let nearest = &push.nearest;
-        let squeeze = (-nearest.distance / MOST_SQUEEZE).max(0.0);
-        let way = match squeeze < 1.0 {
-            true => push.way() * (1.0 - squeeze),
-            false => MOST_SQUEEZE * (1.0 - squeeze) / 2.0,
+    let places = pushes
+        .iter()
+        .flat_map(|(object, places)| places.iter().map(move |place| (object, place)));
+    for (object, place) in places {
+        let way = -step.dot(place.away);
+        let depth = -place.distance;
+        let room = match depth > PRESSED {
+            true => (PRESSED - depth) / 2.0,
+            false => room(object, place, way),
         };
-        let approach = -step.dot(nearest.away);
-        step += nearest.away * (approach - way.max(nearest.distance - GAP)).max(0.0);
+        step += place.away * (way - room).max(0.0);
     }
     step
+}
+
+/// The part of a way, in units, that a hand can go towards a place of a free object.
+fn room(object: &Pushed, place: &Nearest, way: f32) -> f32 {
+    let mut approach = Approach {
+        gap: place.distance,
+        way,
+        direction: -place.away,
+    };
+    if approach.is_push() {
+        approach.way = way.min(FASTEST_PUSH * TICK_SECONDS);
+    }
+    match way > 0.0 {
+        true => approach.way * object.part(approach),
+        false => way,
+    }
 }
 
 /// A tick's part of the way to the target.
@@ -180,96 +145,75 @@ fn advanced(here: Pose, target: Pose) -> Pose {
     Pose::new(location, rotation)
 }
 
-/// The neighbourhood of a carried object's way, as convex parts in the frame of the world.
+/// The neighbourhood of a carried object's way.
 struct Near<'a> {
-    /// Obstacles: everything that does not move by itself.
+    /// The solids that the object may come near.
+    things: Environment,
+    /// Obstacles: everything that does not move by itself, in the table's frame.
     immovable: Vec<Convex>,
-    /// Objects that it pushes.
-    free: Vec<PiledObject>,
-    /// The free objects that sleep.
-    sleeping: Vec<Entity>,
-    /// The pile of these objects, if they were reached.
-    pile: OnceCell<Pile>,
-    rapier: &'a RapierContext<'a>,
-    carried: Entity,
-    is_jointed: &'a dyn Fn(Entity) -> bool,
+    /// A wider environment, with the objects that are pushed in turn; looked at only if any is.
+    pile: OnceCell<Environment>,
+    look: Box<dyn Fn(Aabb) -> Environment + 'a>,
+    room: Aabb,
 }
 
 impl<'a> Near<'a> {
     fn new(
-        rapier: &'a RapierContext,
+        rapier: &'a RapierContextMut,
         carried: Entity,
         shape: &dyn rapier::Shape,
-        is_jointed: &'a dyn Fn(Entity) -> bool,
+        joints: &'a Query<&Joint>,
         here: Pose,
         next: Pose,
     ) -> Self {
         let bounds = shape.compute_local_bounding_sphere();
         let radius = bounds.center().length() + bounds.radius();
-        // It is pushed out of what it would be turned into.
+        // It is pushed out of obstacles that it would be turned into.
         let turning = here.rotation.angle_between(next.rotation) * radius;
-        // What it slides along may turn it anywhere.
-        let reach = radius + turning + here.location.distance(next.location) + 0.1;
-        let way = Aabb::new(here.location - reach, here.location + reach);
-        let mut near = Self {
-            immovable: Vec::new(),
-            free: Vec::new(),
-            sleeping: Vec::new(),
+        // Obstacles along which it slides may turn it anywhere.
+        let reach = radius + turning + here.location.distance(next.location) + LEAVING;
+        let room = Aabb::new(here.location - reach, here.location + reach);
+        let look = move |room| {
+            let is_met = |entity| entity != carried;
+            let (colliders, bodies) = (&rapier.colliders, &rapier.rigidbody_set);
+            Environment::new(colliders, bodies, room, is_met, joints.iter())
+        };
+        let things = look(room);
+        Self {
+            immovable: things.immovable.iter().map(SweptSolid::part).collect(),
+            things,
             pile: OnceCell::new(),
-            rapier,
-            carried,
-            is_jointed,
-        };
-        for other in near.others(way) {
-            if !other.body.is_dynamic() {
-                near.immovable.extend(other.parts());
-                continue;
-            }
-            near.free.push(PiledObject::new(&other, is_jointed));
-            if other.body.is_sleeping() {
-                near.sleeping.push(other.entity);
-            }
-        }
-        near
-    }
-
-    /// The other bodies in a box.
-    fn others(&self, room: Aabb) -> impl Iterator<Item = Nearby<'a>> + use<'a> {
-        let carried = self.carried;
-        let is_other = move |entity| entity != carried;
-        nearby(
-            self.rapier.colliders,
-            self.rapier.rigidbody_set,
+            look: Box::new(look),
             room,
-            is_other,
-        )
+        }
     }
 
-    /// How much farther, in units, a held one at a pose is in free objects than they give way in a tick.
-    fn squeeze(&self, held: &[Convex], at: Pose) -> f32 {
-        let pushes = self.pushes(held, at, 0.0).into_iter();
-        let squeezes = pushes.map(|push| -push.nearest.distance - push.way());
-        squeezes.fold(f32::NEG_INFINITY, f32::max)
+    /// The orientation that a held object reaches on its way to another, with the free objects that it pushes.
+    fn turned(&self, held: &[Convex], here: Pose, rotation: Quat) -> Quat {
+        if rotation == here.rotation || self.things.free.is_empty() {
+            return rotation;
+        }
+        let there = Pose::new(here.location, rotation);
+        let solids: Vec<_> = SweptSolid::moving(held, (), here, there).collect();
+        match self.pile().part(&solids) {
+            (part, _) if part < 1.0 => here.rotation.slerp(rotation, part).normalize(),
+            _ => rotation,
+        }
     }
 
-    /// The free objects that a held one at a pose reaches within a step's length, in units.
-    fn pushes(&self, held: &[Convex], here: Pose, step: f32) -> Vec<Push> {
-        let of_object = |object: &PiledObject| {
-            let entity = object.entity;
-            let reached = nearest(held, here, &object.parts, step + MOST_SQUEEZE);
-            let push = |nearest: Nearest| Push {
-                resistance: self.pile().resistance(entity, -nearest.away),
-                nearest,
-            };
-            reached.map(push).collect::<Vec<_>>()
-        };
-        self.free.iter().flat_map(of_object).collect()
+    /// The free objects that a held one at a pose reaches within a way, in units.
+    fn pushes(&self, held: &[Convex], here: Pose, way: f32) -> Vec<Push<'_>> {
+        let reached = self.things.free.iter().filter_map(|object| {
+            let parts: Vec<_> = object.solids.iter().map(SweptSolid::part).collect();
+            let places: Vec<_> = nearest(held, here, &parts, way + TOUCHING).collect();
+            (!places.is_empty()).then_some(())?;
+            Some((self.pile().pushed(object.object)?, places))
+        });
+        reached.collect()
     }
 
-    fn pile(&self) -> &Pile {
-        self.pile.get_or_init(|| {
-            let everywhere = Aabb::new(Vec3::MIN, Vec3::MAX);
-            Pile::of(&self.free, self.others(everywhere), self.is_jointed)
-        })
+    fn pile(&self) -> &Environment {
+        self.pile
+            .get_or_init(|| (self.look)(self.room.loosened(REACH)))
     }
 }

@@ -43,7 +43,6 @@
 mod carry;
 mod grasp;
 mod obstacles;
-mod pile;
 mod rules;
 
 pub use grasp::CarryTarget;

@@ -2,28 +2,11 @@
 
 use bevy::prelude::*;
 use tabletop_geometry::Pose;
-use tabletop_physics::{Convex, depth, nearest};
-
-/// Depths, in units, that count as touching and not as inside.
-const TOUCHING: f32 = 1e-4;
-
-/// Largest difference of equal depths, in units.
-const SAME_DEPTH: f32 = 1e-5;
-
-/// Least step towards the target near an obstacle, in units: small against the thinnest wall.
-const STEP: f32 = 0.02;
-
-/// Largest number of steps in a move; a move that needs more continues in the next tick.
-const MOST_STEPS: usize = 96;
-
-/// Number of rounds in which an object is pushed out of obstacles.
-const MOST_PUSHES: usize = 12;
-
-/// Depth, in units, from which an object is inside an obstacle.
-const INSIDE: f32 = 0.01;
-
-/// Greatest way, in units, that an object goes in a tick to leave an obstacle.
-const LEAVING: f32 = 0.1;
+use tabletop_physics::{
+    Convex, depth,
+    limits::{INSIDE, LEAVING, MOST_SLIDING_STEPS, SAME_DEPTH, SAME_LENGTH, SLIDING_STEP},
+    nearest, pushed_out,
+};
 
 /// The pose of an object a tick later on its way out of the obstacles that it is inside of, as after something was put, or appeared, there.
 /// If they leave no way out, it goes towards its target, but no deeper into them. `None` if it is inside nothing.
@@ -32,7 +15,7 @@ pub(crate) fn leave(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex])
     if !obstacles.iter().any(is_entered) {
         return None;
     }
-    let Some(out) = pushed_out(held, from, obstacles, &mut Vec::new()) else {
+    let Some(out) = outside(held, from, obstacles, &mut Vec::new()) else {
         let (entered, others): (Vec<_>, Vec<_>) = obstacles.iter().cloned().partition(is_entered);
         return Some(pinned(held, from, to, &entered, &others));
     };
@@ -60,25 +43,14 @@ fn pinned(held: &[Convex], from: Pose, to: Pose, entered: &[Convex], others: &[C
         .unwrap_or(from)
 }
 
-/// The pose without depth: pushed out of all entered obstacles, along the shortest ways. `None` if there is no way
-/// out. Every direction of a push is added to `pushed`.
-fn pushed_out(
+/// The pose without depth: pushed out of all entered obstacles. `None` if there is no way out. Every direction of a push is added to `pushed`.
+fn outside(
     held: &[Convex],
-    mut at: Pose,
+    at: Pose,
     obstacles: &[Convex],
     pushed: &mut Vec<Vec3>,
 ) -> Option<Pose> {
-    for _ in 0..MOST_PUSHES {
-        let deepest = nearest(held, at, obstacles, 0.0)
-            .min_by(|a, b| a.distance.total_cmp(&b.distance))
-            .filter(|nearest| nearest.distance < -TOUCHING);
-        let Some(deepest) = deepest else {
-            return Some(at);
-        };
-        at.location -= deepest.away * deepest.distance;
-        pushed.push(deepest.away);
-    }
-    None
+    pushed_out(held, at, obstacles, [SAME_LENGTH, 0.0], pushed)
 }
 
 /// The pose that an object reaches on its way from `from` to `to`, sliding along its obstacles. It turns first, if there
@@ -87,15 +59,15 @@ pub(crate) fn slide(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex])
     let mut at = from;
     if from.rotation != to.rotation {
         let turned = Pose::new(from.location, to.rotation);
-        let room = pushed_out(held, turned, obstacles, &mut Vec::new());
+        let room = outside(held, turned, obstacles, &mut Vec::new());
         at = room
             .filter(|room| room.location.distance(from.location) < turning_reach(held, from, to))
             .unwrap_or(from);
     }
-    let farthest = at.location.distance(to.location) + STEP;
+    let farthest = at.location.distance(to.location) + SLIDING_STEP;
     let start = at.location;
     let mut sliding_along: Vec<Vec3> = Vec::new();
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MOST_SLIDING_STEPS {
         let way = clipped(to.location - at.location, &sliding_along);
         let length = way.length();
         if length < 1e-6 {
@@ -107,7 +79,7 @@ pub(crate) fn slide(held: &[Convex], from: Pose, to: Pose, obstacles: &[Convex])
         let step = free_way(held, at, way / length, length, obstacles);
         let ahead = Pose::new(at.location + way / length * step, at.rotation);
         let mut pushed = Vec::new();
-        let Some(next) = pushed_out(held, ahead, obstacles, &mut pushed) else {
+        let Some(next) = outside(held, ahead, obstacles, &mut pushed) else {
             break;
         };
         if next.location.distance(start) > farthest {
@@ -131,7 +103,7 @@ fn turning_reach(held: &[Convex], from: Pose, to: Pose) -> f32 {
         part.pose.location.length() + ball.center().length() + ball.radius()
     };
     let radius = held.iter().map(radius).fold(0.0, f32::max);
-    radius * from.rotation.angle_between(to.rotation) + STEP
+    radius * from.rotation.angle_between(to.rotation) + SLIDING_STEP
 }
 
 /// The distance that the object may go in a direction. Convex solids stay apart while they approach by less than their gap;
@@ -141,7 +113,7 @@ fn free_way(held: &[Convex], at: Pose, direction: Vec3, length: f32, obstacles: 
         .map(|nearest| {
             let approach = -direction.dot(nearest.away);
             match approach > 1e-4 {
-                true => (nearest.distance / approach).max(STEP),
+                true => (nearest.distance / approach).max(SLIDING_STEP),
                 false => length,
             }
         })

@@ -6,7 +6,6 @@
 mod body;
 mod joint;
 mod mass;
-mod polytope;
 mod reshape;
 
 pub use body::collider;

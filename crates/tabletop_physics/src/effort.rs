@@ -11,24 +11,22 @@ mod landing;
 mod mode;
 mod substeps;
 mod touches;
-mod waking;
 
 use bevy::prelude::*;
-use bevy_rapier3d::{
-    prelude::*,
-    rapier::prelude::{CCDSolver, ColliderSet, ContactPair, PhysicsPipeline, RigidBodySet},
-};
+use bevy_rapier3d::prelude::*;
 use tabletop_core::Held;
 
 pub use care::Care;
 pub use engine::Engine;
 pub(crate) use engine::REACH;
 pub(crate) use mode::PREDICTION;
-pub(crate) use substeps::{BASE_SUBSTEPS, SUBSTEPS_OF_FREE};
+pub(crate) use substeps::{BASE_SUBSTEPS, SUBSTEPS_OF_FREE, speed, substeps};
+pub(crate) use touches::bodies_of;
 
-use crate::{holding::JustReleased, settings::PhysicsSettings};
-use substeps::substeps;
-use touches::bodies_of;
+use crate::{
+    settings::PhysicsSettings,
+    workarounds::{memory::forget, release::JustReleased},
+};
 
 pub(crate) fn spend_effort(
     mut contexts: Query<(
@@ -47,14 +45,7 @@ pub(crate) fn spend_effort(
     }
     for (mut simulation, colliders, mut bodies, joints) in &mut contexts {
         let simulation = &mut *simulation;
-        // It keeps the fixed shapes from step to step, and learns of changes only in steps in which something is fast: it would look for shapes
-        // that are gone.
-        simulation.ccd_solver = CCDSolver::new();
-        if !joints.impulse_joints.is_empty() {
-            // The pipeline keeps the grouping of joints from step to step, and a new pipeline would group them differently: a world that was
-            // restored with one would go on differently.
-            simulation.pipeline = PhysicsPipeline::new();
-        }
+        forget(simulation, joints);
         let mut engine = Engine {
             parameters: &mut simulation.integration_parameters,
             islands: &mut simulation.islands,
@@ -68,13 +59,4 @@ pub(crate) fn spend_effort(
         engine.wake_what_is_hit(held.iter().map(|handle| handle.0));
         care.spend(engine);
     }
-}
-
-/// The share of a pair's reported impulses that acted in the last step: the engine counts the impulses at the beginning of the
-/// step as well as those of all sub-steps.
-pub fn impulse_share(pair: &ContactPair, bodies: &RigidBodySet, colliders: &ColliderSet) -> f32 {
-    let touching = bodies_of(pair, colliders).into_iter().flatten();
-    let most = touching.filter_map(|body| Some(substeps(bodies.get(body)?)));
-    let substeps = most.max().unwrap_or(BASE_SUBSTEPS) as f32;
-    substeps / (substeps + 1.0)
 }

@@ -1,14 +1,12 @@
 //! Geometry of solids without a step of the engine: nearest points and distances.
 
-mod contact;
 mod convex;
 mod nearby;
 mod pressure;
 mod touch;
 
-pub use contact::contact;
 pub(crate) use convex::placed_parts;
-pub use convex::{Convex, Nearest, convex_parts, depth, nearest, to_rapier};
+pub use convex::{Convex, Nearest, convex_parts, depth, nearest, pushed_out, to_rapier};
 pub use nearby::{Nearby, nearby};
 pub use pressure::{Pressure, pressures_on};
 pub use touch::is_touching;

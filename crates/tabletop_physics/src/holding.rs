@@ -5,21 +5,13 @@ use bevy_rapier3d::prelude::*;
 use tabletop_core::{Held, Joint, Manipulator, ObjectSpec, SimTick, TICK_SECONDS};
 use tabletop_geometry::Pose;
 
-use crate::short_turn::short_turn;
-
-/// An object that was let go of in this tick.
-///
-/// Rapier finds the support of a body only after the body has moved, so an object released at rest would fall freely for a
-/// tick, into the thing below it. Instead it sinks for a tick by next to nothing, and falls from then on.
-#[derive(Component, Clone, Copy, Debug, Reflect)]
-#[reflect(Component)]
-pub struct JustReleased {
-    /// The tick.
-    pub at: SimTick,
-}
-
-/// Speed at which it sinks in that tick, in units/s.
-const SETTLING_SPEED: f32 = 1e-3;
+use crate::{
+    mover::limits::FASTEST,
+    workarounds::{
+        release::{JustReleased, settling},
+        short_turn::short_turn,
+    },
+};
 
 /// Lets hands and links be met when they are there, and not ahead. Seen from afar, the edge of a finger that goes down beside a block is a slope
 /// that would push the block aside.
@@ -27,9 +19,6 @@ pub const MET_WHEN_THERE: SoftCcd = SoftCcd { prediction: 1e-6 };
 
 /// Part of the way to its target by which a jointed object is pulled in a tick.
 const PULLED_PER_TICK: f32 = 0.25;
-
-/// Greatest speeds at which it is pulled, in units/s, and turned, in rad/s.
-const FASTEST: (f32, f32) = (40.0, 10.0);
 
 /// The way in which a held object follows its holder.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
@@ -75,26 +64,7 @@ pub fn let_go(world: &mut World, object: Entity) {
     if is_fixed {
         object.insert(RigidBody::Fixed);
     } else {
-        object.insert((
-            RigidBody::Dynamic,
-            GravityScale(0.0),
-            Velocity::linear(Vec3::NEG_Z * SETTLING_SPEED),
-            JustReleased { at },
-        ));
-    }
-}
-
-/// Lets objects fall that were released in the tick before. An object that undo has put back into the tick of its release waits.
-pub(crate) fn let_fall(
-    mut released: Query<(Entity, &JustReleased, &mut GravityScale)>,
-    tick: Res<SimTick>,
-    mut commands: Commands,
-) {
-    for (object, released, mut gravity) in &mut released {
-        if released.at < *tick {
-            gravity.0 = 1.0;
-            commands.entity(object).remove::<JustReleased>();
-        }
+        object.insert((RigidBody::Dynamic, settling(at)));
     }
 }
 

@@ -35,27 +35,32 @@ mod bodies;
 mod effort;
 mod geometry;
 mod holding;
-mod order;
-mod outside;
-mod quarantine;
-mod relief;
+mod mover;
 mod rest;
 mod settings;
-mod short_turn;
 mod snapshot;
-mod transforms;
 mod twist;
+mod workarounds;
 
 pub use bodies::{BodySystems, collider, mass_properties, reshape, take_in};
-pub use effort::{Care, Engine, impulse_share};
+pub use effort::{Care, Engine};
 pub use geometry::{
-    Convex, Nearby, Nearest, Pressure, contact, convex_parts, depth, is_touching, nearby, nearest,
-    pressures_on, to_rapier,
+    Convex, Nearby, Nearest, Pressure, convex_parts, depth, is_touching, nearby, nearest,
+    pressures_on, pushed_out, to_rapier,
 };
-pub use holding::{Carry, JustReleased, MET_WHEN_THERE, hold, let_go, pull_velocity, push, put};
+pub use holding::{Carry, MET_WHEN_THERE, hold, let_go, pull_velocity, push, put};
+pub use mover::{
+    Approach, Environment, FreeObject, MovedBody, MovedBodyItem, Pushed, SweptSolid, are_near,
+    limits,
+};
 pub use settings::PhysicsSettings;
-pub use short_turn::send;
 pub use snapshot::{PhysicsSnapshot, remove_joint, remove_object, renew_if_empty};
+pub use workarounds::{
+    contact::contact,
+    enabling::set_enabled,
+    impulses::{impulse_share, solved_points},
+    release::JustReleased,
+};
 
 /// The names that most users of this crate need.
 pub mod prelude {
@@ -75,7 +80,11 @@ use tabletop_core::{
 use tabletop_geometry::Twist;
 use tabletop_history::RollbackApp;
 
-use crate::quarantine::Quarantine;
+use crate::workarounds::{
+    order, outside,
+    quarantine::{self, Quarantine},
+    release, relief, short_turn, transforms,
+};
 
 /// Length to which Rapier scales its tolerances. The parameters are in units; a greater number would only fatten the boxes
 /// in which it looks for contacts.
@@ -161,7 +170,7 @@ impl Plugin for PhysicsPlugin {
             .add_plugins((bodies::plugin, rest::plugin))
             .add_systems(
                 FixedUpdate,
-                holding::let_fall
+                release::let_fall
                     .run_if(Paused::is_running)
                     .after(BodySystems)
                     .before(CommandSystems::Hands)

@@ -4,7 +4,7 @@ use bevy::{ecs::change_detection::Tick, ecs::system::SystemId, prelude::*};
 use bevy_rapier3d::{plugin::systems::step_simulation, prelude::*};
 use tabletop_core::{RestApp as _, RestingSystems, SimSystems};
 
-use crate::{
+use crate::workarounds::{
     outside::{ChangedBody, ChangedCollider, Removals},
     quarantine::Quarantine,
 };

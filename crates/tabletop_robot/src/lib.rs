@@ -26,7 +26,6 @@
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod articulation;
-mod clearance;
 mod command;
 mod contacts;
 mod description;
@@ -35,6 +34,7 @@ mod gripper;
 mod hand_cameras;
 pub mod look;
 mod motion;
+mod owner;
 mod plugin;
 mod source;
 

@@ -1,7 +1,6 @@
 //! Motion of the joints in a tick.
 
 pub(crate) mod advance;
-pub(crate) mod environment;
 mod obstacle;
 pub(crate) mod placement;
 mod poses;

@@ -5,10 +5,11 @@ use bevy_rapier3d::prelude::*;
 use tabletop_core::{Dynamics, ObjectSpec, Shape, Table};
 use tabletop_geometry::{Bounds, Polyhedron, Pose, Primitive, Solid, Twist};
 
-use super::{mass::mass_properties, polytope::Polytope};
+use super::mass::mass_properties;
 use crate::{
     effort::{BASE_SUBSTEPS, SUBSTEPS_OF_FREE},
     settings::PhysicsSettings,
+    workarounds::polytope::Polytope,
 };
 
 /// Speeds below which an object falls asleep after half a second: 0.02 m/s and 0.2 rad/s.

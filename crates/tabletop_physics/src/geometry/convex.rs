@@ -7,7 +7,10 @@ use bevy_rapier3d::{
 };
 use tabletop_geometry::Pose;
 
-use super::contact::contact;
+use crate::workarounds::contact::contact;
+
+/// Number of pushes after which a body is left where it is: the obstacles that it is in leave no room.
+const MOST_PUSHES: usize = 12;
 
 /// A convex solid, with its pose in the frame of the whole that it belongs to.
 #[derive(Clone, Debug)]
@@ -109,6 +112,28 @@ pub fn nearest<'a>(
 pub fn depth(body: &[Convex], at: Pose, obstacles: &[Convex]) -> f32 {
     let depths = nearest(body, at, obstacles, 0.0).map(|nearest| -nearest.distance);
     depths.fold(0.0, f32::max)
+}
+
+/// The pose of a body that is pushed out of obstacles, each along the shortest way, where it is deeper in them than `deepest`, until it is
+/// `left` deep, in units. `None` if there is no way out. Every direction of a push is added to `pushed`.
+pub fn pushed_out(
+    body: &[Convex],
+    mut at: Pose,
+    obstacles: &[Convex],
+    [deepest, left]: [f32; 2],
+    pushed: &mut Vec<Vec3>,
+) -> Option<Pose> {
+    for _ in 0..MOST_PUSHES {
+        let deep = nearest(body, at, obstacles, 0.0)
+            .min_by(|one, other| one.distance.total_cmp(&other.distance))
+            .filter(|nearest| nearest.distance < -deepest);
+        let Some(deep) = deep else {
+            return Some(at);
+        };
+        at.location += deep.away * (-left - deep.distance);
+        pushed.push(deep.away);
+    }
+    None
 }
 
 /// A pose as Rapier has it.

@@ -1,15 +1,11 @@
 //! How hard bodies press onto each other.
 
 use bevy::prelude::*;
-use bevy_rapier3d::{
-    parry::utils::PoseOpt,
-    prelude::*,
-    rapier::prelude::{Collider, ContactPair},
-};
+use bevy_rapier3d::{prelude::*, rapier::prelude::Collider};
 use tabletop_core::TICK_SECONDS;
 use tabletop_geometry::UNITS_PER_METER;
 
-use crate::effort::impulse_share;
+use crate::workarounds::impulses::{impulse_share, solved_points};
 
 /// A point at which something presses onto an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,21 +56,4 @@ pub fn pressures_on(world: &mut World, objects: &[Entity]) -> Vec<Pressure> {
         }
     }
     pressures
-}
-
-/// The points of the first or the second collider of a pair, in its frame, and the impulses that the engine reports there.
-fn solved_points(pair: &ContactPair, on_first: bool) -> impl Iterator<Item = (Vec3, f32)> {
-    pair.solver_manifolds().iter().flat_map(move |manifold| {
-        // Only what the solver has looked at in this tick: other points keep impulses of earlier ones.
-        let solved = manifold.data.solver_contacts.iter();
-        let numbers = solved.flat_map(|solved| solved.contact_indices());
-        let points = numbers.filter_map(|number| manifold.points.get(number as usize));
-        points.map(move |point| {
-            let at = match on_first {
-                true => manifold.subshape_pos1().transform_point(point.local_p1),
-                false => manifold.subshape_pos2().transform_point(point.local_p2),
-            };
-            (at, point.data.impulse)
-        })
-    })
 }

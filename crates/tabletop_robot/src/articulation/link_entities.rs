@@ -1,14 +1,13 @@
 //! The robot's bodies in the world.
 
-use bevy::prelude::*;
+use bevy::{ecs::system::SystemState, prelude::*};
 use bevy_rapier3d::{
     plugin::systems::{init_colliders, init_rigid_bodies},
     prelude::*,
-    rapier::prelude::RigidBodyHandle,
 };
 use tabletop_core::{CarriesHeadCamera, Robot, Rollback, Table};
 use tabletop_geometry::Pose;
-use tabletop_physics::{MET_WHEN_THERE, to_rapier};
+use tabletop_physics::{MET_WHEN_THERE, MovedBody, set_enabled};
 
 use crate::articulation::{
     passive_links::PassiveLinks,
@@ -71,31 +70,10 @@ pub(crate) fn spawn(world: &mut World) -> Result {
     Ok(())
 }
 
-/// Lets the bodies meet others, or not. Rapier's plugin obeys the marks only in ticks that are not paused, and forgets marks that were
-/// taken away during longer pauses, so Rapier is told at once.
+/// Lets the bodies meet others, or not.
 pub(crate) fn enable(world: &mut World, enabled: bool) -> Result {
     let links = world.resource::<LinkEntities>().clone();
-    for &link in &links.0 {
-        let mut link = world.entity_mut(link);
-        if !link.contains::<Collider>() {
-            continue;
-        }
-        if enabled {
-            link.remove::<RigidBodyDisabled>();
-        } else {
-            link.insert(RigidBodyDisabled);
-        }
-    }
-    let mut contexts =
-        world.query_filtered::<&mut RapierRigidBodySet, With<DefaultRapierContext>>();
-    let mut set = contexts.single_mut(world)?;
-    for link in &links.0 {
-        let handle = set.entity2body().get(link).copied();
-        if let Some(body) = handle.and_then(|handle| set.bodies.get_mut(handle)) {
-            body.set_enabled(enabled);
-        }
-    }
-    Ok(())
+    set_enabled(world, &links.0, enabled)
 }
 
 fn collider(body: &Body) -> Option<Collider> {
@@ -141,41 +119,19 @@ pub(crate) fn make_passive(world: &mut World, passive: PassiveLinks) -> Result {
 }
 
 /// Puts the bodies where the posture has them, without pushing anything on the way.
-pub(crate) fn teleport(world: &mut World) {
+pub(crate) fn teleport(world: &mut World) -> Result {
     let base = base(world);
     let posture = world
         .resource::<Articulation>()
         .posture(&positions(world.resource::<Robot>()), base);
-    let poses = posture.bodies();
     let parts = world.resource::<LinkEntities>().clone();
-    for (&part, &pose) in parts.0.iter().zip(poses) {
-        if let Some(mut transform) = world.get_mut::<Transform>(part) {
-            transform.set_if_neq(pose.into());
+    let mut state: SystemState<(Query<MovedBody>, WriteRapierContext)> = SystemState::new(world);
+    let (mut moved, mut rapier) = state.get_mut(world)?;
+    let bodies = &mut rapier.single_mut()?.rigidbody_set;
+    for (&part, &pose) in parts.0.iter().zip(posture.bodies()) {
+        if let Ok(mut body) = moved.get_mut(part) {
+            body.jump(bodies, pose);
         }
     }
-    let mut contexts =
-        world.query_filtered::<&mut RapierRigidBodySet, With<DefaultRapierContext>>();
-    if let Ok(mut bodies) = contexts.single_mut(world) {
-        for (part, pose) in parts.0.iter().zip(poses) {
-            put(&mut bodies, *part, *pose);
-        }
-    }
-}
-
-/// Puts a body at a pose, without pushing anything on the way.
-pub(crate) fn put(bodies: &mut RapierRigidBodySet, part: Entity, pose: Pose) {
-    let handle = bodies.entity2body().get(&part).copied();
-    if let Some(body) = handle.and_then(|handle| bodies.bodies.get_mut(handle)) {
-        let pose = to_rapier(pose);
-        body.set_position(pose, true);
-        body.set_next_kinematic_position(pose);
-    }
-}
-
-/// Puts a body that meets nothing at a pose, asleep: Rapier leaves it out of its step.
-pub(crate) fn put_asleep(bodies: &mut RapierRigidBodySet, part: RigidBodyHandle, pose: Pose) {
-    if let Some(body) = bodies.bodies.get_mut(part) {
-        body.set_position(to_rapier(pose), false);
-        body.sleep();
-    }
+    Ok(())
 }

@@ -3,11 +3,9 @@
 use bevy::prelude::*;
 use tabletop_core::JointRole;
 use tabletop_geometry::Pose;
+use tabletop_physics::SweptSolid;
 
-use crate::{
-    articulation::tree::{Articulation, Body, Positions, TreePosition},
-    clearance::{Owner, SweptSolid},
-};
+use crate::articulation::tree::{Articulation, Body, Positions, TreePosition};
 
 /// Number of joints between two bodies of a limb that can collide.
 const JOINTS_BETWEEN: usize = 3;
@@ -88,7 +86,7 @@ const fn are_apart(a: TreePosition, b: TreePosition) -> bool {
 }
 
 /// The solids of every body in a known posture.
-fn known_posture(articulation: &Articulation, angles: &[f64]) -> Vec<Vec<SweptSolid>> {
+fn known_posture(articulation: &Articulation, angles: &[f64]) -> Vec<Vec<SweptSolid<usize>>> {
     let joints = articulation.layout.joints.iter();
     let positions: Positions = joints
         .map(|joint| match joint.role {
@@ -102,12 +100,12 @@ fn known_posture(articulation: &Articulation, angles: &[f64]) -> Vec<Vec<SweptSo
     let posture = articulation.posture(&positions, Pose::IDENTITY);
     let solids = |(number, body): (usize, &Body)| {
         let pose = posture.bodies()[number];
-        SweptSolid::moving(&body.parts, Owner::Body(number), pose, pose).collect()
+        SweptSolid::moving(&body.parts, number, pose, pose).collect()
     };
     articulation.bodies.iter().enumerate().map(solids).collect()
 }
 
-fn overlap(a: &[SweptSolid], b: &[SweptSolid]) -> bool {
+fn overlap(a: &[SweptSolid<usize>], b: &[SweptSolid<usize>]) -> bool {
     a.iter().any(|a| b.iter().any(|b| a.is_within(ROUGH, b)))
 }
 

@@ -2,16 +2,11 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::{
-    parry::{
-        bounding_volume::{Aabb, BoundingVolume},
-        utils::PoseOpt,
-    },
+    parry::bounding_volume::{Aabb, BoundingVolume},
     prelude::RapierContext,
     rapier::prelude::{Collider, ColliderHandle, ContactPair},
 };
-use tabletop_physics::{contact, impulse_share};
-
-use crate::clearance::MARGIN;
+use tabletop_physics::{contact, impulse_share, limits::MARGIN, solved_points};
 
 /// Distance, in units, at which something is touched: an arm stops at the margin before an obstacle, or a little earlier.
 const REACHED: f32 = 1.5 * MARGIN;
@@ -55,18 +50,9 @@ pub(crate) fn add_pressed(
 /// reports.
 fn pressure(pair: &ContactPair, on_first: bool) -> Option<(Vec3, f32)> {
     let (mut moment, mut impulse) = (Vec3::ZERO, 0.0);
-    for manifold in pair.solver_manifolds() {
-        // Only points that the solver has used in this tick: others keep impulses of earlier ticks.
-        let solved = manifold.data.solver_contacts.iter();
-        let numbers = solved.flat_map(|solved| solved.contact_indices());
-        for point in numbers.filter_map(|number| manifold.points.get(number as usize)) {
-            let place = match on_first {
-                true => manifold.subshape_pos1().transform_point(point.local_p1),
-                false => manifold.subshape_pos2().transform_point(point.local_p2),
-            };
-            moment += place * point.data.impulse;
-            impulse += point.data.impulse;
-        }
+    for (place, at_point) in solved_points(pair, on_first) {
+        moment += place * at_point;
+        impulse += at_point;
     }
     (impulse > 0.0).then(|| (moment / impulse, impulse))
 }

@@ -12,15 +12,13 @@ use bevy_rapier3d::{
 };
 use tabletop_core::{LimbId, TICK_SECONDS};
 use tabletop_geometry::UNITS_PER_METER;
-use tabletop_physics::impulse_share;
+use tabletop_physics::{FreeObject, impulse_share, limits::TOUCHING};
 
 use crate::{
     articulation::link_entities::FRICTION,
     articulation::tree::{TreePosition, in_meters},
-    clearance::TOUCHING,
     dynamics::impulse::{ContactLoad, FrictionAxis},
     dynamics::matrix::{Joints, each},
-    motion::environment::FreeObject,
     motion::tick_motion::TickMotion,
 };
 
@@ -57,9 +55,8 @@ pub(crate) fn contact_loads(
             .iter()
             .filter(|(_, solid)| solid.bounds().intersects(&bounds));
         let contacts = near.flat_map(|(number, solid)| {
-            let contacts = thing
-                .solids()
-                .filter_map(|thing| solid.contact(&thing, reach));
+            let solids = thing.solids.iter();
+            let contacts = solids.filter_map(|thing| solid.contact(thing, reach));
             contacts.map(move |contact| (*number, contact))
         });
         let Some((number, contact)) = contacts.min_by(|(_, a), (_, b)| a.dist.total_cmp(&b.dist))

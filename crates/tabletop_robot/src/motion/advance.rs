@@ -3,12 +3,11 @@
 use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_rapier3d::{prelude::*, rapier::prelude::RigidBodyHandle};
 use tabletop_core::{LimbId, LimbName, Robot, RobotFact, RobotMode, SimFact};
-use tabletop_geometry::Pose;
-use tabletop_physics::{PhysicsSettings, send};
+use tabletop_physics::{MovedBody, PhysicsSettings};
 
 use crate::{
     articulation::{
-        link_entities::{LinkEntities, positions, put, put_asleep},
+        link_entities::{LinkEntities, positions},
         passive_links::PassiveLinks,
         tree::Posture,
     },
@@ -22,21 +21,11 @@ use crate::{
     motion::view::RobotView,
 };
 
-/// Largest distance, in units, that something moves in a tick while pushing things in its way; anything faster has jumped.
-const JUMP: f32 = 1.0;
-
 /// The bodies that the robot moves.
 #[derive(SystemParam)]
 pub(crate) struct MovedBodies<'w, 's> {
     rapier: WriteRapierContext<'w, 's>,
-    places: Query<
-        'w,
-        's,
-        (
-            Option<&'static RapierRigidBodyHandle>,
-            &'static mut Transform,
-        ),
-    >,
+    places: Query<'w, 's, MovedBody>,
     sleeping: Query<'w, 's, &'static mut Sleeping>,
 }
 
@@ -141,13 +130,13 @@ pub(crate) fn advance(
     }
     let places = known.places(&mut motion, &robot, &grips);
     for (number, (entity, pose)) in places.into_iter().enumerate() {
-        let Ok((handle, transform)) = moved.places.get_mut(entity) else {
+        let Ok(mut body) = moved.places.get_mut(entity) else {
             continue;
         };
         let bodies = &mut rapier.rigidbody_set;
-        match handle {
-            Some(handle) if passive.is_far(number) => put_asleep(bodies, handle.0, pose),
-            _ => push(bodies, entity, transform, pose),
+        match passive.is_far(number) {
+            true => body.put_asleep(bodies, pose),
+            false => body.send(bodies, pose),
         }
     }
     *posture = Some(motion.scratch);
@@ -155,16 +144,6 @@ pub(crate) fn advance(
         action.carry_out(&mut commands, &mut facts);
     }
     Ok(())
-}
-
-/// Moves a body to a pose in this tick, and what is in its way with it, unless it jumps.
-fn push(bodies: &mut RapierRigidBodySet, body: Entity, mut transform: Mut<Transform>, pose: Pose) {
-    if transform.translation.distance(pose.location) > JUMP {
-        put(bodies, body, pose);
-    }
-    if !send(bodies, body, pose) {
-        transform.set_if_neq(pose.into());
-    }
 }
 
 /// Sets all velocities to zero.

@@ -2,14 +2,15 @@
 
 use bevy_rapier3d::parry::bounding_volume::BoundingVolume;
 use tabletop_core::LimbId;
+use tabletop_physics::{SweptSolid, are_near, limits::MARGIN};
 
 use crate::{
     articulation::tree::Positions,
-    clearance::{MARGIN, Owner, SweptSolid, are_near},
     motion::{
         poses::{Poses, ROUNDING},
         tick_motion::{TickMotion, is_of},
     },
+    owner::Owner,
 };
 
 impl TickMotion<'_> {
@@ -23,7 +24,7 @@ impl TickMotion<'_> {
                     .iter()
                     .any(|(_, solid)| solid.depth_in(obstacle) > 0.0)
             })
-            .map(|obstacle| obstacle.owner)
+            .map(|obstacle| Owner::Thing(obstacle.owner))
     }
 
     /// The obstacle in the way of an arm to some positions.
@@ -38,8 +39,8 @@ impl TickMotion<'_> {
         let outside = solids.iter().find_map(|(_, solid)| {
             let mut immovable = self.environment.immovable.iter();
             immovable
-                .find(|obstacle| solid.collides_with(obstacle, solid.give()))
-                .map(|obstacle| obstacle.owner)
+                .find(|obstacle| solid.collides_with(obstacle, solid.owner.give()))
+                .map(|obstacle| Owner::Thing(obstacle.owner))
         });
         outside.or_else(|| self.own_body(limb, &solids, &here))
     }
@@ -70,7 +71,7 @@ impl TickMotion<'_> {
     fn own_body(
         &self,
         limb: LimbId,
-        solids: &[(usize, SweptSolid)],
+        solids: &[(usize, SweptSolid<Owner>)],
         here: &Poses,
     ) -> Option<Owner> {
         for (i, (a, solid)) in solids.iter().enumerate() {
@@ -88,7 +89,7 @@ impl TickMotion<'_> {
             if is_of(body, limb) || !are_near(&bounds, around) {
                 continue;
             }
-            let may_meet = |(a, solid): &(usize, SweptSolid)| {
+            let may_meet = |(a, solid): &(usize, SweptSolid<Owner>)| {
                 self.self_collisions.can_meet(*a, number) && are_near(solid.bounds(), around)
             };
             if !solids.iter().any(may_meet) {

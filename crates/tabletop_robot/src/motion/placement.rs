@@ -29,7 +29,7 @@ pub(crate) fn table_has_come(table: Res<NewTable>) -> bool {
 /// Puts the robot in front of the table, with its present joint positions.
 pub(crate) fn stand_at_table(world: &mut World) -> Result {
     world.insert_resource(NewTable(false));
-    teleport(world);
+    teleport(world)?;
     let is_shown = world.resource::<Robot>().is_shown;
     let links = world.resource::<LinkEntities>().0.len();
     let newcomer = PassiveLinks::of_newcomer(if is_shown { links } else { 0 });

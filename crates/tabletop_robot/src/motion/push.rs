@@ -3,15 +3,16 @@
 use bevy::prelude::*;
 use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use tabletop_core::LimbId;
+use tabletop_physics::{
+    SweptSolid, are_near,
+    limits::{LEAST_PART, PRESSED},
+};
 
 use crate::{
     articulation::tree::Positions,
-    clearance::{Owner, PRESSED, SweptSolid, are_near, part_left},
-    motion::{environment::FreeObject, poses::Poses, tick_motion::TickMotion},
+    motion::{poses::Poses, tick_motion::TickMotion},
+    owner::Owner,
 };
-
-/// Least part of a tick's way that is made.
-pub(super) const LEAST_PUSH: f64 = 0.05;
 
 impl TickMotion<'_> {
     /// The part of the way to these positions that an arm can go in a tick with the objects that it pushes, and the object that it squeezes most.
@@ -26,36 +27,12 @@ impl TickMotion<'_> {
             free.any(|thing| are_near(&way, &thing.bounds))
         });
         solids.retain(|(_, solid)| !self.stands_inside(solid.owner));
-        let (mut part, mut most_pushed) = (1.0, None);
-        for (i, thing) in self.environment.free.iter().enumerate() {
-            let approaches = solids
-                .iter()
-                .filter(|(_, solid)| solid.passes(&thing.bounds))
-                .flat_map(|(_, solid)| thing.solids().filter_map(|thing| solid.approach(&thing)));
-            let mut can_go = 1.0_f32;
-            let mut pushes = Vec::new();
-            for approach in approaches {
-                can_go = can_go.min(approach.part());
-                pushes.extend(approach.is_push().then_some(approach));
-            }
-            let is_pushed = !pushes.is_empty();
-            if is_pushed {
-                let squeeze = self.environment.squeeze(i);
-                can_go = can_go.min(part_left(squeeze));
-                for push in pushes {
-                    if self.environment.is_stopped(i, push.direction) {
-                        can_go = can_go.min(push.part_pressing(squeeze));
-                    }
-                }
-            }
-            if can_go < part {
-                (part, most_pushed) = (can_go, is_pushed.then_some(thing.object));
-            }
-        }
+        let solids: Vec<_> = solids.into_iter().map(|(_, solid)| solid).collect();
+        let (part, most_pushed) = self.environment.part(&solids);
         let least = if most_pushed.is_some() {
             0.0
         } else {
-            LEAST_PUSH
+            LEAST_PART
         };
         (f64::from(part).max(least), most_pushed)
     }
@@ -74,13 +51,13 @@ impl TickMotion<'_> {
         let parts = &self.articulation.bodies[number].parts;
         let pose = poses.bodies[number];
         let solids: Vec<_> = SweptSolid::moving(parts, Owner::Body(number), pose, pose).collect();
-        let is_entered = |thing: &SweptSolid| {
+        let is_entered = |thing: &SweptSolid<Entity>| {
             are_near(thing.bounds(), around)
                 && solids.iter().any(|solid| solid.depth_in(thing) > PRESSED)
         };
         let environment = &self.environment;
-        let mut free = environment.free.iter().flat_map(FreeObject::solids);
-        environment.immovable.iter().any(is_entered) || free.any(|thing| is_entered(&thing))
+        let mut free = environment.free.iter().flat_map(|thing| &thing.solids);
+        environment.immovable.iter().any(is_entered) || free.any(is_entered)
     }
 
     /// True if a body comes near no free object on its way from some poses to others.

@@ -3,26 +3,21 @@
 use bevy::prelude::*;
 use bevy_rapier3d::parry::bounding_volume::Aabb;
 use tabletop_core::LimbId;
+use tabletop_physics::{
+    SweptSolid, are_near,
+    limits::{HALVINGS, LEAST_PART, MOST_SWEEPING_STEPS, SWEEPING_STEP},
+};
 
 use crate::{
     articulation::tree::Positions,
-    clearance::{Owner, are_near},
     command::joint_targets::{JointTargets, Setpoint},
     gripper::{
         alignment::PRESS,
         closing::{Closing, Graspable, close},
     },
-    motion::{push::LEAST_PUSH, tick_motion::TickMotion},
+    motion::tick_motion::TickMotion,
+    owner::Owner,
 };
-
-/// Largest distance of a body, in units, between two checks for obstacles: less than the thickness of a finger.
-const STEP: f32 = 0.2;
-
-/// Largest number of checks in a tick: a faster body is checked less densely.
-const MOST_STEPS: f32 = 400.0;
-
-/// Number of halvings of the last step, to come as near as possible.
-const HALVINGS: u32 = 6;
 
 /// Largest distance from an end effector, in units, of an object between its fingers.
 const BETWEEN: f32 = 2.0;
@@ -56,7 +51,7 @@ impl TickMotion<'_> {
         }
         let (part, pushed) = self.push(limb, &there);
         self.is_squeezing[limb.index()] = pushed.is_some();
-        if part < LEAST_PUSH {
+        if part < LEAST_PART {
             self.held_up_by[limb.index()] = pushed;
             return;
         }
@@ -94,7 +89,7 @@ impl TickMotion<'_> {
             return closing;
         }
         let (part, _) = self.push(limb, &there);
-        if part >= LEAST_PUSH {
+        if part >= LEAST_PART {
             self.sweep(limb, lerp(&self.positions, &there, part));
         }
         closing
@@ -109,7 +104,7 @@ impl TickMotion<'_> {
             .filter(|thing| are_near(&thing.bounds, &near))
             .map(|thing| Graspable {
                 object: thing.object,
-                parts: thing.parts.clone(),
+                parts: thing.solids.iter().map(SweptSolid::part).collect(),
             })
             .collect()
     }
@@ -118,9 +113,9 @@ impl TickMotion<'_> {
     fn sweep(&mut self, limb: LimbId, there: Positions) -> Option<Owner> {
         let start = self.positions.clone();
         let between = |part: f64| lerp(&start, &there, part);
-        let steps = (self.way(limb, &there) / STEP)
+        let steps = (self.way(limb, &there) / SWEEPING_STEP)
             .ceil()
-            .clamp(1.0, MOST_STEPS);
+            .clamp(1.0, MOST_SWEEPING_STEPS);
         for step in 1..=steps as u32 {
             let ahead = f64::from(step) / f64::from(steps);
             let next = between(ahead);

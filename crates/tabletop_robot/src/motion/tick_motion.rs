@@ -6,13 +6,13 @@ use bevy::prelude::*;
 use bevy_rapier3d::parry::bounding_volume::{Aabb, BoundingVolume};
 use tabletop_core::LimbId;
 use tabletop_geometry::Pose;
-use tabletop_physics::Convex;
+use tabletop_physics::{Convex, Environment, SweptSolid, limits::REACH};
 
 use crate::{
     articulation::self_collision::SelfCollisionMatrix,
     articulation::tree::{Articulation, Body, Carrier, Positions, Posture, TreePosition},
-    clearance::{Owner, SweptSolid},
-    motion::{environment::Environment, poses::Poses},
+    motion::poses::Poses,
+    owner::Owner,
 };
 
 /// Number of answers that are remembered.
@@ -99,7 +99,7 @@ impl TickMotion<'_> {
     }
 
     /// The solids of an arm and of the objects it holds where they are, each with the number of the body by which it meets things.
-    pub fn solids(&mut self, limb: LimbId) -> Vec<(usize, SweptSolid)> {
+    pub fn solids(&mut self, limb: LimbId) -> Vec<(usize, SweptSolid<Owner>)> {
         let here = self.here();
         self.solids_of(limb, &here, &here, |_| true)
     }
@@ -111,7 +111,7 @@ impl TickMotion<'_> {
         from: &Poses,
         to: &Poses,
         is_needed: impl Fn(usize) -> bool,
-    ) -> Vec<(usize, SweptSolid)> {
+    ) -> Vec<(usize, SweptSolid<Owner>)> {
         let mut solids = Vec::with_capacity(self.articulation.bodies.len());
         for number in self.bodies_of(limb).filter(|number| is_needed(*number)) {
             let parts = &self.articulation.bodies[number].parts;
@@ -144,7 +144,7 @@ impl TickMotion<'_> {
 pub(crate) fn reach(poses: impl Iterator<Item = Vec3>) -> Aabb {
     let mut bounds: Option<Aabb> = None;
     for at in poses {
-        let around = Aabb::new(at - 5.0, at + 5.0);
+        let around = Aabb::new(at - REACH, at + REACH);
         bounds = Some(bounds.map_or(around, |bounds| bounds.merged(&around)));
     }
     bounds.unwrap_or_else(Aabb::new_invalid)

@@ -6,7 +6,7 @@ use bevy::{ecs::system::SystemParam, prelude::*};
 use bevy_rapier3d::prelude::*;
 use tabletop_core::{Held, Joint, LimbId, ObjectSpec, Obstacle, Robot, Table};
 use tabletop_geometry::Pose;
-use tabletop_physics::convex_parts;
+use tabletop_physics::{Environment, convex_parts};
 
 use crate::{
     articulation::{
@@ -14,14 +14,13 @@ use crate::{
         self_collision::SelfCollisionMatrix,
         tree::{Articulation, Posture},
     },
-    clearance::Owner,
     command::joint_targets::JointTargets,
     gripper::grips::Grips,
     motion::{
-        environment::Environment,
         poses::Poses,
         tick_motion::{Carried, TickMotion, reach},
     },
+    owner::Owner,
 };
 
 /// The robot's view of the world.
@@ -48,14 +47,17 @@ impl RobotView<'_, '_> {
         let positions = positions(robot);
         let held: BTreeSet<_> = grips.all().collect();
         let near = reach(posture.bodies().iter().map(|pose| pose.location));
-        let environment = Environment::new(
-            rapier,
-            &near,
-            &self.bodies,
-            &held,
-            &self.joints,
-            robot.is_shown,
-        );
+        let is_met = |object| !self.bodies.contains(object) && !held.contains(&object);
+        let environment = match robot.is_shown {
+            true => Environment::new(
+                &rapier.colliders,
+                &rapier.rigidbody_set,
+                near,
+                is_met,
+                self.joints.iter(),
+            ),
+            false => Environment::default(), // A hidden robot meets nothing.
+        };
         let limbs = self.articulation.layout.limb_ids();
         let carried = limbs.clone().map(|limb| {
             grips

@@ -3,7 +3,7 @@
 use bevy::prelude::*;
 use bevy_rapier3d::prelude::*;
 
-use crate::outside::{ChangedBody, ChangedCollider};
+use super::outside::{ChangedBody, ChangedCollider};
 
 /// Notes in the engine what has changed, sorted. The plugin notes it in the order in which Bevy stores entities, which depends on all that ever
 /// happened, undone or not, and the engine wakes bodies and finds their pairs in the order in which they were noted.

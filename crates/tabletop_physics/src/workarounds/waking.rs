@@ -8,7 +8,7 @@ use bevy_rapier3d::{
     rapier::prelude::{QueryFilter, RigidBodyHandle},
 };
 
-use super::{engine::Engine, substeps::speed};
+use crate::effort::{Engine, speed};
 
 /// What is slower, in units/s and rad/s together, presses nothing in.
 const SPEED_OF_BLOW: f32 = 1.0;

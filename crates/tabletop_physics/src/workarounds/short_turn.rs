@@ -2,9 +2,6 @@
 
 use bevy::prelude::*;
 use bevy_rapier3d::{prelude::*, rapier::prelude as rapier};
-use tabletop_geometry::Pose;
-
-use crate::geometry::to_rapier;
 
 /// Lets kinematic bodies turn by less than half a turn in a step. A quaternion and its negative are the same orientation, but Rapier takes
 /// velocities from them as they stand: when the sign changes, a body that hardly moves would strike what it touches as if it spun round.
@@ -18,39 +15,26 @@ pub(crate) fn turn_the_short_way(
     for handle in &moved {
         let body = bodies.bodies.get(handle.0);
         if let Some(body) = body.filter(|body| body.is_kinematic()) {
-            let next = the_short_way(body, *body.next_position());
-            go_to(&mut bodies, handle.0, next);
+            let next = *body.next_position();
+            turn_to(&mut bodies, handle.0, next);
         }
     }
 }
 
-/// Sends a kinematic body to a pose in the next step, by the short way. Its [`Transform`] follows after the step. False if the
-/// engine has no such body.
-pub fn send(bodies: &mut RapierRigidBodySet, entity: Entity, pose: Pose) -> bool {
-    let Some(&handle) = bodies.entity2body().get(&entity) else {
-        return false;
+/// Gives a body its next pose, with that sign of its quaternion to which it turns by less than half a turn; unless it has it already: what is
+/// touched counts as changed.
+pub(crate) fn turn_to(
+    bodies: &mut Mut<RapierRigidBodySet>,
+    handle: rapier::RigidBodyHandle,
+    mut next: rapier::Pose,
+) {
+    let Some(body) = bodies.bodies.get(handle) else {
+        return;
     };
-    let body = bodies.bodies.get(handle);
-    let Some(body) = body.filter(|body| body.is_kinematic() && body.is_enabled()) else {
-        return false;
-    };
-    let next = the_short_way(body, to_rapier(pose));
-    go_to(bodies, handle, next);
-    true
-}
-
-/// The next pose of a body, with that sign of its quaternion to which the body turns by less than half a turn.
-fn the_short_way(body: &rapier::RigidBody, mut next: rapier::Pose) -> rapier::Pose {
     if body.position().rotation.dot(next.rotation) < 0.0 {
         next.rotation = -next.rotation;
     }
-    next
-}
-
-/// Gives a body its next pose, unless it has it already: what is touched counts as changed.
-fn go_to(bodies: &mut RapierRigidBodySet, handle: rapier::RigidBodyHandle, next: rapier::Pose) {
-    let body = bodies.bodies.get(handle);
-    if body.is_some_and(|body| *body.next_position() != next)
+    if *body.next_position() != next
         && let Some(body) = bodies.bodies.get_mut(handle)
     {
         body.set_next_kinematic_position(next);

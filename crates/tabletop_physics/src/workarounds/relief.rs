@@ -17,7 +17,7 @@ use tabletop_geometry::Pose;
 
 use crate::{
     effort::REACH,
-    geometry::{Convex, nearest, placed_parts},
+    geometry::{Convex, placed_parts, pushed_out},
 };
 
 /// Depth, in units, that is left to the solver.
@@ -28,9 +28,6 @@ const LIFTED: f32 = 0.035;
 
 /// Length of a step's way, in units, from which on a body may be in something that it did not touch before.
 const QUICK: f32 = 0.01;
-
-/// Largest number of shifts after which a body is left where it is: the solids that it is in leave no room.
-const MOST_SHIFTS: usize = 8;
 
 /// Moves every body that is too deep in fixed ones along the shortest way out.
 pub(crate) fn relieve(
@@ -175,17 +172,10 @@ impl Relief<'_> {
     fn way_out(&self, body: &rapier::RigidBody, obstacles: &[ColliderHandle]) -> Option<Vec3> {
         let pressed = self.parts(body.colliders());
         let fixed = self.parts(obstacles);
-        let mut way = Vec3::ZERO;
-        for _ in 0..MOST_SHIFTS {
-            let deepest = nearest(&pressed, Pose::at(way), &fixed, 0.0)
-                .min_by(|one, other| one.distance.total_cmp(&other.distance))
-                .filter(|nearest| nearest.distance < -DEEPEST);
-            let Some(deepest) = deepest else {
-                return (way != Vec3::ZERO && way.is_finite()).then_some(way);
-            };
-            way += deepest.away * (-LIFTED - deepest.distance);
-        }
-        None
+        let depths = [DEEPEST, LIFTED];
+        let out = pushed_out(&pressed, Pose::IDENTITY, &fixed, depths, &mut Vec::new());
+        let way = out?.location;
+        (way != Vec3::ZERO && way.is_finite()).then_some(way)
     }
 
     fn parts(&self, shapes: &[ColliderHandle]) -> Vec<Convex> {
