@@ -253,7 +253,7 @@ pub fn scattered(
     let low = |solid: &PlacedSolid| solid.heights()[0] < highest + 0.3;
     let kept: Vec<_> = kept
         .iter()
-        .copied()
+        .cloned()
         .chain(arms.into_iter().filter(low))
         .collect();
     let seed = Random::new(seed).bits();
