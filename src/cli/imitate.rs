@@ -18,7 +18,8 @@ use tabletop::{
         HandPictures, RecorderPlugin, RecordingReader, RecordingReport, UnrecordedPlugin,
         read_original,
     },
-    robot::{Description, RobotPlugin},
+    robot::RobotPlugin,
+    robot_body,
     scene::{IdAllocator, assemble},
     scene_at_beginning,
     task::{Requirements, Task},
@@ -95,12 +96,7 @@ pub(super) fn run(args: &ImitateArgs) -> Result<ExitCode, Failure> {
     }
     let robot = args.robot.plugin()?;
     let hand_pictures = args.hand_cameras.of(&robot)?;
-    let description = match robot.description.clone() {
-        Some(description) => description,
-        None => Description::baxter().map_err(Failure::run)?,
-    };
-    let body = RobotBody::new(&description.layout, description.model, &scene.table);
-    let body = body.map_err(Failure::run)?;
+    let body = robot_body(&robot, &scene.table).map_err(Failure::run)?;
     let first = args.seed.unwrap_or(0);
     let seeds = (0..args.trials.unwrap_or(1)).map(|trial| match args.trials {
         None => args.seed,

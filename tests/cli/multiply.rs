@@ -218,6 +218,38 @@ fn the_light_differs_and_nothing_else_does() {
 }
 
 #[test]
+fn another_robot_shows_it() {
+    const PANDA: &str = "shipped:assets/panda/robot.ron";
+    let demo = record_shipped("stack_three", "multiply_panda");
+    let out = place("multiply_panda_out");
+    multiply(&demo, &out, &["--count", "2", "--robot", PANDA]);
+    for number in ["0000", "0001"] {
+        let made = out.join(number);
+        assert_eq!(
+            explained(&made).lines().count(),
+            explained(demo.as_ref()).lines().count()
+        );
+        let joints = fs::read_to_string(made.join("joints.csv")).unwrap();
+        assert!(joints.contains(",panda_joint1,"), "{joints:.200}");
+    }
+    replays_to_the_same_bytes(out.join("0000").to_str().unwrap());
+    // Those of another robot are others.
+    let output = tabletop(&["multiply", &demo, "--robot", "--out", out.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    let told = stderr(&output);
+    assert!(told.contains("made with other options"), "{told}");
+}
+
+#[test]
+fn a_recording_in_the_place_of_a_robot_is_named() {
+    let demo = record_shipped("stack_three", "multiply_swapped");
+    let output = tabletop(&["multiply", "--robot", &demo, "--out", "nowhere"]);
+    assert_eq!(output.status.code(), Some(2));
+    let told = stderr(&output);
+    assert!(told.contains("a recording comes before --robot"), "{told}");
+}
+
+#[test]
 fn the_robot_shows_it_with_the_pictures_of_its_hands() {
     let demo = record_shipped("stack_three", "multiply_hand_cameras");
     let out = place("multiply_hand_cameras_out");

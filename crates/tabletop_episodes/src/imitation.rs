@@ -6,7 +6,6 @@ use tabletop_core::{
     RobotLayout, SceneItem, SceneSpec, StepApp as _, Table, WriteCommand as _,
 };
 use tabletop_geometry::Pose;
-use tabletop_kinematics::{ModelError, baxter};
 use tabletop_planner::{
     LimbOrder, LimbSight, Piece, PlanningStage, RobotBody, SeenObject, Sight, Stopped, angles,
     is_feasible, scatter,
@@ -128,14 +127,6 @@ impl PlanningStage for AppStage<'_> {
         self.look();
         Ok(())
     }
-}
-
-/// The Baxter of the report in front of a table, as planning needs it.
-///
-/// # Errors
-/// Never: a test reads its description.
-pub fn baxter_body(table: &Table) -> Result<RobotBody, ModelError> {
-    RobotBody::new(RobotLayout::baxter(), baxter()?, table)
 }
 
 /// Number of arrangements that are tried until one allows the task.

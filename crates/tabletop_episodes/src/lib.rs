@@ -3,7 +3,9 @@
 mod beginning;
 pub mod imitation;
 pub mod multiplication;
+mod robot_body;
 pub mod shown_task;
 pub mod soak;
 
 pub use beginning::scene_at_beginning;
+pub use robot_body::robot_body;
