@@ -1,18 +1,6 @@
 //! `tabletop multiply`: one demonstration becomes many.
 
-use std::{
-    collections::BTreeMap,
-    fmt,
-    path::PathBuf,
-    process::ExitCode,
-    sync::{
-        Mutex,
-        atomic::{AtomicBool, AtomicU64, Ordering},
-        mpsc,
-    },
-    thread,
-    time::Instant,
-};
+use std::{collections::BTreeMap, fmt, path::PathBuf, process::ExitCode, thread, time::Instant};
 
 use clap::{
     Args,
@@ -22,6 +10,7 @@ use serde_json::{Value, json};
 use tabletop::{
     multiplication::{Collection, CollectionError, Made, Multiplication, Variation},
     recorder::RecordingReader,
+    run_episodes,
 };
 
 use super::{
@@ -214,51 +203,17 @@ fn make_all(
 ) -> Result<Tally, Failure> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let jobs = args.jobs.unwrap_or(cores).clamp(1, missing.len().max(1));
-    let next = AtomicU64::new(0);
-    let is_ended = AtomicBool::new(false);
-    let outcome = Mutex::new(Tally::default());
+    let make = |number| make(multiplication, collection, number);
     let mut progress = ProgressLine::new(missing.len() as u64, "");
     let mut done = 0;
-    let (sender, results) = mpsc::channel::<Result<(u64, Made), Failure>>();
-    thread::scope(|scope| {
-        for _ in 0..jobs {
-            let sender = sender.clone();
-            let (next, is_ended) = (&next, &is_ended);
-            scope.spawn(move || {
-                while !is_ended.load(Ordering::Relaxed) {
-                    let turn = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(&number) = missing.get(turn as usize) else {
-                        break;
-                    };
-                    let made = make(multiplication, collection, number);
-                    if sender.send(made.map(|made| (number, made))).is_err() {
-                        break;
-                    }
-                }
-            });
-        }
-        drop(sender);
-        let mut result = Ok(());
-        for made in results {
-            match made {
-                Ok((number, made)) => {
-                    if let Ok(mut outcome) = outcome.lock() {
-                        outcome.note(number, &made);
-                        done += 1;
-                        progress.reach(done, &outcome.dropped_note());
-                    }
-                }
-                Err(failure) => {
-                    is_ended.store(true, Ordering::Relaxed);
-                    result = Err(failure);
-                }
-            }
-        }
-        progress.end();
-        result
-    })?;
-    let mut outcome = outcome.into_inner().unwrap_or_default();
-    outcome.given_up.sort_unstable();
+    let mut outcome = Tally::default();
+    let result = run_episodes(missing.iter().copied(), jobs, make, |number, made| {
+        outcome.note(number, &made);
+        done += 1;
+        progress.reach(done, &outcome.dropped_note());
+    });
+    progress.end();
+    result?;
     for number in &outcome.given_up {
         say(format_args!(
             "tabletop: demonstration {number} could not be made"
